@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cones on a mesh: members of a vertex group, with an optional angle each; read, marked, cleared, selected."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import bmesh
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from .identifiers import CONE_ANGLE_ATTRIBUTE
+
+CONE_WEIGHT = 1.0
+
+
+def marked_cones(obj: bpy.types.Object, group_name: str) -> NDArray[np.int32]:
+    """Vertices with a weight above zero in the group, ascending; none where there is no such group."""
+    group = obj.vertex_groups.get(group_name)
+    if group is None:
+        return np.empty(0, np.int32)
+    if obj.mode == "EDIT":
+        bm = bmesh.from_edit_mesh(obj.data)
+        bm.verts.index_update()
+        deform = bm.verts.layers.deform.active
+        weighted = bm.verts if deform is not None else ()
+        found = [vertex.index for vertex in weighted if vertex[deform].get(group.index, 0.0) > 0.0]
+    else:
+        found = [
+            vertex.index
+            for vertex in obj.data.vertices
+            if any(entry.group == group.index and entry.weight > 0.0 for entry in vertex.groups)
+        ]
+    return np.array(found, np.int32)
+
+
+def given_angles(mesh: bpy.types.Mesh, vertices: Iterable[int]) -> list[float | None]:
+    """Angle in radians of each vertex from the cone angle attribute; None (automatic) where it is 0 or missing."""
+    if mesh.is_editmode:
+        bm = bmesh.from_edit_mesh(mesh)
+        bm.verts.ensure_lookup_table()
+        layer = bm.verts.layers.float.get(CONE_ANGLE_ATTRIBUTE)
+        angles = [0.0 if layer is None else bm.verts[vertex][layer] for vertex in vertices]
+    else:
+        attribute = mesh.attributes.get(CONE_ANGLE_ATTRIBUTE)
+        present = attribute is not None and attribute.domain == "POINT" and attribute.data_type == "FLOAT"
+        angles = [attribute.data[vertex].value if present else 0.0 for vertex in vertices]
+    return [angle if angle != 0.0 else None for angle in angles]
+
+
+def mark_cones(obj: bpy.types.Object, group_name: str, vertices: Iterable[int]) -> None:
+    """Put vertices into the group, which is created where it does not exist."""
+    group = obj.vertex_groups.get(group_name)
+    if group is None:
+        had_groups, active = bool(obj.vertex_groups), obj.vertex_groups.active_index
+        group = obj.vertex_groups.new(name=group_name)
+        if had_groups:
+            # Blender activates a new group; the artist's choice is not ours to change.
+            obj.vertex_groups.active_index = active
+    if obj.mode == "EDIT":
+        bm = bmesh.from_edit_mesh(obj.data)
+        deform = bm.verts.layers.deform.verify()
+        bm.verts.ensure_lookup_table()
+        for vertex in vertices:
+            bm.verts[vertex][deform][group.index] = CONE_WEIGHT
+        bmesh.update_edit_mesh(obj.data, loop_triangles=False, destructive=False)
+    else:
+        group.add([int(vertex) for vertex in vertices], CONE_WEIGHT, "REPLACE")
+
+
+def clear_cones(obj: bpy.types.Object, group_name: str, vertices: Iterable[int]) -> None:
+    """Take vertices out of the group they are in; the group stays."""
+    group = obj.vertex_groups[group_name]
+    if obj.mode == "EDIT":
+        bm = bmesh.from_edit_mesh(obj.data)
+        deform = bm.verts.layers.deform.active
+        bm.verts.ensure_lookup_table()
+        for vertex in vertices:
+            del bm.verts[vertex][deform][group.index]
+        bmesh.update_edit_mesh(obj.data, loop_triangles=False, destructive=False)
+    else:
+        group.remove([int(vertex) for vertex in vertices])
+
+
+def selected_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
+    """Selected, visible vertices of a mesh in edit mode, ascending."""
+    bm = bmesh.from_edit_mesh(mesh)
+    bm.verts.index_update()
+    return np.array([vertex.index for vertex in bm.verts if vertex.select and not vertex.hide], np.int32)
+
+
+def select_vertices(mesh: bpy.types.Mesh, vertices: Iterable[int], extend: bool) -> int:
+    """Select the visible ones of ``vertices`` in edit mode, after deselecting all unless ``extend``.  Returns their number."""
+    bm = bmesh.from_edit_mesh(mesh)
+    bm.verts.ensure_lookup_table()
+    bm.select_mode = {"VERT"}
+    if not extend:
+        for element in (*bm.verts, *bm.edges, *bm.faces):
+            element.select = False
+    visible = [bm.verts[vertex] for vertex in vertices if not bm.verts[vertex].hide]
+    for vertex in visible:
+        vertex.select = True
+    bm.select_flush_mode()
+    bm.select_history.validate()
+    if hasattr(bm, "uv_select_sync_valid"):
+        # Blender 5.0 keeps a UV selection of its own, which no longer matches the vertices selected here.
+        bm.uv_select_sync_valid = False
+    bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
+    return len(visible)

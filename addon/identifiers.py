@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every name the add-on leaves in Blender or on a mesh, in one place."""
+
+CONE_GROUP = "uv_cones"
+"""Default vertex group; a weight above zero marks a cone."""
+
+CONE_ANGLE_ATTRIBUTE = "uv_cone_angle"
+"""Float attribute on points: total angle of a cone in radians, 0 for automatic."""
+
+NEW_UV_LAYER = "UVMap"
+"""UV layer created on a mesh that has none; Blender's own name for it."""
+
+UNWRAP = "uv.cone_unwrap"
+MARK = "mesh.cone_mark"
+SELECT = "mesh.cone_select"
+PLACE = "mesh.cone_place"

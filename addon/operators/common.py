@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the operators share: when they can run and which vertex group holds the cones."""
+
+import bpy
+
+from .. import native
+from ..identifiers import CONE_GROUP
+from ..mesh_read import Region, read_region
+from ..reporting import Refused
+
+
+class ConeGroupProperty:
+    """Mix-in: the vertex group whose members are the cones."""
+
+    vertex_group: bpy.props.StringProperty(
+        name="Vertex Group",
+        description="Vertex group that holds the cones; a weight above zero marks a vertex as a cone",
+        default=CONE_GROUP,
+    )
+
+    def draw_vertex_group(self, layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+        """The field with the active object's groups to choose from, where there is an active object."""
+        if context.object is None:
+            layout.prop(self, "vertex_group")
+        else:
+            layout.prop_search(self, "vertex_group", context.object, "vertex_groups")
+
+
+def poll_edit_mesh(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
+    """True where a mesh is in edit mode."""
+    if context.mode != "EDIT_MESH":
+        operator.poll_message_set("Enter edit mode on a mesh first")
+        return False
+    return True
+
+
+def poll_computation(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
+    """True where the computing library is there and meshes are in edit mode or selected in object mode."""
+    if native.PROBLEM:
+        operator.poll_message_set(native.PROBLEM)
+        return False
+    if context.mode == "EDIT_MESH":
+        return True
+    if context.mode != "OBJECT" or not any(obj.type == "MESH" for obj in context.selected_objects):
+        operator.poll_message_set("Enter edit mode on a mesh, or select mesh objects in object mode")
+        return False
+    return True
+
+
+def require_region(obj: bpy.types.Object) -> Region | None:
+    """The region to work on; None where an edit-mode mesh has nothing selected.  Raises Refused."""
+    if not obj.data.is_editable:
+        raise Refused("the mesh is linked from another file and cannot be changed; make it local (Object > Relations)")
+    region = read_region(obj)
+    if region is None and obj.mode != "EDIT":
+        raise Refused("the mesh has no faces; add some or select another object")
+    return region

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Menu entries; F3 finds an operator only where a menu holds it."""
+
+import bpy
+
+from .. import identifiers
+
+
+def draw_unwrap(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    self.layout.separator()
+    self.layout.operator(identifiers.UNWRAP)
+
+
+def draw_cones(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    layout = self.layout
+    layout.separator()
+    layout.operator(identifiers.MARK).clear = False
+    layout.operator(identifiers.MARK, text="Clear Cone").clear = True
+    layout.operator(identifiers.SELECT)
+    layout.operator(identifiers.PLACE)
+
+
+def draw_cones_for_vertices(self: bpy.types.Menu, context: bpy.types.Context) -> None:
+    """The context menu serves all select modes; cones belong to vertices."""
+    if context.tool_settings.mesh_select_mode[0]:
+        draw_cones(self, context)
+
+
+# IMAGE_MT_uvs_unwrap also shows in the U menu of the 3D view (VIEW3D_MT_uv_map). The cones stand where the seams do.
+ENTRIES = (
+    ("IMAGE_MT_uvs_unwrap", draw_unwrap),
+    ("IMAGE_MT_uvs", draw_cones),
+    ("VIEW3D_MT_uv_map", draw_cones),
+    ("VIEW3D_MT_edit_mesh_edges", draw_cones),
+    ("VIEW3D_MT_edit_mesh_vertices", draw_cones),
+    ("VIEW3D_MT_edit_mesh_context_menu", draw_cones_for_vertices),
+)
+
+
+def append() -> None:
+    for menu, draw in ENTRIES:
+        getattr(bpy.types, menu).append(draw)
+
+
+def remove() -> None:
+    for menu, draw in ENTRIES:
+        getattr(bpy.types, menu).remove(draw)

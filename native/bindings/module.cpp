@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The native verbs over numpy arrays: checked views in, owning arrays out, the GIL released while computing.
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "lsgp/lsgp.hpp"
+
+namespace py = pybind11;
+
+namespace {
+
+using lsgp::Index;
+
+using FloatArray = py::array_t<double, py::array::c_style>;
+using IndexArray = py::array_t<Index, py::array::c_style>;
+using BoolArray = py::array_t<bool, py::array::c_style>;
+
+// Arguments arrive as converted by the Python layer; anything else is a defect of the caller, refused by type.
+template <typename Matrix, typename Array>
+Matrix to_matrix(const Array& array) {
+  if (array.ndim() != 2 || array.shape(1) != Matrix::ColsAtCompileTime) throw py::value_error("array of the wrong shape");
+  return Eigen::Map<const Matrix>(array.data(), array.shape(0), array.shape(1));
+}
+
+std::vector<Index> to_vector(const IndexArray& array) {
+  if (array.ndim() != 1) throw py::value_error("array of the wrong shape");
+  return {array.data(), array.data() + array.shape(0)};
+}
+
+lsgp::Surface to_surface(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
+                         const IndexArray& seams) {
+  lsgp::Surface surface{to_matrix<lsgp::Positions>(positions), to_matrix<lsgp::Triangles>(triangles), std::nullopt,
+                        to_matrix<lsgp::VertexPairs>(seams)};
+  if (edges) surface.edges = to_matrix<lsgp::VertexPairs>(*edges);
+  return surface;
+}
+
+lsgp::Cones to_cones(const IndexArray& vertices, const FloatArray& angles, const BoolArray& has_angle) {
+  if (angles.ndim() != 1 || has_angle.ndim() != 1 || angles.shape(0) != has_angle.shape(0)) {
+    throw py::value_error("array of the wrong shape");
+  }
+  lsgp::Cones cones{to_vector(vertices), {}};
+  for (py::ssize_t i = 0; i < angles.shape(0); ++i) {
+    cones.angles.push_back(has_angle.at(i) ? std::optional<double>(angles.at(i)) : std::nullopt);
+  }
+  return cones;
+}
+
+lsgp::PrescriptionRule to_rule(const std::string& name) {
+  if (name == "least-distortion") return lsgp::PrescriptionRule::least_distortion;
+  if (name == "harmonic") return lsgp::PrescriptionRule::harmonic;
+  if (name == "straightness") return lsgp::PrescriptionRule::straightness;
+  if (name == "manual") return lsgp::PrescriptionRule::manual;
+  throw py::value_error("unknown prescription '" + name + "'");
+}
+
+template <typename Scalar>
+py::array_t<Scalar> to_array(const Scalar* data, std::vector<py::ssize_t> shape) {
+  py::array_t<Scalar> out(std::move(shape));
+  if (out.size() > 0) std::memcpy(out.mutable_data(), data, sizeof(Scalar) * static_cast<std::size_t>(out.size()));
+  return out;
+}
+
+template <typename Scalar>
+py::array_t<Scalar> to_array(const std::vector<Scalar>& values) {
+  return to_array(values.data(), {static_cast<py::ssize_t>(values.size())});
+}
+
+py::array_t<double> to_array(const Eigen::VectorXd& values) { return to_array(values.data(), {values.size()}); }
+
+py::array_t<Index> to_array(const lsgp::VertexPairs& pairs) { return to_array(pairs.data(), {pairs.rows(), 2}); }
+
+py::object to_elements(const lsgp::Elements& elements) {
+  const auto count = static_cast<py::ssize_t>(elements.indices.size());
+  const bool pairs = elements.kind == lsgp::ElementKind::edges;
+  return py::module_::import("lsgp.errors")
+      .attr("Elements")(lsgp::name(elements.kind),
+                        pairs ? to_array(elements.indices.data(), {count / 2, 2}) : to_array(elements.indices));
+}
+
+py::list to_findings(const std::vector<lsgp::Finding>& findings) {
+  py::list out;
+  const py::object type = py::module_::import("lsgp.errors").attr("Finding");
+  for (const lsgp::Finding& finding : findings) {
+    out.append(type(lsgp::name(finding.code), finding.message, to_elements(finding.elements)));
+  }
+  return out;
+}
+
+const char* exception_name(lsgp::ErrorKind kind) {
+  switch (kind) {
+    case lsgp::ErrorKind::input: return "InputError";
+    case lsgp::ErrorKind::topology: return "TopologyError";
+    case lsgp::ErrorKind::curvature: return "CurvatureError";
+    case lsgp::ErrorKind::solver: return "SolverError";
+  }
+  return "LsgpError";
+}
+
+void raise_in_python(const lsgp::Error& error) {
+  const py::object type = py::module_::import("lsgp.errors").attr(exception_name(lsgp::error_kind(error.code())));
+  const py::object exception = type(lsgp::name(error.code()), error.what(), to_elements(error.elements()));
+  PyErr_SetObject(type.ptr(), exception.ptr());
+}
+
+// Calls a verb without the GIL.
+template <typename Verb>
+auto without_gil(Verb verb) {
+  py::gil_scoped_release release;
+  return verb();
+}
+
+py::dict to_dict(const lsgp::Distortion& distortion) {
+  py::dict out;
+  out["quasi_conformal"] = distortion.quasi_conformal;
+  out["quasi_conformal_area_weighted"] = distortion.quasi_conformal_area_weighted;
+  out["area"] = distortion.area;
+  out["area_p10"] = distortion.area_p10;
+  out["area_p90"] = distortion.area_p90;
+  out["l2_stretch"] = distortion.l2_stretch;
+  return out;
+}
+
+py::dict to_dict(const lsgp::SeamQuality& seams) {
+  py::dict out;
+  out["sister_ratio_max"] = seams.sister_ratio_max;
+  out["rotation_residual"] = seams.rotation_residual;
+  out["translation_residual"] = seams.translation_residual;
+  return out;
+}
+
+py::dict parameterize(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
+                      const IndexArray& seams, const IndexArray& cones, const FloatArray& angles, const BoolArray& has_angle,
+                      const std::string& prescription, const std::string& unfold, const std::string& method) {
+  const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
+  const lsgp::Cones wanted = to_cones(cones, angles, has_angle);
+  const lsgp::Options options{to_rule(prescription),
+                              unfold == "spectral" ? lsgp::UnfoldMethod::spectral : lsgp::UnfoldMethod::poisson,
+                              method == "lscm" ? lsgp::Method::lscm : lsgp::Method::lsgp};
+  const lsgp::Result result = without_gil([&] { return lsgp::parameterize(surface, wanted, options); });
+  py::array_t<bool> solved(static_cast<py::ssize_t>(result.island.size()));
+  for (std::size_t f = 0; f < result.island.size(); ++f) solved.mutable_at(f) = result.island[f] >= 0;
+  py::dict seconds;
+  for (const auto& [stage, spent] : result.stage_seconds) seconds[stage.c_str()] = spent;
+  py::dict out;
+  out["corner_uv"] = to_array(result.corner_uv.data(), {triangles.shape(0), 3, 2});
+  out["solved"] = solved;
+  out["island"] = to_array(result.island);
+  out["cut_edges"] = to_array(result.cut_edges);
+  out["cones"] = to_array(result.cones);
+  out["cone_angles"] = to_array(result.cone_angles);
+  out["distortion"] = to_dict(result.distortion);
+  out["seams"] = to_dict(result.seams);
+  out["flipped"] = to_array(result.flipped);
+  out["wrong_angle_sums"] = to_array(result.wrong_angle_sums);
+  out["cone_angle_error"] = result.cone_angle_error;
+  out["log_scale"] = to_array(result.log_scale);
+  out["warnings"] = to_findings(result.warnings);
+  out["stage_seconds"] = seconds;
+  return out;
+}
+
+py::dict find_cuts(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
+                   const IndexArray& seams, const IndexArray& cones) {
+  const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
+  const std::vector<Index> wanted = to_vector(cones);
+  const lsgp::CutPaths cuts = without_gil([&] { return lsgp::find_cuts(surface, wanted); });
+  py::list paths;
+  for (const auto& path : cuts.paths) paths.append(to_array(path));
+  py::dict out;
+  out["edges"] = to_array(cuts.edges);
+  out["paths"] = paths;
+  return out;
+}
+
+py::dict prescribe_curvature(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
+                             const IndexArray& seams, const IndexArray& cones, const FloatArray& angles,
+                             const BoolArray& has_angle, const std::string& prescription) {
+  const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
+  const lsgp::Cones wanted = to_cones(cones, angles, has_angle);
+  const lsgp::PrescriptionRule rule = to_rule(prescription);
+  const lsgp::Prescription result = without_gil([&] { return lsgp::prescribe_curvature(surface, wanted, rule); });
+  py::dict out;
+  out["cones"] = to_array(result.cones);
+  out["cone_angles"] = to_array(result.cone_angles);
+  out["log_scale"] = to_array(result.log_scale);
+  out["predicted_l2"] = result.predicted_l2;
+  out["warnings"] = to_findings(result.warnings);
+  return out;
+}
+
+py::array_t<Index> place_cones(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
+                               const IndexArray& seams, int count, const IndexArray& existing) {
+  const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
+  const std::vector<Index> kept = to_vector(existing);
+  return to_array(without_gil([&] { return lsgp::place_cones(surface, count, kept); }));
+}
+
+py::dict measure_distortion(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
+                            const IndexArray& seams, const FloatArray& corner_uv, const std::optional<IndexArray>& cones) {
+  const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
+  if (corner_uv.size() != 6 * surface.triangles.rows()) throw py::value_error("array of the wrong shape");
+  const lsgp::CornerUv uv = Eigen::Map<const lsgp::CornerUv>(corner_uv.data(), 3 * surface.triangles.rows(), 2);
+  const std::vector<Index> given = cones ? to_vector(*cones) : std::vector<Index>{};
+  const lsgp::Measurement result =
+      without_gil([&] { return lsgp::measure_distortion(surface, uv, cones ? &given : nullptr); });
+  py::dict out;
+  out["distortion"] = to_dict(result.distortion);
+  out["seams"] = to_dict(result.seams);
+  out["flipped"] = to_array(result.flipped);
+  out["cut_edges"] = to_array(result.cut_edges);
+  out["island"] = to_array(result.island);
+  return out;
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_lsgp, module) {
+  module.doc() = "Native verbs of lsgp; call them through the functions of the package.";
+  py::register_exception_translator([](std::exception_ptr pending) {
+    try {
+      if (pending) std::rethrow_exception(pending);
+    } catch (const lsgp::Error& error) {
+      raise_in_python(error);
+    }
+  });
+  module.def("parameterize", &parameterize);
+  module.def("find_cuts", &find_cuts);
+  module.def("prescribe_curvature", &prescribe_curvature);
+  module.def("place_cones", &place_cones);
+  module.def("measure_distortion", &measure_distortion);
+}

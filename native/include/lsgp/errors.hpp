@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Errors and findings: what is wrong, where in the caller's numbering, how much, and what to do.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lsgp/export.hpp"
+#include "lsgp/surface.hpp"
+
+namespace lsgp {
+
+enum class ElementKind { vertices, edges, triangles };
+
+struct Elements {
+  ElementKind kind = ElementKind::vertices;
+  std::vector<Index> indices;  // edges: two vertices each
+};
+
+enum class Code {
+  // InputError
+  empty_mesh,
+  index_out_of_range,
+  bad_face,
+  non_finite_position,
+  scale_range,
+  degenerate_mesh,
+  edge_not_in_mesh,
+  seam_not_an_edge,
+  cone_index,
+  cone_duplicate,
+  cone_not_on_surface,
+  angle_count,
+  cone_angle_non_finite,
+  // TopologyError
+  not_orientable,
+  too_few_cones,
+  cuts_blocked,
+  // CurvatureError
+  cone_angle_range,
+  gauss_bonnet,
+  // SolverError
+  solver_failed,
+  // warnings
+  component_skipped,
+  isolated_vertices,
+  degenerate_faces,
+  non_manifold_edge,
+  split_vertex,
+  reoriented,
+  cone_on_boundary,
+  junction_share,
+  straightness_failed,
+  spectral_needs_closed,
+  high_distortion,
+  flipped_triangles,
+  wrong_angle_sums,
+};
+
+enum class ErrorKind { input, topology, curvature, solver };
+
+LSGP_API const char* name(Code code);       // "EMPTY_MESH", ...
+LSGP_API const char* name(ElementKind kind);
+LSGP_API ErrorKind error_kind(Code code);   // of the codes that are thrown
+
+class LSGP_API Error : public std::runtime_error {
+ public:
+  Error(Code code, const std::string& message, Elements elements = {})
+      : std::runtime_error(message), code_(code), elements_(std::move(elements)) {}
+  Code code() const { return code_; }
+  const Elements& elements() const { return elements_; }
+
+ private:
+  Code code_;
+  Elements elements_;
+};
+
+// Something to know about a usable result.
+struct Finding {
+  Code code;
+  std::string message;
+  Elements elements;
+};
+
+}  // namespace lsgp

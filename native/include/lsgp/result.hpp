@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lsgp/errors.hpp"
+#include "lsgp/surface.hpp"
+
+namespace lsgp {
+
+// Quality of a map (the paper's section 7.1).  sigma_1 >= sigma_2: singular values of a triangle's map 3D -> UV.
+struct Distortion {
+  double quasi_conformal = 0;                // mean of sigma_1 / sigma_2 over triangles
+  double quasi_conformal_area_weighted = 0;  // the same, weighted by 3D area
+  double area = 0;                           // mean of (share of 3D area) / (share of UV area) over triangles
+  double area_p10 = 0, area_p90 = 0;         // its percentiles
+  double l2_stretch = 0;                     // Sander et al. 2001, normalised: 1 is isometric
+};
+
+// How exactly the two sides of every cut are related by one rotation and one translation.
+struct SeamQuality {
+  double sister_ratio_max = 1;      // longer to shorter of two sister edges
+  double rotation_residual = 0;     // angle between a cut edge's own turn and its cut's rotation, radians
+  double translation_residual = 0;  // distance of a vertex to the image of its sister, relative to the layout
+};
+
+struct StageSeconds : std::vector<std::pair<std::string, double>> {};
+
+struct CutPaths {
+  VertexPairs edges;                      // (c, 2)
+  std::vector<std::vector<Index>> paths;  // vertices from node to node
+};
+
+struct Prescription {
+  std::vector<Index> cones;         // (k)
+  std::vector<double> cone_angles;  // (k) radians
+  Eigen::VectorXd log_scale;        // (n) area-weighted mean 0 on every island
+  double predicted_l2 = 1;          // over the whole surface
+  std::vector<Finding> warnings;
+};
+
+struct Result {
+  CornerUv corner_uv;               // (3m, 2), NaN where not solved
+  std::vector<Index> island;        // (m), -1 where not solved
+  VertexPairs cut_edges;            // (c, 2)
+  std::vector<Index> cones;         // (k) those of solved components
+  std::vector<double> cone_angles;  // (k) imposed, radians
+  Distortion distortion;
+  SeamQuality seams;
+  std::vector<Index> flipped;           // triangles with UV area <= 0
+  std::vector<Index> wrong_angle_sums;  // vertices whose UV angles are off by a turn
+  double cone_angle_error = 0;          // largest deviation of a cone's UV angle sum, radians
+  Eigen::VectorXd log_scale;            // (n) as in Prescription
+  std::vector<Finding> warnings;
+  StageSeconds stage_seconds;
+};
+
+struct Measurement {
+  Distortion distortion;
+  SeamQuality seams;
+  std::vector<Index> flipped;  // against the majority of their island
+  VertexPairs cut_edges;
+  std::vector<Index> island;
+};
+
+}  // namespace lsgp

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The input: a triangulated surface, the edges a cut may follow, and the cones.
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace lsgp {
+
+using Index = std::int32_t;
+using Complex = std::complex<double>;
+using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+using Triangles = Eigen::Matrix<Index, Eigen::Dynamic, 3, Eigen::RowMajor>;
+using VertexPairs = Eigen::Matrix<Index, Eigen::Dynamic, 2, Eigen::RowMajor>;
+
+// One (u, v) per triangle corner: row 3 * triangle + corner.
+using CornerUv = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
+
+struct Surface {
+  Positions positions;               // (n, 3), any unit
+  Triangles triangles;               // (m, 3), counter-clockwise seen from outside
+  std::optional<VertexPairs> edges;  // (e, 2) edges a cut may follow; absent: every edge of the triangles
+  VertexPairs seams;                 // (s, 2) marked edges; cuts are drawn to them
+};
+
+struct Cones {
+  std::vector<Index> vertices;                // (k)
+  std::vector<std::optional<double>> angles;  // (k) total angle in radians, empty = automatic
+};
+
+}  // namespace lsgp

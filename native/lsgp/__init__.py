@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cone parameterization with exact affine transitions across every cut.
+
+Vintescu, Dupont, Lavoué, Memari, Tierny: Least Squares Affine Transitions for Global Parameterization, WSCG 2017.
+"""
+
+from importlib.metadata import version
+
+from .api import (
+    CutGraph,
+    Distortion,
+    Measurement,
+    Options,
+    Prescription,
+    Result,
+    SeamQuality,
+    Surface,
+    find_cuts,
+    measure_distortion,
+    parameterize,
+    place_cones,
+    prescribe_curvature,
+)
+from .errors import (
+    Cancelled,
+    CurvatureError,
+    Elements,
+    Finding,
+    InputError,
+    LsgpError,
+    SolverError,
+    TopologyError,
+)
+
+__version__ = version("lsgp")
+
+__all__ = [
+    "Cancelled",
+    "CurvatureError",
+    "CutGraph",
+    "Distortion",
+    "Elements",
+    "Finding",
+    "InputError",
+    "LsgpError",
+    "Measurement",
+    "Options",
+    "Prescription",
+    "Result",
+    "SeamQuality",
+    "SolverError",
+    "Surface",
+    "TopologyError",
+    "find_cuts",
+    "measure_distortion",
+    "parameterize",
+    "place_cones",
+    "prescribe_curvature",
+]

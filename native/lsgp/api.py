@@ -1,0 +1,291 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The verbs of the library over numpy arrays: validation of the call, the native core, typed results."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _lsgp
+from .errors import Finding, InputError
+
+FloatArray = NDArray[np.float64]
+IndexArray = NDArray[np.int32]
+
+PrescriptionRule = Literal["least-distortion", "harmonic", "straightness", "manual"]
+UnfoldMethod = Literal["poisson", "spectral"]
+Method = Literal["lsgp", "lscm"]
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A triangulated surface, possibly of several components, and the edges its cuts may follow.
+
+    positions: (n, 3) float64, any unit.
+    triangles: (m, 3) int32, counter-clockwise seen from outside.
+    edges: (e, 2) int32, the edges a cut may follow (mesh edges, not the diagonals of triangulated polygons);
+        None for all edges of the triangles.
+    seams: (s, 2) int32, marked edges; cuts run along them wherever they can.
+    """
+
+    positions: FloatArray
+    triangles: IndexArray
+    edges: IndexArray | None = None
+    seams: IndexArray | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "positions", _float_rows(self.positions, 3, "positions"))
+        object.__setattr__(self, "triangles", _index_rows(self.triangles, 3, "triangles"))
+        if self.edges is not None:
+            object.__setattr__(self, "edges", _index_rows(self.edges, 2, "edges"))
+        seams = np.empty((0, 2), np.int32) if self.seams is None else self.seams
+        object.__setattr__(self, "seams", _index_rows(seams, 2, "seams"))
+
+
+@dataclass(frozen=True)
+class Options:
+    """How to prescribe the cone angles and how to unfold.
+
+    prescription: the rule that chooses the automatic angles. None: "manual" where angles are given (those are kept,
+        the other cones take up the rest with least distortion), "least-distortion" otherwise.
+    unfold: "poisson" (robust, one linear solve) or "spectral" (the paper's, an eigenproblem; closed surfaces).
+    method: "lsgp", or "lscm" for the paper's comparison: the same cuts without transitions.
+    """
+
+    prescription: PrescriptionRule | None = None
+    unfold: UnfoldMethod = "poisson"
+    method: Method = "lsgp"
+
+    def __post_init__(self) -> None:
+        for name, choices in (("prescription", PrescriptionRule), ("unfold", UnfoldMethod), ("method", Method)):
+            value = getattr(self, name)
+            if value not in get_args(choices) and not (name == "prescription" and value is None):
+                raise InputError("WRONG_PARAMETER", f"{name} is {value!r}; choose one of {', '.join(get_args(choices))}.")
+
+
+@dataclass(frozen=True, slots=True)
+class Distortion:
+    """Quality of a map (the paper's section 7.1), over all solved triangles.
+
+    quasi_conformal: mean of sigma_1 / sigma_2 over triangles; 1 is conformal.
+    quasi_conformal_area_weighted: the same, weighted by 3D area.
+    area: mean of (share of the 3D area) / (share of the UV area) over triangles; area_p10, area_p90 its percentiles.
+    l2_stretch: L2 stretch of Sander et al. 2001, normalised; 1 is isometric.
+    """
+
+    quasi_conformal: float
+    quasi_conformal_area_weighted: float
+    area: float
+    area_p10: float
+    area_p90: float
+    l2_stretch: float
+
+
+@dataclass(frozen=True, slots=True)
+class SeamQuality:
+    """How exactly the two sides of every cut are related by one rotation and one translation.
+
+    sister_ratio_max: largest ratio of the longer to the shorter of two sister edges; 1 is exact.
+    rotation_residual: largest angle between a cut edge's own turn and its cut's rotation, radians.
+    translation_residual: largest distance between a vertex and the image of its sister, relative to the layout's size.
+    """
+
+    sister_ratio_max: float
+    rotation_residual: float
+    translation_residual: float
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """A map and everything imposed on it and measured of it.
+
+    corner_uv: (m, 3, 2) float64, one (u, v) per triangle corner; NaN where not solved. Islands have their 3D area
+        up to one common factor, do not overlap each other and lie in the unit square.
+    solved: (m,) bool.
+    island: (m,) int32, the island of each triangle, -1 where not solved.
+    cut_edges: (c, 2) int32 vertex pairs along which the layout is open (mesh boundaries not included).
+    cones, cone_angles: (k,) int32 and (k,) float64, radians, the angles that were imposed.
+    flipped: indices of triangles with UV area <= 0. wrong_angle_sums: vertices whose UV angles do not add up to their
+        prescribed angle (a deviation is a whole turn). The map is valid when both are empty.
+    cone_angle_error: largest deviation of a cone's UV angle sum from its imposed angle, radians.
+    log_scale: (n,) float64, predicted logarithm of the length scale at each vertex, area-weighted mean 0 on an island.
+    warnings: findings that leave the result usable.
+    stage_seconds: wall-clock seconds of each stage.
+    """
+
+    corner_uv: FloatArray
+    solved: NDArray[np.bool_]
+    island: IndexArray
+    cut_edges: IndexArray
+    cones: IndexArray
+    cone_angles: FloatArray
+    distortion: Distortion
+    seams: SeamQuality
+    flipped: IndexArray
+    wrong_angle_sums: IndexArray
+    cone_angle_error: float
+    log_scale: FloatArray
+    warnings: list[Finding]
+    stage_seconds: dict[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class CutGraph:
+    """Cuts that open a surface into disks through its cones (the paper's section 4.1).
+
+    edges: (c, 2) int32 vertex pairs. paths: the cuts, each an int32 array of vertices from node to node; nodes are
+    cones, junctions and points of the boundary.
+    """
+
+    edges: IndexArray
+    paths: list[IndexArray]
+
+
+@dataclass(frozen=True, slots=True)
+class Prescription:
+    """Cone angles under Gauss-Bonnet and the scale they imply (the paper's section 5).
+
+    cones, cone_angles: (k,) int32, (k,) float64 radians. log_scale: (n,) float64, area-weighted mean 0 on an island.
+    predicted_l2: the L2 stretch the map will have.
+    """
+
+    cones: IndexArray
+    cone_angles: FloatArray
+    log_scale: FloatArray
+    predicted_l2: float
+    warnings: list[Finding]
+
+
+@dataclass(frozen=True, slots=True)
+class Measurement:
+    """Quality of given texture coordinates; cuts are the interior edges whose two sides differ.
+
+    island: (m,) int32. flipped: triangles turned against the majority of their island. cut_edges: (c, 2) int32.
+    """
+
+    distortion: Distortion
+    seams: SeamQuality
+    flipped: IndexArray
+    cut_edges: IndexArray
+    island: IndexArray
+
+
+def parameterize(
+    surface: Surface,
+    cones: ArrayLike,
+    angles: Sequence[float | None] | None = None,
+    options: Options = Options(),
+) -> Result:
+    """Cut the surface through its cones and unfold it with exact transitions across every cut.
+
+    cones: (k,) int32 vertex indices. angles: one total angle in radians per cone, None = automatic.
+    Components that cannot be solved are named in a warning when others could; the first error is raised otherwise.
+    Raises InputError, TopologyError, CurvatureError, SolverError.
+    """
+    out = _lsgp.parameterize(
+        *_surface_arrays(surface), *_cone_arrays(cones, angles, options), options.unfold, options.method
+    )
+    out["distortion"] = Distortion(**out["distortion"])
+    out["seams"] = SeamQuality(**out["seams"])
+    return Result(**out)
+
+
+def find_cuts(surface: Surface, cones: ArrayLike) -> CutGraph:
+    """Shortest cuts that join all cones and boundary loops and open every handle.  Raises InputError, TopologyError."""
+    return CutGraph(**_lsgp.find_cuts(*_surface_arrays(surface), _index_vector(cones, "cones")))
+
+
+def prescribe_curvature(
+    surface: Surface,
+    cones: ArrayLike,
+    angles: Sequence[float | None] | None = None,
+    options: Options = Options(),
+) -> Prescription:
+    """Cone angles and log scale without unfolding.  Arguments and errors as in `parameterize`."""
+    out = _lsgp.prescribe_curvature(*_surface_arrays(surface), *_cone_arrays(cones, angles, options))
+    return Prescription(**out)
+
+
+def place_cones(surface: Surface, count: int | None = None, existing: ArrayLike = ()) -> IndexArray:
+    """Cones at the extrema of the log scale factor, one after the other (Ben-Chen et al. 2008).
+
+    count: cones per component, `existing` ones included; None: as many as bring the predicted L2 stretch near 1.
+    existing: cones to keep; they come first in the answer.  Returns (k,) int32 vertex indices.
+    """
+    if count is not None and count < 0:
+        raise InputError("WRONG_PARAMETER", f"count is {count}; pass the number of cones wanted, or None for automatic.")
+    wanted = -1 if count is None else int(count)
+    return _lsgp.place_cones(*_surface_arrays(surface), wanted, _index_vector(existing, "existing"))
+
+
+def measure_distortion(surface: Surface, corner_uv: ArrayLike, cones: ArrayLike | None = None) -> Measurement:
+    """Measure given texture coordinates, (m, 3, 2) float64, one (u, v) per triangle corner; NaN leaves a triangle out.
+
+    cones: (k,) int32, the vertices at which a cut may change its rotation; None: every vertex whose angles do not add
+    up to a full turn.
+    """
+    uv = np.ascontiguousarray(corner_uv, np.float64)
+    if uv.shape != (len(surface.triangles), 3, 2):
+        expected = (len(surface.triangles), 3, 2)
+        raise InputError("WRONG_SHAPE", f"corner_uv has shape {uv.shape}; pass {expected}, one (u, v) per corner.")
+    out = _lsgp.measure_distortion(
+        *_surface_arrays(surface), uv, None if cones is None else _index_vector(cones, "cones")
+    )
+    out["distortion"] = Distortion(**out["distortion"])
+    out["seams"] = SeamQuality(**out["seams"])
+    return Measurement(**out)
+
+
+def _surface_arrays(surface: Surface) -> tuple[Any, ...]:
+    return surface.positions, surface.triangles, surface.edges, surface.seams
+
+
+def _cone_arrays(cones: ArrayLike, angles: Sequence[float | None] | None, options: Options) -> tuple[Any, ...]:
+    """Vertices, angles, which of them are given, and the rule for the others."""
+    vertices = _index_vector(cones, "cones")
+    given = [None] * len(vertices) if angles is None else list(angles)
+    has_angle = np.array([angle is not None for angle in given], bool)
+    values = np.array([0.0 if angle is None else float(angle) for angle in given], np.float64)
+    rule = options.prescription or ("manual" if has_angle.any() else "least-distortion")
+    return vertices, values, has_angle, rule
+
+
+def _float_rows(values: ArrayLike, width: int, name: str) -> FloatArray:
+    array = np.asarray(values)
+    if array.size == 0:
+        return np.empty((0, width), np.float64)
+    if array.ndim != 2 or array.shape[1] != width:
+        raise InputError("WRONG_SHAPE", f"{name} has shape {array.shape}; pass (n, {width}).")
+    if array.dtype.kind not in "fiu":
+        raise InputError("WRONG_DTYPE", f"{name} holds {array.dtype}; pass numbers.")
+    return np.ascontiguousarray(array, np.float64)
+
+
+def _index_rows(values: ArrayLike, width: int, name: str) -> IndexArray:
+    array = np.asarray(values)
+    if array.size == 0:
+        return np.empty((0, width), np.int32)
+    if array.ndim != 2 or array.shape[1] != width:
+        raise InputError("WRONG_SHAPE", f"{name} has shape {array.shape}; pass (n, {width}).")
+    return _indices(array, name)
+
+
+def _index_vector(values: ArrayLike, name: str) -> IndexArray:
+    array = np.asarray(values)
+    if array.size == 0:
+        return np.empty(0, np.int32)
+    if array.ndim != 1:
+        raise InputError("WRONG_SHAPE", f"{name} has shape {array.shape}; pass (n,).")
+    return _indices(array, name)
+
+
+def _indices(array: NDArray[Any], name: str) -> IndexArray:
+    if array.dtype.kind not in "iu":
+        raise InputError("WRONG_DTYPE", f"{name} holds {array.dtype}; pass whole numbers.")
+    if array.max() > np.iinfo(np.int32).max or array.min() < np.iinfo(np.int32).min:
+        raise InputError("INDEX_OUT_OF_RANGE", f"{name} holds {array.max()}; indices must fit 32 bits.")
+    return np.ascontiguousarray(array, np.int32)

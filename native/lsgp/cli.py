@@ -1,0 +1,332 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The command line: `lsgp unwrap` and `lsgp measure`.
+
+Exit code 0: a result, with warnings or not; 2: wrong usage, a file that is missing or cannot be written; 3: the input
+was refused, with a code and a sentence that says what to do.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, TextIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import report as reports
+from .api import Options, Surface, measure_distortion, parameterize, place_cones
+from .errors import Elements, Finding, InputError, LsgpError
+from .mesh_files import read_mesh, write_obj, write_whole
+from .polygons import PolygonMesh, Triangulation, triangulate
+
+OK, USAGE, REFUSED = 0, 2, 3
+
+
+class UsageError(Exception):
+    """A command that cannot be carried out as it was given."""
+
+
+@dataclass
+class Run:
+    """What a command has found out so far; enough to report on a refusal at any point."""
+
+    triangulation: Triangulation | None = None
+    stage_seconds: dict[str, float] = field(default_factory=dict)
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        begin = time.perf_counter()
+        yield
+        self.stage_seconds[name] = time.perf_counter() - begin
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a command line, without the program's name, and return its exit code."""
+    parser = _parser()
+    try:
+        args = parser.parse_args(argv)
+        if args.version:
+            _say(sys.stdout, f"lsgp {version('lsgp')}")
+            return OK
+        if args.command is None:
+            parser.error("a command is needed: unwrap or measure")
+    except SystemExit as end:  # argparse has said why
+        return int(end.code or 0)
+    try:
+        return _reported(args)
+    except UsageError as error:
+        _say(sys.stderr, f"lsgp: error: {error}")
+    except OSError as error:
+        where = "" if error.filename is None else f" '{os.fsdecode(error.filename)}'"
+        _say(sys.stderr, f"lsgp: error: {error.strerror or error}:{where}")
+    return USAGE
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="lsgp",
+        description="Unwrap triangle and polygon meshes through cones, continuous across every cut.",
+        epilog="Exit code: 0 a result, 2 wrong usage or a file missing or not writable, 3 input refused.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="store_true", help="print the version and exit")
+    commands = parser.add_subparsers(dest="command", metavar="command")
+
+    unwrap = commands.add_parser(
+        "unwrap",
+        allow_abbrev=False,
+        help="write a mesh with texture coordinates",
+        description="Cut a mesh through its cones, unfold it, and write it as OBJ with texture coordinates. Vertices, "
+        "polygons and their order stay; materials and normals are not kept.",
+    )
+    unwrap.add_argument("input", metavar="IN", type=Path, help="OBJ, OFF or PLY; polygons of any size")
+    unwrap.add_argument("-o", "--output", metavar="OUT.obj", type=Path, required=True)
+    unwrap.add_argument(
+        "--cones",
+        metavar="FILE.json|auto|auto:N",
+        type=_cones_option,
+        default="auto",
+        help='{"cones": [vertices, from 0], "cone_angles": [radians or null], "angles_over_pi_2": [quarter turns]}, the '
+        "angles optional; or cones placed automatically, N on each component (default: auto)",
+    )
+    unwrap.add_argument(
+        "--prescription",
+        choices=["least-distortion", "harmonic", "straightness", "manual"],
+        help="how cone angles are chosen (default: the cone_angles of the cones file where it has them, otherwise "
+        "least-distortion)",
+    )
+    unwrap.add_argument("--unfold", choices=["poisson", "spectral"], default="poisson", help="default: poisson")
+    unwrap.add_argument("--method", choices=["lsgp", "lscm"], default="lsgp", help="default: lsgp")
+    unwrap.add_argument(
+        "--seam-edges", metavar="FILE.json", type=Path, help="[[a, b], ...]: edges that cuts are drawn to"
+    )
+    unwrap.set_defaults(run=_unwrap)
+
+    measure = commands.add_parser(
+        "measure",
+        allow_abbrev=False,
+        help="measure the texture coordinates of an OBJ",
+        description="Print the quality of the texture coordinates of an OBJ file.",
+    )
+    measure.add_argument("input", metavar="FILE.obj", type=Path)
+    measure.set_defaults(run=_measure, output=None)
+    for command in (unwrap, measure):
+        command.add_argument("--report", metavar="FILE.json", type=Path, help="write a report, also when refused")
+    return parser
+
+
+def _cones_option(text: str) -> str | int | Path:
+    """ "auto", a number of cones, or the path of a cones file."""
+    if text == "auto":
+        return text
+    if text.startswith("auto:"):
+        count = text.removeprefix("auto:")
+        if not (count.isascii() and count.isdigit() and len(count) < 10):
+            raise argparse.ArgumentTypeError(f"'{text}': N in auto:N is a number of cones, 0 or more")
+        return int(count)
+    return Path(text)
+
+
+def _reported(args: argparse.Namespace) -> int:
+    """Run the command; on a refusal say why and write that into the report."""
+    _require_writable(args)
+    run = Run()
+    try:
+        report = args.run(args, run)
+        code = OK
+    except LsgpError as error:
+        report, code = _refusal(error, run), REFUSED
+    except MemoryError:
+        error = LsgpError(
+            "OUT_OF_MEMORY", "There is not enough memory for this mesh. Use a machine with more or fewer faces."
+        )
+        report, code = _refusal(error, run), REFUSED
+    if args.report is not None:
+        write_whole(args.report, reports.to_json(report))
+    return code
+
+
+def _refusal(error: LsgpError, run: Run) -> reports.Report:
+    where = reports.named(reports.on_faces(error.elements, run.triangulation))
+    _say(sys.stderr, f"lsgp: refused: {error.code}: {error.message}" + (f" ({where})" if where else ""))
+    return reports.refusal_report(error, run.triangulation)
+
+
+def _unwrap(args: argparse.Namespace, run: Run) -> reports.Report:
+    if args.prescription == "manual" and not isinstance(args.cones, Path):
+        raise UsageError("--prescription manual needs a cones file with angles; give one with --cones FILE.json")
+    cones_json = _load_json(args.cones) if isinstance(args.cones, Path) else None
+    seams_json = [] if args.seam_edges is None else _load_json(args.seam_edges)
+    mesh, triangulation = _read(args.input, run)
+    seams = _seam_edges(seams_json, args.seam_edges)
+    surface = Surface(mesh.positions, triangulation.triangles, triangulation.edges, seams)
+    if isinstance(args.cones, Path):
+        cones, angles = _cones(cones_json, args.cones, args.prescription)
+    else:
+        with run.stage("place_cones"):
+            cones, angles = place_cones(surface, None if args.cones == "auto" else args.cones), None
+    result = parameterize(surface, cones, angles, Options(args.prescription, args.unfold, args.method))
+    run.stage_seconds.update(result.stage_seconds)
+
+    with run.stage("write_file"):
+        write_obj(args.output, mesh, triangulation.to_polygon_corners(result.corner_uv, len(mesh.corners)))
+    _warn(result.warnings, triangulation)
+    islands = len(np.unique(result.island[result.solved]))
+    _say(
+        sys.stdout,
+        f"{args.output}: {int(result.solved.sum())} of {len(result.solved)} triangles unwrapped, "
+        f"{len(result.cones)} cones, {islands} {'island' if islands == 1 else 'islands'}\n"
+        + reports.quality_table(result.distortion, result.seams, len(result.flipped), len(result.wrong_angle_sums)),
+    )
+    return reports.unwrap_report(result, triangulation, run.stage_seconds)
+
+
+def _measure(args: argparse.Namespace, run: Run) -> reports.Report:
+    mesh, triangulation = _read(args.input, run, with_uv=True)
+    without = np.flatnonzero(np.isnan(mesh.corner_uv[triangulation.corner]).any(axis=(1, 2))).astype(np.int32)
+    if len(mesh.sizes) and len(without) == len(triangulation.triangles):
+        raise InputError("NO_UV", "The file has no texture coordinates to measure. Unwrap it first: lsgp unwrap.")
+    warnings = []
+    if len(without):
+        faces = Elements("faces", triangulation.polygons_of(without))
+        message = (
+            f"{len(faces.indices)} faces have no texture coordinates and were left out. Unwrap them to measure them."
+        )
+        warnings.append(Finding("FACES_WITHOUT_UV", message, faces))
+    surface = Surface(mesh.positions, triangulation.triangles, triangulation.edges)
+    with run.stage("measure_distortion"):
+        measurement = measure_distortion(surface, mesh.corner_uv[triangulation.corner])
+    _warn(warnings, triangulation)
+    _say(
+        sys.stdout,
+        f"{args.input}: {len(triangulation.triangles) - len(without)} of {len(triangulation.triangles)} triangles measured\n"
+        + reports.quality_table(measurement.distortion, measurement.seams, len(measurement.flipped), None),
+    )
+    return reports.measure_report(measurement, warnings, triangulation, run.stage_seconds)
+
+
+def _read(path: Path, run: Run, with_uv: bool = False) -> tuple[PolygonMesh, Triangulation]:
+    with run.stage("read_file"):
+        mesh = read_mesh(path, with_uv)
+    if with_uv and mesh.corner_uv is None:
+        raise InputError("NO_UV", "Only OBJ files are read with texture coordinates. Convert the file to OBJ.")
+    with run.stage("triangulate"):
+        run.triangulation = triangulate(mesh)
+    return mesh, run.triangulation
+
+
+def _require_writable(args: argparse.Namespace) -> None:
+    """Say before the work, not after it, that its result cannot be written."""
+    paths = [path for path in (args.output, args.report) if path is not None]
+    if len({os.path.realpath(path) for path in paths}) < len(paths):
+        raise UsageError("the output and the report cannot be the same file")
+    if args.output is not None and args.output.suffix.lower() in (".off", ".ply"):
+        raise UsageError(f"the output is OBJ; name it .obj, not '{args.output}'")
+    for path in paths:
+        folder = Path(os.path.realpath(path)).parent
+        if path.is_dir():
+            raise UsageError(f"'{path}' is a folder")
+        if not folder.is_dir():
+            raise UsageError(f"there is no folder '{folder}' to write '{path.name}' to")
+        if not os.access(path if path.exists() else folder, os.W_OK):
+            raise UsageError(f"'{path}' cannot be written")
+
+
+def _load_json(path: Path) -> Any:
+    try:
+        return json.loads(path.read_bytes())
+    except (ValueError, RecursionError) as error:
+        raise UsageError(f"'{path}' is no JSON: {error}") from error
+
+
+def _cones(content: Any, path: Path, prescription: str | None) -> tuple[NDArray[np.int32], list[float | None] | None]:
+    """Cones of a cones file and the angles to use, in radians.  Raises InputError."""
+    cones = content.get("cones") if isinstance(content, dict) else None
+    if not _is_list_of(cones, _is_integer):
+        raise _unlike(path, '{"cones": [vertex, ...]} with vertices counted from 0')
+    angles = {}
+    for key, unit in (("cone_angles", 1.0), ("angles_over_pi_2", math.pi / 2)):
+        values = content.get(key)
+        if values is None:
+            continue
+        if not _is_list_of(values, _is_number_or_null):
+            raise _unlike(path, f'"{key}": [number or null, ...]')
+        if len(values) != len(cones):
+            raise InputError(
+                "ANGLE_COUNT",
+                f"'{path}' has {len(cones)} cones but {len(values)} {key}. Give one angle per cone, null for automatic ones.",
+            )
+        angles[key] = [None if value is None else unit * _as_float(value) for value in values]
+    indices = _indices(cones, "CONE_INDEX", "cone").reshape(-1)
+    if prescription == "manual":
+        if not angles:
+            raise InputError(
+                "ANGLE_COUNT", f"'{path}' has no angles for the manual prescription. Add \"cone_angles\" in radians."
+            )
+        return indices, angles.get("cone_angles", angles.get("angles_over_pi_2"))
+    return indices, angles.get("cone_angles") if prescription is None else None
+
+
+def _seam_edges(content: Any, path: Path | None) -> NDArray[np.int32]:
+    """(s, 2) vertex pairs of a seam edges file.  Raises InputError."""
+    if not _is_list_of(content, lambda pair: _is_list_of(pair, _is_integer) and len(pair) == 2):
+        raise _unlike(path, "[[a, b], ...] with vertices counted from 0")
+    return _indices([vertex for pair in content for vertex in pair], "INDEX_OUT_OF_RANGE", "seam vertex").reshape(-1, 2)
+
+
+def _is_list_of(value: Any, accepts: Callable[[Any], bool]) -> bool:
+    return isinstance(value, list) and all(map(accepts, value))
+
+
+def _is_integer(value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def _is_number_or_null(value: Any) -> bool:
+    return value is None or _is_integer(value) or isinstance(value, float)
+
+
+def _as_float(value: float) -> float:
+    try:
+        return float(value)
+    except OverflowError:  # an integer of more than 308 digits
+        return math.inf
+
+
+def _indices(values: list[int], code: str, what: str) -> NDArray[np.int32]:
+    limit = np.iinfo(np.int32)
+    wrong = next((value for value in values if not limit.min <= value <= limit.max), None)
+    if wrong is not None:
+        raise InputError(
+            code, f"A {what} lies outside the mesh: {_as_float(wrong):.3g}. Use vertices of the file, counted from 0."
+        )
+    return np.array(values, np.int32)
+
+
+def _unlike(path: Path | None, form: str) -> InputError:
+    return InputError("MALFORMED_FILE", f"'{path}' does not have the form {form}. Correct the file.")
+
+
+def _warn(findings: Sequence[Finding], triangulation: Triangulation) -> None:
+    for finding in findings:
+        where = reports.named(reports.on_faces(finding.elements, triangulation))
+        _say(sys.stderr, f"lsgp: warning: {finding.code}: {finding.message}" + (f" ({where})" if where else ""))
+
+
+def _say(stream: TextIO, text: str) -> None:
+    """Print a line at once; characters the terminal has not are escaped."""
+    encoding = stream.encoding or "utf-8"
+    try:
+        print(text.encode(encoding, "backslashreplace").decode(encoding), file=stream, flush=True)
+    except BrokenPipeError:  # whoever read along has seen enough; files are still to be written
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

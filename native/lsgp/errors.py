@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Errors of the library: what is wrong, where, how much, and what to do.
+
+Every error carries a ``code`` that never changes its meaning, a ``message`` written for an artist that ends with
+what to do, and the offending ``elements`` in the caller's numbering, so that a user interface can select them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True)
+class Elements:
+    """Mesh elements a finding speaks of.
+
+    kind: "vertices", "edges" or "triangles" ("faces" once mapped to the polygons of a file).
+    indices: (k,) int32, or (k, 2) int32 vertex pairs for edges.
+    """
+
+    kind: str = "vertices"
+    indices: NDArray[np.int32] = field(default_factory=lambda: np.empty(0, np.int32))
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """Something to know about a usable result: a warning with a code, a sentence and the elements it concerns."""
+
+    code: str
+    message: str
+    elements: Elements = field(default_factory=Elements)
+
+
+class LsgpError(Exception):
+    """Base of all errors raised by the library."""
+
+    def __init__(self, code: str, message: str, elements: Elements | None = None) -> None:
+        super().__init__(message)
+        self.code = code
+        self.message = message
+        self.elements = elements if elements is not None else Elements()
+
+
+class InputError(LsgpError, ValueError):
+    """Arrays, indices, seams, options or coordinates that cannot be used as they are."""
+
+
+class TopologyError(LsgpError):
+    """A surface on which no map with these cones can exist."""
+
+
+class CurvatureError(LsgpError):
+    """Cone angles that no flat metric has; the message states the sum and the sum required."""
+
+
+class SolverError(LsgpError):
+    """A factorization or an iteration that did not succeed."""
+
+
+class Cancelled(LsgpError):
+    """The caller asked to stop."""

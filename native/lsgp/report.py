@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a run of the command line says of its result: the JSON report for programs and the table for people."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from .api import Distortion, Measurement, Result, SeamQuality
+from .errors import Elements, Finding, LsgpError
+from .polygons import Triangulation
+
+Report = dict[str, Any]
+
+# Every report has all of these keys, in this order; what does not apply is null or empty.
+EMPTY: Report = {
+    "status": "ok",
+    "code": None,
+    "message": None,
+    "elements": None,
+    "warnings": [],
+    "triangles": None,
+    "cones": [],
+    "cone_angles": [],
+    "distortion": None,
+    "seams": None,
+    "flipped": None,
+    "wrong_angle_sums": None,
+    "stage_seconds": {},
+}
+
+
+def on_faces(elements: Elements, triangulation: Triangulation | None) -> Elements:
+    """Triangles become the faces of the file they were cut from; other elements stay."""
+    if elements.kind != "triangles" or triangulation is None:
+        return elements
+    return Elements("faces", triangulation.polygons_of(elements.indices))
+
+
+def refusal_report(error: LsgpError, triangulation: Triangulation | None) -> Report:
+    """The report of an input that was refused.  triangulation: None where the file was refused before it had one."""
+    return EMPTY | {
+        "status": "refused",
+        "code": error.code,
+        "message": error.message,
+        "elements": _elements(on_faces(error.elements, triangulation)),
+        "triangles": None if triangulation is None else len(triangulation.triangles),
+    }
+
+
+def unwrap_report(result: Result, triangulation: Triangulation, stage_seconds: Mapping[str, float]) -> Report:
+    """The report of a map. "flipped" and "wrong_angle_sums" are counts; the warnings name the faces and vertices.
+    "cones" and "cone_angles" are those that were imposed, so that a report serves as a cones file too."""
+    return EMPTY | {
+        "warnings": _warnings(result.warnings, triangulation),
+        "triangles": len(triangulation.triangles),
+        "cones": result.cones.tolist(),
+        "cone_angles": result.cone_angles.tolist(),
+        "distortion": asdict(result.distortion),
+        "seams": asdict(result.seams),
+        "flipped": len(result.flipped),
+        "wrong_angle_sums": len(result.wrong_angle_sums),
+        "stage_seconds": dict(stage_seconds),
+    }
+
+
+def measure_report(
+    measurement: Measurement,
+    warnings: Iterable[Finding],
+    triangulation: Triangulation,
+    stage_seconds: Mapping[str, float],
+) -> Report:
+    """The report on given texture coordinates, which tell nothing of cones or the angles they should have."""
+    return EMPTY | {
+        "warnings": _warnings(warnings, triangulation),
+        "triangles": len(triangulation.triangles),
+        "distortion": asdict(measurement.distortion),
+        "seams": asdict(measurement.seams),
+        "flipped": len(measurement.flipped),
+        "stage_seconds": dict(stage_seconds),
+    }
+
+
+def to_json(report: Report) -> bytes:
+    """The report as JSON text; NaN and infinity, which JSON has not, become null."""
+    return (json.dumps(_finite(report), indent=1, allow_nan=False) + "\n").encode("ascii")
+
+
+def quality_table(distortion: Distortion, seams: SeamQuality, flipped: int, wrong_angle_sums: int | None) -> str:
+    """The quality of a map as lines of text, the ideal value beside each figure."""
+    d, s = distortion, seams
+    rows = [
+        ("quasi-conformal", f"{d.quasi_conformal:.4f}", "1", f"area-weighted {d.quasi_conformal_area_weighted:.4f}"),
+        ("area", f"{d.area:.4f}", "1", f"10 % {d.area_p10:.4f}, 90 % {d.area_p90:.4f}"),
+        ("L2 stretch", f"{d.l2_stretch:.4f}", "1", ""),
+        ("sister ratio - 1", f"{s.sister_ratio_max - 1:.1e}", "0", ""),
+        ("rotation residual", f"{s.rotation_residual:.1e}", "0", "radians"),
+        ("translation residual", f"{s.translation_residual:.1e}", "0", "of the layout"),
+        ("flipped triangles", f"{flipped}", "0", ""),
+    ]
+    if wrong_angle_sums is not None:
+        rows.append(("wrong angle sums", f"{wrong_angle_sums}", "0", "vertices"))
+    lines = [f"{'':<22}{'value':>10}{'ideal':>7}"]
+    lines += [f"{label:<22}{value:>10}{ideal:>7}  {note}".rstrip() for label, value, ideal, note in rows]
+    return "\n".join(lines)
+
+
+def named(elements: Elements, shown: int = 5) -> str:
+    """Elements for a sentence: their kind and the first few of them; empty where there are none."""
+    indices = elements.indices.tolist()
+    if not indices:
+        return ""
+    first = ", ".join("-".join(map(str, i)) if isinstance(i, list) else str(i) for i in indices[:shown])
+    rest = f" and {len(indices) - shown} more" if len(indices) > shown else ""
+    return f"{elements.kind} {first}{rest}"
+
+
+def _warnings(findings: Iterable[Finding], triangulation: Triangulation) -> list[Report]:
+    return [
+        {"code": f.code, "message": f.message, "elements": _elements(on_faces(f.elements, triangulation))}
+        for f in findings
+    ]
+
+
+def _elements(elements: Elements) -> Report:
+    return {"kind": elements.kind, "indices": np.asarray(elements.indices).tolist()}
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

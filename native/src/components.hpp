@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From the caller's surface to its components and back: every component is solved for itself.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "curvature.hpp"
+#include "lsgp/result.hpp"
+#include "topology.hpp"
+
+namespace lsgp {
+
+// A component's share of the cones: those inside it, in the caller's order, and those on its boundary.
+struct AssignedCones {
+  ComponentCones inside;
+  std::vector<Index> on_boundary;  // vertices of the component
+};
+
+// In the order of the components.
+std::vector<AssignedCones> assign_cones(const Surface& surface, const std::vector<Component>& components, const Cones& cones);
+
+// Throws NOT_ORIENTABLE, DEGENERATE_MESH.
+Geometry require_geometry(const Component& component, std::vector<Finding>& findings);
+
+// Renames a component's vertices, triangles or edges into the caller's.
+Elements in_source(const Component& component, Elements elements);
+
+// Runs solve(component index) for every component.  One that throws is reported as COMPONENT_SKIPPED, unless all do:
+// then the first error is thrown in the caller's numbering.
+template <typename Solve>
+void for_each_component(const std::vector<Component>& components, std::vector<Finding>& findings, Solve solve) {
+  std::vector<std::pair<std::size_t, Error>> failures;
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    try {
+      solve(i);
+    } catch (const Error& error) {
+      failures.emplace_back(i, Error(error.code(), error.what(), in_source(components[i], error.elements())));
+      if (failures.size() == components.size()) throw failures.front().second;
+    }
+  }
+  for (const auto& [i, error] : failures) {
+    findings.push_back({Code::component_skipped,
+                        std::string("A part of the surface was left as it is (") + name(error.code()) + "): " + error.what(),
+                        {ElementKind::triangles, components[i].source_triangle}});
+  }
+}
+
+// Adds the wall-clock time until its end to a stage.
+class StageTimer {
+ public:
+  StageTimer(StageSeconds& stages, const char* stage) : stages_(stages), stage_(stage) {}
+  ~StageTimer();
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+
+ private:
+  StageSeconds& stages_;
+  const char* stage_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace lsgp

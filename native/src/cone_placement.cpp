@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cones at the extrema of the log scale factor, one after the other (Ben-Chen, Gotsman, Bunin 2008).
+#include <algorithm>
+#include <cmath>
+
+#include "components.hpp"
+#include "lsgp/lsgp.hpp"
+#include "validation.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr double wanted_l2 = 1.1;      // of the harmonic angles; least distortion then reaches about 1.05
+constexpr int most_automatic = 60;     // cones of one component
+constexpr int fewest_on_sphere = 4;    // a closed surface of genus 0 needs 3; 4 keep their angles moderate
+
+class Placement {
+ public:
+  Placement(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& existing)
+      : mesh_(mesh), geometry_(geometry), scale_(mesh, geometry), blocked_(mesh.vertex_count(), 0) {
+    for (const auto& loop : mesh.boundary_loops) {
+      for (const Index v : loop) blocked_[v] = 1;
+    }
+    for (const Index v : existing) block_around(v);
+    scale_.add_cones(existing);
+  }
+
+  std::vector<Index> place(int count) {
+    while (!enough(count)) {
+      const Index v = largest_scale();
+      if (v == none) break;
+      block_around(v);
+      scale_.add_cones({v});
+    }
+    return scale_.cones();
+  }
+
+ private:
+  bool enough(int count) const {
+    const int cones = scale_.cone_count();
+    if (count >= 0) return cones >= count;
+    if (mesh_.closed() && mesh_.euler != 0 && cones < fewest_on_sphere) return false;
+    return cones >= most_automatic || scale_.predicted_l2(harmonic_scale()) <= wanted_l2;
+  }
+
+  // y = 0 at the cones; before the first cone of a closed surface, the metric of constant curvature.
+  Eigen::VectorXd harmonic_scale() const {
+    if (scale_.cone_count() > 0 || !mesh_.closed()) return scale_.evaluate(scale_.harmonic_curvature());
+    const double density = 2 * M_PI * mesh_.euler / geometry_.total_area;
+    Eigen::VectorXd y = scale_.solve(density * geometry_.vertex_area - geometry_.angle_defect);
+    y.array() -= geometry_.vertex_area.dot(y) / geometry_.total_area;
+    return y;
+  }
+
+  Index largest_scale() const {
+    Eigen::VectorXd y = harmonic_scale();
+    if (scale_.cone_count() > 0) y.array() -= y[scale_.cones().front()];
+    else if (!mesh_.closed()) y.array() -= y[mesh_.boundary_loops.front().front()];
+    Index best = none;
+    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+      if (!blocked_[v] && (best == none || std::abs(y[v]) > std::abs(y[best]))) best = v;
+    }
+    return best;
+  }
+
+  // Cones side by side cancel each other: the two rings around one stay free of others.
+  void block_around(Index v) {
+    blocked_[v] = 1;
+    mesh_.for_each_outgoing(v, [&](Index h) {
+      blocked_[mesh_.target(h)] = 1;
+      mesh_.for_each_outgoing(mesh_.target(h), [&](Index further) { blocked_[mesh_.target(further)] = 1; });
+    });
+  }
+
+  const HalfedgeMesh& mesh_;
+  const Geometry& geometry_;
+  LogScale scale_;
+  std::vector<char> blocked_;
+};
+
+}  // namespace
+
+std::vector<Index> place_cones(const Surface& surface, int count, const std::vector<Index>& existing) {
+  const Cones kept{existing, std::vector<std::optional<double>>(existing.size())};
+  require_valid(surface);
+  require_valid(surface, kept);
+  std::vector<Finding> findings;
+  const std::vector<Component> components = build_components(surface, findings);
+  const std::vector<AssignedCones> assigned = assign_cones(surface, components, kept);
+  std::vector<Index> out = existing;
+  for_each_component(components, findings, [&](std::size_t i) {
+    const Component& component = components[i];
+    const Geometry geometry = require_geometry(component, findings);
+    const std::vector<Index>& inside = assigned[i].inside.vertices;
+    const std::vector<Index> placed = Placement(component.mesh, geometry, inside).place(count);
+    for (std::size_t k = inside.size(); k < placed.size(); ++k) out.push_back(component.source_vertex[placed[k]]);
+  });
+  return out;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cut_graph.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <queue>
+
+#include "text.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+// How much shorter than its length a seam edge counts, so that cuts follow seams even on long detours.
+constexpr double seam_discount = 0.01;
+
+class UnionFind {
+ public:
+  explicit UnionFind(Index size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
+  Index find(Index i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  bool unite(Index a, Index b) {
+    a = find(a);
+    b = find(b);
+    if (a == b) return false;
+    parent_[std::max(a, b)] = std::min(a, b);
+    return true;
+  }
+
+ private:
+  std::vector<Index> parent_;
+};
+
+// A cut edge runs inside the surface, along an edge of the mesh proper.
+bool may_cut(const HalfedgeMesh& mesh, Index h) { return mesh.twin[h] != none && mesh.cuttable[h]; }
+
+double cost(const HalfedgeMesh& mesh, const Geometry& geometry, Index h) {
+  return geometry.length[h] * (mesh.seam[h] ? seam_discount : 1.0);
+}
+
+// Shortest paths from the sources: cones by themselves, a boundary loop's vertices together.
+struct Forest {
+  std::vector<double> distance;  // (n)
+  std::vector<Index> reached_by; // (n) the halfedge that leads to the vertex, none at sources
+  std::vector<Index> region;     // (n) the source
+  Index region_count = 0;
+};
+
+Forest grow_forest(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& interior_cones) {
+  const Index n = mesh.vertex_count();
+  Forest forest{std::vector<double>(n, infinity), std::vector<Index>(n, none), std::vector<Index>(n, none), 0};
+  using Entry = std::pair<double, Index>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  const auto add_source = [&](Index v, Index region) {
+    forest.distance[v] = 0;
+    forest.region[v] = region;
+    queue.emplace(0.0, v);
+  };
+  for (const auto& loop : mesh.boundary_loops) {
+    for (const Index v : loop) add_source(v, forest.region_count);
+    ++forest.region_count;
+  }
+  for (const Index v : interior_cones) add_source(v, forest.region_count++);
+  if (forest.region_count == 0) add_source(0, forest.region_count++);  // a closed surface with handles alone
+  std::vector<char> settled(n, 0);
+  while (!queue.empty()) {
+    const auto [distance, v] = queue.top();
+    queue.pop();
+    if (settled[v]) continue;
+    settled[v] = 1;
+    mesh.for_each_outgoing(v, [&](Index h) {
+      if (!may_cut(mesh, h)) return;
+      const Index w = mesh.target(h);
+      const double through = distance + cost(mesh, geometry, h);
+      if (through < forest.distance[w]) {
+        forest.distance[w] = through;
+        forest.reached_by[w] = h;
+        forest.region[w] = forest.region[v];
+        queue.emplace(through, w);
+      }
+    });
+  }
+  return forest;
+}
+
+// Candidate edges in the order of the closed path they make with the forest; one halfedge each.
+struct Bridge {
+  double length;
+  Index halfedge;
+  bool operator<(const Bridge& other) const {
+    return length != other.length ? length < other.length : halfedge < other.halfedge;
+  }
+};
+
+template <typename Select>
+std::vector<Bridge> sorted_bridges(const HalfedgeMesh& mesh, const Geometry& geometry, const Forest& forest, Select select) {
+  std::vector<Bridge> bridges;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (mesh.twin[h] < h || !may_cut(mesh, h) || !select(h)) continue;
+    const double length = forest.distance[mesh.origin(h)] + cost(mesh, geometry, h) + forest.distance[mesh.target(h)];
+    if (length < infinity) bridges.push_back({length, h});
+  }
+  std::sort(bridges.begin(), bridges.end());
+  return bridges;
+}
+
+// The minimum spanning tree of the regions; throws where cuttable edges do not connect them.
+std::vector<Index> span_regions(const HalfedgeMesh& mesh, const Geometry& geometry, const Forest& forest) {
+  const auto between_regions = [&](Index h) { return forest.region[mesh.origin(h)] != forest.region[mesh.target(h)]; };
+  UnionFind regions(forest.region_count);
+  std::vector<Index> tree;
+  for (const Bridge& bridge : sorted_bridges(mesh, geometry, forest, between_regions)) {
+    const Index h = bridge.halfedge;
+    if (regions.unite(forest.region[mesh.origin(h)], forest.region[mesh.target(h)])) tree.push_back(h);
+  }
+  if (static_cast<Index>(tree.size()) + 1 < forest.region_count) {
+    throw Error(Code::cuts_blocked,
+                concat("The edges a cut may follow join only ", tree.size() + 1, " of ", forest.region_count,
+                       " cones and boundary loops. Allow more edges to be cut."));
+  }
+  return tree;
+}
+
+// The 2 genus edges that neither the spanning tree of the vertices nor one of the triangles uses.  The tree of the
+// triangles takes the edges with the longest loops, so the shortest loops are left; diagonals are always crossed.
+std::vector<Index> find_handle_edges(const HalfedgeMesh& mesh, const Geometry& geometry, const Forest& forest,
+                                     const std::vector<Index>& spanning) {
+  std::vector<char> in_tree(mesh.halfedge_count(), 0);
+  const auto mark = [&](Index h) { in_tree[h] = in_tree[mesh.twin[h]] = 1; };
+  for (const Index h : forest.reached_by) {
+    if (h != none) mark(h);
+  }
+  for (const Index h : spanning) mark(h);
+  UnionFind triangles(mesh.triangle_count());
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (mesh.twin[h] != none && !mesh.cuttable[h]) triangles.unite(h / 3, mesh.twin[h] / 3);
+  }
+  std::vector<Index> left_over;
+  auto candidates = sorted_bridges(mesh, geometry, forest, [&](Index h) { return !in_tree[h]; });
+  for (auto bridge = candidates.rbegin(); bridge != candidates.rend(); ++bridge) {
+    if (!triangles.unite(bridge->halfedge / 3, mesh.twin[bridge->halfedge] / 3)) left_over.push_back(bridge->halfedge);
+  }
+  if (static_cast<int>(left_over.size()) != 2 * mesh.genus) {
+    throw Error(Code::cuts_blocked, concat("The edges a cut may follow do not open the surface's ",
+                                           count(mesh.genus, "handle", "handles"), ". Allow more edges to be cut."));
+  }
+  return left_over;
+}
+
+// Marks an edge and the forest's paths from both its ends to their sources.
+void mark_through(const HalfedgeMesh& mesh, const Forest& forest, Index bridge, std::vector<char>& is_cut) {
+  is_cut[bridge] = is_cut[mesh.twin[bridge]] = 1;
+  for (const Index end : {mesh.origin(bridge), mesh.target(bridge)}) {
+    for (Index h = forest.reached_by[end]; h != none && !is_cut[h]; h = forest.reached_by[mesh.origin(h)]) {
+      is_cut[h] = is_cut[mesh.twin[h]] = 1;
+    }
+  }
+}
+
+std::vector<Index> count_cuts(const HalfedgeMesh& mesh, const std::vector<char>& is_cut) {
+  std::vector<Index> degree(mesh.vertex_count(), 0);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) degree[mesh.origin(h)] += is_cut[h];
+  return degree;
+}
+
+// Removes ends that cut nothing: a source that is no cone can leave one.
+void prune_dead_ends(const HalfedgeMesh& mesh, const std::vector<char>& is_cone, std::vector<char>& is_cut) {
+  std::vector<Index> degree = count_cuts(mesh, is_cut);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    for (Index at = v; degree[at] == 1 && !is_cone[at] && mesh.loop_of_vertex[at] == none;) {
+      Index end = none;
+      mesh.for_each_outgoing(at, [&](Index h) {
+        if (is_cut[h]) end = h;
+      });
+      is_cut[end] = is_cut[mesh.twin[end]] = 0;
+      --degree[at];
+      at = mesh.target(end);
+      --degree[at];
+    }
+  }
+}
+
+}  // namespace
+
+CutGraph connect_cones(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& interior_cones) {
+  const Forest forest = grow_forest(mesh, geometry, interior_cones);
+  const std::vector<Index> tree = span_regions(mesh, geometry, forest);
+  std::vector<char> is_cut(mesh.halfedge_count(), 0);
+  for (const Index h : tree) mark_through(mesh, forest, h, is_cut);
+  if (mesh.genus > 0) {
+    for (const Index h : find_handle_edges(mesh, geometry, forest, tree)) mark_through(mesh, forest, h, is_cut);
+  }
+  std::vector<char> is_cone(mesh.vertex_count(), 0);
+  for (const Index v : interior_cones) is_cone[v] = 1;
+  prune_dead_ends(mesh, is_cone, is_cut);
+  return trace_cuts(mesh, is_cone, std::move(is_cut));
+}
+
+CutGraph trace_cuts(const HalfedgeMesh& mesh, const std::vector<char>& is_node, std::vector<char> is_cut) {
+  const std::vector<Index> degree = count_cuts(mesh, is_cut);
+  CutGraph graph;
+  graph.is_cut = std::move(is_cut);
+  graph.cut_of.assign(mesh.halfedge_count(), none);
+  graph.runs_forward.assign(mesh.halfedge_count(), 0);
+  const auto ends_at = [&](Index v) { return is_node[v] || mesh.loop_of_vertex[v] != none || degree[v] != 2; };
+  const auto follow = [&](Index h) {
+    Cut cut;
+    cut.tail = mesh.origin(h);
+    while (true) {
+      cut.halfedges.push_back(h);
+      graph.cut_of[h] = graph.cut_of[mesh.twin[h]] = static_cast<Index>(graph.cuts.size());
+      graph.runs_forward[h] = 1;
+      const Index v = mesh.target(h), back = mesh.twin[h];
+      if (ends_at(v) || v == cut.tail) {
+        cut.head = v;
+        break;
+      }
+      mesh.for_each_outgoing(v, [&](Index out) {
+        if (graph.is_cut[out] && out != back) h = out;
+      });
+    }
+    graph.cuts.push_back(std::move(cut));
+  };
+  for (const bool closed_curves : {false, true}) {
+    for (Index v = 0; v < mesh.vertex_count(); ++v) {
+      if (degree[v] == 0 || !(closed_curves || ends_at(v))) continue;
+      mesh.for_each_outgoing(v, [&](Index h) {
+        if (graph.is_cut[h] && graph.cut_of[h] == none) follow(h);
+      });
+    }
+  }
+  return graph;
+}
+
+}  // namespace lsgp

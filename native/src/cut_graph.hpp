@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The cut graph (the paper's section 4.1): cuts that join all cones and boundary loops and open every handle.
+#pragma once
+
+#include <vector>
+
+#include "geometry.hpp"
+#include "topology.hpp"
+
+namespace lsgp {
+
+// A path of halfedges from node to node.  Its left side is the copy in the triangles of its halfedges.
+struct Cut {
+  std::vector<Index> halfedges;
+  Index tail = none, head = none;  // vertices at its ends: cones, junctions or points of a boundary
+};
+
+struct CutGraph {
+  std::vector<Cut> cuts;
+  std::vector<char> is_cut;         // (3m) on both halfedges of a cut edge
+  std::vector<Index> cut_of;        // (3m) the cut a halfedge belongs to, none off the cuts
+  std::vector<char> runs_forward;   // (3m) the halfedge points from its cut's tail to its head
+};
+
+// One multi-source Dijkstra grows a region around every cone and boundary loop; the minimum spanning tree over the
+// edges between regions is the minimum spanning tree of all shortest paths (Mehlhorn 1988), and its paths merge into
+// a tree by construction.  Each handle adds two loops that are left over by a spanning tree of the triangles
+// (tree-cotree, Erickson and Whittlesey 2005).  Seam edges count as much shorter than they are.
+// interior_cones: vertices not on a boundary.  Throws CUTS_BLOCKED with the component's own vertex numbers.
+CutGraph connect_cones(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& interior_cones);
+
+// Divides marked edges into cuts.  is_cut: (3m) on both halfedges; is_node: (n) vertices at which a cut ends besides
+// boundary vertices and junctions.  Closed curves without a node are cut at their lowest vertex.
+CutGraph trace_cuts(const HalfedgeMesh& mesh, const std::vector<char>& is_node, std::vector<char> is_cut);
+
+}  // namespace lsgp

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The surface opened along its cut graph: copies of vertices, and the sisters on both sides of every cut.
+#pragma once
+
+#include <vector>
+
+#include "cut_graph.hpp"
+#include "topology.hpp"
+
+namespace lsgp {
+
+struct CutMesh {
+  std::vector<Index> copy_of_corner;  // (3m) copies below n are the vertices themselves, further copies follow
+  std::vector<Index> source;          // (copies) the vertex of each
+  Index copy_count() const { return static_cast<Index>(source.size()); }
+};
+
+// The copies of one vertex: sectors between outgoing cut halfedges, counter-clockwise.
+struct Sector {
+  Index copy;
+  Index opened_by;  // the cut halfedge on its right, none for the first of a boundary vertex or of an uncut one
+};
+
+CutMesh cut_open(const HalfedgeMesh& mesh, const CutGraph& cut_graph);
+
+// The sectors of v from the first outgoing cut halfedge on; an inside vertex closes up with that halfedge again.
+std::vector<Sector> sectors(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh, Index v);
+
+// Both copies of the vertex a cut's halfedge leaves from, and of the vertex it runs to.
+struct Sisters {
+  Index left, right;
+};
+inline Sisters origin_sisters(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, Index h) {
+  return {cut_mesh.copy_of_corner[h], cut_mesh.copy_of_corner[next(mesh.twin[h])]};
+}
+inline Sisters target_sisters(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, Index h) {
+  return {cut_mesh.copy_of_corner[next(h)], cut_mesh.copy_of_corner[mesh.twin[h]]};
+}
+
+}  // namespace lsgp

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "distortion.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace lsgp {
+
+namespace {
+
+// numpy's percentile: linear between the two nearest ranks.
+double percentile(std::vector<double>& values, double share) {
+  const double rank = share * static_cast<double>(values.size() - 1);
+  const std::size_t below = static_cast<std::size_t>(rank);
+  std::nth_element(values.begin(), values.begin() + below, values.end());
+  const double low = values[below];
+  if (below + 1 == values.size()) return low;
+  const double high = *std::min_element(values.begin() + below + 1, values.end());
+  return low + (rank - static_cast<double>(below)) * (high - low);
+}
+
+double layout_size(const Eigen::VectorXcd& position) {
+  const double width = position.real().maxCoeff() - position.real().minCoeff();
+  const double height = position.imag().maxCoeff() - position.imag().minCoeff();
+  return std::max(std::hypot(width, height), std::numeric_limits<double>::min());
+}
+
+}  // namespace
+
+Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, const std::vector<Index>& triangles) {
+  struct Sample {
+    double area, uv_area, ratio, inverse_square;  // sigma_1 / sigma_2, (1 / sigma_1^2 + 1 / sigma_2^2) / 2
+  };
+  std::vector<Sample> samples;
+  samples.reserve(triangles.size());
+  double area = 0, uv_area = 0;
+  for (const Index f : triangles) {
+    Eigen::Vector3d p[3];
+    Complex z[3];
+    for (int c = 0; c < 3; ++c) {
+      p[c] = surface.positions.row(surface.triangles(f, c));
+      z[c] = {corner_uv(3 * f + c, 0), corner_uv(3 * f + c, 1)};
+    }
+    const Eigen::Vector3d first = p[1] - p[0], second = p[2] - p[0];
+    const double length = first.norm(), doubled = first.cross(second).norm();
+    if (!(doubled > 0)) continue;
+    // The triangle in its own plane: corners 0, length, x + i height.
+    const double x = first.dot(second) / length, height = doubled / length;
+    const Complex along = (z[1] - z[0]) / length, across = (z[2] - z[0] - along * x) / height;
+    const double conformal = std::abs(along - Complex(0, 1) * across) / 2,
+                 mirrored = std::abs(along + Complex(0, 1) * across) / 2;
+    const double largest = conformal + mirrored, smallest = std::abs(conformal - mirrored);
+    samples.push_back({doubled / 2, largest * smallest * doubled / 2, largest / smallest,
+                       (1 / (largest * largest) + 1 / (smallest * smallest)) / 2});
+    area += samples.back().area;
+    uv_area += samples.back().uv_area;
+  }
+  Distortion out;
+  if (samples.empty()) return out;
+  std::vector<double> ratios;
+  ratios.reserve(samples.size());
+  double stretch = 0;
+  for (const Sample& sample : samples) {
+    out.quasi_conformal += sample.ratio / static_cast<double>(samples.size());
+    out.quasi_conformal_area_weighted += sample.ratio * sample.area / area;
+    stretch += sample.inverse_square * sample.area / area;
+    ratios.push_back((sample.area / area) / (sample.uv_area / uv_area));
+    out.area += ratios.back() / static_cast<double>(samples.size());
+  }
+  out.area_p10 = percentile(ratios, 0.1);
+  out.area_p90 = percentile(ratios, 0.9);
+  out.l2_stretch = std::sqrt(stretch * uv_area / area);
+  return out;
+}
+
+SeamQuality measure_seams(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const Eigen::VectorXcd& position,
+                          const Eigen::VectorXd* rotation) {
+  SeamQuality out;
+  const double size = layout_size(position);
+  for (std::size_t p = 0; p < cut_graph.cuts.size(); ++p) {
+    const std::vector<Index>& halfedges = cut_graph.cuts[p].halfedges;
+    // Corners of both sides of one halfedge: left origin, left target, right origin, right target.
+    const auto ends = [&](Index h) {
+      const Index twin = mesh.twin[h];
+      return std::array<Complex, 4>{position[h], position[next(h)], position[next(twin)], position[twin]};
+    };
+    Complex turn = 0;
+    for (const Index h : halfedges) {
+      const auto z = ends(h);
+      const Complex left = z[1] - z[0], right = z[3] - z[2];
+      const double longer = std::max(std::abs(left), std::abs(right)), shorter = std::min(std::abs(left), std::abs(right));
+      out.sister_ratio_max = std::max(out.sister_ratio_max, longer / shorter);
+      turn += std::conj(left) * right;
+    }
+    turn = rotation ? std::polar(1.0, (*rotation)[p]) : turn / std::max(std::abs(turn), std::numeric_limits<double>::min());
+    Complex translation = 0;
+    for (const Index h : halfedges) {
+      const auto z = ends(h);
+      const double off = std::abs(std::arg((z[3] - z[2]) * std::conj(turn * (z[1] - z[0]))));
+      out.rotation_residual = std::max(out.rotation_residual, off);
+      translation += ((z[2] - turn * z[0]) + (z[3] - turn * z[1])) / (2.0 * static_cast<double>(halfedges.size()));
+    }
+    for (const Index h : halfedges) {
+      const auto z = ends(h);
+      for (const int end : {0, 1}) {
+        const double off = std::abs(z[2 + end] - turn * z[end] - translation) / size;
+        out.translation_residual = std::max(out.translation_residual, off);
+      }
+    }
+  }
+  return out;
+}
+
+Eigen::VectorXd angle_sums(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position) {
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(mesh.vertex_count());
+  for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
+    const Complex here = position[corner];
+    sums[mesh.origin(corner)] += std::arg((position[prev(corner)] - here) * std::conj(position[next(corner)] - here));
+  }
+  return sums;
+}
+
+Validity check_map(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position, const Eigen::VectorXd& curvature) {
+  Validity out;
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    if (!(doubled_area(position, f) > 0)) out.flipped.push_back(f);
+  }
+  const Eigen::VectorXd sums = angle_sums(mesh, position);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    const bool inside = mesh.loop_of_vertex[v] == none;
+    const double error = std::abs(sums[v] - ((inside ? 2 * M_PI : M_PI) - curvature[v]));
+    if (!(error < M_PI)) out.wrong_angle_sums.push_back(v);
+    if (inside && curvature[v] != 0) out.cone_angle_error = std::max(out.cone_angle_error, error);
+  }
+  return out;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a map is worth: quality measures (the paper's section 7.1), exactness of its seams, validity.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "cut_graph.hpp"
+#include "lsgp/result.hpp"
+#include "topology.hpp"
+
+namespace lsgp {
+
+// triangles: those to measure, others are left out; triangles without 3D area are skipped.  corner_uv: (3m, 2).
+Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, const std::vector<Index>& triangles);
+
+// position: (3m) u + iv at the component's corners.  rotation: (cuts) imposed, radians; none: every cut's own best.
+SeamQuality measure_seams(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const Eigen::VectorXcd& position,
+                          const Eigen::VectorXd* rotation);
+
+// Twice the signed UV area of a triangle.
+inline double doubled_area(const Eigen::VectorXcd& position, Index triangle) {
+  const Complex a = position[3 * triangle];
+  return std::imag(std::conj(position[3 * triangle + 1] - a) * (position[3 * triangle + 2] - a));
+}
+
+// A map is valid when no triangle is flipped and the angles around every vertex add up to what was imposed; without
+// flips a sum can still be off, by whole turns, since transitions know angles only modulo 2 pi.
+struct Validity {
+  std::vector<Index> flipped;           // triangles with UV area <= 0
+  std::vector<Index> wrong_angle_sums;  // vertices
+  double cone_angle_error = 0;          // radians, over inside vertices of nonzero curvature
+};
+Validity check_map(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position, const Eigen::VectorXd& curvature);
+
+// Sum of the signed UV angles at every vertex, (n).
+Eigen::VectorXd angle_sums(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position);
+
+}  // namespace lsgp

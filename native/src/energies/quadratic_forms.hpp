@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Dirichlet and conformal energy of a map of the cut mesh, as Hermitian forms in complex positions z = u + iv.
+#pragma once
+
+#include <Eigen/SparseCore>
+
+#include "cut_mesh.hpp"
+#include "geometry.hpp"
+#include "transitions.hpp"
+
+namespace lsgp {
+
+enum class Form {
+  dirichlet,  // z^H L z = int |grad u|^2 + |grad v|^2, L the cotangent Laplacian
+  conformal,  // that less twice the signed area: z^H C z = 4 int |f_zbar|^2 (LSCM energy); 0 for a conformal map
+};
+
+// The form's matrix over the unknowns, B^H L B or B^H C B; lower triangle.
+Eigen::SparseMatrix<Complex> assemble_form(Form form, const HalfedgeMesh& mesh, const Geometry& geometry,
+                                           const CutMesh& cut_mesh, const Reduction& reduction);
+
+// The cotangent Laplacian of the surface itself, positive semidefinite, without the rows and columns of `held`
+// vertices; lower triangle.  row_of_vertex: (n) row numbers, none at held vertices.
+struct Laplacian {
+  Eigen::SparseMatrix<double> lower;
+  std::vector<Index> row_of_vertex;
+};
+Laplacian assemble_laplacian(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<char>& held);
+
+// L y at every vertex, (n).
+Eigen::VectorXd apply_laplacian(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& values);
+
+}  // namespace lsgp

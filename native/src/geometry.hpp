@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The intrinsic geometry of a surface: lengths, angles, areas, cotangent weights, angle defects.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "topology.hpp"
+
+namespace lsgp {
+
+struct Geometry {
+  Eigen::VectorXd length;         // (3m) of halfedges
+  Eigen::VectorXd angle;          // (3m) at corners, radians
+  Eigen::VectorXd half_cotangent; // (3m) half the cotangent of the angle opposite a halfedge
+  Eigen::VectorXd area;           // (m) of triangles
+  Eigen::VectorXd vertex_area;    // (n) a third of the triangles around
+  Eigen::VectorXd angle_defect;   // (n) 2 pi minus the angle sum, pi minus it on a boundary
+  double total_area = 0;
+  std::vector<Index> degenerate;  // triangles without a usable area; lengths are mollified when there are any
+};
+
+// Degenerate triangles are given area by adding one small constant to all lengths (Sharp and Crane 2020, section 4.5).
+Geometry build_geometry(const HalfedgeMesh& mesh);
+
+// The edge vector of halfedge h in its triangle's own frame, in which the triangle's first halfedge is real.
+inline Complex edge_vector(const Geometry& geometry, Index h) {
+  const Index first = h - h % 3;
+  const double length = geometry.length[h];
+  switch (h % 3) {
+    case 0: return {length, 0};
+    case 1: return std::polar(length, M_PI - geometry.angle[first + 1]);
+    default: return std::polar(length, M_PI + geometry.angle[first]);
+  }
+}
+
+// Its direction in the same frame, radians.
+inline double edge_direction(const Geometry& geometry, Index h) {
+  const Index first = h - h % 3;
+  switch (h % 3) {
+    case 0: return 0;
+    case 1: return M_PI - geometry.angle[first + 1];
+    default: return M_PI + geometry.angle[first];
+  }
+}
+
+// The cotangent weight of an edge (half the sum of the cotangents opposite), on either of its halfedges.
+inline double cotangent_weight(const HalfedgeMesh& mesh, const Geometry& geometry, Index h) {
+  return geometry.half_cotangent[h] + (mesh.twin[h] == none ? 0.0 : geometry.half_cotangent[mesh.twin[h]]);
+}
+
+}  // namespace lsgp

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The rotation of every cut, from the curvature on one side of it.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "cut_graph.hpp"
+#include "topology.hpp"
+
+namespace lsgp {
+
+// Cones, junctions and boundary loops as nodes joined by cuts, with a spanning tree rooted where the rest hangs off.
+struct NodeGraph {
+  std::vector<Index> vertex;       // (nodes) none for a boundary loop
+  std::vector<Index> tail, head;   // (cuts) nodes
+  std::vector<Index> parent_cut;   // (nodes) the cut towards the root, none at the root
+  std::vector<Index> order;        // nodes from the root outwards
+  std::vector<char> in_tree;       // (cuts) the others close a loop about a handle
+};
+
+// root_rank: the higher, the better a root this vertex makes; boundary loops are taken before any vertex.
+NodeGraph build_node_graph(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const Eigen::VectorXd& root_rank);
+
+// The rotation angle r of every cut, z_right = e^{ir} z_left + t, radians.  At every node
+//   sum over cuts leaving it of r - sum over cuts arriving of r = -curvature   (mod 2 pi),
+// so on a tree r is the curvature of all nodes on the head's side.
+// node_curvature: (nodes) imposed, 0 at junctions, total turning of boundary loops.
+// free_rotation: (cuts) the rotation of cuts outside the spanning tree, which curvature alone leaves free.
+Eigen::VectorXd find_rotations(const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
+                               const Eigen::VectorXd& free_rotation);
+
+}  // namespace lsgp

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace lsgp {
+
+namespace {
+
+constexpr double margin = 0.01;  // between islands, of the unit square's side before scaling
+
+double cross(Complex a, Complex b) { return std::imag(std::conj(a) * b); }
+
+// Counter-clockwise convex hull (Andrew's monotone chain).
+std::vector<Complex> convex_hull(const Eigen::VectorXcd& position) {
+  std::vector<Complex> points(position.data(), position.data() + position.size());
+  std::sort(points.begin(), points.end(), [](Complex a, Complex b) {
+    return a.real() != b.real() ? a.real() < b.real() : a.imag() < b.imag();
+  });
+  std::vector<Complex> hull;
+  const auto add_chain = [&](auto begin, auto end) {
+    const std::size_t base = hull.size();
+    for (auto point = begin; point != end; ++point) {
+      while (hull.size() >= base + 2 && cross(hull.back() - hull[hull.size() - 2], *point - hull.back()) <= 0) hull.pop_back();
+      hull.push_back(*point);
+    }
+    hull.pop_back();  // the other chain begins with it
+  };
+  add_chain(points.begin(), points.end());
+  add_chain(points.rbegin(), points.rend());
+  return hull;
+}
+
+// The unit vector along the longer side of the smallest box around the points: it lies along an edge of their hull.
+Complex upright(const Eigen::VectorXcd& position) {
+  const std::vector<Complex> hull = convex_hull(position);
+  Complex best(1, 0);
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Complex edge = hull[(i + 1) % hull.size()] - hull[i];
+    if (!(std::abs(edge) > 0)) continue;
+    const Complex along = edge / std::abs(edge);
+    double low = 0, high = 0, height = 0;
+    for (const Complex point : hull) {
+      const Complex turned = (point - hull[i]) * std::conj(along);
+      low = std::min(low, turned.real());
+      high = std::max(high, turned.real());
+      height = std::max(height, turned.imag());
+    }
+    if ((high - low) * height < smallest * (1 - 1e-9)) {
+      smallest = (high - low) * height;
+      best = high - low >= height ? along : along * Complex(0, 1);
+    }
+  }
+  return best;
+}
+
+struct Box {
+  double width, height;
+};
+
+// Moves the island so that its bounding box begins at the origin.
+Box settle(Eigen::VectorXcd& position) {
+  const double left = position.real().minCoeff(), bottom = position.imag().minCoeff();
+  position.array() -= Complex(left, bottom);
+  return {position.real().maxCoeff(), position.imag().maxCoeff()};
+}
+
+}  // namespace
+
+void arrange(std::vector<Island>& islands) {
+  if (islands.empty()) return;
+  std::vector<Box> boxes;
+  double total = 0, widest = 0;
+  for (Island& island : islands) {
+    const double scale = island.uv_area > 0 ? std::sqrt(island.area / island.uv_area) : 1.0;
+    island.position *= scale * std::conj(upright(island.position));
+    boxes.push_back(settle(island.position));
+    total += boxes.back().width * boxes.back().height;
+    widest = std::max(widest, boxes.back().width);
+  }
+  const double gap = islands.size() > 1 ? margin * std::sqrt(total) : 0.0;
+  std::vector<std::size_t> order(islands.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return boxes[a].height > boxes[b].height; });
+
+  const double shelf_width = std::max(widest, 1.05 * std::sqrt(total)) + gap;
+  double x = 0, y = 0, shelf_height = 0, right = 0;
+  for (const std::size_t i : order) {
+    if (x > 0 && x + boxes[i].width > shelf_width) {
+      y += shelf_height + gap;
+      x = shelf_height = 0;
+    }
+    islands[i].position.array() += Complex(x, y);
+    right = std::max(right, x + boxes[i].width);
+    shelf_height = std::max(shelf_height, boxes[i].height);
+    x += boxes[i].width + gap;
+  }
+  const double size = std::max(right, y + shelf_height);
+  for (Island& island : islands) {
+    if (size > 0) island.position /= size;
+  }
+}
+
+}  // namespace lsgp

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <Eigen/LU>
+#include <cmath>
+
+#include "curvature.hpp"
+#include "energies/quadratic_forms.hpp"
+#include "solvers/box_qp.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr int most_newton_steps = 60;
+constexpr double newton_decrement = 1e-15;  // of the objective, a logarithm of order 1
+constexpr double ridge = 1e-13;             // relative: cones so close that their Green's functions nearly agree
+
+// log of the weighted mean of e^x, and the weights w e^x / mean that its derivative needs.
+double log_mean_exp(const Eigen::VectorXd& weight, const Eigen::VectorXd& x, Eigen::VectorXd* shares = nullptr) {
+  const double largest = x.maxCoeff();
+  Eigen::VectorXd terms = weight.array() * (x.array() - largest).exp();
+  const double mean = terms.sum();
+  if (shares) *shares = terms / mean;
+  return largest + std::log(mean);
+}
+
+}  // namespace
+
+LogScale::LogScale(const HalfedgeMesh& mesh, const Geometry& geometry) : mesh_(mesh), geometry_(geometry) {
+  std::vector<char> held(mesh.vertex_count(), 0);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) held[v] = mesh.loop_of_vertex[v] != none;
+  if (mesh.closed()) held[0] = 1;
+  Laplacian laplacian = assemble_laplacian(mesh, geometry, held);
+  row_of_vertex_ = std::move(laplacian.row_of_vertex);
+  factor_.emplace(laplacian.lower);
+  weight_ = geometry.vertex_area / geometry.total_area;
+  without_cones_ = solve(-geometry.angle_defect);
+  green_.resize(mesh.vertex_count(), 0);
+}
+
+Eigen::MatrixXd LogScale::solve_columns(const Eigen::MatrixXd& right_sides) const {
+  const Eigen::Index count = right_sides.cols();
+  Eigen::Index rows = 0;
+  for (const Index row : row_of_vertex_) rows += row != none;
+  Eigen::MatrixXd gathered(rows, count);
+  for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+    if (row_of_vertex_[v] != none) gathered.row(row_of_vertex_[v]) = right_sides.row(v);
+  }
+  const Eigen::MatrixXd solved = factor_->solve(gathered);
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(right_sides.rows(), count);
+  for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+    if (row_of_vertex_[v] != none) out.row(v) = solved.row(row_of_vertex_[v]);
+  }
+  return out;
+}
+
+Eigen::VectorXd LogScale::solve(const Eigen::VectorXd& right_side) const { return solve_columns(right_side); }
+
+void LogScale::add_cones(const std::vector<Index>& vertices) {
+  Eigen::MatrixXd impulses = Eigen::MatrixXd::Zero(mesh_.vertex_count(), vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) impulses(vertices[i], i) = 1;
+  const Eigen::Index before = green_.cols();
+  green_.conservativeResize(Eigen::NoChange, before + impulses.cols());
+  green_.rightCols(impulses.cols()) = solve_columns(impulses);
+  cones_.insert(cones_.end(), vertices.begin(), vertices.end());
+}
+
+Eigen::VectorXd LogScale::evaluate(const Eigen::VectorXd& cone_curvature) const {
+  Eigen::VectorXd y = without_cones_ + green_ * cone_curvature;
+  y.array() -= weight_.dot(y);
+  return y;
+}
+
+Eigen::VectorXd LogScale::harmonic_curvature() const {
+  const Index k = cone_count();
+  const bool closed = mesh_.closed();
+  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(k + closed, k + closed);
+  Eigen::VectorXd right(k + closed);
+  for (Index i = 0; i < k; ++i) {
+    system.row(i).head(k) = green_.row(cones_[i]);
+    right[i] = -without_cones_[cones_[i]];
+  }
+  if (closed) {
+    system.col(k).head(k).setOnes();
+    system.row(k).head(k).setOnes();
+    right[k] = 2 * M_PI * mesh_.euler;
+  }
+  return system.partialPivLu().solve(right).head(k);
+}
+
+Eigen::VectorXd LogScale::least_distortion_curvature(const Eigen::VectorXd& low, const Eigen::VectorXd& high,
+                                                     Eigen::VectorXd start) const {
+  Eigen::VectorXd kappa = std::move(start);
+  Eigen::VectorXd y = without_cones_ + green_ * kappa;
+  Eigen::VectorXd growth, shrinkage;  // area shares weighted by e^{2y} and by e^{-2y}
+  double value = log_mean_exp(weight_, 2 * y, &growth) + log_mean_exp(weight_, -2 * y, &shrinkage);
+  for (int step = 0; step < most_newton_steps; ++step) {
+    const Eigen::VectorXd mean_growth = green_.transpose() * growth, mean_shrinkage = green_.transpose() * shrinkage;
+    const Eigen::VectorXd gradient = 2 * (mean_growth - mean_shrinkage);
+    const Eigen::MatrixXd scaled = (growth + shrinkage).cwiseSqrt().asDiagonal() * green_;
+    Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(kappa.size(), kappa.size());
+    hessian.selfadjointView<Eigen::Lower>().rankUpdate(scaled.transpose(), 4);
+    hessian.selfadjointView<Eigen::Lower>().rankUpdate(mean_growth, -4);
+    hessian.selfadjointView<Eigen::Lower>().rankUpdate(mean_shrinkage, -4);
+    hessian.triangularView<Eigen::StrictlyUpper>() = hessian.transpose();
+    hessian.diagonal().array() += ridge * hessian.diagonal().mean();
+    const Eigen::VectorXd direction = minimize_in_box(hessian, gradient, low - kappa, high - kappa, mesh_.closed());
+    const double decrease = -gradient.dot(direction);
+    if (!(decrease > newton_decrement)) break;
+    const Eigen::VectorXd change = green_ * direction;
+    double length = 1, tried = value;
+    for (; length > 1e-6; length /= 2) {
+      const Eigen::VectorXd moved = y + length * change;
+      tried = log_mean_exp(weight_, 2 * moved, &growth) + log_mean_exp(weight_, -2 * moved, &shrinkage);
+      if (tried <= value - 1e-4 * length * decrease) break;
+    }
+    if (!(tried < value)) break;
+    kappa += length * direction;
+    y += length * change;
+    value = tried;
+  }
+  return kappa;
+}
+
+double LogScale::predicted_l2(const Eigen::VectorXd& log_scale) const {
+  return std::exp((log_mean_exp(weight_, 2 * log_scale) + log_mean_exp(weight_, -2 * log_scale)) / 2);
+}
+
+}  // namespace lsgp

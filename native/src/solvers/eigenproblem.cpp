@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solvers/eigenproblem.hpp"
+
+#include <Spectra/SymGEigsShiftSolver.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "lsgp/errors.hpp"
+#include "solvers/cholesky.hpp"
+
+namespace lsgp {
+
+namespace {
+
+using Complex = std::complex<double>;
+using ComplexSparse = Eigen::SparseMatrix<Complex>;
+
+// The eigenvalues of a conformal form relative to its Dirichlet form are shares of 1; a millionth of a millionth does
+// not move the eigenvector, and makes the form of an exactly unfolding surface definite.
+constexpr double shift = 1e-12;
+constexpr double tolerance = 1e-13;
+constexpr int krylov_dimension = 24;
+constexpr int most_restarts = 400;
+
+// Spectra 1.0 knows real symmetric operators only: a complex vector travels as its real and then its imaginary parts.
+Eigen::VectorXcd to_complex(const double* x, Eigen::Index n) {
+  Eigen::VectorXcd out(n);
+  out.real() = Eigen::Map<const Eigen::VectorXd>(x, n);
+  out.imag() = Eigen::Map<const Eigen::VectorXd>(x + n, n);
+  return out;
+}
+
+void to_real(const Eigen::VectorXcd& z, double* y) {
+  Eigen::Map<Eigen::VectorXd>(y, z.size()) = z.real();
+  Eigen::Map<Eigen::VectorXd>(y + z.size(), z.size()) = z.imag();
+}
+
+class ShiftedInverse {
+ public:
+  using Scalar = double;
+  ShiftedInverse(const ComplexSparse& form, const ComplexSparse& norm) : size_(form.rows()), factor_(regularized(form, norm)) {}
+  Eigen::Index rows() const { return 2 * size_; }
+  Eigen::Index cols() const { return 2 * size_; }
+  void set_shift(double) {}  // fixed when the factor was made
+  void perform_op(const double* x, double* y) const { to_real(factor_.solve(to_complex(x, size_)), y); }
+
+ private:
+  Eigen::Index size_;
+  Cholesky<Complex> factor_;
+};
+
+class NormProduct {
+ public:
+  using Scalar = double;
+  explicit NormProduct(const ComplexSparse& norm) : norm_(norm) {}
+  Eigen::Index rows() const { return 2 * norm_.rows(); }
+  Eigen::Index cols() const { return 2 * norm_.rows(); }
+  void perform_op(const double* x, double* y) const {
+    to_real(norm_.selfadjointView<Eigen::Lower>() * to_complex(x, norm_.rows()), y);
+  }
+
+ private:
+  const ComplexSparse& norm_;
+};
+
+}  // namespace
+
+ComplexSparse regularized(const ComplexSparse& form, const ComplexSparse& norm) { return form + shift * norm; }
+
+Eigen::VectorXcd unbiased_start(Eigen::Index size) {
+  Eigen::VectorXcd start(size);
+  std::uint64_t state = 0x9e3779b97f4a7c15u;
+  const auto uniform = [&] {  // splitmix64 (Steele et al. 2014)
+    std::uint64_t x = state += 0x9e3779b97f4a7c15u;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return static_cast<double>((x ^ (x >> 31)) >> 11) * 0x1p-52 - 1;
+  };
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const double real = uniform(), imaginary = uniform();
+    start[i] = {real, imaginary};
+  }
+  return start;
+}
+
+Eigen::VectorXcd smallest_eigenvector(const ComplexSparse& form, const ComplexSparse& norm, const Eigen::VectorXcd& start) {
+  const Eigen::Index n = form.rows();
+  if (n == 1) return Eigen::VectorXcd::Ones(1);
+  ShiftedInverse inverse(form, norm);
+  NormProduct product(norm);
+  const Eigen::Index dimension = std::min<Eigen::Index>(krylov_dimension, 2 * n);
+  Spectra::SymGEigsShiftSolver<ShiftedInverse, NormProduct, Spectra::GEigsMode::ShiftInvert> solver(inverse, product, 1,
+                                                                                                 dimension, -shift);
+  Eigen::VectorXd real_start(2 * n);
+  to_real(start, real_start.data());
+  solver.init(real_start.data());
+  solver.compute(Spectra::SortRule::LargestMagn, most_restarts, tolerance);
+  if (solver.info() != Spectra::CompInfo::Successful) {
+    throw Error(Code::solver_failed, "The spectral unfolding did not converge: several maps are about equally conformal. "
+                                     "Use the Poisson unfolding.");
+  }
+  const Eigen::VectorXd vector = solver.eigenvectors(1);
+  return to_complex(vector.data(), n);
+}
+
+}  // namespace lsgp

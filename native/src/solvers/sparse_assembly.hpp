@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The lower triangle of a symmetric or Hermitian matrix from its entries in any order.
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <vector>
+
+namespace lsgp {
+
+template <typename Scalar>
+class LowerAssembly {
+ public:
+  explicit LowerAssembly(int size, std::size_t expected_entries = 0) : size_(size) { entries_.reserve(expected_entries); }
+
+  // Adds to entry (row, column); the entry's mirror image is implied.  Entries above the diagonal are mirrored.
+  void add(int row, int column, const Scalar& value) {
+    if (row >= column) entries_.push_back({row, column, value});
+    else entries_.push_back({column, row, Eigen::numext::conj(value)});
+  }
+
+  // Two counting sorts, by row and then by column, leave every column in order of its rows; equal entries are added.
+  Eigen::SparseMatrix<Scalar> build() const {
+    const std::vector<int> by_row = sorted({}, [](const Entry& entry) { return entry.row; });
+    const std::vector<int> by_column = sorted(by_row, [](const Entry& entry) { return entry.column; });
+    Eigen::SparseMatrix<Scalar> matrix(size_, size_);
+    matrix.resizeNonZeros(static_cast<Eigen::Index>(entries_.size()));
+    int* outer = matrix.outerIndexPtr();
+    int filled = 0, column = -1;
+    for (const int i : by_column) {
+      const Entry& entry = entries_[i];
+      while (column < entry.column) outer[++column] = filled;
+      if (filled > outer[column] && matrix.innerIndexPtr()[filled - 1] == entry.row) {
+        matrix.valuePtr()[filled - 1] += entry.value;
+      } else {
+        matrix.innerIndexPtr()[filled] = entry.row;
+        matrix.valuePtr()[filled++] = entry.value;
+      }
+    }
+    while (column < size_) outer[++column] = filled;
+    matrix.resizeNonZeros(filled);
+    return matrix;
+  }
+
+ private:
+  struct Entry {
+    int row, column;
+    Scalar value;
+  };
+
+  template <typename Key>
+  std::vector<int> sorted(const std::vector<int>& order, Key key) const {
+    const int count = static_cast<int>(entries_.size());
+    std::vector<int> cursor(size_ + 1, 0), out(count);
+    for (const Entry& entry : entries_) ++cursor[key(entry) + 1];
+    for (int i = 0; i < size_; ++i) cursor[i + 1] += cursor[i];
+    for (int i = 0; i < count; ++i) {
+      const int at = order.empty() ? i : order[i];
+      out[cursor[key(entries_[at])]++] = at;
+    }
+    return out;
+  }
+
+  int size_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace lsgp

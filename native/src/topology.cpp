@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "topology.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "text.hpp"
+
+namespace lsgp {
+
+namespace {
+
+// The undirected edges of the triangles; every edge lists its halfedges.
+class EdgeTable {
+ public:
+  explicit EdgeTable(const Surface& surface) {
+    const Triangles& triangles = surface.triangles;
+    const Index halfedge_count = static_cast<Index>(3 * triangles.rows());
+    const Index* corner_vertex = triangles.data();
+    bucket_.assign(surface.positions.rows() + 1, 0);
+    const auto low = [&](Index h) { return std::min(corner_vertex[h], corner_vertex[next(h)]); };
+    const auto high = [&](Index h) { return std::max(corner_vertex[h], corner_vertex[next(h)]); };
+    for (Index h = 0; h < halfedge_count; ++h) ++bucket_[low(h) + 1];
+    std::partial_sum(bucket_.begin(), bucket_.end(), bucket_.begin());
+    entries_.resize(halfedge_count);
+    std::vector<Index> cursor(bucket_.begin(), bucket_.end() - 1);
+    for (Index h = 0; h < halfedge_count; ++h) entries_[cursor[low(h)]++] = {high(h), h};
+    edge_of_entry_.resize(halfedge_count);
+    edge_of_halfedge_.resize(halfedge_count);
+    for (std::size_t v = 0; v + 1 < bucket_.size(); ++v) {
+      std::sort(entries_.begin() + bucket_[v], entries_.begin() + bucket_[v + 1]);
+      for (Index i = bucket_[v]; i < bucket_[v + 1]; ++i) {
+        if (i == bucket_[v] || entries_[i].high != entries_[i - 1].high) first_.push_back(i);
+        edge_of_entry_[i] = edge_of_halfedge_[entries_[i].halfedge] = static_cast<Index>(first_.size()) - 1;
+      }
+    }
+    first_.push_back(halfedge_count);
+  }
+
+  Index count() const { return static_cast<Index>(first_.size()) - 1; }
+  Index edge_of(Index halfedge) const { return edge_of_halfedge_[halfedge]; }
+  Index halfedge_count(Index edge) const { return first_[edge + 1] - first_[edge]; }
+  Index halfedge(Index edge, Index i) const { return entries_[first_[edge] + i].halfedge; }
+
+  // The edge between two vertices, or none.
+  Index find(Index a, Index b) const {
+    const Index low = std::min(a, b), high = std::max(a, b);
+    const auto begin = entries_.begin() + bucket_[low], end = entries_.begin() + bucket_[low + 1];
+    const auto at = std::lower_bound(begin, end, Entry{high, 0});
+    return at != end && at->high == high ? edge_of_entry_[at - entries_.begin()] : none;
+  }
+
+ private:
+  struct Entry {
+    Index high, halfedge;
+    bool operator<(const Entry& other) const {
+      return high != other.high ? high < other.high : halfedge < other.halfedge;
+    }
+  };
+  std::vector<Index> bucket_;  // entries by their edge's lower vertex
+  std::vector<Entry> entries_;
+  std::vector<Index> first_;  // the first entry of each edge
+  std::vector<Index> edge_of_entry_, edge_of_halfedge_;
+};
+
+std::vector<char> mark_edges(const EdgeTable& edges, const VertexPairs& pairs, Code code, const char* sentence) {
+  std::vector<char> marked(edges.count(), 0);
+  std::vector<Index> missing;
+  for (Index row = 0; row < pairs.rows(); ++row) {
+    const Index a = pairs(row, 0), b = pairs(row, 1), edge = a == b ? none : edges.find(a, b);
+    if (edge != none) marked[edge] = 1;
+    else missing.insert(missing.end(), {a, b});
+  }
+  if (!missing.empty()) {
+    throw Error(code, concat(count(missing.size() / 2, "vertex pair", "vertex pairs"), " (", list(missing), ") ", sentence),
+                {ElementKind::edges, missing});
+  }
+  return marked;
+}
+
+struct Orientation {
+  std::vector<Index> component;  // (m)
+  std::vector<char> reversed;    // (m)
+  std::vector<char> orientable;  // per component
+};
+
+// Labels components by breadth-first search over paired edges and turns every triangle like its component's majority.
+Orientation orient(const Surface& surface, const EdgeTable& edges) {
+  const Index triangle_count = static_cast<Index>(surface.triangles.rows());
+  const Index* corner_vertex = surface.triangles.data();
+  Orientation out{std::vector<Index>(triangle_count, none), std::vector<char>(triangle_count, 0), {}};
+  std::vector<Index> queue;
+  for (Index seed = 0; seed < triangle_count; ++seed) {
+    if (out.component[seed] != none) continue;
+    const Index label = static_cast<Index>(out.orientable.size());
+    out.orientable.push_back(1);
+    out.component[seed] = label;
+    queue.assign(1, seed);
+    std::size_t turned = 0;
+    for (std::size_t i = 0; i < queue.size(); ++i) {
+      const Index f = queue[i];
+      for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+        const Index edge = edges.edge_of(h);
+        if (edges.halfedge_count(edge) != 2) continue;
+        const Index other = edges.halfedge(edge, edges.halfedge(edge, 0) == h ? 1 : 0), g = other / 3;
+        const char wanted = out.reversed[f] ^ (corner_vertex[h] == corner_vertex[other]);
+        if (out.component[g] == none) {
+          out.component[g] = label;
+          out.reversed[g] = wanted;
+          turned += wanted;
+          queue.push_back(g);
+        } else if (out.reversed[g] != wanted) {
+          out.orientable[label] = 0;
+        }
+      }
+    }
+    if (2 * turned > queue.size()) {
+      for (const Index f : queue) out.reversed[f] ^= 1;
+    }
+  }
+  return out;
+}
+
+void find_boundary_loops(HalfedgeMesh& mesh) {
+  mesh.loop_of_vertex.assign(mesh.vertex_count(), none);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (mesh.loop_of_vertex[v] != none || mesh.twin[mesh.outgoing[v]] != none) continue;
+    const Index loop = static_cast<Index>(mesh.boundary_loops.size());
+    mesh.boundary_loops.emplace_back();
+    for (Index at = v; mesh.loop_of_vertex[at] == none; at = mesh.target(mesh.outgoing[at])) {
+      mesh.loop_of_vertex[at] = loop;
+      mesh.boundary_loops.back().push_back(at);
+    }
+  }
+}
+
+// Numbers vertices by fans: corners joined by turning about them share a vertex.
+void number_vertices(const Surface& surface, Component& component) {
+  HalfedgeMesh& mesh = component.mesh;
+  const Index halfedge_count = mesh.halfedge_count();
+  std::vector<Index> vertex(halfedge_count, none);
+  for (Index corner = 0; corner < halfedge_count; ++corner) {
+    if (vertex[corner] != none) continue;
+    Index first = corner;  // turn clockwise to the boundary, if there is one
+    while (mesh.twin[first] != none && next(mesh.twin[first]) != corner) first = next(mesh.twin[first]);
+    if (mesh.twin[first] != none) first = corner;
+    const Index v = static_cast<Index>(mesh.outgoing.size());
+    mesh.outgoing.push_back(first);
+    const Index source = component.source_corner(corner);
+    component.source_vertex.push_back(surface.triangles(source / 3, source % 3));
+    Index h = first;
+    do {
+      vertex[h] = v;
+      h = mesh.rotate(h);
+    } while (h != none && h != first);
+  }
+  std::copy(vertex.begin(), vertex.end(), mesh.triangles.data());
+  mesh.positions.resize(mesh.vertex_count(), 3);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) mesh.positions.row(v) = surface.positions.row(component.source_vertex[v]);
+}
+
+void measure_topology(HalfedgeMesh& mesh) {
+  find_boundary_loops(mesh);
+  Index paired = 0;
+  for (const Index twin : mesh.twin) paired += twin != none;
+  const Index edge_count = mesh.halfedge_count() - paired / 2;
+  mesh.euler = mesh.vertex_count() - edge_count + mesh.triangle_count();
+  mesh.genus = (2 - static_cast<int>(mesh.boundary_loops.size()) - mesh.euler) / 2;
+}
+
+void report_repairs(const Surface& surface, const EdgeTable& edges, const Orientation& orientation,
+                    const std::vector<Component>& components, std::vector<Finding>& findings) {
+  std::vector<Index> crowded;
+  for (Index edge = 0; edge < edges.count(); ++edge) {
+    if (edges.halfedge_count(edge) <= 2) continue;
+    const Index h = edges.halfedge(edge, 0);
+    crowded.insert(crowded.end(), {surface.triangles.data()[h], surface.triangles.data()[next(h)]});
+  }
+  if (!crowded.empty()) {
+    findings.push_back({Code::non_manifold_edge,
+                        concat(count(crowded.size() / 2, "edge is", "edges are"),
+                               " shared by more than two triangles (vertices ", list(crowded),
+                               "). The layout is open there; delete the surplus faces to close it."),
+                        {ElementKind::edges, crowded}});
+  }
+  std::vector<Index> fans(surface.positions.rows(), 0), split, isolated, turned;
+  for (const Component& component : components) {
+    for (const Index v : component.source_vertex) ++fans[v];
+  }
+  std::vector<char> open(fans.size(), 0);
+  for (const Index v : crowded) open[v] = 1;
+  for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    if (!orientation.orientable[orientation.component[f]]) {
+      for (int c = 0; c < 3; ++c) open[surface.triangles(f, c)] = 1;
+    }
+    if (orientation.reversed[f]) turned.push_back(f);
+  }
+  for (std::size_t v = 0; v < fans.size(); ++v) {
+    if (open[v]) continue;
+    if (fans[v] == 0) isolated.push_back(static_cast<Index>(v));
+    if (fans[v] > 1) split.push_back(static_cast<Index>(v));
+  }
+  if (!split.empty()) {
+    findings.push_back({Code::split_vertex,
+                        concat("At ", count(split.size(), "vertex", "vertices"), " separate parts of the surface touch (",
+                               list(split), "). They were unwrapped as separate vertices; split them to be rid of this note."),
+                        {ElementKind::vertices, split}});
+  }
+  if (!isolated.empty()) {
+    findings.push_back({Code::isolated_vertices,
+                        concat(count(isolated.size(), "vertex belongs", "vertices belong"), " to no face (", list(isolated),
+                               ") and got no coordinates."),
+                        {ElementKind::vertices, isolated}});
+  }
+  if (!turned.empty()) {
+    findings.push_back({Code::reoriented,
+                        concat(count(turned.size(), "triangle faces", "triangles face"), " the other way than the rest of ",
+                               "the surface (", list(turned), "). Unwrapped as if turned; recalculate normals to repair it."),
+                        {ElementKind::triangles, turned}});
+  }
+}
+
+}  // namespace
+
+std::vector<Component> build_components(const Surface& surface, std::vector<Finding>& findings) {
+  const EdgeTable edges(surface);
+  const std::vector<char> cuttable =
+      surface.edges ? mark_edges(edges, *surface.edges, Code::edge_not_in_mesh,
+                                 "name no edge of a triangle. Pass edges of this mesh as cuttable edges.")
+                    : std::vector<char>(edges.count(), 1);
+  const std::vector<char> seam = mark_edges(edges, surface.seams, Code::seam_not_an_edge,
+                                            "are marked as a seam but name no edge. Mark edges of this mesh.");
+  const Orientation orientation = orient(surface, edges);
+
+  std::vector<Component> components(orientation.orientable.size());
+  std::vector<Index> local_triangle(surface.triangles.rows());
+  for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    Component& component = components[orientation.component[f]];
+    local_triangle[f] = static_cast<Index>(component.source_triangle.size());
+    component.source_triangle.push_back(f);
+    component.reversed.push_back(orientation.reversed[f]);
+  }
+  // The halfedge of a reversed triangle runs the other way: corners (0, 2, 1), halfedges (2, 1, 0).
+  const auto local_halfedge = [&](Index h) {
+    const Index f = h / 3, c = h % 3;
+    return 3 * local_triangle[f] + (orientation.reversed[f] ? 2 - c : c);
+  };
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    Component& component = components[i];
+    component.orientable = orientation.orientable[i];
+    if (!component.orientable) continue;
+    HalfedgeMesh& mesh = component.mesh;
+    mesh.triangles.resize(component.source_triangle.size(), 3);
+    mesh.twin.assign(mesh.halfedge_count(), none);
+    mesh.cuttable.resize(mesh.halfedge_count());
+    mesh.seam.resize(mesh.halfedge_count());
+    for (const Index f : component.source_triangle) {
+      for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+        const Index edge = edges.edge_of(h), local = local_halfedge(h);
+        mesh.cuttable[local] = cuttable[edge];
+        mesh.seam[local] = seam[edge];
+        if (edges.halfedge_count(edge) == 2) {
+          mesh.twin[local] = local_halfedge(edges.halfedge(edge, edges.halfedge(edge, 0) == h ? 1 : 0));
+        }
+      }
+    }
+    number_vertices(surface, component);
+    measure_topology(mesh);
+  }
+  report_repairs(surface, edges, orientation, components, findings);
+  return components;
+}
+
+}  // namespace lsgp

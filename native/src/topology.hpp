@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Halfedges, boundary loops and components.
+//
+// A halfedge is 3 * triangle + corner: it leaves that corner's vertex, runs to the next corner and has its triangle
+// on its left.  The same number names the corner it leaves.
+#pragma once
+
+#include <vector>
+
+#include "lsgp/errors.hpp"
+#include "lsgp/surface.hpp"
+
+namespace lsgp {
+
+constexpr Index none = -1;
+
+inline Index next(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
+inline Index prev(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }
+
+// A connected, oriented manifold surface in its own numbering.
+struct HalfedgeMesh {
+  Positions positions;               // (n, 3)
+  Triangles triangles;               // (m, 3)
+  std::vector<Index> twin;           // (3m) none on the boundary
+  std::vector<Index> outgoing;       // (n) a halfedge leaving each vertex; on the boundary the one without a twin
+  std::vector<char> cuttable, seam;  // (3m) equal on both halfedges of an edge
+  std::vector<std::vector<Index>> boundary_loops;  // vertices, surface on the left
+  std::vector<Index> loop_of_vertex;               // (n) none inside
+  int euler = 0;                                   // V - E + F
+  int genus = 0;
+
+  Index vertex_count() const { return static_cast<Index>(outgoing.size()); }
+  Index triangle_count() const { return static_cast<Index>(triangles.rows()); }
+  Index halfedge_count() const { return 3 * triangle_count(); }
+  Index origin(Index h) const { return triangles.data()[h]; }
+  Index target(Index h) const { return triangles.data()[next(h)]; }
+  bool closed() const { return boundary_loops.empty(); }
+
+  // The next outgoing halfedge counter-clockwise about the same vertex; none after the last at a boundary.
+  Index rotate(Index h) const { return twin[prev(h)]; }
+
+  // Calls visit(h) for the halfedges leaving v, counter-clockwise from outgoing[v].
+  template <typename Visit>
+  void for_each_outgoing(Index v, Visit visit) const {
+    Index h = outgoing[v];
+    do {
+      visit(h);
+      h = rotate(h);
+    } while (h != none && h != outgoing[v]);
+  }
+};
+
+// One component of the caller's surface.
+struct Component {
+  HalfedgeMesh mesh;
+  std::vector<Index> source_vertex;    // (n) the caller's vertices
+  std::vector<Index> source_triangle;  // (m) the caller's triangles
+  std::vector<char> reversed;          // (m) corners 1 and 2 exchanged to orient the component
+  bool orientable = true;              // otherwise the mesh is empty but for its sources
+
+  // The caller's corner 3 * triangle + corner of one of this component's.
+  Index source_corner(Index corner) const {
+    const Index f = corner / 3, c = corner % 3;
+    return 3 * source_triangle[f] + (reversed[f] && c > 0 ? 3 - c : c);
+  }
+};
+
+// Splits a surface into components joined along edges of exactly two triangles.  Edges of more triangles are opened,
+// vertices whose triangles form several fans are split, triangles turned against their component's majority are
+// reversed; each is reported.  Throws EDGE_NOT_IN_MESH, SEAM_NOT_AN_EDGE.
+std::vector<Component> build_components(const Surface& surface, std::vector<Finding>& findings);
+
+}  // namespace lsgp

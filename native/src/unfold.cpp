@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "unfold.hpp"
+
+#include <cmath>
+
+#include "energies/quadratic_forms.hpp"
+#include "solvers/cholesky.hpp"
+#include "solvers/eigenproblem.hpp"
+
+namespace lsgp {
+
+namespace {
+
+// What is added to a frame's angle on crossing halfedge h from its triangle to the one on its right.
+double connection_step(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& log_scale, Index h) {
+  const Index twin = mesh.twin[h];
+  const double scale_change = log_scale[mesh.target(h)] - log_scale[mesh.origin(h)];
+  return edge_direction(geometry, h) - (edge_direction(geometry, twin) + M_PI) -
+         cotangent_weight(mesh, geometry, h) * scale_change;
+}
+
+// The copies along the open border that contains the border copy with the lowest number.
+std::vector<Index> open_border(const HalfedgeMesh& mesh, const CutMesh& cut_mesh) {
+  std::vector<Index> next_copy(cut_mesh.copy_count(), none);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    const Index from = cut_mesh.copy_of_corner[h], to = cut_mesh.copy_of_corner[next(h)], twin = mesh.twin[h];
+    const bool open = twin == none || cut_mesh.copy_of_corner[twin] != to || cut_mesh.copy_of_corner[next(twin)] != from;
+    if (open) next_copy[from] = to;
+  }
+  std::vector<Index> border;
+  for (Index copy = 0; copy < cut_mesh.copy_count() && border.empty(); ++copy) {
+    if (next_copy[copy] == none) continue;
+    for (Index at = copy; border.empty() || at != copy; at = next_copy[at]) border.push_back(at);
+  }
+  return border;
+}
+
+}  // namespace
+
+Eigen::VectorXd integrate_frames(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
+                                 const Eigen::VectorXd& log_scale) {
+  Eigen::VectorXd frames = Eigen::VectorXd::Zero(mesh.triangle_count());
+  std::vector<char> reached(mesh.triangle_count(), 0);
+  std::vector<Index> queue{0};
+  reached[0] = 1;
+  for (std::size_t i = 0; i < queue.size(); ++i) {
+    const Index f = queue[i];
+    for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+      const Index twin = mesh.twin[h];
+      if (twin == none || cut_graph.is_cut[h] || reached[twin / 3]) continue;
+      reached[twin / 3] = 1;
+      frames[twin / 3] = frames[f] + connection_step(mesh, geometry, log_scale, h);
+      queue.push_back(twin / 3);
+    }
+  }
+  return frames;
+}
+
+Eigen::VectorXd read_rotations(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
+                               const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames) {
+  Eigen::VectorXd rotation(cut_graph.cuts.size());
+  for (Eigen::Index p = 0; p < rotation.size(); ++p) {
+    const Index h = cut_graph.cuts[p].halfedges.front();
+    rotation[p] = frames[mesh.twin[h] / 3] - frames[h / 3] - connection_step(mesh, geometry, log_scale, h);
+  }
+  return rotation;
+}
+
+Eigen::VectorXcd unfold_poisson(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+                                const Reduction& reduction, const Eigen::VectorXd& log_scale,
+                                const Eigen::VectorXd& frames) {
+  // min sum A (|f_z - T|^2 + |f_zbar|^2), which is z^H L z / 2 - 2 Re(...): the right side at a corner is
+  // 2 A conj(g) T with g = -i conj(e) / (4 A), e the edge opposite the corner.
+  Eigen::VectorXcd pull = Eigen::VectorXcd::Zero(cut_mesh.copy_count());
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    double scale = 0;
+    for (int c = 0; c < 3; ++c) scale += log_scale[mesh.triangles(f, c)] / 3;
+    const Complex target = std::polar(std::exp(scale), frames[f]);
+    for (Index corner = 3 * f; corner < 3 * f + 3; ++corner) {
+      pull[cut_mesh.copy_of_corner[corner]] += Complex(0, 0.5) * edge_vector(geometry, next(corner)) * target;
+    }
+  }
+  const Cholesky<Complex> factor(assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction));
+  return expand(reduction, factor.solve(gather(reduction, pull)));
+}
+
+Eigen::VectorXcd unfold_spectral(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+                                 const Reduction& reduction) {
+  return expand(reduction, smallest_eigenvector(assemble_form(Form::conformal, mesh, geometry, cut_mesh, reduction),
+                                                assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction),
+                                                unbiased_start(reduction.unknown_count)));
+}
+
+Eigen::VectorXcd unfold_lscm(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh) {
+  const std::vector<Index> border = open_border(mesh, cut_mesh);
+  const Index first = border.front(), second = border[border.size() / 2];
+  const Reduction reduction = leave_free(cut_mesh, first);
+  const auto conformal = assemble_form(Form::conformal, mesh, geometry, cut_mesh, reduction);
+  const auto dirichlet = assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction);
+  // With one pin at the origin, pulling at the other alone gives the map with both pinned, up to its scale and turn.
+  Eigen::VectorXcd pull = Eigen::VectorXcd::Zero(reduction.unknown_count);
+  pull[reduction.terms[reduction.begin[second]].unknown] = 1;
+  const Cholesky<Complex> factor(regularized(conformal, dirichlet));
+  return expand(reduction, factor.solve(pull));
+}
+
+}  // namespace lsgp

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Unfolding into the plane (the paper's sections 4.2 and 6).
+#pragma once
+
+#include <Eigen/Core>
+
+#include "cut_mesh.hpp"
+#include "geometry.hpp"
+#include "transitions.hpp"
+
+namespace lsgp {
+
+// How far the flat metric e^{2y} turns every triangle's frame: the connection
+//   phi_g = phi_f + theta_f - theta_g - w (y_j - y_i)
+// across the edge from i to j with f on its left and g on its right (theta: its direction in each frame), integrated
+// over the triangles without crossing a cut.  Radians, (m).
+Eigen::VectorXd integrate_frames(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
+                                 const Eigen::VectorXd& log_scale);
+
+// The rotation of every cut that those frames imply, radians modulo 2 pi: curvature fixes it but for the loops about
+// handles, where this is the rotation with least distortion.
+Eigen::VectorXd read_rotations(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
+                               const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames);
+
+// Each returns the positions u + iv of all copies.
+
+// Least squares fit of the map's Jacobians to e^{y + i phi}: one solve with the Dirichlet matrix.
+Eigen::VectorXcd unfold_poisson(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+                                const Reduction& reduction, const Eigen::VectorXd& log_scale,
+                                const Eigen::VectorXd& frames);
+
+// The map of least conformal energy at a given Dirichlet energy (Mullen et al. 2008, with a norm that transitions
+// leave invariant).
+Eigen::VectorXcd unfold_spectral(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+                                 const Reduction& reduction);
+
+// Least squares conformal map of the opened surface with two pinned copies, no transitions (Levy et al. 2002).
+// The pins are the first copy on the open border with the lowest number and the one half the border's edges away.
+Eigen::VectorXcd unfold_lscm(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh);
+
+}  // namespace lsgp

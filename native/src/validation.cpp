@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "validation.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "text.hpp"
+
+namespace lsgp {
+
+namespace {
+
+// Squared areas and their sums must neither overflow nor vanish in double precision.
+constexpr double largest_extent = 1e60;
+constexpr double smallest_extent = 1e-60;
+
+void require_indices(const VertexPairs& pairs, Index vertex_count, const char* what) {
+  std::vector<Index> bad;
+  for (Index row = 0; row < pairs.rows(); ++row) {
+    for (const Index v : {pairs(row, 0), pairs(row, 1)}) {
+      if (v < 0 || v >= vertex_count) bad.push_back(v);
+    }
+  }
+  if (!bad.empty()) {
+    throw Error(Code::index_out_of_range,
+                concat("The ", what, " name ", count(bad.size(), "vertex", "vertices"), " outside 0 to ", vertex_count - 1,
+                       " (", list(bad), "). Pass vertex pairs of this mesh."));
+  }
+}
+
+void require_extent(const Positions& positions, const std::vector<char>& used) {
+  Eigen::RowVector3d low = Eigen::RowVector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (Index v = 0; v < positions.rows(); ++v) {
+    if (!used[v]) continue;
+    low = low.cwiseMin(positions.row(v));
+    high = high.cwiseMax(positions.row(v));
+  }
+  const double extent = (high - low).maxCoeff();
+  if (extent > largest_extent || (extent > 0 && extent < smallest_extent)) {
+    throw Error(Code::scale_range, concat("The surface is ", extent, " units large; sizes from ", smallest_extent, " to ",
+                                          largest_extent, " can be computed with. Scale it."));
+  }
+  if (!(extent > 0)) {
+    throw Error(Code::degenerate_mesh, "All vertices of the surface coincide, so it has no area. Restore its shape.");
+  }
+}
+
+}  // namespace
+
+void require_valid(const Surface& surface) {
+  const Index n = static_cast<Index>(surface.positions.rows());
+  const Triangles& triangles = surface.triangles;
+  if (triangles.rows() == 0) throw Error(Code::empty_mesh, "The mesh has no faces. Add faces to unwrap.");
+
+  std::vector<Index> outside, repeated;
+  std::vector<char> used(n, 0);
+  for (Index f = 0; f < triangles.rows(); ++f) {
+    const Index a = triangles(f, 0), b = triangles(f, 1), c = triangles(f, 2);
+    if (a < 0 || b < 0 || c < 0 || a >= n || b >= n || c >= n) {
+      outside.push_back(f);
+    } else if (a == b || b == c || c == a) {
+      repeated.push_back(f);
+    } else {
+      used[a] = used[b] = used[c] = 1;
+    }
+  }
+  if (!outside.empty()) {
+    throw Error(Code::index_out_of_range,
+                concat(count(outside.size(), "triangle names", "triangles name"), " vertices outside 0 to ", n - 1, " (",
+                       list(outside), "). Repair the face indices."),
+                {ElementKind::triangles, outside});
+  }
+  if (!repeated.empty()) {
+    throw Error(Code::bad_face,
+                concat(count(repeated.size(), "triangle repeats", "triangles repeat"), " a vertex (", list(repeated),
+                       "). Merge by distance or delete them."),
+                {ElementKind::triangles, repeated});
+  }
+  std::vector<Index> bad;
+  for (Index v = 0; v < n; ++v) {
+    if (used[v] && !surface.positions.row(v).allFinite()) bad.push_back(v);
+  }
+  if (!bad.empty()) {
+    throw Error(Code::non_finite_position,
+                concat(count(bad.size(), "vertex has", "vertices have"), " a coordinate that is not a finite number (",
+                       list(bad), "). Move or delete them."),
+                {ElementKind::vertices, bad});
+  }
+  require_extent(surface.positions, used);
+  if (surface.edges) require_indices(*surface.edges, n, "edges");
+  require_indices(surface.seams, n, "seams");
+}
+
+void require_valid(const Surface& surface, const Cones& cones) {
+  const Index n = static_cast<Index>(surface.positions.rows());
+  if (cones.angles.size() != cones.vertices.size()) {
+    throw Error(Code::angle_count, concat(cones.vertices.size(), " cones but ", cones.angles.size(),
+                                          " angles were given. Pass one angle per cone, none for automatic."));
+  }
+  std::vector<char> used(n, 0);
+  for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    for (int c = 0; c < 3; ++c) used[surface.triangles(f, c)] = 1;
+  }
+  std::vector<char> seen(n, 0);
+  std::vector<Index> outside, duplicate, loose, non_finite, impossible;
+  for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
+    const Index v = cones.vertices[i];
+    if (v < 0 || v >= n) {
+      outside.push_back(v);
+      continue;
+    }
+    if (seen[v]++) duplicate.push_back(v);
+    if (!used[v]) loose.push_back(v);
+    if (!cones.angles[i]) continue;
+    if (!std::isfinite(*cones.angles[i])) non_finite.push_back(v);
+    else if (*cones.angles[i] <= 0) impossible.push_back(v);
+  }
+  if (!outside.empty()) {
+    throw Error(Code::cone_index, concat(count(outside.size(), "cone lies", "cones lie"), " outside the vertices 0 to ", n - 1,
+                                         " (", list(outside), "). Mark vertices of this mesh."));
+  }
+  const auto refuse = [](Code code, const std::vector<Index>& bad, const char* one, const char* many, const char* remedy) {
+    if (!bad.empty()) {
+      throw Error(code, concat(count(bad.size(), one, many), " (", list(bad), "). ", remedy), {ElementKind::vertices, bad});
+    }
+  };
+  refuse(Code::cone_duplicate, duplicate, "cone is listed twice", "cones are listed twice", "List every cone once.");
+  refuse(Code::cone_not_on_surface, loose, "cone belongs to no face", "cones belong to no face",
+         "Mark vertices of the surface only.");
+  refuse(Code::cone_angle_non_finite, non_finite, "cone angle is not a finite number", "cone angles are not finite numbers",
+         "Give an angle above 0, or none for automatic.");
+  refuse(Code::cone_angle_range, impossible, "cone angle is zero or negative", "cone angles are zero or negative",
+         "Give an angle above 0 degrees.");
+}
+
+}  // namespace lsgp

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What can be refused by looking at the arrays alone, before any topology is built.
+#pragma once
+
+#include "lsgp/errors.hpp"
+#include "lsgp/surface.hpp"
+
+namespace lsgp {
+
+// Throws EMPTY_MESH, INDEX_OUT_OF_RANGE, BAD_FACE, NON_FINITE_POSITION, SCALE_RANGE, DEGENERATE_MESH.
+void require_valid(const Surface& surface);
+
+// Throws CONE_INDEX, CONE_DUPLICATE, CONE_NOT_ON_SURFACE, ANGLE_COUNT, CONE_ANGLE_NON_FINITE, CONE_ANGLE_RANGE.
+void require_valid(const Surface& surface, const Cones& cones);
+
+}  // namespace lsgp

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The add-on's tests run inside Blender, through run_in_blender.py; elsewhere they are not collected.
+
+tests/packaging/test_in_blender.py starts them from an ordinary pytest run, or is skipped with the reason.
+"""
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+if "CONE_UNWRAP_EXTENSION" not in os.environ:
+    collect_ignore_glob = ["test_*.py"]
+else:
+    import bpy
+
+    sys.path.insert(0, str(Path(__file__).parent))
+
+    @pytest.fixture(autouse=True)
+    def empty_scene():
+        """Every test starts in an empty file; the extension stays enabled."""
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+
+    @pytest.fixture
+    def reports(capfd):
+        """What Blender reported so far, as printed in background mode: call it to read and forget it."""
+        import ctypes
+
+        def read() -> str:
+            ctypes.CDLL(None).fflush(None)
+            return capfd.readouterr().out
+
+        return read

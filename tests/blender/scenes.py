@@ -1,0 +1,268 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Small scenes, snapshots of everything on a mesh, and measurements of UV maps that share no code with the add-on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+import bmesh
+import bpy
+import numpy as np
+
+GROUP = "uv_cones"
+ANGLES = "uv_cone_angle"
+
+# Largest error of a UV edge length by rounding both ends to 32-bit floats in the unit square.
+UV_ROUNDING = 2e-7
+
+ATTRIBUTE_VALUES = {
+    "FLOAT": ("value", np.float32, 1),
+    "INT": ("value", np.int32, 1),
+    "BOOLEAN": ("value", bool, 1),
+    "INT8": ("value", np.int32, 1),
+    "FLOAT_VECTOR": ("vector", np.float32, 3),
+    "FLOAT2": ("vector", np.float32, 2),
+    "FLOAT_COLOR": ("color", np.float32, 4),
+    "BYTE_COLOR": ("color", np.float32, 4),
+    "INT32_2D": ("value", np.int32, 2),
+    "INT16_2D": ("value", np.int32, 2),
+}
+
+
+def add_object(name: str, build: Callable[[bmesh.types.BMesh], None]) -> bpy.types.Object:
+    """A new selected, active object whose mesh ``build`` fills."""
+    mesh = bpy.data.meshes.new(name)
+    bm = bmesh.new()
+    build(bm)
+    bm.to_mesh(mesh)
+    bm.free()
+    obj = bpy.data.objects.new(name, mesh)
+    bpy.context.collection.objects.link(obj)
+    obj.select_set(True)
+    bpy.context.view_layer.objects.active = obj
+    return obj
+
+
+def add_cube(name: str = "Cube", cuts: int = 3) -> bpy.types.Object:
+    """A cube of side 2 made of (cuts + 1)² quads a side, with one UV layer."""
+
+    def build(bm: bmesh.types.BMesh) -> None:
+        bmesh.ops.create_cube(bm, size=2.0)
+        bmesh.ops.subdivide_edges(bm, edges=bm.edges, cuts=cuts, use_grid_fill=True)
+        bm.loops.layers.uv.new("UVMap")
+
+    return add_object(name, build)
+
+
+def add_sphere(name: str = "Sphere") -> bpy.types.Object:
+    """A closed sphere of triangles and quads, with one UV layer."""
+
+    def build(bm: bmesh.types.BMesh) -> None:
+        bmesh.ops.create_uvsphere(bm, u_segments=12, v_segments=8, radius=1.0)
+        bm.loops.layers.uv.new("UVMap")
+
+    return add_object(name, build)
+
+
+def add_grid(name: str = "Grid", segments: int = 6) -> bpy.types.Object:
+    """A flat square of side 2 with segments² quads and one UV layer."""
+
+    def build(bm: bmesh.types.BMesh) -> None:
+        bmesh.ops.create_grid(bm, x_segments=segments, y_segments=segments, size=1.0)
+        bm.loops.layers.uv.new("UVMap")
+
+    return add_object(name, build)
+
+
+def corners(obj: bpy.types.Object) -> list[int]:
+    """The eight corners of `add_cube`."""
+    return [v.index for v in obj.data.vertices if all(abs(abs(x) - 1.0) < 1e-6 for x in v.co)]
+
+
+def mark(obj: bpy.types.Object, vertices: Iterable[int], group: str = GROUP) -> None:
+    """Put vertices into the cone group, in object mode."""
+    (obj.vertex_groups.get(group) or obj.vertex_groups.new(name=group)).add(list(vertices), 1.0, "REPLACE")
+
+
+def add_cone_cube(name: str = "Cube", cuts: int = 3) -> bpy.types.Object:
+    cube = add_cube(name, cuts)
+    mark(cube, corners(cube))
+    return cube
+
+
+def marked(obj: bpy.types.Object, group: str = GROUP) -> list[int]:
+    """Vertices with a weight in the group, read from a copy of the mesh in any mode."""
+    if group not in obj.vertex_groups:
+        return []
+    index = obj.vertex_groups[group].index
+    mesh = plain_copy(obj)
+    found = [v.index for v in mesh.vertices if any(g.group == index and g.weight > 0 for g in v.groups)]
+    bpy.data.meshes.remove(mesh)
+    return found
+
+
+def edit(*objects: bpy.types.Object, select: str = "SELECT") -> None:
+    """Enter edit mode on these objects and select or deselect everything."""
+    bpy.ops.object.select_all(action="DESELECT")
+    for obj in objects:
+        obj.select_set(True)
+    bpy.context.view_layer.objects.active = objects[0]
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.context.tool_settings.mesh_select_mode = (True, False, False)
+    bpy.ops.mesh.select_all(action=select)
+
+
+def select_elements(obj: bpy.types.Object, kind: str, indices: Iterable[int]) -> None:
+    """Select exactly these "verts" or "faces" of a mesh in edit mode."""
+    bm = bmesh.from_edit_mesh(obj.data)
+    elements = getattr(bm, kind)
+    elements.ensure_lookup_table()
+    for element in (*bm.verts, *bm.edges, *bm.faces):
+        element.select = False
+    for index in indices:
+        elements[index].select = True
+    bm.select_flush(True)
+    bmesh.update_edit_mesh(obj.data)
+
+
+def selected(obj: bpy.types.Object) -> list[int]:
+    return [v.index for v in bmesh.from_edit_mesh(obj.data).verts if v.select]
+
+
+def plain_copy(obj: bpy.types.Object) -> bpy.types.Mesh:
+    """The mesh as it is now, out of edit mode, so that its attributes can be read."""
+    if obj.mode == "EDIT":
+        obj.update_from_editmode()
+    return obj.data.copy()
+
+
+def snapshot(obj: bpy.types.Object) -> dict[str, object]:
+    """Everything on the object's mesh that an operator could change, by name, as bytes or plain values."""
+    mesh = plain_copy(obj)
+    state: dict[str, object] = {}
+    for attribute in mesh.attributes:
+        name, dtype, columns = ATTRIBUTE_VALUES[attribute.data_type]
+        values = np.empty(len(attribute.data) * columns, dtype)
+        attribute.data.foreach_get(name, values)
+        state[f"attribute {attribute.name} {attribute.domain} {attribute.data_type}"] = values.tobytes()
+    for owner, name, dtype in (
+        ("vertices", "select", bool),
+        ("vertices", "hide", bool),
+        ("edges", "select", bool),
+        ("edges", "hide", bool),
+        ("edges", "use_seam", bool),
+        ("polygons", "select", bool),
+        ("polygons", "hide", bool),
+        ("polygons", "loop_start", np.int32),
+        ("polygons", "material_index", np.int32),
+        ("loops", "vertex_index", np.int32),
+        ("loops", "edge_index", np.int32),
+    ):
+        collection = getattr(mesh, owner)
+        values = np.empty(len(collection), dtype)
+        collection.foreach_get(name, values)
+        state[f"{owner} {name}"] = values.tobytes()
+    state["weights"] = [sorted((g.group, g.weight) for g in v.groups) for v in mesh.vertices]
+    state["groups"] = [group.name for group in obj.vertex_groups]
+    state["active group"] = obj.vertex_groups.active_index
+    state["uv layers"] = [layer.name for layer in obj.data.uv_layers]
+    state["active uv layer"] = obj.data.uv_layers.active_index
+    state["render uv layer"] = [layer.active_render for layer in obj.data.uv_layers]
+    state["materials"] = list(obj.data.materials)
+    state["modifiers"] = [(modifier.name, modifier.type) for modifier in obj.modifiers]
+    keys = mesh.shape_keys.key_blocks if mesh.shape_keys else ()
+    state["shape keys"] = {key.name: [tuple(point.co) for point in key.data] for key in keys}
+    state["mode"] = (obj.mode, tuple(bpy.context.tool_settings.mesh_select_mode))
+    state["matrix"] = [tuple(row) for row in obj.matrix_world]
+    state["data-blocks"] = sorted(block.name for block in (*bpy.data.objects, *bpy.data.meshes) if block != mesh)
+    bpy.data.meshes.remove(mesh)
+    return state
+
+
+def changed(before: dict[str, object], after: dict[str, object]) -> set[str]:
+    """Names of what differs between two snapshots."""
+    return {name for name in before.keys() | after.keys() if before.get(name) != after.get(name)}
+
+
+def uv_key(layer: str = "UVMap") -> str:
+    """The name of a UV layer in a snapshot."""
+    return f"attribute {layer} CORNER FLOAT2"
+
+
+class UvMap:
+    """The active UV layer of an object with the mesh it lies on, as arrays.
+
+    uv (l, 2), vertex (l,), face (l,) of every loop; positions (n, 3). sides: for each edge with two faces the loop pairs of
+    both sides, in the same vertex order.
+    """
+
+    def __init__(self, obj: bpy.types.Object) -> None:
+        mesh = plain_copy(obj)
+        layer = mesh.uv_layers[obj.data.uv_layers.active.name]
+        self.uv = np.array([tuple(entry.vector) for entry in layer.uv], np.float64)
+        self.vertex = np.array([loop.vertex_index for loop in mesh.loops])
+        self.positions = np.array([tuple(v.co) for v in mesh.vertices], np.float64)
+        self.loops_of_face = [list(face.loop_indices) for face in mesh.polygons]
+        self.seams = {tuple(sorted(edge.vertices)) for edge in mesh.edges if edge.use_seam}
+        pairs: dict[tuple[int, int], list[tuple[int, int]]] = {}
+        for loops in self.loops_of_face:
+            for first, second in zip(loops, loops[1:] + loops[:1]):
+                if self.vertex[first] > self.vertex[second]:
+                    first, second = second, first
+                pairs.setdefault((int(self.vertex[first]), int(self.vertex[second])), []).append((first, second))
+        self.sides = {edge: sides for edge, sides in pairs.items() if len(sides) == 2}
+        bpy.data.meshes.remove(mesh)
+
+    def split_edges(self) -> set[tuple[int, int]]:
+        """Vertex pairs of the edges whose two sides lie apart in the map."""
+        return {
+            edge
+            for edge, (left, right) in self.sides.items()
+            if not np.array_equal(self.uv[list(left)], self.uv[list(right)])
+        }
+
+    def sister_difference(self) -> float:
+        """Largest difference between the UV lengths of the two sides of an edge."""
+        left, right = (np.array([sides[side] for sides in self.sides.values()]) for side in (0, 1))
+        return float(np.abs(self._length(left) - self._length(right)).max())
+
+    def scale_spread(self, faces: Iterable[int] | None = None) -> float:
+        """Largest over smallest ratio of UV distance to distance in space over all loop pairs of a face; 1 is isometric."""
+        ratios = []
+        for face in range(len(self.loops_of_face)) if faces is None else faces:
+            loops = np.array(self.loops_of_face[face])
+            first, second = np.triu_indices(len(loops), 1)
+            pairs = np.stack([loops[first], loops[second]], axis=1)
+            ends = self.positions[self.vertex[pairs]]
+            ratios.append(self._length(pairs) / np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1))
+        ratios = np.concatenate(ratios)
+        return float(ratios.max() / ratios.min())
+
+    def angle_sum(self, vertex: int) -> float:
+        """Sum of the UV angles at a vertex, over all its faces."""
+        total = 0.0
+        for loops in self.loops_of_face:
+            for before, here, after in zip(loops[-1:] + loops[:-1], loops, loops[1:] + loops[:1]):
+                if self.vertex[here] == vertex:
+                    a, b = self.uv[after] - self.uv[here], self.uv[before] - self.uv[here]
+                    total += np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b)
+        return float(total)
+
+    def islands(self) -> int:
+        """Number of sets of faces connected through edges that are not split."""
+        parent = list(range(len(self.loops_of_face)))
+
+        def root(face: int) -> int:
+            while parent[face] != face:
+                face = parent[face]
+            return face
+
+        face_of = {loop: face for face, loops in enumerate(self.loops_of_face) for loop in loops}
+        split = self.split_edges()
+        for edge, (left, right) in self.sides.items():
+            if edge not in split:
+                parent[root(face_of[left[0]])] = root(face_of[right[0]])
+        return len({root(face) for face in range(len(parent))})
+
+    def _length(self, pairs: np.ndarray) -> np.ndarray:
+        return np.linalg.norm(self.uv[pairs[:, 0]] - self.uv[pairs[:, 1]], axis=1)

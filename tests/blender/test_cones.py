@@ -1,0 +1,231 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Mark, clear, select and place cones: what changes, and that nothing else does."""
+
+import bmesh
+import bpy
+import pytest
+from scenes import (
+    GROUP,
+    add_cone_cube,
+    add_cube,
+    add_grid,
+    changed,
+    corners,
+    edit,
+    mark,
+    marked,
+    select_elements,
+    selected,
+    snapshot,
+)
+
+
+def test_mark_adds_the_selected_vertices_to_the_group_and_changes_nothing_else():
+    cube = add_cube()
+    edit(cube)
+    select_elements(cube, "verts", [3, 5, 11])
+    before = snapshot(cube)
+    assert bpy.ops.mesh.cone_mark() == {"FINISHED"}
+    after = snapshot(cube)
+    assert marked(cube) == [3, 5, 11]
+    assert after["groups"] == [GROUP]
+    assert changed(before, after) == {"weights", "groups", "active group"}
+
+
+def test_mark_keeps_other_groups_their_weights_and_the_active_one():
+    cube = add_cube()
+    cube.vertex_groups.new(name="first").add([3, 4], 0.25, "REPLACE")
+    cube.vertex_groups.new(name="second")
+    cube.vertex_groups.active_index = 0
+    edit(cube)
+    select_elements(cube, "verts", [3])
+    before = snapshot(cube)
+    bpy.ops.mesh.cone_mark()
+    after = snapshot(cube)
+    assert after["groups"] == ["first", "second", GROUP]
+    assert after["weights"][3] == [(0, 0.25), (2, 1.0)]
+    assert after["weights"][4] == [(0, 0.25)]
+    assert changed(before, after) == {"weights", "groups"}
+
+
+def test_clear_takes_only_selected_cones_out_and_keeps_the_group():
+    cube = add_cone_cube()
+    cones = corners(cube)
+    edit(cube)
+    select_elements(cube, "verts", cones[:3])
+    before = snapshot(cube)
+    assert bpy.ops.mesh.cone_mark(clear=True) == {"FINISHED"}
+    after = snapshot(cube)
+    assert marked(cube) == cones[3:]
+    assert changed(before, after) == {"weights"}
+
+
+def test_mark_then_clear_restores_the_weights():
+    cube = add_cube()
+    cube.vertex_groups.new(name=GROUP)
+    edit(cube)
+    select_elements(cube, "verts", [1, 2])
+    before = snapshot(cube)
+    bpy.ops.mesh.cone_mark()
+    assert marked(cube) == [1, 2]
+    bpy.ops.mesh.cone_mark(clear=True)
+    assert changed(before, snapshot(cube)) == set()
+
+
+def test_mark_works_on_every_object_in_edit_mode_and_leaves_hidden_vertices():
+    first, second = add_cube("First"), add_cube("Second")
+    edit(first, second)
+    select_elements(first, "verts", [0, 1])
+    select_elements(second, "verts", [2])
+    bm = bmesh.from_edit_mesh(first.data)
+    bm.verts.ensure_lookup_table()
+    bm.verts[1].hide = True
+    bpy.ops.mesh.cone_mark()
+    assert marked(first) == [0]
+    assert marked(second) == [2]
+
+
+def test_mark_uses_the_group_it_is_given():
+    cube = add_cube()
+    edit(cube)
+    select_elements(cube, "verts", [7])
+    bpy.ops.mesh.cone_mark(vertex_group="points")
+    assert marked(cube, "points") == [7]
+    assert [group.name for group in cube.vertex_groups] == ["points"]
+
+
+def test_mark_without_selection_is_refused_and_changes_nothing():
+    cube = add_cube()
+    edit(cube, select="DESELECT")
+    before = snapshot(cube)
+    with pytest.raises(RuntimeError, match="select the vertices"):
+        bpy.ops.mesh.cone_mark()
+    assert changed(before, snapshot(cube)) == set()
+
+
+def test_nothing_to_mark_or_clear_is_said_and_cancelled(reports):
+    cube = add_cone_cube()
+    edit(cube)
+    select_elements(cube, "verts", corners(cube))
+    assert bpy.ops.mesh.cone_mark() == {"CANCELLED"}
+    assert "cones already" in reports()
+    others = sorted(set(range(len(cube.data.vertices))) - set(corners(cube)))
+    select_elements(cube, "verts", others)
+    assert bpy.ops.mesh.cone_mark(clear=True) == {"CANCELLED"}
+    assert "No selected vertex is a cone" in reports()
+
+
+def test_select_selects_exactly_the_cones_and_changes_nothing_but_selection(reports):
+    cube = add_cone_cube()
+    edit(cube)
+    before = snapshot(cube)
+    assert bpy.ops.mesh.cone_select() == {"FINISHED"}
+    assert selected(cube) == corners(cube)
+    assert "Selected 8 cones" in reports()
+    differences = changed(before, snapshot(cube))
+    assert "vertices select" in differences
+    assert all(name.endswith("select") or ".select_" in name for name in differences)
+
+
+def test_select_extend_keeps_what_was_selected():
+    cube = add_cone_cube()
+    cones = corners(cube)
+    other = next(v for v in range(len(cube.data.vertices)) if v not in cones)
+    edit(cube)
+    select_elements(cube, "verts", [other])
+    bpy.ops.mesh.cone_select(extend=True)
+    assert selected(cube) == sorted([*cones, other])
+
+
+def test_select_leaves_hidden_cones_hidden_and_says_so(reports):
+    cube = add_cone_cube()
+    cones = corners(cube)
+    edit(cube)
+    select_elements(cube, "verts", cones[:2])
+    bpy.ops.mesh.hide()
+    bpy.ops.mesh.cone_select()
+    assert selected(cube) == cones[2:]
+    assert "Selected 6 cones; 2 more hidden" in reports()
+
+
+def test_select_goes_to_vertex_select_mode():
+    cube = add_cone_cube()
+    edit(cube)
+    bpy.context.tool_settings.mesh_select_mode = (False, False, True)
+    bpy.ops.mesh.cone_select()
+    assert tuple(bpy.context.tool_settings.mesh_select_mode) == (True, False, False)
+    assert selected(cube) == corners(cube)
+
+
+def test_select_without_cones_is_cancelled_and_keeps_the_selection():
+    cube = add_cube()
+    edit(cube)
+    select_elements(cube, "verts", [4])
+    before = snapshot(cube)
+    assert bpy.ops.mesh.cone_select() == {"CANCELLED"}
+    assert changed(before, snapshot(cube)) == set()
+
+
+@pytest.mark.parametrize("call", [bpy.ops.mesh.cone_mark, bpy.ops.mesh.cone_select])
+def test_marking_and_selecting_ask_for_edit_mode(call):
+    add_cube()
+    assert not call.poll()
+    with pytest.raises(RuntimeError, match="Enter edit mode on a mesh"):
+        call()
+
+
+@pytest.mark.parametrize("in_edit_mode", [True, False])
+def test_place_marks_as_many_cones_as_asked_and_changes_only_the_group(in_edit_mode):
+    cube = add_cube()
+    if in_edit_mode:
+        edit(cube)
+    before = snapshot(cube)
+    assert bpy.ops.mesh.cone_place(automatic=False, count=8) == {"FINISHED"}
+    assert len(marked(cube)) == 8
+    assert changed(before, snapshot(cube)) <= {"weights", "groups", "active group"}
+
+
+def test_place_finds_the_corners_of_a_cube():
+    cube = add_cube()
+    assert bpy.ops.mesh.cone_place(automatic=False, count=8) == {"FINISHED"}
+    assert marked(cube) == corners(cube)
+
+
+def test_place_keeps_marked_cones_or_replaces_them_as_asked():
+    cube = add_cube()
+    odd = next(v for v in range(len(cube.data.vertices)) if v not in corners(cube))
+    mark(cube, [odd])
+    bpy.ops.mesh.cone_place(automatic=False, count=4)
+    assert odd in marked(cube) and len(marked(cube)) == 4
+    bpy.ops.mesh.cone_place(automatic=False, count=8, keep=False)
+    assert marked(cube) == corners(cube)
+
+
+def test_place_gives_the_same_cones_in_edit_and_object_mode_and_every_time():
+    first, second = add_cube("First"), add_cube("Second")
+    bpy.ops.mesh.cone_place(automatic=False, count=6)
+    chosen = marked(first)
+    assert marked(second) == chosen
+    bpy.ops.object.select_all(action="DESELECT")
+    edit(second)
+    bpy.ops.mesh.cone_place(automatic=False, count=6, keep=False)
+    assert marked(second) == chosen
+
+
+def test_place_looks_at_selected_faces_only():
+    first = add_cube("First")
+    edit(first, select="DESELECT")
+    upper = [f.index for f in bmesh.from_edit_mesh(first.data).faces if f.calc_center_median().z > -0.9]
+    select_elements(first, "faces", upper)
+    bpy.ops.mesh.cone_place(automatic=False, count=4)
+    top = [v for v in corners(first) if first.data.vertices[v].co.z > 0]
+    assert marked(first) == top
+
+
+def test_place_without_selected_faces_is_refused():
+    grid = add_grid()
+    edit(grid, select="DESELECT")
+    before = snapshot(grid)
+    with pytest.raises(RuntimeError, match="select the faces"):
+        bpy.ops.mesh.cone_place()
+    assert changed(before, snapshot(grid)) == set()

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The installed extension: names, options, menus, preferences, and that it leaves without trace."""
+
+import os
+import sys
+from importlib import import_module
+
+import bpy
+import pytest
+
+EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
+OPERATORS = {"uv.cone_unwrap", "mesh.cone_mark", "mesh.cone_select", "mesh.cone_place"}
+CONE_ENTRIES = [
+    ("mesh.cone_mark", False),
+    ("mesh.cone_mark", True),
+    ("mesh.cone_select", None),
+    ("mesh.cone_place", None),
+]
+
+
+class RecordingLayout:
+    """Stands for a menu's layout and keeps which operators were drawn, with their `clear` where it was set."""
+
+    class Entry:
+        clear = None
+
+    def __init__(self):
+        self.drawn = []
+
+    def operator(self, name, text=""):
+        entry = self.Entry()
+        self.drawn.append((name, entry, text))
+        return entry
+
+    def separator(self):
+        pass
+
+
+def our_entries(menu):
+    """(operator, clear) for what the extension draws in a menu."""
+    cls = getattr(bpy.types, menu)
+    stand_in = type("Menu", (), {"layout": RecordingLayout()})()
+    for draw in cls._dyn_ui_initialize():
+        if draw.__module__.startswith(EXTENSION):
+            draw(stand_in, bpy.context)
+    return [(name, entry.clear) for name, entry, _ in stand_in.layout.drawn]
+
+
+def test_library_comes_from_the_extensions_wheel():
+    import lsgp
+
+    native = import_module(f"{EXTENSION}.native")
+    assert native.lsgp is lsgp
+    assert native.PROBLEM == ""
+    extensions = os.path.join(os.environ["BLENDER_USER_RESOURCES"], "extensions")
+    assert os.path.realpath(lsgp._lsgp.__file__).startswith(os.path.realpath(extensions) + os.sep)
+
+
+@pytest.mark.parametrize("name", sorted(OPERATORS))
+def test_operators_can_be_undone_and_repeated(name):
+    area, verb = name.split(".")
+    rna = getattr(getattr(bpy.ops, area), verb).get_rna_type()
+    cls = getattr(bpy.types, rna.identifier)
+    assert cls.bl_options == {"REGISTER", "UNDO"}
+    assert rna.description and not rna.description.endswith(".")
+
+
+@pytest.mark.parametrize(
+    "menu", ["IMAGE_MT_uvs", "VIEW3D_MT_uv_map", "VIEW3D_MT_edit_mesh_edges", "VIEW3D_MT_edit_mesh_vertices"]
+)
+def test_cones_stand_beside_the_seams_and_in_the_vertex_menu(menu):
+    assert our_entries(menu) == CONE_ENTRIES
+
+
+def test_unwrap_is_in_the_unwrap_menu_once():
+    assert our_entries("IMAGE_MT_uvs_unwrap") == [("uv.cone_unwrap", None)]
+
+
+def test_context_menu_has_cones_in_vertex_select_mode_only():
+    settings = bpy.context.tool_settings
+    settings.mesh_select_mode = (True, False, False)
+    assert our_entries("VIEW3D_MT_edit_mesh_context_menu") == CONE_ENTRIES
+    settings.mesh_select_mode = (False, True, True)
+    assert our_entries("VIEW3D_MT_edit_mesh_context_menu") == []
+
+
+def test_preferences_say_where_the_library_is():
+    preferences = bpy.context.preferences.addons[EXTENSION].preferences
+    assert preferences is not None
+    sentence = import_module(f"{EXTENSION}.preferences").library_state()
+    assert sys.modules["lsgp"].__file__ in sentence
+
+
+def test_disabling_removes_operators_and_menu_entries_and_enabling_restores_them():
+    addon = sys.modules[EXTENSION]
+    menus = ("IMAGE_MT_uvs_unwrap", "IMAGE_MT_uvs", "VIEW3D_MT_edit_mesh_vertices", "VIEW3D_MT_edit_mesh_context_menu")
+    entries = {menu: our_entries(menu) for menu in menus}
+    addon.unregister()
+    try:
+        assert all(our_entries(menu) == [] for menu in menus)
+        assert not hasattr(bpy.types, "UV_OT_cone_unwrap")
+        assert not hasattr(bpy.types, "MESH_OT_cone_mark")
+    finally:
+        addon.register()
+    assert {menu: our_entries(menu) for menu in menus} == entries
+    assert hasattr(bpy.types, "UV_OT_cone_unwrap")

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Unwrap from Cones: what the UVs it writes are like, measured from the mesh alone."""
+
+import math
+from itertools import pairwise
+
+import bmesh
+import bpy
+import numpy as np
+import pytest
+from scenes import ANGLES, UV_ROUNDING, UvMap, add_cone_cube, add_object, corners, edit, mark, marked
+
+# Relative error of the shortest edge of the test cubes (an eighth of the UV square or more) by 32-bit UVs, with room.
+ISOMETRIC = 1 + 1e-5
+
+
+@pytest.mark.parametrize("in_edit_mode", [True, False])
+@pytest.mark.parametrize("unfold", ["POISSON", "SPECTRAL"])
+def test_cube_through_its_corners_is_isometric(in_edit_mode, unfold):
+    cube = add_cone_cube()
+    if in_edit_mode:
+        edit(cube)
+    assert bpy.ops.uv.cone_unwrap(unfold=unfold) == {"FINISHED"}
+    uv_map = UvMap(cube)
+    assert uv_map.scale_spread() < ISOMETRIC
+    assert uv_map.sister_difference() <= UV_ROUNDING
+    assert uv_map.islands() == 1
+    assert uv_map.uv.min() >= 0.0 and uv_map.uv.max() <= 1.0
+
+
+def test_cuts_form_a_tree_through_all_cones():
+    cube = add_cone_cube()
+    bpy.ops.uv.cone_unwrap()
+    split = UvMap(cube).split_edges()
+    ends = np.array(sorted(split)).ravel()
+    vertices, degree = np.unique(ends, return_counts=True)
+    assert len(split) == len(vertices) - 1
+    assert set(vertices[degree == 1]) <= set(corners(cube)) <= set(vertices)
+
+
+def test_cone_angles_add_up_to_what_the_cube_has():
+    cube = add_cone_cube()
+    bpy.ops.uv.cone_unwrap()
+    uv_map = UvMap(cube)
+    for vertex in range(len(cube.data.vertices)):
+        expected = 1.5 * math.pi if vertex in corners(cube) else 2 * math.pi
+        assert uv_map.angle_sum(vertex) == pytest.approx(expected, abs=1e-4)
+
+
+@pytest.mark.parametrize("in_edit_mode", [True, False])
+def test_typed_cone_angles_are_kept_unless_a_rule_is_chosen(in_edit_mode):
+    cube = add_cone_cube()
+    typed = corners(cube)[0]
+    angles = cube.data.attributes.new(ANGLES, "FLOAT", "POINT")
+    angles.data[typed].value = math.pi
+    if in_edit_mode:
+        edit(cube)
+    bpy.ops.uv.cone_unwrap()
+    assert UvMap(cube).angle_sum(typed) == pytest.approx(math.pi, abs=1e-4)
+    bpy.ops.uv.cone_unwrap(prescription="LEAST_DISTORTION")
+    assert UvMap(cube).angle_sum(typed) == pytest.approx(1.5 * math.pi, abs=1e-4)
+
+
+@pytest.mark.parametrize("prescription", ["LEAST_DISTORTION", "HARMONIC", "STRAIGHTNESS"])
+def test_every_rule_keeps_sisters_equal(prescription):
+    cube = add_cone_cube()
+    for vertex in cube.data.vertices:
+        vertex.co.z *= 1.5
+    assert bpy.ops.uv.cone_unwrap(prescription=prescription) == {"FINISHED"}
+    uv_map = UvMap(cube)
+    assert uv_map.split_edges()
+    assert uv_map.sister_difference() <= UV_ROUNDING
+
+
+def cube_edges(cube, path):
+    """Vertex pairs along the straight lines between consecutive points of a path of axis-parallel steps."""
+    positions = np.array([tuple(v.co) for v in cube.data.vertices])
+    find = {tuple(np.round(2 * p).astype(int)): i for i, p in enumerate(positions)}
+    pairs = set()
+    for start, end in pairwise(path):
+        start, end = np.array(start), np.array(end)
+        steps = int(2 * np.abs(end - start).max())
+        chain = [find[tuple((2 * (start + (end - start) * k / steps)).astype(int))] for k in range(steps + 1)]
+        pairs |= {tuple(sorted(pair)) for pair in pairwise(chain)}
+    return pairs
+
+
+def mark_seams(obj, pairs):
+    for edge in obj.data.edges:
+        edge.use_seam = tuple(sorted(edge.vertices)) in pairs
+
+
+# A way through the eight corners of the cube along seven of its edges.
+THROUGH_CORNERS = [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, 1, 1), (1, 1, 1), (1, -1, 1), (-1, -1, 1)]
+
+
+@pytest.mark.parametrize("in_edit_mode", [True, False])
+@pytest.mark.parametrize(
+    "path", [THROUGH_CORNERS, [(y, z, x) for x, y, z in THROUGH_CORNERS]], ids=["one way", "turned"]
+)
+def test_cuts_follow_marked_seams(path, in_edit_mode):
+    cube = add_cone_cube()
+    seams = cube_edges(cube, path)
+    mark_seams(cube, seams)
+    if in_edit_mode:
+        edit(cube)
+    bpy.ops.uv.cone_unwrap()
+    uv_map = UvMap(cube)
+    assert uv_map.split_edges() == seams
+    assert uv_map.seams == seams
+
+
+def test_cuts_take_a_detour_along_a_marked_seam():
+    cube = add_cone_cube()
+    straight = cube_edges(cube, [(1, 1, 1), (1, 0.5, 1)])
+    detour = cube_edges(cube, [(1, 0.5, 1), (0.5, 0.5, 1), (0.5, -0.5, 1), (1, -0.5, 1)])
+    end = cube_edges(cube, [(1, -0.5, 1), (1, -1, 1)])
+    mark_seams(cube, straight | detour | end)
+    bpy.ops.uv.cone_unwrap()
+    assert straight | detour | end <= UvMap(cube).split_edges()
+
+
+def test_ngons_stay_whole_and_isometric():
+    cube = add_cone_cube()
+    edit(cube)
+    bm = bmesh.from_edit_mesh(cube.data)
+    inner = [v for v in bm.verts if v.co.z > 0.99 and max(abs(v.co.x), abs(v.co.y)) < 0.99]
+    bmesh.ops.dissolve_verts(bm, verts=inner)
+    bmesh.update_edit_mesh(cube.data, destructive=True)
+    bpy.ops.mesh.select_all(action="SELECT")
+    sizes = sorted({len(face.verts) for face in bm.faces})
+    assert sizes == [4, 16]
+    bpy.ops.uv.cone_unwrap()
+    uv_map = UvMap(cube)
+    assert sorted({len(loops) for loops in uv_map.loops_of_face}) == [4, 16]
+    # Distances across the whole polygon: a cut along a diagonal of its triangulation would change them.
+    assert uv_map.scale_spread() < ISOMETRIC
+
+
+def test_suzanne_through_placed_cones():
+    bpy.ops.mesh.primitive_monkey_add()
+    suzanne = bpy.context.object
+    suzanne.modifiers.new("Subdivision", "SUBSURF").levels = 1
+    bpy.ops.object.modifier_apply(modifier="Subdivision")
+    edit(suzanne)
+    assert bpy.ops.mesh.cone_place() == {"FINISHED"}
+    assert marked(suzanne)
+    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    uv_map = UvMap(suzanne)
+    assert uv_map.islands() == 3
+    assert np.isfinite(uv_map.uv).all()
+    assert uv_map.uv.min() >= 0.0 and uv_map.uv.max() <= 1.0
+    assert uv_map.sister_difference() <= UV_ROUNDING
+
+
+def test_negative_scale_and_placement_of_the_object_do_not_matter():
+    first, second = add_cone_cube("First"), add_cone_cube("Second")
+    second.scale = (-1.0, 2.0, 3.0)
+    second.location = (1e5, 0.0, 0.0)
+    bpy.context.view_layer.update()
+    bpy.ops.uv.cone_unwrap()
+    assert UvMap(first).uv.tobytes() == UvMap(second).uv.tobytes()
+
+
+def test_flat_grid_keeps_its_shape_without_cones():
+    def build(bm):
+        bmesh.ops.create_grid(bm, x_segments=5, y_segments=3, size=1.0)
+
+    grid = add_object("Grid", build)
+    mark(grid, [])
+    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    uv_map = UvMap(grid)
+    assert uv_map.split_edges() == set()
+    assert uv_map.scale_spread() < ISOMETRIC

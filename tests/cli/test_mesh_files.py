@@ -1,0 +1,532 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reading OBJ, OFF and PLY, and writing OBJ: everything as it was in the file, or a refusal that names the place."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import os
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from lsgp.errors import InputError
+from lsgp.mesh_files import read_mesh, write_obj
+from lsgp.mesh_obj import format_obj, read_obj
+from lsgp.mesh_off import read_off
+from lsgp.mesh_ply import read_ply
+from polygon_meshes import cube, faces_of, obj_text, off_text, patch, ply_bytes, polygon_mesh
+
+SQUARE = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]
+SQUARE_OBJ = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+
+
+def read_text(text: str, with_uv: bool = False):
+    return read_obj(text.encode(), with_uv)
+
+
+# --- OBJ ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        SQUARE_OBJ + "f 1 2 3\nf 1 3 4\n",
+        SQUARE_OBJ + "f -4 -3 -2\nf -4 -2 -1\n",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nf -3 -2 -1\nv 0 1 0\nf -4 -2 -1\n",
+        "f 1 2 3\n" + SQUARE_OBJ + "f 1 3 4\n",
+        "vt 0 0\nvn 0 0 1\n" + SQUARE_OBJ + "f 1/1 2/1 3/1\nf 1/1 3/1 4/1\n",
+        SQUARE_OBJ + "f 1//1 2//1 3//1\nf 1//9 3//9 4//9\n",
+        SQUARE_OBJ + "f 1/7/1 2/8/1 3/9/1\nf 1/ 3/ 4\n",
+        (SQUARE_OBJ + "f 1 2 3\nf 1 3 4\n").replace("\n", "\r\n"),
+        (SQUARE_OBJ + "f 1 2 3\nf 1 3 4\n").replace("\n", "\r"),
+        "\ufeff# made\n" + SQUARE_OBJ + "f 1 2 3 # first\n#f 1 2 4\n\n  f\t1 3\t4  ",
+        SQUARE_OBJ + "f 1 \\\n2 3\nf 1\\\n 3 \\\r\n 4\n",
+        "mtllib a/b #c\no square\ng x y\ns off\nusemtl C:\\stone\n"
+        + SQUARE_OBJ
+        + "vp 1\nl 1 2\np 1\nfo 1 2 3\nf 1 3 4\nend",
+        "v 0 0 0 1\nv 1 0 0 0.5 0.5 0.5\nv 1 1 0\nv 0 1 0 0 0 0 1\nf 1 2 3\nf 1 3 4\n",
+        "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 1 1 0 1 0 0\nv 0 1 0 1 0 0\nf 1 2 3\nf 1 3 4\n",
+        "v +0 -0 0.\nv 1.e0 0 .0\nv 1E+0 1e-0 0\nv 0 10e-1 0\nf 1 2 3\nf +1 3 4\n",
+    ],
+    ids=itertools.count(),
+)
+def test_obj_spellings_of_one_square(text: str) -> None:
+    mesh = read_text(text)
+    assert mesh.positions.tolist() == SQUARE
+    assert faces_of(mesh) == [[0, 1, 2], [0, 2, 3]]
+    assert (mesh.positions.dtype, mesh.corners.dtype) == (np.float64, np.int32)
+
+
+def test_obj_texture_coordinates() -> None:
+    text = SQUARE_OBJ + "vt 0.5 0.25 9\nvt 0.75\nf 1/1 2/2/1 3\nvt 1 1\nf 1/-1 3/1/ 4/-3/1\n"
+    mesh = read_text(text, with_uv=True)
+    expected = [[0.5, 0.25], [0.75, 0], [np.nan, np.nan], [1, 1], [0.5, 0.25], [0.5, 0.25]]
+    assert np.array_equal(mesh.corner_uv, expected, equal_nan=True)
+    assert np.isnan(read_text(SQUARE_OBJ + "f 1 2 3", with_uv=True).corner_uv).all()
+
+
+def test_obj_without_faces_or_vertices_is_read() -> None:
+    assert (len(read_text("").positions), len(read_text("# nothing\n").sizes)) == (0, 0)
+    mesh = read_text(SQUARE_OBJ, with_uv=True)
+    assert (mesh.positions.shape, mesh.corners.shape, mesh.corner_uv.shape) == ((4, 3), (0,), (0, 2))
+
+
+def test_obj_numbers_that_are_not_finite_are_left_to_the_library() -> None:
+    positions = read_text("v nan 0 0\nv 1e999 0 0\nv -inf 0 0\nf 1 2 3\n").positions
+    assert np.array_equal(positions[:, 0], [np.nan, np.inf, -np.inf], equal_nan=True)
+
+
+def test_obj_of_100k_triangles_reads_well_under_a_second(tmp_path: Path) -> None:
+    positions, faces = cube(92)
+    halves = [half for a, b, c, d in faces for half in ([a, b, c], [a, c, d])]
+    assert len(halves) > 100_000
+    path = tmp_path / "large.obj"
+    path.write_text(obj_text(positions, halves))
+    seconds = []
+    for _ in range(3):
+        begin = time.process_time()
+        mesh = read_mesh(path)
+        seconds.append(time.process_time() - begin)
+    assert mesh.corners.tolist() == [vertex for half in halves for vertex in half]
+    assert min(seconds) < 0.8
+
+
+# --- OFF ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n",
+        "OFF 4 2 5\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 255 0 0\n3 0 2 3 0.5 0.5 0.5 1\n",
+        "OFF\n4 2\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 7\n3 0 2 3\n",
+        "# c\nOFF # OFF\n\n#\n4 2 0 # counts\n0 0 0 # 0\n\n1 0 0\n1 1 0\n  0 1 0\n3\t0 1 2\n3 0 2 3 # end",
+        "COFF\n4 2 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n1 1 0 1 1 1 1\n0 1 0 9 9 9 9\n3 0 1 2\n3 0 2 3\n",
+        "NOFF\r\n4 2 0\r\n0 0 0 0 0 1\r\n1 0 0 0 0 1\r\n1 1 0 0 0 1\r\n0 1 0 0 0 1\r\n3 0 1 2\r\n3 0 2 3\r\n",
+        "STOFF\n4 2 0\n0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n3 0 1 2\n3 0 2 3\n",
+        "STCNOFF 4 2 0\n0 0 0 1 1\n1 0 0 1 1\n1 1 0 1 1\n0 1 0 1 1\n3 0 1 2\n3 0 2 3\n",
+    ],
+    ids=itertools.count(),
+)
+def test_off_spellings_of_one_square(text: str) -> None:
+    mesh = read_off(text.encode())
+    assert mesh.positions.tolist() == SQUARE
+    assert faces_of(mesh) == [[0, 1, 2], [0, 2, 3]]
+
+
+# --- PLY ------------------------------------------------------------------------------------------------------------
+
+FORMS = ("ascii", "binary_little_endian", "binary_big_endian")
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("extras", [False, True])
+@pytest.mark.parametrize("list_name", ["vertex_indices", "vertex_index"])
+@pytest.mark.parametrize("made", [patch, lambda: cube(2)], ids=["mixed", "quads"])
+def test_ply_forms(form: str, extras: bool, list_name: str, made) -> None:
+    positions, faces = made()
+    mesh = read_ply(ply_bytes(positions, faces, form, list_name=list_name, extras=extras))
+    assert (mesh.positions == positions).all()
+    assert faces_of(mesh) == faces
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("count", ["char", "uchar", "short", "ushort", "int", "uint"])
+@pytest.mark.parametrize("index", ["char", "uchar", "short", "ushort", "int", "uint"])
+def test_ply_integer_types(form: str, count: str, index: str) -> None:
+    positions, faces = patch()
+    mesh = read_ply(ply_bytes(positions, faces, form, count=count, index=index))
+    assert faces_of(mesh) == faces
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("coordinate", ["float", "double", "short"])
+def test_ply_coordinate_types(form: str, coordinate: str) -> None:
+    positions, faces = cube(3, size=6.0 if coordinate == "short" else 0.7)
+    if coordinate != "double":
+        positions = positions.astype({"float": np.float32, "short": np.int16}[coordinate]).astype(float)
+    assert (read_ply(ply_bytes(positions, faces, form, coordinate)).positions == positions).all()
+
+
+@pytest.mark.parametrize("ending", [b"\n", b"\r\n", b"\r"])
+@pytest.mark.parametrize("form", FORMS)
+def test_ply_line_endings_of_the_header(form: str, ending: bytes) -> None:
+    positions, faces = cube(2)
+    data = ply_bytes(positions, faces, form)
+    begin = data.index(b"end_header\n") + len(b"end_header\n")
+    body = data[begin:].replace(b"\n", ending) if form == "ascii" else data[begin:]
+    mesh = read_ply(data[:begin].replace(b"\n", ending) + body)
+    assert (mesh.positions == positions).all()
+    assert faces_of(mesh) == faces
+
+
+def test_ply_without_faces_is_read() -> None:
+    assert len(read_ply(ply_bytes(np.array(SQUARE), [])).sizes) == 0
+    assert len(read_ply(ply_bytes(np.array(SQUARE), [], FORMS[1])).positions) == 4
+
+
+def test_ply_index_that_needs_all_32_bits_is_out_of_range_not_negative() -> None:
+    with pytest.raises(InputError, match="4294967295"):
+        read_ply(ply_bytes(np.array(SQUARE), [[0, 1, 2**32 - 1]], FORMS[1], index="uint"))
+
+
+# --- all formats ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("made", [patch, lambda: cube(3)], ids=["mixed", "quads"])
+def test_all_formats_hold_the_same_mesh(tmp_path: Path, made) -> None:
+    positions, faces = made()
+    positions = positions / 3
+    contents = {
+        "a.obj": obj_text(positions, faces).encode(),
+        "A.OBJ": obj_text(positions, faces).encode(),
+        "a.off": off_text(positions, faces).encode(),
+        "a.ply": ply_bytes(positions, faces, FORMS[2]),
+        "ply": ply_bytes(positions, faces),
+        "off.data": off_text(positions, faces).encode(),
+    }
+    for name, data in contents.items():
+        (tmp_path / name).write_bytes(data)
+        mesh = read_mesh(tmp_path / name)
+        assert (mesh.positions == positions).all(), name
+        assert faces_of(mesh) == faces, name
+
+
+def ply_header(*lines: str) -> bytes:
+    return "\n".join(["ply", *lines, "end_header", ""]).encode()
+
+
+VERTEX_HEADER = ("element vertex 3", "property float x", "property float y", "property float z")
+FACE_HEADER = ("element face 1", "property list uchar int vertex_indices")
+PLY_3 = b"0 0 0\n1 0 0\n0 1 0\n"
+ASCII = "format ascii 1.0"
+BINARY = "format binary_little_endian 1.0"
+OFF_3 = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n"
+
+MALFORMED = {
+    "obj two coordinates": ("a.obj", b"v 0 0 0\nv 1 0\n", "MALFORMED_FILE", "Line 2"),
+    "obj no coordinates": ("a.obj", b"v\n", "MALFORMED_FILE", "Line 1"),
+    "obj decimal comma": ("a.obj", b"v 0 0 0\nv 0,5 0 0\n", "MALFORMED_FILE", "Line 2: '0,5'"),
+    "obj underscore": ("a.obj", b"# c\n\nv 1_0 0 0\n", "MALFORMED_FILE", "Line 3: '1_0'"),
+    "obj word for an index": ("a.obj", SQUARE_OBJ.encode() + b"f 1 2 x\n", "MALFORMED_FILE", "Line 5: 'x'"),
+    "obj fraction for an index": ("a.obj", SQUARE_OBJ.encode() + b"f 1 2 3.0\n", "MALFORMED_FILE", "Line 5: '3.0'"),
+    "obj no vertex before the slash": ("a.obj", SQUARE_OBJ.encode() + b"f 1 2 /3\n", "MALFORMED_FILE", "Line 5"),
+    "obj index of 30 digits": ("a.obj", SQUARE_OBJ.encode() + b"f 1 2 " + b"9" * 30, "MALFORMED_FILE", "Line 5"),
+    "obj index of 5000 digits": ("a.obj", SQUARE_OBJ.encode() + b"f 1 2 " + b"9" * 5000, "MALFORMED_FILE", "Line 5"),
+    "obj bytes": ("a.obj", b"v 0 0 0\n\x00\x01\xff\xfe\n", "MALFORMED_FILE", "Line 2"),
+    "obj bare numbers": ("a.obj", b"0 0 0\n1 0 0\n", "MALFORMED_FILE", "Line 1: '0'"),
+    "obj line after a join": ("a.obj", b"v 0 \\\n0 0\nv 1 0 x\n", "MALFORMED_FILE", "Line 3: 'x'"),
+    "obj index zero": (
+        "a.obj",
+        SQUARE_OBJ.encode() + b"f 1 2 3\nf 0 1 2\n",
+        "INDEX_OUT_OF_RANGE",
+        r"Face 1 \(line 6\)",
+    ),
+    "obj index too large": (
+        "a.obj",
+        SQUARE_OBJ.encode() + b"f 1 2 5\n",
+        "INDEX_OUT_OF_RANGE",
+        r"Face 0 \(line 5\).*: 4,",
+    ),
+    "obj index too far back": ("a.obj", b"v 0 0 0\nf -1 -2 -3\nv 1 0 0\nv 0 1 0\n", "INDEX_OUT_OF_RANGE", "line 2"),
+    "obj no vertices": ("a.obj", b"f 1 2 3\n", "INDEX_OUT_OF_RANGE", "no vertices"),
+    "obj two corners": ("a.obj", SQUARE_OBJ.encode() + b"f 1 2\n", "BAD_FACE", "line 5"),
+    "obj no corners": ("a.obj", SQUARE_OBJ.encode() + b"f\nf 1 2 3\n", "BAD_FACE", "line 5"),
+    "obj repeated vertex": ("a.obj", SQUARE_OBJ.encode() + b"f 1 2 3 -4\n", "BAD_FACE", "line 5"),
+    "obj in two byte characters": ("a.obj", SQUARE_OBJ.encode("utf-16"), "MALFORMED_FILE", "Line 1"),
+    "off empty": ("a.off", b"", "MALFORMED_FILE", "empty"),
+    "off header": ("a.off", b"OOF\n1 1 1\n", "MALFORMED_FILE", "Line 1: 'OOF'"),
+    "off four dimensions": ("a.off", b"4OFF\n1 1 1\n", "MALFORMED_FILE", "Line 1"),
+    "off n dimensions": ("a.off", b"nOFF 5\n1 1 1\n", "MALFORMED_FILE", "Line 1"),
+    "off binary": ("a.off", b"OFF BINARY\n\x00\x00\x00\x01", "MALFORMED_FILE", "binary"),
+    "off no counts": ("a.off", b"OFF\n", "MALFORMED_FILE", "counts"),
+    "off one count": ("a.off", b"OFF\n3\n", "MALFORMED_FILE", "Line 2"),
+    "off word for a count": ("a.off", b"OFF\nthree 1 0\n", "MALFORMED_FILE", "Line 2: 'three'"),
+    "off negative count": ("a.off", b"OFF\n3 -1 0\n", "MALFORMED_FILE", "Line 2"),
+    "off cut short in vertices": ("a.off", b"OFF\n3 1 0\n0 0 0\n", "MALFORMED_FILE", "1 of 3 vertices"),
+    "off cut short in faces": ("a.off", OFF_3.encode(), "MALFORMED_FILE", "0 of 1 faces"),
+    "off enormous count": ("a.off", b"OFF\n9000000000000000000 1 0\n", "MALFORMED_FILE", "0 of 9000000000000000000"),
+    "off two coordinates": ("a.off", b"OFF\n1 0 0\n\n0 0\n", "MALFORMED_FILE", "Line 4"),
+    "off word for a coordinate": ("a.off", b"OFF\n1 0 0\n0 0 x\n", "MALFORMED_FILE", "Line 3: 'x'"),
+    "off too few corners": ("a.off", (OFF_3 + "3 0 1\n").encode(), "MALFORMED_FILE", "Line 6: a face of 3 corners"),
+    "off negative size": ("a.off", (OFF_3 + "-3 0 1 2\n").encode(), "MALFORMED_FILE", "Line 6"),
+    "off fraction for an index": ("a.off", (OFF_3 + "3 0 1 2.0\n").encode(), "MALFORMED_FILE", "Line 6: '2.0'"),
+    "off index too large": ("a.off", (OFF_3 + "3 0 1 3\n").encode(), "INDEX_OUT_OF_RANGE", "line 6"),
+    "off negative index": ("a.off", (OFF_3 + "3 0 1 -1\n").encode(), "INDEX_OUT_OF_RANGE", "line 6.*-1"),
+    "off two corners": ("a.off", (OFF_3 + "2 0 1\n").encode(), "BAD_FACE", "line 6"),
+    "off no corners": ("a.off", (OFF_3 + "0\n").encode(), "BAD_FACE", "line 6"),
+    "ply other": ("a.ply", b"solid stl\n", "MALFORMED_FILE", "ply"),
+    "ply empty": ("a.ply", b"", "MALFORMED_FILE", "Line 1"),
+    "ply no end": ("a.ply", b"ply\nformat ascii 1.0\n", "MALFORMED_FILE", "end_header"),
+    "ply no format": ("a.ply", ply_header(*VERTEX_HEADER), "MALFORMED_FILE", "format"),
+    "ply unknown format": ("a.ply", ply_header("format ebcdic 1.0"), "MALFORMED_FILE", "Line 2"),
+    "ply unknown type": ("a.ply", ply_header(ASCII, "element vertex 1", "property quad x"), "MALFORMED_FILE", "Line 4"),
+    "ply property of nothing": ("a.ply", ply_header(ASCII, "property float x"), "MALFORMED_FILE", "Line 3"),
+    "ply negative count": ("a.ply", ply_header(ASCII, "element vertex -1"), "MALFORMED_FILE", "Line 3"),
+    "ply list length by floats": (
+        "a.ply",
+        ply_header(ASCII, "element face 0", "property list float int vertex_indices"),
+        "MALFORMED_FILE",
+        "Line 4",
+    ),
+    "ply no z": ("a.ply", ply_header(ASCII, *VERTEX_HEADER[:3]), "MALFORMED_FILE", "x, y, z"),
+    "ply no corner list": (
+        "a.ply",
+        ply_header(ASCII, "element face 1", "property int a") + b"1\n",
+        "MALFORMED_FILE",
+        "vertex_indices",
+    ),
+    "ply corners by floats": (
+        "a.ply",
+        ply_header(ASCII, "element face 1", "property list uchar float vertex_indices"),
+        "MALFORMED_FILE",
+        "floating",
+    ),
+    "ply strips": ("a.ply", ply_header(ASCII, "element tristrips 1"), "MALFORMED_FILE", "strips"),
+    "ply cut short": ("a.ply", ply_header(ASCII, *VERTEX_HEADER) + b"0 0 0\n", "MALFORMED_FILE", "1 of 3"),
+    "ply short row": ("a.ply", ply_header(ASCII, *VERTEX_HEADER) + b"0 0 0\n1 0\n0 1 0\n", "MALFORMED_FILE", "Line 9"),
+    "ply word": (
+        "a.ply",
+        ply_header(ASCII, *VERTEX_HEADER) + b"0 0 0\n1 0 x\n0 1 0\n",
+        "MALFORMED_FILE",
+        "Line 9: 'x'",
+    ),
+    "ply short list": (
+        "a.ply",
+        ply_header(ASCII, *VERTEX_HEADER, *FACE_HEADER) + PLY_3 + b"3 0 1\n",
+        "MALFORMED_FILE",
+        "Line 13",
+    ),
+    "ply enormous list": (
+        "a.ply",
+        ply_header(ASCII, *VERTEX_HEADER, *FACE_HEADER) + PLY_3 + b"9223372036854775807 0 1 2\n",
+        "MALFORMED_FILE",
+        "Line 13",
+    ),
+    "ply negative list": (
+        "a.ply",
+        ply_header(ASCII, *VERTEX_HEADER, *FACE_HEADER) + PLY_3 + b"-1 0 1 2\n",
+        "MALFORMED_FILE",
+        "Line 13",
+    ),
+    "ply binary cut short": ("a.ply", ply_header(BINARY, *VERTEX_HEADER) + b"\0" * 35, "MALFORMED_FILE", "row 2 of 3"),
+    "ply binary enormous count": (
+        "a.ply",
+        ply_header(BINARY, *VERTEX_HEADER).replace(b"vertex 3", b"vertex 999999999999999999") + b"\0" * 36,
+        "MALFORMED_FILE",
+        "row 3 of 999999999999999999",
+    ),
+    "ply binary face cut short": (
+        "a.ply",
+        ply_header(BINARY, *VERTEX_HEADER, *FACE_HEADER) + b"\0" * 36 + b"\x03\0\0\0\0\1\0\0\0",
+        "MALFORMED_FILE",
+        "row 0 of 1 of element 'face'",
+    ),
+    "ply binary no length": (
+        "a.ply",
+        ply_header(BINARY, *VERTEX_HEADER, *FACE_HEADER) + b"\0" * 36,
+        "MALFORMED_FILE",
+        "row 0",
+    ),
+    "ply binary enormous list": (
+        "a.ply",
+        ply_header(BINARY, *VERTEX_HEADER, "element face 1", "property list uint int vertex_indices")
+        + b"\0" * 36
+        + b"\xff" * 8,
+        "MALFORMED_FILE",
+        "row 0",
+    ),
+    "ply binary negative list": (
+        "a.ply",
+        ply_header(BINARY, *VERTEX_HEADER, "element face 1", "property list char int vertex_indices")
+        + b"\0" * 36
+        + b"\xff" * 8,
+        "MALFORMED_FILE",
+        "row 0",
+    ),
+    "ply index too large": (
+        "a.ply",
+        ply_header(ASCII, *VERTEX_HEADER, *FACE_HEADER) + PLY_3 + b"3 0 1 3\n",
+        "INDEX_OUT_OF_RANGE",
+        "Face 0",
+    ),
+    "ply negative index": (
+        "a.ply",
+        ply_header(ASCII, *VERTEX_HEADER, *FACE_HEADER) + PLY_3 + b"3 0 1 -1\n",
+        "INDEX_OUT_OF_RANGE",
+        "Face 0.*-1",
+    ),
+    "ply two corners": (
+        "a.ply",
+        ply_header(ASCII, *VERTEX_HEADER, *FACE_HEADER) + PLY_3 + b"2 0 1\n",
+        "BAD_FACE",
+        "Face 0",
+    ),
+    "other format": ("a.stl", b"solid cube\n", "UNKNOWN_FORMAT", "OBJ, OFF or PLY"),
+    "other format, empty": ("a", b"", "UNKNOWN_FORMAT", "OBJ, OFF or PLY"),
+}
+
+
+@pytest.mark.parametrize("name", MALFORMED)
+def test_malformed_files_are_refused_with_their_place(tmp_path: Path, name: str) -> None:
+    file_name, data, code, place = MALFORMED[name]
+    (tmp_path / file_name).write_bytes(data)
+    with pytest.raises(InputError, match=place) as caught:
+        read_mesh(tmp_path / file_name)
+    assert caught.value.code == code
+    assert caught.value.message.endswith((".", "!"))
+    if code in ("INDEX_OUT_OF_RANGE", "BAD_FACE"):
+        assert caught.value.elements.kind == "faces"
+        assert len(caught.value.elements.indices) == 1
+
+
+@pytest.mark.parametrize(
+    ("faces", "code", "named"),
+    [("f 1/1 2/2 3/1\nf 1/1 2/1 3/1\n", "INDEX_OUT_OF_RANGE", [0]), ("f 1/0 2/1 3/1\n", "INDEX_OUT_OF_RANGE", [0])],
+)
+def test_texture_indices_matter_only_where_they_are_asked_for(faces: str, code: str, named: list[int]) -> None:
+    text = SQUARE_OBJ + "vt 0 0\n" + faces
+    assert read_text(text).corner_uv is None
+    with pytest.raises(InputError) as caught:
+        read_text(text, with_uv=True)
+    assert (caught.value.code, caught.value.elements.indices.tolist()) == (code, named)
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.binary(max_size=200), st.sampled_from(["obj", "off", "ply"]))
+def test_any_bytes_are_read_or_refused(data: bytes, kind: str) -> None:
+    starts = {
+        "obj": SQUARE_OBJ.encode() + b"f 1 2 3\n",
+        "off": b"OFF 3 2 0\n",
+        "ply": ply_header(BINARY, *VERTEX_HEADER, *FACE_HEADER),
+    }
+    readers = {"obj": lambda d: read_obj(d, True), "off": read_off, "ply": read_ply}
+    try:
+        readers[kind](starts[kind] + data)
+    except InputError as error:
+        assert error.code in ("MALFORMED_FILE", "INDEX_OUT_OF_RANGE", "BAD_FACE")
+
+
+# --- writing --------------------------------------------------------------------------------------------------------
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=12, max_size=12), st.integers(0, 2**32 - 1))
+def test_doubles_read_back_as_the_same_doubles(numbers: list[float], seed: int) -> None:
+    mesh = polygon_mesh(np.reshape(numbers, (4, 3)), [[0, 1, 2, 3], [3, 2, 1]])
+    uv = np.random.default_rng(seed).normal(size=(7, 2)) * 10.0 ** np.random.default_rng(seed).integers(-300, 300)
+    again = read_obj(format_obj(mesh, uv), True)
+    assert again.positions.tobytes() == mesh.positions.tobytes()
+    assert faces_of(again) == [[0, 1, 2, 3], [3, 2, 1]]
+    assert (again.corner_uv == uv).all()
+
+
+def test_vt_are_shared_by_corners_of_one_vertex_with_the_same_place() -> None:
+    mesh = polygon_mesh(SQUARE, [[0, 1, 2], [0, 2, 3]])
+    #      0       1       2         0       2 elsewhere   3 where 0 is
+    uv = [[0.0, 0], [1, 0], [1, 1], [-0.0, 0], [1, 1.0000000000000002], [0, 0]]
+    text = format_obj(mesh, np.array(uv)).decode()
+    assert text == (
+        "v 0.0 0.0 0.0\nv 1.0 0.0 0.0\nv 1.0 1.0 0.0\nv 0.0 1.0 0.0\n"
+        "vt 0.0 0.0\nvt 1.0 0.0\nvt 1.0 1.0\nvt 1.0 1.0000000000000002\nvt 0.0 0.0\n"
+        "f 1/1 2/2 3/3\nf 1/1 3/4 4/5\n"
+    )
+
+
+def test_faces_without_coordinates_are_written_without() -> None:
+    positions, faces = patch()
+    mesh = polygon_mesh(positions, faces)
+    rng = np.random.default_rng(0)
+    uv = rng.random((len(mesh.corners), 2))
+    missing = rng.random(len(faces)) < 0.4
+    polygon = np.repeat(np.arange(len(faces)), mesh.sizes)
+    uv[missing[polygon]] = np.nan
+    uv[np.flatnonzero(polygon == 1)[2]] = np.nan  # one corner missing is a face missing
+    missing[1] = True
+    text = format_obj(mesh, uv).decode()
+    lines = [line for line in text.splitlines() if line.startswith("f")]
+    assert ["/" in line for line in lines] == (~missing).tolist()
+    again = read_obj(text.encode(), True)
+    assert faces_of(again) == faces
+    assert (again.corner_uv[~missing[polygon]] == uv[~missing[polygon]]).all()
+    assert np.isnan(again.corner_uv[missing[polygon]]).all()
+
+
+def test_a_file_is_replaced_as_a_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    target = tmp_path / "out.obj"
+    target.write_text("before")
+    mesh = polygon_mesh(SQUARE, [[0, 1, 2, 3]])
+
+    def fail(*arguments: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "replace", fail)
+        with pytest.raises(OSError, match="No space"):
+            write_obj(target, mesh, np.zeros((4, 2)))
+    assert target.read_text() == "before"
+    assert os.listdir(tmp_path) == ["out.obj"]
+    write_obj(target, mesh, np.zeros((4, 2)))
+    assert target.read_text().startswith("v 0.0 0.0 0.0\n")
+    assert os.listdir(tmp_path) == ["out.obj"]
+
+
+def test_links_and_devices_are_written_to_not_replaced(tmp_path: Path) -> None:
+    mesh = polygon_mesh(SQUARE, [[0, 1, 2, 3]])
+    (tmp_path / "real.obj").write_text("before")
+    (tmp_path / "link.obj").symlink_to("real.obj")
+    (tmp_path / "null").symlink_to(os.devnull)
+    write_obj(tmp_path / "link.obj", mesh, np.zeros((4, 2)))
+    write_obj(tmp_path / "null", mesh, np.zeros((4, 2)))
+    assert (tmp_path / "link.obj").is_symlink()
+    assert (tmp_path / "real.obj").read_text().startswith("v 0.0")
+    assert not Path(os.devnull).is_file()
+
+
+# --- files of the shared folder -------------------------------------------------------------------------------------
+
+
+def test_shared_meshes_are_read_as_their_list_says(shared: Path) -> None:
+    rows = [line.split(",") for line in (shared / "meshes" / "index.csv").read_text().splitlines()[1:]]
+    assert len(rows) >= 18
+    for row in rows:
+        mesh = read_mesh(shared / "meshes" / row[0])
+        vertices, triangles, largest = (int(n) for n in _counts(row))
+        found = (len(mesh.positions), int((mesh.sizes - 2).sum()), int(mesh.sizes.max()))
+        assert found == (vertices, triangles, largest), row[0]
+
+
+def _counts(row: list[str]) -> list[str]:
+    """vertices, triangles, max_polygon: the first three numbers in a row (texts before them may hold commas)."""
+    numbers = [i for i, cell in enumerate(row) if cell.isdigit()]
+    first = next(i for i in numbers if i + 1 in numbers and i + 2 in numbers)
+    return row[first : first + 3]
+
+
+@pytest.mark.parametrize(
+    ("name", "code"),
+    [
+        ("a06_edges_in_face_2gon", "BAD_FACE"),
+        ("c_repeated_index_in_face", "BAD_FACE"),
+        ("c_index_out_of_range", "INDEX_OUT_OF_RANGE"),
+        ("c_negative_vertex_id", "INDEX_OUT_OF_RANGE"),
+    ],
+)
+@pytest.mark.parametrize("kind", ["obj", "off", "ply"])
+def test_bad_faces_of_the_shared_cases(shared: Path, tmp_path: Path, name: str, code: str, kind: str) -> None:
+    case = json.loads((shared / "bad" / f"{name}.json").read_text())
+    path = tmp_path / f"bad.{kind}"
+    if kind == "ply":
+        path.write_bytes(ply_bytes(case["V"], case["F"], FORMS[1]))
+    elif kind == "off":
+        path.write_text(off_text(case["V"], case["F"]))
+    else:
+        path.write_text(obj_text(case["V"], case["F"]))
+    with pytest.raises(InputError) as caught:
+        read_mesh(path)
+    assert caught.value.code == code
+    assert caught.value.elements.kind == "faces"

@@ -1,0 +1,290 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A picture of an unwrapped mesh: the checkered model and its UV layout side by side, rendered with Cycles.
+
+The layout is built as a flat mesh with the model's own material, so texture, light and the colours of the cuts agree
+between the two halves by themselves. Runs inside Blender.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import bpy
+import numpy as np
+from mathutils import Euler
+
+WIDTH, HEIGHT = 2000, 1000
+# The picture plane is x-z, 8 x 4 units, the camera looks along +y; each half is 4 x 4 units.
+MODEL_CENTRE, MODEL_TURN, MODEL_SIZE = (-1.82, -2.6, 0.12), (np.radians(2), 0.0, np.radians(22)), 1.2
+LAYOUT_CENTRE, LAYOUT_SIZE = (2.0, 0.0, 0.0), 3.6
+WALL_DEPTH = 0.09
+SQUARE = 0.11  # side of a checker square on the model, in units of the model
+TUBE, BORDER_TUBE, CONE_BALL = 0.018, 0.010, 0.046
+
+PAPER = (0.965, 0.955, 0.935)
+LIGHT_SQUARE, DARK_SQUARE = (0.94, 0.92, 0.87), (0.47, 0.58, 0.66)
+LIGHT_LINE, DARK_LINE = (0.84, 0.82, 0.77), (0.55, 0.655, 0.73)
+BORDER_COLOUR = (0.16, 0.18, 0.22)
+CUT_COLOURS = (
+    *("#d23f5e", "#23a06d", "#8a55c7", "#e0a010", "#1597ab"),
+    *("#cf4f9a", "#7f9a17", "#4f68da", "#b9662b", "#3d9fdd"),
+)
+POSITIVE_CONE, NEGATIVE_CONE = (0.93, 0.33, 0.10), (0.10, 0.30, 0.85)
+
+
+def render_picture(model: bpy.types.Object, cut_edges: np.ndarray, cones: np.ndarray, path: Path, samples: int) -> None:
+    """Build the scene round a copy of `model`, which has its checker, and write it to `path`.
+
+    cut_edges: (c, 2) vertex pairs where the layout is open. cones: (k,) vertices.
+    """
+    mesh = model.data
+    uv = read_uv(mesh)
+    scale = LAYOUT_SIZE / np.ptp(uv, axis=0).max()
+    middle = (uv.max(axis=0) + uv.min(axis=0)) / 2
+
+    def on_board(points: np.ndarray) -> np.ndarray:
+        """Where texture coordinates lie in the layout half of the picture."""
+        flat = (points - middle) * scale
+        return np.column_stack([flat[:, 0], np.zeros(len(flat)), flat[:, 1]]) + LAYOUT_CENTRE
+
+    shown = model.copy()
+    shown.data = mesh.copy()
+    shown.data.shade_smooth()
+    shown.location, shown.rotation_euler, shown.scale = MODEL_CENTRE, MODEL_TURN, (MODEL_SIZE,) * 3
+    bpy.context.collection.objects.link(shown)
+    model.hide_render = True
+    turn = MODEL_SIZE * np.array(Euler(MODEL_TURN).to_matrix())
+    positions = np.array([vertex.co for vertex in mesh.vertices]) @ turn.T + MODEL_CENTRE
+
+    add_layout(mesh, uv, on_board)
+    sides = Sides(mesh, uv)
+    paths = split_into_paths(cut_edges, cones)
+    for number, path_vertices in enumerate(paths):
+        colour = hex_colour(CUT_COLOURS[number % len(CUT_COLOURS)])
+        lines = [positions[path_vertices], *(on_board(line) for line in sides.of_path(path_vertices))]
+        add_tubes(f"cut {number}", lines, TUBE, colour)
+    borders = split_into_paths(sides.border_edges(), cut_edges.ravel())
+    lines = [positions[border] for border in borders]
+    lines += [on_board(line) for border in borders for line in sides.of_path(border)]
+    add_tubes("borders", lines, BORDER_TUBE, BORDER_COLOUR)
+    for cone in cones:
+        corners, curvature = sides.cone(int(cone))
+        places = np.vstack([positions[cone][None], on_board(np.unique(corners.round(7), axis=0))])
+        add_balls(places, cone_colour(curvature))
+    add_studio()
+    render(path, samples)
+
+
+def add_checker(model: bpy.types.Object) -> None:
+    """Give the model a checker as its only material, squares of one size whatever the size of the layout."""
+    mesh = model.data
+    mesh.materials.clear()
+    mesh.materials.append(checker_material(length_of_uv_unit(mesh, read_uv(mesh)) / SQUARE))
+
+
+def read_uv(mesh: bpy.types.Mesh) -> np.ndarray:
+    """(loops, 2) texture coordinates of the active layer."""
+    uv = np.empty(2 * len(mesh.loops), np.float32)
+    mesh.uv_layers.active.uv.foreach_get("vector", uv)
+    return uv.reshape(-1, 2).astype(np.float64)
+
+
+def length_of_uv_unit(mesh: bpy.types.Mesh, uv: np.ndarray) -> float:
+    """Mean length on the model of one unit of texture."""
+    mesh.calc_loop_triangles()
+    loops = np.array([triangle.loops for triangle in mesh.loop_triangles])
+    edge_a, edge_b = uv[loops[:, 1]] - uv[loops[:, 0]], uv[loops[:, 2]] - uv[loops[:, 0]]
+    area = np.abs(edge_a[:, 0] * edge_b[:, 1] - edge_a[:, 1] * edge_b[:, 0]).sum() / 2
+    return float(np.sqrt(sum(polygon.area for polygon in mesh.polygons) / area))
+
+
+class Sides:
+    """The two sides of every edge in the layout."""
+
+    def __init__(self, mesh: bpy.types.Mesh, uv: np.ndarray) -> None:
+        self.uv = uv
+        self.corners: dict[int, list[tuple[int, int, int]]] = {}
+        self.halfedges: dict[tuple[int, int], tuple[int, int]] = {}
+        vertex = [loop.vertex_index for loop in mesh.loops]
+        for polygon in mesh.polygons:
+            loops = list(polygon.loop_indices)
+            for before, loop, after in zip(loops[-1:] + loops[:-1], loops, loops[1:] + loops[:1], strict=True):
+                self.halfedges[vertex[loop], vertex[after]] = (loop, after)
+                self.corners.setdefault(vertex[loop], []).append((before, loop, after))
+
+    def border_edges(self) -> np.ndarray:
+        return np.array([edge for edge in self.halfedges if edge[::-1] not in self.halfedges]).reshape(-1, 2)
+
+    def of_path(self, path: np.ndarray) -> list[np.ndarray]:
+        """The path's one or two polylines in texture coordinates."""
+        lines = []
+        for vertices in (path, path[::-1]):
+            loops = [
+                self.halfedges.get(edge) for edge in zip(vertices[:-1].tolist(), vertices[1:].tolist(), strict=True)
+            ]
+            if None not in loops:
+                lines.append(self.uv[[loops[0][0], *(end for _, end in loops)]])
+        return lines
+
+    def cone(self, vertex: int) -> tuple[np.ndarray, float]:
+        """All places of a cone in the layout and the curvature the layout leaves there."""
+        before, here, after = self.uv[np.array(self.corners[vertex])].transpose(1, 0, 2)
+        ahead, back = after - here, before - here
+        cross = ahead[:, 0] * back[:, 1] - ahead[:, 1] * back[:, 0]
+        return here, float(2 * np.pi - np.arctan2(cross, (ahead * back).sum(axis=1)).sum())
+
+
+def split_into_paths(edges: np.ndarray, nodes: np.ndarray) -> list[np.ndarray]:
+    """Vertex chains between nodes: the given ones and every vertex where not exactly two of the edges meet."""
+    neighbours: dict[int, list[int]] = {}
+    for a, b in edges.tolist():
+        neighbours.setdefault(a, []).append(b)
+        neighbours.setdefault(b, []).append(a)
+    ends = set(nodes.tolist()) | {vertex for vertex, around in neighbours.items() if len(around) != 2}
+    left = {frozenset(edge) for edge in edges.tolist()}
+    paths = []
+    # After the chains that start at nodes only closed loops without nodes are left; those start anywhere.
+    for start in sorted(ends & neighbours.keys()) + sorted(neighbours):
+        for step in neighbours[start]:
+            if frozenset((start, step)) not in left:
+                continue
+            path = [start, step]
+            left.remove(frozenset(path))
+            while path[-1] not in ends and path[-1] != start:
+                onward = [vertex for vertex in neighbours[path[-1]] if frozenset((path[-1], vertex)) in left]
+                path.append(onward[0])
+                left.remove(frozenset(path[-2:]))
+            paths.append(np.array(path))
+    return paths
+
+
+def hex_colour(text: str) -> tuple[float, float, float]:
+    return tuple(int(text[place : place + 2], 16) / 255 for place in (1, 3, 5))
+
+
+def cone_colour(curvature: float) -> tuple[float, float, float]:
+    """From near white at no curvature to full colour at half a turn, warm where positive, cold where negative."""
+    full = np.array(POSITIVE_CONE if curvature > 0 else NEGATIVE_CONE)
+    share = min(1.0, 0.45 + 0.55 * abs(curvature) / np.pi)
+    return tuple(1 - share * (1 - full))
+
+
+def linear(colour: tuple[float, float, float]) -> tuple[float, float, float, float]:
+    """A display colour as Cycles wants it."""
+    return (*(c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in colour), 1.0)
+
+
+def plain_material(name: str, colour: tuple[float, float, float], roughness: float = 0.5) -> bpy.types.Material:
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    shader = material.node_tree.nodes["Principled BSDF"]
+    shader.inputs["Base Color"].default_value = linear(colour)
+    shader.inputs["Roughness"].default_value = roughness
+    return material
+
+
+def checker_material(repeat: float) -> bpy.types.Material:
+    """A two-tone checker with finer lines; `repeat` squares to one unit of texture."""
+    size, fine = 512, 4
+    index = np.arange(2 * size) % size
+    to_line = np.abs((index / size * fine + 0.5) % 1.0 - 0.5) / fine
+    on_line = to_line < 0.012
+    line = on_line[:, None] | on_line[None, :]
+    cell = np.arange(2 * size) // size
+    dark = (cell[:, None] + cell[None, :]) % 2 == 1
+    tile = np.where(dark[..., None], DARK_SQUARE, LIGHT_SQUARE)
+    tile = np.where(line[..., None], np.where(dark[..., None], DARK_LINE, LIGHT_LINE), tile)
+    pixels = np.ones((2 * size, 2 * size, 4), np.float32)
+    pixels[..., :3] = tile
+    image = bpy.data.images.new("checker", 2 * size, 2 * size)
+    image.pixels.foreach_set(pixels.ravel())
+    image.pack()
+
+    material = plain_material("checker", LIGHT_SQUARE, roughness=0.55)
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    coordinate, mapping, texture = (
+        nodes.new(kind) for kind in ("ShaderNodeTexCoord", "ShaderNodeMapping", "ShaderNodeTexImage")
+    )
+    mapping.inputs["Scale"].default_value = (repeat / 2, repeat / 2, 1)
+    texture.image = image
+    links.new(coordinate.outputs["UV"], mapping.inputs["Vector"])
+    links.new(mapping.outputs["Vector"], texture.inputs["Vector"])
+    links.new(texture.outputs["Color"], nodes["Principled BSDF"].inputs["Base Color"])
+    return material
+
+
+def add_object(name: str, data: bpy.types.ID) -> bpy.types.Object:
+    added = bpy.data.objects.new(name, data)
+    bpy.context.collection.objects.link(added)
+    return added
+
+
+def add_layout(mesh: bpy.types.Mesh, uv: np.ndarray, on_board: Callable[[np.ndarray], np.ndarray]) -> None:
+    """The layout as a mesh of loose polygons in the picture plane."""
+    layout = bpy.data.meshes.new("layout")
+    layout.from_pydata(on_board(uv).tolist(), [], [list(polygon.loop_indices) for polygon in mesh.polygons])
+    corner = np.array([loop.vertex_index for loop in layout.loops])
+    layout.uv_layers.new().uv.foreach_set("vector", uv[corner].astype(np.float32).ravel())
+    layout.materials.append(mesh.materials[0])
+    add_object("layout", layout)
+
+
+def add_tubes(name: str, lines: list[np.ndarray], radius: float, colour: tuple[float, float, float]) -> None:
+    curve = bpy.data.curves.new(name, "CURVE")
+    curve.dimensions, curve.bevel_depth, curve.bevel_resolution, curve.use_fill_caps = "3D", radius, 3, True
+    for line in lines:
+        spline = curve.splines.new("POLY")
+        spline.points.add(len(line) - 1)
+        spline.points.foreach_set("co", np.column_stack([line, np.ones(len(line))]).astype(np.float32).ravel())
+    curve.materials.append(plain_material(name, colour))
+    add_object(name, curve)
+
+
+def add_balls(places: np.ndarray, colour: tuple[float, float, float]) -> None:
+    material = plain_material("cone", colour, roughness=0.25)
+    for place in places:
+        bpy.ops.mesh.primitive_uv_sphere_add(radius=CONE_BALL, location=place, segments=32, ring_count=16)
+        bpy.ops.object.shade_smooth()
+        bpy.context.object.data.materials.append(material)
+
+
+def add_studio() -> None:
+    """A pale wall behind both halves, soft light from the upper left, a long lens in front."""
+    bpy.ops.mesh.primitive_plane_add(size=60, location=(0, WALL_DEPTH, 0), rotation=(np.pi / 2, 0, 0))
+    bpy.context.object.data.materials.append(plain_material("wall", PAPER, roughness=1.0))
+    world = bpy.data.worlds.new("studio")
+    world.use_nodes = True
+    world.node_tree.nodes["Background"].inputs["Color"].default_value = linear((0.97, 0.98, 1.0))
+    world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.45
+    bpy.context.scene.world = world
+    for name, place, size, power in (("key", (5, -12, 9), 6, 1500), ("fill", (-9, -12, 2), 10, 500)):
+        lamp = bpy.data.lights.new(name, "AREA")
+        lamp.size, lamp.energy = size, power
+        added = add_object(name, lamp)
+        added.location = place
+        added.rotation_euler = (-added.location).to_track_quat("-Z", "Y").to_euler()
+    camera = bpy.data.cameras.new("camera")
+    camera.lens, camera.sensor_width = 120, 36
+    added = add_object("camera", camera)
+    added.location = (0, -8 * 120 / 36, 0)
+    added.rotation_euler = (np.pi / 2, 0, 0)
+    bpy.context.scene.camera = added
+
+
+def render(path: Path, samples: int) -> None:
+    scene = bpy.context.scene
+    scene.render.engine = "CYCLES"
+    scene.cycles.device, scene.cycles.samples, scene.cycles.seed = "CPU", samples, 0
+    try:
+        scene.cycles.use_denoising = True
+        scene.cycles.denoiser = "OPENIMAGEDENOISE"
+    except TypeError:  # built without the denoiser: more samples instead
+        scene.cycles.use_denoising, scene.cycles.samples = False, 4 * samples
+    scene.render.dither_intensity = 0  # flat tones stay flat, which halves the file
+    scene.view_settings.view_transform = "Standard"
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = WIDTH, HEIGHT, 100
+    scene.render.image_settings.file_format = "PNG"
+    scene.render.image_settings.color_mode, scene.render.image_settings.compression = "RGB", 100
+    scene.render.filepath = str(path)
+    bpy.ops.render.render(write_still=True)
