@@ -91,7 +91,7 @@ def selected_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
 
 
 def select_vertices(mesh: bpy.types.Mesh, vertices: Iterable[int], extend: bool) -> int:
-    """Select the visible ones of ``vertices`` in edit mode, after deselecting all unless ``extend``.  Returns their number."""
+    """Select the visible ones of ``vertices`` in edit mode, all others not unless ``extend``.  Returns their number."""
     bm = bmesh.from_edit_mesh(mesh)
     bm.verts.ensure_lookup_table()
     bm.select_mode = {"VERT"}

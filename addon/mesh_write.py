@@ -54,7 +54,7 @@ def _write_edit_mesh(
     bm = bmesh.from_edit_mesh(mesh)
     bm.faces.ensure_lookup_table()
     layer = bm.loops.layers.uv[mesh.uv_layers.active.name]
-    for face, start in zip(faces.tolist(), face_loop_start[faces].tolist()):
+    for face, start in zip(faces.tolist(), face_loop_start[faces].tolist(), strict=True):
         for position, loop in enumerate(bm.faces[face].loops, start):
             loop[layer].uv = values[position]
     bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)

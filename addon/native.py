@@ -7,8 +7,21 @@ not fit this Blender's Python or its file is damaged.
 
 import platform
 import sys
+from importlib import metadata
+
+
+def _require_whole_native_module() -> None:
+    """Raise ImportError where the native module is shorter or longer than its wheel says.
+
+    The operating system crashes Blender, instead of failing, when it loads a library of which a part is missing.
+    """
+    for file in metadata.files("lsgp") or ():
+        if file.name.startswith("_lsgp.") and file.size not in (None, file.locate().stat().st_size):
+            raise ImportError(f"{file} is damaged: {file.locate().stat().st_size} of {file.size} bytes")
+
 
 try:
+    _require_whole_native_module()
     import lsgp
 except (ImportError, OSError) as error:
     lsgp = None

@@ -5,12 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import lsgp
 import numpy as np
 import oracle
 from meshes import Mesh, compact, make
 from numpy.typing import NDArray
-
-import lsgp
 
 SISTER_RATIO = 1e-9
 RESIDUAL = 1e-12
@@ -85,9 +84,8 @@ def assert_exact_transitions(mesh: Mesh, result: lsgp.Result) -> None:
     rotations = None
     if genus_0:
         kappa, _ = oracle.full_curvature(mesh.positions, mesh.triangles, result.cones, result.cone_angles)
-        rotations = oracle.cut_rotations(
-            mesh.positions, mesh.triangles, np.array(sorted(pairs(result.cut_edges))).reshape(-1, 2), kappa
-        )
+        cut = oracle.cut_open(mesh.triangles, result.cut_edges).cut
+        rotations = oracle.cut_rotations(mesh.positions, mesh.triangles, cut, kappa)
     seams = oracle.seam_quality(mesh.triangles, result.corner_uv, result.cut_edges, nodes, rotations)
     assert seams.ratio.max(initial=1) - 1 <= SISTER_RATIO
     assert seams.translation_residual <= RESIDUAL

@@ -128,6 +128,12 @@ def bumpy_sphere(levels: int = 2, height: float = 0.25) -> Mesh:
     return make(mesh.positions * (1 + height * bump)[:, None], mesh.triangles, [0, 2, 4, 7, 9, 11])
 
 
+def forked(levels: int = 3) -> Mesh:
+    """A bumpy sphere with 28 cones, generic: the shortest ways between two pairs of them merge at one junction."""
+    mesh = bumpy_sphere(levels, 0.15)
+    return mesh._replace(cones=np.arange(3, 642, 23, dtype=np.int32))
+
+
 def flower(levels: int = 3, height: float = 0.35) -> Mesh:
     """An octahedral flower: six petals along the axes, their tips (vertices 0..5) as cones; generic in the last digits.
 
@@ -254,7 +260,7 @@ def merge(meshes: Sequence[Mesh], gap: float = 0.5) -> Mesh:
     positions, triangles, cones, count, right = [], [], [], 0, 0.0
     for mesh in meshes:
         low, high = mesh.positions[:, 0].min(), mesh.positions[:, 0].max()
-        positions.append(mesh.positions + [right - low, 0, 0])
+        positions.append(mesh.positions + np.array([right - low, 0, 0]))
         triangles.append(mesh.triangles + count)
         cones.append(mesh.cones + count)
         count, right = count + len(mesh.positions), right + high - low + gap
@@ -310,7 +316,7 @@ def with_repeated_index(mesh: Mesh, triangle: int) -> Mesh:
 
 
 def with_zero_area(mesh: Mesh, triangle: int) -> Mesh:
-    """One edge of `triangle` split by a vertex exactly on it on that side only: a T-junction closed by a sliver of no area."""
+    """An edge of `triangle` split by a vertex on it, on that side only: a T-junction closed by a sliver of no area."""
     a, b, c = (int(x) for x in mesh.triangles[triangle])
     m = len(mesh.positions)
     positions = np.concatenate([mesh.positions, [(mesh.positions[a] + mesh.positions[b]) / 2]])
@@ -333,7 +339,8 @@ def bow_tie(n: int = 3) -> tuple[Mesh, int]:
     other = first.triangles + count
     other[other == count] = tip
     mesh = make(
-        np.concatenate([first.positions, first.positions + [n, n, 0]]), np.concatenate([first.triangles, other])
+        np.concatenate([first.positions, first.positions + np.array([n, n, 0])]),
+        np.concatenate([first.triangles, other]),
     )
     return compact(mesh), tip
 
@@ -371,7 +378,7 @@ def moebius_strip(around: int = 16, across: int = 3) -> Mesh:
 
 
 def klein_bottle(around: int = 16, along: int = 12) -> Mesh:
-    """Closed and not orientable: a figure-eight profile turned by half a turn on its way round (it crosses itself in space)."""
+    """Closed and not orientable: a figure eight turned by half a turn on its way round (it crosses itself in space)."""
     i, j = (a.ravel() for a in np.meshgrid(np.arange(around), np.arange(along), indexing="xy"))
     last = i + 1 == around
     j1 = (j + 1) % along

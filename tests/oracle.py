@@ -49,7 +49,7 @@ def corner_angles(p: FloatArray, t: IntArray) -> FloatArray:
 
 
 def halfedges(t: IntArray) -> tuple[IntArray, IntArray, IntArray]:
-    """Tail, head and opposite halfedge (-1 on the boundary) of halfedge 3 f + c, which runs from corner c to the next."""
+    """Tail, head and opposite halfedge (-1 on a boundary) of halfedge 3 f + c, which runs from corner c to the next."""
     tail, head = t.ravel().astype(np.int64), t[:, [1, 2, 0]].ravel().astype(np.int64)
     n = int(t.max()) + 1
     key, back = tail * n + head, head * n + tail
@@ -174,7 +174,7 @@ def scale_model(p: FloatArray, t: IntArray, cones: IntArray) -> ScaleModel:
 
 
 def angle_box(p: FloatArray, t: IntArray, cones: IntArray) -> tuple[FloatArray, FloatArray]:
-    """Lower and upper cone angle of the bounded rule: [pi/4, min(4 pi, 0.6 valence pi)] enlarged to the harmonic angles."""
+    """Bounds of the cone angles: [pi/4, min(4 pi, 0.6 valence pi)] enlarged to the harmonic angles."""
     valence = np.bincount(t.ravel(), minlength=len(p))[cones]
     harmonic = harmonic_angles(p, t, cones)
     return np.minimum(np.pi / 4, harmonic), np.maximum(np.minimum(4 * np.pi, 0.6 * valence * np.pi), harmonic)
@@ -293,7 +293,7 @@ def cut_rotations(p: FloatArray, t: IntArray, cut: IntArray, kappa: FloatArray) 
     """Rotation r of each cut edge a -> b of a tree: the sum of kappa over all vertices on b's side, loops whole."""
     node = node_of_vertex(p, t)
     weight = np.bincount(node, kappa, len(p))
-    pairs = node[cut]
+    pairs = node[np.asarray(cut, int)]
     out = np.empty(len(cut))
     for e, (_, b) in enumerate(pairs):
         rest = np.delete(pairs, e, axis=0)
@@ -518,8 +518,10 @@ def open_edges(t: IntArray, corner_uv: FloatArray, tolerance: float = 0.0) -> se
 
 @dataclass
 class Seams:
-    """Per cut edge: ratio >= 1 of the sides' lengths, turn e^{ir} from the left to the right side.  translation_residual:
-    how far the images of left vertices are from right ones along any one path between nodes, relative to the layout."""
+    """Per cut edge: ratio >= 1 of the sides' lengths, turn e^{ir} from the left to the right side.
+
+    translation_residual: how far the images of left vertices are from the right ones along any one path between
+    nodes, relative to the layout's size."""
 
     cut: IntArray
     ratio: FloatArray
@@ -556,7 +558,7 @@ def seam_quality(
 
 
 def cut_paths(cut: IntArray, nodes: IntArray) -> list[tuple[IntArray, NDArray[np.bool_]]]:
-    """Maximal chains of cut edges between nodes: indices into cut, and whether each edge is walked from its first vertex."""
+    """Chains of cut edges between nodes: indices into cut, and whether each edge is walked from its first vertex."""
     around: dict[int, list[int]] = {}
     for e, (a, b) in enumerate(cut.tolist()):
         around.setdefault(a, []).append(e)

@@ -12,7 +12,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from meshes import Mesh, make
 
 _BESIDE_THE_CHECKOUT = Path(__file__).resolve().parents[2] / "shared"
@@ -24,7 +23,7 @@ def shared_folder() -> Path:
 
 
 def shared_mesh(name: str) -> Mesh:
-    """The mesh meshes/<name>.obj, polygons as fans, with the cones of <name>.cones.json; skips the test without the file."""
+    """The mesh meshes/<name>.obj, polygons as fans, with the cones of <name>.cones.json; skips without the file."""
     path = shared_folder() / "meshes" / f"{name}.obj"
     if not path.is_file():
         pytest.skip(f"{path} is missing: set LSGP_SHARED to the folder that holds meshes/ to run this test")

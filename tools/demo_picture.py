@@ -7,7 +7,7 @@ between the two halves by themselves. Runs inside Blender.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 
 import bpy
@@ -17,9 +17,10 @@ from mathutils import Euler
 WIDTH, HEIGHT = 2000, 1000
 # The picture plane is x-z, 8 x 4 units, the camera looks along +y; each half is 4 x 4 units.
 MODEL_CENTRE, MODEL_TURN, MODEL_SIZE = (-1.82, -2.6, 0.12), (np.radians(2), 0.0, np.radians(22)), 1.2
-LAYOUT_CENTRE, LAYOUT_SIZE = (2.0, 0.0, 0.0), 3.6
+LAYOUT_CENTRE, LAYOUT_SIZE = (2.02, 0.0, 0.0), (3.72, 3.6)
 WALL_DEPTH = 0.09
 SQUARE = 0.11  # side of a checker square on the model, in units of the model
+LAYOUT_STEP = 2e-4
 TUBE, BORDER_TUBE, CONE_BALL = 0.018, 0.010, 0.046
 
 PAPER = (0.965, 0.955, 0.935)
@@ -27,8 +28,8 @@ LIGHT_SQUARE, DARK_SQUARE = (0.94, 0.92, 0.87), (0.47, 0.58, 0.66)
 LIGHT_LINE, DARK_LINE = (0.84, 0.82, 0.77), (0.55, 0.655, 0.73)
 BORDER_COLOUR = (0.16, 0.18, 0.22)
 CUT_COLOURS = (
-    *("#d23f5e", "#23a06d", "#8a55c7", "#e0a010", "#1597ab"),
-    *("#cf4f9a", "#7f9a17", "#4f68da", "#b9662b", "#3d9fdd"),
+    *("#d6336c", "#2b9348", "#7b4fc9", "#e3b505", "#12a0a0"),
+    *("#c23fb5", "#87991a", "#3c9be0", "#9a5b3a", "#5b6b7a"),
 )
 POSITIVE_CONE, NEGATIVE_CONE = (0.93, 0.33, 0.10), (0.10, 0.30, 0.85)
 
@@ -40,14 +41,7 @@ def render_picture(model: bpy.types.Object, cut_edges: np.ndarray, cones: np.nda
     """
     mesh = model.data
     uv = read_uv(mesh)
-    scale = LAYOUT_SIZE / np.ptp(uv, axis=0).max()
-    middle = (uv.max(axis=0) + uv.min(axis=0)) / 2
-
-    def on_board(points: np.ndarray) -> np.ndarray:
-        """Where texture coordinates lie in the layout half of the picture."""
-        flat = (points - middle) * scale
-        return np.column_stack([flat[:, 0], np.zeros(len(flat)), flat[:, 1]]) + LAYOUT_CENTRE
-
+    board = layout_places(mesh, uv)
     shown = model.copy()
     shown.data = mesh.copy()
     shown.data.shade_smooth()
@@ -57,21 +51,18 @@ def render_picture(model: bpy.types.Object, cut_edges: np.ndarray, cones: np.nda
     turn = MODEL_SIZE * np.array(Euler(MODEL_TURN).to_matrix())
     positions = np.array([vertex.co for vertex in mesh.vertices]) @ turn.T + MODEL_CENTRE
 
-    add_layout(mesh, uv, on_board)
-    sides = Sides(mesh, uv)
-    paths = split_into_paths(cut_edges, cones)
-    for number, path_vertices in enumerate(paths):
-        colour = hex_colour(CUT_COLOURS[number % len(CUT_COLOURS)])
-        lines = [positions[path_vertices], *(on_board(line) for line in sides.of_path(path_vertices))]
-        add_tubes(f"cut {number}", lines, TUBE, colour)
+    add_layout(mesh, uv, board)
+    sides = Sides(mesh)
+    for number, cut in enumerate(split_into_paths(cut_edges, cones)):
+        lines = [positions[cut], *(board[loops] for loops in sides.of_path(cut))]
+        add_tubes(f"cut {number}", lines, TUBE, cut_colour(number))
     borders = split_into_paths(sides.border_edges(), cut_edges.ravel())
     lines = [positions[border] for border in borders]
-    lines += [on_board(line) for border in borders for line in sides.of_path(border)]
+    lines += [board[loops] for border in borders for loops in sides.of_path(border)]
     add_tubes("borders", lines, BORDER_TUBE, BORDER_COLOUR)
-    for cone in cones:
-        corners, curvature = sides.cone(int(cone))
-        places = np.vstack([positions[cone][None], on_board(np.unique(corners.round(7), axis=0))])
-        add_balls(places, cone_colour(curvature))
+    for cone in cones.tolist():
+        places = np.vstack([positions[cone], board[sides.places(cone, uv)]])
+        add_balls(places, cone_colour(sides.curvature(cone, uv)))
     add_studio()
     render(path, samples)
 
@@ -99,11 +90,50 @@ def length_of_uv_unit(mesh: bpy.types.Mesh, uv: np.ndarray) -> float:
     return float(np.sqrt(sum(polygon.area for polygon in mesh.polygons) / area))
 
 
-class Sides:
-    """The two sides of every edge in the layout."""
+def layout_places(mesh: bpy.types.Mesh, uv: np.ndarray) -> np.ndarray:
+    """(loops, 3) where the corners of the layout lie in the picture.
 
-    def __init__(self, mesh: bpy.types.Mesh, uv: np.ndarray) -> None:
-        self.uv = uv
+    A layout may overlap itself. So it rises towards the viewer, hardly visibly, with every step from polygon to
+    polygon: what overlaps lies one above the other like paper.
+    """
+    low, high = uv.min(axis=0), uv.max(axis=0)
+    flat = (uv - (low + high) / 2) * (np.array(LAYOUT_SIZE) / (high - low)).min()
+    rise = np.empty(len(uv))
+    for polygon, steps in zip(mesh.polygons, steps_in_layout(mesh, uv), strict=True):
+        rise[polygon.loop_indices] = LAYOUT_STEP * steps
+    return np.column_stack([flat[:, 0], -rise, flat[:, 1]]) + LAYOUT_CENTRE
+
+
+def steps_in_layout(mesh: bpy.types.Mesh, uv: np.ndarray) -> np.ndarray:
+    """Steps across edges that are not cut from the first polygon of each island to every polygon."""
+    vertex = [loop.vertex_index for loop in mesh.loops]
+    corner = list(zip(vertex, map(tuple, uv.round(6).tolist()), strict=True))
+    at_edge: dict[frozenset, list[int]] = {}
+    for polygon in mesh.polygons:
+        loops = list(polygon.loop_indices)
+        for loop, after in zip(loops, loops[1:] + loops[:1], strict=True):
+            at_edge.setdefault(frozenset((corner[loop], corner[after])), []).append(polygon.index)
+    around: list[list[int]] = [[] for _ in mesh.polygons]
+    for polygons in at_edge.values():
+        for polygon in polygons:
+            around[polygon] += polygons
+    steps = np.full(len(around), -1)
+    for first in range(len(around)):
+        if steps[first] >= 0:
+            continue
+        steps[first], front = 0, [first]
+        for polygon in front:  # grows while it is walked
+            for other in around[polygon]:
+                if steps[other] < 0:
+                    steps[other] = steps[polygon] + 1
+                    front.append(other)
+    return steps
+
+
+class Sides:
+    """Which loops lie on the two sides of every edge and round every vertex."""
+
+    def __init__(self, mesh: bpy.types.Mesh) -> None:
         self.corners: dict[int, list[tuple[int, int, int]]] = {}
         self.halfedges: dict[tuple[int, int], tuple[int, int]] = {}
         vertex = [loop.vertex_index for loop in mesh.loops]
@@ -116,23 +146,25 @@ class Sides:
     def border_edges(self) -> np.ndarray:
         return np.array([edge for edge in self.halfedges if edge[::-1] not in self.halfedges]).reshape(-1, 2)
 
-    def of_path(self, path: np.ndarray) -> list[np.ndarray]:
-        """The path's one or two polylines in texture coordinates."""
-        lines = []
-        for vertices in (path, path[::-1]):
-            loops = [
-                self.halfedges.get(edge) for edge in zip(vertices[:-1].tolist(), vertices[1:].tolist(), strict=True)
-            ]
-            if None not in loops:
-                lines.append(self.uv[[loops[0][0], *(end for _, end in loops)]])
-        return lines
+    def of_path(self, path: np.ndarray) -> list[list[int]]:
+        """The loops along the path's one or two sides."""
+        sides = []
+        for vertices in (path.tolist(), path[::-1].tolist()):
+            pairs = [self.halfedges.get(edge) for edge in pairwise(vertices)]
+            if None not in pairs:
+                sides.append([pairs[0][0], *(end for _, end in pairs)])
+        return sides
 
-    def cone(self, vertex: int) -> tuple[np.ndarray, float]:
-        """All places of a cone in the layout and the curvature the layout leaves there."""
-        before, here, after = self.uv[np.array(self.corners[vertex])].transpose(1, 0, 2)
+    def places(self, vertex: int, uv: np.ndarray) -> list[int]:
+        """One loop for every place a vertex has in the layout."""
+        return list({tuple(uv[loop].round(6)): loop for _, loop, _ in self.corners[vertex]}.values())
+
+    def curvature(self, vertex: int, uv: np.ndarray) -> float:
+        """Full turn less the angles the layout has round a vertex, radians."""
+        before, here, after = uv[np.array(self.corners[vertex])].transpose(1, 0, 2)
         ahead, back = after - here, before - here
         cross = ahead[:, 0] * back[:, 1] - ahead[:, 1] * back[:, 0]
-        return here, float(2 * np.pi - np.arctan2(cross, (ahead * back).sum(axis=1)).sum())
+        return float(2 * np.pi - np.arctan2(cross, (ahead * back).sum(axis=1)).sum())
 
 
 def split_into_paths(edges: np.ndarray, nodes: np.ndarray) -> list[np.ndarray]:
@@ -159,8 +191,11 @@ def split_into_paths(edges: np.ndarray, nodes: np.ndarray) -> list[np.ndarray]:
     return paths
 
 
-def hex_colour(text: str) -> tuple[float, float, float]:
-    return tuple(int(text[place : place + 2], 16) / 255 for place in (1, 3, 5))
+def cut_colour(number: int) -> tuple[float, float, float]:
+    """The colours in turn, every other time round as tints."""
+    turn, place = divmod(number, len(CUT_COLOURS))
+    full = np.array([int(CUT_COLOURS[place][k : k + 2], 16) / 255 for k in (1, 3, 5)])
+    return tuple(1 - (0.6 if turn % 2 else 1.0) * (1 - full))
 
 
 def cone_colour(curvature: float) -> tuple[float, float, float]:
@@ -220,10 +255,10 @@ def add_object(name: str, data: bpy.types.ID) -> bpy.types.Object:
     return added
 
 
-def add_layout(mesh: bpy.types.Mesh, uv: np.ndarray, on_board: Callable[[np.ndarray], np.ndarray]) -> None:
+def add_layout(mesh: bpy.types.Mesh, uv: np.ndarray, board: np.ndarray) -> None:
     """The layout as a mesh of loose polygons in the picture plane."""
     layout = bpy.data.meshes.new("layout")
-    layout.from_pydata(on_board(uv).tolist(), [], [list(polygon.loop_indices) for polygon in mesh.polygons])
+    layout.from_pydata(board.tolist(), [], [list(polygon.loop_indices) for polygon in mesh.polygons])
     corner = np.array([loop.vertex_index for loop in layout.loops])
     layout.uv_layers.new().uv.foreach_set("vector", uv[corner].astype(np.float32).ravel())
     layout.materials.append(mesh.materials[0])
@@ -256,9 +291,9 @@ def add_studio() -> None:
     world = bpy.data.worlds.new("studio")
     world.use_nodes = True
     world.node_tree.nodes["Background"].inputs["Color"].default_value = linear((0.97, 0.98, 1.0))
-    world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.45
+    world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.5
     bpy.context.scene.world = world
-    for name, place, size, power in (("key", (5, -12, 9), 6, 1500), ("fill", (-9, -12, 2), 10, 500)):
+    for name, place, size, power in (("key", (5, -12, 9), 7, 1250), ("fill", (-9, -12, 2), 10, 450)):
         lamp = bpy.data.lights.new(name, "AREA")
         lamp.size, lamp.energy = size, power
         added = add_object(name, lamp)

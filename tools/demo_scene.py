@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The demo's job inside Blender: unwrap subdivided Suzanne through automatic cones, measure, save, draw.
 
-Run by tools/demo, in the bpy module (python demo_scene.py ...) or in a Blender (blender -b --python demo_scene.py -- ...).
-BLENDER_USER_RESOURCES must name a throw-away profile: the extension is installed there.
+Run by tools/demo, in the bpy module (python demo_scene.py ...) or in a Blender (blender -b --python demo_scene.py --
+...). BLENDER_USER_RESOURCES must name a throw-away profile: the extension is installed there.
 """
 
 from __future__ import annotations
@@ -119,7 +119,7 @@ def measure(lsgp, obj: bpy.types.Object):
 
 
 def unwrapped_by_blender(lsgp, obj: bpy.types.Object, cut_edges: np.ndarray, method: str):
-    """A copy of the mesh, its seams on the given cuts, unwrapped by Blender itself and measured; the copy is removed."""
+    """A copy of the mesh with seams on the given cuts, unwrapped by Blender and measured; the copy is removed."""
     copy = obj.copy()
     copy.data = obj.data.copy()
     bpy.context.collection.objects.link(copy)
@@ -154,7 +154,7 @@ if __name__ == "__main__":
         status = ending.code if isinstance(ending.code, int) else 1
         if isinstance(ending.code, str):
             print(ending.code, file=sys.stderr)
-    except Exception:  # noqa: BLE001 - whatever it was, the process has to end below
+    except Exception:
         traceback.print_exc()
         status = 1
     sys.stdout.flush()

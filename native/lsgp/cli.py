@@ -16,13 +16,13 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
 
+from . import __version__
 from . import report as reports
 from .api import Options, Surface, measure_distortion, parameterize, place_cones
 from .errors import Elements, Finding, InputError, LsgpError
@@ -56,7 +56,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         args = parser.parse_args(argv)
         if args.version:
-            _say(sys.stdout, f"lsgp {version('lsgp')}")
+            _say(sys.stdout, f"lsgp {__version__}")
             return OK
         if args.command is None:
             parser.error("a command is needed: unwrap or measure")
@@ -96,7 +96,7 @@ def _parser() -> argparse.ArgumentParser:
         metavar="FILE.json|auto|auto:N",
         type=_cones_option,
         default="auto",
-        help='{"cones": [vertices, from 0], "cone_angles": [radians or null], "angles_over_pi_2": [quarter turns]}, the '
+        help='{"cones": [vertices, from 0], "cone_angles": [radians or null], "angles_over_pi_2": [quarter turns]}, '
         "angles optional; or cones placed automatically, N on each component (default: auto)",
     )
     unwrap.add_argument(
@@ -207,9 +207,10 @@ def _measure(args: argparse.Namespace, run: Run) -> reports.Report:
     with run.stage("measure_distortion"):
         measurement = measure_distortion(surface, mesh.corner_uv[triangulation.corner])
     _warn(warnings, triangulation)
+    total = len(triangulation.triangles)
     _say(
         sys.stdout,
-        f"{args.input}: {len(triangulation.triangles) - len(without)} of {len(triangulation.triangles)} triangles measured\n"
+        f"{args.input}: {total - len(without)} of {total} triangles measured\n"
         + reports.quality_table(measurement.distortion, measurement.seams, len(measurement.flipped), None),
     )
     return reports.measure_report(measurement, warnings, triangulation, run.stage_seconds)
@@ -264,7 +265,7 @@ def _cones(content: Any, path: Path, prescription: str | None) -> tuple[NDArray[
         if len(values) != len(cones):
             raise InputError(
                 "ANGLE_COUNT",
-                f"'{path}' has {len(cones)} cones but {len(values)} {key}. Give one angle per cone, null for automatic ones.",
+                f"'{path}' has {len(cones)} cones but {len(values)} {key}. Give one for each cone, null for automatic.",
             )
         angles[key] = [None if value is None else unit * _as_float(value) for value in values]
     indices = _indices(cones, "CONE_INDEX", "cone").reshape(-1)

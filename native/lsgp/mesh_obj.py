@@ -49,7 +49,7 @@ def format_obj(mesh: PolygonMesh, corner_uv: NDArray[np.float64]) -> bytes:
     order = np.lexsort((uv[:, 1], uv[:, 0], vertices))
     new = np.ones(len(order), bool)
     new[1:] = (np.diff(vertices[order]) != 0) | (np.diff(uv[order], axis=0) != 0).any(axis=1)
-    # Number the groups of equal (vertex, uv) by their first corner in the file; the sort is stable, so that comes first.
+    # Number the groups of equal (vertex, uv) by their first corner in the file; the sort is stable: that comes first.
     first = order[new]
     rank = np.empty(len(first), np.int64)
     rank[np.argsort(first)] = np.arange(1, len(first) + 1)
@@ -86,7 +86,7 @@ def _statements(data: bytes) -> tuple[Rows, Rows, Rows]:
         texts, numbers = _joined(texts, numbers)
     found: dict[bytes, tuple[list[bytes], list[int]]] = {b"v": ([], []), b"vt": ([], []), b"f": ([], [])}
     found[b"fo"] = found[b"f"]  # the old name of the statement
-    for text, number in zip(texts, numbers):
+    for text, number in zip(texts, numbers, strict=True):
         keyword, *rest = text.split(None, 1)
         if keyword in found:
             lines = found[keyword]
@@ -102,7 +102,7 @@ def _joined(texts: list[bytes], numbers: list[int]) -> tuple[list[bytes], list[i
     joined: list[bytes] = []
     first: list[int] = []
     continued = False
-    for text, number in zip(texts, numbers):
+    for text, number in zip(texts, numbers, strict=True):
         text = text.rstrip()
         ends_open = text.endswith(b"\\")
         text = text.removesuffix(b"\\")
@@ -140,8 +140,8 @@ def _corner_uv(texture: Rows, faces: Rows) -> NDArray[np.float64]:
         wrong = np.unique(np.repeat(np.arange(len(faces.counts)), faces.counts)[present[outside]])
         raise InputError(
             "INDEX_OUT_OF_RANGE",
-            f"{len(wrong)} faces name texture coordinates (vt) that are not among the {len(uv)} of the file; the first is "
-            f"face {wrong[0]} (line {faces.lines[wrong[0]]}). Export the mesh again.",
+            f"{len(wrong)} faces name texture coordinates (vt) that are not among the {len(uv)} of the file; the first "
+            f"is face {wrong[0]} (line {faces.lines[wrong[0]]}). Export the mesh again.",
             Elements("faces", wrong.astype(np.int32)),
         )
     corner_uv = np.full((len(names.tokens), 2), np.nan)

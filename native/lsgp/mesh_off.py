@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Object File Format (Geomview) in text: vertices and polygons; colours, normals and texture coordinates are skipped."""
+"""Object File Format (Geomview) as text: vertices and polygons; what else a vertex or face has is passed over."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Polygon File Format (PLY), text and binary of both byte orders: vertices and polygons; other properties are skipped."""
+"""Polygon File Format (PLY), text and binary of both byte orders: vertices and polygons, nothing else."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from .mesh_text import ROW_END, Rows, malformed, quoted, ranges
 from .polygons import PolygonMesh, require_polygons
 
 TYPES = {
-    b"char": "i1", b"uchar": "u1", b"short": "i2", b"ushort": "u2", b"int": "i4", b"uint": "u4", b"float": "f4", b"double": "f8",
-    b"int8": "i1", b"uint8": "u1", b"int16": "i2", b"uint16": "u2", b"int32": "i4", b"uint32": "u4", b"float32": "f4",
-    b"float64": "f8",
-}  # fmt: skip
+    **{b"char": "i1", b"uchar": "u1", b"short": "i2", b"ushort": "u2", b"int": "i4", b"uint": "u4"},
+    **{b"int8": "i1", b"uint8": "u1", b"int16": "i2", b"uint16": "u2", b"int32": "i4", b"uint32": "u4"},
+    **{b"float": "f4", b"double": "f8", b"float32": "f4", b"float64": "f8"},
+}
 BYTE_ORDERS = {b"ascii": "", b"binary_little_endian": "<", b"binary_big_endian": ">"}
 AXES = (b"x", b"y", b"z")
 CORNER_LISTS = (b"vertex_indices", b"vertex_index")

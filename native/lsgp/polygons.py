@@ -93,15 +93,15 @@ def require_polygons(
         valid = f"valid are 0 to {vertex_count - 1}" if vertex_count else "the file has no vertices"
         raise InputError(
             "INDEX_OUT_OF_RANGE",
-            f"{_faces(faces, place)} with a vertex index that is not in the file: {corners[outside][0]}, counted from 0; "
-            f"{valid}. Export the mesh again.",
+            f"{_faces(faces, place)} with a vertex index that is not in the file: {corners[outside][0]}, counted from "
+            f"0; {valid}. Export the mesh again.",
             Elements("faces", faces.astype(np.int32)),
         )
     small = np.flatnonzero(sizes < 3)
     if len(small):
         raise InputError(
             "BAD_FACE",
-            f"{_faces(small, place)} with fewer than three corners. Remove such faces; loose edges are lines, not faces.",
+            f"{_faces(small, place)} with fewer than three corners. Remove such faces: loose edges are no faces.",
             Elements("faces", small.astype(np.int32)),
         )
     order = np.lexsort((corners, polygon_of_corner))
@@ -163,7 +163,8 @@ def _equal_polygons(mesh: PolygonMesh) -> Iterator[tuple[NDArray[np.int64], NDAr
     order = np.argsort(mesh.sizes, kind="stable")
     sizes, begins = np.unique(mesh.sizes[order], return_index=True)
     starts = mesh.starts
-    for size, begin, end in zip(sizes.tolist(), begins.tolist(), [*begins[1:].tolist(), len(order)]):
+    ends = np.append(begins, len(order))[1:]
+    for size, begin, end in np.stack([sizes, begins, ends], axis=1).tolist():
         for chunk in range(begin, end, max(1, CHUNK // size)):
             polygons = order[chunk : min(end, chunk + max(1, CHUNK // size))]
             yield polygons, starts[polygons][:, None] + np.arange(size)

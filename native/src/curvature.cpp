@@ -225,9 +225,10 @@ Curvature prescribe(const HalfedgeMesh& mesh, const Geometry& geometry, const Cu
   out.at_vertex = Eigen::VectorXd::Zero(mesh.vertex_count());
   for (Eigen::Index i = 0; i < curvature.size(); ++i) out.at_vertex[asked.vertices[i]] = curvature[i];
   if (!mesh.closed()) {
-    const Eigen::VectorXd with_boundary = geometry.angle_defect + apply_laplacian(mesh, geometry, out.log_scale);
+    // On a boundary the curvature is what the log scale makes of it: kappa = K + L y.
+    const Eigen::VectorXd free = geometry.angle_defect + apply_laplacian(mesh, geometry, out.log_scale);
     for (const auto& loop : mesh.boundary_loops) {
-      for (const Index v : loop) out.at_vertex[v] = with_boundary[v];
+      for (const Index v : loop) out.at_vertex[v] = free[v];
     }
   }
   if (!(out.predicted_l2 < high_l2)) {

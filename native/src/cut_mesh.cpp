@@ -45,6 +45,12 @@ CutMesh cut_open(const HalfedgeMesh& mesh, const CutGraph& cut_graph) {
   return cut_mesh;
 }
 
+Eigen::VectorXcd at_corners(const CutMesh& cut_mesh, const Eigen::VectorXcd& of_copies) {
+  Eigen::VectorXcd out(cut_mesh.copy_of_corner.size());
+  for (Eigen::Index corner = 0; corner < out.size(); ++corner) out[corner] = of_copies[cut_mesh.copy_of_corner[corner]];
+  return out;
+}
+
 std::vector<Sector> sectors(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh, Index v) {
   const Index first = first_of_sectors(mesh, cut_graph, v);
   std::vector<Sector> out{{cut_mesh.copy_of_corner[first], cut_graph.is_cut[first] ? first : none}};

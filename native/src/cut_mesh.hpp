@@ -2,6 +2,7 @@
 // The surface opened along its cut graph: copies of vertices, and the sisters on both sides of every cut.
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "cut_graph.hpp"
@@ -14,6 +15,9 @@ struct CutMesh {
   std::vector<Index> source;          // (copies) the vertex of each
   Index copy_count() const { return static_cast<Index>(source.size()); }
 };
+
+// Values of copies, (copies), at the corners, (3m).
+Eigen::VectorXcd at_corners(const CutMesh& cut_mesh, const Eigen::VectorXcd& of_copies);
 
 // The copies of one vertex: sectors between outgoing cut halfedges, counter-clockwise.
 struct Sector {

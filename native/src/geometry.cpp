@@ -41,6 +41,20 @@ void mollify(Geometry& geometry) {
   for (Index f = 0; f < geometry.area.size(); ++f) measure_from_lengths(geometry, f);
 }
 
+void add_up_vertices(const HalfedgeMesh& mesh, Geometry& geometry) {
+  geometry.vertex_area = Eigen::VectorXd::Zero(mesh.vertex_count());
+  geometry.angle_defect.resize(mesh.vertex_count());
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    geometry.angle_defect[v] = mesh.loop_of_vertex[v] == none ? 2 * M_PI : M_PI;
+  }
+  for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
+    const Index v = mesh.origin(corner);
+    geometry.vertex_area[v] += geometry.area[corner / 3] / 3;
+    geometry.angle_defect[v] -= geometry.angle[corner];
+  }
+  geometry.total_area = geometry.area.sum();
+}
+
 }  // namespace
 
 Geometry build_geometry(const HalfedgeMesh& mesh) {
@@ -68,18 +82,7 @@ Geometry build_geometry(const HalfedgeMesh& mesh) {
     }
   }
   if (!geometry.degenerate.empty()) mollify(geometry);
-
-  geometry.vertex_area = Eigen::VectorXd::Zero(mesh.vertex_count());
-  geometry.angle_defect.resize(mesh.vertex_count());
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    geometry.angle_defect[v] = mesh.loop_of_vertex[v] == none ? 2 * M_PI : M_PI;
-  }
-  for (Index corner = 0; corner < halfedge_count; ++corner) {
-    const Index v = mesh.origin(corner);
-    geometry.vertex_area[v] += geometry.area[corner / 3] / 3;
-    geometry.angle_defect[v] -= geometry.angle[corner];
-  }
-  geometry.total_area = geometry.area.sum();
+  add_up_vertices(mesh, geometry);
   return geometry;
 }
 

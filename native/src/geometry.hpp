@@ -20,7 +20,8 @@ struct Geometry {
   std::vector<Index> degenerate;  // triangles without a usable area; lengths are mollified when there are any
 };
 
-// Degenerate triangles are given area by adding one small constant to all lengths (Sharp and Crane 2020, section 4.5).
+// Degenerate triangles are given area: one constant is added to all lengths, the smallest that leaves every triangle
+// inequality a margin (Sharp and Crane 2020, section 4.5).
 Geometry build_geometry(const HalfedgeMesh& mesh);
 
 // The edge vector of halfedge h in its triangle's own frame, in which the triangle's first halfedge is real.

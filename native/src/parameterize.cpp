@@ -13,6 +13,7 @@
 #include "text.hpp"
 #include "transitions.hpp"
 #include "unfold.hpp"
+#include "untangle.hpp"
 #include "validation.hpp"
 
 namespace lsgp {
@@ -29,12 +30,6 @@ struct Map {
   SeamQuality seams;
   Validity validity;
 };
-
-Eigen::VectorXcd at_corners(const CutMesh& cut_mesh, const Eigen::VectorXcd& position) {
-  Eigen::VectorXcd out(cut_mesh.copy_of_corner.size());
-  for (Eigen::Index corner = 0; corner < out.size(); ++corner) out[corner] = position[cut_mesh.copy_of_corner[corner]];
-  return out;
-}
 
 Eigen::VectorXd curvature_of_nodes(const HalfedgeMesh& mesh, const NodeGraph& nodes, const Eigen::VectorXd& at_vertex) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(nodes.vertex.size());
@@ -61,6 +56,36 @@ UnfoldMethod usable_unfold(const HalfedgeMesh& mesh, const ComponentCones& cones
   return UnfoldMethod::poisson;
 }
 
+// The rotations of the cuts under a curvature, and the frames that go with them.
+struct Connection {
+  Eigen::VectorXd frames, rotation;
+  Reduction reduction;
+};
+
+Connection connect(const HalfedgeMesh& mesh, const Geometry& geometry, const Map& map, const Curvature& curvature) {
+  Connection out;
+  out.frames = integrate_frames(mesh, geometry, map.cut_graph, curvature.log_scale);
+  // The better a root, the farther its curvature is from whole turns.
+  const NodeGraph nodes = build_node_graph(mesh, map.cut_graph, (curvature.at_vertex / 2).array().sin().abs());
+  const Eigen::VectorXd node_curvature = curvature_of_nodes(mesh, nodes, curvature.at_vertex);
+  out.rotation = find_rotations(nodes, node_curvature,
+                                read_rotations(mesh, geometry, map.cut_graph, curvature.log_scale, out.frames));
+  out.reduction = impose_transitions(mesh, map.cut_graph, map.cut_mesh, nodes, node_curvature, out.rotation);
+  return out;
+}
+
+void check(const HalfedgeMesh& mesh, const Eigen::VectorXd* rotation, Map& map) {
+  if (!map.position.allFinite()) {
+    throw Error(Code::solver_failed, "The unfolding returned values that are not finite. Clean the mesh (merge by distance, "
+                                     "dissolve degenerate faces) and try again.");
+  }
+  const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
+  map.uv_area = 0;
+  for (Index f = 0; f < mesh.triangle_count(); ++f) map.uv_area += doubled_area(corners, f) / 2;
+  map.seams = measure_seams(mesh, map.cut_graph, corners, rotation);
+  map.validity = check_map(mesh, corners, map.curvature.at_vertex);
+}
+
 Map solve_component(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones, const Options& options,
                     std::vector<Finding>& findings, StageSeconds& seconds) {
   Map map;
@@ -73,34 +98,25 @@ Map solve_component(const HalfedgeMesh& mesh, const Geometry& geometry, const Co
     StageTimer timer(seconds, "prescribe");
     map.curvature = prescribe(mesh, geometry, map.cut_graph, map.cut_mesh, cones, options.prescription, findings);
   }
-  Eigen::VectorXd rotation;
-  {
-    StageTimer timer(seconds, "unfold");
-    if (options.method == Method::lscm) {
-      map.position = unfold_lscm(mesh, geometry, map.cut_mesh);
-    } else {
-      const Eigen::VectorXd& at_vertex = map.curvature.at_vertex;
-      const Eigen::VectorXd frames = integrate_frames(mesh, geometry, map.cut_graph, map.curvature.log_scale);
-      const NodeGraph nodes = build_node_graph(mesh, map.cut_graph, (Eigen::VectorXd(at_vertex / 2).array().sin().abs()));
-      const Eigen::VectorXd node_curvature = curvature_of_nodes(mesh, nodes, at_vertex);
-      rotation = find_rotations(nodes, node_curvature,
-                                read_rotations(mesh, geometry, map.cut_graph, map.curvature.log_scale, frames));
-      const Reduction reduction =
-          impose_transitions(mesh, map.cut_graph, map.cut_mesh, nodes, node_curvature, rotation);
-      map.position = usable_unfold(mesh, cones, options.unfold, findings) == UnfoldMethod::poisson
-                         ? unfold_poisson(mesh, geometry, map.cut_mesh, reduction, map.curvature.log_scale, frames)
-                         : unfold_spectral(mesh, geometry, map.cut_mesh, reduction);
-    }
-    if (!map.position.allFinite()) {
-      throw Error(Code::solver_failed, "The unfolding returned values that are not finite. Clean the mesh (merge by distance, "
-                                       "dissolve degenerate faces) and try again.");
-    }
+  StageTimer timer(seconds, "unfold");
+  if (options.method == Method::lscm) {
+    map.position = unfold_lscm(mesh, geometry, map.cut_mesh);
+    check(mesh, nullptr, map);
+    return map;
   }
-  StageTimer timer(seconds, "check");
-  const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
-  for (Index f = 0; f < mesh.triangle_count(); ++f) map.uv_area += doubled_area(corners, f) / 2;
-  map.seams = measure_seams(mesh, map.cut_graph, corners, options.method == Method::lscm ? nullptr : &rotation);
-  map.validity = check_map(mesh, corners, map.curvature.at_vertex);
+  const Connection connection = connect(mesh, geometry, map, map.curvature);
+  if (usable_unfold(mesh, cones, options.unfold, findings) == UnfoldMethod::spectral) {
+    map.position = unfold_spectral(mesh, geometry, map.cut_mesh, connection.reduction);
+    check(mesh, &connection.rotation, map);
+    return map;
+  }
+  map.position = PoissonSystem(mesh, geometry, map.cut_mesh, connection.reduction)
+                     .unfold(map.curvature.log_scale, connection.frames);
+  check(mesh, &connection.rotation, map);
+  if (!map.validity.flipped.empty()) {
+    map.position = untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, map.curvature, map.position);
+    check(mesh, &connection.rotation, map);
+  }
   return map;
 }
 

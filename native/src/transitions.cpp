@@ -176,6 +176,21 @@ Reduction leave_free(const CutMesh& cut_mesh, Index grounded) {
   return reduction;
 }
 
+Eigen::VectorXcd motion_of_copies(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh,
+                                  const Eigen::VectorXd& rotation) {
+  Eigen::VectorXcd motion = Eigen::VectorXcd::Ones(cut_mesh.copy_count());
+  for (std::size_t p = 0; p < cut_graph.cuts.size(); ++p) {
+    const Complex turn = std::polar(1.0, rotation[p]);
+    const std::vector<Index>& halfedges = cut_graph.cuts[p].halfedges;
+    for (std::size_t i = 1; i < halfedges.size(); ++i) {
+      const Sisters sisters = origin_sisters(mesh, cut_mesh, halfedges[i]);
+      if (sisters.right >= mesh.vertex_count()) motion[sisters.right] = turn;
+      else motion[sisters.left] = std::conj(turn);
+    }
+  }
+  return motion;
+}
+
 Eigen::VectorXcd expand(const Reduction& reduction, const Eigen::VectorXcd& unknowns) {
   Eigen::VectorXcd out = Eigen::VectorXcd::Zero(reduction.copy_count());
   for (Index copy = 0; copy < reduction.copy_count(); ++copy) {

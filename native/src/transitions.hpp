@@ -40,6 +40,11 @@ Reduction impose_transitions(const HalfedgeMesh& mesh, const CutGraph& cut_graph
 // Every copy an unknown of its own but `grounded`, which is held at zero: no transitions.
 Reduction leave_free(const CutMesh& cut_mesh, Index grounded);
 
+// How every copy of a vertex moves when its first copy moves by 1 and all translations stay: a factor of modulus 1.
+// Holds for vertices that are no node; a node's position follows from its translations.
+Eigen::VectorXcd motion_of_copies(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh,
+                                  const Eigen::VectorXd& rotation);
+
 // Positions of all copies (copies) from the unknowns.
 Eigen::VectorXcd expand(const Reduction& reduction, const Eigen::VectorXcd& unknowns);
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "energies/quadratic_forms.hpp"
-#include "solvers/cholesky.hpp"
 #include "solvers/eigenproblem.hpp"
 
 namespace lsgp {
@@ -66,22 +65,24 @@ Eigen::VectorXd read_rotations(const HalfedgeMesh& mesh, const Geometry& geometr
   return rotation;
 }
 
-Eigen::VectorXcd unfold_poisson(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                                const Reduction& reduction, const Eigen::VectorXd& log_scale,
-                                const Eigen::VectorXd& frames) {
+PoissonSystem::PoissonSystem(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+                             const Reduction& reduction)
+    : mesh_(mesh), geometry_(geometry), cut_mesh_(cut_mesh), reduction_(reduction),
+      factor_(assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction)) {}
+
+Eigen::VectorXcd PoissonSystem::unfold(const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames) const {
   // min sum A (|f_z - T|^2 + |f_zbar|^2), which is z^H L z / 2 - 2 Re(...): the right side at a corner is
   // 2 A conj(g) T with g = -i conj(e) / (4 A), e the edge opposite the corner.
-  Eigen::VectorXcd pull = Eigen::VectorXcd::Zero(cut_mesh.copy_count());
-  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+  Eigen::VectorXcd pull = Eigen::VectorXcd::Zero(cut_mesh_.copy_count());
+  for (Index f = 0; f < mesh_.triangle_count(); ++f) {
     double scale = 0;
-    for (int c = 0; c < 3; ++c) scale += log_scale[mesh.triangles(f, c)] / 3;
+    for (int c = 0; c < 3; ++c) scale += log_scale[mesh_.triangles(f, c)] / 3;
     const Complex target = std::polar(std::exp(scale), frames[f]);
     for (Index corner = 3 * f; corner < 3 * f + 3; ++corner) {
-      pull[cut_mesh.copy_of_corner[corner]] += Complex(0, 0.5) * edge_vector(geometry, next(corner)) * target;
+      pull[cut_mesh_.copy_of_corner[corner]] += Complex(0, 0.5) * edge_vector(geometry_, next(corner)) * target;
     }
   }
-  const Cholesky<Complex> factor(assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction));
-  return expand(reduction, factor.solve(gather(reduction, pull)));
+  return expand(reduction_, factor_.solve(gather(reduction_, pull)));
 }
 
 Eigen::VectorXcd unfold_spectral(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,

@@ -6,6 +6,7 @@
 
 #include "cut_mesh.hpp"
 #include "geometry.hpp"
+#include "solvers/cholesky.hpp"
 #include "transitions.hpp"
 
 namespace lsgp {
@@ -25,9 +26,18 @@ Eigen::VectorXd read_rotations(const HalfedgeMesh& mesh, const Geometry& geometr
 // Each returns the positions u + iv of all copies.
 
 // Least squares fit of the map's Jacobians to e^{y + i phi}: one solve with the Dirichlet matrix.
-Eigen::VectorXcd unfold_poisson(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                                const Reduction& reduction, const Eigen::VectorXd& log_scale,
-                                const Eigen::VectorXd& frames);
+class PoissonSystem {
+ public:
+  PoissonSystem(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh, const Reduction& reduction);
+  Eigen::VectorXcd unfold(const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames) const;
+
+ private:
+  const HalfedgeMesh& mesh_;
+  const Geometry& geometry_;
+  const CutMesh& cut_mesh_;
+  const Reduction& reduction_;
+  Cholesky<Complex> factor_;
+};
 
 // The map of least conformal energy at a given Dirichlet energy (Mullen et al. 2008, with a norm that transitions
 // leave invariant).

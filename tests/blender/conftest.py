@@ -5,8 +5,6 @@ tests/packaging/test_in_blender.py starts them from an ordinary pytest run, or i
 """
 
 import os
-import sys
-from pathlib import Path
 
 import pytest
 
@@ -14,8 +12,6 @@ if "CONE_UNWRAP_EXTENSION" not in os.environ:
     collect_ignore_glob = ["test_*.py"]
 else:
     import bpy
-
-    sys.path.insert(0, str(Path(__file__).parent))
 
     @pytest.fixture(autouse=True)
     def empty_scene():

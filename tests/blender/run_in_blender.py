@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Install a built extension into a throw-away profile and run the add-on's tests inside this Blender.
 
-    BLENDER_USER_RESOURCES=EMPTY_FOLDER blender --background --python-exit-code 1 --python run_in_blender.py -- ZIP REPORT.xml
-    BLENDER_USER_RESOURCES=EMPTY_FOLDER python run_in_blender.py -- ZIP REPORT.xml          (a Python with bpy)
+    export BLENDER_USER_RESOURCES=EMPTY_FOLDER
+    blender --background --python-exit-code 1 --python run_in_blender.py -- ZIP REPORT.xml
+    python run_in_blender.py -- ZIP REPORT.xml          (a Python with bpy)
 
 Arguments after these two go to pytest. Exit code 0 only when all tests passed; REPORT.xml is pytest's junit report, by
 which the caller sees how many there were. ``tools/test_in_blender.py`` does all of this.
@@ -65,7 +66,7 @@ if __name__ == "__main__":
     os.environ["CONE_UNWRAP_EXTENSION"] = EXTENSION
     try:
         code = run(sys.argv[sys.argv.index("--") + 1 :])
-    except Exception:  # noqa: BLE001 - whatever it is must reach the caller as an exit code
+    except Exception:  # whatever it is must reach the caller as an exit code
         traceback.print_exc()
         code = 1
     sys.stdout.flush()

@@ -192,8 +192,8 @@ def uv_key(layer: str = "UVMap") -> str:
 class UvMap:
     """The active UV layer of an object with the mesh it lies on, as arrays.
 
-    uv (l, 2), vertex (l,), face (l,) of every loop; positions (n, 3). sides: for each edge with two faces the loop pairs of
-    both sides, in the same vertex order.
+    uv (l, 2) and vertex (l,) of every loop; positions (n, 3); loops_of_face. sides: for each edge with two faces the
+    loop pairs of both sides, in the same vertex order.
     """
 
     def __init__(self, obj: bpy.types.Object) -> None:
@@ -206,7 +206,7 @@ class UvMap:
         self.seams = {tuple(sorted(edge.vertices)) for edge in mesh.edges if edge.use_seam}
         pairs: dict[tuple[int, int], list[tuple[int, int]]] = {}
         for loops in self.loops_of_face:
-            for first, second in zip(loops, loops[1:] + loops[:1]):
+            for first, second in zip(loops, loops[1:] + loops[:1], strict=True):
                 if self.vertex[first] > self.vertex[second]:
                     first, second = second, first
                 pairs.setdefault((int(self.vertex[first]), int(self.vertex[second])), []).append((first, second))
@@ -227,7 +227,7 @@ class UvMap:
         return float(np.abs(self._length(left) - self._length(right)).max())
 
     def scale_spread(self, faces: Iterable[int] | None = None) -> float:
-        """Largest over smallest ratio of UV distance to distance in space over all loop pairs of a face; 1 is isometric."""
+        """Largest over smallest ratio of UV to 3D distance, over all loop pairs of each face; 1 is isometric."""
         ratios = []
         for face in range(len(self.loops_of_face)) if faces is None else faces:
             loops = np.array(self.loops_of_face[face])
@@ -242,7 +242,7 @@ class UvMap:
         """Sum of the UV angles at a vertex, over all its faces."""
         total = 0.0
         for loops in self.loops_of_face:
-            for before, here, after in zip(loops[-1:] + loops[:-1], loops, loops[1:] + loops[:1]):
+            for before, here, after in zip(loops[-1:] + loops[:-1], loops, loops[1:] + loops[:1], strict=True):
                 if self.vertex[here] == vertex:
                     a, b = self.uv[after] - self.uv[here], self.uv[before] - self.uv[here]
                     total += np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b)

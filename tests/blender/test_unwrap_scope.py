@@ -22,7 +22,7 @@ from scenes import (
 
 
 def decorate(obj):
-    """A pin, attributes of other kinds, a material, a weight, a modifier and a shape key: a snapshot would notice their loss."""
+    """A pin, attributes of other kinds, a material, a weight, a modifier and a shape key."""
     mesh = obj.data
     obj.vertex_groups.new(name="other").add([0, 5], 0.5, "REPLACE")
     mesh.materials.append(bpy.data.materials.new("Paint"))
@@ -201,7 +201,7 @@ def test_all_objects_failing_is_an_error_and_changes_nothing():
     before = [snapshot(obj) for obj in objects]
     with pytest.raises(RuntimeError, match=r"(?s)First: .*Second: "):
         bpy.ops.uv.cone_unwrap()
-    assert [changed(old, snapshot(obj)) for old, obj in zip(before, objects)] == [set(), set()]
+    assert [changed(old, snapshot(obj)) for old, obj in zip(before, objects, strict=True)] == [set(), set()]
 
 
 def test_a_part_that_cannot_be_solved_keeps_its_uvs_and_is_named(reports):
@@ -267,7 +267,7 @@ def test_linked_mesh_is_refused_with_a_remedy(tmp_path):
     bpy.context.collection.objects.link(obj)
     obj.select_set(True)
     before = snapshot(obj)
-    with pytest.raises(RuntimeError, match="Linked: .*make it local"):
+    with pytest.raises(RuntimeError, match=r"Linked: .*make it local"):
         bpy.ops.uv.cone_unwrap()
     assert changed(before, snapshot(obj)) == set()
 

@@ -45,7 +45,7 @@ def lsgp(tmp_path: Path) -> Callable[..., Ended]:
 
 @pytest.fixture(scope="session")
 def shared() -> Path:
-    """The folder shared by the project's checkouts, with meshes/ and bad/; tests that need it are skipped without it."""
+    """The folder with meshes/ and bad/ beside the checkout; the tests that need it are skipped without it."""
     if not SHARED.is_dir():
         pytest.skip(f"no shared folder at {SHARED}")
     return SHARED

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Small polygon meshes for the tests of files, polygons and the command line, and text and bytes of files that hold them."""
+"""Small polygon meshes for the tests of files, polygons and the command line, and the files that hold them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
-
 from lsgp.polygons import PolygonMesh, Triangulation
 
 Faces = list[list[int]]
@@ -161,7 +160,7 @@ def triangle_areas(mesh: PolygonMesh, triangulation: Triangulation) -> np.ndarra
 def polygon_areas(mesh: PolygonMesh) -> np.ndarray:
     """(f,) lengths of Newell's area vectors."""
     areas = []
-    for start, size in zip(mesh.starts.tolist(), mesh.sizes.tolist()):
+    for start, size in np.stack([mesh.starts, mesh.sizes], axis=1).tolist():
         points = mesh.positions[mesh.corners[start : start + size]]
         points = points - points[0]
         areas.append(np.linalg.norm(np.cross(points, np.roll(points, -1, axis=0)).sum(axis=0)) / 2)

@@ -44,7 +44,7 @@ def require_exact_cover(points: np.ndarray, share: float = 0.0) -> None:
 
 @st.composite
 def star_shaped(draw: st.DrawFn) -> np.ndarray:
-    """A polygon seen whole from the origin, mostly concave, some corners in the middle of straight edges, anywhere in space."""
+    """A polygon seen whole from one point, mostly concave, some corners in the middle of edges, anywhere in space."""
     n = draw(st.integers(4, 24))
     steps = np.array(draw(st.lists(st.floats(0.2, 1), min_size=n, max_size=n)))
     radii = np.array(draw(st.lists(st.floats(0.1, 1), min_size=n, max_size=n)))
@@ -109,7 +109,7 @@ def test_corners_on_straight_edges_keep_a_triangle_with_area() -> None:
     side = np.linspace(0, 1, 5)[:-1]
     square = np.concatenate([np.column_stack(p) for p in ((side, 0 * side), (1 + 0 * side, side))])
     require_exact_cover(loop(np.concatenate([square, 1 - square])), share=1e-3)
-    # In single precision the corners lie beside the edges by 1e-7; needles of that width are no better than turned ones.
+    # In single precision the corners lie beside the edges by 1e-7; needles of that width are as bad as turned ones.
     turned = (loop(np.concatenate([square, 1 - square])) @ rotation(5).T).astype(np.float32)
     require_exact_cover(turned.astype(float), share=1e-3)
 
@@ -174,7 +174,7 @@ def test_triangles_of_mixed_polygons_follow_their_order() -> None:
 def test_edges_are_those_of_the_polygons() -> None:
     positions, faces = patch()
     triangulation = triangulate(polygon_mesh(positions, faces))
-    expected = {tuple(sorted(pair)) for face in faces for pair in zip(face, face[1:] + face[:1])}
+    expected = {tuple(sorted(pair)) for face in faces for pair in zip(face, face[1:] + face[:1], strict=True)}
     assert triangulation.edges.tolist() == sorted(map(list, expected))
 
 

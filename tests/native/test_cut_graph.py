@@ -5,23 +5,23 @@ from __future__ import annotations
 
 import itertools
 
+import lsgp
 import meshes
 import numpy as np
 import oracle
 import pytest
 from map_checks import components, pairs, surface
 
-import lsgp
-
 GENERIC = {
     "bumpy sphere": meshes.bumpy_sphere(3),
-    "ellipsoid, many cones": meshes.transform(
-        meshes.bumpy_sphere(3, 0.15)._replace(cones=np.arange(0, 640, 16, dtype=np.int32)), seed=3
+    "many cones, turned": meshes.transform(
+        meshes.bumpy_sphere(3)._replace(cones=np.arange(0, 640, 5, dtype=np.int32)), seed=3
     ),
+    "forked": meshes.forked(),
     "flower": meshes.flower(3),
     "hill": meshes.hill(12),
     "two holes": meshes.disk_with_holes(14, 2),
-    "three holes and cones": meshes.disk_with_holes(18, 3)._replace(cones=np.array([40, 150, 320], np.int32)),
+    "three holes and cones": meshes.disk_with_holes(18, 3)._replace(cones=np.array([43, 92, 152, 201], np.int32)),
     "tube": meshes.cylinder(),
 }
 WITH_TIES = {"cube": meshes.cube(4), "box": meshes.cube(5, (1, 2, 0.5)), "icosphere": meshes.icosphere(2)}
@@ -80,7 +80,7 @@ def test_tree_is_as_long_as_the_minimum_spanning_tree_where_no_paths_merge() -> 
 
 
 def test_paths_that_merge_make_the_tree_shorter_and_a_junction() -> None:
-    mesh = meshes.bumpy_sphere(3)._replace(cones=np.arange(0, 640, 16, dtype=np.int32))
+    mesh = meshes.forked()
     expected, _ = oracle.shortest_cut_tree(mesh.positions, mesh.triangles, mesh.cones)
     cuts = lsgp.find_cuts(surface(mesh), mesh.cones)
     degree = np.bincount(cuts.edges.ravel(), minlength=len(mesh.positions))
@@ -134,11 +134,11 @@ def test_handles_are_opened_along_mesh_edges_too(mesh: meshes.Mesh, quads: np.nd
 def test_cuts_follow_seams_on_detours() -> None:
     mesh = meshes.flower(3)
     plain = lsgp.find_cuts(surface(mesh), mesh.cones)
-    # A detour: the shortest way from cone 0 to cone 1 that keeps off everything near the plain cuts.
-    banned = pairs(plain.edges)
+    # A detour: the shortest way from cone 0 to cone 1 that has at most its ends in common with the plain cuts.
+    banned = {edge for edge in pairs(plain.edges) if not set(edge) & {0, 1}}
     every = np.array(sorted(pairs(meshes.edges_of(mesh.triangles)) - banned))
     _, detour = oracle.shortest_cut_tree(mesh.positions, mesh.triangles, mesh.cones[:2], every)
-    assert not detour <= pairs(plain.edges)
+    assert len(detour - pairs(plain.edges)) >= 4
     seamed = lsgp.find_cuts(surface(mesh, seams=sorted(detour)), mesh.cones)
     assert detour <= pairs(seamed.edges)
 

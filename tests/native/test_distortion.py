@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 
+import lsgp
 import meshes
 import numpy as np
 import oracle
@@ -12,8 +13,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from map_checks import pairs, surface, unwrap
-
-import lsgp
 
 MAPPED = {
     "bumpy sphere": meshes.bumpy_sphere(2),
@@ -117,7 +116,7 @@ def test_triangles_without_coordinates_are_left_out() -> None:
     assert found.flipped.size == 0
 
 
-# --- seams of given coordinates -----------------------------------------------------------------------------------------
+# --- seams of given coordinates -------------------------------------------------------------------------------------
 
 
 def test_cuts_are_where_the_two_sides_differ() -> None:

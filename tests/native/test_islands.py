@@ -3,13 +3,12 @@
 
 from __future__ import annotations
 
+import lsgp
 import meshes
 import numpy as np
 import oracle
 import pytest
 from map_checks import assert_angles_met, assert_exact_transitions, components, only, unwrap
-
-import lsgp
 
 PARTS = [
     meshes.cube(2),

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import functools
 
+import lsgp
 import numpy as np
 import oracle
 import pytest
@@ -19,8 +20,6 @@ from map_checks import (
     wanted_angle_sums,
 )
 from shared_meshes import shared_mesh
-
-import lsgp
 
 # Upper bounds of the per-triangle means of quasi-conformal and area distortion and of the L2 stretch.
 BOUNDS = {

@@ -3,13 +3,12 @@
 
 from __future__ import annotations
 
+import lsgp
 import meshes
 import numpy as np
 import oracle
 import pytest
 from map_checks import assert_angles_met, assert_exact_transitions, codes, only, unwrap
-
-import lsgp
 
 CUBE = meshes.cube(3)
 
@@ -21,7 +20,7 @@ def test_turned_triangles_are_named_and_unwrapped_as_if_they_were_not() -> None:
     assert finding.elements.kind == "triangles" and finding.elements.indices.tolist() == turned
     expected = unwrap(CUBE).corner_uv.copy()
     expected[turned] = expected[turned][:, ::-1]
-    assert np.array_equal(result.corner_uv, expected)
+    assert np.abs(result.corner_uv - expected).max() <= 1e-9
     assert result.flipped.size == 0
 
 

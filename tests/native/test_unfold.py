@@ -3,21 +3,15 @@
 
 from __future__ import annotations
 
+import lsgp
 import meshes
 import numpy as np
 import oracle
 import pytest
 from map_checks import assert_angles_met, assert_exact_transitions, codes, only, pairs, solve_again, surface, unwrap
 
-import lsgp
-
 PI = np.pi
 BOTH = pytest.mark.parametrize("unfold", ["poisson", "spectral"])
-
-
-def many_cones(levels: int = 2, step: int = 9) -> meshes.Mesh:
-    mesh = meshes.bumpy_sphere(levels)
-    return mesh._replace(cones=np.arange(0, len(mesh.positions), step, dtype=np.int32))
 
 
 CLOSED = {
@@ -25,14 +19,14 @@ CLOSED = {
     "bumpy sphere": meshes.bumpy_sphere(2),
     "flower": meshes.flower(3),
     "ellipsoid": meshes.ellipsoid(2),
-    "with junctions": many_cones(),
+    "with a junction": meshes.forked(),
 }
 OPEN = {
     "saddle, no cut": meshes.saddle(8),
     "hill": meshes.hill(),
     "tube, no cones": meshes.cylinder(),
     "two holes": meshes.disk_with_holes(12, 2),
-    "three holes and cones": meshes.disk_with_holes(18, 3)._replace(cones=np.array([40, 150], np.int32)),
+    "three holes and cones": meshes.disk_with_holes(18, 3)._replace(cones=np.array([43, 152], np.int32)),
 }
 DEVELOPABLE = {
     "tetrahedron": meshes.tetrahedron(),
@@ -84,8 +78,9 @@ def test_map_of_a_surface_with_boundary_is_the_oracles(name: str) -> None:
 
 
 def other_cuts(mesh: meshes.Mesh, result: lsgp.Result) -> lsgp.Surface:
-    """The surface with seams along the second best tree, none of whose edges the first result cut."""
-    rest = pairs(meshes.edges_of(mesh.triangles)) - pairs(result.cut_edges)
+    """The surface with seams along another tree, that shares no edges with the first but some at cones."""
+    ends = set(mesh.cones.tolist())
+    rest = pairs(meshes.edges_of(mesh.triangles)) - {e for e in pairs(result.cut_edges) if not set(e) & ends}
     _, tree = oracle.shortest_cut_tree(mesh.positions, mesh.triangles, mesh.cones, np.array(sorted(rest)))
     return surface(mesh, seams=sorted(tree))
 
@@ -114,9 +109,8 @@ def test_poisson_and_spectral_agree_as_far_as_the_surface_is_fine() -> None:
     """Both discretise the same conformal map: their difference shrinks with the triangles."""
     gaps = []
     for levels in (2, 3, 4):
-        mesh = meshes.flower(levels)
-        angles = [4 * PI / 3] * 6
-        maps = [unwrap(mesh, angles, unfold=unfold).corner_uv for unfold in ("poisson", "spectral")]
+        mesh = meshes.ellipsoid(levels)
+        maps = [unwrap(mesh, prescription="harmonic", unfold=unfold).corner_uv for unfold in ("poisson", "spectral")]
         lengths = [
             np.linalg.norm(uv - uv[:, [1, 2, 0]], axis=2) / np.sqrt(oracle.signed_areas(uv).sum()) for uv in maps
         ]
@@ -172,7 +166,7 @@ def test_a_cone_of_negative_curvature() -> None:
     middle = int(np.argmin(np.linalg.norm(mesh.positions - [0.5, 0.5, 0], axis=1)))
     mesh = mesh._replace(cones=np.append(mesh.cones, middle).astype(np.int32))
     near = np.linalg.norm(mesh.positions[mesh.cones[:8]] - mesh.positions[middle], axis=1)
-    angles = np.where(near < 1, 1.375 * PI, 1.5 * PI).tolist() + [2.5 * PI]
+    angles = [*np.where(near < 1, 1.375 * PI, 1.5 * PI).tolist(), 2.5 * PI]
     result = unwrap(mesh, angles)
     assert result.cone_angles == pytest.approx(angles, abs=1e-12)
     assert_exact_transitions(mesh, result)

@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Each error code with the smallest input that raises it, its class, its elements, and a message that says what to do."""
+"""Each error code with the smallest input that raises it, its class, its elements, and a message with a remedy."""
 
 from __future__ import annotations
 
 import re
 
+import lsgp
 import meshes
 import numpy as np
 import pytest
 from map_checks import surface, unwrap
-
-import lsgp
 
 NAN = float("nan")
 TRIANGLE = meshes.make([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])

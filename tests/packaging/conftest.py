@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The wheel and the extension under test, built once, and the Python with bpy they are tried in.
 
-LSGP_WHEEL names a wheel to use instead of building one; BPY_PYTHON a Python with bpy (default: this one, if it has bpy).
+LSGP_WHEEL names a wheel to use instead of building one, BPY_PYTHON a Python with bpy (default: this one, if it has
+bpy).
 """
 
 import importlib.util

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs tests/blender inside Blender from an ordinary pytest run.
 
-BPY_PYTHON names a Python with bpy (default: this one, if it has bpy); BLENDER an executable, with BLENDER_PYTHON, a Python
-of the same version that can build wheels; BLENDER_CHROOT an installation of ../shared/tools/real-blender.
+BPY_PYTHON names a Python with bpy (default: this one, if it has bpy). BLENDER names an executable, BLENDER_PYTHON a
+Python of the same version that can build wheels; or BLENDER_CHROOT an installation of ../shared/tools/real-blender.
 """
 
 import os

@@ -100,7 +100,14 @@ Eigen::VectorXcd smallest_eigenvector(const ComplexSparse& form, const ComplexSp
     throw Error(Code::solver_failed, "The spectral unfolding did not converge: several maps are about equally conformal. "
                                      "Use the Poisson unfolding.");
   }
-  const Eigen::VectorXd vector = solver.eigenvectors(1);
+  // Where the form is singular the inverse is so large in one direction that the Krylov basis loses the others' digits;
+  // two plain inverse iterations win them back.
+  Eigen::VectorXd vector = solver.eigenvectors(1), image(2 * n);
+  for (int i = 0; i < 2; ++i) {
+    product.perform_op(vector.data(), image.data());
+    inverse.perform_op(image.data(), vector.data());
+    vector /= vector.norm();
+  }
   return to_complex(vector.data(), n);
 }
 
