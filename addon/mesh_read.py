@@ -22,8 +22,8 @@ class Region:
 
     Vertex indices are the mesh's own, so that the library's errors name Blender's vertices.
 
-    surface: all vertices (those of no face in the region are at the origin and without a triangle), the triangles
-        Blender draws the faces with, the faces' edges and the marked seams among them.
+    surface: all vertices (the library leaves out those without a triangle), the triangles Blender draws the faces with,
+        the faces' edges and the marked seams among them.
     triangle_loops: (m, 3) int32, mesh loop of each triangle corner.
     triangle_faces: (m,) int32, mesh face of each triangle.
     face_loop_start: (f,) int32 of all faces of the mesh.
@@ -67,8 +67,6 @@ def read_region(obj: bpy.types.Object) -> Region | None:
     positions = _read(mesh.vertices, "co", np.float32, 3).astype(np.float64)
     vertex_used = np.zeros(len(positions), bool)
     vertex_used[triangles] = True
-    # What lies outside of the region must not have a say, not even by coordinates that are not finite.
-    positions[~vertex_used] = 0.0
 
     face_sizes = _read(mesh.polygons, "loop_total", np.int32)
     loop_edges = _read(mesh.loops, "edge_index", np.int32)

@@ -25,7 +25,8 @@ def explain(error: lsgp.LsgpError | lsgp.Finding | Refused) -> str:
     if isinstance(error, Refused):
         return str(error)
     size = len(error.elements.indices)
-    concerned = f", {size} {error.elements.kind}" if size else ""
+    noun = {"vertices": "vertex"}.get(error.elements.kind, error.elements.kind.removesuffix("s"))
+    concerned = f", {size} {noun if size == 1 else error.elements.kind}" if size else ""
     return f"{error.message} [{error.code}{concerned}]"
 
 

@@ -332,6 +332,17 @@ def with_fin(mesh: Mesh) -> tuple[Mesh, tuple[int, int]]:
     return make(positions, np.concatenate([mesh.triangles, [[a, b, len(mesh.positions)]]]), mesh.cones), (a, b)
 
 
+def with_pocket(mesh: Mesh) -> Mesh:
+    """Two more triangles back to back on an edge of triangle 0: joined along two edges, about a vertex of just two.
+
+    What a face that was duplicated and turned leaves behind; the last two triangles.
+    """
+    a, b = (int(x) for x in mesh.triangles[0, :2])
+    c = len(mesh.positions)
+    positions = np.concatenate([mesh.positions, [mesh.positions[[a, b]].mean(axis=0) + np.array([0.1, 0.3, 0.4])]])
+    return make(positions, np.concatenate([mesh.triangles, [[a, b, c], [b, a, c]]]), mesh.cones)
+
+
 def bow_tie(n: int = 3) -> tuple[Mesh, int]:
     """Two grid patches that share one corner vertex; returns that vertex too."""
     first = grid(n, n)

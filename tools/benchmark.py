@@ -1,23 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Time of `lsgp.parameterize` beside libigl's LSCM on the same cut, as a Markdown table.
 
-Both get arrays and give texture coordinates, both run on one thread; lsgp also finds the cut, prescribes the cone angles and
-measures the map, LSCM gets the surface cut open by lsgp's own cut. The figures are CPU seconds, medians over repetitions that take
-turns, so that a busy machine hurts both alike. Needs numpy, scipy and libigl beside lsgp.
+Both get arrays and give texture coordinates. lsgp also finds the cut, prescribes the cone angles and measures the map;
+LSCM gets the surface cut open along lsgp's cut and two pins. Times are CPU seconds of all threads together (the stages'
+are wall-clock), medians over repetitions that take turns, so that a busy machine hurts both alike. Needs numpy, scipy
+and libigl beside lsgp.
 
     python tools/benchmark.py [--repetitions 9] [mesh ...]
 """
 
 from __future__ import annotations
 
-import os
-
-# Before numpy and libigl load: their thread pools read this once.
-for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "IGL_NUM_THREADS"):
-    os.environ[_variable] = "1"
-
 import argparse
 import json
+import os
 import statistics
 import sys
 import time
@@ -39,6 +35,7 @@ def main() -> None:
     parser.add_argument("meshes", nargs="*", metavar="mesh", help=f"of {', '.join(MESHES)}; all by default")
     parser.add_argument("--repetitions", type=int, default=9)
     arguments = parser.parse_args()
+    os.environ["IGL_NUM_THREADS"] = "1"  # read at libigl's first parallel loop
     if SHARED.is_dir():
         cases = [(name, *read_case(name)) for name in arguments.meshes or MESHES]
     else:
@@ -56,7 +53,7 @@ def read_case(name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def bumpy_sphere(level: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """An octahedron with its edges halved `level` times, blown up to a sphere with six bumps; the bumps are the cones."""
+    """An octahedron with its edges halved `level` times, on a sphere with six bumps; those are the cones."""
     positions = np.vstack([np.eye(3), -np.eye(3)])
     triangles = np.array([(0, 1, 2), (1, 3, 2), (3, 4, 2), (4, 0, 2), (1, 0, 5), (3, 1, 5), (4, 3, 5), (0, 4, 5)])
     for _ in range(level):

@@ -16,21 +16,17 @@ from mathutils import Euler
 
 WIDTH, HEIGHT = 2000, 1000
 # The picture plane is x-z, 8 x 4 units, the camera looks along +y; each half is 4 x 4 units.
-MODEL_CENTRE, MODEL_TURN, MODEL_SIZE = (-1.82, -2.6, 0.12), (np.radians(2), 0.0, np.radians(22)), 1.2
+MODEL_CENTRE, MODEL_TURN, MODEL_SIZE = (-1.82, -2.6, 0.07), (np.radians(2), 0.0, np.radians(22)), 1.2
 LAYOUT_CENTRE, LAYOUT_SIZE = (2.02, 0.0, 0.0), (3.72, 3.6)
 WALL_DEPTH = 0.09
 SQUARE = 0.11  # side of a checker square on the model, in units of the model
-LAYOUT_STEP = 2e-4
 TUBE, BORDER_TUBE, CONE_BALL = 0.018, 0.010, 0.046
 
 PAPER = (0.965, 0.955, 0.935)
 LIGHT_SQUARE, DARK_SQUARE = (0.94, 0.92, 0.87), (0.47, 0.58, 0.66)
 LIGHT_LINE, DARK_LINE = (0.84, 0.82, 0.77), (0.55, 0.655, 0.73)
 BORDER_COLOUR = (0.16, 0.18, 0.22)
-CUT_COLOURS = (
-    *("#d6336c", "#2b9348", "#7b4fc9", "#e3b505", "#12a0a0"),
-    *("#c23fb5", "#87991a", "#3c9be0", "#9a5b3a", "#5b6b7a"),
-)
+CUT_COLOURS = ("#d6336c", "#2b9348", "#7b4fc9", "#e3b505", "#12a0a0", "#c23fb5", "#87991a", "#3c9be0", "#8a5a3c")
 POSITIVE_CONE, NEGATIVE_CONE = (0.93, 0.33, 0.10), (0.10, 0.30, 0.85)
 
 
@@ -41,7 +37,7 @@ def render_picture(model: bpy.types.Object, cut_edges: np.ndarray, cones: np.nda
     """
     mesh = model.data
     uv = read_uv(mesh)
-    board = layout_places(mesh, uv)
+    board = layout_places(uv)
     shown = model.copy()
     shown.data = mesh.copy()
     shown.data.shade_smooth()
@@ -90,44 +86,11 @@ def length_of_uv_unit(mesh: bpy.types.Mesh, uv: np.ndarray) -> float:
     return float(np.sqrt(sum(polygon.area for polygon in mesh.polygons) / area))
 
 
-def layout_places(mesh: bpy.types.Mesh, uv: np.ndarray) -> np.ndarray:
-    """(loops, 3) where the corners of the layout lie in the picture.
-
-    A layout may overlap itself. So it rises towards the viewer, hardly visibly, with every step from polygon to
-    polygon: what overlaps lies one above the other like paper.
-    """
+def layout_places(uv: np.ndarray) -> np.ndarray:
+    """(loops, 3) where the corners of the layout lie in the picture."""
     low, high = uv.min(axis=0), uv.max(axis=0)
     flat = (uv - (low + high) / 2) * (np.array(LAYOUT_SIZE) / (high - low)).min()
-    rise = np.empty(len(uv))
-    for polygon, steps in zip(mesh.polygons, steps_in_layout(mesh, uv), strict=True):
-        rise[polygon.loop_indices] = LAYOUT_STEP * steps
-    return np.column_stack([flat[:, 0], -rise, flat[:, 1]]) + LAYOUT_CENTRE
-
-
-def steps_in_layout(mesh: bpy.types.Mesh, uv: np.ndarray) -> np.ndarray:
-    """Steps across edges that are not cut from the first polygon of each island to every polygon."""
-    vertex = [loop.vertex_index for loop in mesh.loops]
-    corner = list(zip(vertex, map(tuple, uv.round(6).tolist()), strict=True))
-    at_edge: dict[frozenset, list[int]] = {}
-    for polygon in mesh.polygons:
-        loops = list(polygon.loop_indices)
-        for loop, after in zip(loops, loops[1:] + loops[:1], strict=True):
-            at_edge.setdefault(frozenset((corner[loop], corner[after])), []).append(polygon.index)
-    around: list[list[int]] = [[] for _ in mesh.polygons]
-    for polygons in at_edge.values():
-        for polygon in polygons:
-            around[polygon] += polygons
-    steps = np.full(len(around), -1)
-    for first in range(len(around)):
-        if steps[first] >= 0:
-            continue
-        steps[first], front = 0, [first]
-        for polygon in front:  # grows while it is walked
-            for other in around[polygon]:
-                if steps[other] < 0:
-                    steps[other] = steps[polygon] + 1
-                    front.append(other)
-    return steps
+    return np.column_stack([flat[:, 0], np.zeros(len(flat)), flat[:, 1]]) + LAYOUT_CENTRE
 
 
 class Sides:
@@ -195,7 +158,7 @@ def cut_colour(number: int) -> tuple[float, float, float]:
     """The colours in turn, every other time round as tints."""
     turn, place = divmod(number, len(CUT_COLOURS))
     full = np.array([int(CUT_COLOURS[place][k : k + 2], 16) / 255 for k in (1, 3, 5)])
-    return tuple(1 - (0.6 if turn % 2 else 1.0) * (1 - full))
+    return tuple(1 - (0.55 if turn % 2 else 1.0) * (1 - full))
 
 
 def cone_colour(curvature: float) -> tuple[float, float, float]:
@@ -262,7 +225,10 @@ def add_layout(mesh: bpy.types.Mesh, uv: np.ndarray, board: np.ndarray) -> None:
     corner = np.array([loop.vertex_index for loop in layout.loops])
     layout.uv_layers.new().uv.foreach_set("vector", uv[corner].astype(np.float32).ravel())
     layout.materials.append(mesh.materials[0])
-    add_object("layout", layout)
+    shown = add_object("layout", layout)
+    # Where the layout overlaps itself its faces coincide and must not shade each other; a copy behind casts the shadow.
+    shown.visible_shadow = shown.visible_diffuse = shown.visible_glossy = False
+    add_object("layout shadow", layout).location.y = WALL_DEPTH / 4
 
 
 def add_tubes(name: str, lines: list[np.ndarray], radius: float, colour: tuple[float, float, float]) -> None:

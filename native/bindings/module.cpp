@@ -22,7 +22,8 @@ using BoolArray = py::array_t<bool, py::array::c_style>;
 // Arguments arrive as converted by the Python layer; anything else is a defect of the caller, refused by type.
 template <typename Matrix, typename Array>
 Matrix to_matrix(const Array& array) {
-  if (array.ndim() != 2 || array.shape(1) != Matrix::ColsAtCompileTime) throw py::value_error("array of the wrong shape");
+  if (array.ndim() != 2 || array.shape(1) != Matrix::ColsAtCompileTime)
+    throw py::value_error("array of the wrong shape");
   return Eigen::Map<const Matrix>(array.data(), array.shape(0), array.shape(1));
 }
 
@@ -31,8 +32,8 @@ std::vector<Index> to_vector(const IndexArray& array) {
   return {array.data(), array.data() + array.shape(0)};
 }
 
-lsgp::Surface to_surface(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
-                         const IndexArray& seams) {
+lsgp::Surface to_surface(const FloatArray& positions, const IndexArray& triangles,
+                         const std::optional<IndexArray>& edges, const IndexArray& seams) {
   lsgp::Surface surface{to_matrix<lsgp::Positions>(positions), to_matrix<lsgp::Triangles>(triangles), std::nullopt,
                         to_matrix<lsgp::VertexPairs>(seams)};
   if (edges) surface.edges = to_matrix<lsgp::VertexPairs>(*edges);
@@ -134,8 +135,9 @@ py::dict to_dict(const lsgp::SeamQuality& seams) {
 }
 
 py::dict parameterize(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
-                      const IndexArray& seams, const IndexArray& cones, const FloatArray& angles, const BoolArray& has_angle,
-                      const std::string& prescription, const std::string& unfold, const std::string& method) {
+                      const IndexArray& seams, const IndexArray& cones, const FloatArray& angles,
+                      const BoolArray& has_angle, const std::string& prescription, const std::string& unfold,
+                      const std::string& method) {
   const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
   const lsgp::Cones wanted = to_cones(cones, angles, has_angle);
   const lsgp::Options options{to_rule(prescription),
@@ -177,9 +179,9 @@ py::dict find_cuts(const FloatArray& positions, const IndexArray& triangles, con
   return out;
 }
 
-py::dict prescribe_curvature(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
-                             const IndexArray& seams, const IndexArray& cones, const FloatArray& angles,
-                             const BoolArray& has_angle, const std::string& prescription) {
+py::dict prescribe_curvature(const FloatArray& positions, const IndexArray& triangles,
+                             const std::optional<IndexArray>& edges, const IndexArray& seams, const IndexArray& cones,
+                             const FloatArray& angles, const BoolArray& has_angle, const std::string& prescription) {
   const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
   const lsgp::Cones wanted = to_cones(cones, angles, has_angle);
   const lsgp::PrescriptionRule rule = to_rule(prescription);
@@ -193,15 +195,17 @@ py::dict prescribe_curvature(const FloatArray& positions, const IndexArray& tria
   return out;
 }
 
-py::array_t<Index> place_cones(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
-                               const IndexArray& seams, int count, const IndexArray& existing) {
+py::array_t<Index> place_cones(const FloatArray& positions, const IndexArray& triangles,
+                               const std::optional<IndexArray>& edges, const IndexArray& seams, int count,
+                               const IndexArray& existing) {
   const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
   const std::vector<Index> kept = to_vector(existing);
   return to_array(without_gil([&] { return lsgp::place_cones(surface, count, kept); }));
 }
 
-py::dict measure_distortion(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
-                            const IndexArray& seams, const FloatArray& corner_uv, const std::optional<IndexArray>& cones) {
+py::dict measure_distortion(const FloatArray& positions, const IndexArray& triangles,
+                            const std::optional<IndexArray>& edges, const IndexArray& seams,
+                            const FloatArray& corner_uv, const std::optional<IndexArray>& cones) {
   const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
   if (corner_uv.size() != 6 * surface.triangles.rows()) throw py::value_error("array of the wrong shape");
   const lsgp::CornerUv uv = Eigen::Map<const lsgp::CornerUv>(corner_uv.data(), 3 * surface.triangles.rows(), 2);

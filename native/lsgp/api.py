@@ -64,7 +64,8 @@ class Options:
         for name, choices in (("prescription", PrescriptionRule), ("unfold", UnfoldMethod), ("method", Method)):
             value = getattr(self, name)
             if value not in get_args(choices) and not (name == "prescription" and value is None):
-                raise InputError("WRONG_PARAMETER", f"{name} is {value!r}; choose one of {', '.join(get_args(choices))}.")
+                known = ", ".join(get_args(choices))
+                raise InputError("WRONG_PARAMETER", f"{name} is {value!r}; choose one of {known}.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,10 +215,11 @@ def place_cones(surface: Surface, count: int | None = None, existing: ArrayLike 
     """Cones at the extrema of the log scale factor, one after the other (Ben-Chen et al. 2008).
 
     count: cones per component, `existing` ones included; None: as many as bring the predicted L2 stretch near 1.
-    existing: cones to keep; they come first in the answer.  Returns (k,) int32 vertex indices.
+    existing: cones to keep; they come first in the answer. None is placed on a border or within two rings of another.
+    Returns (k,) int32 vertex indices.
     """
     if count is not None and count < 0:
-        raise InputError("WRONG_PARAMETER", f"count is {count}; pass the number of cones wanted, or None for automatic.")
+        raise InputError("WRONG_PARAMETER", f"count is {count}; pass a number of cones, or None for automatic.")
     wanted = -1 if count is None else int(count)
     return _lsgp.place_cones(*_surface_arrays(surface), wanted, _index_vector(existing, "existing"))
 

@@ -67,8 +67,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except UsageError as error:
         _say(sys.stderr, f"lsgp: error: {error}")
     except OSError as error:
-        where = "" if error.filename is None else f" '{os.fsdecode(error.filename)}'"
-        _say(sys.stderr, f"lsgp: error: {error.strerror or error}:{where}")
+        where = "" if error.filename is None else f": '{os.fsdecode(error.filename)}'"
+        _say(sys.stderr, f"lsgp: error: {error.strerror or error}{where}")
     return USAGE
 
 
@@ -157,8 +157,7 @@ def _reported(args: argparse.Namespace) -> int:
 
 
 def _refusal(error: LsgpError, run: Run) -> reports.Report:
-    where = reports.named(reports.on_faces(error.elements, run.triangulation))
-    _say(sys.stderr, f"lsgp: refused: {error.code}: {error.message}" + (f" ({where})" if where else ""))
+    _say(sys.stderr, f"lsgp: refused: {error.code}: {error.message}{_faces(error.elements, run.triangulation)}")
     return reports.refusal_report(error, run.triangulation)
 
 
@@ -229,17 +228,23 @@ def _read(path: Path, run: Run, with_uv: bool = False) -> tuple[PolygonMesh, Tri
 def _require_writable(args: argparse.Namespace) -> None:
     """Say before the work, not after it, that its result cannot be written."""
     paths = [path for path in (args.output, args.report) if path is not None]
-    if len({os.path.realpath(path) for path in paths}) < len(paths):
-        raise UsageError("the output and the report cannot be the same file")
+    if args.report is not None:
+        for other, what in ((args.output, "the output"), (args.input, "the input")):
+            if other is not None and os.path.realpath(other) == os.path.realpath(args.report):
+                raise UsageError(f"{what} and the report cannot be the same file")
     if args.output is not None and args.output.suffix.lower() in (".off", ".ply"):
         raise UsageError(f"the output is OBJ; name it .obj, not '{args.output}'")
     for path in paths:
-        folder = Path(os.path.realpath(path)).parent
-        if path.is_dir():
+        target = Path(os.path.realpath(path))
+        if target.is_dir():
             raise UsageError(f"'{path}' is a folder")
-        if not folder.is_dir():
-            raise UsageError(f"there is no folder '{folder}' to write '{path.name}' to")
-        if not os.access(path if path.exists() else folder, os.W_OK):
+        if not target.parent.is_dir():
+            raise UsageError(f"there is no folder '{target.parent}' to write '{path.name}' to")
+        # A file is replaced through its folder; a device is written to.
+        touched = [target] if target.exists() else []
+        if not touched or target.is_file():
+            touched.append(target.parent)
+        if not all(os.access(place, os.W_OK) for place in touched):
             raise UsageError(f"'{path}' cannot be written")
 
 
@@ -320,8 +325,20 @@ def _unlike(path: Path | None, form: str) -> InputError:
 
 def _warn(findings: Sequence[Finding], triangulation: Triangulation) -> None:
     for finding in findings:
-        where = reports.named(reports.on_faces(finding.elements, triangulation))
-        _say(sys.stderr, f"lsgp: warning: {finding.code}: {finding.message}" + (f" ({where})" if where else ""))
+        where = _faces(finding.elements, triangulation)
+        _say(sys.stderr, f"lsgp: warning: {finding.code}: {finding.message}{where}")
+
+
+def _faces(elements: Elements, triangulation: Triangulation | None) -> str:
+    """The faces of the file that a message speaks of, in brackets. Messages of the library name their elements, but
+    know triangles only; nothing is added where the file has only those, too, or where they name vertices or edges."""
+    only_triangles = (
+        triangulation is not None and len(triangulation.triangles) == triangulation.polygon.max(initial=-1) + 1
+    )
+    if elements.kind == "triangles" and only_triangles:
+        return ""
+    faces = reports.on_faces(elements, triangulation)
+    return f" ({reports.named(faces)})" if faces.kind == "faces" and len(faces.indices) else ""
 
 
 def _say(stream: TextIO, text: str) -> None:

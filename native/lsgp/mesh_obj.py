@@ -45,7 +45,7 @@ def format_obj(mesh: PolygonMesh, corner_uv: NDArray[np.float64]) -> bytes:
     mapped_polygon = np.bincount(polygon[missing], minlength=len(mesh.sizes)) == 0
     mapped = mapped_polygon[polygon]
     vertices = mesh.corners[mapped]
-    uv = corner_uv[mapped] + 0.0  # -0.0 becomes 0.0, as the two are one place
+    uv = corner_uv[mapped]
     order = np.lexsort((uv[:, 1], uv[:, 0], vertices))
     new = np.ones(len(order), bool)
     new[1:] = (np.diff(vertices[order]) != 0) | (np.diff(uv[order], axis=0) != 0).any(axis=1)

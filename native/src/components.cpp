@@ -7,7 +7,8 @@
 
 namespace lsgp {
 
-std::vector<AssignedCones> assign_cones(const Surface& surface, const std::vector<Component>& components, const Cones& cones) {
+std::vector<AssignedCones> assign_cones(const Surface& surface, const std::vector<Component>& components,
+                                        const Cones& cones) {
   std::vector<Index> cone_at(surface.positions.rows(), none);
   for (std::size_t i = 0; i < cones.vertices.size(); ++i) cone_at[cones.vertices[i]] = static_cast<Index>(i);
   std::vector<AssignedCones> assigned(components.size());
@@ -18,8 +19,10 @@ std::vector<AssignedCones> assign_cones(const Surface& surface, const std::vecto
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
       const Index cone = cone_at[component.source_vertex[v]];
       if (cone == none) continue;
-      if (component.mesh.loop_of_vertex[v] == none) inside.emplace_back(cone, v);
-      else assigned[c].on_boundary.push_back(v);
+      if (component.mesh.loop_of_vertex[v] == none)
+        inside.emplace_back(cone, v);
+      else
+        assigned[c].on_boundary.push_back(v);
     }
     std::sort(inside.begin(), inside.end());
     for (const auto& [cone, v] : inside) {
@@ -42,14 +45,16 @@ Geometry require_geometry(const Component& component, std::vector<Finding>& find
   Geometry geometry = build_geometry(component.mesh);
   if (geometry.degenerate.empty()) return geometry;
   if (geometry.degenerate.size() == component.source_triangle.size()) {
-    throw Error(Code::degenerate_mesh,
-                concat("None of the ", geometry.degenerate.size(), " triangles has an area. Restore the surface's shape."),
-                {ElementKind::triangles, geometry.degenerate});
+    throw Error(
+        Code::degenerate_mesh,
+        concat("None of the ", geometry.degenerate.size(), " triangles has an area. Restore the surface's shape."),
+        {ElementKind::triangles, geometry.degenerate});
   }
-  findings.push_back({Code::degenerate_faces,
-                      concat(count(geometry.degenerate.size(), "triangle has", "triangles have"),
-                             " no area; they were given a little for the computation. Merge by distance to be rid of them."),
-                      in_source(component, {ElementKind::triangles, geometry.degenerate})});
+  findings.push_back(
+      {Code::degenerate_faces,
+       concat(count(geometry.degenerate.size(), "triangle has", "triangles have"),
+              " no area; they were given a little for the computation. Merge by distance to be rid of them."),
+       in_source(component, {ElementKind::triangles, geometry.degenerate})});
   return geometry;
 }
 

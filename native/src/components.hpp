@@ -18,7 +18,8 @@ struct AssignedCones {
 };
 
 // In the order of the components.
-std::vector<AssignedCones> assign_cones(const Surface& surface, const std::vector<Component>& components, const Cones& cones);
+std::vector<AssignedCones> assign_cones(const Surface& surface, const std::vector<Component>& components,
+                                        const Cones& cones);
 
 // Throws NOT_ORIENTABLE, DEGENERATE_MESH.
 Geometry require_geometry(const Component& component, std::vector<Finding>& findings);
@@ -40,9 +41,10 @@ void for_each_component(const std::vector<Component>& components, std::vector<Fi
     }
   }
   for (const auto& [i, error] : failures) {
-    findings.push_back({Code::component_skipped,
-                        std::string("A part of the surface was left as it is (") + name(error.code()) + "): " + error.what(),
-                        {ElementKind::triangles, components[i].source_triangle}});
+    findings.push_back(
+        {Code::component_skipped,
+         std::string("A part of the surface was left as it is (") + name(error.code()) + "): " + error.what(),
+         {ElementKind::triangles, components[i].source_triangle}});
   }
 }
 

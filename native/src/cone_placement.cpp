@@ -11,9 +11,9 @@ namespace lsgp {
 
 namespace {
 
-constexpr double wanted_l2 = 1.1;      // of the harmonic angles; least distortion then reaches about 1.05
-constexpr int most_automatic = 60;     // cones of one component
-constexpr int fewest_on_sphere = 4;    // a closed surface of genus 0 needs 3; 4 keep their angles moderate
+constexpr double wanted_l2 = 1.1;    // of the harmonic angles; least distortion then reaches about 1.05
+constexpr int most_automatic = 60;   // cones of one component
+constexpr int fewest_on_sphere = 4;  // a closed surface of genus 0 needs 3; 4 keep their angles moderate
 
 class Placement {
  public:
@@ -55,8 +55,10 @@ class Placement {
 
   Index largest_scale() const {
     Eigen::VectorXd y = harmonic_scale();
-    if (scale_.cone_count() > 0) y.array() -= y[scale_.cones().front()];
-    else if (!mesh_.closed()) y.array() -= y[mesh_.boundary_loops.front().front()];
+    if (scale_.cone_count() > 0)
+      y.array() -= y[scale_.cones().front()];
+    else if (!mesh_.closed())
+      y.array() -= y[mesh_.boundary_loops.front().front()];
     Index best = none;
     for (Index v = 0; v < mesh_.vertex_count(); ++v) {
       if (!blocked_[v] && (best == none || std::abs(y[v]) > std::abs(y[best]))) best = v;
@@ -86,7 +88,7 @@ std::vector<Index> place_cones(const Surface& surface, int count, const std::vec
   require_valid(surface);
   require_valid(surface, kept);
   std::vector<Finding> findings;
-  const std::vector<Component> components = build_components(surface, findings);
+  const std::vector<Component> components = build_topology(surface, findings).components;
   const std::vector<AssignedCones> assigned = assign_cones(surface, components, kept);
   std::vector<Index> out = existing;
   for_each_component(components, findings, [&](std::size_t i) {

@@ -29,7 +29,8 @@ struct Bounds {
   Eigen::VectorXd low, high;
 };
 
-Bounds bounds_from_angles(const HalfedgeMesh& mesh, const ComponentCones& cones, double smallest, double largest, double share) {
+Bounds bounds_from_angles(const HalfedgeMesh& mesh, const ComponentCones& cones, double smallest, double largest,
+                          double share) {
   const Index k = static_cast<Index>(cones.vertices.size());
   Bounds bounds{Eigen::VectorXd(k), Eigen::VectorXd(k)};
   for (Index i = 0; i < k; ++i) {
@@ -61,8 +62,8 @@ bool all_fixed(const ComponentCones& cones) {
 [[noreturn]] void throw_gauss_bonnet(const ComponentCones& cones, double sum, double required, const char* remedy) {
   throw Error(Code::gauss_bonnet,
               concat("The ", count(cones.vertices.size(), "cone angle leaves", "cone angles leave"), " a curvature of ",
-                     sum / M_PI, " pi in sum (", sum, "), but this surface requires ", required / M_PI, " pi (", required,
-                     "). ", remedy),
+                     sum / M_PI, " pi in sum (", sum, "), but this surface requires ", required / M_PI, " pi (",
+                     required, "). ", remedy),
               {ElementKind::vertices, cones.vertices});
 }
 
@@ -76,8 +77,8 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones) {
   if (!overloaded.empty()) {
     throw Error(Code::cone_angle_range,
                 concat(count(overloaded.size(), "cone has", "cones have"),
-                       " an angle that the triangles around it cannot carry, less than 180 degrees each (", list(overloaded),
-                       "). Lower the angle or subdivide the mesh there."),
+                       " an angle that the triangles around it cannot carry, less than 180 degrees each (",
+                       list(overloaded), "). Lower the angle or subdivide the mesh there."),
                 {ElementKind::vertices, overloaded});
   }
   if (!mesh.closed()) return;
@@ -88,7 +89,8 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones) {
                 concat("A closed surface without cones cannot be unfolded: its curvature of ", required / M_PI,
                        " pi has to go somewhere. Mark cones at tips and corners, or place them automatically."));
   }
-  const Bounds widest = bounds_from_angles(mesh, cones, impossible_angle, largest_angle * 1e3, impossible_share_of_valence);
+  const Bounds widest =
+      bounds_from_angles(mesh, cones, impossible_angle, largest_angle * 1e3, impossible_share_of_valence);
   if (all_fixed(cones)) {
     const double sum = widest.low.sum();
     if (std::abs(sum - required) > renormalized_mismatch) {
@@ -97,21 +99,24 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones) {
     return;
   }
   if (widest.low.sum() <= required && required <= widest.high.sum()) return;
-  const bool some_fixed = std::any_of(cones.angles.begin(), cones.angles.end(), [](const auto& a) { return a.has_value(); });
+  const bool some_fixed =
+      std::any_of(cones.angles.begin(), cones.angles.end(), [](const auto& a) { return a.has_value(); });
   if (some_fixed) {
     throw_gauss_bonnet(cones, required < widest.low.sum() ? widest.low.sum() : widest.high.sum(), required,
                        "The automatic cones cannot take up the rest: change the given angles or add cones.");
   }
-  throw Error(Code::too_few_cones,
-              concat(count(cones.vertices.size(), "cone cannot", "cones cannot"), " take up the surface's curvature of ",
-                     required / M_PI, " pi, less than 2 pi each. Mark more cones, or place them automatically."),
-              {ElementKind::vertices, cones.vertices});
+  throw Error(
+      Code::too_few_cones,
+      concat(count(cones.vertices.size(), "cone cannot", "cones cannot"), " take up the surface's curvature of ",
+             required / M_PI, " pi, less than 2 pi each. Mark more cones, or place them automatically."),
+      {ElementKind::vertices, cones.vertices});
 }
 
 Eigen::VectorXd least_distortion(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale) {
   const Eigen::VectorXd harmonic = scale.harmonic_curvature();
   Bounds bounds = bounds_from_angles(mesh, cones, smallest_angle, largest_angle, largest_share_of_valence);
-  const Bounds widest = bounds_from_angles(mesh, cones, impossible_angle, largest_angle * 1e3, impossible_share_of_valence);
+  const Bounds widest =
+      bounds_from_angles(mesh, cones, impossible_angle, largest_angle * 1e3, impossible_share_of_valence);
   for (Eigen::Index i = 0; i < harmonic.size(); ++i) {
     if (cones.angles[i]) continue;
     bounds.low[i] = std::max(widest.low[i], std::min(bounds.low[i], harmonic[i]));
@@ -131,7 +136,8 @@ Eigen::VectorXd harmonic(const HalfedgeMesh& mesh, const ComponentCones& cones, 
   std::vector<Index> impossible;
   for (Eigen::Index i = 0; i < curvature.size(); ++i) {
     const double angle = 2 * M_PI - curvature[i];
-    if (angle < impossible_angle || angle >= M_PI * valence(mesh, cones.vertices[i])) impossible.push_back(cones.vertices[i]);
+    if (angle < impossible_angle || angle >= M_PI * valence(mesh, cones.vertices[i]))
+      impossible.push_back(cones.vertices[i]);
   }
   if (!impossible.empty()) {
     throw Error(Code::cone_angle_range,
@@ -143,9 +149,18 @@ Eigen::VectorXd harmonic(const HalfedgeMesh& mesh, const ComponentCones& cones, 
 }
 
 // The paper's rule; the angles that junctions of the cut read are handed on to the cones in equal parts.
-std::optional<Eigen::VectorXd> straightness(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
-                                            const CutMesh& cut_mesh, const ComponentCones& cones,
-                                            std::vector<Finding>& findings) {
+std::optional<Eigen::VectorXd> straightness(const HalfedgeMesh& mesh, const Geometry& geometry,
+                                            const CutGraph& cut_graph, const CutMesh& cut_mesh,
+                                            const ComponentCones& cones, std::vector<Finding>& findings) {
+  if (!mesh.closed()) {
+    // With a free border the straightened layout is an arbitrary one of many, and so are its angles.
+    findings.push_back(
+        {Code::straightness_failed,
+         "Straight cuts give usable cone angles on closed surfaces only, and this one has an open border. The "
+         "least-distortion angles were used instead.",
+         {ElementKind::vertices, cones.vertices}});
+    return std::nullopt;
+  }
   const StraightenedLayout layout = straighten(mesh, geometry, cut_graph, cut_mesh);
   const Index k = static_cast<Index>(cones.vertices.size());
   Eigen::VectorXd curvature(k);
@@ -172,7 +187,7 @@ std::optional<Eigen::VectorXd> straightness(const HalfedgeMesh& mesh, const Geom
     for (const Index v : {cut.tail, cut.head}) {
       const bool is_cone = std::find(cones.vertices.begin(), cones.vertices.end(), v) != cones.vertices.end();
       const bool listed = std::find(junction_vertices.begin(), junction_vertices.end(), v) != junction_vertices.end();
-      if (!is_cone && !listed && mesh.loop_of_vertex[v] == none) junction_vertices.push_back(v);
+      if (!is_cone && !listed) junction_vertices.push_back(v);
     }
   }
   if (!junction_vertices.empty()) {
@@ -193,8 +208,9 @@ int valence(const HalfedgeMesh& mesh, Index vertex) {
   return triangles;
 }
 
-Curvature prescribe(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph, const CutMesh& cut_mesh,
-                    const ComponentCones& cones, PrescriptionRule rule, std::vector<Finding>& findings) {
+Curvature prescribe(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
+                    const CutMesh& cut_mesh, const ComponentCones& cones, PrescriptionRule rule,
+                    std::vector<Finding>& findings) {
   ComponentCones asked = cones;
   if (rule != PrescriptionRule::manual) std::fill(asked.angles.begin(), asked.angles.end(), std::nullopt);
   require_feasible(mesh, asked);

@@ -49,10 +49,10 @@ class LogScale {
   const Geometry& geometry_;
   std::vector<Index> row_of_vertex_;
   std::optional<Cholesky<double>> factor_;
-  Eigen::VectorXd weight_;        // (n) share of the area
-  Eigen::VectorXd without_cones_; // (n) y_K
+  Eigen::VectorXd weight_;         // (n) share of the area
+  Eigen::VectorXd without_cones_;  // (n) y_K
   std::vector<Index> cones_;
-  Eigen::MatrixXd green_;         // (n, k) G_c
+  Eigen::MatrixXd green_;  // (n, k) G_c
 };
 
 // What a component's map has to realise.
@@ -70,8 +70,9 @@ struct ComponentCones {
 
 // cut_graph, cut_mesh: used by the straightness rule.  Throws TOO_FEW_CONES, CONE_ANGLE_RANGE, GAUSS_BONNET with the
 // component's own vertex numbers.
-Curvature prescribe(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph, const CutMesh& cut_mesh,
-                    const ComponentCones& cones, PrescriptionRule rule, std::vector<Finding>& findings);
+Curvature prescribe(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
+                    const CutMesh& cut_mesh, const ComponentCones& cones, PrescriptionRule rule,
+                    std::vector<Finding>& findings);
 
 // The number of triangles around an inside vertex.
 int valence(const HalfedgeMesh& mesh, Index vertex);

@@ -45,9 +45,9 @@ double cost(const HalfedgeMesh& mesh, const Geometry& geometry, Index h) {
 
 // Shortest paths from the sources: cones by themselves, a boundary loop's vertices together.
 struct Forest {
-  std::vector<double> distance;  // (n)
-  std::vector<Index> reached_by; // (n) the halfedge that leads to the vertex, none at sources
-  std::vector<Index> region;     // (n) the source
+  std::vector<double> distance;   // (n)
+  std::vector<Index> reached_by;  // (n) the halfedge that leads to the vertex, none at sources
+  std::vector<Index> region;      // (n) the source
   Index region_count = 0;
 };
 
@@ -98,7 +98,8 @@ struct Bridge {
 };
 
 template <typename Select>
-std::vector<Bridge> sorted_bridges(const HalfedgeMesh& mesh, const Geometry& geometry, const Forest& forest, Select select) {
+std::vector<Bridge> sorted_bridges(const HalfedgeMesh& mesh, const Geometry& geometry, const Forest& forest,
+                                   Select select) {
   std::vector<Bridge> bridges;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (mesh.twin[h] < h || !may_cut(mesh, h) || !select(h)) continue;

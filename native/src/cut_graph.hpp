@@ -17,9 +17,9 @@ struct Cut {
 
 struct CutGraph {
   std::vector<Cut> cuts;
-  std::vector<char> is_cut;         // (3m) on both halfedges of a cut edge
-  std::vector<Index> cut_of;        // (3m) the cut a halfedge belongs to, none off the cuts
-  std::vector<char> runs_forward;   // (3m) the halfedge points from its cut's tail to its head
+  std::vector<char> is_cut;        // (3m) on both halfedges of a cut edge
+  std::vector<Index> cut_of;       // (3m) the cut a halfedge belongs to, none off the cuts
+  std::vector<char> runs_forward;  // (3m) the halfedge points from its cut's tail to its head
 };
 
 // One multi-source Dijkstra grows a region around every cone and boundary loop; the minimum spanning tree over the

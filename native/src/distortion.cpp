@@ -91,11 +91,13 @@ SeamQuality measure_seams(const HalfedgeMesh& mesh, const CutGraph& cut_graph, c
     for (const Index h : halfedges) {
       const auto z = ends(h);
       const Complex left = z[1] - z[0], right = z[3] - z[2];
-      const double longer = std::max(std::abs(left), std::abs(right)), shorter = std::min(std::abs(left), std::abs(right));
+      const double longer = std::max(std::abs(left), std::abs(right)),
+                   shorter = std::min(std::abs(left), std::abs(right));
       out.sister_ratio_max = std::max(out.sister_ratio_max, longer / shorter);
       turn += std::conj(left) * right;
     }
-    turn = rotation ? std::polar(1.0, (*rotation)[p]) : turn / std::max(std::abs(turn), std::numeric_limits<double>::min());
+    turn = rotation ? std::polar(1.0, (*rotation)[p])
+                    : turn / std::max(std::abs(turn), std::numeric_limits<double>::min());
     Complex translation = 0;
     for (const Index h : halfedges) {
       const auto z = ends(h);

@@ -27,6 +27,7 @@ const char* name(Code code) {
     case Code::component_skipped: return "COMPONENT_SKIPPED";
     case Code::isolated_vertices: return "ISOLATED_VERTICES";
     case Code::degenerate_faces: return "DEGENERATE_FACES";
+    case Code::duplicate_face: return "DUPLICATE_FACE";
     case Code::non_manifold_edge: return "NON_MANIFOLD_EDGE";
     case Code::split_vertex: return "SPLIT_VERTEX";
     case Code::reoriented: return "REORIENTED";

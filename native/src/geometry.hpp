@@ -10,12 +10,12 @@
 namespace lsgp {
 
 struct Geometry {
-  Eigen::VectorXd length;         // (3m) of halfedges
-  Eigen::VectorXd angle;          // (3m) at corners, radians
-  Eigen::VectorXd half_cotangent; // (3m) half the cotangent of the angle opposite a halfedge
-  Eigen::VectorXd area;           // (m) of triangles
-  Eigen::VectorXd vertex_area;    // (n) a third of the triangles around
-  Eigen::VectorXd angle_defect;   // (n) 2 pi minus the angle sum, pi minus it on a boundary
+  Eigen::VectorXd length;          // (3m) of halfedges
+  Eigen::VectorXd angle;           // (3m) at corners, radians
+  Eigen::VectorXd half_cotangent;  // (3m) half the cotangent of the angle opposite a halfedge
+  Eigen::VectorXd area;            // (m) of triangles
+  Eigen::VectorXd vertex_area;     // (n) a third of the triangles around
+  Eigen::VectorXd angle_defect;    // (n) 2 pi minus the angle sum, pi minus it on a boundary
   double total_area = 0;
   std::vector<Index> degenerate;  // triangles without a usable area; lengths are mollified when there are any
 };

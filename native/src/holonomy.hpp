@@ -12,11 +12,11 @@ namespace lsgp {
 
 // Cones, junctions and boundary loops as nodes joined by cuts, with a spanning tree rooted where the rest hangs off.
 struct NodeGraph {
-  std::vector<Index> vertex;       // (nodes) none for a boundary loop
-  std::vector<Index> tail, head;   // (cuts) nodes
-  std::vector<Index> parent_cut;   // (nodes) the cut towards the root, none at the root
-  std::vector<Index> order;        // nodes from the root outwards
-  std::vector<char> in_tree;       // (cuts) the others close a loop about a handle
+  std::vector<Index> vertex;      // (nodes) none for a boundary loop
+  std::vector<Index> tail, head;  // (cuts) nodes
+  std::vector<Index> parent_cut;  // (nodes) the cut towards the root, none at the root
+  std::vector<Index> order;       // nodes from the root outwards
+  std::vector<char> in_tree;      // (cuts) the others close a loop about a handle
 };
 
 // root_rank: the higher, the better a root this vertex makes; boundary loops are taken before any vertex.

@@ -17,14 +17,14 @@ double cross(Complex a, Complex b) { return std::imag(std::conj(a) * b); }
 // Counter-clockwise convex hull (Andrew's monotone chain).
 std::vector<Complex> convex_hull(const Eigen::VectorXcd& position) {
   std::vector<Complex> points(position.data(), position.data() + position.size());
-  std::sort(points.begin(), points.end(), [](Complex a, Complex b) {
-    return a.real() != b.real() ? a.real() < b.real() : a.imag() < b.imag();
-  });
+  std::sort(points.begin(), points.end(),
+            [](Complex a, Complex b) { return a.real() != b.real() ? a.real() < b.real() : a.imag() < b.imag(); });
   std::vector<Complex> hull;
   const auto add_chain = [&](auto begin, auto end) {
     const std::size_t base = hull.size();
     for (auto point = begin; point != end; ++point) {
-      while (hull.size() >= base + 2 && cross(hull.back() - hull[hull.size() - 2], *point - hull.back()) <= 0) hull.pop_back();
+      while (hull.size() >= base + 2 && cross(hull.back() - hull[hull.size() - 2], *point - hull.back()) <= 0)
+        hull.pop_back();
       hull.push_back(*point);
     }
     hull.pop_back();  // the other chain begins with it

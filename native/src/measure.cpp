@@ -18,8 +18,8 @@ constexpr double same_position = 1e-6;
 constexpr double cone_threshold = 1e-3;
 
 struct Part {
-  Surface surface;                // the measured triangles, the caller's vertices
-  std::vector<Index> triangles;   // the caller's
+  Surface surface;               // the measured triangles, the caller's vertices
+  std::vector<Index> triangles;  // the caller's
 };
 
 Part finite_part(const Surface& surface, const CornerUv& corner_uv) {
@@ -29,7 +29,8 @@ Part finite_part(const Surface& surface, const CornerUv& corner_uv) {
   }
   part.surface.positions = surface.positions;
   part.surface.triangles.resize(part.triangles.size(), 3);
-  for (std::size_t i = 0; i < part.triangles.size(); ++i) part.surface.triangles.row(i) = surface.triangles.row(part.triangles[i]);
+  for (std::size_t i = 0; i < part.triangles.size(); ++i)
+    part.surface.triangles.row(i) = surface.triangles.row(part.triangles[i]);
   part.surface.seams.resize(0, 2);
   return part;
 }
@@ -40,7 +41,8 @@ std::vector<char> find_open_edges(const HalfedgeMesh& mesh, const Eigen::VectorX
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     const Index twin = mesh.twin[h];
     if (twin == none) continue;
-    is_cut[h] = std::abs(position[h] - position[next(twin)]) > tolerance || std::abs(position[next(h)] - position[twin]) > tolerance;
+    is_cut[h] = std::abs(position[h] - position[next(twin)]) > tolerance ||
+                std::abs(position[next(h)] - position[twin]) > tolerance;
   }
   return is_cut;
 }
@@ -86,7 +88,8 @@ Measurement measure_distortion(const Surface& surface, const CornerUv& corner_uv
   std::vector<Finding> ignored;
   std::vector<Index> cut_edges;
   Index island_count = 0;
-  for (const Component& component : build_components(part.surface, ignored)) {
+  const Topology topology = build_topology(part.surface, ignored);
+  for (const Component& component : topology.components) {
     if (!component.orientable) continue;
     const HalfedgeMesh& mesh = component.mesh;
     Eigen::VectorXcd position(mesh.halfedge_count());
@@ -129,6 +132,8 @@ Measurement measure_distortion(const Surface& surface, const CornerUv& corner_uv
       cut_edges.push_back(component.source_vertex[mesh.target(h)]);
     }
   }
+  for (const auto& [f, original] : topology.duplicates)
+    out.island[part.triangles[f]] = out.island[part.triangles[original]];
   std::sort(out.flipped.begin(), out.flipped.end());
   out.cut_edges = Eigen::Map<VertexPairs>(cut_edges.data(), static_cast<Eigen::Index>(cut_edges.size() / 2), 2);
   return out;

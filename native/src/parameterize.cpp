@@ -49,10 +49,11 @@ UnfoldMethod usable_unfold(const HalfedgeMesh& mesh, const ComponentCones& cones
                            std::vector<Finding>& findings) {
   const bool plain_disk = mesh.boundary_loops.size() == 1 && mesh.genus == 0 && cones.vertices.empty();
   if (asked == UnfoldMethod::poisson || mesh.closed() || plain_disk) return asked;
-  findings.push_back({Code::spectral_needs_closed,
-                      "The spectral unfolding is ill-posed on a surface with boundary and cones; the Poisson unfolding was "
-                      "used instead.",
-                      {}});
+  findings.push_back(
+      {Code::spectral_needs_closed,
+       "The spectral unfolding is ill-posed on a surface with boundary and cones; the Poisson unfolding was "
+       "used instead.",
+       {}});
   return UnfoldMethod::poisson;
 }
 
@@ -74,20 +75,23 @@ Connection connect(const HalfedgeMesh& mesh, const Geometry& geometry, const Map
   return out;
 }
 
+// rotation: as imposed, none where no transitions were; angles are then free, too.
 void check(const HalfedgeMesh& mesh, const Eigen::VectorXd* rotation, Map& map) {
   if (!map.position.allFinite()) {
-    throw Error(Code::solver_failed, "The unfolding returned values that are not finite. Clean the mesh (merge by distance, "
-                                     "dissolve degenerate faces) and try again.");
+    throw Error(Code::solver_failed,
+                "The unfolding returned values that are not finite. Clean the mesh (merge by distance, "
+                "dissolve degenerate faces) and try again.");
   }
   const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
   map.uv_area = 0;
   for (Index f = 0; f < mesh.triangle_count(); ++f) map.uv_area += doubled_area(corners, f) / 2;
   map.seams = measure_seams(mesh, map.cut_graph, corners, rotation);
   map.validity = check_map(mesh, corners, map.curvature.at_vertex);
+  if (!rotation) map.validity.wrong_angle_sums.clear();
 }
 
-Map solve_component(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones, const Options& options,
-                    std::vector<Finding>& findings, StageSeconds& seconds) {
+Map solve_component(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
+                    const Options& options, std::vector<Finding>& findings, StageSeconds& seconds) {
   Map map;
   {
     StageTimer timer(seconds, "cut");
@@ -114,7 +118,8 @@ Map solve_component(const HalfedgeMesh& mesh, const Geometry& geometry, const Co
                      .unfold(map.curvature.log_scale, connection.frames);
   check(mesh, &connection.rotation, map);
   if (!map.validity.flipped.empty()) {
-    map.position = untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, map.curvature, map.position);
+    map.position =
+        untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, map.curvature, map.position);
     check(mesh, &connection.rotation, map);
   }
   return map;
@@ -141,7 +146,8 @@ class Assembly {
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
       result_.log_scale[component.source_vertex[v]] = map.curvature.log_scale[v];
     }
-    for (const Index v : cones.vertices) cone_angle_[component.source_vertex[v]] = 2 * M_PI - map.curvature.at_vertex[v];
+    for (const Index v : cones.vertices)
+      cone_angle_[component.source_vertex[v]] = 2 * M_PI - map.curvature.at_vertex[v];
     SeamQuality& seams = result_.seams;
     seams.sister_ratio_max = std::max(seams.sister_ratio_max, map.seams.sister_ratio_max);
     seams.rotation_residual = std::max(seams.rotation_residual, map.seams.rotation_residual);
@@ -154,7 +160,7 @@ class Assembly {
     solved_.emplace_back(component_index, std::move(map.cut_mesh.copy_of_corner));
   }
 
-  void finish(const Cones& cones) {
+  void finish(const Cones& cones, const std::vector<std::pair<Index, Index>>& duplicates) {
     arrange(islands_);
     std::vector<Index> triangles;
     for (std::size_t i = 0; i < solved_.size(); ++i) {
@@ -167,6 +173,7 @@ class Assembly {
       for (const Index f : component.source_triangle) result_.island[f] = static_cast<Index>(i);
       triangles.insert(triangles.end(), component.source_triangle.begin(), component.source_triangle.end());
     }
+    for (const auto& [f, original] : duplicates) share_map(f, original);
     result_.distortion = measure_triangles(surface_, result_.corner_uv, triangles);
     result_.cut_edges = Eigen::Map<VertexPairs>(cut_edges_.data(), static_cast<Eigen::Index>(cut_edges_.size() / 2), 2);
     for (const Index v : cones.vertices) {
@@ -178,23 +185,35 @@ class Assembly {
   }
 
  private:
+  void share_map(Index triangle, Index original) {
+    result_.island[triangle] = result_.island[original];
+    for (Index corner = 3 * triangle; corner < 3 * triangle + 3; ++corner) {
+      for (Index other = 3 * original; other < 3 * original + 3; ++other) {
+        if (surface_.triangles.data()[corner] == surface_.triangles.data()[other]) {
+          result_.corner_uv.row(corner) = result_.corner_uv.row(other);
+        }
+      }
+    }
+  }
+
   void report_defects() {
     std::vector<Index>& flipped = result_.flipped;
     std::vector<Index>& wrong = result_.wrong_angle_sums;
     std::sort(flipped.begin(), flipped.end());
     std::sort(wrong.begin(), wrong.end());
     if (!flipped.empty()) {
-      result_.warnings.push_back({Code::flipped_triangles,
-                                  concat(count(flipped.size(), "triangle is", "triangles are"), " flipped in the layout (",
-                                         list(flipped), "). Add a cone nearby or improve the mesh there."),
-                                  {ElementKind::triangles, flipped}});
+      result_.warnings.push_back(
+          {Code::flipped_triangles,
+           concat(count(flipped.size(), "triangle is", "triangles are"), " flipped in the layout (", list(flipped),
+                  "). Add a cone nearby or improve the mesh there."),
+           {ElementKind::triangles, flipped}});
     }
     if (!wrong.empty()) {
-      result_.warnings.push_back({Code::wrong_angle_sums,
-                                  concat("At ", count(wrong.size(), "vertex", "vertices"),
-                                         " the layout turns once too often or too little (", list(wrong),
-                                         "). Move or add cones nearby."),
-                                  {ElementKind::vertices, wrong}});
+      result_.warnings.push_back(
+          {Code::wrong_angle_sums,
+           concat("At ", count(wrong.size(), "vertex", "vertices"), " the layout turns once too often or too little (",
+                  list(wrong), "). Move or add cones nearby."),
+           {ElementKind::vertices, wrong}});
     }
   }
 
@@ -207,12 +226,13 @@ class Assembly {
   std::vector<std::pair<std::size_t, std::vector<Index>>> solved_;  // component, copy of each corner
 };
 
-void report_boundary_cones(const Component& component, const std::vector<Index>& on_boundary, std::vector<Finding>& findings) {
+void report_boundary_cones(const Component& component, const std::vector<Index>& on_boundary,
+                           std::vector<Finding>& findings) {
   if (on_boundary.empty()) return;
   Elements elements = in_source(component, {ElementKind::vertices, on_boundary});
   findings.push_back({Code::cone_on_boundary,
-                      concat(count(on_boundary.size(), "cone lies", "cones lie"), " on an open border (", list(elements.indices),
-                             "), where angles are free anyway; nothing was prescribed there."),
+                      concat(count(on_boundary.size(), "cone lies", "cones lie"), " on an open border (",
+                             list(elements.indices), "), where angles are free anyway; nothing was prescribed there."),
                       std::move(elements)});
 }
 
@@ -226,13 +246,14 @@ void move_findings(const Component& component, std::vector<Finding>& from, std::
 
 Result parameterize(const Surface& surface, const Cones& cones, const Options& options) {
   Result result;
-  std::vector<Component> components;
+  Topology topology;
   {
     StageTimer timer(result.stage_seconds, "topology");
     require_valid(surface);
     require_valid(surface, cones);
-    components = build_components(surface, result.warnings);
+    topology = build_topology(surface, result.warnings);
   }
+  const std::vector<Component>& components = topology.components;
   const std::vector<AssignedCones> assigned = assign_cones(surface, components, cones);
   Assembly assembly(surface, components, result);
   for_each_component(components, result.warnings, [&](std::size_t i) {
@@ -248,7 +269,7 @@ Result parameterize(const Surface& surface, const Cones& cones, const Options& o
     assembly.add(i, assigned[i].inside, geometry, std::move(map));
   });
   StageTimer timer(result.stage_seconds, "layout");
-  assembly.finish(cones);
+  assembly.finish(cones, topology.duplicates);
   return result;
 }
 
@@ -257,7 +278,7 @@ CutPaths find_cuts(const Surface& surface, const std::vector<Index>& cones) {
   require_valid(surface);
   require_valid(surface, automatic);
   std::vector<Finding> findings;
-  const std::vector<Component> components = build_components(surface, findings);
+  const std::vector<Component> components = build_topology(surface, findings).components;
   const std::vector<AssignedCones> assigned = assign_cones(surface, components, automatic);
   CutPaths out;
   std::vector<Index> edges;
@@ -280,7 +301,7 @@ Prescription prescribe_curvature(const Surface& surface, const Cones& cones, Pre
   require_valid(surface);
   require_valid(surface, cones);
   Prescription out;
-  const std::vector<Component> components = build_components(surface, out.warnings);
+  const std::vector<Component> components = build_topology(surface, out.warnings).components;
   const std::vector<AssignedCones> assigned = assign_cones(surface, components, cones);
   out.log_scale = Eigen::VectorXd::Zero(surface.positions.rows());
   std::vector<double> angle(surface.positions.rows(), std::numeric_limits<double>::quiet_NaN());
@@ -295,8 +316,10 @@ Prescription prescribe_curvature(const Surface& surface, const Cones& cones, Pre
         prescribe(component.mesh, geometry, cut_graph, cut_mesh, assigned[i].inside, rule, findings);
     report_boundary_cones(component, assigned[i].on_boundary, out.warnings);
     move_findings(component, findings, out.warnings);
-    for (Index v = 0; v < component.mesh.vertex_count(); ++v) out.log_scale[component.source_vertex[v]] = curvature.log_scale[v];
-    for (const Index v : assigned[i].inside.vertices) angle[component.source_vertex[v]] = 2 * M_PI - curvature.at_vertex[v];
+    for (Index v = 0; v < component.mesh.vertex_count(); ++v)
+      out.log_scale[component.source_vertex[v]] = curvature.log_scale[v];
+    for (const Index v : assigned[i].inside.vertices)
+      angle[component.source_vertex[v]] = 2 * M_PI - curvature.at_vertex[v];
     // Islands get the same area in 2D as in 3D, so their squared stretches add up by area.
     stretched_area += curvature.predicted_l2 * curvature.predicted_l2 * geometry.total_area;
     total_area += geometry.total_area;

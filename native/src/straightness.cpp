@@ -126,8 +126,10 @@ StraightSides straighten_sides(const HalfedgeMesh& mesh, const Geometry& geometr
   bool grounded = false;
   for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
     if (place[copy].from != none) continue;
-    if (!grounded) grounded = true;  // the first copy stays at the origin
-    else unknown[copy] = out.reduction.unknown_count++;
+    if (!grounded)
+      grounded = true;  // the first copy stays at the origin
+    else
+      unknown[copy] = out.reduction.unknown_count++;
   }
   out.reduction.begin.assign(1, 0);
   for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
@@ -183,13 +185,13 @@ StraightenedLayout straighten(const HalfedgeMesh& mesh, const Geometry& geometry
   std::vector<char> read(mesh.vertex_count(), 0);
   for (const Cut& cut : cut_graph.cuts) {
     for (const Index v : {cut.tail, cut.head}) {
-      if (read[v] || mesh.loop_of_vertex[v] != none) continue;
+      if (read[v]) continue;
       read[v] = 1;
       const auto all = sectors(mesh, cut_graph, cut_mesh, v);
       layout.curvature[v] = 2 * M_PI;
       for (std::size_t i = 0; i < all.size(); ++i) {
-        layout.curvature[v] -= read_angle(mesh, cut_graph, cut_mesh, boundary.positions(), all[i].copy, all[i].opened_by,
-                                          all[(i + 1) % all.size()].opened_by);
+        layout.curvature[v] -= read_angle(mesh, cut_graph, cut_mesh, boundary.positions(), all[i].copy,
+                                          all[i].opened_by, all[(i + 1) % all.size()].opened_by);
       }
     }
   }
@@ -197,7 +199,7 @@ StraightenedLayout straighten(const HalfedgeMesh& mesh, const Geometry& geometry
   if (left_over > 0) {
     layout.failure = concat(count(left_over, "pair of straight cuts crosses", "pairs of straight cuts cross"),
                             " even after ", count(layout.swaps, "swap", "swaps"));
-  } else if (mesh.closed() && std::abs(total - required) > turn_tolerance) {
+  } else if (std::abs(total - required) > turn_tolerance) {
     layout.failure = concat("the angles between the straight cuts leave a curvature of ", total / M_PI,
                             " pi where the surface requires ", required / M_PI, " pi");
   }

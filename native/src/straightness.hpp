@@ -12,14 +12,15 @@
 namespace lsgp {
 
 struct StraightenedLayout {
-  Eigen::VectorXd curvature;  // (n) read at every node of the cut graph inside the surface, 0 elsewhere
+  Eigen::VectorXd curvature;  // (n) read at every node of the cut graph, 0 elsewhere
   std::string failure;        // why the angles cannot be used, empty where they can
   int crossings = 0;          // between straight cuts, before any swap
   int swaps = 0;              // of cone positions that removed crossings
 };
 
-// Lays the opened surface out with every side of every cut straight and least conformal distortion, resolves crossing
-// cuts by swapping the positions of their ends (the paper's Figure 6), and reads each node's angle between its cuts.
+// Lays the opened surface, closed before, out with every side of every cut straight and least conformal distortion,
+// resolves crossing cuts by swapping the positions of their ends (the paper's Figure 6), and reads each node's angle
+// between its cuts.
 StraightenedLayout straighten(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
                               const CutMesh& cut_mesh);
 

@@ -21,7 +21,9 @@ std::string concat(const Parts&... parts) {
   return out.str();
 }
 
-inline std::string count(std::size_t n, const char* one, const char* many) { return concat(n, " ", n == 1 ? one : many); }
+inline std::string count(std::size_t n, const char* one, const char* many) {
+  return concat(n, " ", n == 1 ? one : many);
+}
 
 // The first few indices, and that there are more.
 inline std::string list(const std::vector<Index>& indices) {

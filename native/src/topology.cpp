@@ -13,20 +13,28 @@ namespace {
 // The undirected edges of the triangles; every edge lists its halfedges.
 class EdgeTable {
  public:
-  explicit EdgeTable(const Surface& surface) {
+  // Leaves out the triangles marked to skip; their halfedges have no edge.
+  EdgeTable(const Surface& surface, const std::vector<char>& skip) {
     const Triangles& triangles = surface.triangles;
     const Index halfedge_count = static_cast<Index>(3 * triangles.rows());
     const Index* corner_vertex = triangles.data();
     bucket_.assign(surface.positions.rows() + 1, 0);
     const auto low = [&](Index h) { return std::min(corner_vertex[h], corner_vertex[next(h)]); };
     const auto high = [&](Index h) { return std::max(corner_vertex[h], corner_vertex[next(h)]); };
-    for (Index h = 0; h < halfedge_count; ++h) ++bucket_[low(h) + 1];
+    Index used = 0;
+    for (Index h = 0; h < halfedge_count; ++h) {
+      if (skip[h / 3]) continue;
+      ++bucket_[low(h) + 1];
+      ++used;
+    }
     std::partial_sum(bucket_.begin(), bucket_.end(), bucket_.begin());
-    entries_.resize(halfedge_count);
+    entries_.resize(used);
     std::vector<Index> cursor(bucket_.begin(), bucket_.end() - 1);
-    for (Index h = 0; h < halfedge_count; ++h) entries_[cursor[low(h)]++] = {high(h), h};
-    edge_of_entry_.resize(halfedge_count);
-    edge_of_halfedge_.resize(halfedge_count);
+    for (Index h = 0; h < halfedge_count; ++h) {
+      if (!skip[h / 3]) entries_[cursor[low(h)]++] = {high(h), h};
+    }
+    edge_of_entry_.resize(used);
+    edge_of_halfedge_.assign(halfedge_count, none);
     for (std::size_t v = 0; v + 1 < bucket_.size(); ++v) {
       std::sort(entries_.begin() + bucket_[v], entries_.begin() + bucket_[v + 1]);
       for (Index i = bucket_[v]; i < bucket_[v + 1]; ++i) {
@@ -34,7 +42,7 @@ class EdgeTable {
         edge_of_entry_[i] = edge_of_halfedge_[entries_[i].halfedge] = static_cast<Index>(first_.size()) - 1;
       }
     }
-    first_.push_back(halfedge_count);
+    first_.push_back(used);
   }
 
   Index count() const { return static_cast<Index>(first_.size()) - 1; }
@@ -68,18 +76,39 @@ std::vector<char> mark_edges(const EdgeTable& edges, const VertexPairs& pairs, C
   std::vector<Index> missing;
   for (Index row = 0; row < pairs.rows(); ++row) {
     const Index a = pairs(row, 0), b = pairs(row, 1), edge = a == b ? none : edges.find(a, b);
-    if (edge != none) marked[edge] = 1;
-    else missing.insert(missing.end(), {a, b});
+    if (edge != none)
+      marked[edge] = 1;
+    else
+      missing.insert(missing.end(), {a, b});
   }
   if (!missing.empty()) {
-    throw Error(code, concat(count(missing.size() / 2, "vertex pair", "vertex pairs"), " (", list(missing), ") ", sentence),
+    throw Error(code,
+                concat(count(missing.size() / 2, "vertex pair", "vertex pairs"), " (", list(missing), ") ", sentence),
                 {ElementKind::edges, missing});
   }
   return marked;
 }
 
+// Pairs of a triangle and the first one with the same vertices.
+std::vector<std::pair<Index, Index>> find_duplicates(const Surface& surface, const EdgeTable& edges) {
+  const Index* corner_vertex = surface.triangles.data();
+  std::vector<std::pair<Index, Index>> duplicates;
+  for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    const Index edge = edges.edge_of(3 * f);
+    if (edges.halfedge_count(edge) < 2) continue;
+    for (Index i = 0; i < edges.halfedge_count(edge); ++i) {
+      const Index h = edges.halfedge(edge, i);
+      if (h / 3 >= f) break;  // an edge lists its halfedges in order
+      if (corner_vertex[prev(h)] != corner_vertex[3 * f + 2]) continue;
+      duplicates.emplace_back(f, h / 3);
+      break;
+    }
+  }
+  return duplicates;
+}
+
 struct Orientation {
-  std::vector<Index> component;  // (m)
+  std::vector<Index> component;  // (m) none for triangles left out
   std::vector<char> reversed;    // (m)
   std::vector<char> orientable;  // per component
 };
@@ -91,7 +120,7 @@ Orientation orient(const Surface& surface, const EdgeTable& edges) {
   Orientation out{std::vector<Index>(triangle_count, none), std::vector<char>(triangle_count, 0), {}};
   std::vector<Index> queue;
   for (Index seed = 0; seed < triangle_count; ++seed) {
-    if (out.component[seed] != none) continue;
+    if (out.component[seed] != none || edges.edge_of(3 * seed) == none) continue;
     const Index label = static_cast<Index>(out.orientable.size());
     out.orientable.push_back(1);
     out.component[seed] = label;
@@ -156,7 +185,8 @@ void number_vertices(const Surface& surface, Component& component) {
   }
   std::copy(vertex.begin(), vertex.end(), mesh.triangles.data());
   mesh.positions.resize(mesh.vertex_count(), 3);
-  for (Index v = 0; v < mesh.vertex_count(); ++v) mesh.positions.row(v) = surface.positions.row(component.source_vertex[v]);
+  for (Index v = 0; v < mesh.vertex_count(); ++v)
+    mesh.positions.row(v) = surface.positions.row(component.source_vertex[v]);
 }
 
 void measure_topology(HalfedgeMesh& mesh) {
@@ -177,11 +207,11 @@ void report_repairs(const Surface& surface, const EdgeTable& edges, const Orient
     crowded.insert(crowded.end(), {surface.triangles.data()[h], surface.triangles.data()[next(h)]});
   }
   if (!crowded.empty()) {
-    findings.push_back({Code::non_manifold_edge,
-                        concat(count(crowded.size() / 2, "edge is", "edges are"),
-                               " shared by more than two triangles (vertices ", list(crowded),
-                               "). The layout is open there; delete the surplus faces to close it."),
-                        {ElementKind::edges, crowded}});
+    findings.push_back(
+        {Code::non_manifold_edge,
+         concat(count(crowded.size() / 2, "edge is", "edges are"), " shared by more than two triangles (vertices ",
+                list(crowded), "). The layout is open there; delete the surplus faces to close it."),
+         {ElementKind::edges, crowded}});
   }
   std::vector<Index> fans(surface.positions.rows(), 0), split, isolated, turned;
   for (const Component& component : components) {
@@ -190,7 +220,7 @@ void report_repairs(const Surface& surface, const EdgeTable& edges, const Orient
   std::vector<char> open(fans.size(), 0);
   for (const Index v : crowded) open[v] = 1;
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
-    if (!orientation.orientable[orientation.component[f]]) {
+    if (orientation.component[f] == none || !orientation.orientable[orientation.component[f]]) {
       for (int c = 0; c < 3; ++c) open[surface.triangles(f, c)] = 1;
     }
     if (orientation.reversed[f]) turned.push_back(f);
@@ -201,29 +231,47 @@ void report_repairs(const Surface& surface, const EdgeTable& edges, const Orient
     if (fans[v] > 1) split.push_back(static_cast<Index>(v));
   }
   if (!split.empty()) {
-    findings.push_back({Code::split_vertex,
-                        concat("At ", count(split.size(), "vertex", "vertices"), " separate parts of the surface touch (",
-                               list(split), "). They were unwrapped as separate vertices; split them to be rid of this note."),
-                        {ElementKind::vertices, split}});
+    findings.push_back(
+        {Code::split_vertex,
+         concat("At ", count(split.size(), "vertex", "vertices"), " separate parts of the surface touch (", list(split),
+                "). They were unwrapped as separate vertices; split them to be rid of this note."),
+         {ElementKind::vertices, split}});
   }
   if (!isolated.empty()) {
     findings.push_back({Code::isolated_vertices,
-                        concat(count(isolated.size(), "vertex belongs", "vertices belong"), " to no face (", list(isolated),
-                               ") and got no coordinates."),
+                        concat(count(isolated.size(), "vertex belongs", "vertices belong"), " to no face (",
+                               list(isolated), ") and got no coordinates."),
                         {ElementKind::vertices, isolated}});
   }
   if (!turned.empty()) {
-    findings.push_back({Code::reoriented,
-                        concat(count(turned.size(), "triangle faces", "triangles face"), " the other way than the rest of ",
-                               "the surface (", list(turned), "). Unwrapped as if turned; recalculate normals to repair it."),
-                        {ElementKind::triangles, turned}});
+    findings.push_back(
+        {Code::reoriented,
+         concat(count(turned.size(), "triangle faces", "triangles face"), " the other way than the rest of ",
+                "the surface (", list(turned), "). Unwrapped as if turned; recalculate normals to repair it."),
+         {ElementKind::triangles, turned}});
   }
 }
 
 }  // namespace
 
-std::vector<Component> build_components(const Surface& surface, std::vector<Finding>& findings) {
-  const EdgeTable edges(surface);
+Topology build_topology(const Surface& surface, std::vector<Finding>& findings) {
+  Topology topology;
+  std::vector<char> skip(surface.triangles.rows(), 0);
+  EdgeTable edges(surface, skip);
+  topology.duplicates = find_duplicates(surface, edges);
+  if (!topology.duplicates.empty()) {
+    std::vector<Index> doubled;
+    for (const auto& [f, original] : topology.duplicates) {
+      skip[f] = 1;
+      doubled.push_back(f);
+    }
+    edges = EdgeTable(surface, skip);
+    findings.push_back(
+        {Code::duplicate_face,
+         concat(count(doubled.size(), "triangle lies", "triangles lie"), " on another one (", list(doubled),
+                ") and got its coordinates. Delete doubled faces to be rid of this note."),
+         {ElementKind::triangles, doubled}});
+  }
   const std::vector<char> cuttable =
       surface.edges ? mark_edges(edges, *surface.edges, Code::edge_not_in_mesh,
                                  "name no edge of a triangle. Pass edges of this mesh as cuttable edges.")
@@ -232,9 +280,11 @@ std::vector<Component> build_components(const Surface& surface, std::vector<Find
                                             "are marked as a seam but name no edge. Mark edges of this mesh.");
   const Orientation orientation = orient(surface, edges);
 
-  std::vector<Component> components(orientation.orientable.size());
+  std::vector<Component>& components = topology.components;
+  components.resize(orientation.orientable.size());
   std::vector<Index> local_triangle(surface.triangles.rows());
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    if (orientation.component[f] == none) continue;
     Component& component = components[orientation.component[f]];
     local_triangle[f] = static_cast<Index>(component.source_triangle.size());
     component.source_triangle.push_back(f);
@@ -268,7 +318,7 @@ std::vector<Component> build_components(const Surface& surface, std::vector<Find
     measure_topology(mesh);
   }
   report_repairs(surface, edges, orientation, components, findings);
-  return components;
+  return topology;
 }
 
 }  // namespace lsgp

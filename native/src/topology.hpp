@@ -5,6 +5,7 @@
 // on its left.  The same number names the corner it leaves.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "lsgp/errors.hpp"
@@ -65,9 +66,15 @@ struct Component {
   }
 };
 
+struct Topology {
+  std::vector<Component> components;
+  // Triangles with the same three vertices as an earlier one, and that one; in no component, they share its map.
+  std::vector<std::pair<Index, Index>> duplicates;
+};
+
 // Splits a surface into components joined along edges of exactly two triangles.  Edges of more triangles are opened,
 // vertices whose triangles form several fans are split, triangles turned against their component's majority are
-// reversed; each is reported.  Throws EDGE_NOT_IN_MESH, SEAM_NOT_AN_EDGE.
-std::vector<Component> build_components(const Surface& surface, std::vector<Finding>& findings);
+// reversed, triangles that lie on another are left out; each is reported.  Throws EDGE_NOT_IN_MESH, SEAM_NOT_AN_EDGE.
+Topology build_topology(const Surface& surface, std::vector<Finding>& findings);
 
 }  // namespace lsgp

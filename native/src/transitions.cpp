@@ -24,8 +24,14 @@ class Elimination {
  public:
   Elimination(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh, const NodeGraph& nodes,
               const Eigen::VectorXd& rotation)
-      : mesh_(mesh), cut_graph_(cut_graph), cut_mesh_(cut_mesh), nodes_(nodes), n_(mesh.vertex_count()),
-        solved_(n_ + cut_graph.cuts.size()), is_solved_(solved_.size(), 0), turn_(rotation.size()) {
+      : mesh_(mesh),
+        cut_graph_(cut_graph),
+        cut_mesh_(cut_mesh),
+        nodes_(nodes),
+        n_(mesh.vertex_count()),
+        solved_(n_ + cut_graph.cuts.size()),
+        is_solved_(solved_.size(), 0),
+        turn_(rotation.size()) {
     for (Eigen::Index p = 0; p < rotation.size(); ++p) turn_[p] = std::polar(1.0, rotation[p]);
   }
 
@@ -155,7 +161,7 @@ class Elimination {
   const Index n_;
   std::vector<Expression> solved_;  // by id: vertices, then cuts
   std::vector<char> is_solved_;
-  std::vector<Complex> turn_;       // (cuts) e^{i rotation}
+  std::vector<Complex> turn_;  // (cuts) e^{i rotation}
 };
 
 }  // namespace
@@ -184,8 +190,10 @@ Eigen::VectorXcd motion_of_copies(const HalfedgeMesh& mesh, const CutGraph& cut_
     const std::vector<Index>& halfedges = cut_graph.cuts[p].halfedges;
     for (std::size_t i = 1; i < halfedges.size(); ++i) {
       const Sisters sisters = origin_sisters(mesh, cut_mesh, halfedges[i]);
-      if (sisters.right >= mesh.vertex_count()) motion[sisters.right] = turn;
-      else motion[sisters.left] = std::conj(turn);
+      if (sisters.right >= mesh.vertex_count())
+        motion[sisters.right] = turn;
+      else
+        motion[sisters.left] = std::conj(turn);
     }
   }
   return motion;
@@ -202,7 +210,8 @@ Eigen::VectorXcd expand(const Reduction& reduction, const Eigen::VectorXcd& unkn
 Eigen::VectorXcd gather(const Reduction& reduction, const Eigen::VectorXcd& on_copies) {
   Eigen::VectorXcd out = Eigen::VectorXcd::Zero(reduction.unknown_count);
   for (Index copy = 0; copy < reduction.copy_count(); ++copy) {
-    reduction.for_each_term(copy, [&](const Term& term) { out[term.unknown] += std::conj(term.coefficient) * on_copies[copy]; });
+    reduction.for_each_term(
+        copy, [&](const Term& term) { out[term.unknown] += std::conj(term.coefficient) * on_copies[copy]; });
   }
   return out;
 }

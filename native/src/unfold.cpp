@@ -23,7 +23,8 @@ std::vector<Index> open_border(const HalfedgeMesh& mesh, const CutMesh& cut_mesh
   std::vector<Index> next_copy(cut_mesh.copy_count(), none);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     const Index from = cut_mesh.copy_of_corner[h], to = cut_mesh.copy_of_corner[next(h)], twin = mesh.twin[h];
-    const bool open = twin == none || cut_mesh.copy_of_corner[twin] != to || cut_mesh.copy_of_corner[next(twin)] != from;
+    const bool open =
+        twin == none || cut_mesh.copy_of_corner[twin] != to || cut_mesh.copy_of_corner[next(twin)] != from;
     if (open) next_copy[from] = to;
   }
   std::vector<Index> border;
@@ -67,7 +68,10 @@ Eigen::VectorXd read_rotations(const HalfedgeMesh& mesh, const Geometry& geometr
 
 PoissonSystem::PoissonSystem(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
                              const Reduction& reduction)
-    : mesh_(mesh), geometry_(geometry), cut_mesh_(cut_mesh), reduction_(reduction),
+    : mesh_(mesh),
+      geometry_(geometry),
+      cut_mesh_(cut_mesh),
+      reduction_(reduction),
       factor_(assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction)) {}
 
 Eigen::VectorXcd PoissonSystem::unfold(const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames) const {

@@ -28,7 +28,8 @@ Eigen::VectorXd read_rotations(const HalfedgeMesh& mesh, const Geometry& geometr
 // Least squares fit of the map's Jacobians to e^{y + i phi}: one solve with the Dirichlet matrix.
 class PoissonSystem {
  public:
-  PoissonSystem(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh, const Reduction& reduction);
+  PoissonSystem(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+                const Reduction& reduction);
   Eigen::VectorXcd unfold(const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames) const;
 
  private:

@@ -21,8 +21,8 @@ constexpr std::array<int, 3> neighbourhoods{2, 5, 10};  // rings of vertices aro
 constexpr int most_newton_steps = 60;
 constexpr int barrier_steps = 3;
 constexpr double smallest_epsilon = 1e-3;
-constexpr double ridge = 1e-9;        // of the mean diagonal
-constexpr double barrier_share = 0.9; // of the step at which the first triangle would collapse
+constexpr double ridge = 1e-9;         // of the mean diagonal
+constexpr double barrier_share = 0.9;  // of the step at which the first triangle would collapse
 
 // The vertices a repair may move, and the triangles that move with them.
 struct Region {
@@ -68,13 +68,14 @@ Region grow_region(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const st
 
 class LocalRepair {
  public:
-  LocalRepair(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh, const Eigen::VectorXcd& motion,
-              const Eigen::VectorXd& log_scale, Region region, Eigen::VectorXcd& position)
+  LocalRepair(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+              const Eigen::VectorXcd& motion, const Eigen::VectorXd& log_scale, Region region,
+              Eigen::VectorXcd& position)
       : cut_mesh_(cut_mesh), motion_(motion), region_(std::move(region)), position_(position) {
     shapes_.reserve(region_.triangles.size());
     for (const Index f : region_.triangles) {
-      const double scale = std::exp((log_scale[mesh.triangles(f, 0)] + log_scale[mesh.triangles(f, 1)] +
-                                     log_scale[mesh.triangles(f, 2)]) / 3);
+      const double scale = std::exp(
+          (log_scale[mesh.triangles(f, 0)] + log_scale[mesh.triangles(f, 1)] + log_scale[mesh.triangles(f, 2)]) / 3);
       Shape shape;
       shape.weight = geometry.area[f] * scale * scale;
       for (int c = 0; c < 3; ++c) {
@@ -115,7 +116,8 @@ class LocalRepair {
       const double before = energy(conformal_barrier);
       const Eigen::VectorXcd direction = newton_direction(conformal_barrier);
       double after = before;
-      if (!search(conformal_barrier, direction, std::min(1.0, barrier_share * collapse_step(direction)), before, after)) return;
+      if (!search(conformal_barrier, direction, std::min(1.0, barrier_share * collapse_step(direction)), before, after))
+        return;
     }
   }
 
@@ -257,7 +259,9 @@ Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, co
   const auto check = [&](const Eigen::VectorXcd& tried) {
     return check_map(mesh, at_corners(cut_mesh, tried), curvature.at_vertex);
   };
-  const auto defects = [](const Validity& validity) { return validity.flipped.size() + validity.wrong_angle_sums.size(); };
+  const auto defects = [](const Validity& validity) {
+    return validity.flipped.size() + validity.wrong_angle_sums.size();
+  };
   const Validity initial = check(position);
   Eigen::VectorXcd best = position;
   std::size_t fewest = defects(initial);

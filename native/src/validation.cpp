@@ -23,8 +23,8 @@ void require_indices(const VertexPairs& pairs, Index vertex_count, const char* w
   }
   if (!bad.empty()) {
     throw Error(Code::index_out_of_range,
-                concat("The ", what, " name ", count(bad.size(), "vertex", "vertices"), " outside 0 to ", vertex_count - 1,
-                       " (", list(bad), "). Pass vertex pairs of this mesh."));
+                concat("The ", what, " name ", count(bad.size(), "vertex", "vertices"), " outside 0 to ",
+                       vertex_count - 1, " (", list(bad), "). Pass vertex pairs of this mesh."));
   }
 }
 
@@ -37,8 +37,8 @@ void require_extent(const Positions& positions, const std::vector<char>& used) {
   }
   const double extent = (high - low).maxCoeff();
   if (extent > largest_extent || (extent > 0 && extent < smallest_extent)) {
-    throw Error(Code::scale_range, concat("The surface is ", extent, " units large; sizes from ", smallest_extent, " to ",
-                                          largest_extent, " can be computed with. Scale it."));
+    throw Error(Code::scale_range, concat("The surface is ", extent, " units large; sizes from ", smallest_extent,
+                                          " to ", largest_extent, " can be computed with. Scale it."));
   }
   if (!(extent > 0)) {
     throw Error(Code::degenerate_mesh, "All vertices of the surface coincide, so it has no area. Restore its shape.");
@@ -66,8 +66,8 @@ void require_valid(const Surface& surface) {
   }
   if (!outside.empty()) {
     throw Error(Code::index_out_of_range,
-                concat(count(outside.size(), "triangle names", "triangles name"), " vertices outside 0 to ", n - 1, " (",
-                       list(outside), "). Repair the face indices."),
+                concat(count(outside.size(), "triangle names", "triangles name"), " vertices outside 0 to ", n - 1,
+                       " (", list(outside), "). Repair the face indices."),
                 {ElementKind::triangles, outside});
   }
   if (!repeated.empty()) {
@@ -112,23 +112,27 @@ void require_valid(const Surface& surface, const Cones& cones) {
     if (seen[v]++) duplicate.push_back(v);
     if (!used[v]) loose.push_back(v);
     if (!cones.angles[i]) continue;
-    if (!std::isfinite(*cones.angles[i])) non_finite.push_back(v);
-    else if (*cones.angles[i] <= 0) impossible.push_back(v);
+    if (!std::isfinite(*cones.angles[i]))
+      non_finite.push_back(v);
+    else if (*cones.angles[i] <= 0)
+      impossible.push_back(v);
   }
   if (!outside.empty()) {
-    throw Error(Code::cone_index, concat(count(outside.size(), "cone lies", "cones lie"), " outside the vertices 0 to ", n - 1,
-                                         " (", list(outside), "). Mark vertices of this mesh."));
+    throw Error(Code::cone_index, concat(count(outside.size(), "cone lies", "cones lie"), " outside the vertices 0 to ",
+                                         n - 1, " (", list(outside), "). Mark vertices of this mesh."));
   }
-  const auto refuse = [](Code code, const std::vector<Index>& bad, const char* one, const char* many, const char* remedy) {
+  const auto refuse = [](Code code, const std::vector<Index>& bad, const char* one, const char* many,
+                         const char* remedy) {
     if (!bad.empty()) {
-      throw Error(code, concat(count(bad.size(), one, many), " (", list(bad), "). ", remedy), {ElementKind::vertices, bad});
+      throw Error(code, concat(count(bad.size(), one, many), " (", list(bad), "). ", remedy),
+                  {ElementKind::vertices, bad});
     }
   };
   refuse(Code::cone_duplicate, duplicate, "cone is listed twice", "cones are listed twice", "List every cone once.");
   refuse(Code::cone_not_on_surface, loose, "cone belongs to no face", "cones belong to no face",
          "Mark vertices of the surface only.");
-  refuse(Code::cone_angle_non_finite, non_finite, "cone angle is not a finite number", "cone angles are not finite numbers",
-         "Give an angle above 0, or none for automatic.");
+  refuse(Code::cone_angle_non_finite, non_finite, "cone angle is not a finite number",
+         "cone angles are not finite numbers", "Give an angle above 0, or none for automatic.");
   refuse(Code::cone_angle_range, impossible, "cone angle is zero or negative", "cone angles are zero or negative",
          "Give an angle above 0 degrees.");
 }

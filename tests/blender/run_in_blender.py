@@ -46,20 +46,9 @@ def run(arguments: list[str]) -> int:
     import pytest
 
     tests = Path(__file__).parent
-    return int(
-        pytest.main(
-            [
-                str(tests),
-                f"--junitxml={report}",
-                "--rootdir",
-                str(tests),
-                "-p",
-                "no:cacheprovider",
-                "-q",
-                *pytest_arguments,
-            ]
-        )
-    )
+    # The long form of tracebacks prints the arguments of calls into Blender, which crashed Blender 4.3.
+    options = [f"--junitxml={report}", f"--rootdir={tests}", "--tb=short", "-p", "no:cacheprovider", "-q"]
+    return int(pytest.main([str(tests), *options, *pytest_arguments]))
 
 
 if __name__ == "__main__":

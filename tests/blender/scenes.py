@@ -223,8 +223,8 @@ class UvMap:
 
     def sister_difference(self) -> float:
         """Largest difference between the UV lengths of the two sides of an edge."""
-        left, right = (np.array([sides[side] for sides in self.sides.values()]) for side in (0, 1))
-        return float(np.abs(self._length(left) - self._length(right)).max())
+        pairs = np.array(list(self.sides.values()), int).reshape(-1, 2, 2)
+        return float(np.abs(self._length(pairs[:, 0]) - self._length(pairs[:, 1])).max(initial=0.0))
 
     def scale_spread(self, faces: Iterable[int] | None = None) -> float:
         """Largest over smallest ratio of UV to 3D distance, over all loop pairs of each face; 1 is isometric."""

@@ -175,8 +175,9 @@ def test_marking_and_selecting_ask_for_edit_mode(call):
 
 
 @pytest.mark.parametrize("in_edit_mode", [True, False])
-def test_place_marks_as_many_cones_as_asked_and_changes_only_the_group(in_edit_mode):
-    cube = add_cube()
+@pytest.mark.parametrize("cuts", [0, 1, 3])
+def test_place_marks_as_many_cones_as_asked_and_changes_only_the_group(cuts, in_edit_mode):
+    cube = add_cube(cuts=cuts)
     if in_edit_mode:
         edit(cube)
     before = snapshot(cube)
@@ -185,8 +186,9 @@ def test_place_marks_as_many_cones_as_asked_and_changes_only_the_group(in_edit_m
     assert changed(before, snapshot(cube)) <= {"weights", "groups", "active group"}
 
 
-def test_place_finds_the_corners_of_a_cube():
-    cube = add_cube()
+@pytest.mark.parametrize("cuts", [0, 3])
+def test_place_finds_the_corners_of_a_cube(cuts):
+    cube = add_cube(cuts=cuts)
     assert bpy.ops.mesh.cone_place(automatic=False, count=8) == {"FINISHED"}
     assert marked(cube) == corners(cube)
 

@@ -8,7 +8,7 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
-from scenes import ANGLES, UV_ROUNDING, UvMap, add_cone_cube, add_object, corners, edit, mark, marked
+from scenes import ANGLES, UV_ROUNDING, UvMap, add_cone_cube, add_cube, add_object, corners, edit, mark, marked
 
 # Relative error of the shortest edge of the test cubes (an eighth of the UV square or more) by 32-bit UVs, with room.
 ISOMETRIC = 1 + 1e-5
@@ -28,14 +28,27 @@ def test_cube_through_its_corners_is_isometric(in_edit_mode, unfold):
     assert uv_map.uv.min() >= 0.0 and uv_map.uv.max() <= 1.0
 
 
+def require_tree(edges, cones):
+    """Vertex pairs that are connected, have no cycle, end only at cones and reach all of them."""
+    neighbours = {}
+    for first, second in edges:
+        neighbours.setdefault(first, set()).add(second)
+        neighbours.setdefault(second, set()).add(first)
+    assert len(edges) == len(neighbours) - 1
+    reached, waiting = set(), [cones[0]]
+    while waiting:
+        vertex = waiting.pop()
+        if vertex not in reached:
+            reached.add(vertex)
+            waiting.extend(neighbours[vertex])
+    assert reached == set(neighbours)
+    assert {vertex for vertex, others in neighbours.items() if len(others) == 1} <= set(cones) <= reached
+
+
 def test_cuts_form_a_tree_through_all_cones():
     cube = add_cone_cube()
     bpy.ops.uv.cone_unwrap()
-    split = UvMap(cube).split_edges()
-    ends = np.array(sorted(split)).ravel()
-    vertices, degree = np.unique(ends, return_counts=True)
-    assert len(split) == len(vertices) - 1
-    assert set(vertices[degree == 1]) <= set(corners(cube)) <= set(vertices)
+    require_tree(UvMap(cube).split_edges(), corners(cube))
 
 
 def test_cone_angles_add_up_to_what_the_cube_has():
@@ -120,21 +133,37 @@ def test_cuts_take_a_detour_along_a_marked_seam():
     assert straight | detour | end <= UvMap(cube).split_edges()
 
 
-def test_ngons_stay_whole_and_isometric():
-    cube = add_cone_cube()
+def dissolve_top(cube):
+    """Enter edit mode and make the upper side of the cube one polygon with 16 corners."""
     edit(cube)
     bm = bmesh.from_edit_mesh(cube.data)
     inner = [v for v in bm.verts if v.co.z > 0.99 and max(abs(v.co.x), abs(v.co.y)) < 0.99]
     bmesh.ops.dissolve_verts(bm, verts=inner)
     bmesh.update_edit_mesh(cube.data, destructive=True)
     bpy.ops.mesh.select_all(action="SELECT")
-    sizes = sorted({len(face.verts) for face in bm.faces})
-    assert sizes == [4, 16]
+    assert sorted({len(face.verts) for face in bm.faces}) == [4, 16]
+
+
+def test_ngons_stay_whole_and_isometric():
+    cube = add_cone_cube()
+    dissolve_top(cube)
     bpy.ops.uv.cone_unwrap()
     uv_map = UvMap(cube)
     assert sorted({len(loops) for loops in uv_map.loops_of_face}) == [4, 16]
-    # Distances across the whole polygon: a cut along a diagonal of its triangulation would change them.
+    # Also across the whole polygon, because every pair of its corners counts.
     assert uv_map.scale_spread() < ISOMETRIC
+
+
+def test_cuts_go_round_ngons_where_the_way_across_is_shorter():
+    cube = add_cube()
+    cones = [v for v in corners(cube) if math.prod(cube.data.vertices[v].co) > 0]
+    upper = [v for v in cones if cube.data.vertices[v].co.z > 0]
+    assert len(cones) == 4 and len(upper) == 2
+    mark(cube, cones)
+    dissolve_top(cube)
+    bpy.ops.uv.cone_unwrap()
+    # A cut along a diagonal inside of the polygon would be missing between the polygons' edges.
+    require_tree(UvMap(cube).split_edges(), marked(cube))
 
 
 def test_suzanne_through_placed_cones():
@@ -150,6 +179,25 @@ def test_suzanne_through_placed_cones():
     assert uv_map.islands() == 3
     assert np.isfinite(uv_map.uv).all()
     assert uv_map.uv.min() >= 0.0 and uv_map.uv.max() <= 1.0
+    assert uv_map.sister_difference() <= UV_ROUNDING
+
+
+PRIMITIVES = ["cube", "uv_sphere", "ico_sphere", "cylinder", "cone", "torus", "grid", "plane"]
+
+
+@pytest.mark.parametrize("in_edit_mode", [True, False])
+@pytest.mark.parametrize("primitive", PRIMITIVES)
+def test_blenders_primitives_through_placed_cones(primitive, in_edit_mode):
+    getattr(bpy.ops.mesh, f"primitive_{primitive}_add")()
+    obj = bpy.context.object
+    if in_edit_mode:
+        edit(obj)
+    assert bpy.ops.mesh.cone_place() == {"FINISHED"}
+    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    uv_map = UvMap(obj)
+    assert uv_map.islands() == 1
+    assert uv_map.uv.min() >= 0.0 and uv_map.uv.max() <= 1.0
+    assert np.ptp(uv_map.uv, axis=0).max() > 0.9
     assert uv_map.sister_difference() <= UV_ROUNDING
 
 

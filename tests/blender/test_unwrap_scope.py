@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Unwrap from Cones: what it may change, what it must leave alone, and how it fails."""
 
+import bmesh
 import bpy
 import numpy as np
 import pytest
@@ -71,8 +72,9 @@ def test_a_mesh_without_uv_layer_gets_one(in_edit_mode):
     bpy.ops.uv.cone_unwrap()
     after = snapshot(cube)
     assert after["uv layers"] == ["UVMap"]
-    uv_state = {uv_key(), "uv layers", "active uv layer", "render uv layer"}
-    assert changed(before, after) <= uv_state
+    # Blender 5 keeps its UV selection beside a new layer.
+    differences = {name for name in changed(before, after) if not name.startswith("attribute .uv_select_")}
+    assert differences <= {uv_key(), "uv layers", "active uv layer", "render uv layer"}
     assert UvMap(cube).scale_spread() < 1 + 1e-5
 
 
@@ -117,7 +119,8 @@ def test_selected_faces_only_are_unwrapped_and_the_others_keep_their_bytes():
     assert changed(state, snapshot(grid)) == {uv_key()}
 
 
-def test_hidden_faces_keep_their_uvs():
+@pytest.mark.parametrize("still_selected", [False, True])
+def test_hidden_faces_keep_their_uvs(still_selected):
     grid = add_grid(segments=4)
     right = [face.index for face in grid.data.polygons if face.center.x > 0]
     loops = np.isin(np.arange(len(grid.data.loops)), [i for f in right for i in grid.data.polygons[f].loop_indices])
@@ -125,9 +128,13 @@ def test_hidden_faces_keep_their_uvs():
     edit(grid)
     # In vertex select mode the vertices would be hidden, and with them the faces beside.
     bpy.ops.mesh.select_mode(type="FACE")
-    select_elements(grid, "faces", right)
-    bpy.ops.mesh.hide()
-    bpy.ops.mesh.select_all(action="SELECT")
+    bm = bmesh.from_edit_mesh(grid.data)
+    for face in bm.faces:
+        if face.index in right:
+            # Blender's own Hide deselects; scripts may not.
+            face.hide = True
+            face.select = still_selected
+    bmesh.update_edit_mesh(grid.data)
     bpy.ops.uv.cone_unwrap()
     uv = UvMap(grid).uv
     assert (uv[loops] == 5.0).all()

@@ -6,29 +6,13 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from command import Ended
+from polygon_meshes import bumpy_ball, cube, cube_corners, obj_text
 
 SHARED = Path(os.environ.get("LSGP_SHARED") or Path(__file__).resolve().parents[3] / "shared")
-
-
-@dataclass
-class Ended:
-    """A command line that has ended."""
-
-    code: int
-    out: str
-    err: str
-    folder: Path
-
-    def report(self, name: str = "report.json") -> dict:
-        return json.loads((self.folder / name).read_text(), parse_constant=_no_constant)
-
-
-def _no_constant(text: str) -> None:
-    raise AssertionError(f"{text} is no JSON")
 
 
 @pytest.fixture
@@ -49,3 +33,21 @@ def shared() -> Path:
     if not SHARED.is_dir():
         pytest.skip(f"no shared folder at {SHARED}")
     return SHARED
+
+
+@pytest.fixture
+def cube_files(tmp_path: Path) -> Path:
+    """cube.obj of quads, its corners in corners.json."""
+    positions, faces = cube(4)
+    (tmp_path / "cube.obj").write_text(obj_text(positions / 3, faces))
+    (tmp_path / "corners.json").write_text(json.dumps({"cones": cube_corners(positions)}))
+    return tmp_path
+
+
+@pytest.fixture
+def ball_files(tmp_path: Path) -> Path:
+    """ball.obj, closed, curved everywhere, of quads; eight cones in cones.json."""
+    positions, faces = bumpy_ball()
+    (tmp_path / "ball.obj").write_text(obj_text(positions, faces))
+    (tmp_path / "cones.json").write_text(json.dumps({"cones": cube_corners(cube(6)[0])}))
+    return tmp_path

@@ -12,6 +12,10 @@ from lsgp.polygons import PolygonMesh, Triangulation
 
 Faces = list[list[int]]
 
+SQUARE = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]
+SQUARE_OBJ = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+PLY_FORMS = ("ascii", "binary_little_endian", "binary_big_endian")
+
 
 def polygon_mesh(positions: object, faces: Sequence[Sequence[int]]) -> PolygonMesh:
     """A mesh with the exact dtypes of the library."""

@@ -46,7 +46,8 @@ def require_exact_cover(points: np.ndarray, share: float = 0.0) -> None:
 def star_shaped(draw: st.DrawFn) -> np.ndarray:
     """A polygon seen whole from one point, mostly concave, some corners in the middle of edges, anywhere in space."""
     n = draw(st.integers(4, 24))
-    steps = np.array(draw(st.lists(st.floats(0.2, 1), min_size=n, max_size=n)))
+    # No step reaches half a turn, or the polygon would cross itself.
+    steps = np.array(draw(st.lists(st.floats(0.4, 1), min_size=n, max_size=n)))
     radii = np.array(draw(st.lists(st.floats(0.1, 1), min_size=n, max_size=n)))
     angles = 2 * np.pi * np.cumsum(steps) / steps.sum()
     corners = radii[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
@@ -114,6 +115,13 @@ def test_corners_on_straight_edges_keep_a_triangle_with_area() -> None:
     require_exact_cover(turned.astype(float), share=1e-3)
 
 
+def test_no_diagonal_runs_along_a_straight_side() -> None:
+    # The ear at the top has the shortest diagonal by far, but corners lie on it, beside it in single precision.
+    tower = loop([(0, 0), (1 / 3, 0), (2 / 3, 0), (1, 0), (0.5, 5)])
+    for seed in range(20):
+        require_exact_cover((tower @ rotation(seed).T).astype(np.float32).astype(float), share=1e-3)
+
+
 def test_large_polygon_in_reasonable_time() -> None:
     rng = np.random.default_rng(1)
     angles = np.linspace(0, 2 * np.pi, 1500, endpoint=False)
@@ -133,9 +141,10 @@ def test_large_polygon_in_reasonable_time() -> None:
     ],
 )
 def test_diagonal_of_quads(points: np.ndarray, diagonal: set[int]) -> None:
-    for shift, seed in itertools.product(range(4), range(2)):
+    for shift, seed in itertools.product(range(4), range(5)):
         quad = np.roll(np.arange(4), shift)
-        mesh = polygon_mesh(points @ rotation(seed).T, [quad.tolist()])
+        turn = rotation(seed) if seed else np.eye(3)
+        mesh = polygon_mesh(points @ turn.T, [quad.tolist()])
         triangulation = triangulate(mesh)
         require_triangulation(mesh, triangulation)
         shared = set(triangulation.triangles[0].tolist()) & set(triangulation.triangles[1].tolist())

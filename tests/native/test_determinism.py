@@ -62,7 +62,7 @@ def test_another_process_with_other_threads_gives_the_same_bytes(threads: str) -
     assert done.stdout.split("\n")[:-1] == expected
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=6)
 @given(seed=st.integers(0, 2**32 - 1), exponent=st.floats(-6, 6))
 def test_motion_and_scale_change_nothing(seed: int, exponent: float) -> None:
     mesh = meshes.bumpy_sphere(2)
@@ -74,7 +74,7 @@ def test_motion_and_scale_change_nothing(seed: int, exponent: float) -> None:
     assert oracle.metric_gap(one.corner_uv, two.corner_uv) <= 1e-7
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=6)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_numbering_changes_nothing(seed: int) -> None:
     mesh = meshes.bumpy_sphere(2)
@@ -87,7 +87,7 @@ def test_numbering_changes_nothing(seed: int) -> None:
     assert oracle.metric_gap(there, two.corner_uv) <= 1e-7
 
 
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=4)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_order_of_cones_changes_nothing(seed: int) -> None:
     mesh = meshes.bumpy_sphere(2)

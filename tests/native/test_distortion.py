@@ -81,7 +81,7 @@ def test_known_area_figures() -> None:
     assert found["quasi_conformal"] == pytest.approx(1, rel=1e-12)
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(angle=st.floats(0, 6.28), scale=st.floats(1e-3, 1e3), u=st.floats(-50, 50), v=st.floats(-50, 50))
 def test_similarities_change_no_figure(angle: float, scale: float, u: float, v: float) -> None:
     mesh = MAPPED["flower"]

@@ -53,6 +53,20 @@ def test_an_edge_of_three_triangles_is_opened_and_named() -> None:
     assert (oracle.signed_areas(result.corner_uv) > 0).all()
 
 
+def test_two_triangles_back_to_back_share_a_place() -> None:
+    """Two triangles never reach 2 pi about a vertex: of such a pocket one is unwrapped, the other lies on it."""
+    mesh = meshes.with_pocket(meshes.hill(6))
+    result = unwrap(mesh)
+    original, double = len(mesh.triangles) - 2, len(mesh.triangles) - 1
+    assert only(result.warnings, "DUPLICATE_FACE").elements.indices.tolist() == [double]
+    assert result.solved.all() and result.flipped.size == 0
+    assert result.island[double] == result.island[original]
+    place = {int(v): uv.tolist() for v, uv in zip(mesh.triangles[original], result.corner_uv[original], strict=True)}
+    assert [place[int(v)] for v in mesh.triangles[double]] == result.corner_uv[double].tolist()
+    assert (oracle.signed_areas(result.corner_uv[:original]) > 0).all()
+    assert np.isfinite(result.distortion.quasi_conformal) and np.isfinite(result.distortion.l2_stretch)
+
+
 def test_isolated_vertices_change_nothing_and_are_named() -> None:
     result = unwrap(meshes.with_isolated_vertices(CUBE, 3))
     finding = only(result.warnings, "ISOLATED_VERTICES")

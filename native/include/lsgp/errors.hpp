@@ -47,6 +47,7 @@ enum class Code {
   component_skipped,
   isolated_vertices,
   degenerate_faces,
+  duplicate_face,
   non_manifold_edge,
   split_vertex,
   reoriented,
@@ -61,9 +62,9 @@ enum class Code {
 
 enum class ErrorKind { input, topology, curvature, solver };
 
-LSGP_API const char* name(Code code);       // "EMPTY_MESH", ...
+LSGP_API const char* name(Code code);  // "EMPTY_MESH", ...
 LSGP_API const char* name(ElementKind kind);
-LSGP_API ErrorKind error_kind(Code code);   // of the codes that are thrown
+LSGP_API ErrorKind error_kind(Code code);  // of the codes that are thrown
 
 class LSGP_API Error : public std::runtime_error {
  public:

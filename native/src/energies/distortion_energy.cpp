@@ -18,7 +18,8 @@ EnergyExpansion expand_energy(std::complex<double> f_z, std::complex<double> f_z
   // The Hessian is diagonal but for the plane of the two radial directions; its positive part eigenvalue by eigenvalue.
   const double root_p = std::sqrt(p), root_q = std::sqrt(q);
   const Eigen::Vector2d along_p = root_p > 0 ? Eigen::Vector2d(f_z.real(), f_z.imag()) / root_p : Eigen::Vector2d(1, 0);
-  const Eigen::Vector2d along_q = root_q > 0 ? Eigen::Vector2d(f_zbar.real(), f_zbar.imag()) / root_q : Eigen::Vector2d(1, 0);
+  const Eigen::Vector2d along_q =
+      root_q > 0 ? Eigen::Vector2d(f_zbar.real(), f_zbar.imag()) / root_q : Eigen::Vector2d(1, 0);
   const Eigen::Vector2d across_p(-along_p[1], along_p[0]), across_q(-along_q[1], along_q[0]);
   out.hessian.setZero();
   out.hessian.topLeftCorner<2, 2>() += std::max(0.0, 2 * h_p) * across_p * across_p.transpose();

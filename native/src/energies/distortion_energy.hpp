@@ -25,10 +25,15 @@ inline double foldover_chi(double d, double epsilon) {
 inline RadialTerms foldover_free(double d, double epsilon) {
   const double r = std::hypot(epsilon, d), chi = foldover_chi(d, epsilon);
   const double chi1 = chi / r, chi2 = epsilon * epsilon / (2 * r * r * r);
-  const double inverse = 1 / chi, inverse1 = -chi1 / (chi * chi), inverse2 = 2 * chi1 * chi1 / (chi * chi * chi) - chi2 / (chi * chi);
+  const double inverse = 1 / chi, inverse1 = -chi1 / (chi * chi),
+               inverse2 = 2 * chi1 * chi1 / (chi * chi * chi) - chi2 / (chi * chi);
   const double area = d * d + 1;
-  return {2 * inverse, 2 * inverse1, 2 * inverse2,
-          area * inverse, 2 * d * inverse + area * inverse1, 2 * inverse + 4 * d * inverse1 + area * inverse2};
+  return {2 * inverse,
+          2 * inverse1,
+          2 * inverse2,
+          area * inverse,
+          2 * d * inverse + area * inverse1,
+          2 * inverse + 4 * d * inverse1 + area * inverse2};
 }
 
 // Conformal barrier (MIPS, Hormann and Greiner 2000): (p + q) / d, infinite at d = 0.

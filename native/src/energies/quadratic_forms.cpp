@@ -10,11 +10,13 @@ namespace {
 // Calls visit(from, to, value) for one halfedge of every edge of the cut mesh, value the entry (from, to) of the form,
 // and visit(copy, copy, value) for the diagonal.
 template <typename Visit>
-void for_each_entry(Form form, const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh, Visit visit) {
+void for_each_entry(Form form, const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+                    Visit visit) {
   std::vector<double> diagonal(cut_mesh.copy_count(), 0.0);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     const Index from = cut_mesh.copy_of_corner[h], to = cut_mesh.copy_of_corner[next(h)], twin = mesh.twin[h];
-    const bool open = twin == none || cut_mesh.copy_of_corner[twin] != to || cut_mesh.copy_of_corner[next(twin)] != from;
+    const bool open =
+        twin == none || cut_mesh.copy_of_corner[twin] != to || cut_mesh.copy_of_corner[next(twin)] != from;
     const double weight = geometry.half_cotangent[h];
     diagonal[from] += weight;
     diagonal[to] += weight;

@@ -17,9 +17,10 @@ Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower) : factor_(s
   if (lower.rows() == 0) return;
   factor_->ldlt.compute(lower);
   if (factor_->ldlt.info() != Eigen::Success || !(factor_->ldlt.vectorD().real().minCoeff() > 0)) {
-    throw Error(Code::solver_failed,
-                "A linear system could not be factored: the surface has triangles too thin or too large to compute with. "
-                "Clean the mesh (merge by distance, dissolve degenerate faces) and try again.");
+    throw Error(
+        Code::solver_failed,
+        "A linear system could not be factored: the surface has triangles too thin or too large to compute with. "
+        "Clean the mesh (merge by distance, dissolve degenerate faces) and try again.");
   }
 }
 

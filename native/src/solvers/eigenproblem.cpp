@@ -39,7 +39,8 @@ void to_real(const Eigen::VectorXcd& z, double* y) {
 class ShiftedInverse {
  public:
   using Scalar = double;
-  ShiftedInverse(const ComplexSparse& form, const ComplexSparse& norm) : size_(form.rows()), factor_(regularized(form, norm)) {}
+  ShiftedInverse(const ComplexSparse& form, const ComplexSparse& norm)
+      : size_(form.rows()), factor_(regularized(form, norm)) {}
   Eigen::Index rows() const { return 2 * size_; }
   Eigen::Index cols() const { return 2 * size_; }
   void set_shift(double) {}  // fixed when the factor was made
@@ -84,21 +85,23 @@ Eigen::VectorXcd unbiased_start(Eigen::Index size) {
   return start;
 }
 
-Eigen::VectorXcd smallest_eigenvector(const ComplexSparse& form, const ComplexSparse& norm, const Eigen::VectorXcd& start) {
+Eigen::VectorXcd smallest_eigenvector(const ComplexSparse& form, const ComplexSparse& norm,
+                                      const Eigen::VectorXcd& start) {
   const Eigen::Index n = form.rows();
   if (n == 1) return Eigen::VectorXcd::Ones(1);
   ShiftedInverse inverse(form, norm);
   NormProduct product(norm);
   const Eigen::Index dimension = std::min<Eigen::Index>(krylov_dimension, 2 * n);
   Spectra::SymGEigsShiftSolver<ShiftedInverse, NormProduct, Spectra::GEigsMode::ShiftInvert> solver(inverse, product, 1,
-                                                                                                 dimension, -shift);
+                                                                                                    dimension, -shift);
   Eigen::VectorXd real_start(2 * n);
   to_real(start, real_start.data());
   solver.init(real_start.data());
   solver.compute(Spectra::SortRule::LargestMagn, most_restarts, tolerance);
   if (solver.info() != Spectra::CompInfo::Successful) {
-    throw Error(Code::solver_failed, "The spectral unfolding did not converge: several maps are about equally conformal. "
-                                     "Use the Poisson unfolding.");
+    throw Error(Code::solver_failed,
+                "The spectral unfolding did not converge: several maps are about equally conformal. "
+                "Use the Poisson unfolding.");
   }
   // Where the form is singular the inverse is so large in one direction that the Krylov basis loses the others' digits;
   // two plain inverse iterations win them back.

@@ -10,12 +10,16 @@ namespace lsgp {
 template <typename Scalar>
 class LowerAssembly {
  public:
-  explicit LowerAssembly(int size, std::size_t expected_entries = 0) : size_(size) { entries_.reserve(expected_entries); }
+  explicit LowerAssembly(int size, std::size_t expected_entries = 0) : size_(size) {
+    entries_.reserve(expected_entries);
+  }
 
   // Adds to entry (row, column); the entry's mirror image is implied.  Entries above the diagonal are mirrored.
   void add(int row, int column, const Scalar& value) {
-    if (row >= column) entries_.push_back({row, column, value});
-    else entries_.push_back({column, row, Eigen::numext::conj(value)});
+    if (row >= column)
+      entries_.push_back({row, column, value});
+    else
+      entries_.push_back({column, row, Eigen::numext::conj(value)});
   }
 
   // Two counting sorts, by row and then by column, leave every column in order of its rows; equal entries are added.

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Native verbs; call them through `lsgp.api`, which checks and converts."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+_Floats = NDArray[np.float64]
+_Indices = NDArray[np.int32]
+_Flags = NDArray[np.bool_]
+
+def parameterize(
+    positions: _Floats,
+    triangles: _Indices,
+    edges: _Indices | None,
+    seams: _Indices,
+    cones: _Indices,
+    angles: _Floats,
+    has_angle: _Flags,
+    prescription: str,
+    unfold: str,
+    method: str,
+) -> dict[str, Any]: ...
+def find_cuts(
+    positions: _Floats, triangles: _Indices, edges: _Indices | None, seams: _Indices, cones: _Indices
+) -> dict[str, Any]: ...
+def prescribe_curvature(
+    positions: _Floats,
+    triangles: _Indices,
+    edges: _Indices | None,
+    seams: _Indices,
+    cones: _Indices,
+    angles: _Floats,
+    has_angle: _Flags,
+    prescription: str,
+) -> dict[str, Any]: ...
+def place_cones(
+    positions: _Floats,
+    triangles: _Indices,
+    edges: _Indices | None,
+    seams: _Indices,
+    count: int,
+    existing: _Indices,
+) -> _Indices: ...
+def measure_distortion(
+    positions: _Floats,
+    triangles: _Indices,
+    edges: _Indices | None,
+    seams: _Indices,
+    corner_uv: _Floats,
+    cones: _Indices | None,
+) -> dict[str, Any]: ...
