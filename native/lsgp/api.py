@@ -215,8 +215,8 @@ def place_cones(surface: Surface, count: int | None = None, existing: ArrayLike 
     """Cones at the extrema of the log scale factor, one after the other (Ben-Chen et al. 2008).
 
     count: cones per component, `existing` ones included; None: as many as bring the predicted L2 stretch near 1.
-    existing: cones to keep; they come first in the answer. None is placed on a border or within two rings of another.
-    Returns (k,) int32 vertex indices.
+    existing: cones to keep; they come first in the answer. None is placed on a border nor, where
+    the mesh has room, within two rings of another.  Returns (k,) int32 vertex indices.
     """
     if count is not None and count < 0:
         raise InputError("WRONG_PARAMETER", f"count is {count}; pass a number of cones, or None for automatic.")

@@ -157,7 +157,7 @@ def _reported(args: argparse.Namespace) -> int:
 
 
 def _refusal(error: LsgpError, run: Run) -> reports.Report:
-    _say(sys.stderr, f"lsgp: refused: {error.code}: {error.message}{_faces(error.elements, run.triangulation)}")
+    _say(sys.stderr, f"lsgp: refused: {error.code}: {error.message}{_where(error.elements, run.triangulation)}")
     return reports.refusal_report(error, run.triangulation)
 
 
@@ -325,20 +325,14 @@ def _unlike(path: Path | None, form: str) -> InputError:
 
 def _warn(findings: Sequence[Finding], triangulation: Triangulation) -> None:
     for finding in findings:
-        where = _faces(finding.elements, triangulation)
+        where = _where(finding.elements, triangulation)
         _say(sys.stderr, f"lsgp: warning: {finding.code}: {finding.message}{where}")
 
 
-def _faces(elements: Elements, triangulation: Triangulation | None) -> str:
-    """The faces of the file that a message speaks of, in brackets. Messages of the library name their elements, but
-    know triangles only; nothing is added where the file has only those, too, or where they name vertices or edges."""
-    only_triangles = (
-        triangulation is not None and len(triangulation.triangles) == triangulation.polygon.max(initial=-1) + 1
-    )
-    if elements.kind == "triangles" and only_triangles:
-        return ""
-    faces = reports.on_faces(elements, triangulation)
-    return f" ({reports.named(faces)})" if faces.kind == "faces" and len(faces.indices) else ""
+def _where(elements: Elements, triangulation: Triangulation | None) -> str:
+    """The elements a message speaks of, in brackets and in the file's numbering."""
+    named = str(reports.on_faces(elements, triangulation))
+    return f" ({named})" if named else ""
 
 
 def _say(stream: TextIO, text: str) -> None:

@@ -24,6 +24,17 @@ class Elements:
     kind: str = "vertices"
     indices: NDArray[np.int32] = field(default_factory=lambda: np.empty(0, np.int32))
 
+    def __str__(self) -> str:
+        """For a sentence: the kind and the first few elements; empty where there are none."""
+        shown = 5
+        if not len(self.indices):
+            return ""
+        first = ", ".join(
+            "-".join(map(str, i)) if isinstance(i, list) else str(i) for i in self.indices[:shown].tolist()
+        )
+        rest = f" and {len(self.indices) - shown} more" if len(self.indices) > shown else ""
+        return f"{self.kind} {first}{rest}"
+
 
 @dataclass(frozen=True, slots=True)
 class Finding:
@@ -42,6 +53,10 @@ class LsgpError(Exception):
         self.code = code
         self.message = message
         self.elements = elements if elements is not None else Elements()
+
+    def __str__(self) -> str:
+        where = str(self.elements)
+        return f"{self.message} ({where})" if where else self.message
 
 
 class InputError(LsgpError, ValueError):

@@ -110,16 +110,6 @@ def quality_table(distortion: Distortion, seams: SeamQuality, flipped: int, wron
     return "\n".join(lines)
 
 
-def named(elements: Elements, shown: int = 5) -> str:
-    """Elements for a sentence: their kind and the first few of them; empty where there are none."""
-    indices = elements.indices.tolist()
-    if not indices:
-        return ""
-    first = ", ".join("-".join(map(str, i)) if isinstance(i, list) else str(i) for i in indices[:shown])
-    rest = f" and {len(indices) - shown} more" if len(indices) > shown else ""
-    return f"{elements.kind} {first}{rest}"
-
-
 def _warnings(findings: Iterable[Finding], triangulation: Triangulation) -> list[Report]:
     return [
         {"code": f.code, "message": f.message, "elements": _elements(on_faces(f.elements, triangulation))}

@@ -19,19 +19,21 @@ class Placement {
  public:
   Placement(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& existing)
       : mesh_(mesh), geometry_(geometry), scale_(mesh, geometry), blocked_(mesh.vertex_count(), 0) {
-    for (const auto& loop : mesh.boundary_loops) {
-      for (const Index v : loop) blocked_[v] = 1;
-    }
-    for (const Index v : existing) block_around(v);
     scale_.add_cones(existing);
+    block();
   }
 
   std::vector<Index> place(int count) {
     while (!enough(count)) {
       const Index v = largest_scale();
-      if (v == none) break;
-      block_around(v);
-      scale_.add_cones({v});
+      if (v != none) {
+        scale_.add_cones({v});
+      } else if (free_rings_ > 0 && (count >= 0 || too_few())) {
+        --free_rings_;  // a coarse mesh: cones have to come closer to each other
+      } else {
+        break;
+      }
+      block();
     }
     return scale_.cones();
   }
@@ -40,9 +42,11 @@ class Placement {
   bool enough(int count) const {
     const int cones = scale_.cone_count();
     if (count >= 0) return cones >= count;
-    if (mesh_.closed() && mesh_.euler != 0 && cones < fewest_on_sphere) return false;
+    if (too_few()) return false;
     return cones >= most_automatic || scale_.predicted_l2(harmonic_scale()) <= wanted_l2;
   }
+
+  bool too_few() const { return mesh_.closed() && mesh_.euler != 0 && scale_.cone_count() < fewest_on_sphere; }
 
   // y = 0 at the cones; before the first cone of a closed surface, the metric of constant curvature.
   Eigen::VectorXd harmonic_scale() const {
@@ -66,19 +70,26 @@ class Placement {
     return best;
   }
 
-  // Cones side by side cancel each other: the two rings around one stay free of others.
-  void block_around(Index v) {
-    blocked_[v] = 1;
-    mesh_.for_each_outgoing(v, [&](Index h) {
-      blocked_[mesh_.target(h)] = 1;
-      mesh_.for_each_outgoing(mesh_.target(h), [&](Index further) { blocked_[mesh_.target(further)] = 1; });
-    });
+  // Cones side by side cancel each other: the rings around each stay free of others.  None lies on a border.
+  void block() {
+    std::fill(blocked_.begin(), blocked_.end(), 0);
+    for (const Index v : scale_.cones()) blocked_[v] = 1;
+    for (int ring = 0; ring < free_rings_; ++ring) {
+      const std::vector<char> inner = blocked_;
+      for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+        if (inner[v]) mesh_.for_each_outgoing(v, [&](Index h) { blocked_[mesh_.target(h)] = 1; });
+      }
+    }
+    for (const auto& loop : mesh_.boundary_loops) {
+      for (const Index v : loop) blocked_[v] = 1;
+    }
   }
 
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
   LogScale scale_;
   std::vector<char> blocked_;
+  int free_rings_ = 2;
 };
 
 }  // namespace

@@ -77,8 +77,8 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones) {
   if (!overloaded.empty()) {
     throw Error(Code::cone_angle_range,
                 concat(count(overloaded.size(), "cone has", "cones have"),
-                       " an angle that the triangles around it cannot carry, less than 180 degrees each (",
-                       list(overloaded), "). Lower the angle or subdivide the mesh there."),
+                       " an angle that the triangles around it cannot carry, less than 180 degrees each. Lower the "
+                       "angle or subdivide the mesh there."),
                 {ElementKind::vertices, overloaded});
   }
   if (!mesh.closed()) return;
@@ -141,8 +141,8 @@ Eigen::VectorXd harmonic(const HalfedgeMesh& mesh, const ComponentCones& cones, 
   }
   if (!impossible.empty()) {
     throw Error(Code::cone_angle_range,
-                concat("The harmonic angle of ", count(impossible.size(), "cone", "cones"), " (", list(impossible),
-                       ") is one no map can have. Add cones near it, or use the least-distortion prescription."),
+                concat("The harmonic angle of ", count(impossible.size(), "cone", "cones"),
+                       " is one no map can have. Add cones near it, or use the least-distortion prescription."),
                 {ElementKind::vertices, impossible});
   }
   return curvature;
@@ -172,7 +172,7 @@ std::optional<Eigen::VectorXd> straightness(const HalfedgeMesh& mesh, const Geom
   for (Index i = 0; i < k && failure.empty(); ++i) {
     const double angle = 2 * M_PI - curvature[i];
     if (angle < impossible_angle || angle >= M_PI * valence(mesh, cones.vertices[i])) {
-      failure = concat("cone ", cones.vertices[i], " would keep an angle of ", angle / M_PI, " pi");
+      failure = concat("a cone would keep an angle of ", angle / M_PI, " pi");
     }
   }
   if (!failure.empty()) {

@@ -202,18 +202,16 @@ class Assembly {
     std::sort(flipped.begin(), flipped.end());
     std::sort(wrong.begin(), wrong.end());
     if (!flipped.empty()) {
-      result_.warnings.push_back(
-          {Code::flipped_triangles,
-           concat(count(flipped.size(), "triangle is", "triangles are"), " flipped in the layout (", list(flipped),
-                  "). Add a cone nearby or improve the mesh there."),
-           {ElementKind::triangles, flipped}});
+      result_.warnings.push_back({Code::flipped_triangles,
+                                  concat(count(flipped.size(), "triangle is", "triangles are"),
+                                         " flipped in the layout. Add a cone nearby or improve the mesh there."),
+                                  {ElementKind::triangles, flipped}});
     }
     if (!wrong.empty()) {
-      result_.warnings.push_back(
-          {Code::wrong_angle_sums,
-           concat("At ", count(wrong.size(), "vertex", "vertices"), " the layout turns once too often or too little (",
-                  list(wrong), "). Move or add cones nearby."),
-           {ElementKind::vertices, wrong}});
+      result_.warnings.push_back({Code::wrong_angle_sums,
+                                  concat("At ", count(wrong.size(), "vertex", "vertices"),
+                                         " the layout turns once too often or too little. Move or add cones nearby."),
+                                  {ElementKind::vertices, wrong}});
     }
   }
 
@@ -231,8 +229,8 @@ void report_boundary_cones(const Component& component, const std::vector<Index>&
   if (on_boundary.empty()) return;
   Elements elements = in_source(component, {ElementKind::vertices, on_boundary});
   findings.push_back({Code::cone_on_boundary,
-                      concat(count(on_boundary.size(), "cone lies", "cones lie"), " on an open border (",
-                             list(elements.indices), "), where angles are free anyway; nothing was prescribed there."),
+                      concat(count(on_boundary.size(), "cone lies", "cones lie"),
+                             " on an open border, where angles are free anyway; nothing was prescribed there."),
                       std::move(elements)});
 }
 

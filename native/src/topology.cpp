@@ -82,8 +82,7 @@ std::vector<char> mark_edges(const EdgeTable& edges, const VertexPairs& pairs, C
       missing.insert(missing.end(), {a, b});
   }
   if (!missing.empty()) {
-    throw Error(code,
-                concat(count(missing.size() / 2, "vertex pair", "vertex pairs"), " (", list(missing), ") ", sentence),
+    throw Error(code, concat(count(missing.size() / 2, "vertex pair", "vertex pairs"), " ", sentence),
                 {ElementKind::edges, missing});
   }
   return marked;
@@ -209,8 +208,8 @@ void report_repairs(const Surface& surface, const EdgeTable& edges, const Orient
   if (!crowded.empty()) {
     findings.push_back(
         {Code::non_manifold_edge,
-         concat(count(crowded.size() / 2, "edge is", "edges are"), " shared by more than two triangles (vertices ",
-                list(crowded), "). The layout is open there; delete the surplus faces to close it."),
+         concat(count(crowded.size() / 2, "edge is", "edges are"),
+                " shared by more than two triangles. The layout is open there; delete the surplus faces to close it."),
          {ElementKind::edges, crowded}});
   }
   std::vector<Index> fans(surface.positions.rows(), 0), split, isolated, turned;
@@ -231,23 +230,23 @@ void report_repairs(const Surface& surface, const EdgeTable& edges, const Orient
     if (fans[v] > 1) split.push_back(static_cast<Index>(v));
   }
   if (!split.empty()) {
-    findings.push_back(
-        {Code::split_vertex,
-         concat("At ", count(split.size(), "vertex", "vertices"), " separate parts of the surface touch (", list(split),
-                "). They were unwrapped as separate vertices; split them to be rid of this note."),
-         {ElementKind::vertices, split}});
+    findings.push_back({Code::split_vertex,
+                        concat("At ", count(split.size(), "vertex", "vertices"),
+                               " separate parts of the surface touch. They were unwrapped as separate vertices; split "
+                               "them to be rid of this note."),
+                        {ElementKind::vertices, split}});
   }
   if (!isolated.empty()) {
-    findings.push_back({Code::isolated_vertices,
-                        concat(count(isolated.size(), "vertex belongs", "vertices belong"), " to no face (",
-                               list(isolated), ") and got no coordinates."),
-                        {ElementKind::vertices, isolated}});
+    findings.push_back(
+        {Code::isolated_vertices,
+         concat(count(isolated.size(), "vertex belongs", "vertices belong"), " to no face and got no coordinates."),
+         {ElementKind::vertices, isolated}});
   }
   if (!turned.empty()) {
     findings.push_back(
         {Code::reoriented,
          concat(count(turned.size(), "triangle faces", "triangles face"), " the other way than the rest of ",
-                "the surface (", list(turned), "). Unwrapped as if turned; recalculate normals to repair it."),
+                "the surface. Unwrapped as if turned; recalculate normals to repair it."),
          {ElementKind::triangles, turned}});
   }
 }
@@ -266,11 +265,10 @@ Topology build_topology(const Surface& surface, std::vector<Finding>& findings) 
       doubled.push_back(f);
     }
     edges = EdgeTable(surface, skip);
-    findings.push_back(
-        {Code::duplicate_face,
-         concat(count(doubled.size(), "triangle lies", "triangles lie"), " on another one (", list(doubled),
-                ") and got its coordinates. Delete doubled faces to be rid of this note."),
-         {ElementKind::triangles, doubled}});
+    findings.push_back({Code::duplicate_face,
+                        concat(count(doubled.size(), "triangle lies", "triangles lie"),
+                               " on another one and got its coordinates. Delete doubled faces to be rid of this note."),
+                        {ElementKind::triangles, doubled}});
   }
   const std::vector<char> cuttable =
       surface.edges ? mark_edges(edges, *surface.edges, Code::edge_not_in_mesh,

@@ -67,13 +67,13 @@ void require_valid(const Surface& surface) {
   if (!outside.empty()) {
     throw Error(Code::index_out_of_range,
                 concat(count(outside.size(), "triangle names", "triangles name"), " vertices outside 0 to ", n - 1,
-                       " (", list(outside), "). Repair the face indices."),
+                       ". Repair the face indices."),
                 {ElementKind::triangles, outside});
   }
   if (!repeated.empty()) {
     throw Error(Code::bad_face,
-                concat(count(repeated.size(), "triangle repeats", "triangles repeat"), " a vertex (", list(repeated),
-                       "). Merge by distance or delete them."),
+                concat(count(repeated.size(), "triangle repeats", "triangles repeat"),
+                       " a vertex. Merge by distance or delete them."),
                 {ElementKind::triangles, repeated});
   }
   std::vector<Index> bad;
@@ -82,8 +82,8 @@ void require_valid(const Surface& surface) {
   }
   if (!bad.empty()) {
     throw Error(Code::non_finite_position,
-                concat(count(bad.size(), "vertex has", "vertices have"), " a coordinate that is not a finite number (",
-                       list(bad), "). Move or delete them."),
+                concat(count(bad.size(), "vertex has", "vertices have"),
+                       " a coordinate that is not a finite number. Move or delete them."),
                 {ElementKind::vertices, bad});
   }
   require_extent(surface.positions, used);
@@ -124,8 +124,7 @@ void require_valid(const Surface& surface, const Cones& cones) {
   const auto refuse = [](Code code, const std::vector<Index>& bad, const char* one, const char* many,
                          const char* remedy) {
     if (!bad.empty()) {
-      throw Error(code, concat(count(bad.size(), one, many), " (", list(bad), "). ", remedy),
-                  {ElementKind::vertices, bad});
+      throw Error(code, concat(count(bad.size(), one, many), ". ", remedy), {ElementKind::vertices, bad});
     }
   };
   refuse(Code::cone_duplicate, duplicate, "cone is listed twice", "cones are listed twice", "List every cone once.");

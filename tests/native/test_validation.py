@@ -140,7 +140,8 @@ def test_refusal_has_its_code_class_elements_and_remedy(case: str) -> None:
         assert error.elements.kind == kind
         assert error.elements.indices.dtype == np.int32
         assert error.elements.indices.tolist() == elements
-    assert str(error) == error.message
+    where = str(error.elements)
+    assert str(error) == (f"{error.message} ({where})" if where else error.message)
     assert re.search(r"\. [A-Z][^.]*\.$", error.message) or error.message.count(".") >= 2, (
         "the last sentence is the remedy"
     )

@@ -25,7 +25,8 @@ LSGP_API Prescription prescribe_curvature(const Surface& surface, const Cones& c
                                           PrescriptionRule rule = PrescriptionRule::least_distortion);
 
 // Cones at the extrema of the log scale factor, one after the other (Ben-Chen et al. 2008), `existing` ones first;
-// none on a border or within two rings of another.
+// none on a border and, where the mesh has room,
+// none within two rings of another.
 // count: cones of every component; negative: as many as bring the predicted L2 stretch near 1.
 LSGP_API std::vector<Index> place_cones(const Surface& surface, int count, const std::vector<Index>& existing = {});
 
