@@ -2,7 +2,7 @@
 """The wheel and the extension under test, built once, and the Python with bpy they are tried in.
 
 LSGP_WHEEL names a wheel to use instead of building one, BPY_PYTHON a Python with bpy (default: this one, if it has
-bpy).
+bpy). CONE_UNWRAP_REQUIRE_BLENDER=1 makes it an error that there is no Blender to test in.
 """
 
 import importlib.util
@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 
@@ -24,11 +25,29 @@ def python_with_bpy() -> str | None:
     return sys.executable if importlib.util.find_spec("bpy") else None
 
 
+def leave_out(reason: str) -> NoReturn:
+    """Skip what needs a Blender that is not there; an error where CONE_UNWRAP_REQUIRE_BLENDER says it has to be."""
+    if os.environ.get("CONE_UNWRAP_REQUIRE_BLENDER") == "1":
+        pytest.fail(reason)
+    pytest.skip(reason)
+
+
+@pytest.fixture(scope="session")
+def real_blender() -> list[str]:
+    """The arguments of tools/test_in_blender.py that name a Blender executable."""
+    if "BLENDER_CHROOT" in os.environ:
+        # The chroot sees the repository, but not every temporary folder.
+        return ["--chroot", os.environ["BLENDER_CHROOT"], "--out", str(ROOT / "build" / "in_real_blender")]
+    if "BLENDER" in os.environ and "BLENDER_PYTHON" in os.environ:
+        return ["--blender", os.environ["BLENDER"], "--python", os.environ["BLENDER_PYTHON"]]
+    leave_out("no Blender executable; set BLENDER and BLENDER_PYTHON, or BLENDER_CHROOT")
+
+
 @pytest.fixture(scope="session")
 def bpy_python() -> str:
     python = python_with_bpy()
     if python is None:
-        pytest.skip("no Python with bpy; install bpy here or set BPY_PYTHON")
+        leave_out("no Python with bpy; install bpy here or set BPY_PYTHON")
     return python
 
 

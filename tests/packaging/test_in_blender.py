@@ -5,12 +5,9 @@ BPY_PYTHON names a Python with bpy (default: this one, if it has bpy). BLENDER n
 Python of the same version that can build wheels; or BLENDER_CHROOT an installation of ../shared/tools/real-blender.
 """
 
-import os
 import subprocess
 import sys
 from pathlib import Path
-
-import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 TOOL = ROOT / "tools" / "test_in_blender.py"
@@ -26,11 +23,5 @@ def test_addon_in_bpy(bpy_python, wheel, tmp_path):
     run_tool("--python", bpy_python, "--wheel", str(wheel), "--out", str(tmp_path))
 
 
-def test_addon_in_a_real_blender(tmp_path):
-    if "BLENDER_CHROOT" in os.environ:
-        # The chroot sees the repository, but not every temporary folder.
-        run_tool("--chroot", os.environ["BLENDER_CHROOT"], "--out", str(ROOT / "build" / "in_real_blender"))
-    elif "BLENDER" in os.environ and "BLENDER_PYTHON" in os.environ:
-        run_tool("--blender", os.environ["BLENDER"], "--python", os.environ["BLENDER_PYTHON"], "--out", str(tmp_path))
-    else:
-        pytest.skip("no Blender executable; set BLENDER and BLENDER_PYTHON, or BLENDER_CHROOT")
+def test_addon_in_a_real_blender(real_blender):
+    run_tool(*real_blender)

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What tools/demo and tools/test need on a fresh Debian-like machine; to be sourced by them.
+#
+# PYTHON names the Python 3.11 to use.
+export PIP_DISABLE_PIP_VERSION_CHECK=1
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+venv=$root/build/venv
+
+say() { printf '\n== %s\n' "$*"; }
+fail() { printf '%s: %s\n' "$(basename "$0")" "$*" >&2; exit 1; }
+
+# Installs Debian packages; says which ones to install where it may not.
+install_packages() {
+    command -v apt-get >/dev/null || fail "please install these (Debian's names): $*"
+    say "installing $*"
+    local as_root=()
+    if [ "$(id -u)" != 0 ]; then
+        command -v sudo >/dev/null || fail "please install as root: apt-get install $*"
+        as_root=(sudo)
+    fi
+    "${as_root[@]}" apt-get update -q
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "$@"
+}
+
+find_python() {
+    local name
+    for name in ${PYTHON:+"$PYTHON"} python3.11 python3 python; do
+        if "$name" -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' 2>/dev/null; then
+            command -v "$name"
+            return
+        fi
+    done
+}
+
+# A compiler, headers and a Python; sets `python`.
+set_up_system() {
+    local missing=()
+    command -v c++ >/dev/null || missing+=(g++)
+    [ -e /usr/include/eigen3/Eigen/Core ] || missing+=(libeigen3-dev)
+    [ -e /usr/include/Spectra/SymEigsSolver.h ] || missing+=(libspectra-dev)
+    python=$(find_python)
+    [ -n "$python" ] || fail "no Python 3.11 found; install it or name it in PYTHON"
+    "$python" -c 'import ensurepip, venv' 2>/dev/null || missing+=(python3.11-venv)
+    "$python" -c 'import os, sysconfig; os.stat(os.path.join(sysconfig.get_path("include"), "Python.h"))' 2>/dev/null ||
+        missing+=(python3.11-dev)
+    [ ${#missing[@]} = 0 ] || install_packages "${missing[@]}"
+}
+
+# Makes a virtual environment, once: $1 its folder, then what to install there.
+set_up_python() {
+    local folder=$1
+    shift
+    if [ "$(cat "$folder/installed" 2>/dev/null)" != "$*" ]; then
+        say "installing $* in $folder"
+        [ -x "$folder/bin/python" ] || "$python" -m venv "$folder"
+        "$folder/bin/pip" install -q "$@"
+        printf '%s\n' "$*" >"$folder/installed"
+    fi
+}
+
+# The bpy wheel (about 400 MB) in virtual environment $1; it brings Blender's own libraries, not those of the window
+# system, which it links even when headless.
+set_up_bpy() {
+    set_up_python "$1" 'bpy==4.5.*' 'numpy<2' "${@:2}"
+    if ldd "$1"/lib/python3.11/site-packages/bpy/__init__*.so | grep -q 'not found'; then
+        install_packages libx11-6 libxi6 libxrender1 libxfixes3 libxkbcommon0 libsm6 libice6 libgl1
+    fi
+}
+
+# Builds the wheel for our own Python into folder $2 with virtual environment $1, unless one is newer than all sources.
+build_wheel() {
+    if [ -d "$2" ] && [ -z "$(find "$root"/native "$root"/CMakeLists.txt "$root"/pyproject.toml -newer "$2" -print -quit)" ]; then
+        return
+    fi
+    say "building the lsgp wheel"
+    rm -rf "$2"
+    "$1/bin/pip" wheel -q "$root" --no-deps -w "$2"
+    touch "$2"
+}
