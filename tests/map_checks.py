@@ -109,4 +109,12 @@ def assert_angles_met(mesh: Mesh, result: lsgp.Result) -> None:
 
 def solve_again(mesh: Mesh, result: lsgp.Result, method: str = "poisson") -> oracle.Map:
     """The oracle's map on the cut and with the angles of a result."""
-    return oracle.unfold(mesh.positions, mesh.triangles, result.cones, result.cone_angles, result.cut_edges, method)
+    return oracle.unfold(
+        mesh.positions,
+        mesh.triangles,
+        result.cones,
+        result.cone_angles,
+        result.cut_edges,
+        method,
+        oracle.read_loop_scale(mesh.triangles, result.log_scale),
+    )

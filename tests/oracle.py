@@ -112,12 +112,23 @@ def vertex_shares(p: FloatArray, t: IntArray) -> FloatArray:
 # --- curvature prescription, one component ----------------------------------------------------------------------------
 
 
-def solve_scale(p: FloatArray, t: IntArray, kappa: FloatArray) -> FloatArray:
-    """y with L y = kappa - K inside; 0 on the boundary if there is one, otherwise of area-weighted mean 0."""
-    right = kappa - angle_defects(p, t)
+def solve_scale(p: FloatArray, t: IntArray, kappa: FloatArray, loop_scale: Sequence[float] = ()) -> FloatArray:
+    """y with L y = kappa - K inside; loop_scale (0 where not given) on the boundary, or of area-weighted mean 0."""
+    matrix = cotan_laplacian(p, t)
+    border = np.zeros(len(p))
+    for loop, scale in zip(boundary_loops(t), loop_scale, strict=False):
+        border[loop] = scale
+    right = kappa - angle_defects(p, t) - matrix @ border
     fixed = np.concatenate(boundary_loops(t) or [np.unique(t)[:1]])
-    y = _dirichlet(cotan_laplacian(p, t), right, fixed, np.unique(t))
+    y = border + _dirichlet(matrix, right, fixed, np.unique(t))
     return y if boundary_loops(t) else y - vertex_shares(p, t) @ y
+
+
+def read_loop_scale(t: IntArray, y: FloatArray) -> list[float]:
+    """The value of y on every boundary loop relative to the first; it has to be one value a loop."""
+    loops = boundary_loops(t)
+    assert all(np.ptp(y[loop]) <= 1e-9 for loop in loops)
+    return [float(y[loop[0]] - y[loops[0][0]]) for loop in loops]
 
 
 def _dirichlet(matrix: sp.csr_matrix, right: FloatArray, fixed: IntArray, used: IntArray) -> FloatArray:
@@ -304,12 +315,12 @@ def cut_rotations(p: FloatArray, t: IntArray, cut: IntArray, kappa: FloatArray) 
 
 
 def full_curvature(
-    p: FloatArray, t: IntArray, cones: IntArray, angles: Sequence[float]
+    p: FloatArray, t: IntArray, cones: IntArray, angles: Sequence[float], loop_scale: Sequence[float] = ()
 ) -> tuple[FloatArray, FloatArray]:
     """kappa at every vertex (boundary vertices get what the free boundary gives them) and the log scale y."""
     kappa = np.zeros(len(p))
     kappa[cones] = TURN - np.asarray(angles)
-    y = solve_scale(p, t, kappa)
+    y = solve_scale(p, t, kappa, loop_scale)
     return angle_defects(p, t) + cotan_laplacian(p, t) @ y, y
 
 
@@ -616,10 +627,16 @@ class Map:
 
 
 def unfold(
-    p: FloatArray, t: IntArray, cones: IntArray, angles: Sequence[float], cut_edges: IntArray, method: str = "poisson"
+    p: FloatArray,
+    t: IntArray,
+    cones: IntArray,
+    angles: Sequence[float],
+    cut_edges: IntArray,
+    method: str = "poisson",
+    loop_scale: Sequence[float] = (),
 ) -> Map:
     """The map with these cone angles on this cut of one component of genus 0, by "poisson", "spectral" or "dense"."""
-    kappa, y = full_curvature(p, t, cones, angles)
+    kappa, y = full_curvature(p, t, cones, angles, loop_scale)
     opened = cut_open(t, cut_edges)
     rotations = cut_rotations(p, t, opened.cut, kappa)
     _, closure = cone_metric_frames(p, t, opened, y)

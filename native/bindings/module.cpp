@@ -134,16 +134,37 @@ py::dict to_dict(const lsgp::SeamQuality& seams) {
   return out;
 }
 
+lsgp::SeamMode to_seam_mode(const std::string& name) {
+  if (name == "follow") return lsgp::SeamMode::follow;
+  if (name == "boundary") return lsgp::SeamMode::boundary;
+  if (name == "ignore") return lsgp::SeamMode::ignore;
+  throw py::value_error("unknown seam mode '" + name + "'");
+}
+
+// A dictionary with the fields of lsgp.Options.
+lsgp::Options to_options(const py::dict& values) {
+  const auto text = [&](const char* field) { return values[field].cast<std::string>(); };
+  lsgp::Options options;
+  options.prescription = to_rule(text("prescription"));
+  options.unfold = text("unfold") == "spectral" ? lsgp::UnfoldMethod::spectral : lsgp::UnfoldMethod::poisson;
+  options.method = text("method") == "lscm" ? lsgp::Method::lscm : lsgp::Method::lsgp;
+  options.seams = to_seam_mode(text("seams"));
+  options.border = text("border") == "straight" ? lsgp::BorderMode::straight : lsgp::BorderMode::free;
+  for (const auto& [vertex, turning] : values["loop_turning"].cast<py::dict>()) {
+    options.loop_turning.emplace_back(vertex.cast<Index>(), turning.cast<double>());
+  }
+  return options;
+}
+
 py::dict parameterize(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
                       const IndexArray& seams, const IndexArray& cones, const FloatArray& angles,
-                      const BoolArray& has_angle, const std::string& prescription, const std::string& unfold,
-                      const std::string& method) {
+                      const BoolArray& has_angle, const py::dict& option_values, const IndexArray& pinned_corners,
+                      const FloatArray& pinned_uv) {
   const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
   const lsgp::Cones wanted = to_cones(cones, angles, has_angle);
-  const lsgp::Options options{to_rule(prescription),
-                              unfold == "spectral" ? lsgp::UnfoldMethod::spectral : lsgp::UnfoldMethod::poisson,
-                              method == "lscm" ? lsgp::Method::lscm : lsgp::Method::lsgp};
-  const lsgp::Result result = without_gil([&] { return lsgp::parameterize(surface, wanted, options); });
+  const lsgp::Options options = to_options(option_values);
+  const lsgp::Pins pins{to_vector(pinned_corners), to_matrix<lsgp::CornerUv>(pinned_uv)};
+  const lsgp::Result result = without_gil([&] { return lsgp::parameterize(surface, wanted, options, pins); });
   py::array_t<bool> solved(static_cast<py::ssize_t>(result.island.size()));
   for (std::size_t f = 0; f < result.island.size(); ++f) solved.mutable_at(f) = result.island[f] >= 0;
   py::dict seconds;
@@ -167,10 +188,11 @@ py::dict parameterize(const FloatArray& positions, const IndexArray& triangles, 
 }
 
 py::dict find_cuts(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
-                   const IndexArray& seams, const IndexArray& cones) {
+                   const IndexArray& seams, const IndexArray& cones, const py::dict& option_values) {
   const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
   const std::vector<Index> wanted = to_vector(cones);
-  const lsgp::CutPaths cuts = without_gil([&] { return lsgp::find_cuts(surface, wanted); });
+  const lsgp::Options options = to_options(option_values);
+  const lsgp::CutPaths cuts = without_gil([&] { return lsgp::find_cuts(surface, wanted, options); });
   py::list paths;
   for (const auto& path : cuts.paths) paths.append(to_array(path));
   py::dict out;
@@ -181,11 +203,11 @@ py::dict find_cuts(const FloatArray& positions, const IndexArray& triangles, con
 
 py::dict prescribe_curvature(const FloatArray& positions, const IndexArray& triangles,
                              const std::optional<IndexArray>& edges, const IndexArray& seams, const IndexArray& cones,
-                             const FloatArray& angles, const BoolArray& has_angle, const std::string& prescription) {
+                             const FloatArray& angles, const BoolArray& has_angle, const py::dict& option_values) {
   const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
   const lsgp::Cones wanted = to_cones(cones, angles, has_angle);
-  const lsgp::PrescriptionRule rule = to_rule(prescription);
-  const lsgp::Prescription result = without_gil([&] { return lsgp::prescribe_curvature(surface, wanted, rule); });
+  const lsgp::Options options = to_options(option_values);
+  const lsgp::Prescription result = without_gil([&] { return lsgp::prescribe_curvature(surface, wanted, options); });
   py::dict out;
   out["cones"] = to_array(result.cones);
   out["cone_angles"] = to_array(result.cone_angles);
@@ -197,10 +219,11 @@ py::dict prescribe_curvature(const FloatArray& positions, const IndexArray& tria
 
 py::array_t<Index> place_cones(const FloatArray& positions, const IndexArray& triangles,
                                const std::optional<IndexArray>& edges, const IndexArray& seams, int count,
-                               const IndexArray& existing) {
+                               const IndexArray& existing, const std::string& seam_mode) {
   const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
   const std::vector<Index> kept = to_vector(existing);
-  return to_array(without_gil([&] { return lsgp::place_cones(surface, count, kept); }));
+  const lsgp::SeamMode mode = to_seam_mode(seam_mode);
+  return to_array(without_gil([&] { return lsgp::place_cones(surface, count, kept, mode); }));
 }
 
 py::dict measure_distortion(const FloatArray& positions, const IndexArray& triangles,

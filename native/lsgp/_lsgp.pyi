@@ -18,12 +18,17 @@ def parameterize(
     cones: _Indices,
     angles: _Floats,
     has_angle: _Flags,
-    prescription: str,
-    unfold: str,
-    method: str,
+    options: dict[str, Any],
+    pinned_corners: _Indices,
+    pinned_uv: _Floats,
 ) -> dict[str, Any]: ...
 def find_cuts(
-    positions: _Floats, triangles: _Indices, edges: _Indices | None, seams: _Indices, cones: _Indices
+    positions: _Floats,
+    triangles: _Indices,
+    edges: _Indices | None,
+    seams: _Indices,
+    cones: _Indices,
+    options: dict[str, Any],
 ) -> dict[str, Any]: ...
 def prescribe_curvature(
     positions: _Floats,
@@ -33,7 +38,7 @@ def prescribe_curvature(
     cones: _Indices,
     angles: _Floats,
     has_angle: _Flags,
-    prescription: str,
+    options: dict[str, Any],
 ) -> dict[str, Any]: ...
 def place_cones(
     positions: _Floats,
@@ -42,6 +47,7 @@ def place_cones(
     seams: _Indices,
     count: int,
     existing: _Indices,
+    seam_mode: str,
 ) -> _Indices: ...
 def measure_distortion(
     positions: _Floats,

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -19,6 +19,8 @@ IndexArray = NDArray[np.int32]
 PrescriptionRule = Literal["least-distortion", "harmonic", "straightness", "manual"]
 UnfoldMethod = Literal["poisson", "spectral"]
 Method = Literal["lsgp", "lscm"]
+SeamMode = Literal["follow", "boundary", "ignore"]
+BorderMode = Literal["free", "straight"]
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,7 @@ class Surface:
     triangles: (m, 3) int32, counter-clockwise seen from outside.
     edges: (e, 2) int32, the edges a cut may follow (mesh edges, not the diagonals of triangulated polygons);
         None for all edges of the triangles.
-    seams: (s, 2) int32, marked edges; cuts run along them wherever they can.
+    seams: (s, 2) int32, marked edges; `Options.seams` says what they mean.
     """
 
     positions: FloatArray
@@ -47,6 +49,30 @@ class Surface:
 
 
 @dataclass(frozen=True)
+class Pins:
+    """Corners whose texture coordinates are to stay.
+
+    corners: (p,) int32, 3 * triangle + corner. uv: (p, 2) float64.
+    """
+
+    corners: IndexArray
+    uv: FloatArray
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "corners", _index_vector(self.corners, "corners"))
+        object.__setattr__(self, "uv", _float_rows(self.uv, 2, "uv"))
+
+
+_CHOICES = {
+    "prescription": PrescriptionRule,
+    "unfold": UnfoldMethod,
+    "method": Method,
+    "seams": SeamMode,
+    "border": BorderMode,
+}
+
+
+@dataclass(frozen=True)
 class Options:
     """How to prescribe the cone angles and how to unfold.
 
@@ -54,14 +80,24 @@ class Options:
         the other cones take up the rest with least distortion), "least-distortion" otherwise.
     unfold: "poisson" (robust, one linear solve) or "spectral" (the paper's, an eigenproblem; closed surfaces).
     method: "lsgp", or "lscm" for the paper's comparison: the same cuts without transitions.
+    seams: "follow": cuts run along marked seams wherever they can, and seams that close off a part make it an island
+        of its own; "boundary": every seam is an open border, as in Blender's own unwrap; "ignore".
+        With "follow", a closed component without cones is opened along its seams.
+    border: "free": angles along borders come out as they distort least, a cone there with an angle is a corner;
+        "straight": borders run straight from marked cone to marked cone.
+    loop_turning: total turning of borders, radians, by any vertex on each; others turn as they distort least. A free
+        border about which the metric turns almost once, a hole, needs no cut and gets none.
     """
 
     prescription: PrescriptionRule | None = None
     unfold: UnfoldMethod = "poisson"
     method: Method = "lsgp"
+    seams: SeamMode = "follow"
+    border: BorderMode = "free"
+    loop_turning: Mapping[int, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for name, choices in (("prescription", PrescriptionRule), ("unfold", UnfoldMethod), ("method", Method)):
+        for name, choices in _CHOICES.items():
             value = getattr(self, name)
             if value not in get_args(choices) and not (name == "prescription" and value is None):
                 known = ", ".join(get_args(choices))
@@ -180,24 +216,27 @@ def parameterize(
     cones: ArrayLike,
     angles: Sequence[float | None] | None = None,
     options: Options = Options(),
+    pins: Pins | None = None,
 ) -> Result:
     """Cut the surface through its cones and unfold it with exact transitions across every cut.
 
     cones: (k,) int32 vertex indices. angles: one total angle in radians per cone, None = automatic.
+    pins: with two or more on a component its map goes through them, and its place, size and turn are theirs; with one,
+        its place is.
     Components that cannot be solved are named in a warning when others could; the first error is raised otherwise.
     Raises InputError, TopologyError, CurvatureError, SolverError.
     """
-    out = _lsgp.parameterize(
-        *_surface_arrays(surface), *_cone_arrays(cones, angles, options), options.unfold, options.method
-    )
+    pins = Pins(np.empty(0, np.int32), np.empty((0, 2))) if pins is None else pins
+    out = _lsgp.parameterize(*_surface_arrays(surface), *_cone_arrays(cones, angles, options), pins.corners, pins.uv)
     out["distortion"] = Distortion(**out["distortion"])
     out["seams"] = SeamQuality(**out["seams"])
     return Result(**out)
 
 
-def find_cuts(surface: Surface, cones: ArrayLike) -> CutGraph:
+def find_cuts(surface: Surface, cones: ArrayLike, options: Options = Options()) -> CutGraph:
     """Shortest cuts that join all cones and boundary loops and open every handle.  Raises InputError, TopologyError."""
-    return CutGraph(**_lsgp.find_cuts(*_surface_arrays(surface), _index_vector(cones, "cones")))
+    vertices, _, _, values = _cone_arrays(cones, None, options)
+    return CutGraph(**_lsgp.find_cuts(*_surface_arrays(surface), vertices, values))
 
 
 def prescribe_curvature(
@@ -211,7 +250,9 @@ def prescribe_curvature(
     return Prescription(**out)
 
 
-def place_cones(surface: Surface, count: int | None = None, existing: ArrayLike = ()) -> IndexArray:
+def place_cones(
+    surface: Surface, count: int | None = None, existing: ArrayLike = (), options: Options = Options()
+) -> IndexArray:
     """Cones at the extrema of the log scale factor, one after the other (Ben-Chen et al. 2008).
 
     count: cones per component, `existing` ones included; None: as many as bring the predicted L2 stretch near 1.
@@ -221,7 +262,7 @@ def place_cones(surface: Surface, count: int | None = None, existing: ArrayLike 
     if count is not None and count < 0:
         raise InputError("WRONG_PARAMETER", f"count is {count}; pass a number of cones, or None for automatic.")
     wanted = -1 if count is None else int(count)
-    return _lsgp.place_cones(*_surface_arrays(surface), wanted, _index_vector(existing, "existing"))
+    return _lsgp.place_cones(*_surface_arrays(surface), wanted, _index_vector(existing, "existing"), options.seams)
 
 
 def measure_distortion(surface: Surface, corner_uv: ArrayLike, cones: ArrayLike | None = None) -> Measurement:
@@ -247,13 +288,18 @@ def _surface_arrays(surface: Surface) -> tuple[Any, ...]:
 
 
 def _cone_arrays(cones: ArrayLike, angles: Sequence[float | None] | None, options: Options) -> tuple[Any, ...]:
-    """Vertices, angles, which of them are given, and the rule for the others."""
+    """Vertices, angles, which of them are given, and the options with the rule for the others."""
     vertices = _index_vector(cones, "cones")
     given = [None] * len(vertices) if angles is None else list(angles)
     has_angle = np.array([angle is not None for angle in given], bool)
     values = np.array([0.0 if angle is None else float(angle) for angle in given], np.float64)
     rule = options.prescription or ("manual" if has_angle.any() else "least-distortion")
-    return vertices, values, has_angle, rule
+    return (
+        vertices,
+        values,
+        has_angle,
+        {**vars(options), "prescription": rule, "loop_turning": dict(options.loop_turning)},
+    )
 
 
 def _float_rows(values: ArrayLike, width: int, name: str) -> FloatArray:

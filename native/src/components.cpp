@@ -2,35 +2,106 @@
 #include "components.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 
 #include "text.hpp"
+#include "validation.hpp"
 
 namespace lsgp {
 
-std::vector<AssignedCones> assign_cones(const Surface& surface, const std::vector<Component>& components,
-                                        const Cones& cones) {
+namespace {
+
+std::vector<ComponentTask> hand_out(const Surface& surface, const std::vector<Component>& components,
+                                    const Cones& cones, const Options& options) {
   std::vector<Index> cone_at(surface.positions.rows(), none);
   for (std::size_t i = 0; i < cones.vertices.size(); ++i) cone_at[cones.vertices[i]] = static_cast<Index>(i);
-  std::vector<AssignedCones> assigned(components.size());
+  std::vector<ComponentTask> tasks(components.size());
   for (std::size_t c = 0; c < components.size(); ++c) {
     const Component& component = components[c];
-    if (!component.orientable) continue;
-    std::vector<std::pair<Index, Index>> inside;  // place in the caller's list, vertex
+    ComponentCones& own = tasks[c].cones;
+    own.border = options.border;
+    own.loop_turning.resize(component.mesh.boundary_loops.size());
+    std::vector<std::pair<Index, Index>> found;  // place in the caller's list, vertex
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
       const Index cone = cone_at[component.source_vertex[v]];
       if (cone == none) continue;
-      if (component.mesh.loop_of_vertex[v] == none)
-        inside.emplace_back(cone, v);
+      const bool imposed = options.prescription == PrescriptionRule::manual && cones.angles[cone];
+      const bool corner = options.border == BorderMode::straight || imposed;
+      if (component.mesh.loop_of_vertex[v] == none || corner)
+        found.emplace_back(cone, v);
       else
-        assigned[c].on_boundary.push_back(v);
+        tasks[c].border_cones.push_back(v);
     }
-    std::sort(inside.begin(), inside.end());
-    for (const auto& [cone, v] : inside) {
-      assigned[c].inside.vertices.push_back(v);
-      assigned[c].inside.angles.push_back(cones.angles[cone]);
+    std::sort(found.begin(), found.end());
+    for (const auto& [cone, v] : found) {
+      own.vertices.push_back(v);
+      own.angles.push_back(cones.angles[cone]);
     }
   }
-  return assigned;
+  return tasks;
+}
+
+void hand_out_turning(const std::vector<Component>& components, const Options& options,
+                      std::vector<ComponentTask>& tasks) {
+  for (const auto& [vertex, turning] : options.loop_turning) {
+    bool found = false;
+    for (std::size_t c = 0; c < components.size(); ++c) {
+      const Component& component = components[c];
+      for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
+        const Index loop = component.source_vertex[v] == vertex ? component.mesh.loop_of_vertex[v] : none;
+        if (loop == none) continue;
+        tasks[c].cones.loop_turning[loop] = turning;
+        found = true;
+      }
+    }
+    if (!found || !std::isfinite(turning)) {
+      throw Error(Code::loop_turning,
+                  found
+                      ? "The turning of a border is not a finite number. Give an angle, 360 degrees being a full turn."
+                      : "The turning of a border was given for a vertex that lies on none. Name a border vertex.",
+                  {ElementKind::vertices, {vertex}});
+    }
+  }
+}
+
+bool has_seam(const HalfedgeMesh& mesh) { return std::find(mesh.seam.begin(), mesh.seam.end(), 1) != mesh.seam.end(); }
+
+}  // namespace
+
+Work prepare(const Surface& surface, const Cones& cones, const Options& options, std::vector<Finding>& findings) {
+  require_valid(surface);
+  require_valid(surface, cones);
+  Surface used = surface;
+  if (options.seams == SeamMode::ignore) used.seams.resize(0, 2);
+  OpenSeams open;
+  if (options.seams == SeamMode::boundary) open.assign(surface.triangles.rows(), 1);
+  std::vector<Finding> repairs;
+  Work work{build_topology(used, open, repairs), {}};
+  work.tasks = hand_out(surface, work.topology.components, cones, options);
+
+  std::vector<Index> opened;
+  for (std::size_t c = 0; c < work.tasks.size(); ++c) {
+    const Component& component = work.topology.components[c];
+    const bool stuck = component.orientable && component.mesh.closed() && component.mesh.euler != 0 &&
+                       work.tasks[c].cones.vertices.empty();
+    if (!stuck || !has_seam(component.mesh)) continue;
+    opened.insert(opened.end(), component.source_triangle.begin(), component.source_triangle.end());
+  }
+  if (!opened.empty()) {
+    open.assign(surface.triangles.rows(), 0);
+    for (const Index f : opened) open[f] = 1;
+    repairs.clear();
+    work.topology = build_topology(used, open, repairs);
+    work.tasks = hand_out(surface, work.topology.components, cones, options);
+    findings.push_back({Code::seams_opened,
+                        "A closed part has seams but no cones: it was opened along its seams like an ordinary unwrap. "
+                        "Mark cones to have the texture run on across them.",
+                        {ElementKind::triangles, opened}});
+  }
+  hand_out_turning(work.topology.components, options, work.tasks);
+  findings.insert(findings.end(), std::make_move_iterator(repairs.begin()), std::make_move_iterator(repairs.end()));
+  return work;
 }
 
 Geometry require_geometry(const Component& component, std::vector<Finding>& findings) {

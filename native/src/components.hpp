@@ -6,20 +6,28 @@
 #include <string>
 
 #include "curvature.hpp"
+#include "lsgp/options.hpp"
 #include "lsgp/result.hpp"
 #include "topology.hpp"
 
 namespace lsgp {
 
-// A component's share of the cones: those inside it, in the caller's order, and those on its boundary.
-struct AssignedCones {
-  ComponentCones inside;
-  std::vector<Index> on_boundary;  // vertices of the component
+// What the caller asks of one component, in its own numbering.
+struct ComponentTask {
+  ComponentCones cones;             // in the caller's order
+  std::vector<Index> border_cones;  // vertices of cones on a free border that prescribe nothing
 };
 
-// In the order of the components.
-std::vector<AssignedCones> assign_cones(const Surface& surface, const std::vector<Component>& components,
-                                        const Cones& cones);
+// A surface's components and what is asked of each.
+struct Work {
+  Topology topology;
+  std::vector<ComponentTask> tasks;  // (components)
+};
+
+// Validates the call, splits the surface as the seam mode says and hands out cones and loop turnings.  A closed
+// component without cones but with seams is opened along these, as an artist who marked seams means it.
+// Throws what require_valid and build_topology throw, and LOOP_TURNING.
+Work prepare(const Surface& surface, const Cones& cones, const Options& options, std::vector<Finding>& findings);
 
 // Throws NOT_ORIENTABLE, DEGENERATE_MESH.
 Geometry require_geometry(const Component& component, std::vector<Finding>& findings);

@@ -5,7 +5,6 @@
 
 #include "components.hpp"
 #include "lsgp/lsgp.hpp"
-#include "validation.hpp"
 
 namespace lsgp {
 
@@ -18,7 +17,10 @@ constexpr int fewest_on_sphere = 4;  // a closed surface of genus 0 needs 3; 4 k
 class Placement {
  public:
   Placement(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& existing)
-      : mesh_(mesh), geometry_(geometry), scale_(mesh, geometry), blocked_(mesh.vertex_count(), 0) {
+      : mesh_(mesh),
+        geometry_(geometry),
+        scale_(mesh, geometry, free_border(mesh, {})),
+        blocked_(mesh.vertex_count(), 0) {
     scale_.add_cones(existing);
     block();
   }
@@ -94,20 +96,20 @@ class Placement {
 
 }  // namespace
 
-std::vector<Index> place_cones(const Surface& surface, int count, const std::vector<Index>& existing) {
-  const Cones kept{existing, std::vector<std::optional<double>>(existing.size())};
-  require_valid(surface);
-  require_valid(surface, kept);
+std::vector<Index> place_cones(const Surface& surface, int count, const std::vector<Index>& existing, SeamMode seams) {
   std::vector<Finding> findings;
-  const std::vector<Component> components = build_topology(surface, findings).components;
-  const std::vector<AssignedCones> assigned = assign_cones(surface, components, kept);
+  Options options;
+  options.seams = seams;
+  const Work work =
+      prepare(surface, {existing, std::vector<std::optional<double>>(existing.size())}, options, findings);
+  const std::vector<Component>& components = work.topology.components;
   std::vector<Index> out = existing;
   for_each_component(components, findings, [&](std::size_t i) {
     const Component& component = components[i];
     const Geometry geometry = require_geometry(component, findings);
-    const std::vector<Index>& inside = assigned[i].inside.vertices;
-    const std::vector<Index> placed = Placement(component.mesh, geometry, inside).place(count);
-    for (std::size_t k = inside.size(); k < placed.size(); ++k) out.push_back(component.source_vertex[placed[k]]);
+    const std::vector<Index>& kept = work.tasks[i].cones.vertices;
+    const std::vector<Index> placed = Placement(component.mesh, geometry, kept).place(count);
+    for (std::size_t k = kept.size(); k < placed.size(); ++k) out.push_back(component.source_vertex[placed[k]]);
   });
   return out;
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "curvature.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "cut_mesh.hpp"
 #include "energies/quadratic_forms.hpp"
 #include "straightness.hpp"
 #include "text.hpp"
@@ -35,8 +37,9 @@ Bounds bounds_from_angles(const HalfedgeMesh& mesh, const ComponentCones& cones,
   Bounds bounds{Eigen::VectorXd(k), Eigen::VectorXd(k)};
   for (Index i = 0; i < k; ++i) {
     const double most = std::min(largest, share * M_PI * valence(mesh, cones.vertices[i]));
-    bounds.high[i] = 2 * M_PI - (cones.angles[i] ? *cones.angles[i] : smallest);
-    bounds.low[i] = 2 * M_PI - (cones.angles[i] ? *cones.angles[i] : most);
+    const double flat = flat_angle(mesh, cones.vertices[i]);
+    bounds.high[i] = flat - (cones.angles[i] ? *cones.angles[i] : smallest);
+    bounds.low[i] = flat - (cones.angles[i] ? *cones.angles[i] : most);
   }
   return bounds;
 }
@@ -68,7 +71,7 @@ bool all_fixed(const ComponentCones& cones) {
 }
 
 // Refuses what no choice of the automatic angles can mend.
-void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones) {
+void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, const BorderConditions& border) {
   std::vector<Index> overloaded;
   for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
     const int triangles = valence(mesh, cones.vertices[i]);
@@ -81,10 +84,15 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones) {
                        "angle or subdivide the mesh there."),
                 {ElementKind::vertices, overloaded});
   }
-  if (!mesh.closed()) return;
-  const double required = 2 * M_PI * mesh.euler;
+  if (!border.balanced) return;
+  const double required = 2 * M_PI * mesh.euler - border.curvature.sum();
   if (cones.vertices.empty()) {
-    if (mesh.euler == 0) return;
+    if (std::abs(required) < renormalized_mismatch) return;
+    if (!mesh.closed()) {
+      throw Error(Code::too_few_cones, concat("A straight border has to turn by ", required / M_PI,
+                                              " pi in all, at marked corners. Mark the "
+                                              "border's corners as cones, or leave the border free."));
+    }
     throw Error(Code::too_few_cones,
                 concat("A closed surface without cones cannot be unfolded: its curvature of ", required / M_PI,
                        " pi has to go somewhere. Mark cones at tips and corners, or place them automatically."));
@@ -123,26 +131,29 @@ Eigen::VectorXd least_distortion(const HalfedgeMesh& mesh, const ComponentCones&
     bounds.high[i] = std::min(widest.high[i], std::max(bounds.high[i], harmonic[i]));
   }
   Eigen::VectorXd start = harmonic.cwiseMax(bounds.low).cwiseMin(bounds.high);
-  if (mesh.closed()) {
-    const double required = 2 * M_PI * mesh.euler;
+  if (scale.balanced()) {
+    const double required = scale.required_sum();
     if (bounds.low.sum() > required || bounds.high.sum() < required) bounds = widest;
     start = shift_into(bounds, start, required);
   }
   return scale.least_distortion_curvature(bounds.low, bounds.high, std::move(start));
 }
 
+bool possible(const HalfedgeMesh& mesh, Index vertex, double curvature) {
+  const double angle = flat_angle(mesh, vertex) - curvature;
+  return angle >= impossible_angle && angle < M_PI * valence(mesh, vertex);
+}
+
 Eigen::VectorXd harmonic(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale) {
   const Eigen::VectorXd curvature = scale.harmonic_curvature();
   std::vector<Index> impossible;
   for (Eigen::Index i = 0; i < curvature.size(); ++i) {
-    const double angle = 2 * M_PI - curvature[i];
-    if (angle < impossible_angle || angle >= M_PI * valence(mesh, cones.vertices[i]))
-      impossible.push_back(cones.vertices[i]);
+    if (!possible(mesh, cones.vertices[i], curvature[i])) impossible.push_back(cones.vertices[i]);
   }
   if (!impossible.empty()) {
     throw Error(Code::cone_angle_range,
-                concat("The harmonic angle of ", count(impossible.size(), "cone", "cones"),
-                       " is one no map can have. Add cones near it, or use the least-distortion prescription."),
+                concat("The harmonic angle of ", count(impossible.size(), "cone is", "cones is"),
+                       " one no map can have. Add cones near it, or use the least-distortion prescription."),
                 {ElementKind::vertices, impossible});
   }
   return curvature;
@@ -150,7 +161,6 @@ Eigen::VectorXd harmonic(const HalfedgeMesh& mesh, const ComponentCones& cones, 
 
 // The paper's rule; the angles that junctions of the cut read are handed on to the cones in equal parts.
 std::optional<Eigen::VectorXd> straightness(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                            const CutGraph& cut_graph, const CutMesh& cut_mesh,
                                             const ComponentCones& cones, std::vector<Finding>& findings) {
   if (!mesh.closed()) {
     // With a free border the straightened layout is an arbitrary one of many, and so are its angles.
@@ -161,6 +171,8 @@ std::optional<Eigen::VectorXd> straightness(const HalfedgeMesh& mesh, const Geom
          {ElementKind::vertices, cones.vertices}});
     return std::nullopt;
   }
+  const CutGraph cut_graph = connect_cones(mesh, geometry, cones.vertices, {});
+  const CutMesh cut_mesh = cut_open(mesh, cut_graph);
   const StraightenedLayout layout = straighten(mesh, geometry, cut_graph, cut_mesh);
   const Index k = static_cast<Index>(cones.vertices.size());
   Eigen::VectorXd curvature(k);
@@ -170,9 +182,8 @@ std::optional<Eigen::VectorXd> straightness(const HalfedgeMesh& mesh, const Geom
 
   std::string failure = layout.failure;
   for (Index i = 0; i < k && failure.empty(); ++i) {
-    const double angle = 2 * M_PI - curvature[i];
-    if (angle < impossible_angle || angle >= M_PI * valence(mesh, cones.vertices[i])) {
-      failure = concat("a cone would keep an angle of ", angle / M_PI, " pi");
+    if (!possible(mesh, cones.vertices[i], curvature[i])) {
+      failure = concat("a cone would keep an angle of ", 2 - curvature[i] / M_PI, " pi");
     }
   }
   if (!failure.empty()) {
@@ -200,7 +211,97 @@ std::optional<Eigen::VectorXd> straightness(const HalfedgeMesh& mesh, const Geom
   return curvature;
 }
 
+// Holes about which the metric turns almost exactly once are made to turn exactly once where that takes no more than
+// this shift of the log scale along their border: the layout closes around them without a cut.
+constexpr double largest_hole_shift = 0.1;
+constexpr double nearly_once = 0.5;  // radians off a full turn
+
+// Log scales c along the borders (loops) that bring the turning of the wanted ones to the wanted value, the others
+// staying at 0: the turning is affine in c.
+class LoopScales {
+ public:
+  LoopScales(const HalfedgeMesh& mesh, const Geometry& geometry, const LogScale& scale)
+      : mesh_(mesh), geometry_(geometry), scale_(scale) {}
+
+  Eigen::VectorXd turning(const Eigen::VectorXd& log_scale) const {
+    return turning_of(geometry_.angle_defect + apply_laplacian(mesh_, geometry_, log_scale));
+  }
+
+  // The log scale changed so that loop i turns by wanted[i] where given, and the shifts that took, (loops).
+  std::pair<Eigen::VectorXd, Eigen::VectorXd> adjust(const Eigen::VectorXd& log_scale,
+                                                     const std::vector<std::optional<double>>& wanted) const {
+    std::vector<Index> loops;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      if (wanted[i]) loops.push_back(static_cast<Index>(i));
+    }
+    const Index k = static_cast<Index>(loops.size());
+    Eigen::VectorXd shifts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(wanted.size()));
+    if (k == 0) return {log_scale, shifts};
+    Eigen::MatrixXd functions(mesh_.vertex_count(), k), effect(k, k);
+    Eigen::VectorXd missing(k);
+    const Eigen::VectorXd before = turning(log_scale);
+    for (Index j = 0; j < k; ++j) {
+      Eigen::VectorXd one = Eigen::VectorXd::Zero(mesh_.vertex_count());
+      for (const Index v : mesh_.boundary_loops[loops[j]]) one[v] = 1;
+      functions.col(j) = one - scale_.solve(apply_laplacian(mesh_, geometry_, one));
+      const Eigen::VectorXd change = turning_of(apply_laplacian(mesh_, geometry_, functions.col(j)));
+      for (Index i = 0; i < k; ++i) effect(i, j) = change[loops[i]];
+      missing[j] = *wanted[loops[j]] - before[loops[j]];
+    }
+    const Eigen::VectorXd shift = effect.completeOrthogonalDecomposition().solve(missing);
+    if ((effect * shift - missing).cwiseAbs().maxCoeff() > renormalized_mismatch) {
+      throw Error(Code::loop_turning,
+                  concat("The borders' turning cannot be as prescribed: with these cone angles it adds up to ",
+                         before.sum() / M_PI, " pi. Leave the turning of one border free."));
+    }
+    for (Index j = 0; j < k; ++j) shifts[loops[j]] = shift[j];
+    return {log_scale + functions * shift, shifts};
+  }
+
+ private:
+  Eigen::VectorXd turning_of(const Eigen::VectorXd& curvature) const {
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(mesh_.boundary_loops.size()));
+    for (std::size_t i = 0; i < mesh_.boundary_loops.size(); ++i) {
+      for (const Index v : mesh_.boundary_loops[i]) out[i] += curvature[v];
+    }
+    return out;
+  }
+
+  const HalfedgeMesh& mesh_;
+  const Geometry& geometry_;
+  const LogScale& scale_;
+};
+
+// Prescribed turning, and holes closed without a cut.  Changes the log scale, which is 0 along held borders.
+void prescribe_turning(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
+                       const LogScale& scale, Curvature& curvature) {
+  curvature.needs_no_cut.assign(mesh.boundary_loops.size(), 0);
+  if (cones.border == BorderMode::straight || mesh.closed()) return;
+  const LoopScales loops(mesh, geometry, scale);
+  std::vector<std::optional<double>> wanted = cones.loop_turning;
+  wanted.resize(mesh.boundary_loops.size());
+  curvature.log_scale = loops.adjust(curvature.log_scale, wanted).first;
+  const Eigen::VectorXd turning = loops.turning(curvature.log_scale);
+  std::vector<std::optional<double>> closed = wanted;
+  std::size_t left_free = 0;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (!wanted[i] && std::abs(turning[i] + 2 * M_PI) < nearly_once) closed[i] = -2 * M_PI;
+    left_free += !closed[i];
+  }
+  if (left_free == 0) return;  // one border has to take up the rest
+  const auto [log_scale, shifts] = loops.adjust(curvature.log_scale, closed);
+  if (shifts.cwiseAbs().maxCoeff() > largest_hole_shift) return;
+  curvature.log_scale = log_scale;
+  for (std::size_t i = 0; i < closed.size(); ++i) {
+    curvature.needs_no_cut[i] = closed[i] && std::abs(*closed[i] + 2 * M_PI) < 1e-12;
+  }
+}
+
 }  // namespace
+
+double flat_angle(const HalfedgeMesh& mesh, Index vertex) {
+  return mesh.loop_of_vertex[vertex] == none ? 2 * M_PI : M_PI;
+}
 
 int valence(const HalfedgeMesh& mesh, Index vertex) {
   int triangles = 0;
@@ -208,45 +309,48 @@ int valence(const HalfedgeMesh& mesh, Index vertex) {
   return triangles;
 }
 
-Curvature prescribe(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
-                    const CutMesh& cut_mesh, const ComponentCones& cones, PrescriptionRule rule,
-                    std::vector<Finding>& findings) {
+Curvature prescribe(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
+                    PrescriptionRule rule, std::vector<Finding>& findings) {
   ComponentCones asked = cones;
   if (rule != PrescriptionRule::manual) std::fill(asked.angles.begin(), asked.angles.end(), std::nullopt);
-  require_feasible(mesh, asked);
-  LogScale scale(mesh, geometry);
+  const BorderConditions border = asked.border == BorderMode::straight && !mesh.closed()
+                                      ? straight_border(mesh, geometry, asked.vertices)
+                                      : free_border(mesh, asked.vertices);
+  require_feasible(mesh, asked, border);
+  LogScale scale(mesh, geometry, border);
   scale.add_cones(asked.vertices);
 
   Eigen::VectorXd curvature(asked.vertices.size());
   std::optional<Eigen::VectorXd> straight;
   if (asked.vertices.empty()) {
-    // A closed torus or a surface with boundary: flat everywhere.
+    // A closed torus or a surface with border: flat everywhere.
   } else if (all_fixed(asked)) {
-    for (Eigen::Index i = 0; i < curvature.size(); ++i) curvature[i] = 2 * M_PI - *asked.angles[i];
+    for (Eigen::Index i = 0; i < curvature.size(); ++i) {
+      curvature[i] = flat_angle(mesh, asked.vertices[i]) - *asked.angles[i];
+    }
   } else if (rule == PrescriptionRule::harmonic) {
     curvature = harmonic(mesh, asked, scale);
-  } else if (rule == PrescriptionRule::straightness &&
-             (straight = straightness(mesh, geometry, cut_graph, cut_mesh, asked, findings))) {
+  } else if (rule == PrescriptionRule::straightness && (straight = straightness(mesh, geometry, asked, findings))) {
     curvature = *straight;
   } else {
     curvature = least_distortion(mesh, asked, scale);
   }
-  if (mesh.closed() && curvature.size() > 0) {
-    curvature.array() += (2 * M_PI * mesh.euler - curvature.sum()) / static_cast<double>(curvature.size());
+  if (border.balanced && curvature.size() > 0) {
+    curvature.array() += (scale.required_sum() - curvature.sum()) / static_cast<double>(curvature.size());
   }
 
   Curvature out;
-  out.log_scale = scale.evaluate(curvature);
+  out.log_scale = scale.evaluate_held(curvature);
+  prescribe_turning(mesh, geometry, asked, scale, out);
   out.predicted_l2 = scale.predicted_l2(out.log_scale);
-  out.at_vertex = Eigen::VectorXd::Zero(mesh.vertex_count());
-  for (Eigen::Index i = 0; i < curvature.size(); ++i) out.at_vertex[asked.vertices[i]] = curvature[i];
-  if (!mesh.closed()) {
-    // On a boundary the curvature is what the log scale makes of it: kappa = K + L y.
-    const Eigen::VectorXd free = geometry.angle_defect + apply_laplacian(mesh, geometry, out.log_scale);
-    for (const auto& loop : mesh.boundary_loops) {
-      for (const Index v : loop) out.at_vertex[v] = free[v];
-    }
+  out.at_vertex = border.curvature;
+  for (Eigen::Index i = 0; i < curvature.size(); ++i) out.at_vertex[asked.vertices[i]] += curvature[i];
+  // Where the scale is held, the curvature is what it makes of it: kappa = K + L y.
+  const Eigen::VectorXd free = geometry.angle_defect + apply_laplacian(mesh, geometry, out.log_scale);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (border.held[v]) out.at_vertex[v] = free[v];
   }
+  out.log_scale.array() -= geometry.vertex_area.dot(out.log_scale) / geometry.total_area;
   if (!(out.predicted_l2 < high_l2)) {
     findings.push_back({Code::high_distortion,
                         concat("With these cones the map stretches much: an L2 stretch of ", out.predicted_l2,

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "cut_mesh.hpp"
+#include "border.hpp"
 #include "geometry.hpp"
 #include "lsgp/errors.hpp"
 #include "lsgp/options.hpp"
@@ -15,24 +15,29 @@
 
 namespace lsgp {
 
-// The log scale y of the metric with given cone curvatures: L y = kappa - K, so y = y_K + sum of kappa_c G_c.
-// One factorization; one more back-substitution for every cone.  On a boundary y = 0, so its curvature is free;
-// a closed surface has y up to a constant and needs sum kappa = 2 pi chi.
+// The log scale y of the metric with given curvatures: L y = kappa - K where y is not held at 0, so y is affine in the
+// cone curvatures, y = y_0 + sum of kappa_c G_c.  One factorization; one more back-substitution for every cone.  With
+// nothing held, y is known up to a constant and Gauss-Bonnet has to hold.
 class LogScale {
  public:
-  LogScale(const HalfedgeMesh& mesh, const Geometry& geometry);
+  LogScale(const HalfedgeMesh& mesh, const Geometry& geometry, const BorderConditions& border);
 
-  void add_cones(const std::vector<Index>& vertices);  // inside vertices, none twice
+  void add_cones(const std::vector<Index>& vertices);  // none twice, none held
   Index cone_count() const { return static_cast<Index>(cones_.size()); }
   const std::vector<Index>& cones() const { return cones_; }
+  bool balanced() const { return border_.balanced; }
+  // What the cone curvatures have to add up to when balanced.
+  double required_sum() const { return 2 * M_PI * mesh_.euler - border_.curvature.sum(); }
 
   // y at every vertex (n), shifted to area-weighted mean 0.
   Eigen::VectorXd evaluate(const Eigen::VectorXd& cone_curvature) const;
+  // The same, unshifted: 0 where held.
+  Eigen::VectorXd evaluate_held(const Eigen::VectorXd& cone_curvature) const;
 
-  // Solves L y = right side, (n), under the same conditions; the sum of the right side is 0 on a closed surface.
+  // Solves L y = right side, (n), where y is not held; the sum of the right side is 0 when balanced.
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;
 
-  // The cone curvatures for which y is 0 (closed: constant) at all cones (Ben-Chen et al. 2008).
+  // The cone curvatures for which y is 0 (balanced: constant) at all cones (Ben-Chen et al. 2008).
   Eigen::VectorXd harmonic_curvature() const;
 
   // The minimum of log mean e^{2y} + log mean e^{-2y} (area-weighted; the logarithm of the squared L2 stretch of the
@@ -47,34 +52,40 @@ class LogScale {
 
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
+  BorderConditions border_;
   std::vector<Index> row_of_vertex_;
   std::optional<Cholesky<double>> factor_;
   Eigen::VectorXd weight_;         // (n) share of the area
-  Eigen::VectorXd without_cones_;  // (n) y_K
+  Eigen::VectorXd without_cones_;  // (n) y_0
   std::vector<Index> cones_;
   Eigen::MatrixXd green_;  // (n, k) G_c
 };
 
+// What the caller asks of one component's metric, in its own vertex numbers.
+struct ComponentCones {
+  std::vector<Index> vertices;                // cones, and corners on a border
+  std::vector<std::optional<double>> angles;  // radians, none: automatic
+  BorderMode border = BorderMode::free;
+  std::vector<std::optional<double>> loop_turning;  // (loops) radians, none: as it comes out
+};
+
 // What a component's map has to realise.
 struct Curvature {
-  Eigen::VectorXd at_vertex;  // (n) imposed: cones theirs, 0 inside, what comes out on a boundary
+  Eigen::VectorXd at_vertex;  // (n) imposed: cones theirs, 0 inside, what comes out on a free border
   Eigen::VectorXd log_scale;  // (n) area-weighted mean 0
   double predicted_l2 = 1;
+  // (loops) holes about which the metric turns exactly once: they need no cut.
+  std::vector<char> needs_no_cut;
 };
 
-// Cones of one component, inside vertices only, with the angles (radians) the caller fixed.
-struct ComponentCones {
-  std::vector<Index> vertices;
-  std::vector<std::optional<double>> angles;
-};
+// Throws TOO_FEW_CONES, CONE_ANGLE_RANGE, GAUSS_BONNET, LOOP_TURNING with the component's own vertex numbers.
+Curvature prescribe(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
+                    PrescriptionRule rule, std::vector<Finding>& findings);
 
-// cut_graph, cut_mesh: used by the straightness rule.  Throws TOO_FEW_CONES, CONE_ANGLE_RANGE, GAUSS_BONNET with the
-// component's own vertex numbers.
-Curvature prescribe(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
-                    const CutMesh& cut_mesh, const ComponentCones& cones, PrescriptionRule rule,
-                    std::vector<Finding>& findings);
+// The angle of a vertex of no curvature: 2 pi inside, pi on a border.
+double flat_angle(const HalfedgeMesh& mesh, Index vertex);
 
-// The number of triangles around an inside vertex.
+// The number of triangles around a vertex.
 int valence(const HalfedgeMesh& mesh, Index vertex);
 
 }  // namespace lsgp

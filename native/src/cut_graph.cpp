@@ -51,7 +51,8 @@ struct Forest {
   Index region_count = 0;
 };
 
-Forest grow_forest(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& interior_cones) {
+Forest grow_forest(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& interior_cones,
+                   const std::vector<char>& uncut) {
   const Index n = mesh.vertex_count();
   Forest forest{std::vector<double>(n, infinity), std::vector<Index>(n, none), std::vector<Index>(n, none), 0};
   using Entry = std::pair<double, Index>;
@@ -61,13 +62,19 @@ Forest grow_forest(const HalfedgeMesh& mesh, const Geometry& geometry, const std
     forest.region[v] = region;
     queue.emplace(0.0, v);
   };
-  for (const auto& loop : mesh.boundary_loops) {
-    for (const Index v : loop) add_source(v, forest.region_count);
-    ++forest.region_count;
+  std::vector<char> settled(n, 0);
+  for (std::size_t i = 0; i < mesh.boundary_loops.size(); ++i) {
+    const bool avoided = !uncut.empty() && uncut[i];
+    for (const Index v : mesh.boundary_loops[i]) {
+      if (avoided)
+        settled[v] = 1;
+      else
+        add_source(v, forest.region_count);
+    }
+    forest.region_count += !avoided;
   }
   for (const Index v : interior_cones) add_source(v, forest.region_count++);
   if (forest.region_count == 0) add_source(0, forest.region_count++);  // a closed surface with handles alone
-  std::vector<char> settled(n, 0);
   while (!queue.empty()) {
     const auto [distance, v] = queue.top();
     queue.pop();
@@ -76,6 +83,7 @@ Forest grow_forest(const HalfedgeMesh& mesh, const Geometry& geometry, const std
     mesh.for_each_outgoing(v, [&](Index h) {
       if (!may_cut(mesh, h)) return;
       const Index w = mesh.target(h);
+      if (settled[w]) return;
       const double through = distance + cost(mesh, geometry, h);
       if (through < forest.distance[w]) {
         forest.distance[w] = through;
@@ -188,8 +196,9 @@ void prune_dead_ends(const HalfedgeMesh& mesh, const std::vector<char>& is_cone,
 
 }  // namespace
 
-CutGraph connect_cones(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& interior_cones) {
-  const Forest forest = grow_forest(mesh, geometry, interior_cones);
+CutGraph connect_cones(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& interior_cones,
+                       const std::vector<char>& uncut) {
+  const Forest forest = grow_forest(mesh, geometry, interior_cones, uncut);
   const std::vector<Index> tree = span_regions(mesh, geometry, forest);
   std::vector<char> is_cut(mesh.halfedge_count(), 0);
   for (const Index h : tree) mark_through(mesh, forest, h, is_cut);

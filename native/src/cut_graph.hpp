@@ -26,8 +26,10 @@ struct CutGraph {
 // edges between regions is the minimum spanning tree of all shortest paths (Mehlhorn 1988), and its paths merge into
 // a tree by construction.  Each handle adds two loops that are left over by a spanning tree of the triangles
 // (tree-cotree, Erickson and Whittlesey 2005).  Seam edges count as much shorter than they are.
-// interior_cones: vertices not on a boundary.  Throws CUTS_BLOCKED with the component's own vertex numbers.
-CutGraph connect_cones(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& interior_cones);
+// interior_cones: vertices not on a boundary.  uncut: (loops) boundary loops that no cut has to reach, or empty; cuts
+// keep clear of them.  Throws CUTS_BLOCKED with the component's own vertex numbers.
+CutGraph connect_cones(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& interior_cones,
+                       const std::vector<char>& uncut);
 
 // Divides marked edges into cuts.  is_cut: (3m) on both halfedges; is_node: (n) vertices at which a cut ends besides
 // boundary vertices and junctions.  Closed curves without a node are cut at their lowest vertex.

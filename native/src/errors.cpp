@@ -18,6 +18,10 @@ const char* name(Code code) {
     case Code::cone_not_on_surface: return "CONE_NOT_ON_SURFACE";
     case Code::angle_count: return "ANGLE_COUNT";
     case Code::cone_angle_non_finite: return "CONE_ANGLE_NON_FINITE";
+    case Code::loop_turning: return "LOOP_TURNING";
+    case Code::pin_index: return "PIN_INDEX";
+    case Code::pin_non_finite: return "PIN_NON_FINITE";
+    case Code::pins_conflict: return "PINS_CONFLICT";
     case Code::not_orientable: return "NOT_ORIENTABLE";
     case Code::too_few_cones: return "TOO_FEW_CONES";
     case Code::cuts_blocked: return "CUTS_BLOCKED";
@@ -31,6 +35,7 @@ const char* name(Code code) {
     case Code::non_manifold_edge: return "NON_MANIFOLD_EDGE";
     case Code::split_vertex: return "SPLIT_VERTEX";
     case Code::reoriented: return "REORIENTED";
+    case Code::seams_opened: return "SEAMS_OPENED";
     case Code::cone_on_boundary: return "CONE_ON_BOUNDARY";
     case Code::junction_share: return "JUNCTION_SHARE";
     case Code::straightness_failed: return "STRAIGHTNESS_FAILED";

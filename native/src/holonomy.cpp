@@ -5,16 +5,16 @@ namespace lsgp {
 
 NodeGraph build_node_graph(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const Eigen::VectorXd& root_rank) {
   NodeGraph nodes;
-  const Index loop_count = static_cast<Index>(mesh.boundary_loops.size());
-  nodes.vertex.assign(loop_count, none);
-  std::vector<Index> node_of_vertex(mesh.vertex_count(), none);
+  std::vector<Index> node_of_vertex(mesh.vertex_count(), none), node_of_loop(mesh.boundary_loops.size(), none);
   const auto node_at = [&](Index v) {
-    if (mesh.loop_of_vertex[v] != none) return mesh.loop_of_vertex[v];
-    if (node_of_vertex[v] == none) {
-      node_of_vertex[v] = static_cast<Index>(nodes.vertex.size());
-      nodes.vertex.push_back(v);
+    const Index loop = mesh.loop_of_vertex[v];
+    Index& node = loop == none ? node_of_vertex[v] : node_of_loop[loop];
+    if (node == none) {
+      node = static_cast<Index>(nodes.vertex.size());
+      nodes.vertex.push_back(loop == none ? v : none);
+      nodes.loop.push_back(loop);
     }
-    return node_of_vertex[v];
+    return node;
   };
   for (const Cut& cut : cut_graph.cuts) {
     nodes.tail.push_back(node_at(cut.tail));
@@ -30,11 +30,10 @@ NodeGraph build_node_graph(const HalfedgeMesh& mesh, const CutGraph& cut_graph, 
     cuts_at[nodes.tail[p]].push_back(static_cast<Index>(p));
     cuts_at[nodes.head[p]].push_back(static_cast<Index>(p));
   }
+  const auto rank = [&](Index node) { return nodes.vertex[node] == none ? 2.0 : root_rank[nodes.vertex[node]]; };
   Index root = 0;
-  if (loop_count == 0) {
-    for (Index i = 1; i < node_count; ++i) {
-      if (root_rank[nodes.vertex[i]] > root_rank[nodes.vertex[root]]) root = i;
-    }
+  for (Index i = 1; i < node_count; ++i) {
+    if (rank(i) > rank(root)) root = i;
   }
   std::vector<char> seen(node_count, 0);
   seen[root] = 1;

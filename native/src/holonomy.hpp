@@ -13,13 +13,14 @@ namespace lsgp {
 // Cones, junctions and boundary loops as nodes joined by cuts, with a spanning tree rooted where the rest hangs off.
 struct NodeGraph {
   std::vector<Index> vertex;      // (nodes) none for a boundary loop
+  std::vector<Index> loop;        // (nodes) none for a vertex
   std::vector<Index> tail, head;  // (cuts) nodes
   std::vector<Index> parent_cut;  // (nodes) the cut towards the root, none at the root
   std::vector<Index> order;       // nodes from the root outwards
   std::vector<char> in_tree;      // (cuts) the others close a loop about a handle
 };
 
-// root_rank: the higher, the better a root this vertex makes; boundary loops are taken before any vertex.
+// root_rank: (n) at most 1; the higher, the better a root a vertex makes.  Boundary loops are taken before any vertex.
 NodeGraph build_node_graph(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const Eigen::VectorXd& root_rank);
 
 // The rotation angle r of every cut, z_right = e^{ir} z_left + t, radians.  At every node

@@ -76,8 +76,7 @@ void arrange(std::vector<Island>& islands) {
   std::vector<Box> boxes;
   double total = 0, widest = 0;
   for (Island& island : islands) {
-    const double scale = island.uv_area > 0 ? std::sqrt(island.area / island.uv_area) : 1.0;
-    island.position *= scale * std::conj(upright(island.position));
+    island.position *= std::conj(upright(island.position));
     boxes.push_back(settle(island.position));
     total += boxes.back().width * boxes.back().height;
     widest = std::max(widest, boxes.back().width);
@@ -102,6 +101,7 @@ void arrange(std::vector<Island>& islands) {
   const double size = std::max(right, y + shelf_height);
   for (Island& island : islands) {
     if (size > 0) island.position /= size;
+    if (island.pin) island.position.array() += island.pin->second - island.position[island.pin->first];
   }
 }
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "lsgp/surface.hpp"
@@ -10,13 +12,13 @@
 namespace lsgp {
 
 struct Island {
-  Eigen::VectorXcd position;  // u + iv of its points, any scale
-  double area = 0;            // of its surface in 3D
-  double uv_area = 0;         // of its triangles in the plane
+  Eigen::VectorXcd position;  // u + iv of its points, at the texel density it is to have
+  // Where a pinned point has to end up; only the place of the island follows, not its size or turn.
+  std::optional<std::pair<Eigen::Index, Complex>> pin;
 };
 
-// Scales every island to its 3D area, turns it so that its bounding box is smallest, puts the islands on shelves
-// without overlap and scales all of them alike into the unit square.
+// Turns every island so that its bounding box is smallest, puts the islands on shelves without overlap and scales all
+// of them alike into the unit square; then moves those with a pin to it.
 void arrange(std::vector<Island>& islands);
 
 }  // namespace lsgp

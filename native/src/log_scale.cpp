@@ -25,15 +25,15 @@ double log_mean_exp(const Eigen::VectorXd& weight, const Eigen::VectorXd& x, Eig
 
 }  // namespace
 
-LogScale::LogScale(const HalfedgeMesh& mesh, const Geometry& geometry) : mesh_(mesh), geometry_(geometry) {
-  std::vector<char> held(mesh.vertex_count(), 0);
-  for (Index v = 0; v < mesh.vertex_count(); ++v) held[v] = mesh.loop_of_vertex[v] != none;
-  if (mesh.closed()) held[0] = 1;
+LogScale::LogScale(const HalfedgeMesh& mesh, const Geometry& geometry, const BorderConditions& border)
+    : mesh_(mesh), geometry_(geometry), border_(border) {
+  std::vector<char> held = border.held;
+  if (border.balanced) held[0] = 1;  // fixes the constant; the flow there is 0 when the curvatures balance
   Laplacian laplacian = assemble_laplacian(mesh, geometry, held);
   row_of_vertex_ = std::move(laplacian.row_of_vertex);
   factor_.emplace(laplacian.lower);
   weight_ = geometry.vertex_area / geometry.total_area;
-  without_cones_ = solve(-geometry.angle_defect);
+  without_cones_ = solve(border.curvature - geometry.angle_defect);
   green_.resize(mesh.vertex_count(), 0);
 }
 
@@ -65,24 +65,28 @@ void LogScale::add_cones(const std::vector<Index>& vertices) {
 }
 
 Eigen::VectorXd LogScale::evaluate(const Eigen::VectorXd& cone_curvature) const {
-  Eigen::VectorXd y = without_cones_ + green_ * cone_curvature;
+  Eigen::VectorXd y = evaluate_held(cone_curvature);
   y.array() -= weight_.dot(y);
   return y;
 }
 
+Eigen::VectorXd LogScale::evaluate_held(const Eigen::VectorXd& cone_curvature) const {
+  return without_cones_ + green_ * cone_curvature;
+}
+
 Eigen::VectorXd LogScale::harmonic_curvature() const {
   const Index k = cone_count();
-  const bool closed = mesh_.closed();
-  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(k + closed, k + closed);
-  Eigen::VectorXd right(k + closed);
+  const bool balanced = border_.balanced;
+  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(k + balanced, k + balanced);
+  Eigen::VectorXd right(k + balanced);
   for (Index i = 0; i < k; ++i) {
     system.row(i).head(k) = green_.row(cones_[i]);
     right[i] = -without_cones_[cones_[i]];
   }
-  if (closed) {
+  if (balanced) {
     system.col(k).head(k).setOnes();
     system.row(k).head(k).setOnes();
-    right[k] = 2 * M_PI * mesh_.euler;
+    right[k] = required_sum();
   }
   return system.partialPivLu().solve(right).head(k);
 }
@@ -103,7 +107,7 @@ Eigen::VectorXd LogScale::least_distortion_curvature(const Eigen::VectorXd& low,
     hessian.selfadjointView<Eigen::Lower>().rankUpdate(mean_shrinkage, -4);
     hessian.triangularView<Eigen::StrictlyUpper>() = hessian.transpose();
     hessian.diagonal().array() += ridge * hessian.diagonal().mean();
-    const Eigen::VectorXd direction = minimize_in_box(hessian, gradient, low - kappa, high - kappa, mesh_.closed());
+    const Eigen::VectorXd direction = minimize_in_box(hessian, gradient, low - kappa, high - kappa, border_.balanced);
     const double decrease = -gradient.dot(direction);
     if (!(decrease > newton_decrement)) break;
     const Eigen::VectorXd change = green_ * direction;

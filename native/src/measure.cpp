@@ -47,28 +47,6 @@ std::vector<char> find_open_edges(const HalfedgeMesh& mesh, const Eigen::VectorX
   return is_cut;
 }
 
-// Labels triangles connected across closed edges, from `first` on; returns the number of islands found.
-Index label_islands(const HalfedgeMesh& mesh, const std::vector<char>& is_cut, Index first, std::vector<Index>& label) {
-  label.assign(mesh.triangle_count(), none);
-  Index count = 0;
-  std::vector<Index> queue;
-  for (Index seed = 0; seed < mesh.triangle_count(); ++seed) {
-    if (label[seed] != none) continue;
-    label[seed] = first + count;
-    queue.assign(1, seed);
-    for (std::size_t i = 0; i < queue.size(); ++i) {
-      for (Index h = 3 * queue[i]; h < 3 * queue[i] + 3; ++h) {
-        const Index twin = mesh.twin[h];
-        if (twin == none || is_cut[h] || label[twin / 3] != none) continue;
-        label[twin / 3] = first + count;
-        queue.push_back(twin / 3);
-      }
-    }
-    ++count;
-  }
-  return count;
-}
-
 }  // namespace
 
 Measurement measure_distortion(const Surface& surface, const CornerUv& corner_uv, const std::vector<Index>* cones) {
@@ -88,7 +66,7 @@ Measurement measure_distortion(const Surface& surface, const CornerUv& corner_uv
   std::vector<Finding> ignored;
   std::vector<Index> cut_edges;
   Index island_count = 0;
-  const Topology topology = build_topology(part.surface, ignored);
+  const Topology topology = build_topology(part.surface, {}, ignored);
   for (const Component& component : topology.components) {
     if (!component.orientable) continue;
     const HalfedgeMesh& mesh = component.mesh;
@@ -102,16 +80,16 @@ Measurement measure_distortion(const Surface& surface, const CornerUv& corner_uv
     const std::vector<char> is_cut = find_open_edges(mesh, position, same_position * size);
 
     std::vector<Index> label;
-    const Index count = label_islands(mesh, is_cut, island_count, label);
+    const Index count = label_parts(mesh, is_cut, label);
     std::vector<Index> positive(count, 0), total(count, 0);
     for (Index f = 0; f < mesh.triangle_count(); ++f) {
-      positive[label[f] - island_count] += doubled_area(position, f) > 0;
-      ++total[label[f] - island_count];
+      positive[label[f]] += doubled_area(position, f) > 0;
+      ++total[label[f]];
     }
     for (Index f = 0; f < mesh.triangle_count(); ++f) {
       const Index source = part.triangles[component.source_triangle[f]];
-      const bool mirrored = 2 * positive[label[f] - island_count] < total[label[f] - island_count];
-      out.island[source] = label[f];
+      const bool mirrored = 2 * positive[label[f]] < total[label[f]];
+      out.island[source] = island_count + label[f];
       if (!((mirrored ? -1 : 1) * doubled_area(position, f) > 0)) out.flipped.push_back(source);
     }
     island_count += count;

@@ -10,6 +10,7 @@
 #include "holonomy.hpp"
 #include "layout.hpp"
 #include "lsgp/lsgp.hpp"
+#include "pins.hpp"
 #include "text.hpp"
 #include "transitions.hpp"
 #include "unfold.hpp"
@@ -26,7 +27,8 @@ struct Map {
   CutMesh cut_mesh;
   Curvature curvature;
   Eigen::VectorXcd position;  // (copies) u + iv
-  double uv_area = 0;         // signed
+  std::vector<Pin> pins;
+  double uv_area = 0;  // signed
   SeamQuality seams;
   Validity validity;
 };
@@ -37,7 +39,7 @@ Eigen::VectorXd curvature_of_nodes(const HalfedgeMesh& mesh, const NodeGraph& no
     if (nodes.vertex[node] != none) {
       out[node] = at_vertex[nodes.vertex[node]];
     } else {
-      for (const Index v : mesh.boundary_loops[node]) out[node] += at_vertex[v];
+      for (const Index v : mesh.boundary_loops[nodes.loop[node]]) out[node] += at_vertex[v];
     }
   }
   return out;
@@ -47,7 +49,8 @@ Eigen::VectorXd curvature_of_nodes(const HalfedgeMesh& mesh, const NodeGraph& no
 // without cones does the smallest eigenvector still mean something (Mullen et al. 2008).
 UnfoldMethod usable_unfold(const HalfedgeMesh& mesh, const ComponentCones& cones, UnfoldMethod asked,
                            std::vector<Finding>& findings) {
-  const bool plain_disk = mesh.boundary_loops.size() == 1 && mesh.genus == 0 && cones.vertices.empty();
+  const bool plain_disk =
+      mesh.boundary_loops.size() == 1 && mesh.genus == 0 && cones.vertices.empty() && cones.border == BorderMode::free;
   if (asked == UnfoldMethod::poisson || mesh.closed() || plain_disk) return asked;
   findings.push_back(
       {Code::spectral_needs_closed,
@@ -90,17 +93,36 @@ void check(const HalfedgeMesh& mesh, const Eigen::VectorXd* rotation, Map& map) 
   if (!rotation) map.validity.wrong_angle_sums.clear();
 }
 
+std::vector<Index> inside_only(const HalfedgeMesh& mesh, const std::vector<Index>& vertices) {
+  std::vector<Index> out;
+  for (const Index v : vertices) {
+    if (mesh.loop_of_vertex[v] == none) out.push_back(v);
+  }
+  return out;
+}
+
+// Vertices a repair has to leave where they are.
+std::vector<char> fixed_vertices(const HalfedgeMesh& mesh, const Map& map, bool straight) {
+  std::vector<char> fixed(mesh.vertex_count(), 0);
+  for (const Pin& pin : map.pins) fixed[map.cut_mesh.source[pin.copy]] = 1;
+  for (Index v = 0; v < mesh.vertex_count(); ++v) fixed[v] |= straight && mesh.loop_of_vertex[v] != none;
+  return fixed;
+}
+
 Map solve_component(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
-                    const Options& options, std::vector<Finding>& findings, StageSeconds& seconds) {
+                    const std::vector<std::pair<Index, Complex>>& pinned_corners, const Options& options,
+                    std::vector<Finding>& findings, StageSeconds& seconds) {
+  const bool straight = cones.border == BorderMode::straight && !mesh.closed();
   Map map;
   {
-    StageTimer timer(seconds, "cut");
-    map.cut_graph = connect_cones(mesh, geometry, cones.vertices);
-    map.cut_mesh = cut_open(mesh, map.cut_graph);
+    StageTimer timer(seconds, "prescribe");
+    map.curvature = prescribe(mesh, geometry, cones, options.prescription, findings);
   }
   {
-    StageTimer timer(seconds, "prescribe");
-    map.curvature = prescribe(mesh, geometry, map.cut_graph, map.cut_mesh, cones, options.prescription, findings);
+    StageTimer timer(seconds, "cut");
+    map.cut_graph = connect_cones(mesh, geometry, inside_only(mesh, cones.vertices), map.curvature.needs_no_cut);
+    map.cut_mesh = cut_open(mesh, map.cut_graph);
+    map.pins = pins_of_copies(map.cut_mesh, pinned_corners);
   }
   StageTimer timer(seconds, "unfold");
   if (options.method == Method::lscm) {
@@ -109,17 +131,26 @@ Map solve_component(const HalfedgeMesh& mesh, const Geometry& geometry, const Co
     return map;
   }
   const Connection connection = connect(mesh, geometry, map, map.curvature);
-  if (usable_unfold(mesh, cones, options.unfold, findings) == UnfoldMethod::spectral) {
+  const bool spectral = usable_unfold(mesh, cones, options.unfold, findings) == UnfoldMethod::spectral;
+  if (spectral) {
     map.position = unfold_spectral(mesh, geometry, map.cut_mesh, connection.reduction);
-    check(mesh, &connection.rotation, map);
-    return map;
+  } else if (straight) {
+    map.position = unfold_straight(mesh, geometry, map.cut_mesh, connection.reduction, map.curvature.log_scale,
+                                   connection.frames, straight_edges(mesh, cones.vertices));
+  } else {
+    map.position = PoissonSystem(mesh, geometry, map.cut_mesh, connection.reduction)
+                       .unfold(map.curvature.log_scale, connection.frames);
   }
-  map.position = PoissonSystem(mesh, geometry, map.cut_mesh, connection.reduction)
-                     .unfold(map.curvature.log_scale, connection.frames);
+  Curvature target = map.curvature;
+  if (map.pins.size() > 1) {
+    PinnedMap pinned = move_onto_pins(mesh, geometry, map.cut_mesh, connection.reduction, map.pins, map.position);
+    map.position = std::move(pinned.position);
+    target.log_scale.array() += std::log(pinned.scale);
+  }
   check(mesh, &connection.rotation, map);
-  if (!map.validity.flipped.empty()) {
-    map.position =
-        untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, map.curvature, map.position);
+  if (!map.validity.flipped.empty() && !spectral) {
+    map.position = untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, target,
+                            fixed_vertices(mesh, map, straight), map.position);
     check(mesh, &connection.rotation, map);
   }
   return map;
@@ -136,42 +167,38 @@ class Assembly {
     cone_angle_.assign(surface.positions.rows(), std::numeric_limits<double>::quiet_NaN());
   }
 
-  void add(std::size_t component_index, const ComponentCones& cones, const Geometry& geometry, Map map) {
+  void add(std::size_t component_index, const ComponentCones& cones, const Geometry& geometry, const Map& map) {
     const Component& component = components_[component_index];
-    for (Index h = 0; h < component.mesh.halfedge_count(); ++h) {
-      if (!map.cut_graph.is_cut[h] || component.mesh.twin[h] < h) continue;
-      cut_edges_.push_back(component.source_vertex[component.mesh.origin(h)]);
-      cut_edges_.push_back(component.source_vertex[component.mesh.target(h)]);
-    }
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
       result_.log_scale[component.source_vertex[v]] = map.curvature.log_scale[v];
     }
-    for (const Index v : cones.vertices)
-      cone_angle_[component.source_vertex[v]] = 2 * M_PI - map.curvature.at_vertex[v];
+    for (const Index v : cones.vertices) {
+      cone_angle_[component.source_vertex[v]] = flat_angle(component.mesh, v) - map.curvature.at_vertex[v];
+    }
     SeamQuality& seams = result_.seams;
     seams.sister_ratio_max = std::max(seams.sister_ratio_max, map.seams.sister_ratio_max);
     seams.rotation_residual = std::max(seams.rotation_residual, map.seams.rotation_residual);
     seams.translation_residual = std::max(seams.translation_residual, map.seams.translation_residual);
     for (const Index f : map.validity.flipped) result_.flipped.push_back(component.source_triangle[f]);
-    for (const Index v : map.validity.wrong_angle_sums) result_.wrong_angle_sums.push_back(component.source_vertex[v]);
+    for (const Index v : map.validity.wrong_angle_sums) {
+      result_.wrong_angle_sums.push_back(component.source_vertex[v]);
+    }
     result_.cone_angle_error = std::max(result_.cone_angle_error, map.validity.cone_angle_error);
-
-    islands_.push_back({std::move(map.position), geometry.total_area, map.uv_area});
-    solved_.emplace_back(component_index, std::move(map.cut_mesh.copy_of_corner));
+    add_islands(component, geometry, map);
   }
 
   void finish(const Cones& cones, const std::vector<std::pair<Index, Index>>& duplicates) {
     arrange(islands_);
     std::vector<Index> triangles;
-    for (std::size_t i = 0; i < solved_.size(); ++i) {
-      const Component& component = components_[solved_[i].first];
-      for (std::size_t corner = 0; corner < solved_[i].second.size(); ++corner) {
-        const Index source = component.source_corner(static_cast<Index>(corner));
-        const Complex z = islands_[i].position[solved_[i].second[corner]];
-        result_.corner_uv.row(source) << z.real(), z.imag();
+    for (std::size_t i = 0; i < islands_.size(); ++i) {
+      for (std::size_t k = 0; k < corners_[i].size(); ++k) {
+        const Complex z = islands_[i].position[static_cast<Eigen::Index>(k)];
+        result_.corner_uv.row(corners_[i][k]) << z.real(), z.imag();
       }
-      for (const Index f : component.source_triangle) result_.island[f] = static_cast<Index>(i);
-      triangles.insert(triangles.end(), component.source_triangle.begin(), component.source_triangle.end());
+    }
+    for (std::size_t i = 0; i < pinned_.size(); ++i) result_.corner_uv.row(pinned_[i].first) = pinned_[i].second;
+    for (Index f = 0; f < surface_.triangles.rows(); ++f) {
+      if (result_.island[f] != none) triangles.push_back(f);
     }
     for (const auto& [f, original] : duplicates) share_map(f, original);
     result_.distortion = measure_triangles(surface_, result_.corner_uv, triangles);
@@ -185,6 +212,48 @@ class Assembly {
   }
 
  private:
+  // A component is one island, or several where its cuts and seams together close off parts: those keep their size and
+  // are placed one by one, related across the seam by how they were moved.
+  void add_islands(const Component& component, const Geometry& geometry, const Map& map) {
+    const HalfedgeMesh& mesh = component.mesh;
+    std::vector<char> open(mesh.halfedge_count());
+    for (Index h = 0; h < mesh.halfedge_count(); ++h) open[h] = map.cut_graph.is_cut[h] || mesh.seam[h];
+    std::vector<Index> part;
+    const Index part_count = label_parts(mesh, open, part);
+    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+      const Index twin = mesh.twin[h];
+      if (twin < h || !(map.cut_graph.is_cut[h] || part[h / 3] != part[twin / 3])) continue;
+      cut_edges_.push_back(component.source_vertex[mesh.origin(h)]);
+      cut_edges_.push_back(component.source_vertex[mesh.target(h)]);
+    }
+    const Index first = island_count_;
+    island_count_ += part_count;
+    for (Index f = 0; f < mesh.triangle_count(); ++f) result_.island[component.source_triangle[f]] = first + part[f];
+    const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
+    if (map.pins.size() > 1) {  // in its place already
+      for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
+        pinned_.emplace_back(component.source_corner(corner),
+                             Eigen::RowVector2d(corners[corner].real(), corners[corner].imag()));
+      }
+      return;
+    }
+    const double scale = map.uv_area > 0 ? std::sqrt(geometry.total_area / map.uv_area) : 1.0;
+    std::vector<std::vector<Index>> of_part(part_count);
+    for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) of_part[part[corner / 3]].push_back(corner);
+    for (const std::vector<Index>& own : of_part) {
+      Island island{Eigen::VectorXcd(own.size()), std::nullopt};
+      corners_.emplace_back();
+      for (std::size_t k = 0; k < own.size(); ++k) {
+        island.position[static_cast<Eigen::Index>(k)] = scale * corners[own[k]];
+        corners_.back().push_back(component.source_corner(own[k]));
+        if (!map.pins.empty() && map.cut_mesh.copy_of_corner[own[k]] == map.pins.front().copy) {
+          island.pin = {static_cast<Eigen::Index>(k), map.pins.front().position};
+        }
+      }
+      islands_.push_back(std::move(island));
+    }
+  }
+
   void share_map(Index triangle, Index original) {
     result_.island[triangle] = result_.island[original];
     for (Index corner = 3 * triangle; corner < 3 * triangle + 3; ++corner) {
@@ -220,18 +289,32 @@ class Assembly {
   Result& result_;
   std::vector<double> cone_angle_;  // by the caller's vertex, NaN where none was imposed
   std::vector<Index> cut_edges_;
-  std::vector<Island> islands_;
-  std::vector<std::pair<std::size_t, std::vector<Index>>> solved_;  // component, copy of each corner
+  std::vector<Island> islands_;                               // those to be arranged
+  std::vector<std::vector<Index>> corners_;                   // the caller's, of each of them
+  std::vector<std::pair<Index, Eigen::RowVector2d>> pinned_;  // corners that are in their place
+  Index island_count_ = 0;
 };
 
-void report_boundary_cones(const Component& component, const std::vector<Index>& on_boundary,
-                           std::vector<Finding>& findings) {
-  if (on_boundary.empty()) return;
-  Elements elements = in_source(component, {ElementKind::vertices, on_boundary});
-  findings.push_back({Code::cone_on_boundary,
-                      concat(count(on_boundary.size(), "cone lies", "cones lie"),
-                             " on an open border, where angles are free anyway; nothing was prescribed there."),
-                      std::move(elements)});
+void report_border_cones(const Component& component, const std::vector<Index>& border_cones,
+                         std::vector<Finding>& findings) {
+  if (border_cones.empty()) return;
+  findings.push_back(
+      {Code::cone_on_boundary,
+       concat(count(border_cones.size(), "cone lies", "cones lie"),
+              " on an open border, where angles are free anyway; nothing was prescribed there. Give it an "
+              "angle to make it a corner."),
+       in_source(component, {ElementKind::vertices, border_cones})});
+}
+
+std::vector<std::pair<Index, Complex>> pinned_corners(const Component& component, const std::vector<Index>& pin_at,
+                                                      const Pins& pins) {
+  std::vector<std::pair<Index, Complex>> out;
+  if (pins.corners.empty()) return out;
+  for (Index corner = 0; corner < component.mesh.halfedge_count(); ++corner) {
+    const Index pin = pin_at[component.source_corner(corner)];
+    if (pin != none) out.emplace_back(corner, Complex(pins.positions(pin, 0), pins.positions(pin, 1)));
+  }
+  return out;
 }
 
 void move_findings(const Component& component, std::vector<Finding>& from, std::vector<Finding>& to) {
@@ -242,49 +325,49 @@ void move_findings(const Component& component, std::vector<Finding>& from, std::
 
 }  // namespace
 
-Result parameterize(const Surface& surface, const Cones& cones, const Options& options) {
+Result parameterize(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins) {
   Result result;
-  Topology topology;
-  {
+  require_valid(surface);
+  require_valid(surface, pins);
+  const Work work = [&] {
     StageTimer timer(result.stage_seconds, "topology");
-    require_valid(surface);
-    require_valid(surface, cones);
-    topology = build_topology(surface, result.warnings);
-  }
-  const std::vector<Component>& components = topology.components;
-  const std::vector<AssignedCones> assigned = assign_cones(surface, components, cones);
+    return prepare(surface, cones, options, result.warnings);
+  }();
+  const std::vector<Component>& components = work.topology.components;
+  std::vector<Index> pin_at(pins.corners.empty() ? 0 : 3 * surface.triangles.rows(), none);
+  for (std::size_t i = 0; i < pins.corners.size(); ++i) pin_at[pins.corners[i]] = static_cast<Index>(i);
   Assembly assembly(surface, components, result);
   for_each_component(components, result.warnings, [&](std::size_t i) {
     const Component& component = components[i];
+    const ComponentTask& task = work.tasks[i];
     std::vector<Finding> findings;
     const Geometry geometry = [&] {
       StageTimer timer(result.stage_seconds, "geometry");
       return require_geometry(component, result.warnings);
     }();
-    Map map = solve_component(component.mesh, geometry, assigned[i].inside, options, findings, result.stage_seconds);
-    report_boundary_cones(component, assigned[i].on_boundary, result.warnings);
+    const Map map = solve_component(component.mesh, geometry, task.cones, pinned_corners(component, pin_at, pins),
+                                    options, findings, result.stage_seconds);
+    report_border_cones(component, task.border_cones, result.warnings);
     move_findings(component, findings, result.warnings);
-    assembly.add(i, assigned[i].inside, geometry, std::move(map));
+    assembly.add(i, task.cones, geometry, map);
   });
   StageTimer timer(result.stage_seconds, "layout");
-  assembly.finish(cones, topology.duplicates);
+  assembly.finish(cones, work.topology.duplicates);
   return result;
 }
 
-CutPaths find_cuts(const Surface& surface, const std::vector<Index>& cones) {
+CutPaths find_cuts(const Surface& surface, const std::vector<Index>& cones, const Options& options) {
   const Cones automatic{cones, std::vector<std::optional<double>>(cones.size())};
-  require_valid(surface);
-  require_valid(surface, automatic);
   std::vector<Finding> findings;
-  const std::vector<Component> components = build_topology(surface, findings).components;
-  const std::vector<AssignedCones> assigned = assign_cones(surface, components, automatic);
+  const Work work = prepare(surface, automatic, options, findings);
+  const std::vector<Component>& components = work.topology.components;
   CutPaths out;
   std::vector<Index> edges;
   for_each_component(components, findings, [&](std::size_t i) {
     const Component& component = components[i];
     const Geometry geometry = require_geometry(component, findings);
-    const CutGraph graph = connect_cones(component.mesh, geometry, assigned[i].inside.vertices);
-    for (const Cut& cut : graph.cuts) {
+    const std::vector<Index> inside = inside_only(component.mesh, work.tasks[i].cones.vertices);
+    for (const Cut& cut : connect_cones(component.mesh, geometry, inside, {}).cuts) {
       std::vector<Index> path{component.source_vertex[cut.tail]};
       for (const Index h : cut.halfedges) path.push_back(component.source_vertex[component.mesh.target(h)]);
       for (std::size_t k = 0; k + 1 < path.size(); ++k) edges.insert(edges.end(), {path[k], path[k + 1]});
@@ -295,29 +378,27 @@ CutPaths find_cuts(const Surface& surface, const std::vector<Index>& cones) {
   return out;
 }
 
-Prescription prescribe_curvature(const Surface& surface, const Cones& cones, PrescriptionRule rule) {
-  require_valid(surface);
-  require_valid(surface, cones);
+Prescription prescribe_curvature(const Surface& surface, const Cones& cones, const Options& options) {
   Prescription out;
-  const std::vector<Component> components = build_topology(surface, out.warnings).components;
-  const std::vector<AssignedCones> assigned = assign_cones(surface, components, cones);
+  const Work work = prepare(surface, cones, options, out.warnings);
+  const std::vector<Component>& components = work.topology.components;
   out.log_scale = Eigen::VectorXd::Zero(surface.positions.rows());
   std::vector<double> angle(surface.positions.rows(), std::numeric_limits<double>::quiet_NaN());
   double stretched_area = 0, total_area = 0;
   for_each_component(components, out.warnings, [&](std::size_t i) {
     const Component& component = components[i];
+    const ComponentTask& task = work.tasks[i];
     const Geometry geometry = require_geometry(component, out.warnings);
-    const CutGraph cut_graph = connect_cones(component.mesh, geometry, assigned[i].inside.vertices);
-    const CutMesh cut_mesh = cut_open(component.mesh, cut_graph);
     std::vector<Finding> findings;
-    const Curvature curvature =
-        prescribe(component.mesh, geometry, cut_graph, cut_mesh, assigned[i].inside, rule, findings);
-    report_boundary_cones(component, assigned[i].on_boundary, out.warnings);
+    const Curvature curvature = prescribe(component.mesh, geometry, task.cones, options.prescription, findings);
+    report_border_cones(component, task.border_cones, out.warnings);
     move_findings(component, findings, out.warnings);
-    for (Index v = 0; v < component.mesh.vertex_count(); ++v)
+    for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
       out.log_scale[component.source_vertex[v]] = curvature.log_scale[v];
-    for (const Index v : assigned[i].inside.vertices)
-      angle[component.source_vertex[v]] = 2 * M_PI - curvature.at_vertex[v];
+    }
+    for (const Index v : task.cones.vertices) {
+      angle[component.source_vertex[v]] = flat_angle(component.mesh, v) - curvature.at_vertex[v];
+    }
     // Islands get the same area in 2D as in 3D, so their squared stretches add up by area.
     stretched_area += curvature.predicted_l2 * curvature.predicted_l2 * geometry.total_area;
     total_area += geometry.total_area;

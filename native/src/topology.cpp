@@ -112,8 +112,19 @@ struct Orientation {
   std::vector<char> orientable;  // per component
 };
 
-// Labels components by breadth-first search over paired edges and turns every triangle like its component's majority.
-Orientation orient(const Surface& surface, const EdgeTable& edges) {
+// Edges across which the surface goes on: those of two triangles that are no open seam.
+std::vector<char> find_joined(const EdgeTable& edges, const std::vector<char>& seam, const OpenSeams& open_seams) {
+  std::vector<char> joined(edges.count());
+  for (Index edge = 0; edge < edges.count(); ++edge) {
+    joined[edge] = edges.halfedge_count(edge) == 2;
+    if (!joined[edge] || !seam[edge] || open_seams.empty()) continue;
+    joined[edge] = !open_seams[edges.halfedge(edge, 0) / 3] && !open_seams[edges.halfedge(edge, 1) / 3];
+  }
+  return joined;
+}
+
+// Labels components by breadth-first search over joined edges and turns every triangle like its component's majority.
+Orientation orient(const Surface& surface, const EdgeTable& edges, const std::vector<char>& joined) {
   const Index triangle_count = static_cast<Index>(surface.triangles.rows());
   const Index* corner_vertex = surface.triangles.data();
   Orientation out{std::vector<Index>(triangle_count, none), std::vector<char>(triangle_count, 0), {}};
@@ -129,7 +140,7 @@ Orientation orient(const Surface& surface, const EdgeTable& edges) {
       const Index f = queue[i];
       for (Index h = 3 * f; h < 3 * f + 3; ++h) {
         const Index edge = edges.edge_of(h);
-        if (edges.halfedge_count(edge) != 2) continue;
+        if (!joined[edge]) continue;
         const Index other = edges.halfedge(edge, edges.halfedge(edge, 0) == h ? 1 : 0), g = other / 3;
         const char wanted = out.reversed[f] ^ (corner_vertex[h] == corner_vertex[other]);
         if (out.component[g] == none) {
@@ -197,8 +208,9 @@ void measure_topology(HalfedgeMesh& mesh) {
   mesh.genus = (2 - static_cast<int>(mesh.boundary_loops.size()) - mesh.euler) / 2;
 }
 
-void report_repairs(const Surface& surface, const EdgeTable& edges, const Orientation& orientation,
-                    const std::vector<Component>& components, std::vector<Finding>& findings) {
+void report_repairs(const Surface& surface, const EdgeTable& edges, const std::vector<char>& joined,
+                    const Orientation& orientation, const std::vector<Component>& components,
+                    std::vector<Finding>& findings) {
   std::vector<Index> crowded;
   for (Index edge = 0; edge < edges.count(); ++edge) {
     if (edges.halfedge_count(edge) <= 2) continue;
@@ -217,7 +229,11 @@ void report_repairs(const Surface& surface, const EdgeTable& edges, const Orient
     for (const Index v : component.source_vertex) ++fans[v];
   }
   std::vector<char> open(fans.size(), 0);
-  for (const Index v : crowded) open[v] = 1;
+  for (Index edge = 0; edge < edges.count(); ++edge) {
+    if (joined[edge] || edges.halfedge_count(edge) < 2) continue;  // opened on purpose: fans part there
+    const Index h = edges.halfedge(edge, 0);
+    open[surface.triangles.data()[h]] = open[surface.triangles.data()[next(h)]] = 1;
+  }
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
     if (orientation.component[f] == none || !orientation.orientable[orientation.component[f]]) {
       for (int c = 0; c < 3; ++c) open[surface.triangles(f, c)] = 1;
@@ -253,7 +269,28 @@ void report_repairs(const Surface& surface, const EdgeTable& edges, const Orient
 
 }  // namespace
 
-Topology build_topology(const Surface& surface, std::vector<Finding>& findings) {
+Index label_parts(const HalfedgeMesh& mesh, const std::vector<char>& open, std::vector<Index>& part) {
+  part.assign(mesh.triangle_count(), none);
+  Index count = 0;
+  std::vector<Index> queue;
+  for (Index seed = 0; seed < mesh.triangle_count(); ++seed) {
+    if (part[seed] != none) continue;
+    part[seed] = count;
+    queue.assign(1, seed);
+    for (std::size_t i = 0; i < queue.size(); ++i) {
+      for (Index h = 3 * queue[i]; h < 3 * queue[i] + 3; ++h) {
+        const Index twin = mesh.twin[h];
+        if (twin == none || open[h] || part[twin / 3] != none) continue;
+        part[twin / 3] = count;
+        queue.push_back(twin / 3);
+      }
+    }
+    ++count;
+  }
+  return count;
+}
+
+Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std::vector<Finding>& findings) {
   Topology topology;
   std::vector<char> skip(surface.triangles.rows(), 0);
   EdgeTable edges(surface, skip);
@@ -276,7 +313,8 @@ Topology build_topology(const Surface& surface, std::vector<Finding>& findings) 
                     : std::vector<char>(edges.count(), 1);
   const std::vector<char> seam = mark_edges(edges, surface.seams, Code::seam_not_an_edge,
                                             "are marked as a seam but name no edge. Mark edges of this mesh.");
-  const Orientation orientation = orient(surface, edges);
+  const std::vector<char> joined = find_joined(edges, seam, open_seams);
+  const Orientation orientation = orient(surface, edges, joined);
 
   std::vector<Component>& components = topology.components;
   components.resize(orientation.orientable.size());
@@ -307,7 +345,7 @@ Topology build_topology(const Surface& surface, std::vector<Finding>& findings) 
         const Index edge = edges.edge_of(h), local = local_halfedge(h);
         mesh.cuttable[local] = cuttable[edge];
         mesh.seam[local] = seam[edge];
-        if (edges.halfedge_count(edge) == 2) {
+        if (joined[edge]) {
           mesh.twin[local] = local_halfedge(edges.halfedge(edge, edges.halfedge(edge, 0) == h ? 1 : 0));
         }
       }
@@ -315,7 +353,7 @@ Topology build_topology(const Surface& surface, std::vector<Finding>& findings) 
     number_vertices(surface, component);
     measure_topology(mesh);
   }
-  report_repairs(surface, edges, orientation, components, findings);
+  report_repairs(surface, edges, joined, orientation, components, findings);
   return topology;
 }
 

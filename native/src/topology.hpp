@@ -51,6 +51,9 @@ struct HalfedgeMesh {
   }
 };
 
+// Numbers the parts into which open edges, (3m) on both halfedges, divide the triangles; part: (m).  Returns how many.
+Index label_parts(const HalfedgeMesh& mesh, const std::vector<char>& open, std::vector<Index>& part);
+
 // One component of the caller's surface.
 struct Component {
   HalfedgeMesh mesh;
@@ -72,9 +75,12 @@ struct Topology {
   std::vector<std::pair<Index, Index>> duplicates;
 };
 
+// Which seams are borders: those of the triangles marked, (m); empty: none.
+using OpenSeams = std::vector<char>;
+
 // Splits a surface into components joined along edges of exactly two triangles.  Edges of more triangles are opened,
 // vertices whose triangles form several fans are split, triangles turned against their component's majority are
 // reversed, triangles that lie on another are left out; each is reported.  Throws EDGE_NOT_IN_MESH, SEAM_NOT_AN_EDGE.
-Topology build_topology(const Surface& surface, std::vector<Finding>& findings);
+Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std::vector<Finding>& findings);
 
 }  // namespace lsgp

@@ -5,6 +5,8 @@
 
 #include "energies/quadratic_forms.hpp"
 #include "solvers/eigenproblem.hpp"
+#include "solvers/saddle_point.hpp"
+#include "solvers/sparse_assembly.hpp"
 
 namespace lsgp {
 
@@ -16,6 +18,23 @@ double connection_step(const HalfedgeMesh& mesh, const Geometry& geometry, const
   const double scale_change = log_scale[mesh.target(h)] - log_scale[mesh.origin(h)];
   return edge_direction(geometry, h) - (edge_direction(geometry, twin) + M_PI) -
          cotangent_weight(mesh, geometry, h) * scale_change;
+}
+
+// What the target Jacobians T = e^{y + i phi} pull at the copies with:
+// min sum A (|f_z - T|^2 + |f_zbar|^2) is z^H L z / 2 - 2 Re(...), and the right side at a corner is 2 A conj(g) T with
+// g = -i conj(e) / (4 A), e the edge opposite the corner.
+Eigen::VectorXcd pull_of_frames(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+                                const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames) {
+  Eigen::VectorXcd pull = Eigen::VectorXcd::Zero(cut_mesh.copy_count());
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    double scale = 0;
+    for (int c = 0; c < 3; ++c) scale += log_scale[mesh.triangles(f, c)] / 3;
+    const Complex target = std::polar(std::exp(scale), frames[f]);
+    for (Index corner = 3 * f; corner < 3 * f + 3; ++corner) {
+      pull[cut_mesh.copy_of_corner[corner]] += Complex(0, 0.5) * edge_vector(geometry, next(corner)) * target;
+    }
+  }
+  return pull;
 }
 
 // The copies along the open border that contains the border copy with the lowest number.
@@ -75,18 +94,54 @@ PoissonSystem::PoissonSystem(const HalfedgeMesh& mesh, const Geometry& geometry,
       factor_(assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction)) {}
 
 Eigen::VectorXcd PoissonSystem::unfold(const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames) const {
-  // min sum A (|f_z - T|^2 + |f_zbar|^2), which is z^H L z / 2 - 2 Re(...): the right side at a corner is
-  // 2 A conj(g) T with g = -i conj(e) / (4 A), e the edge opposite the corner.
-  Eigen::VectorXcd pull = Eigen::VectorXcd::Zero(cut_mesh_.copy_count());
-  for (Index f = 0; f < mesh_.triangle_count(); ++f) {
-    double scale = 0;
-    for (int c = 0; c < 3; ++c) scale += log_scale[mesh_.triangles(f, c)] / 3;
-    const Complex target = std::polar(std::exp(scale), frames[f]);
-    for (Index corner = 3 * f; corner < 3 * f + 3; ++corner) {
-      pull[cut_mesh_.copy_of_corner[corner]] += Complex(0, 0.5) * edge_vector(geometry_, next(corner)) * target;
+  return expand(reduction_,
+                factor_.solve(gather(reduction_, pull_of_frames(mesh_, geometry_, cut_mesh_, log_scale, frames))));
+}
+
+Eigen::VectorXcd unfold_straight(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+                                 const Reduction& reduction, const Eigen::VectorXd& log_scale,
+                                 const Eigen::VectorXd& frames, const std::vector<Index>& edges) {
+  const Eigen::SparseMatrix<Complex> form = assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction);
+  const Eigen::VectorXcd pull = gather(reduction, pull_of_frames(mesh, geometry, cut_mesh, log_scale, frames));
+  // Unknown k becomes its real part, 2k, and its imaginary part, 2k + 1.
+  const int size = 2 * reduction.unknown_count;
+  LowerAssembly<double> assembly(size, 4 * static_cast<std::size_t>(form.nonZeros()));
+  for (int column = 0; column < form.cols(); ++column) {
+    for (Eigen::SparseMatrix<Complex>::InnerIterator it(form, column); it; ++it) {
+      const int row = static_cast<int>(it.row());
+      assembly.add(2 * row, 2 * column, it.value().real());
+      assembly.add(2 * row + 1, 2 * column + 1, it.value().real());
+      if (row == column) continue;
+      assembly.add(2 * row, 2 * column + 1, -it.value().imag());
+      assembly.add(2 * row + 1, 2 * column, it.value().imag());
     }
   }
-  return expand(reduction_, factor_.solve(gather(reduction_, pull)));
+  Eigen::VectorXd right(size);
+  for (Index k = 0; k < reduction.unknown_count; ++k) right.segment<2>(2 * k) << pull[k].real(), pull[k].imag();
+
+  // Im(e^{-i psi} (z_to - z_from)) = 0, psi the direction the metric gives the edge.
+  Eigen::SparseMatrix<double, Eigen::RowMajor> rows(static_cast<Eigen::Index>(edges.size()), size);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const Index h = edges[i];
+    const double bend = geometry.half_cotangent[h] * (log_scale[mesh.target(h)] - log_scale[mesh.origin(h)]);
+    const Complex across = std::polar(1.0, -(frames[h / 3] + edge_direction(geometry, h) - bend));
+    const auto add = [&](Index corner, Complex factor) {
+      reduction.for_each_term(cut_mesh.copy_of_corner[corner], [&](const Term& term) {
+        const Complex coefficient = factor * term.coefficient;
+        entries.emplace_back(static_cast<int>(i), 2 * term.unknown, coefficient.imag());
+        entries.emplace_back(static_cast<int>(i), 2 * term.unknown + 1, coefficient.real());
+      });
+    };
+    add(next(h), across);
+    add(h, -across);
+  }
+  rows.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::VectorXd solution =
+      minimize_under<double>(assembly.build(), right, rows, Eigen::VectorXd::Zero(rows.rows()));
+  Eigen::VectorXcd unknowns(reduction.unknown_count);
+  for (Index k = 0; k < reduction.unknown_count; ++k) unknowns[k] = {solution[2 * k], solution[2 * k + 1]};
+  return expand(reduction, unknowns);
 }
 
 Eigen::VectorXcd unfold_spectral(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,

@@ -40,6 +40,12 @@ class PoissonSystem {
   Cholesky<Complex> factor_;
 };
 
+// The same fit with border edges exactly straight: along each of `edges` the map's direction is that of the frames.
+// A real problem of twice the size.
+Eigen::VectorXcd unfold_straight(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+                                 const Reduction& reduction, const Eigen::VectorXd& log_scale,
+                                 const Eigen::VectorXd& frames, const std::vector<Index>& edges);
+
 // The map of least conformal energy at a given Dirichlet energy (Mullen et al. 2008, with a norm that transitions
 // leave invariant).
 Eigen::VectorXcd unfold_spectral(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,

@@ -31,7 +31,8 @@ struct Region {
   Index unknown_count = 0;
 };
 
-Region grow_region(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const std::vector<Index>& flipped, int rings) {
+Region grow_region(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const std::vector<char>& fixed,
+                   const std::vector<Index>& flipped, int rings) {
   std::vector<char> inside(mesh.vertex_count(), 0);
   std::vector<Index> front;
   const auto reach = [&](Index v, std::vector<Index>& reached) {
@@ -57,6 +58,7 @@ Region grow_region(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const st
   Region region;
   region.unknown_of_vertex.assign(mesh.vertex_count(), none);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    inside[v] = inside[v] && !fixed[v];
     if (inside[v]) region.unknown_of_vertex[v] = region.unknown_count++;
   }
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
@@ -254,7 +256,7 @@ class LocalRepair {
 
 Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
                           const CutMesh& cut_mesh, const Eigen::VectorXd& rotation, const Curvature& curvature,
-                          const Eigen::VectorXcd& position) {
+                          const std::vector<char>& fixed, const Eigen::VectorXcd& position) {
   const Eigen::VectorXcd motion = motion_of_copies(mesh, cut_graph, cut_mesh, rotation);
   const auto check = [&](const Eigen::VectorXcd& tried) {
     return check_map(mesh, at_corners(cut_mesh, tried), curvature.at_vertex);
@@ -266,7 +268,7 @@ Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, co
   Eigen::VectorXcd best = position;
   std::size_t fewest = defects(initial);
   for (const int rings : neighbourhoods) {
-    Region region = grow_region(mesh, cut_graph, initial.flipped, rings);
+    Region region = grow_region(mesh, cut_graph, fixed, initial.flipped, rings);
     if (region.unknown_count == 0) continue;
     Eigen::VectorXcd tried = position;
     LocalRepair repair(mesh, geometry, cut_mesh, motion, curvature.log_scale, std::move(region), tried);

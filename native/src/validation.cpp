@@ -136,4 +136,25 @@ void require_valid(const Surface& surface, const Cones& cones) {
          "Give an angle above 0 degrees.");
 }
 
+void require_valid(const Surface& surface, const Pins& pins) {
+  const Index corner_count = static_cast<Index>(3 * surface.triangles.rows());
+  std::vector<Index> outside, non_finite;
+  for (std::size_t i = 0; i < pins.corners.size(); ++i) {
+    const Index corner = pins.corners[i];
+    if (corner < 0 || corner >= corner_count)
+      outside.push_back(corner);
+    else if (!pins.positions.row(static_cast<Eigen::Index>(i)).allFinite())
+      non_finite.push_back(corner / 3);
+  }
+  if (!outside.empty() || pins.positions.rows() != static_cast<Eigen::Index>(pins.corners.size())) {
+    throw Error(Code::pin_index, concat("The pins name corners outside 0 to ", corner_count - 1, " (", list(outside),
+                                        ") or are not as many as their positions. Pass corners of this mesh."));
+  }
+  if (!non_finite.empty()) {
+    throw Error(Code::pin_non_finite,
+                concat(count(non_finite.size(), "pin is", "pins are"), " not at a finite place. Unpin or move them."),
+                {ElementKind::triangles, non_finite});
+  }
+}
+
 }  // namespace lsgp

@@ -13,4 +13,7 @@ void require_valid(const Surface& surface);
 // Throws CONE_INDEX, CONE_DUPLICATE, CONE_NOT_ON_SURFACE, ANGLE_COUNT, CONE_ANGLE_NON_FINITE, CONE_ANGLE_RANGE.
 void require_valid(const Surface& surface, const Cones& cones);
 
+// Throws PIN_INDEX, PIN_NON_FINITE.
+void require_valid(const Surface& surface, const Pins& pins);
+
 }  // namespace lsgp

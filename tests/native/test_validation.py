@@ -153,9 +153,10 @@ def test_refusal_has_its_code_class_elements_and_remedy(case: str) -> None:
 def test_every_verb_refuses_alike(case: str) -> None:
     code, _, given, cones, _, _, _ = REFUSALS[case]
     cones = np.array(list(cones), np.int32)
-    with pytest.raises(lsgp.LsgpError) as caught:
-        lsgp.prescribe_curvature(given, cones)
-    assert caught.value.code == code or code == "CUTS_BLOCKED"
+    if code != "CUTS_BLOCKED":  # angles need no cuts
+        with pytest.raises(lsgp.LsgpError) as caught:
+            lsgp.prescribe_curvature(given, cones)
+        assert caught.value.code == code
     if code not in ("TOO_FEW_CONES",):
         with pytest.raises(lsgp.LsgpError) as caught:
             lsgp.find_cuts(given, cones)

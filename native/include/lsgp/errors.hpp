@@ -34,6 +34,10 @@ enum class Code {
   cone_not_on_surface,
   angle_count,
   cone_angle_non_finite,
+  loop_turning,
+  pin_index,
+  pin_non_finite,
+  pins_conflict,
   // TopologyError
   not_orientable,
   too_few_cones,
@@ -51,6 +55,7 @@ enum class Code {
   non_manifold_edge,
   split_vertex,
   reoriented,
+  seams_opened,
   cone_on_boundary,
   junction_share,
   straightness_failed,

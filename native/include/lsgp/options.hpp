@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <utility>
+#include <vector>
+
+#include "lsgp/surface.hpp"
+
 namespace lsgp {
 
 // How the automatic cone angles are chosen.
@@ -21,10 +26,26 @@ enum class Method {
   lscm,  // the paper's comparison: the same cuts, two pinned vertices, no transitions (Levy et al. 2002)
 };
 
+// What a marked seam means.
+enum class SeamMode {
+  follow,    // cuts run along seams wherever they can; seams that close off a part make it an island of its own
+  boundary,  // every seam is an open border, as in Blender's own unwrap
+  ignore,
+};
+
+enum class BorderMode {
+  free,      // angles along borders come out as they distort least; a cone there with an angle is a corner
+  straight,  // borders run straight from marked cone to marked cone
+};
+
 struct Options {
   PrescriptionRule prescription = PrescriptionRule::least_distortion;
   UnfoldMethod unfold = UnfoldMethod::poisson;
   Method method = Method::lsgp;
+  SeamMode seams = SeamMode::follow;
+  BorderMode border = BorderMode::free;
+  // Total turning of boundary loops, radians, each named by a vertex on it; other loops turn as they distort least.
+  std::vector<std::pair<Index, double>> loop_turning;
 };
 
 }  // namespace lsgp

@@ -31,4 +31,10 @@ struct Cones {
   std::vector<std::optional<double>> angles;  // (k) total angle in radians, empty = automatic
 };
 
+// Corners whose texture coordinates are to stay.
+struct Pins {
+  std::vector<Index> corners;  // (p) 3 * triangle + corner
+  CornerUv positions;          // (p, 2)
+};
+
 }  // namespace lsgp

@@ -13,10 +13,13 @@ struct Cholesky<Scalar>::Factor {
 };
 
 template <typename Scalar>
-Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower) : factor_(std::make_unique<Factor>()) {
+Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower, Definiteness definiteness)
+    : factor_(std::make_unique<Factor>()) {
   if (lower.rows() == 0) return;
   factor_->ldlt.compute(lower);
-  if (factor_->ldlt.info() != Eigen::Success || !(factor_->ldlt.vectorD().real().minCoeff() > 0)) {
+  const auto pivots = factor_->ldlt.vectorD().real().array();
+  const bool usable = definiteness == Definiteness::positive ? (pivots > 0).all() : (pivots != 0).all();
+  if (factor_->ldlt.info() != Eigen::Success || !usable) {
     throw Error(
         Code::solver_failed,
         "A linear system could not be factored: the surface has triangles too thin or too large to compute with. "

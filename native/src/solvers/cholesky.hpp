@@ -8,14 +8,19 @@
 
 namespace lsgp {
 
+enum class Definiteness {
+  positive,
+  quasi,  // positive and negative definite diagonal blocks, as of a regularised saddle point (Vanderbei 1995)
+};
+
 template <typename Scalar>
 class Cholesky {
  public:
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
   using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
-  // lower: the lower triangle with its diagonal.  Throws SOLVER_FAILED where the matrix is not positive definite.
-  explicit Cholesky(const Eigen::SparseMatrix<Scalar>& lower);
+  // lower: the lower triangle with its diagonal.  Throws SOLVER_FAILED where the matrix is not as definite as said.
+  explicit Cholesky(const Eigen::SparseMatrix<Scalar>& lower, Definiteness definiteness = Definiteness::positive);
   ~Cholesky();
   Cholesky(Cholesky&&) noexcept;
 

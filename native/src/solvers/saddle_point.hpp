@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Quadratic forms minimised under linear equations.
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <vector>
+
+namespace lsgp {
+
+// Minimises  x^H form x / 2 - Re(x^H right_side)  subject to  rows x = values.
+// form: lower triangle, Hermitian positive definite, (n, n); rows: (r, n), dependent ones allowed where consistent.
+// The equations are met to rounding where they can be met; the caller checks where they may contradict each other.
+// Throws SOLVER_FAILED.
+template <typename Scalar>
+Eigen::Matrix<Scalar, Eigen::Dynamic, 1> minimize_under(const Eigen::SparseMatrix<Scalar>& form,
+                                                        const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& right_side,
+                                                        const Eigen::SparseMatrix<Scalar, Eigen::RowMajor>& rows,
+                                                        const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& values);
+
+}  // namespace lsgp
