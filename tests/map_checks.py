@@ -21,10 +21,15 @@ def surface(mesh: Mesh, edges: object = None, seams: object = None) -> lsgp.Surf
 
 
 def unwrap(
-    mesh: Mesh, angles: Sequence[float | None] | None = None, seams: object = None, **options: str
+    mesh: Mesh,
+    angles: Sequence[float | None] | None = None,
+    seams: object = None,
+    seams_mode: str = "follow",
+    **options: str,
 ) -> lsgp.Result:
     """The map of a mesh through its own cones."""
-    return lsgp.parameterize(surface(mesh, seams=seams), mesh.cones, angles, lsgp.Options(**options))
+    wanted = lsgp.Options(seams=seams_mode, **options)
+    return lsgp.parameterize(surface(mesh, seams=seams), mesh.cones, angles, wanted)
 
 
 def prescribe(mesh: Mesh, angles: Sequence[float | None] | None = None, **options: str) -> lsgp.Prescription:

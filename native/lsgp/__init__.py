@@ -32,6 +32,7 @@ from .errors import (
     SolverError,
     TopologyError,
 )
+from .islands import correct_aspect, fit_placement
 
 __version__ = version("lsgp")
 
@@ -53,7 +54,9 @@ __all__ = [
     "SolverError",
     "Surface",
     "TopologyError",
+    "correct_aspect",
     "find_cuts",
+    "fit_placement",
     "measure_distortion",
     "parameterize",
     "place_cones",

@@ -108,7 +108,20 @@ def _parser() -> argparse.ArgumentParser:
     unwrap.add_argument("--unfold", choices=["poisson", "spectral"], default="poisson", help="default: poisson")
     unwrap.add_argument("--method", choices=["lsgp", "lscm"], default="lsgp", help="default: lsgp")
     unwrap.add_argument(
-        "--seam-edges", metavar="FILE.json", type=Path, help="[[a, b], ...]: edges that cuts are drawn to"
+        "--seam-edges", metavar="FILE.json", type=Path, help="[[a, b], ...]: marked edges; --seams says what they mean"
+    )
+    unwrap.add_argument(
+        "--seams",
+        choices=["follow", "boundary", "ignore"],
+        default="follow",
+        help="cuts follow marked edges wherever they can, marked edges are open borders, or they mean nothing "
+        "(default: follow)",
+    )
+    unwrap.add_argument(
+        "--border",
+        choices=["free", "straight"],
+        default="free",
+        help="borders take the shape of least distortion, or run straight from cone to cone (default: free)",
     )
     unwrap.set_defaults(run=_unwrap)
 
@@ -169,12 +182,14 @@ def _unwrap(args: argparse.Namespace, run: Run) -> reports.Report:
     mesh, triangulation = _read(args.input, run)
     seams = _seam_edges(seams_json, args.seam_edges)
     surface = Surface(mesh.positions, triangulation.triangles, triangulation.edges, seams)
+    options = Options(args.prescription, args.unfold, args.method, args.seams, args.border)
     if isinstance(args.cones, Path):
         cones, angles = _cones(cones_json, args.cones, args.prescription)
     else:
         with run.stage("place_cones"):
-            cones, angles = place_cones(surface, None if args.cones == "auto" else args.cones), None
-    result = parameterize(surface, cones, angles, Options(args.prescription, args.unfold, args.method))
+            wanted = None if args.cones == "auto" else args.cones
+            cones, angles = place_cones(surface, wanted, options=options), None
+    result = parameterize(surface, cones, angles, options)
     run.stage_seconds.update(result.stage_seconds)
 
     with run.stage("write_file"):

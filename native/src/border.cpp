@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "border.hpp"
 
+#include <algorithm>
+
 namespace lsgp {
 
 namespace {
@@ -44,6 +46,20 @@ BorderConditions straight_border(const HalfedgeMesh& mesh, const Geometry& geome
     }
   }
   return out;
+}
+
+std::vector<Index> corner_edges(const HalfedgeMesh& mesh, const std::vector<Index>& corners) {
+  std::vector<Index> edges;
+  for (const Index v : corners) {
+    if (mesh.loop_of_vertex[v] == none) continue;
+    Index last = mesh.outgoing[v];
+    edges.push_back(last);
+    while (mesh.rotate(last) != none) last = mesh.rotate(last);
+    edges.push_back(prev(last));
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
 }
 
 std::vector<Index> straight_edges(const HalfedgeMesh& mesh, const std::vector<Index>& corners) {

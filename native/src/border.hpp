@@ -24,6 +24,9 @@ BorderConditions free_border(const HalfedgeMesh& mesh, const std::vector<Index>&
 // its shape, a tooth on the straight line through its neighbours.
 BorderConditions straight_border(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& corners);
 
+// The border edges on both sides of each corner: with their directions imposed, a free border meets its corners.
+std::vector<Index> corner_edges(const HalfedgeMesh& mesh, const std::vector<Index>& corners);
+
 // The edges that make up the straight lines: border halfedges, and in place of a tooth's two its base, seen from the
 // triangle below it.
 std::vector<Index> straight_edges(const HalfedgeMesh& mesh, const std::vector<Index>& corners);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "curvature.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -234,12 +234,23 @@ class LoopScales {
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       if (wanted[i]) loops.push_back(static_cast<Index>(i));
     }
+    const Eigen::VectorXd before = turning(log_scale);
+    if (loops.size() == wanted.size()) {
+      // Shifting all borders alike changes nothing: the last turning follows from the others.
+      double missing = -before.sum();
+      for (const auto& turning : wanted) missing += *turning;
+      if (!(std::abs(missing) <= renormalized_mismatch)) {
+        throw Error(Code::loop_turning,
+                    concat("The turning of all borders was prescribed, but with these cone angles it adds up to ",
+                           before.sum() / M_PI, " pi instead. Leave the turning of one border free."));
+      }
+      loops.pop_back();
+    }
     const Index k = static_cast<Index>(loops.size());
     Eigen::VectorXd shifts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(wanted.size()));
     if (k == 0) return {log_scale, shifts};
     Eigen::MatrixXd functions(mesh_.vertex_count(), k), effect(k, k);
     Eigen::VectorXd missing(k);
-    const Eigen::VectorXd before = turning(log_scale);
     for (Index j = 0; j < k; ++j) {
       Eigen::VectorXd one = Eigen::VectorXd::Zero(mesh_.vertex_count());
       for (const Index v : mesh_.boundary_loops[loops[j]]) one[v] = 1;
@@ -248,12 +259,7 @@ class LoopScales {
       for (Index i = 0; i < k; ++i) effect(i, j) = change[loops[i]];
       missing[j] = *wanted[loops[j]] - before[loops[j]];
     }
-    const Eigen::VectorXd shift = effect.completeOrthogonalDecomposition().solve(missing);
-    if ((effect * shift - missing).cwiseAbs().maxCoeff() > renormalized_mismatch) {
-      throw Error(Code::loop_turning,
-                  concat("The borders' turning cannot be as prescribed: with these cone angles it adds up to ",
-                         before.sum() / M_PI, " pi. Leave the turning of one border free."));
-    }
+    const Eigen::VectorXd shift = effect.partialPivLu().solve(missing);
     for (Index j = 0; j < k; ++j) shifts[loops[j]] = shift[j];
     return {log_scale + functions * shift, shifts};
   }

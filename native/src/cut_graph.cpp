@@ -14,8 +14,6 @@ namespace lsgp {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// How much shorter than its length a seam edge counts, so that cuts follow seams even on long detours.
-constexpr double seam_discount = 0.01;
 
 class UnionFind {
  public:
@@ -39,11 +37,30 @@ class UnionFind {
 // A cut edge runs inside the surface, along an edge of the mesh proper.
 bool may_cut(const HalfedgeMesh& mesh, Index h) { return mesh.twin[h] != none && mesh.cuttable[h]; }
 
+// Seams cost nothing: they are to be opened anyway.
 double cost(const HalfedgeMesh& mesh, const Geometry& geometry, Index h) {
-  return geometry.length[h] * (mesh.seam[h] ? seam_discount : 1.0);
+  return mesh.seam[h] ? 0.0 : geometry.length[h];
 }
 
-// Shortest paths from the sources: cones by themselves, a boundary loop's vertices together.
+// One vertex of every connected network of seam edges that a cut may follow.
+std::vector<Index> find_seam_networks(const HalfedgeMesh& mesh) {
+  UnionFind networks(mesh.vertex_count());
+  std::vector<char> on_seam(mesh.vertex_count(), 0);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (!mesh.seam[h] || !may_cut(mesh, h)) continue;
+    networks.unite(mesh.origin(h), mesh.target(h));
+    on_seam[mesh.origin(h)] = on_seam[mesh.target(h)] = 1;
+  }
+  std::vector<Index> out;
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (on_seam[v] && networks.find(v) == v) out.push_back(v);
+  }
+  return out;
+}
+
+// Shortest paths from the sources: cones by themselves, a boundary loop's vertices together, and a seam network, along
+// which a path costs nothing.  That networks are joined like cones keeps the parts that seams close off in one piece
+// each; where a cut does not need a network, its branch ends in no cone and is pruned.
 struct Forest {
   std::vector<double> distance;   // (n)
   std::vector<Index> reached_by;  // (n) the halfedge that leads to the vertex, none at sources
@@ -74,9 +91,13 @@ Forest grow_forest(const HalfedgeMesh& mesh, const Geometry& geometry, const std
     forest.region_count += !avoided;
   }
   for (const Index v : interior_cones) add_source(v, forest.region_count++);
+  for (const Index v : find_seam_networks(mesh)) {
+    if (forest.region[v] == none && !settled[v]) add_source(v, forest.region_count++);
+  }
   if (forest.region_count == 0) add_source(0, forest.region_count++);  // a closed surface with handles alone
   while (!queue.empty()) {
-    const auto [distance, v] = queue.top();
+    const double distance = queue.top().first;
+    const Index v = queue.top().second;
     queue.pop();
     if (settled[v]) continue;
     settled[v] = 1;

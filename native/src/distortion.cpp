@@ -11,6 +11,9 @@ namespace lsgp {
 
 namespace {
 
+constexpr double exact_seam = 1e-9;   // of an edge's length, and radians
+constexpr double exact_angle = 1e-6;  // radians
+
 // numpy's percentile: linear between the two nearest ranks.
 double percentile(std::vector<double>& values, double share) {
   const double rank = share * static_cast<double>(values.size() - 1);
@@ -77,7 +80,7 @@ Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, 
 }
 
 SeamQuality measure_seams(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const Eigen::VectorXcd& position,
-                          const Eigen::VectorXd* rotation) {
+                          const Eigen::VectorXd* rotation, std::vector<Index>* inexact) {
   SeamQuality out;
   const double size = layout_size(position);
   for (std::size_t p = 0; p < cut_graph.cuts.size(); ++p) {
@@ -103,6 +106,9 @@ SeamQuality measure_seams(const HalfedgeMesh& mesh, const CutGraph& cut_graph, c
       const auto z = ends(h);
       const double off = std::abs(std::arg((z[3] - z[2]) * std::conj(turn * (z[1] - z[0]))));
       out.rotation_residual = std::max(out.rotation_residual, off);
+      const double left = std::abs(z[1] - z[0]), right = std::abs(z[3] - z[2]);
+      if (inexact && !(std::max(off, std::abs(left - right) / std::min(left, right)) <= exact_seam))
+        inexact->push_back(h);
       translation += ((z[2] - turn * z[0]) + (z[3] - turn * z[1])) / (2.0 * static_cast<double>(halfedges.size()));
     }
     for (const Index h : halfedges) {
@@ -134,7 +140,10 @@ Validity check_map(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position, c
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     const bool inside = mesh.loop_of_vertex[v] == none;
     const double error = std::abs(sums[v] - ((inside ? 2 * M_PI : M_PI) - curvature[v]));
-    if (!(error < M_PI)) out.wrong_angle_sums.push_back(v);
+    if (!(error < M_PI))
+      out.wrong_angle_sums.push_back(v);
+    else if (inside && !(error <= exact_angle))
+      out.inexact_angles.push_back(v);
     if (inside && curvature[v] != 0) out.cone_angle_error = std::max(out.cone_angle_error, error);
   }
   return out;

@@ -15,8 +15,10 @@ namespace lsgp {
 Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, const std::vector<Index>& triangles);
 
 // position: (3m) u + iv at the component's corners.  rotation: (cuts) imposed, radians; none: every cut's own best.
+// inexact: where given, receives the cut halfedges whose two sides differ in length or direction by more than rounding
+// explains on edges of ordinary length.
 SeamQuality measure_seams(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const Eigen::VectorXcd& position,
-                          const Eigen::VectorXd* rotation);
+                          const Eigen::VectorXd* rotation, std::vector<Index>* inexact = nullptr);
 
 // Twice the signed UV area of a triangle.
 inline double doubled_area(const Eigen::VectorXcd& position, Index triangle) {
@@ -28,7 +30,8 @@ inline double doubled_area(const Eigen::VectorXcd& position, Index triangle) {
 // flips a sum can still be off, by whole turns, since transitions know angles only modulo 2 pi.
 struct Validity {
   std::vector<Index> flipped;           // triangles with UV area <= 0
-  std::vector<Index> wrong_angle_sums;  // vertices
+  std::vector<Index> wrong_angle_sums;  // vertices, off by a turn
+  std::vector<Index> inexact_angles;    // inside vertices off by less, but by more than 1e-6 radians
   double cone_angle_error = 0;          // radians, over inside vertices of nonzero curvature
 };
 Validity check_map(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position, const Eigen::VectorXd& curvature);

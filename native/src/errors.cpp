@@ -41,6 +41,8 @@ const char* name(Code code) {
     case Code::straightness_failed: return "STRAIGHTNESS_FAILED";
     case Code::spectral_needs_closed: return "SPECTRAL_NEEDS_CLOSED";
     case Code::high_distortion: return "HIGH_DISTORTION";
+    case Code::inexact_seams: return "INEXACT_SEAMS";
+    case Code::inexact_angles: return "INEXACT_ANGLES";
     case Code::flipped_triangles: return "FLIPPED_TRIANGLES";
     case Code::wrong_angle_sums: return "WRONG_ANGLE_SUMS";
   }

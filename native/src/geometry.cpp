@@ -10,7 +10,7 @@ namespace lsgp {
 namespace {
 
 // A triangle counts as degenerate when its height is below this share of its longest edge.
-constexpr double degenerate_height = 1e-10;
+constexpr double degenerate_height = 1e-8;
 // Mollification leaves every triangle inequality at least this margin, in mean edge lengths.
 constexpr double mollified_margin = 1e-4;
 

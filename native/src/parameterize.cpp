@@ -30,6 +30,7 @@ struct Map {
   std::vector<Pin> pins;
   double uv_area = 0;  // signed
   SeamQuality seams;
+  std::vector<Index> inexact_seams;  // halfedges
   Validity validity;
 };
 
@@ -88,9 +89,13 @@ void check(const HalfedgeMesh& mesh, const Eigen::VectorXd* rotation, Map& map) 
   const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
   map.uv_area = 0;
   for (Index f = 0; f < mesh.triangle_count(); ++f) map.uv_area += doubled_area(corners, f) / 2;
-  map.seams = measure_seams(mesh, map.cut_graph, corners, rotation);
+  map.inexact_seams.clear();
+  map.seams = measure_seams(mesh, map.cut_graph, corners, rotation, rotation ? &map.inexact_seams : nullptr);
   map.validity = check_map(mesh, corners, map.curvature.at_vertex);
-  if (!rotation) map.validity.wrong_angle_sums.clear();
+  if (!rotation) {
+    map.validity.wrong_angle_sums.clear();
+    map.validity.inexact_angles.clear();
+  }
 }
 
 std::vector<Index> inside_only(const HalfedgeMesh& mesh, const std::vector<Index>& vertices) {
@@ -102,17 +107,56 @@ std::vector<Index> inside_only(const HalfedgeMesh& mesh, const std::vector<Index
 }
 
 // Vertices a repair has to leave where they are.
-std::vector<char> fixed_vertices(const HalfedgeMesh& mesh, const Map& map, bool straight) {
+std::vector<char> fixed_vertices(const HalfedgeMesh& mesh, const Map& map, const std::vector<Index>& aligned) {
   std::vector<char> fixed(mesh.vertex_count(), 0);
   for (const Pin& pin : map.pins) fixed[map.cut_mesh.source[pin.copy]] = 1;
-  for (Index v = 0; v < mesh.vertex_count(); ++v) fixed[v] |= straight && mesh.loop_of_vertex[v] != none;
+  for (const Index h : aligned) fixed[mesh.origin(h)] = fixed[mesh.target(h)] = 1;
   return fixed;
+}
+
+// A border without corners is one straight line along its own translation, but the discrete metric knows the angle
+// between two such borders only to the mesh's resolution.  Its direction is therefore taken from the map without
+// straight borders, whose translations are consistent.
+void turn_cornerless_borders(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const std::vector<Index>& corners,
+                             const Eigen::VectorXcd& natural, const std::vector<Index>& edges,
+                             Eigen::VectorXd& directions) {
+  const std::size_t loop_count = mesh.boundary_loops.size();
+  std::vector<char> has_corner(loop_count, 0);
+  for (const Index v : corners) {
+    if (mesh.loop_of_vertex[v] != none) has_corner[mesh.loop_of_vertex[v]] = 1;
+  }
+  std::vector<Complex> along(loop_count, 0.0);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const Complex edge = natural[cut_mesh.copy_of_corner[next(edges[i])]] - natural[cut_mesh.copy_of_corner[edges[i]]];
+    along[mesh.loop_of_vertex[mesh.origin(edges[i])]] +=
+        std::polar(1.0, -directions[static_cast<Eigen::Index>(i)]) * edge;
+  }
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const Index loop = mesh.loop_of_vertex[mesh.origin(edges[i])];
+    if (!has_corner[loop]) directions[static_cast<Eigen::Index>(i)] += std::arg(along[loop]);
+  }
+}
+
+Eigen::VectorXcd unfold_along_borders(const HalfedgeMesh& mesh, const Geometry& geometry, const Map& map,
+                                      const ComponentCones& cones, const Connection& connection,
+                                      const std::vector<Index>& edges) {
+  const Eigen::VectorXd& log_scale = map.curvature.log_scale;
+  Eigen::VectorXd directions = metric_directions(mesh, geometry, log_scale, connection.frames, edges);
+  if (cones.border == BorderMode::straight) {
+    const Eigen::VectorXcd natural =
+        PoissonSystem(mesh, geometry, map.cut_mesh, connection.reduction).unfold(log_scale, connection.frames);
+    turn_cornerless_borders(mesh, map.cut_mesh, cones.vertices, natural, edges, directions);
+  }
+  return unfold_aligned(mesh, geometry, map.cut_mesh, connection.reduction, log_scale, connection.frames, edges,
+                        directions);
 }
 
 Map solve_component(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
                     const std::vector<std::pair<Index, Complex>>& pinned_corners, const Options& options,
                     std::vector<Finding>& findings, StageSeconds& seconds) {
-  const bool straight = cones.border == BorderMode::straight && !mesh.closed();
+  // Border edges whose direction is imposed.
+  const std::vector<Index> aligned =
+      cones.border == BorderMode::straight ? straight_edges(mesh, cones.vertices) : corner_edges(mesh, cones.vertices);
   Map map;
   {
     StageTimer timer(seconds, "prescribe");
@@ -134,9 +178,8 @@ Map solve_component(const HalfedgeMesh& mesh, const Geometry& geometry, const Co
   const bool spectral = usable_unfold(mesh, cones, options.unfold, findings) == UnfoldMethod::spectral;
   if (spectral) {
     map.position = unfold_spectral(mesh, geometry, map.cut_mesh, connection.reduction);
-  } else if (straight) {
-    map.position = unfold_straight(mesh, geometry, map.cut_mesh, connection.reduction, map.curvature.log_scale,
-                                   connection.frames, straight_edges(mesh, cones.vertices));
+  } else if (!aligned.empty()) {
+    map.position = unfold_along_borders(mesh, geometry, map, cones, connection, aligned);
   } else {
     map.position = PoissonSystem(mesh, geometry, map.cut_mesh, connection.reduction)
                        .unfold(map.curvature.log_scale, connection.frames);
@@ -150,7 +193,7 @@ Map solve_component(const HalfedgeMesh& mesh, const Geometry& geometry, const Co
   check(mesh, &connection.rotation, map);
   if (!map.validity.flipped.empty() && !spectral) {
     map.position = untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, target,
-                            fixed_vertices(mesh, map, straight), map.position);
+                            fixed_vertices(mesh, map, aligned), map.position);
     check(mesh, &connection.rotation, map);
   }
   return map;
@@ -184,6 +227,11 @@ class Assembly {
       result_.wrong_angle_sums.push_back(component.source_vertex[v]);
     }
     result_.cone_angle_error = std::max(result_.cone_angle_error, map.validity.cone_angle_error);
+    for (const Index v : map.validity.inexact_angles) inexact_angles_.push_back(component.source_vertex[v]);
+    for (const Index h : map.inexact_seams) {
+      inexact_seams_.push_back(component.source_vertex[component.mesh.origin(h)]);
+      inexact_seams_.push_back(component.source_vertex[component.mesh.target(h)]);
+    }
     add_islands(component, geometry, map);
   }
 
@@ -270,6 +318,23 @@ class Assembly {
     std::vector<Index>& wrong = result_.wrong_angle_sums;
     std::sort(flipped.begin(), flipped.end());
     std::sort(wrong.begin(), wrong.end());
+    if (!inexact_seams_.empty()) {
+      result_.warnings.push_back(
+          {Code::inexact_seams,
+           concat(
+               "At ", count(inexact_seams_.size() / 2, "cut edge", "cut edges"),
+               " the two sides agree to fewer than nine digits, because the layout shrinks too much there. Add cones "
+               "nearby."),
+           {ElementKind::edges, inexact_seams_}});
+    }
+    // Where triangles are flipped, angles are off for that reason alone.
+    if (!inexact_angles_.empty() && flipped.empty()) {
+      std::sort(inexact_angles_.begin(), inexact_angles_.end());
+      result_.warnings.push_back({Code::inexact_angles,
+                                  concat("The angles around ", count(inexact_angles_.size(), "vertex", "vertices"),
+                                         " miss what was imposed by more than a millionth. Add cones nearby."),
+                                  {ElementKind::vertices, inexact_angles_}});
+    }
     if (!flipped.empty()) {
       result_.warnings.push_back({Code::flipped_triangles,
                                   concat(count(flipped.size(), "triangle is", "triangles are"),
@@ -287,8 +352,9 @@ class Assembly {
   const Surface& surface_;
   const std::vector<Component>& components_;
   Result& result_;
-  std::vector<double> cone_angle_;  // by the caller's vertex, NaN where none was imposed
-  std::vector<Index> cut_edges_;
+  std::vector<double> cone_angle_;                // by the caller's vertex, NaN where none was imposed
+  std::vector<Index> cut_edges_, inexact_seams_;  // vertex pairs
+  std::vector<Index> inexact_angles_;
   std::vector<Island> islands_;                               // those to be arranged
   std::vector<std::vector<Index>> corners_;                   // the caller's, of each of them
   std::vector<std::pair<Index, Eigen::RowVector2d>> pinned_;  // corners that are in their place

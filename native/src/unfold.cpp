@@ -98,9 +98,21 @@ Eigen::VectorXcd PoissonSystem::unfold(const Eigen::VectorXd& log_scale, const E
                 factor_.solve(gather(reduction_, pull_of_frames(mesh_, geometry_, cut_mesh_, log_scale, frames))));
 }
 
-Eigen::VectorXcd unfold_straight(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                                 const Reduction& reduction, const Eigen::VectorXd& log_scale,
-                                 const Eigen::VectorXd& frames, const std::vector<Index>& edges) {
+Eigen::VectorXd metric_directions(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& log_scale,
+                                  const Eigen::VectorXd& frames, const std::vector<Index>& edges) {
+  Eigen::VectorXd out(edges.size());
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const Index h = edges[i];
+    const double bend = geometry.half_cotangent[h] * (log_scale[mesh.target(h)] - log_scale[mesh.origin(h)]);
+    out[static_cast<Eigen::Index>(i)] = frames[h / 3] + edge_direction(geometry, h) - bend;
+  }
+  return out;
+}
+
+Eigen::VectorXcd unfold_aligned(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+                                const Reduction& reduction, const Eigen::VectorXd& log_scale,
+                                const Eigen::VectorXd& frames, const std::vector<Index>& edges,
+                                const Eigen::VectorXd& directions) {
   const Eigen::SparseMatrix<Complex> form = assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction);
   const Eigen::VectorXcd pull = gather(reduction, pull_of_frames(mesh, geometry, cut_mesh, log_scale, frames));
   // Unknown k becomes its real part, 2k, and its imaginary part, 2k + 1.
@@ -119,13 +131,12 @@ Eigen::VectorXcd unfold_straight(const HalfedgeMesh& mesh, const Geometry& geome
   Eigen::VectorXd right(size);
   for (Index k = 0; k < reduction.unknown_count; ++k) right.segment<2>(2 * k) << pull[k].real(), pull[k].imag();
 
-  // Im(e^{-i psi} (z_to - z_from)) = 0, psi the direction the metric gives the edge.
+  // Im(e^{-i psi} (z_to - z_from)) = 0, psi the direction of the edge.
   Eigen::SparseMatrix<double, Eigen::RowMajor> rows(static_cast<Eigen::Index>(edges.size()), size);
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const Index h = edges[i];
-    const double bend = geometry.half_cotangent[h] * (log_scale[mesh.target(h)] - log_scale[mesh.origin(h)]);
-    const Complex across = std::polar(1.0, -(frames[h / 3] + edge_direction(geometry, h) - bend));
+    const Complex across = std::polar(1.0, -directions[static_cast<Eigen::Index>(i)]);
     const auto add = [&](Index corner, Complex factor) {
       reduction.for_each_term(cut_mesh.copy_of_corner[corner], [&](const Term& term) {
         const Complex coefficient = factor * term.coefficient;

@@ -40,11 +40,16 @@ class PoissonSystem {
   Cholesky<Complex> factor_;
 };
 
-// The same fit with border edges exactly straight: along each of `edges` the map's direction is that of the frames.
-// A real problem of twice the size.
-Eigen::VectorXcd unfold_straight(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                                 const Reduction& reduction, const Eigen::VectorXd& log_scale,
-                                 const Eigen::VectorXd& frames, const std::vector<Index>& edges);
+// The direction the metric gives to border edges (halfedges with the surface on their left), radians.
+Eigen::VectorXd metric_directions(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& log_scale,
+                                  const Eigen::VectorXd& frames, const std::vector<Index>& edges);
+
+// The same fit with border edges exactly aligned: each of `edges` has the direction given, radians.  A real problem of
+// twice the size.
+Eigen::VectorXcd unfold_aligned(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+                                const Reduction& reduction, const Eigen::VectorXd& log_scale,
+                                const Eigen::VectorXd& frames, const std::vector<Index>& edges,
+                                const Eigen::VectorXd& directions);
 
 // The map of least conformal energy at a given Dirichlet energy (Mullen et al. 2008, with a norm that transitions
 // leave invariant).

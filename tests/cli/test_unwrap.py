@@ -285,6 +285,78 @@ def test_cuts_are_drawn_to_seam_edges(lsgp, cube_files: Path) -> None:
     assert wanted <= cut_edges(cube_files / "drawn.obj")
 
 
+def _seam_sides(path: Path, seam: set[tuple[int, int]]) -> np.ndarray:
+    """(s, 2) lengths of the two sides of every seam edge in the texture."""
+    mesh = read_mesh(path, with_uv=True)
+    sides: dict[tuple[int, int], list[float]] = {}
+    for start, face in zip(mesh.starts.tolist(), faces_of(mesh), strict=True):
+        for i, a in enumerate(face):
+            j = (i + 1) % len(face)
+            edge = (min(a, face[j]), max(a, face[j]))
+            length = np.linalg.norm(mesh.corner_uv[start + i] - mesh.corner_uv[start + j])
+            sides.setdefault(edge, []).append(float(length))
+    return np.array([sides[edge] for edge in sorted(seam)])
+
+
+def test_seams_are_followed_are_borders_or_are_ignored(lsgp, ball_files: Path) -> None:
+    positions, faces = cube(6)  # the same numbering as the ball
+    on_ring = positions[:, 2] == 0
+    edges = {(min(a, b), max(a, b)) for face in faces for a, b in pairwise([*face, face[0]])}
+    ring = {edge for edge in edges if on_ring[list(edge)].all()}
+    assert len(ring) == 24
+    (ball_files / "ring.json").write_text(json.dumps(sorted(ring)))
+    options = ("unwrap", "ball.obj", "--cones", "cones.json")
+    for mode in ("follow", "boundary", "ignore"):
+        done = lsgp(*options, "-o", f"{mode}.obj", "--seam-edges", "ring.json", "--seams", mode)
+        assert done.code == 0
+        assert f"{1 if mode == 'ignore' else 2} island" in done.out
+    assert lsgp(*options, "-o", "default.obj", "--seam-edges", "ring.json").code == 0
+    assert lsgp(*options, "-o", "none.obj").code == 0
+    content = {name: (ball_files / f"{name}.obj").read_bytes() for name in ("follow", "ignore", "default", "none")}
+    assert content["default"] == content["follow"] != content["none"]
+    assert content["ignore"] == content["none"]
+    for mode in ("follow", "boundary"):
+        assert ring <= cut_edges(ball_files / f"{mode}.obj")
+    followed, borders = (_seam_sides(ball_files / f"{mode}.obj", ring) for mode in ("follow", "boundary"))
+    assert np.abs(followed[:, 0] / followed[:, 1] - 1).max() < 1e-9
+    assert np.abs(borders[:, 0] / borders[:, 1] - 1).max() > 1e-3
+
+
+def test_automatic_cones_know_what_seams_mean(lsgp, ball_files: Path) -> None:
+    positions, faces = cube(6)
+    edges = {(min(a, b), max(a, b)) for face in faces for a, b in pairwise([*face, face[0]])}
+    ring = sorted(edge for edge in edges if not positions[list(edge), 2].any())
+    (ball_files / "ring.json").write_text(json.dumps(ring))
+    placed = {}
+    for mode in ("boundary", "ignore"):
+        done = lsgp(
+            *("unwrap", "ball.obj", "-o", "out.obj", "--cones", "auto:3", "--report", "r.json"),
+            *("--seam-edges", "ring.json", "--seams", mode),
+        )
+        assert done.code == 0
+        placed[mode] = done.report("r.json")["cones"]
+    # Three on the whole, or three on each half.
+    assert {mode: len(cones) for mode, cones in placed.items()} == {"boundary": 6, "ignore": 3}
+
+
+def test_straight_border_runs_straight_from_cone_to_cone(lsgp, tmp_path: Path) -> None:
+    positions, faces = patch()
+    (tmp_path / "in.obj").write_text(obj_text(positions, faces))
+    corners = np.flatnonzero((np.isin(positions[:, :2], [0, 4])).all(axis=1)).tolist()
+    (tmp_path / "corners.json").write_text(json.dumps({"cones": corners, "cone_angles": [math.pi / 2] * 4}))
+    bend = {}
+    for border in ("straight", "free"):
+        done = lsgp("unwrap", "in.obj", "-o", f"{border}.obj", "--cones", "corners.json", "--border", border)
+        assert done.code == 0
+        mesh = read_mesh(tmp_path / f"{border}.obj", with_uv=True)
+        place = dict(zip(mesh.corners.tolist(), mesh.corner_uv, strict=True))
+        sides = [[v for v in place if positions[v, axis] == end] for axis in (0, 1) for end in (0, 4)]
+        singular = [np.linalg.svd(np.array([place[v] for v in side]) - place[side[0]])[1] for side in sides]
+        bend[border] = max(values[1] / values[0] for values in singular)
+    assert bend["straight"] < 1e-9
+    assert bend["free"] > 1e-3
+
+
 # --- files of the shared folder -------------------------------------------------------------------------------------
 
 

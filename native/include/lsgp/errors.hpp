@@ -61,6 +61,8 @@ enum class Code {
   straightness_failed,
   spectral_needs_closed,
   high_distortion,
+  inexact_seams,
+  inexact_angles,
   flipped_triangles,
   wrong_angle_sums,
 };

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where finished islands lie: put back to where they were, and fitted to images that are not square.
+
+Whole islands only are moved, each by one similarity, so that both sides of every cut stay related as they are.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .api import FloatArray, IndexArray
+from .errors import InputError
+
+# Texture coordinates come in single precision; an island below this share of its distance to the origin is a point.
+_POINT = 1e-6
+# Of the sizes; below this, no turn is better than another.
+_NO_TURN = 1e-9
+
+
+def fit_placement(corner_uv: FloatArray, old_uv: FloatArray, island: IndexArray) -> FloatArray:
+    """Move every island to where the same corners were, by one turn, one uniform scale and one shift each.
+
+    corner_uv: (m, 3, 2) float64, the new coordinates. old_uv: (m, 3, 2), the old ones. island: (m,), -1 for none.
+    Turn and place are those that fit best in least squares over the island's corners, never a mirror image. The scale
+    keeps the root mean square distance of the corners from their middle: the least-squares scale would shrink an
+    island with every change of its shape.
+    Triangles without an island stay, and so do islands whose old coordinates are not finite or lie on one point.
+    Returns a new array; raises InputError on shapes that do not belong together.
+    """
+    corner_uv, old_uv, island = np.asarray(corner_uv, np.float64), np.asarray(old_uv, np.float64), np.asarray(island)
+    shape = (len(island), 3, 2)
+    if corner_uv.shape != shape or old_uv.shape != shape:
+        raise InputError(
+            "WRONG_SHAPE", f"corner_uv has shape {corner_uv.shape}, old_uv {old_uv.shape}; pass {shape} for both."
+        )
+    out = corner_uv.copy()
+    count = int(island.max(initial=-1)) + 1
+    finite = np.isfinite(old_uv).all(axis=(1, 2)) & np.isfinite(corner_uv).all(axis=(1, 2))
+    broken = np.zeros(count, bool)
+    broken[island[(island >= 0) & ~finite]] = True
+    taken = np.flatnonzero((island >= 0) & ~np.append(broken, True)[island])
+    of_corner = np.repeat(island[taken], 3)
+    new, old = _as_complex(corner_uv[taken]), _as_complex(old_uv[taken])
+
+    corners = np.maximum(np.bincount(of_corner, minlength=count), 1)
+    new_middle, old_middle = _sums(of_corner, new, count) / corners, _sums(of_corner, old, count) / corners
+    new, old = new - new_middle[of_corner], old - old_middle[of_corner]
+    new_size = np.sqrt(_sums(of_corner, abs(new) ** 2, count).real / corners)
+    old_size = np.sqrt(_sums(of_corner, abs(old) ** 2, count).real / corners)
+    along = _sums(of_corner, new.conj() * old, count) / corners
+
+    movable = (old_size > _POINT * abs(old_middle)) & (new_size > 0)
+    sizes = np.where(movable, new_size * old_size, 1.0)
+    turned = abs(along) > _NO_TURN * sizes
+    turn = np.where(turned, along, 1.0) / np.where(turned, abs(along), 1.0)
+    factor = np.where(movable, turn * old_size / np.where(movable, new_size, 1.0), 1.0)
+    target = np.where(movable, old_middle, new_middle)
+    moved = factor[of_corner] * new + target[of_corner]
+    out[taken] = np.where(movable[of_corner, None], _as_pairs(moved), corner_uv[taken].reshape(-1, 2)).reshape(-1, 3, 2)
+    return out
+
+
+def correct_aspect(corner_uv: ArrayLike, aspect: float) -> FloatArray:
+    """Squeeze coordinates so that they are undistorted on an image of this aspect.
+
+    corner_uv: (..., 2). aspect: width of the image over its height, above 0. What lay in the unit square stays in it.
+    Raises InputError on another aspect.
+    """
+    if not (math.isfinite(aspect) and aspect > 0):
+        raise InputError("WRONG_PARAMETER", f"aspect is {aspect}; pass width over height of the image, above 0.")
+    return np.asarray(corner_uv, np.float64) * np.array([1 / max(aspect, 1.0), min(aspect, 1.0)])
+
+
+def _as_complex(corner_uv: FloatArray) -> np.ndarray:
+    flat = corner_uv.reshape(-1, 2)
+    return flat[:, 0] + 1j * flat[:, 1]
+
+
+def _as_pairs(values: np.ndarray) -> FloatArray:
+    return np.stack([values.real, values.imag], axis=-1)
+
+
+def _sums(of_corner: IndexArray, values: np.ndarray, count: int) -> np.ndarray:
+    """Sum of complex values for each island."""
+    values = np.asarray(values, np.complex128)
+    real = np.bincount(of_corner, values.real, minlength=count)
+    return real + 1j * np.bincount(of_corner, values.imag, minlength=count)
