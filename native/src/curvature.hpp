@@ -72,6 +72,7 @@ struct ComponentCones {
 // What a component's map has to realise.
 struct Curvature {
   Eigen::VectorXd at_vertex;  // (n) imposed: cones theirs, 0 inside, what comes out on a free border
+  std::vector<char> is_free;  // (n) border vertices whose angle comes out only about as said here
   Eigen::VectorXd log_scale;  // (n) area-weighted mean 0
   double predicted_l2 = 1;
   // (loops) holes about which the metric turns exactly once: they need no cut.

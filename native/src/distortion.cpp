@@ -131,7 +131,8 @@ Eigen::VectorXd angle_sums(const HalfedgeMesh& mesh, const Eigen::VectorXcd& pos
   return sums;
 }
 
-Validity check_map(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position, const Eigen::VectorXd& curvature) {
+Validity check_map(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position, const Eigen::VectorXd& curvature,
+                   const std::vector<char>& is_free) {
   Validity out;
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
     if (!(doubled_area(position, f) > 0)) out.flipped.push_back(f);
@@ -142,9 +143,9 @@ Validity check_map(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position, c
     const double error = std::abs(sums[v] - ((inside ? 2 * M_PI : M_PI) - curvature[v]));
     if (!(error < M_PI))
       out.wrong_angle_sums.push_back(v);
-    else if (inside && !(error <= exact_angle))
+    else if (!is_free[v] && !(error <= exact_angle))
       out.inexact_angles.push_back(v);
-    if (inside && curvature[v] != 0) out.cone_angle_error = std::max(out.cone_angle_error, error);
+    if (!is_free[v] && curvature[v] != 0) out.cone_angle_error = std::max(out.cone_angle_error, error);
   }
   return out;
 }

@@ -31,10 +31,12 @@ inline double doubled_area(const Eigen::VectorXcd& position, Index triangle) {
 struct Validity {
   std::vector<Index> flipped;           // triangles with UV area <= 0
   std::vector<Index> wrong_angle_sums;  // vertices, off by a turn
-  std::vector<Index> inexact_angles;    // inside vertices off by less, but by more than 1e-6 radians
-  double cone_angle_error = 0;          // radians, over inside vertices of nonzero curvature
+  std::vector<Index> inexact_angles;    // vertices off by less, but by more than 1e-6 radians
+  double cone_angle_error = 0;          // radians, over vertices of nonzero curvature
 };
-Validity check_map(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position, const Eigen::VectorXd& curvature);
+// curvature: (n) imposed.  is_free: (n) vertices that need not have it but to a turn.
+Validity check_map(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position, const Eigen::VectorXd& curvature,
+                   const std::vector<char>& is_free);
 
 // Sum of the signed UV angles at every vertex, (n).
 Eigen::VectorXd angle_sums(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position);

@@ -26,7 +26,8 @@ struct Map {
   CutGraph cut_graph;
   CutMesh cut_mesh;
   Curvature curvature;
-  Eigen::VectorXcd position;  // (copies) u + iv
+  std::optional<Eigen::VectorXd> rotation;  // (cuts) imposed, radians; none without transitions
+  Eigen::VectorXcd position;                // (copies) u + iv
   std::vector<Pin> pins;
   double uv_area = 0;  // signed
   SeamQuality seams;
@@ -79,8 +80,20 @@ Connection connect(const HalfedgeMesh& mesh, const Geometry& geometry, const Map
   return out;
 }
 
-// rotation: as imposed, none where no transitions were; angles are then free, too.
-void check(const HalfedgeMesh& mesh, const Eigen::VectorXd* rotation, Map& map) {
+void check_seams(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners, Map& map) {
+  map.inexact_seams.clear();
+  map.seams = measure_seams(mesh, map.cut_graph, corners, map.rotation ? &*map.rotation : nullptr,
+                            map.rotation ? &map.inexact_seams : nullptr);
+}
+
+void check_triangles(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners, Map& map) {
+  map.validity = check_map(mesh, corners, map.curvature.at_vertex, map.curvature.is_free);
+  if (map.rotation) return;
+  map.validity.wrong_angle_sums.clear();  // without transitions all angles are free
+  map.validity.inexact_angles.clear();
+}
+
+void check(const HalfedgeMesh& mesh, Map& map) {
   if (!map.position.allFinite()) {
     throw Error(Code::solver_failed,
                 "The unfolding returned values that are not finite. Clean the mesh (merge by distance, "
@@ -89,13 +102,8 @@ void check(const HalfedgeMesh& mesh, const Eigen::VectorXd* rotation, Map& map) 
   const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
   map.uv_area = 0;
   for (Index f = 0; f < mesh.triangle_count(); ++f) map.uv_area += doubled_area(corners, f) / 2;
-  map.inexact_seams.clear();
-  map.seams = measure_seams(mesh, map.cut_graph, corners, rotation, rotation ? &map.inexact_seams : nullptr);
-  map.validity = check_map(mesh, corners, map.curvature.at_vertex);
-  if (!rotation) {
-    map.validity.wrong_angle_sums.clear();
-    map.validity.inexact_angles.clear();
-  }
+  check_seams(mesh, corners, map);
+  check_triangles(mesh, corners, map);
 }
 
 std::vector<Index> inside_only(const HalfedgeMesh& mesh, const std::vector<Index>& vertices) {
@@ -171,10 +179,11 @@ Map solve_component(const HalfedgeMesh& mesh, const Geometry& geometry, const Co
   StageTimer timer(seconds, "unfold");
   if (options.method == Method::lscm) {
     map.position = unfold_lscm(mesh, geometry, map.cut_mesh);
-    check(mesh, nullptr, map);
+    check(mesh, map);
     return map;
   }
   const Connection connection = connect(mesh, geometry, map, map.curvature);
+  map.rotation = connection.rotation;
   const bool spectral = usable_unfold(mesh, cones, options.unfold, findings) == UnfoldMethod::spectral;
   if (spectral) {
     map.position = unfold_spectral(mesh, geometry, map.cut_mesh, connection.reduction);
@@ -190,11 +199,11 @@ Map solve_component(const HalfedgeMesh& mesh, const Geometry& geometry, const Co
     map.position = std::move(pinned.position);
     target.log_scale.array() += std::log(pinned.scale);
   }
-  check(mesh, &connection.rotation, map);
+  check(mesh, map);
   if (!map.validity.flipped.empty() && !spectral) {
     map.position = untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, target,
                             fixed_vertices(mesh, map, aligned), map.position);
-    check(mesh, &connection.rotation, map);
+    check(mesh, map);
   }
   return map;
 }
@@ -210,7 +219,7 @@ class Assembly {
     cone_angle_.assign(surface.positions.rows(), std::numeric_limits<double>::quiet_NaN());
   }
 
-  void add(std::size_t component_index, const ComponentCones& cones, const Geometry& geometry, const Map& map) {
+  void add(std::size_t component_index, const ComponentCones& cones, const Geometry& geometry, Map map) {
     const Component& component = components_[component_index];
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
       result_.log_scale[component.source_vertex[v]] = map.curvature.log_scale[v];
@@ -218,21 +227,8 @@ class Assembly {
     for (const Index v : cones.vertices) {
       cone_angle_[component.source_vertex[v]] = flat_angle(component.mesh, v) - map.curvature.at_vertex[v];
     }
-    SeamQuality& seams = result_.seams;
-    seams.sister_ratio_max = std::max(seams.sister_ratio_max, map.seams.sister_ratio_max);
-    seams.rotation_residual = std::max(seams.rotation_residual, map.seams.rotation_residual);
-    seams.translation_residual = std::max(seams.translation_residual, map.seams.translation_residual);
-    for (const Index f : map.validity.flipped) result_.flipped.push_back(component.source_triangle[f]);
-    for (const Index v : map.validity.wrong_angle_sums) {
-      result_.wrong_angle_sums.push_back(component.source_vertex[v]);
-    }
-    result_.cone_angle_error = std::max(result_.cone_angle_error, map.validity.cone_angle_error);
-    for (const Index v : map.validity.inexact_angles) inexact_angles_.push_back(component.source_vertex[v]);
-    for (const Index h : map.inexact_seams) {
-      inexact_seams_.push_back(component.source_vertex[component.mesh.origin(h)]);
-      inexact_seams_.push_back(component.source_vertex[component.mesh.target(h)]);
-    }
-    add_islands(component, geometry, map);
+    const Index islands = add_islands(component, geometry, map);
+    solved_.push_back({&component, std::move(map), islands});
   }
 
   void finish(const Cones& cones, const std::vector<std::pair<Index, Index>>& duplicates) {
@@ -248,6 +244,10 @@ class Assembly {
     for (Index f = 0; f < surface_.triangles.rows(); ++f) {
       if (result_.island[f] != none) triangles.push_back(f);
     }
+    for (Solved& solved : solved_) {
+      recheck_small(solved);
+      collect_checks(*solved.component, solved.map);
+    }
     for (const auto& [f, original] : duplicates) share_map(f, original);
     result_.distortion = measure_triangles(surface_, result_.corner_uv, triangles);
     result_.cut_edges = Eigen::Map<VertexPairs>(cut_edges_.data(), static_cast<Eigen::Index>(cut_edges_.size() / 2), 2);
@@ -260,9 +260,47 @@ class Assembly {
   }
 
  private:
+  struct Solved {
+    const Component* component;
+    Map map;
+    Index islands;
+  };
+
+  // A component much smaller than the others has fewer digits left in the common layout than when it was solved.
+  void recheck_small(Solved& solved) const {
+    constexpr double small = 1e-3;
+    const HalfedgeMesh& mesh = solved.component->mesh;
+    Eigen::VectorXcd corners(mesh.halfedge_count());
+    for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
+      const Index source = solved.component->source_corner(corner);
+      corners[corner] = {result_.corner_uv(source, 0), result_.corner_uv(source, 1)};
+    }
+    if (!((corners.array() - corners[0]).abs().maxCoeff() < small)) return;
+    if (solved.islands == 1) check_seams(mesh, corners, solved.map);
+    check_triangles(mesh, corners, solved.map);
+  }
+
+  void collect_checks(const Component& component, const Map& map) {
+    SeamQuality& seams = result_.seams;
+    seams.sister_ratio_max = std::max(seams.sister_ratio_max, map.seams.sister_ratio_max);
+    seams.rotation_residual = std::max(seams.rotation_residual, map.seams.rotation_residual);
+    seams.translation_residual = std::max(seams.translation_residual, map.seams.translation_residual);
+    for (const Index f : map.validity.flipped) result_.flipped.push_back(component.source_triangle[f]);
+    for (const Index v : map.validity.wrong_angle_sums) {
+      result_.wrong_angle_sums.push_back(component.source_vertex[v]);
+    }
+    result_.cone_angle_error = std::max(result_.cone_angle_error, map.validity.cone_angle_error);
+    for (const Index v : map.validity.inexact_angles) inexact_angles_.push_back(component.source_vertex[v]);
+    for (const Index h : map.inexact_seams) {
+      inexact_seams_.push_back(component.source_vertex[component.mesh.origin(h)]);
+      inexact_seams_.push_back(component.source_vertex[component.mesh.target(h)]);
+    }
+  }
+
   // A component is one island, or several where its cuts and seams together close off parts: those keep their size and
   // are placed one by one, related across the seam by how they were moved.
-  void add_islands(const Component& component, const Geometry& geometry, const Map& map) {
+  // Returns how many.
+  Index add_islands(const Component& component, const Geometry& geometry, const Map& map) {
     const HalfedgeMesh& mesh = component.mesh;
     std::vector<char> open(mesh.halfedge_count());
     for (Index h = 0; h < mesh.halfedge_count(); ++h) open[h] = map.cut_graph.is_cut[h] || mesh.seam[h];
@@ -283,7 +321,7 @@ class Assembly {
         pinned_.emplace_back(component.source_corner(corner),
                              Eigen::RowVector2d(corners[corner].real(), corners[corner].imag()));
       }
-      return;
+      return part_count;
     }
     const double scale = map.uv_area > 0 ? std::sqrt(geometry.total_area / map.uv_area) : 1.0;
     std::vector<std::vector<Index>> of_part(part_count);
@@ -300,6 +338,7 @@ class Assembly {
       }
       islands_.push_back(std::move(island));
     }
+    return part_count;
   }
 
   void share_map(Index triangle, Index original) {
@@ -355,6 +394,7 @@ class Assembly {
   std::vector<double> cone_angle_;                // by the caller's vertex, NaN where none was imposed
   std::vector<Index> cut_edges_, inexact_seams_;  // vertex pairs
   std::vector<Index> inexact_angles_;
+  std::vector<Solved> solved_;
   std::vector<Island> islands_;                               // those to be arranged
   std::vector<std::vector<Index>> corners_;                   // the caller's, of each of them
   std::vector<std::pair<Index, Eigen::RowVector2d>> pinned_;  // corners that are in their place
@@ -411,11 +451,11 @@ Result parameterize(const Surface& surface, const Cones& cones, const Options& o
       StageTimer timer(result.stage_seconds, "geometry");
       return require_geometry(component, result.warnings);
     }();
-    const Map map = solve_component(component.mesh, geometry, task.cones, pinned_corners(component, pin_at, pins),
-                                    options, findings, result.stage_seconds);
+    Map map = solve_component(component.mesh, geometry, task.cones, pinned_corners(component, pin_at, pins), options,
+                              findings, result.stage_seconds);
     report_border_cones(component, task.border_cones, result.warnings);
     move_findings(component, findings, result.warnings);
-    assembly.add(i, task.cones, geometry, map);
+    assembly.add(i, task.cones, geometry, std::move(map));
   });
   StageTimer timer(result.stage_seconds, "layout");
   assembly.finish(cones, work.topology.duplicates);

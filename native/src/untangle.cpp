@@ -259,7 +259,7 @@ Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, co
                           const std::vector<char>& fixed, const Eigen::VectorXcd& position) {
   const Eigen::VectorXcd motion = motion_of_copies(mesh, cut_graph, cut_mesh, rotation);
   const auto check = [&](const Eigen::VectorXcd& tried) {
-    return check_map(mesh, at_corners(cut_mesh, tried), curvature.at_vertex);
+    return check_map(mesh, at_corners(cut_mesh, tried), curvature.at_vertex, curvature.is_free);
   };
   const auto defects = [](const Validity& validity) {
     return validity.flipped.size() + validity.wrong_angle_sums.size();

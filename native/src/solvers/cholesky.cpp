@@ -17,8 +17,8 @@ Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower, Definitenes
     : factor_(std::make_unique<Factor>()) {
   if (lower.rows() == 0) return;
   factor_->ldlt.compute(lower);
-  const auto pivots = factor_->ldlt.vectorD().real().array();
-  const bool usable = definiteness == Definiteness::positive ? (pivots > 0).all() : (pivots != 0).all();
+  const Eigen::VectorXd pivots = factor_->ldlt.vectorD().real();
+  const bool usable = definiteness == Definiteness::positive ? (pivots.array() > 0).all() : (pivots.array() != 0).all();
   if (factor_->ldlt.info() != Eigen::Success || !usable) {
     throw Error(
         Code::solver_failed,
@@ -48,7 +48,7 @@ typename Cholesky<Scalar>::Matrix Cholesky<Scalar>::solve(const Matrix& right_si
   if (n == 0) return solution;
   const auto& ldlt = factor_->ldlt;
   const Eigen::SparseMatrix<Scalar>& lower = ldlt.matrixL().nestedExpression();
-  const auto& diagonal = ldlt.vectorD();
+  const Vector diagonal = ldlt.vectorD();
   const auto& permutation = ldlt.permutationP().indices();
   const int* outer = lower.outerIndexPtr();
   const int* inner = lower.innerIndexPtr();
