@@ -33,6 +33,8 @@ struct Validity {
   std::vector<Index> wrong_angle_sums;  // vertices, off by a turn
   std::vector<Index> inexact_angles;    // vertices off by less, but by more than 1e-6 radians
   double cone_angle_error = 0;          // radians, over vertices of nonzero curvature
+
+  std::size_t defects() const { return flipped.size() + wrong_angle_sums.size(); }
 };
 // curvature: (n) imposed.  is_free: (n) vertices that need not have it but to a turn.
 Validity check_map(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position, const Eigen::VectorXd& curvature,

@@ -18,21 +18,23 @@ namespace lsgp {
 namespace {
 
 constexpr std::array<int, 3> neighbourhoods{2, 5, 10};  // rings of vertices around flipped triangles
+constexpr double hopeless_share = 0.02;                 // of the triangles flipped: not a place is tangled but the map
 constexpr int most_newton_steps = 60;
 constexpr int barrier_steps = 3;
 constexpr double smallest_epsilon = 1e-3;
 constexpr double ridge = 1e-9;         // of the mean diagonal
 constexpr double barrier_share = 0.9;  // of the step at which the first triangle would collapse
 
-// The vertices a repair may move, and the triangles that move with them.
-struct Region {
+// What a repair may move: displacements of all copies as functions of a few unknowns, and the triangles that move.
+struct Freedom {
+  Reduction displacement;
   std::vector<Index> triangles;
-  std::vector<Index> unknown_of_vertex;  // (n) none where fixed
-  Index unknown_count = 0;
 };
 
-Region grow_region(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const std::vector<char>& fixed,
-                   const std::vector<Index>& flipped, int rings) {
+// The vertices within some rings of flipped triangles; nodes and translations stay.
+Freedom around(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh,
+               const Eigen::VectorXcd& motion, const std::vector<char>& fixed, const std::vector<Index>& flipped,
+               int rings) {
   std::vector<char> inside(mesh.vertex_count(), 0);
   std::vector<Index> front;
   const auto reach = [&](Index v, std::vector<Index>& reached) {
@@ -55,40 +57,47 @@ Region grow_region(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const st
   }
   for (const Cut& cut : cut_graph.cuts) inside[cut.tail] = inside[cut.head] = 0;
 
-  Region region;
-  region.unknown_of_vertex.assign(mesh.vertex_count(), none);
+  Freedom out;
+  std::vector<Index> unknown(mesh.vertex_count(), none);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    inside[v] = inside[v] && !fixed[v];
-    if (inside[v]) region.unknown_of_vertex[v] = region.unknown_count++;
+    if (inside[v] && !fixed[v]) unknown[v] = out.displacement.unknown_count++;
+  }
+  out.displacement.begin.assign(1, 0);
+  for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
+    const Index of_vertex = unknown[cut_mesh.source[copy]];
+    if (of_vertex != none) out.displacement.terms.push_back({of_vertex, motion[copy]});
+    out.displacement.begin.push_back(static_cast<Index>(out.displacement.terms.size()));
   }
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
-    const bool moves = inside[mesh.triangles(f, 0)] || inside[mesh.triangles(f, 1)] || inside[mesh.triangles(f, 2)];
-    if (moves) region.triangles.push_back(f);
+    const auto moves = [&](int c) { return unknown[mesh.triangles(f, c)] != none; };
+    if (moves(0) || moves(1) || moves(2)) out.triangles.push_back(f);
   }
-  return region;
+  return out;
 }
 
-class LocalRepair {
+class Repair {
  public:
-  LocalRepair(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-              const Eigen::VectorXcd& motion, const Eigen::VectorXd& log_scale, Region region,
-              Eigen::VectorXcd& position)
-      : cut_mesh_(cut_mesh), motion_(motion), region_(std::move(region)), position_(position) {
-    shapes_.reserve(region_.triangles.size());
-    for (const Index f : region_.triangles) {
+  Repair(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh, const Eigen::VectorXd& log_scale,
+         Freedom freedom, Eigen::VectorXcd& position)
+      : displacement_(std::move(freedom.displacement)), position_(position) {
+    shapes_.reserve(freedom.triangles.size());
+    for (const Index f : freedom.triangles) {
       const double scale = std::exp(
           (log_scale[mesh.triangles(f, 0)] + log_scale[mesh.triangles(f, 1)] + log_scale[mesh.triangles(f, 2)]) / 3);
       Shape shape;
       shape.weight = geometry.area[f] * scale * scale;
+      shape.begin = static_cast<Index>(slopes_.size());
       for (int c = 0; c < 3; ++c) {
         // f_z = sum g_j z_j and f_zbar = sum h_j z_j with g = -i conj(e) / (4 A), h = i e / (4 A), e opposite corner j.
         const Complex edge = edge_vector(geometry, next(3 * f + c)) / (4 * geometry.area[f] * scale);
         shape.g[c] = Complex(0, -1) * std::conj(edge);
         shape.h[c] = Complex(0, 1) * edge;
-        const Index copy = cut_mesh.copy_of_corner[3 * f + c];
-        shape.copy[c] = copy;
-        shape.unknown[c] = region_.unknown_of_vertex[cut_mesh.source[copy]];
+        shape.copy[c] = cut_mesh.copy_of_corner[3 * f + c];
+        displacement_.for_each_term(shape.copy[c], [&](const Term& term) {
+          add_slope(shape.begin, {term.unknown, shape.g[c] * term.coefficient, shape.h[c] * term.coefficient});
+        });
       }
+      shape.end = static_cast<Index>(slopes_.size());
       shapes_.push_back(shape);
     }
   }
@@ -126,9 +135,26 @@ class LocalRepair {
  private:
   struct Shape {
     Complex g[3], h[3];
-    Index copy[3], unknown[3];
+    Index copy[3];
+    Index begin, end;  // of its slopes
     double weight;
   };
+
+  // How f_z and f_zbar of a triangle change with one unknown.
+  struct Slope {
+    Index unknown;
+    Complex f_z, f_zbar;
+  };
+
+  void add_slope(Index begin, const Slope& slope) {
+    for (std::size_t i = begin; i < slopes_.size(); ++i) {
+      if (slopes_[i].unknown != slope.unknown) continue;
+      slopes_[i].f_z += slope.f_z;
+      slopes_[i].f_zbar += slope.f_zbar;
+      return;
+    }
+    slopes_.push_back(slope);
+  }
 
   struct Jacobian {
     Complex f_z, f_zbar;
@@ -146,11 +172,9 @@ class LocalRepair {
 
   Jacobian change(const Shape& shape, const Eigen::VectorXcd& direction) const {
     Jacobian out{0, 0};
-    for (int c = 0; c < 3; ++c) {
-      if (shape.unknown[c] == none) continue;
-      const Complex moved = motion_[shape.copy[c]] * direction[shape.unknown[c]];
-      out.f_z += shape.g[c] * moved;
-      out.f_zbar += shape.h[c] * moved;
+    for (Index i = shape.begin; i < shape.end; ++i) {
+      out.f_z += slopes_[i].f_z * direction[slopes_[i].unknown];
+      out.f_zbar += slopes_[i].f_zbar * direction[slopes_[i].unknown];
     }
     return out;
   }
@@ -174,56 +198,57 @@ class LocalRepair {
 
   template <typename Terms>
   Eigen::VectorXcd newton_direction(const Terms& terms_at) const {
-    const int size = 2 * region_.unknown_count;
+    const Index count = displacement_.unknown_count;
+    const int size = 2 * count;
     LowerAssembly<double> assembly(size, 25 * shapes_.size());
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(size);
     double trace = 0;
+    std::vector<Eigen::Matrix<double, 4, 2>> maps;
     for (const Shape& shape : shapes_) {
       const Jacobian at = jacobian(shape);
       const EnergyExpansion expansion = expand_energy(at.f_z, at.f_zbar, terms_at(at.determinant()));
-      // Real form of (f_z, f_zbar) as functions of the corners' unknowns.
-      Eigen::Matrix<double, 4, 6> map = Eigen::Matrix<double, 4, 6>::Zero();
-      for (int c = 0; c < 3; ++c) {
-        if (shape.unknown[c] == none) continue;
-        const Complex g = shape.g[c] * motion_[shape.copy[c]], h = shape.h[c] * motion_[shape.copy[c]];
-        map.block<4, 2>(0, 2 * c) << g.real(), -g.imag(), g.imag(), g.real(), h.real(), -h.imag(), h.imag(), h.real();
+      // Real form of (f_z, f_zbar) as functions of each unknown.
+      maps.clear();
+      for (Index i = shape.begin; i < shape.end; ++i) {
+        const Complex a = slopes_[i].f_z, b = slopes_[i].f_zbar;
+        maps.emplace_back();
+        maps.back() << a.real(), -a.imag(), a.imag(), a.real(), b.real(), -b.imag(), b.imag(), b.real();
       }
-      const Eigen::Matrix<double, 6, 1> slope = shape.weight * map.transpose() * expansion.gradient;
-      const Eigen::Matrix<double, 6, 6> bend = shape.weight * map.transpose() * expansion.hessian * map;
-      for (int i = 0; i < 6; ++i) {
-        if (shape.unknown[i / 2] == none) continue;
-        const int row = 2 * shape.unknown[i / 2] + i % 2;
-        gradient[row] += slope[i];
-        trace += bend(i, i);
-        for (int j = 0; j <= i; ++j) {
-          if (shape.unknown[j / 2] != none) assembly.add(row, 2 * shape.unknown[j / 2] + j % 2, bend(i, j));
+      for (std::size_t i = 0; i < maps.size(); ++i) {
+        const int row = 2 * slopes_[shape.begin + i].unknown;
+        gradient.segment<2>(row) += shape.weight * maps[i].transpose() * expansion.gradient;
+        const Eigen::Matrix<double, 2, 4> left = shape.weight * maps[i].transpose() * expansion.hessian;
+        for (std::size_t j = 0; j <= i; ++j) {
+          const int column = 2 * slopes_[shape.begin + j].unknown;
+          const Eigen::Matrix2d bend = left * maps[j];
+          if (i == j) {
+            trace += bend.trace();
+            assembly.add(row, row, bend(0, 0));
+            assembly.add(row + 1, row, bend(1, 0));
+            assembly.add(row + 1, row + 1, bend(1, 1));
+          } else {
+            for (int k = 0; k < 4; ++k) assembly.add(row + k / 2, column + k % 2, bend(k / 2, k % 2));
+          }
         }
       }
     }
     for (int i = 0; i < size; ++i) assembly.add(i, i, ridge * trace / size);
     const Eigen::VectorXd step = Cholesky<double>(assembly.build()).solve(Eigen::VectorXd(-gradient));
-    Eigen::VectorXcd out(region_.unknown_count);
-    for (Index i = 0; i < region_.unknown_count; ++i) out[i] = {step[2 * i], step[2 * i + 1]};
+    Eigen::VectorXcd out(count);
+    for (Index i = 0; i < count; ++i) out[i] = {step[2 * i], step[2 * i + 1]};
     return out;
-  }
-
-  void move(const Eigen::VectorXcd& direction, double length) {
-    for (Index copy = 0; copy < cut_mesh_.copy_count(); ++copy) {
-      const Index unknown = region_.unknown_of_vertex[cut_mesh_.source[copy]];
-      if (unknown != none) position_[copy] += length * motion_[copy] * direction[unknown];
-    }
   }
 
   // Halves the step until the energy falls; leaves the positions as they were where it never does.
   template <typename Terms>
   bool search(const Terms& terms, const Eigen::VectorXcd& direction, double longest, double before, double& after) {
-    const Eigen::VectorXcd start = position_;
+    const Eigen::VectorXcd start = position_, displaced = expand(displacement_, direction);
     for (double length = longest; length > 1e-8; length /= 2) {
-      move(direction, length);
+      position_ = start + length * displaced;
       after = energy(terms);
       if (after < before) return true;
-      position_ = start;
     }
+    position_ = start;
     after = before;
     return false;
   }
@@ -245,11 +270,10 @@ class LocalRepair {
     return shortest;
   }
 
-  const CutMesh& cut_mesh_;
-  const Eigen::VectorXcd& motion_;
-  const Region region_;
+  const Reduction displacement_;
   Eigen::VectorXcd& position_;
   std::vector<Shape> shapes_;
+  std::vector<Slope> slopes_;
 };
 
 }  // namespace
@@ -261,24 +285,22 @@ Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, co
   const auto check = [&](const Eigen::VectorXcd& tried) {
     return check_map(mesh, at_corners(cut_mesh, tried), curvature.at_vertex, curvature.is_free);
   };
-  const auto defects = [](const Validity& validity) {
-    return validity.flipped.size() + validity.wrong_angle_sums.size();
-  };
   const Validity initial = check(position);
   Eigen::VectorXcd best = position;
-  std::size_t fewest = defects(initial);
+  std::size_t fewest = initial.defects();
+  const bool hopeless = static_cast<double>(initial.flipped.size()) > hopeless_share * mesh.triangle_count();
   for (const int rings : neighbourhoods) {
-    Region region = grow_region(mesh, cut_graph, fixed, initial.flipped, rings);
-    if (region.unknown_count == 0) continue;
+    if (fewest == 0 || hopeless) break;
+    Freedom freedom = around(mesh, cut_graph, cut_mesh, motion, fixed, initial.flipped, rings);
+    if (freedom.displacement.unknown_count == 0) continue;
     Eigen::VectorXcd tried = position;
-    LocalRepair repair(mesh, geometry, cut_mesh, motion, curvature.log_scale, std::move(region), tried);
+    Repair repair(mesh, geometry, cut_mesh, curvature.log_scale, std::move(freedom), tried);
     if (repair.unfold()) repair.smooth();
-    const std::size_t left = defects(check(tried));
+    const std::size_t left = check(tried).defects();
     if (left < fewest) {
       fewest = left;
       best = std::move(tried);
     }
-    if (fewest == 0) break;
   }
   return best;
 }
