@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from numbers import Integral, Real
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -102,6 +103,14 @@ class Options:
             if value not in get_args(choices) and not (name == "prescription" and value is None):
                 known = ", ".join(get_args(choices))
                 raise InputError("WRONG_PARAMETER", f"{name} is {value!r}; choose one of {known}.")
+        for vertex, turning in self.loop_turning.items():
+            if (
+                not isinstance(vertex, Integral)
+                or not isinstance(turning, Real)
+                or abs(vertex) > np.iinfo(np.int32).max
+            ):
+                wrong = f"{vertex!r}: {turning!r}"
+                raise InputError("WRONG_PARAMETER", f"loop_turning holds {wrong}; pass angles by vertices of borders.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,9 +268,11 @@ def place_cones(
     existing: cones to keep; they come first in the answer. None is placed on a border nor, where
     the mesh has room, within two rings of another.  Returns (k,) int32 vertex indices.
     """
-    if count is not None and count < 0:
-        raise InputError("WRONG_PARAMETER", f"count is {count}; pass a number of cones, or None for automatic.")
-    wanted = -1 if count is None else int(count)
+    wanted = -1
+    if count is not None:
+        if not isinstance(count, Integral) or not 0 <= count <= np.iinfo(np.int32).max:
+            raise InputError("WRONG_PARAMETER", f"count is {count!r}; pass a number of cones, or None for automatic.")
+        wanted = int(count)
     return _lsgp.place_cones(*_surface_arrays(surface), wanted, _index_vector(existing, "existing"), options.seams)
 
 
@@ -271,10 +282,11 @@ def measure_distortion(surface: Surface, corner_uv: ArrayLike, cones: ArrayLike 
     cones: (k,) int32, the vertices at which a cut may change its rotation; None: every vertex whose angles do not add
     up to a full turn.
     """
-    uv = np.ascontiguousarray(corner_uv, np.float64)
-    if uv.shape != (len(surface.triangles), 3, 2):
-        expected = (len(surface.triangles), 3, 2)
+    uv = np.asarray(corner_uv)
+    expected = (len(surface.triangles), 3, 2)
+    if uv.shape != expected:
         raise InputError("WRONG_SHAPE", f"corner_uv has shape {uv.shape}; pass {expected}, one (u, v) per corner.")
+    uv = _floats(uv, "corner_uv")
     out = _lsgp.measure_distortion(
         *_surface_arrays(surface), uv, None if cones is None else _index_vector(cones, "cones")
     )
@@ -298,7 +310,11 @@ def _cone_arrays(cones: ArrayLike, angles: Sequence[float | None] | None, option
         vertices,
         values,
         has_angle,
-        {**vars(options), "prescription": rule, "loop_turning": dict(options.loop_turning)},
+        {
+            **vars(options),
+            "prescription": rule,
+            "loop_turning": {int(v): float(a) for v, a in options.loop_turning.items()},
+        },
     )
 
 
@@ -308,6 +324,10 @@ def _float_rows(values: ArrayLike, width: int, name: str) -> FloatArray:
         return np.empty((0, width), np.float64)
     if array.ndim != 2 or array.shape[1] != width:
         raise InputError("WRONG_SHAPE", f"{name} has shape {array.shape}; pass (n, {width}).")
+    return _floats(array, name)
+
+
+def _floats(array: NDArray[Any], name: str) -> FloatArray:
     if array.dtype.kind not in "fiu":
         raise InputError("WRONG_DTYPE", f"{name} holds {array.dtype}; pass numbers.")
     return np.ascontiguousarray(array, np.float64)
