@@ -81,7 +81,6 @@ Connection connect(const HalfedgeMesh& mesh, const Geometry& geometry, const Map
 }
 
 void check_seams(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners, Map& map) {
-  map.inexact_seams.clear();
   map.seams = measure_seams(mesh, map.cut_graph, corners, map.rotation ? &*map.rotation : nullptr,
                             map.rotation ? &map.inexact_seams : nullptr);
 }
@@ -93,6 +92,7 @@ void check_triangles(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners, 
   map.validity.inexact_angles.clear();
 }
 
+// What decides about a repair; what is returned is checked in the layout.
 void check(const HalfedgeMesh& mesh, Map& map) {
   if (!map.position.allFinite()) {
     throw Error(Code::solver_failed,
@@ -102,7 +102,6 @@ void check(const HalfedgeMesh& mesh, Map& map) {
   const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
   map.uv_area = 0;
   for (Index f = 0; f < mesh.triangle_count(); ++f) map.uv_area += doubled_area(corners, f) / 2;
-  check_seams(mesh, corners, map);
   check_triangles(mesh, corners, map);
 }
 
@@ -245,10 +244,11 @@ class Assembly {
       if (result_.island[f] != none) triangles.push_back(f);
     }
     for (Solved& solved : solved_) {
-      recheck_small(solved);
+      check_in_layout(solved);
       collect_checks(*solved.component, solved.map);
     }
     for (const auto& [f, original] : duplicates) share_map(f, original);
+    name_unmapped(duplicates);
     result_.distortion = measure_triangles(surface_, result_.corner_uv, triangles);
     result_.cut_edges = Eigen::Map<VertexPairs>(cut_edges_.data(), static_cast<Eigen::Index>(cut_edges_.size() / 2), 2);
     for (const Index v : cones.vertices) {
@@ -266,18 +266,17 @@ class Assembly {
     Index islands;
   };
 
-  // A component much smaller than the others has fewer digits left in the common layout than when it was solved.
-  void recheck_small(Solved& solved) const {
-    constexpr double small = 1e-3;
+  // Checks the coordinates that are returned: a component much smaller than the others has lost digits to its place.
+  void check_in_layout(Solved& solved) const {
     const HalfedgeMesh& mesh = solved.component->mesh;
     Eigen::VectorXcd corners(mesh.halfedge_count());
     for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
       const Index source = solved.component->source_corner(corner);
       corners[corner] = {result_.corner_uv(source, 0), result_.corner_uv(source, 1)};
     }
-    if (!((corners.array() - corners[0]).abs().maxCoeff() < small)) return;
-    if (solved.islands == 1) check_seams(mesh, corners, solved.map);
     check_triangles(mesh, corners, solved.map);
+    // Islands of one map were moved one by one; their common cuts are checked as they were before.
+    check_seams(mesh, solved.islands == 1 ? corners : at_corners(solved.map.cut_mesh, solved.map.position), solved.map);
   }
 
   void collect_checks(const Component& component, const Map& map) {
@@ -290,7 +289,14 @@ class Assembly {
       result_.wrong_angle_sums.push_back(component.source_vertex[v]);
     }
     result_.cone_angle_error = std::max(result_.cone_angle_error, map.validity.cone_angle_error);
-    for (const Index v : map.validity.inexact_angles) inexact_angles_.push_back(component.source_vertex[v]);
+    // Beside flipped triangles angles are off for that reason alone.
+    std::vector<char> excused(component.mesh.vertex_count(), 0);
+    for (const Index f : map.validity.flipped) {
+      for (int c = 0; c < 3; ++c) excused[component.mesh.triangles(f, c)] = 1;
+    }
+    for (const Index v : map.validity.inexact_angles) {
+      if (!excused[v]) inexact_angles_.push_back(component.source_vertex[v]);
+    }
     for (const Index h : map.inexact_seams) {
       inexact_seams_.push_back(component.source_vertex[component.mesh.origin(h)]);
       inexact_seams_.push_back(component.source_vertex[component.mesh.target(h)]);
@@ -341,6 +347,19 @@ class Assembly {
     return part_count;
   }
 
+  // Triangles that lie on one of a skipped component were skipped with it.
+  void name_unmapped(const std::vector<std::pair<Index, Index>>& duplicates) {
+    for (Finding& finding : result_.warnings) {
+      if (finding.code != Code::component_skipped) continue;
+      std::vector<Index>& skipped = finding.elements.indices;
+      const std::vector<Index> originals = skipped;  // sorted, as a component lists its triangles
+      for (const auto& [f, original] : duplicates) {
+        if (std::binary_search(originals.begin(), originals.end(), original)) skipped.push_back(f);
+      }
+      std::sort(skipped.begin(), skipped.end());
+    }
+  }
+
   void share_map(Index triangle, Index original) {
     result_.island[triangle] = result_.island[original];
     for (Index corner = 3 * triangle; corner < 3 * triangle + 3; ++corner) {
@@ -366,8 +385,7 @@ class Assembly {
                "nearby."),
            {ElementKind::edges, inexact_seams_}});
     }
-    // Where triangles are flipped, angles are off for that reason alone.
-    if (!inexact_angles_.empty() && flipped.empty()) {
+    if (!inexact_angles_.empty()) {
       std::sort(inexact_angles_.begin(), inexact_angles_.end());
       result_.warnings.push_back({Code::inexact_angles,
                                   concat("The angles around ", count(inexact_angles_.size(), "vertex", "vertices"),
