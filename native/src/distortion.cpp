@@ -11,8 +11,9 @@ namespace lsgp {
 
 namespace {
 
-constexpr double exact_seam = 1e-9;   // of an edge's length, and radians
-constexpr double exact_angle = 1e-6;  // radians
+constexpr double exact_seam = 1e-9;          // of an edge's length, and radians
+constexpr double exact_translation = 1e-12;  // of the layout
+constexpr double exact_angle = 1e-6;         // radians
 
 // numpy's percentile: linear between the two nearest ranks.
 double percentile(std::vector<double>& values, double share) {
@@ -20,7 +21,7 @@ double percentile(std::vector<double>& values, double share) {
   const std::size_t below = static_cast<std::size_t>(rank);
   std::nth_element(values.begin(), values.begin() + below, values.end());
   const double low = values[below];
-  if (below + 1 == values.size()) return low;
+  if (below + 1 == values.size() || std::isinf(low)) return low;
   const double high = *std::min_element(values.begin() + below + 1, values.end());
   return low + (rank - static_cast<double>(below)) * (high - low);
 }
@@ -55,9 +56,11 @@ Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, 
     const Complex along = (z[1] - z[0]) / length, across = (z[2] - z[0] - along * x) / height;
     const double conformal = std::abs(along - Complex(0, 1) * across) / 2,
                  mirrored = std::abs(along + Complex(0, 1) * across) / 2;
-    const double largest = conformal + mirrored, smallest = std::abs(conformal - mirrored);
-    samples.push_back({doubled / 2, largest * smallest * doubled / 2, largest / smallest,
-                       (1 / (largest * largest) + 1 / (smallest * smallest)) / 2});
+    // By the area, not as a difference, which would lose the digits of thin images.
+    const double uv_doubled = std::abs(std::imag(std::conj(z[1] - z[0]) * (z[2] - z[0])));
+    const double largest = conformal + mirrored, smallest = uv_doubled / doubled / largest;
+    samples.push_back(
+        {doubled / 2, uv_doubled / 2, largest / smallest, (1 / (largest * largest) + 1 / (smallest * smallest)) / 2});
     area += samples.back().area;
     uv_area += samples.back().uv_area;
   }
@@ -82,6 +85,7 @@ Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, 
 SeamQuality measure_seams(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const Eigen::VectorXcd& position,
                           const Eigen::VectorXd* rotation, std::vector<Index>* inexact) {
   SeamQuality out;
+  if (inexact) inexact->clear();
   const double size = layout_size(position);
   for (std::size_t p = 0; p < cut_graph.cuts.size(); ++p) {
     const std::vector<Index>& halfedges = cut_graph.cuts[p].halfedges;
@@ -116,8 +120,13 @@ SeamQuality measure_seams(const HalfedgeMesh& mesh, const CutGraph& cut_graph, c
       for (const int end : {0, 1}) {
         const double off = std::abs(z[2 + end] - turn * z[end] - translation) / size;
         out.translation_residual = std::max(out.translation_residual, off);
+        if (inexact && !(off <= exact_translation)) inexact->push_back(h);
       }
     }
+  }
+  if (inexact) {
+    std::sort(inexact->begin(), inexact->end());
+    inexact->erase(std::unique(inexact->begin(), inexact->end()), inexact->end());
   }
   return out;
 }

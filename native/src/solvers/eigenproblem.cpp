@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <stdexcept>
 
 #include "lsgp/errors.hpp"
 #include "solvers/cholesky.hpp"
@@ -96,9 +97,15 @@ Eigen::VectorXcd smallest_eigenvector(const ComplexSparse& form, const ComplexSp
                                                                                                     dimension, -shift);
   Eigen::VectorXd real_start(2 * n);
   to_real(start, real_start.data());
-  solver.init(real_start.data());
-  solver.compute(Spectra::SortRule::LargestMagn, most_restarts, tolerance);
-  if (solver.info() != Spectra::CompInfo::Successful) {
+  bool converged = false;
+  try {
+    solver.init(real_start.data());
+    solver.compute(Spectra::SortRule::LargestMagn, most_restarts, tolerance);
+    converged = solver.info() == Spectra::CompInfo::Successful;
+  } catch (const std::runtime_error&) {     // Spectra's own word for a small eigenproblem that failed
+  } catch (const std::invalid_argument&) {  // or for a start vector that the norm does not see
+  }
+  if (!converged) {
     throw Error(Code::solver_failed,
                 "The spectral unfolding did not converge: several maps are about equally conformal. "
                 "Use the Poisson unfolding.");
