@@ -88,23 +88,3 @@ def selected_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     bm = bmesh.from_edit_mesh(mesh)
     bm.verts.index_update()
     return np.array([vertex.index for vertex in bm.verts if vertex.select and not vertex.hide], np.int32)
-
-
-def select_vertices(mesh: bpy.types.Mesh, vertices: Iterable[int], extend: bool) -> int:
-    """Select the visible ones of ``vertices`` in edit mode, all others not unless ``extend``.  Returns their number."""
-    bm = bmesh.from_edit_mesh(mesh)
-    bm.verts.ensure_lookup_table()
-    bm.select_mode = {"VERT"}
-    if not extend:
-        for element in (*bm.verts, *bm.edges, *bm.faces):
-            element.select = False
-    visible = [bm.verts[vertex] for vertex in vertices if not bm.verts[vertex].hide]
-    for vertex in visible:
-        vertex.select = True
-    bm.select_flush_mode()
-    bm.select_history.validate()
-    if hasattr(bm, "uv_select_sync_valid"):
-        # Blender 5.0 keeps a UV selection of its own, which no longer matches the vertices selected here.
-        bm.uv_select_sync_valid = False
-    bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
-    return len(visible)

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,7 +12,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from . import native
+from . import native, versions
 
 if TYPE_CHECKING:
     import lsgp
@@ -28,6 +30,8 @@ class Region:
     triangle_faces: (m,) int32, mesh face of each triangle.
     face_loop_start: (f,) int32 of all faces of the mesh.
     vertex_used: (n,) bool, the vertices of the region's faces.
+    corner_uv: (m, 3, 2) float64, the active UV layer as it is; NaN where the mesh has none.
+    pinned: (m, 3) bool, the corners whose UV is pinned in that layer.
     """
 
     surface: lsgp.Surface
@@ -35,6 +39,8 @@ class Region:
     triangle_faces: NDArray[np.int32]
     face_loop_start: NDArray[np.int32]
     vertex_used: NDArray[np.bool_]
+    corner_uv: NDArray[np.float64]
+    pinned: NDArray[np.bool_]
 
 
 def target_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -50,12 +56,29 @@ def target_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
     return list(one_per_mesh.values())
 
 
-def read_region(obj: bpy.types.Object) -> Region | None:
-    """The selected, visible faces of a mesh in edit mode; all faces in object mode.  None where that is no face."""
-    if obj.mode == "EDIT":
-        obj.update_from_editmode()
-    mesh = obj.data
-    in_region = _faces_in_region(mesh, only_selected=obj.mode == "EDIT")
+def selects_by_uv(context: bpy.types.Context) -> bool:
+    """True in a UV editor that has a selection of its own."""
+    space = context.space_data
+    in_uv_editor = space is not None and space.type == "IMAGE_EDITOR" and space.show_uvedit
+    return in_uv_editor and not context.tool_settings.use_uv_select_sync
+
+
+def read_region(obj: bpy.types.Object, by_uv: bool = False) -> Region | None:
+    """The selected, visible faces of a mesh in edit mode; all faces in object mode.  None where that is no face.
+
+    by_uv: of those only the faces of which all UVs are selected in the UV editor.
+    """
+    with _readable_mesh(obj) as mesh:
+        return _read_mesh(mesh, obj.mode == "EDIT", by_uv)
+
+
+def _read_mesh(mesh: bpy.types.Mesh, only_selected: bool, by_uv: bool) -> Region | None:
+    layer = mesh.uv_layers.active
+    face_sizes = _read(mesh.polygons, "loop_total", np.int32)
+    in_region = _faces_in_region(mesh, only_selected)
+    if by_uv and layer is not None:
+        unselected = ~versions.selected_loops(mesh, layer.name)
+        in_region[np.repeat(np.arange(len(face_sizes)), face_sizes)[unselected]] = False
     if not in_region.any():
         return None
 
@@ -68,20 +91,42 @@ def read_region(obj: bpy.types.Object) -> Region | None:
     vertex_used = np.zeros(len(positions), bool)
     vertex_used[triangles] = True
 
-    face_sizes = _read(mesh.polygons, "loop_total", np.int32)
     loop_edges = _read(mesh.loops, "edge_index", np.int32)
     edge_used = np.zeros(len(mesh.edges), bool)
     edge_used[loop_edges[np.repeat(in_region, face_sizes)]] = True
     edges = _read(mesh.edges, "vertices", np.int32, 2)
     seams = edges[edge_used & _read(mesh.edges, "use_seam", bool)]
 
+    triangle_loops = _read(mesh.loop_triangles, "loops", np.int32, 3)[taken]
+    if layer is None:
+        loop_uv, pinned = np.full((len(mesh.loops), 2), np.nan), np.zeros(len(mesh.loops), bool)
+    else:
+        loop_uv = _read(layer.uv, "vector", np.float32, 2).astype(np.float64)
+        pinned = versions.pinned_loops(mesh, layer.name)
+
     return Region(
         surface=native.lsgp.Surface(positions, triangles, edges=edges[edge_used], seams=seams),
-        triangle_loops=_read(mesh.loop_triangles, "loops", np.int32, 3)[taken],
+        triangle_loops=triangle_loops,
         triangle_faces=triangle_faces[taken],
         face_loop_start=_read(mesh.polygons, "loop_start", np.int32),
         vertex_used=vertex_used,
+        corner_uv=loop_uv[triangle_loops],
+        pinned=pinned[triangle_loops],
     )
+
+
+@contextmanager
+def _readable_mesh(obj: bpy.types.Object) -> Iterator[bpy.types.Mesh]:
+    """The mesh as it is now. In edit mode that is a copy, because Blender hides the attributes of an edited mesh."""
+    if obj.mode != "EDIT":
+        yield obj.data
+        return
+    obj.update_from_editmode()
+    copy = obj.data.copy()
+    try:
+        yield copy
+    finally:
+        bpy.data.meshes.remove(copy)
 
 
 def _faces_in_region(mesh: bpy.types.Mesh, only_selected: bool) -> NDArray[np.bool_]:

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import bmesh
 import bpy
 import numpy as np
@@ -13,19 +11,19 @@ from numpy.typing import NDArray
 from .identifiers import NEW_UV_LAYER
 from .mesh_read import Region
 
-if TYPE_CHECKING:
-    import lsgp
 
+def write_uv(obj: bpy.types.Object, region: Region, solved: NDArray[np.bool_], corner_uv: NDArray[np.float64]) -> None:
+    """Write the solved triangles of ``region``; all other faces keep their UVs.  A mesh without UV layer gets one.
 
-def write_uv(obj: bpy.types.Object, region: Region, result: lsgp.Result) -> None:
-    """Write the solved faces of ``region``; all other faces keep their UVs.  A mesh without UV layer gets one."""
+    solved: (m,) bool. corner_uv: (m, 3, 2).
+    """
     mesh = obj.data
     if mesh.uv_layers.active is None:
         mesh.uv_layers.new(name=NEW_UV_LAYER)
-    loops = region.triangle_loops[result.solved].ravel()
-    uv = result.corner_uv[result.solved].reshape(-1, 2).astype(np.float32)
+    loops = region.triangle_loops[solved].ravel()
+    uv = corner_uv[solved].reshape(-1, 2).astype(np.float32)
     if obj.mode == "EDIT":
-        _write_edit_mesh(mesh, np.unique(region.triangle_faces[result.solved]), region.face_loop_start, loops, uv)
+        _write_edit_mesh(mesh, np.unique(region.triangle_faces[solved]), region.face_loop_start, loops, uv)
     else:
         _write_mesh(mesh, loops, uv)
 

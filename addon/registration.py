@@ -6,11 +6,19 @@ import bpy
 from .operators.cone_mark import MESH_OT_cone_mark
 from .operators.cone_place import MESH_OT_cone_place
 from .operators.cone_select import MESH_OT_cone_select
+from .operators.cone_select_reported import MESH_OT_cone_select_reported
 from .operators.cone_unwrap import UV_OT_cone_unwrap
 from .preferences import ConeUnwrapPreferences
 from .ui import menus
 
-CLASSES = (ConeUnwrapPreferences, MESH_OT_cone_mark, MESH_OT_cone_select, MESH_OT_cone_place, UV_OT_cone_unwrap)
+CLASSES = (
+    ConeUnwrapPreferences,
+    MESH_OT_cone_mark,
+    MESH_OT_cone_select,
+    MESH_OT_cone_place,
+    MESH_OT_cone_select_reported,
+    UV_OT_cone_unwrap,
+)
 
 
 def register() -> None:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+import hashlib
 from collections.abc import Sequence
 
 import lsgp
@@ -45,6 +47,18 @@ def only(findings: Sequence[lsgp.Finding], code: str) -> lsgp.Finding:
     found = [finding for finding in findings if finding.code == code]
     assert len(found) == 1, f"expected one {code}, got {codes(findings)}"
     return found[0]
+
+
+def digest(result: lsgp.Result) -> str:
+    """Of all that a result holds but the time it took: arrays by their bytes, figures and findings by their digits."""
+    parts = []
+    for field in dataclasses.fields(result):
+        value = getattr(result, field.name)
+        if isinstance(value, np.ndarray):
+            parts.append(value.tobytes())
+        elif field.name != "stage_seconds":
+            parts.append(repr(value).encode())
+    return hashlib.sha256(b"|".join(parts)).hexdigest()
 
 
 def pairs(edges: object) -> set[tuple[int, int]]:

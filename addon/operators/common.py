@@ -8,6 +8,18 @@ from ..identifiers import CONE_GROUP
 from ..mesh_read import Region, read_region
 from ..reporting import Refused
 
+# Identifier: (value for the library, label, description).
+SEAMS = {
+    "FOLLOW": ("follow", "Follow", "Cuts run along marked seams wherever they can; both sides of a cut match"),
+    "BOUNDARY": ("boundary", "Boundary", "Every marked seam is an open border, as in Blender's own unwrap"),
+    "IGNORE": ("ignore", "Ignore", "Marked seams have no say in where the cuts run"),
+}
+
+
+def enum_items(choices: dict[str, tuple[str | None, str, str]]) -> list[tuple[str, str, str]]:
+    """Items of an enum property for choices of the library."""
+    return [(identifier, label, description) for identifier, (_, label, description) in choices.items()]
+
 
 class ConeGroupProperty:
     """Mix-in: the vertex group whose members are the cones."""
@@ -24,6 +36,14 @@ class ConeGroupProperty:
             layout.prop(self, "vertex_group")
         else:
             layout.prop_search(self, "vertex_group", context.object, "vertex_groups")
+
+
+class SeamsProperty:
+    """Mix-in: what marked seams mean."""
+
+    seams: bpy.props.EnumProperty(
+        name="Seams", description="What edges marked as seams mean for the cuts", items=enum_items(SEAMS)
+    )
 
 
 def poll_edit_mesh(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
@@ -47,11 +67,14 @@ def poll_computation(operator: type[bpy.types.Operator], context: bpy.types.Cont
     return True
 
 
-def require_region(obj: bpy.types.Object) -> Region | None:
-    """The region to work on; None where an edit-mode mesh has nothing selected.  Raises Refused."""
+def require_region(obj: bpy.types.Object, by_uv: bool = False) -> Region | None:
+    """The region to work on; None where an edit-mode mesh has nothing selected.  Raises Refused.
+
+    by_uv: as in `read_region`.
+    """
     if not obj.data.is_editable:
         raise Refused("the mesh is linked from another file and cannot be changed; make it local (Object > Relations)")
-    region = read_region(obj)
+    region = read_region(obj, by_uv)
     if region is None and obj.mode != "EDIT":
         raise Refused("the mesh has no faces; add some or select another object")
     return region

@@ -4,11 +4,11 @@
 import bpy
 import numpy as np
 
-from .. import cones, identifiers, mesh_read, native, reporting
-from .common import ConeGroupProperty, poll_computation, require_region
+from .. import cones, findings, identifiers, mesh_read, native, reporting
+from .common import SEAMS, ConeGroupProperty, SeamsProperty, poll_computation, require_region
 
 
-class MESH_OT_cone_place(ConeGroupProperty, bpy.types.Operator):
+class MESH_OT_cone_place(ConeGroupProperty, SeamsProperty, bpy.types.Operator):
     """Place Cones."""
 
     bl_idname = identifiers.PLACE
@@ -49,14 +49,18 @@ class MESH_OT_cone_place(ConeGroupProperty, bpy.types.Operator):
         row.active = not self.automatic
         row.prop(self, "count")
         layout.prop(self, "keep")
+        layout.prop(self, "seams")
         self.draw_vertex_group(layout, context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         placed: list[tuple[bpy.types.Object, np.ndarray, np.ndarray]] = []
         failures = {}
+        options = native.lsgp.Options(seams=SEAMS[self.seams][0])
+        by_uv = mesh_read.selects_by_uv(context)
         for obj in mesh_read.target_objects(context):
+            region = None
             try:
-                region = require_region(obj)
+                region = require_region(obj, by_uv)
                 if region is None:
                     continue
                 marked = cones.marked_cones(obj, self.vertex_group)
@@ -65,10 +69,13 @@ class MESH_OT_cone_place(ConeGroupProperty, bpy.types.Operator):
                     region.surface,
                     count=None if self.automatic else self.count,
                     existing=marked if self.keep else (),
+                    options=options,
                 )
                 placed.append((obj, marked, found))
+                findings.keep(obj, region, [])
             except (native.lsgp.LsgpError, reporting.Refused) as error:
                 failures[obj.name] = error
+                findings.keep(obj, region, [error])
         if not placed and not failures:
             self.report({"ERROR"}, "No face is selected; select the faces to place cones on")
             return {"CANCELLED"}

@@ -3,7 +3,7 @@
 
 import bpy
 
-from .. import cones, identifiers, mesh_read, reporting
+from .. import cones, identifiers, mesh_read, reporting, selection
 from .common import ConeGroupProperty, poll_edit_mesh
 
 
@@ -30,9 +30,11 @@ class MESH_OT_cone_select(ConeGroupProperty, bpy.types.Operator):
             )
             return {"CANCELLED"}
         # A single vertex cannot stay selected in edge or face select mode.
-        context.tool_settings.mesh_select_mode = (True, False, False)
+        selection.set_select_mode(context, selection.VERTEX_MODE, [obj.data for obj in by_object])
         total = sum(map(len, by_object.values()))
-        visible = sum(cones.select_vertices(obj.data, marked, self.extend) for obj, marked in by_object.items())
+        visible = sum(
+            selection.select_elements(obj.data, self.extend, vertices=marked) for obj, marked in by_object.items()
+        )
         hidden = f"; {total - visible} more hidden" if visible < total else ""
         self.report({"INFO"}, f"Selected {reporting.counted(visible, 'cone')}{hidden}")
         return {"FINISHED"}

@@ -18,6 +18,7 @@ def draw_cones(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
     layout.operator(identifiers.MARK, text="Clear Cone").clear = True
     layout.operator(identifiers.SELECT)
     layout.operator(identifiers.PLACE)
+    layout.operator(identifiers.SELECT_REPORTED)
 
 
 def draw_cones_for_vertices(self: bpy.types.Menu, context: bpy.types.Context) -> None:

@@ -4,8 +4,8 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <cmath>
 #include <cstring>
+#include <initializer_list>
 
 #include "lsgp/lsgp.hpp"
 
@@ -49,14 +49,6 @@ lsgp::Cones to_cones(const IndexArray& vertices, const FloatArray& angles, const
     cones.angles.push_back(has_angle.at(i) ? std::optional<double>(angles.at(i)) : std::nullopt);
   }
   return cones;
-}
-
-lsgp::PrescriptionRule to_rule(const std::string& name) {
-  if (name == "least-distortion") return lsgp::PrescriptionRule::least_distortion;
-  if (name == "harmonic") return lsgp::PrescriptionRule::harmonic;
-  if (name == "straightness") return lsgp::PrescriptionRule::straightness;
-  if (name == "manual") return lsgp::PrescriptionRule::manual;
-  throw py::value_error("unknown prescription '" + name + "'");
 }
 
 template <typename Scalar>
@@ -134,22 +126,35 @@ py::dict to_dict(const lsgp::SeamQuality& seams) {
   return out;
 }
 
+template <typename Choice>
+Choice choose(const std::string& text, std::initializer_list<std::pair<const char*, Choice>> choices) {
+  for (const auto& [name, choice] : choices) {
+    if (text == name) return choice;
+  }
+  throw py::value_error("unknown choice '" + text + "'");
+}
+
 lsgp::SeamMode to_seam_mode(const std::string& name) {
-  if (name == "follow") return lsgp::SeamMode::follow;
-  if (name == "boundary") return lsgp::SeamMode::boundary;
-  if (name == "ignore") return lsgp::SeamMode::ignore;
-  throw py::value_error("unknown seam mode '" + name + "'");
+  using lsgp::SeamMode;
+  return choose<SeamMode>(
+      name, {{"follow", SeamMode::follow}, {"boundary", SeamMode::boundary}, {"ignore", SeamMode::ignore}});
 }
 
 // A dictionary with the fields of lsgp.Options.
 lsgp::Options to_options(const py::dict& values) {
   const auto text = [&](const char* field) { return values[field].cast<std::string>(); };
   lsgp::Options options;
-  options.prescription = to_rule(text("prescription"));
-  options.unfold = text("unfold") == "spectral" ? lsgp::UnfoldMethod::spectral : lsgp::UnfoldMethod::poisson;
-  options.method = text("method") == "lscm" ? lsgp::Method::lscm : lsgp::Method::lsgp;
+  using lsgp::BorderMode, lsgp::Method, lsgp::PrescriptionRule, lsgp::UnfoldMethod;
+  options.prescription =
+      choose<PrescriptionRule>(text("prescription"), {{"least-distortion", PrescriptionRule::least_distortion},
+                                                      {"harmonic", PrescriptionRule::harmonic},
+                                                      {"straightness", PrescriptionRule::straightness},
+                                                      {"manual", PrescriptionRule::manual}});
+  options.unfold =
+      choose<UnfoldMethod>(text("unfold"), {{"poisson", UnfoldMethod::poisson}, {"spectral", UnfoldMethod::spectral}});
+  options.method = choose<Method>(text("method"), {{"lsgp", Method::lsgp}, {"lscm", Method::lscm}});
   options.seams = to_seam_mode(text("seams"));
-  options.border = text("border") == "straight" ? lsgp::BorderMode::straight : lsgp::BorderMode::free;
+  options.border = choose<BorderMode>(text("border"), {{"free", BorderMode::free}, {"straight", BorderMode::straight}});
   for (const auto& [vertex, turning] : values["loop_turning"].cast<py::dict>()) {
     options.loop_turning.emplace_back(vertex.cast<Index>(), turning.cast<double>());
   }

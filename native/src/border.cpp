@@ -24,9 +24,9 @@ std::vector<char> flags(const HalfedgeMesh& mesh, const std::vector<Index>& vert
 
 BorderConditions free_border(const HalfedgeMesh& mesh, const std::vector<Index>& corners) {
   const std::vector<char> is_corner = flags(mesh, corners);
-  BorderConditions out{std::vector<char>(mesh.vertex_count(), 0), Eigen::VectorXd::Zero(mesh.vertex_count()),
-                       mesh.closed()};
+  BorderConditions out{std::vector<char>(mesh.vertex_count(), 0), Eigen::VectorXd::Zero(mesh.vertex_count()), false};
   for (Index v = 0; v < mesh.vertex_count(); ++v) out.held[v] = mesh.loop_of_vertex[v] != none && !is_corner[v];
+  out.balanced = std::find(out.held.begin(), out.held.end(), 1) == out.held.end();
   return out;
 }
 

@@ -13,7 +13,7 @@ namespace lsgp {
 struct BorderConditions {
   std::vector<char> held;     // (n) log scale 0 there; the angle comes out as it may
   Eigen::VectorXd curvature;  // (n) imposed where not held, beside that of cones
-  // Nothing is held: all curvatures together have to satisfy Gauss-Bonnet.
+  // No vertex is held: all curvatures together have to satisfy Gauss-Bonnet.
   bool balanced = false;
 };
 

@@ -132,6 +132,10 @@ Geometry require_geometry(const Component& component, std::vector<Finding>& find
 Elements in_source(const Component& component, Elements elements) {
   const auto& source = elements.kind == ElementKind::triangles ? component.source_triangle : component.source_vertex;
   for (Index& i : elements.indices) i = source[i];
+  if (elements.kind == ElementKind::vertices) {  // fans of one vertex are several of the component's
+    std::sort(elements.indices.begin(), elements.indices.end());
+    elements.indices.erase(std::unique(elements.indices.begin(), elements.indices.end()), elements.indices.end());
+  }
   return elements;
 }
 

@@ -237,12 +237,12 @@ class LoopScales {
     const Eigen::VectorXd before = turning(log_scale);
     if (loops.size() == wanted.size()) {
       // Shifting all borders alike changes nothing: the last turning follows from the others.
-      double missing = -before.sum();
-      for (const auto& turning : wanted) missing += *turning;
-      if (!(std::abs(missing) <= renormalized_mismatch)) {
-        throw Error(Code::loop_turning,
-                    concat("The turning of all borders was prescribed, but with these cone angles it adds up to ",
-                           before.sum() / M_PI, " pi instead. Leave the turning of one border free."));
+      double sum = 0;
+      for (const auto& turning : wanted) sum += *turning;
+      if (!(std::abs(sum - before.sum()) <= renormalized_mismatch)) {
+        throw Error(Code::loop_turning, concat("The turning prescribed for all borders adds up to ", sum / M_PI,
+                                               " pi, but with these cone angles it has to be ", before.sum() / M_PI,
+                                               " pi. Leave the turning of one border free."));
       }
       loops.pop_back();
     }
@@ -278,11 +278,29 @@ class LoopScales {
   const LogScale& scale_;
 };
 
+// Borders whose scale can be shifted: those with a vertex that is no corner.
+std::vector<char> shiftable_loops(const HalfedgeMesh& mesh, const BorderConditions& border) {
+  std::vector<char> out;
+  for (const auto& loop : mesh.boundary_loops) {
+    out.push_back(std::any_of(loop.begin(), loop.end(), [&](Index v) { return border.held[v]; }));
+  }
+  return out;
+}
+
 // Prescribed turning, and holes closed without a cut.  Changes the log scale, which is 0 along held borders.
 void prescribe_turning(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
-                       const LogScale& scale, Curvature& curvature) {
+                       const BorderConditions& border, const LogScale& scale, Curvature& curvature) {
   curvature.needs_no_cut.assign(mesh.boundary_loops.size(), 0);
-  if (cones.border == BorderMode::straight || mesh.closed()) return;
+  const std::vector<char> shiftable = shiftable_loops(mesh, border);
+  for (std::size_t i = 0; i < cones.loop_turning.size(); ++i) {
+    if (!cones.loop_turning[i] || shiftable[i]) continue;
+    throw Error(
+        Code::loop_turning,
+        "The turning of a border cannot be prescribed where the border is straight or all its vertices are corners: "
+        "their angles say how it turns. Leave its turning free.",
+        {ElementKind::vertices, mesh.boundary_loops[i]});
+  }
+  if (border.balanced) return;
   const LoopScales loops(mesh, geometry, scale);
   std::vector<std::optional<double>> wanted = cones.loop_turning;
   wanted.resize(mesh.boundary_loops.size());
@@ -291,16 +309,25 @@ void prescribe_turning(const HalfedgeMesh& mesh, const Geometry& geometry, const
   std::vector<std::optional<double>> closed = wanted;
   std::size_t left_free = 0;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    if (!wanted[i] && std::abs(turning[i] + 2 * M_PI) < nearly_once) closed[i] = -2 * M_PI;
-    left_free += !closed[i];
+    const bool hole = shiftable[i] && !wanted[i] && std::abs(turning[i] + 2 * M_PI) < nearly_once;
+    if (hole) closed[i] = -2 * M_PI;
+    left_free += !closed[i] && shiftable[i];
   }
   if (left_free == 0) return;  // one border has to take up the rest
-  const auto [log_scale, shifts] = loops.adjust(curvature.log_scale, closed);
-  if (shifts.cwiseAbs().maxCoeff() > largest_hole_shift) return;
-  curvature.log_scale = log_scale;
-  for (std::size_t i = 0; i < closed.size(); ++i) {
-    curvature.needs_no_cut[i] = closed[i] && std::abs(*closed[i] + 2 * M_PI) < 1e-12;
+  // Without the holes that take too much, until those that are left can be closed.
+  while (true) {
+    const auto [log_scale, shifts] = loops.adjust(curvature.log_scale, closed);
+    bool dropped = false;
+    for (std::size_t i = 0; i < closed.size(); ++i) {
+      if (wanted[i] || !closed[i] || std::abs(shifts[static_cast<Eigen::Index>(i)]) <= largest_hole_shift) continue;
+      closed[i].reset();
+      dropped = true;
+    }
+    if (dropped) continue;
+    curvature.log_scale = log_scale;
+    break;
   }
+  for (std::size_t i = 0; i < closed.size(); ++i) curvature.needs_no_cut[i] = closed[i] && *closed[i] == -2 * M_PI;
 }
 
 }  // namespace
@@ -347,7 +374,7 @@ Curvature prescribe(const HalfedgeMesh& mesh, const Geometry& geometry, const Co
 
   Curvature out;
   out.log_scale = scale.evaluate_held(curvature);
-  prescribe_turning(mesh, geometry, asked, scale, out);
+  prescribe_turning(mesh, geometry, asked, border, scale, out);
   out.predicted_l2 = scale.predicted_l2(out.log_scale);
   out.at_vertex = border.curvature;
   for (Eigen::Index i = 0; i < curvature.size(); ++i) out.at_vertex[asked.vertices[i]] += curvature[i];

@@ -66,12 +66,13 @@ struct Forest {
   std::vector<Index> reached_by;  // (n) the halfedge that leads to the vertex, none at sources
   std::vector<Index> region;      // (n) the source
   Index region_count = 0;
+  Index required_count = 0;  // the first regions, of loops and cones, have to be joined; seam networks may be
 };
 
 Forest grow_forest(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& interior_cones,
                    const std::vector<char>& uncut) {
   const Index n = mesh.vertex_count();
-  Forest forest{std::vector<double>(n, infinity), std::vector<Index>(n, none), std::vector<Index>(n, none), 0};
+  Forest forest{std::vector<double>(n, infinity), std::vector<Index>(n, none), std::vector<Index>(n, none), 0, 0};
   using Entry = std::pair<double, Index>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   const auto add_source = [&](Index v, Index region) {
@@ -91,6 +92,7 @@ Forest grow_forest(const HalfedgeMesh& mesh, const Geometry& geometry, const std
     forest.region_count += !avoided;
   }
   for (const Index v : interior_cones) add_source(v, forest.region_count++);
+  forest.required_count = forest.region_count;
   for (const Index v : find_seam_networks(mesh)) {
     if (forest.region[v] == none && !settled[v]) add_source(v, forest.region_count++);
   }
@@ -139,7 +141,7 @@ std::vector<Bridge> sorted_bridges(const HalfedgeMesh& mesh, const Geometry& geo
   return bridges;
 }
 
-// The minimum spanning tree of the regions; throws where cuttable edges do not connect them.
+// The minimum spanning tree of the regions, as far as cuttable edges connect them.
 std::vector<Index> span_regions(const HalfedgeMesh& mesh, const Geometry& geometry, const Forest& forest) {
   const auto between_regions = [&](Index h) { return forest.region[mesh.origin(h)] != forest.region[mesh.target(h)]; };
   UnionFind regions(forest.region_count);
@@ -148,16 +150,21 @@ std::vector<Index> span_regions(const HalfedgeMesh& mesh, const Geometry& geomet
     const Index h = bridge.halfedge;
     if (regions.unite(forest.region[mesh.origin(h)], forest.region[mesh.target(h)])) tree.push_back(h);
   }
-  if (static_cast<Index>(tree.size()) + 1 < forest.region_count) {
-    throw Error(Code::cuts_blocked,
-                concat("The edges a cut may follow join only ", tree.size() + 1, " of ", forest.region_count,
-                       " cones and boundary loops. Allow more edges to be cut."));
-  }
   return tree;
 }
 
+// How many of the regions that have to be joined the tree joins to the first.
+Index count_joined(const HalfedgeMesh& mesh, const Forest& forest, const std::vector<Index>& tree) {
+  UnionFind regions(forest.region_count);
+  for (const Index h : tree) regions.unite(forest.region[mesh.origin(h)], forest.region[mesh.target(h)]);
+  Index joined = 0;
+  for (Index region = 0; region < forest.required_count; ++region) joined += regions.find(region) == regions.find(0);
+  return joined;
+}
+
 // The 2 genus edges that neither the spanning tree of the vertices nor one of the triangles uses.  The tree of the
-// triangles takes the edges with the longest loops, so the shortest loops are left; diagonals are always crossed.
+// triangles takes the edges with the longest loops, so the shortest loops are left; diagonals, and edges that cuts
+// cannot reach, are always crossed.
 std::vector<Index> find_handle_edges(const HalfedgeMesh& mesh, const Geometry& geometry, const Forest& forest,
                                      const std::vector<Index>& spanning) {
   std::vector<char> in_tree(mesh.halfedge_count(), 0);
@@ -168,7 +175,8 @@ std::vector<Index> find_handle_edges(const HalfedgeMesh& mesh, const Geometry& g
   for (const Index h : spanning) mark(h);
   UnionFind triangles(mesh.triangle_count());
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    if (mesh.twin[h] != none && !mesh.cuttable[h]) triangles.unite(h / 3, mesh.twin[h] / 3);
+    const bool reached = forest.region[mesh.origin(h)] != none && forest.region[mesh.target(h)] != none;
+    if (mesh.twin[h] != none && !(mesh.cuttable[h] && reached)) triangles.unite(h / 3, mesh.twin[h] / 3);
   }
   std::vector<Index> left_over;
   auto candidates = sorted_bridges(mesh, geometry, forest, [&](Index h) { return !in_tree[h]; });
@@ -219,8 +227,20 @@ void prune_dead_ends(const HalfedgeMesh& mesh, const std::vector<char>& is_cone,
 
 CutGraph connect_cones(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& interior_cones,
                        const std::vector<char>& uncut) {
-  const Forest forest = grow_forest(mesh, geometry, interior_cones, uncut);
-  const std::vector<Index> tree = span_regions(mesh, geometry, forest);
+  const bool avoids = std::find(uncut.begin(), uncut.end(), 1) != uncut.end();
+  Forest forest = grow_forest(mesh, geometry, interior_cones, uncut);
+  std::vector<Index> tree = span_regions(mesh, geometry, forest);
+  if (avoids && count_joined(mesh, forest, tree) < forest.required_count) {
+    // Cones or loops that only holes surround: cuts have to use the holes' borders after all.
+    forest = grow_forest(mesh, geometry, interior_cones, {});
+    tree = span_regions(mesh, geometry, forest);
+  }
+  const Index joined = count_joined(mesh, forest, tree);
+  if (joined < forest.required_count) {
+    throw Error(Code::cuts_blocked,
+                concat("The edges a cut may follow join only ", joined, " of ", forest.required_count,
+                       " cones and boundary loops. Allow more edges to be cut."));
+  }
   std::vector<char> is_cut(mesh.halfedge_count(), 0);
   for (const Index h : tree) mark_through(mesh, forest, h, is_cut);
   if (mesh.genus > 0) {

@@ -68,6 +68,10 @@ Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, 
   if (samples.empty()) return out;
   std::vector<double> ratios;
   ratios.reserve(samples.size());
+  if (!(uv_area > 0)) {  // everything on one line or point
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    return {infinite, infinite, infinite, infinite, infinite, infinite};
+  }
   double stretch = 0;
   for (const Sample& sample : samples) {
     out.quasi_conformal += sample.ratio / static_cast<double>(samples.size());

@@ -177,6 +177,7 @@ Map solve_component(const HalfedgeMesh& mesh, const Geometry& geometry, const Co
   }
   StageTimer timer(seconds, "unfold");
   if (options.method == Method::lscm) {
+    map.pins.clear();  // a comparison: its two pins are its own
     map.position = unfold_lscm(mesh, geometry, map.cut_mesh);
     check(mesh, map);
     return map;
@@ -194,7 +195,8 @@ Map solve_component(const HalfedgeMesh& mesh, const Geometry& geometry, const Co
   }
   Curvature target = map.curvature;
   if (map.pins.size() > 1) {
-    PinnedMap pinned = move_onto_pins(mesh, geometry, map.cut_mesh, connection.reduction, map.pins, map.position);
+    PinnedMap pinned =
+        move_onto_pins(mesh, geometry, map.cut_mesh, connection.reduction, map.pins, !aligned.empty(), map.position);
     map.position = std::move(pinned.position);
     target.log_scale.array() += std::log(pinned.scale);
   }

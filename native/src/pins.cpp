@@ -14,8 +14,9 @@ namespace lsgp {
 
 namespace {
 
-constexpr double same_place = 1e-6;  // of the pins' extent; texture coordinates come in single precision
-constexpr double met = 1e-9;
+constexpr double same_place = 1e-6;  // of the largest coordinate; texture coordinates come in single precision
+constexpr double met = 1e-9;         // of the pins' extent
+constexpr double mirrored = 0.01;    // a fit that shrinks the pinned points below this share of their extent
 
 double extent(const std::vector<Pin>& pins) {
   double out = 0;
@@ -80,17 +81,32 @@ std::vector<Pin> pins_of_copies(const CutMesh& cut_mesh, const std::vector<std::
 }
 
 PinnedMap move_onto_pins(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                         const Reduction& reduction, const std::vector<Pin>& pins, const Eigen::VectorXcd& position) {
+                         const Reduction& reduction, const std::vector<Pin>& pins, bool similarity_only,
+                         const Eigen::VectorXcd& position) {
   const double size = extent(pins);
   const Similarity similarity = fit(pins, position);
-  if (!(std::abs(similarity.factor) > 0)) {
+  if (!(size > 0)) {
     throw_conflict(cut_mesh, pins,
                    "All pinned corners lie on one point, which leaves no size for the layout. Spread "
                    "the pins or unpin all but one.");
   }
+  double fitted = 0;
+  for (const Pin& pin : pins)
+    fitted = std::max(fitted, std::abs(similarity.factor * (position[pin.copy] - position[pins.front().copy])));
+  if (!(fitted > mirrored * size)) {
+    throw_conflict(cut_mesh, pins,
+                   "The pins mirror the surface or fold it up, so that no turn and size fit them. Mirror them back or "
+                   "unpin all but two.");
+  }
   PinnedMap out{similarity.factor * position, std::abs(similarity.factor)};
   out.position.array() += similarity.shift;
   if (!(largest_miss(pins, out.position) > met * size)) return out;
+  if (similarity_only) {
+    throw_conflict(
+        cut_mesh, pins,
+        "Corners and straight borders leave the pins nothing but the layout's place, size and turn, which two "
+        "pins give. Unpin all but two, or leave the border free.");
+  }
 
   // Displacement d = B x + one constant.  The constant is taken up by shifting the pins: the first becomes the origin.
   const Eigen::SparseMatrix<Complex> form = assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction);

@@ -22,12 +22,14 @@ std::vector<Pin> pins_of_copies(const CutMesh& cut_mesh, const std::vector<std::
 
 // The map moved onto its pins: by a similarity first, which satisfies two pins, then by the displacement of least
 // Dirichlet energy under the transitions.  Returns the positions (copies) and the factor by which lengths grew.
-// At least two pins.  Throws PINS_CONFLICT where the transitions leave no map through all of them.
+// At least two pins.  similarity_only: nothing but the similarity is allowed, as where border directions are imposed.
+// Throws PINS_CONFLICT where the transitions leave no map through all of them.
 struct PinnedMap {
   Eigen::VectorXcd position;
   double scale;
 };
 PinnedMap move_onto_pins(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                         const Reduction& reduction, const std::vector<Pin>& pins, const Eigen::VectorXcd& position);
+                         const Reduction& reduction, const std::vector<Pin>& pins, bool similarity_only,
+                         const Eigen::VectorXcd& position);
 
 }  // namespace lsgp

@@ -93,12 +93,16 @@ std::vector<std::pair<Index, Index>> find_duplicates(const Surface& surface, con
   const Index* corner_vertex = surface.triangles.data();
   std::vector<std::pair<Index, Index>> duplicates;
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
-    const Index edge = edges.edge_of(3 * f);
-    if (edges.halfedge_count(edge) < 2) continue;
+    // On the edge of fewest triangles, since a crowd may share the others.
+    Index own = 3 * f;
+    for (Index h = 3 * f + 1; h < 3 * f + 3; ++h) {
+      if (edges.halfedge_count(edges.edge_of(h)) < edges.halfedge_count(edges.edge_of(own))) own = h;
+    }
+    const Index edge = edges.edge_of(own);
     for (Index i = 0; i < edges.halfedge_count(edge); ++i) {
       const Index h = edges.halfedge(edge, i);
       if (h / 3 >= f) break;  // an edge lists its halfedges in order
-      if (corner_vertex[prev(h)] != corner_vertex[3 * f + 2]) continue;
+      if (corner_vertex[prev(h)] != corner_vertex[prev(own)]) continue;
       duplicates.emplace_back(f, h / 3);
       break;
     }

@@ -18,7 +18,7 @@ void add_scaled(Expression& sum, Complex factor, const Expression& terms) {
 // Where going round a node turns by at least this much (|1 - e^{i curvature}|), the node's own position is solved for:
 // a local expression in the translations of its cuts.  Below it that would divide by almost nothing, and the
 // translation towards the root, whose coefficient has modulus 1, is solved for instead.
-constexpr double clear_turn = 0.1;
+constexpr double clear_turn = 0.01;
 
 class Elimination {
  public:
@@ -81,7 +81,7 @@ class Elimination {
       solve_for(v, std::move(round));
       return;
     }
-    round[v] = -gap;
+    if (gap != 0.0) round[v] = -gap;
     Index pivot = nodes_.parent_cut[node] == none ? none : translation_id(nodes_.parent_cut[node]);
     if (pivot == none) {  // the root: its translations are functions of others by now
       Expression resolved;

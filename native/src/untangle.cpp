@@ -295,7 +295,11 @@ Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, co
     if (freedom.displacement.unknown_count == 0) continue;
     Eigen::VectorXcd tried = position;
     Repair repair(mesh, geometry, cut_mesh, curvature.log_scale, std::move(freedom), tried);
-    if (repair.unfold()) repair.smooth();
+    try {
+      if (repair.unfold()) repair.smooth();
+    } catch (const Error&) {
+      continue;  // what cannot be factored cannot be repaired, but it is still a map
+    }
     const std::size_t left = check(tried).defects();
     if (left < fewest) {
       fewest = left;

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from itertools import pairwise
 
 import bmesh
 import bpy
@@ -59,6 +60,35 @@ def add_sphere(name: str = "Sphere") -> bpy.types.Object:
 
     def build(bm: bmesh.types.BMesh) -> None:
         bmesh.ops.create_uvsphere(bm, u_segments=12, v_segments=8, radius=1.0)
+        bm.loops.layers.uv.new("UVMap")
+
+    return add_object(name, build)
+
+
+def add_ball(name: str = "Ball", cuts: int = 3) -> bpy.types.Object:
+    """A bumpy ball of quads, its former cube corners as cones: closed, no two places alike."""
+    ball = add_cone_cube(name, cuts)
+    for vertex in ball.data.vertices:
+        x, y, z = vertex.co.normalized()
+        vertex.co = vertex.co.normalized() * (1.0 + 0.15 * np.sin(3 * x + 1) * np.cos(2 * y - z))
+    return ball
+
+
+def add_tube(name: str = "Tube", taper: float = 0.3) -> bpy.types.Object:
+    """A tapering tube of 16 x 5 quads about z, open at both ends, with one UV layer."""
+
+    def build(bm: bmesh.types.BMesh) -> None:
+        rings = [
+            [
+                bm.verts.new(((1 - taper * t) * np.cos(angle), (1 - taper * t) * np.sin(angle), 2.0 * t))
+                for angle in np.linspace(0, 2 * np.pi, 16, endpoint=False)
+            ]
+            for t in np.linspace(0, 1, 6)
+        ]
+        for lower, upper in pairwise(rings):
+            for i in range(16):
+                j = (i + 1) % 16
+                bm.faces.new((lower[i], lower[j], upper[j], upper[i]))
         bm.loops.layers.uv.new("UVMap")
 
     return add_object(name, build)
@@ -125,6 +155,36 @@ def select_elements(obj: bpy.types.Object, kind: str, indices: Iterable[int]) ->
     bmesh.update_edit_mesh(obj.data)
 
 
+def mark_seams(obj: bpy.types.Object, pairs: Iterable[tuple[int, int]]) -> None:
+    """Mark exactly these vertex pairs as seams, in object mode."""
+    wanted = set(pairs)
+    for edge in obj.data.edges:
+        edge.use_seam = tuple(sorted(edge.vertices)) in wanted
+
+
+def edges_where(obj: bpy.types.Object, accepts: Callable[[np.ndarray], bool]) -> set[tuple[int, int]]:
+    """Vertex pairs of the edges both ends of which are accepted by their position."""
+    good = {v.index for v in obj.data.vertices if accepts(np.array(v.co))}
+    return {tuple(sorted(edge.vertices)) for edge in obj.data.edges if set(edge.vertices) <= good}
+
+
+def pin(obj: bpy.types.Object, loops: Iterable[int], uv: np.ndarray | None = None) -> None:
+    """Pin these loops in the active layer, in object mode, at these UVs where they are given."""
+    layer = obj.data.uv_layers.active
+    name = f".pn.{layer.name}"
+    flags = obj.data.attributes.get(name) or obj.data.attributes.new(name, "BOOLEAN", "CORNER")
+    layer = obj.data.uv_layers.active
+    for row, loop in enumerate(loops):
+        flags.data[loop].value = True
+        if uv is not None:
+            layer.uv[loop].vector = uv[row]
+
+
+def set_uv(obj: bpy.types.Object, uv: np.ndarray) -> None:
+    """Overwrite the active layer in object mode; uv: (l, 2)."""
+    obj.data.uv_layers.active.uv.foreach_set("vector", np.ascontiguousarray(uv, np.float32).ravel())
+
+
 def selected(obj: bpy.types.Object) -> list[int]:
     return [v.index for v in bmesh.from_edit_mesh(obj.data).verts if v.select]
 
@@ -174,8 +234,14 @@ def snapshot(obj: bpy.types.Object) -> dict[str, object]:
     state["shape keys"] = {key.name: [tuple(point.co) for point in key.data] for key in keys}
     state["mode"] = (obj.mode, tuple(bpy.context.tool_settings.mesh_select_mode))
     state["matrix"] = [tuple(row) for row in obj.matrix_world]
-    state["data-blocks"] = sorted(block.name for block in (*bpy.data.objects, *bpy.data.meshes) if block != mesh)
     bpy.data.meshes.remove(mesh)
+    state["data-blocks"] = sorted(
+        (kind, block.name)
+        for kind in ("objects", "meshes", "scenes", "materials", "images", "shape_keys", "collections")
+        for block in getattr(bpy.data, kind)
+    )
+    state["context"] = (bpy.context.mode, bpy.context.scene.name, getattr(bpy.context.object, "name", None))
+    state["selected objects"] = sorted(selected.name for selected in bpy.context.selected_objects)
     return state
 
 
@@ -221,9 +287,10 @@ class UvMap:
             if not np.array_equal(self.uv[list(left)], self.uv[list(right)])
         }
 
-    def sister_difference(self) -> float:
-        """Largest difference between the UV lengths of the two sides of an edge."""
-        pairs = np.array(list(self.sides.values()), int).reshape(-1, 2, 2)
+    def sister_difference(self, edges: Iterable[tuple[int, int]] | None = None) -> float:
+        """Largest difference between the UV lengths of the two sides of an edge, of all edges or of these."""
+        chosen = self.sides if edges is None else {edge: self.sides[edge] for edge in edges}
+        pairs = np.array(list(chosen.values()), int).reshape(-1, 2, 2)
         return float(np.abs(self._length(pairs[:, 0]) - self._length(pairs[:, 1])).max(initial=0.0))
 
     def scale_spread(self, faces: Iterable[int] | None = None) -> float:
@@ -250,6 +317,10 @@ class UvMap:
 
     def islands(self) -> int:
         """Number of sets of faces connected through edges that are not split."""
+        return len(set(self.island_of_face()))
+
+    def island_of_face(self) -> list[int]:
+        """For each face, the same number as all faces connected to it through edges that are not split."""
         parent = list(range(len(self.loops_of_face)))
 
         def root(face: int) -> int:
@@ -262,7 +333,17 @@ class UvMap:
         for edge, (left, right) in self.sides.items():
             if edge not in split:
                 parent[root(face_of[left[0]])] = root(face_of[right[0]])
-        return len({root(face) for face in range(len(parent))})
+        return [root(face) for face in range(len(parent))]
+
+    def border_directions(self) -> np.ndarray:
+        """Directions in the map, radians, of the edges with one face."""
+        found = []
+        for loops in self.loops_of_face:
+            for first, second in zip(loops, loops[1:] + loops[:1], strict=True):
+                if tuple(sorted((int(self.vertex[first]), int(self.vertex[second])))) not in self.sides:
+                    along = self.uv[second] - self.uv[first]
+                    found.append(np.arctan2(along[1], along[0]))
+        return np.array(found)
 
     def _length(self, pairs: np.ndarray) -> np.ndarray:
         return np.linalg.norm(self.uv[pairs[:, 0]] - self.uv[pairs[:, 1]], axis=1)

@@ -9,12 +9,19 @@ import bpy
 import pytest
 
 EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
-OPERATORS = {"uv.cone_unwrap", "mesh.cone_mark", "mesh.cone_select", "mesh.cone_place"}
+OPERATORS = {
+    "uv.cone_unwrap",
+    "mesh.cone_mark",
+    "mesh.cone_select",
+    "mesh.cone_place",
+    "mesh.cone_select_reported",
+}
 CONE_ENTRIES = [
     ("mesh.cone_mark", False),
     ("mesh.cone_mark", True),
     ("mesh.cone_select", None),
     ("mesh.cone_place", None),
+    ("mesh.cone_select_reported", None),
 ]
 
 

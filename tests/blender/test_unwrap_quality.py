@@ -8,7 +8,19 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
-from scenes import ANGLES, UV_ROUNDING, UvMap, add_cone_cube, add_cube, add_object, corners, edit, mark, marked
+from scenes import (
+    ANGLES,
+    UV_ROUNDING,
+    UvMap,
+    add_cone_cube,
+    add_cube,
+    add_object,
+    corners,
+    edit,
+    mark,
+    mark_seams,
+    marked,
+)
 
 # Relative error of the shortest edge of the test cubes (an eighth of the UV square or more) by 32-bit UVs, with room.
 ISOMETRIC = 1 + 1e-5
@@ -98,11 +110,6 @@ def cube_edges(cube, path):
     return pairs
 
 
-def mark_seams(obj, pairs):
-    for edge in obj.data.edges:
-        edge.use_seam = tuple(sorted(edge.vertices)) in pairs
-
-
 # A way through the eight corners of the cube along seven of its edges.
 THROUGH_CORNERS = [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, 1, 1), (1, 1, 1), (1, -1, 1), (-1, -1, 1)]
 
@@ -180,34 +187,6 @@ def test_suzanne_through_placed_cones():
     assert np.isfinite(uv_map.uv).all()
     assert uv_map.uv.min() >= 0.0 and uv_map.uv.max() <= 1.0
     assert uv_map.sister_difference() <= UV_ROUNDING
-
-
-PRIMITIVES = ["cube", "uv_sphere", "ico_sphere", "cylinder", "cone", "torus", "grid", "plane"]
-
-
-@pytest.mark.parametrize("in_edit_mode", [True, False])
-@pytest.mark.parametrize("primitive", PRIMITIVES)
-def test_blenders_primitives_through_placed_cones(primitive, in_edit_mode):
-    getattr(bpy.ops.mesh, f"primitive_{primitive}_add")()
-    obj = bpy.context.object
-    if in_edit_mode:
-        edit(obj)
-    assert bpy.ops.mesh.cone_place() == {"FINISHED"}
-    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
-    uv_map = UvMap(obj)
-    assert uv_map.islands() == 1
-    assert uv_map.uv.min() >= 0.0 and uv_map.uv.max() <= 1.0
-    assert np.ptp(uv_map.uv, axis=0).max() > 0.9
-    assert uv_map.sister_difference() <= UV_ROUNDING
-
-
-def test_negative_scale_and_placement_of_the_object_do_not_matter():
-    first, second = add_cone_cube("First"), add_cone_cube("Second")
-    second.scale = (-1.0, 2.0, 3.0)
-    second.location = (1e5, 0.0, 0.0)
-    bpy.context.view_layer.update()
-    bpy.ops.uv.cone_unwrap()
-    assert UvMap(first).uv.tobytes() == UvMap(second).uv.tobytes()
 
 
 def test_flat_grid_keeps_its_shape_without_cones():

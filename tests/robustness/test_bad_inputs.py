@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The malformed and extreme inputs of ../shared/bad: each ends as it may, quickly, through the API and the command line.
+"""The malformed and extreme inputs of ../shared/bad: each ends as it may and quickly, by the API and the command line.
 
 `expect` of a case lists classes of outcomes: OK, a result without a defect; W_..., a result with that finding; E_...,
 refused with that finding.  As a script this module prints how every case ends, for builds to be compared.
@@ -55,10 +55,12 @@ CLASS_OF_CODE = {
     "FLIPPED_TRIANGLES": "W_POOR_QUALITY",
     "WRONG_ANGLE_SUMS": "W_POOR_QUALITY",
     "HIGH_DISTORTION": "W_POOR_QUALITY",
+    "INEXACT_SEAMS": "W_POOR_QUALITY",
+    "INEXACT_ANGLES": "W_POOR_QUALITY",
 }
 
 # Findings on the quality of a result, and triangles without one: it is then no plain success.
-DEFECTS = {"FLIPPED_TRIANGLES", "WRONG_ANGLE_SUMS", "COMPONENT_SKIPPED"}
+DEFECTS = {"FLIPPED_TRIANGLES", "WRONG_ANGLE_SUMS", "INEXACT_SEAMS", "INEXACT_ANGLES", "COMPONENT_SKIPPED"}
 
 Case = dict[str, Any]
 

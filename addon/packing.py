@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender's own packer applied to finished islands before anything of them is written.
+
+The packer works on the selected UVs of edit meshes. It gets copies in a scene of their own, so that it sees the solved
+islands only, whatever is selected, hidden or shown, and a failure leaves nothing behind.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from . import native, versions
+from .reporting import Refused
+
+LAYER = "UVMap"
+
+
+@dataclass(frozen=True, slots=True)
+class Islands:
+    """Islands of one mesh that are to be packed.
+
+    triangles: (m, 3) int32 vertices. corner_uv: (m, 3, 2) float64. island: (m,) int32, at least 0.
+    pinned: (m, 3) bool; an island with a pinned corner stays where it is.
+    aspect: width over height of the image the coordinates are for; 1 where they are not corrected for one.
+    """
+
+    triangles: NDArray[np.int32]
+    corner_uv: NDArray[np.float64]
+    island: NDArray[np.int32]
+    pinned: NDArray[np.bool_]
+    aspect: float
+
+
+def pack(parts: Sequence[Islands], margin_method: str, margin: float) -> list[NDArray[np.float64]]:
+    """Pack the islands of all parts together into the unit square; the new corner_uv of each part.
+
+    Every island is moved by one similarity of its image. The packer computes in single precision, so its answer is
+    taken as the place only. Raises Refused where Blender does not pack.
+    """
+    with _scratch_meshes(parts) as meshes:
+        _run_packer(margin_method, margin)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        packed = [_read_uv(mesh) for mesh in meshes]
+    return [_moved(part, uv) for part, uv in zip(parts, packed, strict=True)]
+
+
+def _moved(part: Islands, packed: NDArray[np.float64]) -> NDArray[np.float64]:
+    squeeze = native.lsgp.correct_aspect((1.0, 1.0), part.aspect)
+    placed = native.lsgp.fit_placement(part.corner_uv / squeeze, packed / squeeze, part.island) * squeeze
+    held = np.zeros(int(part.island.max()) + 1, bool)
+    held[part.island[part.pinned.any(axis=1)]] = True
+    return np.where(held[part.island, None, None], part.corner_uv, placed)
+
+
+def _run_packer(margin_method: str, margin: float) -> None:
+    try:
+        status = bpy.ops.uv.pack_islands(
+            rotate=True, scale=True, margin_method=margin_method, margin=margin, pin=True, pin_method="LOCKED"
+        )
+    except RuntimeError as error:
+        raise Refused(f"Blender's packer failed ({error}); switch Pack Islands off") from error
+    if status != {"FINISHED"}:
+        raise Refused("Blender's packer did nothing; switch Pack Islands off")
+
+
+@contextmanager
+def _scratch_meshes(parts: Sequence[Islands]) -> Iterator[list[bpy.types.Mesh]]:
+    """Edit meshes with these islands, everything selected, in a scene that is the context's; all gone afterwards."""
+    scene = bpy.data.scenes.new("Cone Unwrap packing")
+    layer = scene.view_layers[0]
+    made: list[tuple[bpy.types.Object, bpy.types.Mesh]] = []
+    images: list[tuple[bpy.types.Material, bpy.types.Image]] = []
+    try:
+        for part in parts:
+            mesh = _scratch_mesh(part)
+            obj = bpy.data.objects.new("Cone Unwrap packing", mesh)
+            made.append((obj, mesh))
+            scene.collection.objects.link(obj)
+            obj.select_set(True, view_layer=layer)
+            if part.aspect != 1.0:
+                images.append(_image_material(part.aspect))
+                mesh.materials.append(images[-1][0])
+        first = made[0][0]
+        layer.objects.active = first
+        objects = [obj for obj, _ in made]
+        context = {
+            "scene": scene,
+            "view_layer": layer,
+            "object": first,
+            "active_object": first,
+            "edit_object": first,
+            "selected_objects": objects,
+            "selected_editable_objects": objects,
+        }
+        with bpy.context.temp_override(**context):
+            # The packer then takes what is selected on the mesh, in every version. Set in another context, Blender 5
+            # would change the UV selection of the meshes that are edited there.
+            scene.tool_settings.use_uv_select_sync = True
+            bpy.ops.object.mode_set(mode="EDIT")
+            # Not by foreach_set on the meshes: on edges that crashes Blender 5.0.1.
+            bpy.ops.mesh.select_all(action="SELECT")
+            try:
+                yield [mesh for _, mesh in made]
+            finally:
+                if first.mode == "EDIT":
+                    bpy.ops.object.mode_set(mode="OBJECT")
+    finally:
+        bpy.data.batch_remove(
+            [scene, *(block for pair in made for block in pair), *(block for pair in images for block in pair)]
+        )
+
+
+def _scratch_mesh(part: Islands) -> bpy.types.Mesh:
+    """Triangles that share vertices within an island only, because the packer tells islands by shared UVs."""
+    keys, vertices = np.unique(
+        part.triangles.astype(np.int64) + part.island[:, None] * (int(part.triangles.max()) + 1), return_inverse=True
+    )
+    mesh = bpy.data.meshes.new("Cone Unwrap packing")
+    count = len(part.triangles)
+    mesh.vertices.add(len(keys))
+    mesh.loops.add(3 * count)
+    mesh.polygons.add(count)
+    mesh.loops.foreach_set("vertex_index", vertices.ravel().astype(np.int32))
+    mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * count, 3, dtype=np.int32))
+    mesh.update(calc_edges=True)
+    layer = mesh.uv_layers.new(name=LAYER)
+    layer.uv.foreach_set("vector", part.corner_uv.ravel().astype(np.float32))
+    if part.pinned.any():
+        versions.set_pinned_loops(mesh, LAYER, part.pinned.ravel())
+    return mesh
+
+
+def _image_material(aspect: float) -> tuple[bpy.types.Material, bpy.types.Image]:
+    """A material with an image of this aspect, which is how the packer learns of it."""
+    image = bpy.data.images.new("Cone Unwrap packing", 1, 1)
+    image.display_aspect = (max(aspect, 1.0), max(1 / aspect, 1.0))
+    material = bpy.data.materials.new("Cone Unwrap packing")
+    if not versions.has_nodes(material):
+        material.use_nodes = True
+    nodes = material.node_tree.nodes
+    node = nodes.new("ShaderNodeTexImage")
+    node.image = image
+    nodes.active = node
+    return material, image
+
+
+def _read_uv(mesh: bpy.types.Mesh) -> NDArray[np.float64]:
+    uv = np.empty((len(mesh.polygons), 3, 2), np.float32)
+    mesh.uv_layers[LAYER].uv.foreach_get("vector", uv.ravel())
+    return uv.astype(np.float64)

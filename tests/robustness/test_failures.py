@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Faults injected: too little memory at any point, systems that cannot be solved.  Each ends in an error of its own."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+import lsgp
+import meshes
+import numpy as np
+import pytest
+from map_checks import surface
+from result_check import undeclared_faults
+
+if sys.platform != "linux":
+    pytest.skip("the address space is limited and measured the way Linux does it", allow_module_level=True)
+
+# A child process: sizes in bytes of its address space before the call and at its peak, and how the call ended.
+CHILD = """
+import json, resource, sys, threading
+import lsgp, meshes
+from lsgp.cli import main
+
+def size(key):
+    return next(1024 * int(line.split()[1]) for line in open("/proc/self/status") if line.startswith(key))
+
+mesh = meshes.bumpy_sphere(5)
+surface = lsgp.Surface(mesh.positions, mesh.triangles)
+calls = {
+    "poisson": lambda: lsgp.parameterize(surface, mesh.cones),
+    "spectral": lambda: lsgp.parameterize(surface, mesh.cones, None, lsgp.Options(unfold="spectral")),
+    "straightness": lambda: lsgp.parameterize(surface, mesh.cones, None, lsgp.Options("straightness")),
+    "place": lambda: lsgp.place_cones(surface),
+    "measure": lambda: lsgp.measure_distortion(surface, mesh.positions[mesh.triangles][..., :2]),
+    "command": lambda: main(sys.argv[3:]),
+}
+
+def run():
+    global ended, before
+    before = size("VmSize")
+    if limit:
+        resource.setrlimit(resource.RLIMIT_AS, (before + limit, before + limit))
+    try:
+        ended = calls[sys.argv[1]]()
+        ended = ended if isinstance(ended, int) else "result"
+    except MemoryError:
+        ended = "MemoryError"
+
+limit = int(sys.argv[2])
+# Linux ends a process whose stack cannot grow; that of a thread has its full size from the start.
+threading.stack_size(8 << 20)
+thread = threading.Thread(target=run)
+thread.start()
+thread.join()
+print(json.dumps({"grown": size("VmPeak") - before, "ended": ended}))
+"""
+
+
+def run_child(call: str, limit: int, arguments: tuple[str, ...] = ()) -> dict:
+    # One arena: another one would take its share of the address space unseen.
+    threads = {"OPENBLAS_NUM_THREADS": "1", "MALLOC_ARENA_MAX": "1"}
+    environment = os.environ | threads | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    done = subprocess.run(
+        [sys.executable, "-c", CHILD, call, str(limit), *arguments],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == 0, f"ended with {done.returncode}: {done.stderr[-2000:]}"
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+@cache
+def peak(call: str) -> int:
+    """Bytes by which the address space grows when there is enough."""
+    found = run_child(call, 0)
+    assert found["ended"] == "result" and found["grown"] > 2**20
+    return found["grown"]
+
+
+def test_a_surface_that_cannot_be_computed_with_is_named() -> None:
+    """Vertices so far apart that linear systems lose all digits: an honest map or SOLVER_FAILED, never NaN."""
+    failed = 0
+    for seed in range(40):
+        random = np.random.default_rng(seed)
+        mesh = meshes.torus(6, 4)
+        far = random.permutation(len(mesh.positions))[: 1 + seed % 3]
+        mesh.positions[far] *= 10.0 ** random.uniform(25, 55, (len(far), 1))
+        try:
+            result = lsgp.parameterize(surface(mesh), mesh.cones)
+        except lsgp.LsgpError as error:
+            assert error.code == "SOLVER_FAILED" and isinstance(error, lsgp.SolverError)
+            failed += 1
+        else:
+            assert undeclared_faults(surface(mesh), result) == []
+    assert failed > 0
+
+
+@pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="AddressSanitizer reserves terabytes")
+class TestMemory:
+    @pytest.mark.parametrize("percent", [10, 25, 40, 50, 60, 75, 90])
+    @pytest.mark.parametrize("call", ["poisson", "spectral", "straightness", "place", "measure"])
+    def test_too_little_of_it_is_an_error_and_no_crash(self, call: str, percent: int) -> None:
+        found = run_child(call, peak(call) * percent // 100)
+        assert found["ended"] in ("MemoryError", "result")
+        if percent <= 50:
+            assert found["ended"] == "MemoryError"
+
+    def test_enough_of_it_is_a_result(self) -> None:
+        assert run_child("poisson", 2 * peak("poisson"))["ended"] == "result"
+
+    @pytest.mark.parametrize("percent", [25, 50, 75])
+    def test_the_command_line_refuses_and_writes_nothing(self, tmp_path: Path, percent: int) -> None:
+        mesh = meshes.bumpy_sphere(5)
+        lines = ["v {:.17g} {:.17g} {:.17g}".format(*p) for p in mesh.positions.tolist()]
+        lines += ["f {} {} {}".format(*f) for f in (mesh.triangles + 1).tolist()]
+        (tmp_path / "in.obj").write_text("\n".join(lines))
+        names = {name: str(tmp_path / name) for name in ("in.obj", "out.obj", "report.json")}
+        arguments = ("unwrap", names["in.obj"], "-o", names["out.obj"], "--report", names["report.json"])
+        found = run_child("command", peak("poisson") * percent // 100, arguments)
+        assert found["ended"] == 3
+        assert not (tmp_path / "out.obj").exists()
+        assert json.loads((tmp_path / "report.json").read_text())["code"] == "OUT_OF_MEMORY"

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the harnesses in tests/fuzz and the sweeps of extreme shapes have found, each as small as it could be made."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import lsgp
+import meshes
+import numpy as np
+import pytest
+from lsgp.mesh_obj import read_obj
+from map_checks import codes, surface
+from meshes import Mesh
+from result_check import undeclared_faults
+
+
+def honest(mesh: Mesh, **options: str) -> lsgp.Result:
+    given = lsgp.Options(**options)
+    result = lsgp.parameterize(surface(mesh), mesh.cones, None, given)
+    assert undeclared_faults(surface(mesh), result, given) == []
+    return result
+
+
+def far_apart(mesh: Mesh, seed: int) -> Mesh:
+    """Stretched along the axes by factors between 1e-18 and 1e18."""
+    return mesh._replace(positions=mesh.positions * 10.0 ** np.random.default_rng(seed).uniform(-18, 18, 3))
+
+
+@pytest.mark.parametrize("exponent", [-5, -7, -9, -11, -13, -15, -20])
+def test_a_component_much_smaller_than_another(exponent: int) -> None:
+    """In the common layout it has fewer digits than when it was solved: what got lost is named."""
+    large, small = meshes.cube(3), meshes.bumpy_sphere(2)
+    small = small._replace(positions=small.positions * 10.0**exponent)
+    count = len(large.positions)
+    both = Mesh(
+        np.concatenate([large.positions, small.positions]),
+        np.concatenate([large.triangles, small.triangles + count]),
+        np.concatenate([large.cones, small.cones + count]),
+    )
+    assert honest(both).solved[: len(large.triangles)].all()
+
+
+def test_a_tube_pinched_far_away() -> None:
+    """Scales from 1 to 1e8 in one component: the layout loses its digits, and the checks must not come before that."""
+    around = np.pi / 2 * (np.arange(16) % 4)
+    positions = np.stack([np.cos(around), np.sin(around), np.arange(16) // 4 / 2], axis=1)
+    positions[[0, 11]] = -7.0
+    tube = meshes.cylinder(4, 3)
+    honest(tube._replace(positions=positions), prescription="straightness")
+
+
+def test_a_stretch_that_overflows() -> None:
+    """A torus with one vertex 4e31 away: triangles so thin that the smaller singular value cancels to nothing."""
+    mesh = meshes.torus(6, 4)
+    mesh.positions[21, 0] = -4.05e31
+    honest(mesh, unfold="spectral")
+    try:
+        honest(mesh)
+    except lsgp.SolverError as error:
+        assert error.code == "SOLVER_FAILED"
+
+
+@pytest.mark.parametrize("seed", [3, 10])
+def test_a_box_stretched_beyond_measure(seed: int) -> None:
+    honest(far_apart(meshes.cube(3), seed))
+
+
+def test_an_eigenproblem_without_a_solution() -> None:
+    """The eigensolver gives up with an exception of its own: to the caller it is SOLVER_FAILED, or another map."""
+    try:
+        honest(far_apart(meshes.cube(3), 2), unfold="spectral")
+    except lsgp.SolverError as error:
+        assert error.code == "SOLVER_FAILED"
+
+
+@pytest.mark.parametrize("border", ["free", "straight"])
+def test_cones_on_a_border_beside_each_other(border: str) -> None:
+    """A strip too narrow for corners where it was asked for: a triangle flips, and angles elsewhere are off for it."""
+    strip = meshes.grid(4, 1, lambda x, y: np.sin(x + y))
+    result = honest(strip._replace(cones=np.arange(4, dtype=np.int32)), border=border)
+    assert border == "free" or "HIGH_DISTORTION" in codes(result.warnings)
+
+
+@pytest.mark.parametrize("vertex", [-1, 12, 2**31 - 1])
+def test_the_turning_of_a_loop_at_no_vertex(vertex: int) -> None:
+    """Elements of an error are there to be selected: a vertex that does not exist is none of them."""
+    tube = meshes.cylinder(3, 3)
+    with pytest.raises(lsgp.InputError) as caught:
+        lsgp.parameterize(surface(tube), [], None, lsgp.Options(loop_turning={vertex: np.pi}))
+    assert caught.value.elements.indices.size == 0 and str(vertex) in caught.value.message
+
+
+@pytest.mark.parametrize("line", [b"\\", b"# \\", b" \\\n\\", b"f 1 2 3\n\\\n\\\n"])
+def test_lines_of_an_obj_that_hold_a_backslash_alone(tmp_path: Path, line: bytes) -> None:
+    text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" + line
+    assert len(read_obj(text, True).positions) == 3
+    (tmp_path / "in.obj").write_bytes(text)
+    command = [sys.executable, "-m", "lsgp", "unwrap", "in.obj", "-o", "out.obj"]
+    assert subprocess.run(command, cwd=tmp_path, capture_output=True, timeout=60).returncode == 0
