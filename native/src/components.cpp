@@ -42,7 +42,7 @@ std::vector<ComponentTask> hand_out(const Surface& surface, const std::vector<Co
   return tasks;
 }
 
-void hand_out_turning(const std::vector<Component>& components, const Options& options,
+void hand_out_turning(const std::vector<Component>& components, const Options& options, Eigen::Index vertex_count,
                       std::vector<ComponentTask>& tasks) {
   for (const auto& [vertex, turning] : options.loop_turning) {
     bool found = false;
@@ -60,7 +60,8 @@ void hand_out_turning(const std::vector<Component>& components, const Options& o
                   found
                       ? "The turning of a border is not a finite number. Give an angle, 360 degrees being a full turn."
                       : "The turning of a border was given for a vertex that lies on none. Name a border vertex.",
-                  {ElementKind::vertices, {vertex}});
+                  {ElementKind::vertices,
+                   vertex >= 0 && vertex < vertex_count ? std::vector<Index>{vertex} : std::vector<Index>{}});
     }
   }
 }
@@ -99,7 +100,7 @@ Work prepare(const Surface& surface, const Cones& cones, const Options& options,
                         "Mark cones to have the texture run on across them.",
                         {ElementKind::triangles, opened}});
   }
-  hand_out_turning(work.topology.components, options, work.tasks);
+  hand_out_turning(work.topology.components, options, surface.positions.rows(), work.tasks);
   findings.insert(findings.end(), std::make_move_iterator(repairs.begin()), std::make_move_iterator(repairs.end()));
   return work;
 }
