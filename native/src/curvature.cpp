@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cut_mesh.hpp"
 #include "energies/quadratic_forms.hpp"
@@ -37,11 +38,17 @@ Bounds bounds_from_angles(const HalfedgeMesh& mesh, const ComponentCones& cones,
   Bounds bounds{Eigen::VectorXd(k), Eigen::VectorXd(k)};
   for (Index i = 0; i < k; ++i) {
     const double most = std::min(largest, share * M_PI * valence(mesh, cones.vertices[i]));
-    const double flat = flat_angle(mesh, cones.vertices[i]);
+    const double flat = mesh.flat_angle(cones.vertices[i]);
     bounds.high[i] = flat - (cones.angles[i] ? *cones.angles[i] : smallest);
     bounds.low[i] = flat - (cones.angles[i] ? *cones.angles[i] : most);
   }
   return bounds;
+}
+
+// Beyond these no map exists.
+Bounds widest_bounds(const HalfedgeMesh& mesh, const ComponentCones& cones) {
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  return bounds_from_angles(mesh, cones, impossible_angle, unlimited, impossible_share_of_valence);
 }
 
 // The point between the bounds with the given sum that is nearest to the wanted one, by bisection on a common shift.
@@ -97,8 +104,7 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, con
                 concat("A closed surface without cones cannot be unfolded: its curvature of ", required / M_PI,
                        " pi has to go somewhere. Mark cones at tips and corners, or place them automatically."));
   }
-  const Bounds widest =
-      bounds_from_angles(mesh, cones, impossible_angle, largest_angle * 1e3, impossible_share_of_valence);
+  const Bounds widest = widest_bounds(mesh, cones);
   if (all_fixed(cones)) {
     const double sum = widest.low.sum();
     if (std::abs(sum - required) > renormalized_mismatch) {
@@ -123,8 +129,7 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, con
 Eigen::VectorXd least_distortion(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale) {
   const Eigen::VectorXd harmonic = scale.harmonic_curvature();
   Bounds bounds = bounds_from_angles(mesh, cones, smallest_angle, largest_angle, largest_share_of_valence);
-  const Bounds widest =
-      bounds_from_angles(mesh, cones, impossible_angle, largest_angle * 1e3, impossible_share_of_valence);
+  const Bounds widest = widest_bounds(mesh, cones);
   for (Eigen::Index i = 0; i < harmonic.size(); ++i) {
     if (cones.angles[i]) continue;
     bounds.low[i] = std::max(widest.low[i], std::min(bounds.low[i], harmonic[i]));
@@ -140,7 +145,7 @@ Eigen::VectorXd least_distortion(const HalfedgeMesh& mesh, const ComponentCones&
 }
 
 bool possible(const HalfedgeMesh& mesh, Index vertex, double curvature) {
-  const double angle = flat_angle(mesh, vertex) - curvature;
+  const double angle = mesh.flat_angle(vertex) - curvature;
   return angle >= impossible_angle && angle < M_PI * valence(mesh, vertex);
 }
 
@@ -332,10 +337,6 @@ void prescribe_turning(const HalfedgeMesh& mesh, const Geometry& geometry, const
 
 }  // namespace
 
-double flat_angle(const HalfedgeMesh& mesh, Index vertex) {
-  return mesh.loop_of_vertex[vertex] == none ? 2 * M_PI : M_PI;
-}
-
 int valence(const HalfedgeMesh& mesh, Index vertex) {
   int triangles = 0;
   mesh.for_each_outgoing(vertex, [&](Index) { ++triangles; });
@@ -359,7 +360,7 @@ Curvature prescribe(const HalfedgeMesh& mesh, const Geometry& geometry, const Co
     // A closed torus or a surface with border: flat everywhere.
   } else if (all_fixed(asked)) {
     for (Eigen::Index i = 0; i < curvature.size(); ++i) {
-      curvature[i] = flat_angle(mesh, asked.vertices[i]) - *asked.angles[i];
+      curvature[i] = mesh.flat_angle(asked.vertices[i]) - *asked.angles[i];
     }
   } else if (rule == PrescriptionRule::harmonic) {
     curvature = harmonic(mesh, asked, scale);

@@ -83,9 +83,6 @@ struct Curvature {
 Curvature prescribe(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
                     PrescriptionRule rule, std::vector<Finding>& findings);
 
-// The angle of a vertex of no curvature: 2 pi inside, pi on a border.
-double flat_angle(const HalfedgeMesh& mesh, Index vertex);
-
 // The number of triangles around a vertex.
 int valence(const HalfedgeMesh& mesh, Index vertex);
 

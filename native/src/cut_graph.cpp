@@ -225,6 +225,15 @@ void prune_dead_ends(const HalfedgeMesh& mesh, const std::vector<char>& is_cone,
 
 }  // namespace
 
+std::vector<char> on_cuts(const HalfedgeMesh& mesh, const CutGraph& cut_graph) {
+  std::vector<char> out(mesh.vertex_count(), 0);
+  for (const Cut& cut : cut_graph.cuts) {
+    out[cut.head] = 1;
+    for (const Index h : cut.halfedges) out[mesh.origin(h)] = 1;
+  }
+  return out;
+}
+
 CutGraph connect_cones(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& interior_cones,
                        const std::vector<char>& uncut) {
   const bool avoids = std::find(uncut.begin(), uncut.end(), 1) != uncut.end();

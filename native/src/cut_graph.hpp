@@ -32,6 +32,9 @@ struct CutGraph {
 CutGraph connect_cones(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& interior_cones,
                        const std::vector<char>& uncut);
 
+// Which vertices lie on a cut, (n).
+std::vector<char> on_cuts(const HalfedgeMesh& mesh, const CutGraph& cut_graph);
+
 // Divides marked edges into cuts.  is_cut: (3m) on both halfedges; is_node: (n) vertices at which a cut ends besides
 // boundary vertices and junctions.  Closed curves without a node are cut at their lowest vertex.
 CutGraph trace_cuts(const HalfedgeMesh& mesh, const std::vector<char>& is_node, std::vector<char> is_cut);

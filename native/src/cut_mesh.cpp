@@ -25,11 +25,7 @@ CutMesh cut_open(const HalfedgeMesh& mesh, const CutGraph& cut_graph) {
   cut_mesh.copy_of_corner.assign(mesh.triangles.data(), mesh.triangles.data() + mesh.halfedge_count());
   cut_mesh.source.resize(mesh.vertex_count());
   std::iota(cut_mesh.source.begin(), cut_mesh.source.end(), 0);
-  std::vector<char> on_cut(mesh.vertex_count(), 0);
-  for (const Cut& cut : cut_graph.cuts) {
-    on_cut[cut.head] = 1;
-    for (const Index h : cut.halfedges) on_cut[mesh.origin(h)] = 1;
-  }
+  const std::vector<char> on_cut = on_cuts(mesh, cut_graph);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (!on_cut[v]) continue;
     const Index first = first_of_sectors(mesh, cut_graph, v);

@@ -30,6 +30,13 @@ CutMesh cut_open(const HalfedgeMesh& mesh, const CutGraph& cut_graph);
 // The sectors of v from the first outgoing cut halfedge on; an inside vertex closes up with that halfedge again.
 std::vector<Sector> sectors(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh, Index v);
 
+// Whether a halfedge lies on the border of the opened surface.
+inline bool is_open(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, Index h) {
+  const Index twin = mesh.twin[h];
+  return twin == none || cut_mesh.copy_of_corner[twin] != cut_mesh.copy_of_corner[next(h)] ||
+         cut_mesh.copy_of_corner[next(twin)] != cut_mesh.copy_of_corner[h];
+}
+
 // Both copies of the vertex a cut's halfedge leaves from, and of the vertex it runs to.
 struct Sisters {
   Index left, right;

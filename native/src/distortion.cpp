@@ -135,6 +135,11 @@ SeamQuality measure_seams(const HalfedgeMesh& mesh, const CutGraph& cut_graph, c
   return out;
 }
 
+SeamQuality worse(const SeamQuality& a, const SeamQuality& b) {
+  return {std::max(a.sister_ratio_max, b.sister_ratio_max), std::max(a.rotation_residual, b.rotation_residual),
+          std::max(a.translation_residual, b.translation_residual)};
+}
+
 Eigen::VectorXd angle_sums(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position) {
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(mesh.vertex_count());
   for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
@@ -152,8 +157,7 @@ Validity check_map(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position, c
   }
   const Eigen::VectorXd sums = angle_sums(mesh, position);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    const bool inside = mesh.loop_of_vertex[v] == none;
-    const double error = std::abs(sums[v] - ((inside ? 2 * M_PI : M_PI) - curvature[v]));
+    const double error = std::abs(sums[v] - (mesh.flat_angle(v) - curvature[v]));
     if (!(error < M_PI))
       out.wrong_angle_sums.push_back(v);
     else if (!is_free[v] && !(error <= exact_angle))

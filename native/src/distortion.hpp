@@ -20,6 +20,9 @@ Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, 
 SeamQuality measure_seams(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const Eigen::VectorXcd& position,
                           const Eigen::VectorXd* rotation, std::vector<Index>* inexact = nullptr);
 
+// The worse of two in every figure.
+SeamQuality worse(const SeamQuality& a, const SeamQuality& b);
+
 // Twice the signed UV area of a triangle.
 inline double doubled_area(const Eigen::VectorXcd& position, Index triangle) {
   const Complex a = position[3 * triangle];

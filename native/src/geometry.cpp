@@ -45,7 +45,7 @@ void add_up_vertices(const HalfedgeMesh& mesh, Geometry& geometry) {
   geometry.vertex_area = Eigen::VectorXd::Zero(mesh.vertex_count());
   geometry.angle_defect.resize(mesh.vertex_count());
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    geometry.angle_defect[v] = mesh.loop_of_vertex[v] == none ? 2 * M_PI : M_PI;
+    geometry.angle_defect[v] = mesh.flat_angle(v);
   }
   for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
     const Index v = mesh.origin(corner);

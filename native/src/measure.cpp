@@ -100,10 +100,7 @@ Measurement measure_distortion(const Surface& surface, const CornerUv& corner_uv
       is_node[v] = cones ? given[component.source_vertex[v]] : std::abs(std::abs(sums[v]) - 2 * M_PI) > cone_threshold;
     }
     const CutGraph graph = trace_cuts(mesh, is_node, is_cut);
-    const SeamQuality seams = measure_seams(mesh, graph, position, nullptr);
-    out.seams.sister_ratio_max = std::max(out.seams.sister_ratio_max, seams.sister_ratio_max);
-    out.seams.rotation_residual = std::max(out.seams.rotation_residual, seams.rotation_residual);
-    out.seams.translation_residual = std::max(out.seams.translation_residual, seams.translation_residual);
+    out.seams = worse(out.seams, measure_seams(mesh, graph, position, nullptr));
     for (Index h = 0; h < mesh.halfedge_count(); ++h) {
       if (!is_cut[h] || mesh.twin[h] < h) continue;
       cut_edges.push_back(component.source_vertex[mesh.origin(h)]);

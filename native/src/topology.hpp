@@ -5,6 +5,7 @@
 // on its left.  The same number names the corner it leaves.
 #pragma once
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -36,6 +37,9 @@ struct HalfedgeMesh {
   Index origin(Index h) const { return triangles.data()[h]; }
   Index target(Index h) const { return triangles.data()[next(h)]; }
   bool closed() const { return boundary_loops.empty(); }
+
+  // The angle of a vertex of no curvature: 2 pi inside, pi on a border.
+  double flat_angle(Index v) const { return loop_of_vertex[v] == none ? 2 * M_PI : M_PI; }
 
   // The next outgoing halfedge counter-clockwise about the same vertex; none after the last at a boundary.
   Index rotate(Index h) const { return twin[prev(h)]; }

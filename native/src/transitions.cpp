@@ -131,11 +131,7 @@ class Elimination {
       if (is_solved_[id]) solved_[id] = resolve(static_cast<Index>(id));
     }
     std::vector<Expression> of_copy(cut_mesh_.copy_count());
-    std::vector<char> on_cut(n_, 0);
-    for (const Cut& cut : cut_graph_.cuts) {
-      on_cut[cut.head] = 1;
-      for (const Index h : cut.halfedges) on_cut[mesh_.origin(h)] = 1;
-    }
+    const std::vector<char> on_cut = on_cuts(mesh_, cut_graph_);
     for (Index v = 0; v < n_; ++v) {
       if (!on_cut[v]) continue;
       for (auto& [copy, expression] : express_copies(v)) {

@@ -41,10 +41,7 @@ Eigen::VectorXcd pull_of_frames(const HalfedgeMesh& mesh, const Geometry& geomet
 std::vector<Index> open_border(const HalfedgeMesh& mesh, const CutMesh& cut_mesh) {
   std::vector<Index> next_copy(cut_mesh.copy_count(), none);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    const Index from = cut_mesh.copy_of_corner[h], to = cut_mesh.copy_of_corner[next(h)], twin = mesh.twin[h];
-    const bool open =
-        twin == none || cut_mesh.copy_of_corner[twin] != to || cut_mesh.copy_of_corner[next(twin)] != from;
-    if (open) next_copy[from] = to;
+    if (is_open(mesh, cut_mesh, h)) next_copy[cut_mesh.copy_of_corner[h]] = cut_mesh.copy_of_corner[next(h)];
   }
   std::vector<Index> border;
   for (Index copy = 0; copy < cut_mesh.copy_count() && border.empty(); ++copy) {

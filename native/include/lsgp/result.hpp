@@ -27,7 +27,7 @@ struct SeamQuality {
   double translation_residual = 0;  // distance of a vertex to the image of its sister, relative to the layout
 };
 
-struct StageSeconds : std::vector<std::pair<std::string, double>> {};
+using StageSeconds = std::vector<std::pair<std::string, double>>;  // wall clock
 
 struct CutPaths {
   VertexPairs edges;                      // (c, 2)

@@ -12,7 +12,6 @@ EnergyExpansion expand_energy(std::complex<double> f_z, std::complex<double> f_z
   const double h_pp = 2 * terms.phi1 + bend, h_qq = -2 * terms.phi1 + bend, h_pq = -bend;
 
   EnergyExpansion out;
-  out.value = sum * terms.phi + terms.psi;
   out.gradient << 2 * h_p * f_z.real(), 2 * h_p * f_z.imag(), 2 * h_q * f_zbar.real(), 2 * h_q * f_zbar.imag();
 
   // The Hessian is diagonal but for the plane of the two radial directions; its positive part eigenvalue by eigenvalue.

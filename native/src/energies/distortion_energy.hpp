@@ -39,9 +39,8 @@ inline RadialTerms foldover_free(double d, double epsilon) {
 // Conformal barrier (MIPS, Hormann and Greiner 2000): (p + q) / d, infinite at d = 0.
 inline RadialTerms conformal_barrier(double d) { return {1 / d, -1 / (d * d), 2 / (d * d * d), 0, 0, 0}; }
 
-// Value, gradient and positive semidefinite Hessian in (Re f_z, Im f_z, Re f_zbar, Im f_zbar).
+// Gradient and positive semidefinite Hessian in (Re f_z, Im f_z, Re f_zbar, Im f_zbar).
 struct EnergyExpansion {
-  double value;
   Eigen::Vector4d gradient;
   Eigen::Matrix4d hessian;
 };

@@ -15,12 +15,10 @@ void for_each_entry(Form form, const HalfedgeMesh& mesh, const Geometry& geometr
   std::vector<double> diagonal(cut_mesh.copy_count(), 0.0);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     const Index from = cut_mesh.copy_of_corner[h], to = cut_mesh.copy_of_corner[next(h)], twin = mesh.twin[h];
-    const bool open =
-        twin == none || cut_mesh.copy_of_corner[twin] != to || cut_mesh.copy_of_corner[next(twin)] != from;
     const double weight = geometry.half_cotangent[h];
     diagonal[from] += weight;
     diagonal[to] += weight;
-    if (open) {
+    if (is_open(mesh, cut_mesh, h)) {
       // Twice the signed area is the sum of Im(conj(z_from) z_to) over the open edges alone: inside, twins cancel.
       visit(from, to, Complex(-weight, form == Form::conformal ? 0.5 : 0.0));
     } else if (h < twin) {

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "assembly.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "text.hpp"
+
+namespace lsgp {
+
+Assembly::Assembly(const Surface& surface, const std::vector<Component>& components, Result& result)
+    : surface_(surface), components_(components), result_(result) {
+  result.corner_uv = CornerUv::Constant(3 * surface.triangles.rows(), 2, std::numeric_limits<double>::quiet_NaN());
+  result.island.assign(surface.triangles.rows(), none);
+  result.log_scale = Eigen::VectorXd::Zero(surface.positions.rows());
+  cone_angle_.assign(surface.positions.rows(), std::numeric_limits<double>::quiet_NaN());
+}
+
+void Assembly::add(std::size_t component_index, const ComponentCones& cones, const Geometry& geometry,
+                   ComponentMap map) {
+  const Component& component = components_[component_index];
+  for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
+    result_.log_scale[component.source_vertex[v]] = map.curvature.log_scale[v];
+  }
+  for (const Index v : cones.vertices) {
+    cone_angle_[component.source_vertex[v]] = component.mesh.flat_angle(v) - map.curvature.at_vertex[v];
+  }
+  const Index islands = add_islands(component, geometry, map);
+  solved_.push_back({&component, std::move(map), islands});
+}
+
+void Assembly::finish(const Cones& cones, const std::vector<std::pair<Index, Index>>& duplicates) {
+  arrange(islands_);
+  std::vector<Index> triangles;
+  for (std::size_t i = 0; i < islands_.size(); ++i) {
+    for (std::size_t k = 0; k < corners_[i].size(); ++k) {
+      const Complex z = islands_[i].position[static_cast<Eigen::Index>(k)];
+      result_.corner_uv.row(corners_[i][k]) << z.real(), z.imag();
+    }
+  }
+  for (std::size_t i = 0; i < pinned_.size(); ++i) result_.corner_uv.row(pinned_[i].first) = pinned_[i].second;
+  for (Index f = 0; f < surface_.triangles.rows(); ++f) {
+    if (result_.island[f] != none) triangles.push_back(f);
+  }
+  for (Solved& solved : solved_) {
+    check_in_layout(solved);
+    collect_checks(*solved.component, solved.map);
+  }
+  for (const auto& [f, original] : duplicates) share_map(f, original);
+  name_unmapped(duplicates);
+  result_.distortion = measure_triangles(surface_, result_.corner_uv, triangles);
+  result_.cut_edges = Eigen::Map<VertexPairs>(cut_edges_.data(), static_cast<Eigen::Index>(cut_edges_.size() / 2), 2);
+  for (const Index v : cones.vertices) {
+    if (std::isnan(cone_angle_[v])) continue;
+    result_.cones.push_back(v);
+    result_.cone_angles.push_back(cone_angle_[v]);
+  }
+  report_defects();
+}
+
+void Assembly::check_in_layout(Solved& solved) const {
+  const HalfedgeMesh& mesh = solved.component->mesh;
+  Eigen::VectorXcd corners(mesh.halfedge_count());
+  for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
+    const Index source = solved.component->source_corner(corner);
+    corners[corner] = {result_.corner_uv(source, 0), result_.corner_uv(source, 1)};
+  }
+  check_triangles(mesh, corners, solved.map);
+  // Islands of one map were moved one by one; their common cuts are checked as they were before.
+  check_seams(mesh, solved.islands == 1 ? corners : at_corners(solved.map.cut_mesh, solved.map.position), solved.map);
+}
+
+void Assembly::collect_checks(const Component& component, const ComponentMap& map) {
+  result_.seams = worse(result_.seams, map.seams);
+  for (const Index f : map.validity.flipped) result_.flipped.push_back(component.source_triangle[f]);
+  for (const Index v : map.validity.wrong_angle_sums) {
+    result_.wrong_angle_sums.push_back(component.source_vertex[v]);
+  }
+  result_.cone_angle_error = std::max(result_.cone_angle_error, map.validity.cone_angle_error);
+  // Beside flipped triangles angles are off for that reason alone.
+  std::vector<char> excused(component.mesh.vertex_count(), 0);
+  for (const Index f : map.validity.flipped) {
+    for (int c = 0; c < 3; ++c) excused[component.mesh.triangles(f, c)] = 1;
+  }
+  for (const Index v : map.validity.inexact_angles) {
+    if (!excused[v]) inexact_angles_.push_back(component.source_vertex[v]);
+  }
+  for (const Index h : map.inexact_seams) {
+    inexact_seams_.push_back(component.source_vertex[component.mesh.origin(h)]);
+    inexact_seams_.push_back(component.source_vertex[component.mesh.target(h)]);
+  }
+}
+
+Index Assembly::add_islands(const Component& component, const Geometry& geometry, const ComponentMap& map) {
+  const HalfedgeMesh& mesh = component.mesh;
+  std::vector<char> open(mesh.halfedge_count());
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) open[h] = map.cut_graph.is_cut[h] || mesh.seam[h];
+  std::vector<Index> part;
+  const Index part_count = label_parts(mesh, open, part);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    const Index twin = mesh.twin[h];
+    if (twin < h || !(map.cut_graph.is_cut[h] || part[h / 3] != part[twin / 3])) continue;
+    cut_edges_.push_back(component.source_vertex[mesh.origin(h)]);
+    cut_edges_.push_back(component.source_vertex[mesh.target(h)]);
+  }
+  const Index first = island_count_;
+  island_count_ += part_count;
+  for (Index f = 0; f < mesh.triangle_count(); ++f) result_.island[component.source_triangle[f]] = first + part[f];
+  const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
+  if (map.pins.size() > 1) {  // in its place already
+    for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
+      pinned_.emplace_back(component.source_corner(corner),
+                           Eigen::RowVector2d(corners[corner].real(), corners[corner].imag()));
+    }
+    return part_count;
+  }
+  const double scale = map.uv_area > 0 ? std::sqrt(geometry.total_area / map.uv_area) : 1.0;
+  std::vector<std::vector<Index>> of_part(part_count);
+  for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) of_part[part[corner / 3]].push_back(corner);
+  for (const std::vector<Index>& own : of_part) {
+    Island island{Eigen::VectorXcd(own.size()), std::nullopt};
+    corners_.emplace_back();
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      island.position[static_cast<Eigen::Index>(k)] = scale * corners[own[k]];
+      corners_.back().push_back(component.source_corner(own[k]));
+      if (!map.pins.empty() && map.cut_mesh.copy_of_corner[own[k]] == map.pins.front().copy) {
+        island.pin = {static_cast<Eigen::Index>(k), map.pins.front().position};
+      }
+    }
+    islands_.push_back(std::move(island));
+  }
+  return part_count;
+}
+
+void Assembly::name_unmapped(const std::vector<std::pair<Index, Index>>& duplicates) {
+  for (Finding& finding : result_.warnings) {
+    if (finding.code != Code::component_skipped) continue;
+    std::vector<Index>& skipped = finding.elements.indices;
+    const std::vector<Index> originals = skipped;  // sorted, as a component lists its triangles
+    for (const auto& [f, original] : duplicates) {
+      if (std::binary_search(originals.begin(), originals.end(), original)) skipped.push_back(f);
+    }
+    std::sort(skipped.begin(), skipped.end());
+  }
+}
+
+void Assembly::share_map(Index triangle, Index original) {
+  result_.island[triangle] = result_.island[original];
+  for (Index corner = 3 * triangle; corner < 3 * triangle + 3; ++corner) {
+    for (Index other = 3 * original; other < 3 * original + 3; ++other) {
+      if (surface_.triangles.data()[corner] == surface_.triangles.data()[other]) {
+        result_.corner_uv.row(corner) = result_.corner_uv.row(other);
+      }
+    }
+  }
+}
+
+void Assembly::report_defects() {
+  std::vector<Index>& flipped = result_.flipped;
+  std::vector<Index>& wrong = result_.wrong_angle_sums;
+  std::sort(flipped.begin(), flipped.end());
+  std::sort(wrong.begin(), wrong.end());
+  if (!inexact_seams_.empty()) {
+    result_.warnings.push_back(
+        {Code::inexact_seams,
+         concat("At ", count(inexact_seams_.size() / 2, "cut edge", "cut edges"),
+                " the two sides agree to fewer than nine digits, because the layout shrinks too much there. Add cones "
+                "nearby."),
+         {ElementKind::edges, inexact_seams_}});
+  }
+  if (!inexact_angles_.empty()) {
+    std::sort(inexact_angles_.begin(), inexact_angles_.end());
+    result_.warnings.push_back({Code::inexact_angles,
+                                concat("The angles around ", count(inexact_angles_.size(), "vertex", "vertices"),
+                                       " miss what was imposed by more than a millionth. Add cones nearby."),
+                                {ElementKind::vertices, inexact_angles_}});
+  }
+  if (!flipped.empty()) {
+    result_.warnings.push_back({Code::flipped_triangles,
+                                concat(count(flipped.size(), "triangle is", "triangles are"),
+                                       " flipped in the layout. Add a cone nearby or improve the mesh there."),
+                                {ElementKind::triangles, flipped}});
+  }
+  if (!wrong.empty()) {
+    result_.warnings.push_back({Code::wrong_angle_sums,
+                                concat("At ", count(wrong.size(), "vertex", "vertices"),
+                                       " the layout turns once too often or too little. Move or add cones nearby."),
+                                {ElementKind::vertices, wrong}});
+  }
+}
+
+}  // namespace lsgp

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From the maps of the components to one result in the caller's numbering.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "component_map.hpp"
+#include "layout.hpp"
+
+namespace lsgp {
+
+class Assembly {
+ public:
+  // Everything is collected in `result`, which holds the findings so far.
+  Assembly(const Surface& surface, const std::vector<Component>& components, Result& result);
+
+  void add(std::size_t component_index, const ComponentCones& cones, const Geometry& geometry, ComponentMap map);
+
+  // Arranges the islands, checks what is returned and names what is wrong.  duplicates: as in Topology.
+  void finish(const Cones& cones, const std::vector<std::pair<Index, Index>>& duplicates);
+
+ private:
+  struct Solved {
+    const Component* component;
+    ComponentMap map;
+    Index islands;
+  };
+
+  // Checks the coordinates that are returned: a component much smaller than the others has lost digits to its place.
+  void check_in_layout(Solved& solved) const;
+  void collect_checks(const Component& component, const ComponentMap& map);
+
+  // A component is one island, or several where its cuts and seams together close off parts: those keep their size and
+  // are placed one by one, related across the seam by how they were moved.  Returns how many.
+  Index add_islands(const Component& component, const Geometry& geometry, const ComponentMap& map);
+
+  // Triangles that lie on one of a skipped component were skipped with it.
+  void name_unmapped(const std::vector<std::pair<Index, Index>>& duplicates);
+
+  void share_map(Index triangle, Index original);
+  void report_defects();
+
+  const Surface& surface_;
+  const std::vector<Component>& components_;
+  Result& result_;
+  std::vector<double> cone_angle_;                // by the caller's vertex, NaN where none was imposed
+  std::vector<Index> cut_edges_, inexact_seams_;  // vertex pairs
+  std::vector<Index> inexact_angles_;
+  std::vector<Solved> solved_;
+  std::vector<Island> islands_;                               // those to be arranged
+  std::vector<std::vector<Index>> corners_;                   // the caller's, of each of them
+  std::vector<std::pair<Index, Eigen::RowVector2d>> pinned_;  // corners that are in their place
+  Index island_count_ = 0;
+};
+
+}  // namespace lsgp

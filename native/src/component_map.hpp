@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The map of one component: cut, prescribe, unfold, repair (the paper's section 3.2).
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "components.hpp"
+#include "cut_graph.hpp"
+#include "cut_mesh.hpp"
+#include "distortion.hpp"
+#include "pins.hpp"
+
+namespace lsgp {
+
+// A component's map and all that was imposed on it, in its own numbering.
+struct ComponentMap {
+  CutGraph cut_graph;
+  CutMesh cut_mesh;
+  Curvature curvature;
+  std::optional<Eigen::VectorXd> rotation;  // (cuts) imposed, radians; none without transitions
+  Eigen::VectorXcd position;                // (copies) u + iv
+  std::vector<Pin> pins;
+  double uv_area = 0;  // signed
+  SeamQuality seams;
+  std::vector<Index> inexact_seams;  // halfedges
+  Validity validity;
+};
+
+// pinned_corners: corners of the component and their places.  findings and seconds are added to.
+// Throws what the stages throw, in the component's own numbering.
+ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
+                           const std::vector<std::pair<Index, Complex>>& pinned_corners, const Options& options,
+                           std::vector<Finding>& findings, StageSeconds& seconds);
+
+// Measure positions u + iv at the component's corners, (3m), against what the map imposed.
+void check_seams(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners, ComponentMap& map);
+void check_triangles(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners, ComponentMap& map);
+
+// Those of the vertices that lie on no border.
+std::vector<Index> inside_only(const HalfedgeMesh& mesh, const std::vector<Index>& vertices);
+
+}  // namespace lsgp
