@@ -265,8 +265,8 @@ def place_cones(
     """Cones at the extrema of the log scale factor, one after the other (Ben-Chen et al. 2008).
 
     count: cones per component, `existing` ones included; None: as many as bring the predicted L2 stretch near 1.
-    existing: cones to keep; they come first in the answer. None is placed on a border nor, where
-    the mesh has room, within two rings of another.  Returns (k,) int32 vertex indices.
+    existing: cones to keep; they come first in the answer. None is placed on a border nor, where the mesh has room,
+        within two rings of another.  Returns (k,) int32 vertex indices.
     """
     wanted = -1
     if count is not None:

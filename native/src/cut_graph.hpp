@@ -25,8 +25,7 @@ struct CutGraph {
 // One multi-source Dijkstra grows a region around every cone and boundary loop; the minimum spanning tree over the
 // edges between regions is the minimum spanning tree of all shortest paths (Mehlhorn 1988), and its paths merge into
 // a tree by construction.  Each handle adds two loops that are left over by a spanning tree of the triangles
-// (tree-cotree, Erickson and Whittlesey 2005).  Seam edges cost nothing, and seam
-// networks are joined like cones.
+// (tree-cotree, Erickson and Whittlesey 2005).  Seam edges cost nothing, and seam networks are joined like cones.
 // interior_cones: vertices not on a boundary.  uncut: (loops) boundary loops that no cut has to reach, or empty; cuts
 // keep clear of them.  Throws CUTS_BLOCKED with the component's own vertex numbers.
 CutGraph connect_cones(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& interior_cones,

@@ -20,15 +20,15 @@ namespace lsgp {
 LSGP_API Result parameterize(const Surface& surface, const Cones& cones, const Options& options = {},
                              const Pins& pins = {});
 
-// The cuts alone (section 4.1): shortest paths that join cones and boundary loops and open every handle.
+// The cuts alone (section 4.1): shortest paths that join cones and boundary loops and open every handle.  A map needs
+// fewer where the metric turns exactly once about a hole, which only its prescription tells.
 LSGP_API CutPaths find_cuts(const Surface& surface, const std::vector<Index>& cones, const Options& options = {});
 
 // The cone angles alone (section 5) and the scale they imply.
 LSGP_API Prescription prescribe_curvature(const Surface& surface, const Cones& cones, const Options& options = {});
 
-// Cones at the extrema of the log scale factor, one after the other (Ben-Chen et al. 2008), `existing` ones first;
-// none on a border and, where the mesh has room,
-// none within two rings of another.
+// Cones at the extrema of the log scale factor, one after the other (Ben-Chen et al. 2008), `existing` ones first; none
+// on a border and, where the mesh has room, none within two rings of another.
 // count: cones of every component; negative: as many as bring the predicted L2 stretch near 1.
 LSGP_API std::vector<Index> place_cones(const Surface& surface, int count, const std::vector<Index>& existing = {},
                                         SeamMode seams = SeamMode::follow);
