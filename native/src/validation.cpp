@@ -13,6 +13,7 @@ namespace {
 // Squared areas and their sums must neither overflow nor vanish in double precision.
 constexpr double largest_extent = 1e60;
 constexpr double smallest_extent = 1e-60;
+constexpr double smallest_cone_angle = 1e-6;  // radians; less is lost beside the angles of triangles
 
 void require_indices(const VertexPairs& pairs, Index vertex_count, const char* what) {
   std::vector<Index> bad;
@@ -114,7 +115,7 @@ void require_valid(const Surface& surface, const Cones& cones) {
     if (!cones.angles[i]) continue;
     if (!std::isfinite(*cones.angles[i]))
       non_finite.push_back(v);
-    else if (*cones.angles[i] <= 0)
+    else if (*cones.angles[i] < smallest_cone_angle)
       impossible.push_back(v);
   }
   if (!outside.empty()) {
@@ -132,12 +133,16 @@ void require_valid(const Surface& surface, const Cones& cones) {
          "Mark vertices of the surface only.");
   refuse(Code::cone_angle_non_finite, non_finite, "cone angle is not a finite number",
          "cone angles are not finite numbers", "Give an angle above 0, or none for automatic.");
-  refuse(Code::cone_angle_range, impossible, "cone angle is zero or negative", "cone angles are zero or negative",
+  refuse(Code::cone_angle_range, impossible, "cone angle is not above zero", "cone angles are not above zero",
          "Give an angle above 0 degrees.");
 }
 
 void require_valid(const Surface& surface, const Pins& pins) {
   const Index corner_count = static_cast<Index>(3 * surface.triangles.rows());
+  if (pins.positions.rows() != static_cast<Eigen::Index>(pins.corners.size())) {
+    throw Error(Code::pin_index, concat(pins.corners.size(), " corners are pinned but ", pins.positions.rows(),
+                                        " positions were given. Pass one position per pinned corner."));
+  }
   std::vector<Index> outside, non_finite;
   for (std::size_t i = 0; i < pins.corners.size(); ++i) {
     const Index corner = pins.corners[i];
@@ -146,9 +151,9 @@ void require_valid(const Surface& surface, const Pins& pins) {
     else if (!pins.positions.row(static_cast<Eigen::Index>(i)).allFinite())
       non_finite.push_back(corner / 3);
   }
-  if (!outside.empty() || pins.positions.rows() != static_cast<Eigen::Index>(pins.corners.size())) {
-    throw Error(Code::pin_index, concat("The pins name corners outside 0 to ", corner_count - 1, " (", list(outside),
-                                        ") or are not as many as their positions. Pass corners of this mesh."));
+  if (!outside.empty()) {
+    throw Error(Code::pin_index, concat("The pins name ", count(outside.size(), "corner", "corners"), " outside 0 to ",
+                                        corner_count - 1, " (", list(outside), "). Pass corners of this mesh."));
   }
   if (!non_finite.empty()) {
     throw Error(Code::pin_non_finite,
