@@ -103,6 +103,10 @@ class Options:
             if value not in get_args(choices) and not (name == "prescription" and value is None):
                 known = ", ".join(get_args(choices))
                 raise InputError("WRONG_PARAMETER", f"{name} is {value!r}; choose one of {known}.")
+        if not isinstance(self.loop_turning, Mapping):
+            raise InputError(
+                "WRONG_PARAMETER", f"loop_turning is {self.loop_turning!r}; pass angles by vertices of borders."
+            )
         for vertex, turning in self.loop_turning.items():
             if (
                 not isinstance(vertex, Integral)

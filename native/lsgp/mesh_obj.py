@@ -87,7 +87,9 @@ def _statements(data: bytes) -> tuple[Rows, Rows, Rows]:
     found: dict[bytes, tuple[list[bytes], list[int]]] = {b"v": ([], []), b"vt": ([], []), b"f": ([], [])}
     found[b"fo"] = found[b"f"]  # the old name of the statement
     for text, number in zip(texts, numbers, strict=True):
-        keyword, *rest = text.split(None, 1)
+        keyword, *rest = text.split(None, 1) or [b""]
+        if not keyword:
+            continue  # nothing but the mark of a continued line
         if keyword in found:
             lines = found[keyword]
             lines[0].append(rest[0] if rest else b"")

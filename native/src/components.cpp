@@ -55,14 +55,13 @@ void hand_out_turning(const std::vector<Component>& components, const Options& o
         found = true;
       }
     }
-    if (!found || !std::isfinite(turning)) {
-      throw Error(Code::loop_turning,
-                  found
-                      ? "The turning of a border is not a finite number. Give an angle, 360 degrees being a full turn."
-                      : "The turning of a border was given for a vertex that lies on none. Name a border vertex.",
-                  {ElementKind::vertices,
-                   vertex >= 0 && vertex < vertex_count ? std::vector<Index>{vertex} : std::vector<Index>{}});
-    }
+    if (found && std::isfinite(turning)) continue;
+    const bool exists = vertex >= 0 && vertex < vertex_count;
+    throw Error(
+        Code::loop_turning,
+        concat("The turning of a border was given ", found ? "as no finite number" : "for a vertex that lies on none",
+               exists ? "" : concat(" (", vertex, ")"), ". Give an angle, by a vertex on the border."),
+        {ElementKind::vertices, exists ? std::vector<Index>{vertex} : std::vector<Index>{}});
   }
 }
 
