@@ -386,6 +386,7 @@ Curvature prescribe(const HalfedgeMesh& mesh, const Geometry& geometry, const Co
   }
   out.is_free = border.held;
   for (Index v = 0; v < mesh.vertex_count(); ++v) out.is_free[v] |= border.curvature[v] != 0;  // at teeth
+  for (const Index v : asked.vertices) out.is_free[v] = 0;
   out.log_scale.array() -= geometry.vertex_area.dot(out.log_scale) / geometry.total_area;
   if (!(out.predicted_l2 < high_l2)) {
     findings.push_back({Code::high_distortion,

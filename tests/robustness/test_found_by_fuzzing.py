@@ -63,6 +63,28 @@ def test_a_stretch_that_overflows() -> None:
         assert error.code == "SOLVER_FAILED"
 
 
+@pytest.mark.parametrize("far", [1.175e31, 1.175e40, 1e58])
+def test_a_layout_that_overflows(far: float) -> None:
+    """Finite when it is solved, not when it is scaled: what counts are the coordinates that are returned."""
+    mesh = meshes.grid(3, 4, lambda x, y: np.sin(x + 0.5 * y))._replace(cones=np.array([5], np.int32))
+    mesh.positions[5] = [far, -0.8, 0.3]
+    try:
+        honest(mesh, prescription="straightness")
+    except lsgp.SolverError as error:
+        assert error.code == "SOLVER_FAILED"
+
+
+def test_an_angle_next_to_nothing() -> None:
+    """Beside pi it vanishes: it is refused like the angle 0, or comes back above 0."""
+    tube = meshes.cylinder(3, 3)
+    try:
+        result = lsgp.parameterize(surface(tube), [6], [5e-324], lsgp.Options("manual"))
+    except lsgp.CurvatureError as error:
+        assert error.code == "CONE_ANGLE_RANGE"
+    else:
+        assert undeclared_faults(surface(tube), result) == []
+
+
 @pytest.mark.parametrize("seed", [3, 10])
 def test_a_box_stretched_beyond_measure(seed: int) -> None:
     honest(far_apart(meshes.cube(3), seed))
