@@ -334,7 +334,7 @@ def _float_rows(values: ArrayLike, width: int, name: str) -> FloatArray:
 def _floats(array: NDArray[Any], name: str) -> FloatArray:
     if array.dtype.kind not in "fiu":
         raise InputError("WRONG_DTYPE", f"{name} holds {array.dtype}; pass numbers.")
-    return np.ascontiguousarray(array, np.float64)
+    return np.require(array, np.float64, ["C", "A"])
 
 
 def _index_rows(values: ArrayLike, width: int, name: str) -> IndexArray:
@@ -360,4 +360,4 @@ def _indices(array: NDArray[Any], name: str) -> IndexArray:
         raise InputError("WRONG_DTYPE", f"{name} holds {array.dtype}; pass whole numbers.")
     if array.max() > np.iinfo(np.int32).max or array.min() < np.iinfo(np.int32).min:
         raise InputError("INDEX_OUT_OF_RANGE", f"{name} holds {array.max()}; indices must fit 32 bits.")
-    return np.ascontiguousarray(array, np.int32)
+    return np.require(array, np.int32, ["C", "A"])

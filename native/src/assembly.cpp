@@ -32,6 +32,13 @@ void Assembly::add(std::size_t component_index, const ComponentCones& cones, con
 
 void Assembly::finish(const Cones& cones, const std::vector<std::pair<Index, Index>>& duplicates) {
   arrange(islands_);
+  for (const Island& island : islands_) {
+    if (island.position.allFinite()) continue;
+    throw Error(
+        Code::solver_failed,
+        "The layout's sizes differ by more than numbers can hold. Add cones where the surface is stretched most, or "
+        "unwrap its parts one by one.");
+  }
   std::vector<Index> triangles;
   for (std::size_t i = 0; i < islands_.size(); ++i) {
     for (std::size_t k = 0; k < corners_[i].size(); ++k) {

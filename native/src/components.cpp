@@ -65,6 +65,18 @@ void hand_out_turning(const std::vector<Component>& components, const Options& o
   }
 }
 
+// The power of two that brings the surface to about unit size: exact, and areas can neither overflow nor vanish.
+double unit_scale(const Surface& surface) {
+  double largest = 0;
+  for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    const auto corner = surface.positions.row(surface.triangles(f, 0));
+    for (const int c : {1, 2}) {
+      largest = std::max(largest, (surface.positions.row(surface.triangles(f, c)) - corner).cwiseAbs().maxCoeff());
+    }
+  }
+  return largest > 0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
+}
+
 bool has_seam(const HalfedgeMesh& mesh) { return std::find(mesh.seam.begin(), mesh.seam.end(), 1) != mesh.seam.end(); }
 
 }  // namespace
@@ -73,6 +85,7 @@ Work prepare(const Surface& surface, const Cones& cones, const Options& options,
   require_valid(surface);
   require_valid(surface, cones);
   Surface used = surface;
+  used.positions *= unit_scale(surface);
   if (options.seams == SeamMode::ignore) used.seams.resize(0, 2);
   OpenSeams open;
   if (options.seams == SeamMode::boundary) open.assign(surface.triangles.rows(), 1);
