@@ -66,8 +66,8 @@ struct Connection {
   Reduction reduction;
 };
 
-Connection connect(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                   const Curvature& curvature) {
+Connection connect(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map) {
+  const Curvature& curvature = map.curvature;
   Connection out;
   out.frames = integrate_frames(mesh, geometry, map.cut_graph, curvature.log_scale);
   // The better a root, the farther its curvature is from whole turns.
@@ -163,7 +163,7 @@ ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, c
     check(mesh, map);
     return map;
   }
-  const Connection connection = connect(mesh, geometry, map, map.curvature);
+  const Connection connection = connect(mesh, geometry, map);
   map.rotation = connection.rotation;
   const bool spectral = usable_unfold(mesh, cones, options.unfold, findings) == UnfoldMethod::spectral;
   if (spectral) {

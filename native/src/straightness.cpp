@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "straightness.hpp"
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "energies/quadratic_forms.hpp"
 #include "solvers/eigenproblem.hpp"

@@ -7,7 +7,6 @@
 
 #include "cut_mesh.hpp"
 #include "geometry.hpp"
-#include "holonomy.hpp"
 
 namespace lsgp {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "transitions.hpp"
 
-#include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace lsgp {

@@ -2,6 +2,7 @@
 #include "solvers/cholesky.hpp"
 
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 
 #include "lsgp/errors.hpp"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solvers/saddle_point.hpp"
 
+#include <algorithm>
 #include <complex>
 
 #include "solvers/cholesky.hpp"

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/SparseCore>
-#include <vector>
 
 namespace lsgp {
 
