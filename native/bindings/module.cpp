@@ -140,6 +140,55 @@ lsgp::SeamMode to_seam_mode(const std::string& name) {
       name, {{"follow", SeamMode::follow}, {"boundary", SeamMode::boundary}, {"ignore", SeamMode::ignore}});
 }
 
+// A dictionary with the fields of lsgp.Seamless.
+lsgp::Seamless to_seamless(const py::dict& values) {
+  using lsgp::CoarseGrid, lsgp::Lattice;
+  lsgp::Seamless seamless;
+  seamless.lattice = choose<Lattice>(values["lattice"].cast<std::string>(), {{"square", Lattice::square},
+                                                                             {"stripe", Lattice::stripe},
+                                                                             {"translation", Lattice::translation},
+                                                                             {"triangle", Lattice::triangle},
+                                                                             {"hexagon", Lattice::hexagon}});
+  seamless.tiles = values["tiles"].cast<std::optional<double>>();
+  seamless.tile_size = values["tile_size"].cast<std::optional<double>>();
+  seamless.parity = values["parity"].cast<bool>();
+  seamless.coarse_grid =
+      choose<CoarseGrid>(values["coarse_grid"].cast<std::string>(),
+                         {{"refine", CoarseGrid::refine}, {"merge", CoarseGrid::merge}, {"relax", CoarseGrid::relax}});
+  seamless.cell = values["cell"].cast<double>();
+  return seamless;
+}
+
+// The fields of lsgp.SeamlessReport.
+py::dict to_dict(const lsgp::SeamlessReport& report) {
+  std::vector<Index> nodes, turns;
+  std::vector<std::int64_t> translations;
+  std::vector<double> errors;
+  for (const lsgp::SeamlessCut& cut : report.cuts) {
+    nodes.insert(nodes.end(), {cut.tail, cut.head});
+    turns.push_back(cut.turns);
+    translations.insert(translations.end(), cut.translation.begin(), cut.translation.end());
+    errors.push_back(cut.error);
+  }
+  const auto count = static_cast<py::ssize_t>(report.cuts.size());
+  py::dict out;
+  out["symmetry"] = report.symmetry;
+  out["tiles"] = report.tiles;
+  out["tile_size"] = report.tile_size;
+  out["cell"] = report.cell;
+  out["energy_before"] = report.energy_before;
+  out["energy_after"] = report.energy_after;
+  out["cut_nodes"] = to_array(nodes.data(), {count, 2});
+  out["cut_turns"] = to_array(turns);
+  out["cut_translations"] = to_array(translations.data(), {count, 2});
+  out["cut_errors"] = to_array(errors);
+  out["error"] = report.error;
+  out["flat_cones"] = to_array(report.flat_cones);
+  out["merged_cones"] = to_array(report.merged_cones);
+  out["relaxed_cones"] = to_array(report.relaxed_cones);
+  return out;
+}
+
 // A dictionary with the fields of lsgp.Options.
 lsgp::Options to_options(const py::dict& values) {
   const auto text = [&](const char* field) { return values[field].cast<std::string>(); };
@@ -158,6 +207,7 @@ lsgp::Options to_options(const py::dict& values) {
   for (const auto& [vertex, turning] : values["loop_turning"].cast<py::dict>()) {
     options.loop_turning.emplace_back(vertex.cast<Index>(), turning.cast<double>());
   }
+  if (!values["seamless"].is_none()) options.seamless = to_seamless(values["seamless"].cast<py::dict>());
   return options;
 }
 
@@ -187,6 +237,7 @@ py::dict parameterize(const FloatArray& positions, const IndexArray& triangles, 
   out["wrong_angle_sums"] = to_array(result.wrong_angle_sums);
   out["cone_angle_error"] = result.cone_angle_error;
   out["log_scale"] = to_array(result.log_scale);
+  out["seamless"] = result.seamless ? py::object(to_dict(*result.seamless)) : py::none();
   out["warnings"] = to_findings(result.warnings);
   out["stage_seconds"] = seconds;
   return out;

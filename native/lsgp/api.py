@@ -22,6 +22,13 @@ UnfoldMethod = Literal["poisson", "spectral"]
 Method = Literal["lsgp", "lscm"]
 SeamMode = Literal["follow", "boundary", "ignore"]
 BorderMode = Literal["free", "straight"]
+Lattice = Literal["square", "stripe", "translation", "triangle", "hexagon"]
+CoarseGrid = Literal["refine", "merge", "relax"]
+
+
+def _require_choice(name: str, value: Any, choices: tuple[str, ...]) -> None:
+    if value not in choices:
+        raise InputError("WRONG_PARAMETER", f"{name} is {value!r}; choose one of {', '.join(choices)}.")
 
 
 @dataclass(frozen=True)
@@ -74,6 +81,42 @@ _CHOICES = {
 
 
 @dataclass(frozen=True)
+class Seamless:
+    """A layout in which a tileable texture shows no seam (the paper's section 8).
+
+    Cone angles become multiples of the lattice's turn, and translations across cuts lead from lattice point to lattice
+    point. Coordinates are exact in float32: do not scale them afterwards but by powers of two.
+
+    lattice: "square": quarter turns of unit squares; "stripe": half turns of unit squares; "translation": unit squares
+        without turns; "triangle": third turns of triangles of side 1; "hexagon": sixth turns of them.
+    tiles: cells along the layout's longer side, before rounding. tile_size: or the side of a cell on the surface, in
+        its unit. Neither: the coarsest grid that is valid and costs at most a tenth in distortion.
+    parity: square lattice only: black and white cells match across cuts as well.
+    coarse_grid: where no layout is valid on a grid as coarse as that: "refine" takes the next finer one, "merge" merges
+        cones less than a cell apart, "relax" leaves cones off the grid that find no place on it.
+    cell: side of a cell in texture coordinates, a power of two. 1 is a whole tile; 2**level / size makes translations
+        multiples of 2**level texels of a texture of that size, so that its mipmaps match up to that level.
+    """
+
+    lattice: Lattice = "square"
+    tiles: float | None = None
+    tile_size: float | None = None
+    parity: bool = False
+    coarse_grid: CoarseGrid = "refine"
+    cell: float = 1.0
+
+    def __post_init__(self) -> None:
+        _require_choice("lattice", self.lattice, get_args(Lattice))
+        _require_choice("coarse_grid", self.coarse_grid, get_args(CoarseGrid))
+        for name in ("tiles", "tile_size", "cell"):
+            value = getattr(self, name)
+            if value is None and name != "cell":
+                continue
+            if not isinstance(value, Real) or isinstance(value, bool):
+                raise InputError("WRONG_PARAMETER", f"{name} is {value!r}; pass a number.")
+
+
+@dataclass(frozen=True)
 class Options:
     """How to prescribe the cone angles and how to unfold.
 
@@ -88,6 +131,7 @@ class Options:
         "straight": borders run straight from marked cone to marked cone.
     loop_turning: total turning of borders, radians, by any vertex on each; others turn as they distort least. A free
         border about which the metric turns almost once, a hole, needs no cut and gets none.
+    seamless: round angles and translations so that a tileable texture shows no seam; None: leave them.
     """
 
     prescription: PrescriptionRule | None = None
@@ -96,13 +140,15 @@ class Options:
     seams: SeamMode = "follow"
     border: BorderMode = "free"
     loop_turning: Mapping[int, float] = field(default_factory=dict)
+    seamless: Seamless | None = None
 
     def __post_init__(self) -> None:
         for name, choices in _CHOICES.items():
             value = getattr(self, name)
-            if value not in get_args(choices) and not (name == "prescription" and value is None):
-                known = ", ".join(get_args(choices))
-                raise InputError("WRONG_PARAMETER", f"{name} is {value!r}; choose one of {known}.")
+            if not (name == "prescription" and value is None):
+                _require_choice(name, value, get_args(choices))
+        if not (self.seamless is None or isinstance(self.seamless, Seamless)):
+            raise InputError("WRONG_PARAMETER", f"seamless is {self.seamless!r}; pass a Seamless, or None.")
         if not isinstance(self.loop_turning, Mapping):
             raise InputError(
                 "WRONG_PARAMETER", f"loop_turning is {self.loop_turning!r}; pass angles by vertices of borders."
@@ -150,6 +196,39 @@ class SeamQuality:
 
 
 @dataclass(frozen=True, slots=True)
+class SeamlessReport:
+    """What makes a layout seamless, and at what cost: the certificate of its cuts.
+
+    A cut is crossed from its left side to its right one by z -> e^(2 pi i turns / symmetry) z + cell (a + b g), where g
+    is i on square lattices and e^(i pi / 3) on triangular ones and z = u + iv.
+
+    symmetry: rotations are multiples of 2 pi / symmetry. tiles: cells along the layout's longer side, before rounding.
+    tile_size: side of a cell on the surface. cell: the same in texture coordinates.
+    energy_before, energy_after: symmetric Dirichlet energy, 1 is isometric, around the rounding of the translations.
+    cut_nodes: (c, 2) int32 vertices at the cuts' tails and heads. cut_turns: (c,) int32, 0 .. symmetry - 1.
+    cut_translations: (c, 2) int64, (a, b). cut_errors: (c,) float64, the largest distance of a vertex, as float32 stores
+        it, from the image of its sister, in cells. error: the largest of them, 0 on square lattices.
+    flat_cones: cones that came out flat and are none any more. merged_cones: cones given up for another within a cell.
+    relaxed_cones: cones off the lattice; the cuts to them show a seam.
+    """
+
+    symmetry: int
+    tiles: float
+    tile_size: float
+    cell: float
+    energy_before: float
+    energy_after: float
+    cut_nodes: IndexArray
+    cut_turns: IndexArray
+    cut_translations: NDArray[np.int64]
+    cut_errors: FloatArray
+    error: float
+    flat_cones: IndexArray
+    merged_cones: IndexArray
+    relaxed_cones: IndexArray
+
+
+@dataclass(frozen=True, slots=True)
 class Result:
     """A map and everything imposed on it and measured of it.
 
@@ -163,6 +242,8 @@ class Result:
         prescribed angle (a deviation is a whole turn). The map is valid when both are empty.
     cone_angle_error: largest deviation of a cone's UV angle sum from its imposed angle, radians.
     log_scale: (n,) float64, predicted logarithm of the length scale at each vertex, area-weighted mean 0 on an island.
+    seamless: the certificate of a seamless layout; None where none was asked for. Such a layout is not scaled into the
+        unit square: one cell has the side `cell`.
     warnings: findings that leave the result usable.
     stage_seconds: wall-clock seconds of each stage.
     """
@@ -179,6 +260,7 @@ class Result:
     wrong_angle_sums: IndexArray
     cone_angle_error: float
     log_scale: FloatArray
+    seamless: SeamlessReport | None
     warnings: list[Finding]
     stage_seconds: dict[str, float]
 
@@ -243,6 +325,7 @@ def parameterize(
     out = _lsgp.parameterize(*_surface_arrays(surface), *_cone_arrays(cones, angles, options), pins.corners, pins.uv)
     out["distortion"] = Distortion(**out["distortion"])
     out["seams"] = SeamQuality(**out["seams"])
+    out["seamless"] = None if out["seamless"] is None else SeamlessReport(**out["seamless"])
     return Result(**out)
 
 
@@ -318,6 +401,7 @@ def _cone_arrays(cones: ArrayLike, angles: Sequence[float | None] | None, option
             **vars(options),
             "prescription": rule,
             "loop_turning": {int(v): float(a) for v, a in options.loop_turning.items()},
+            "seamless": None if options.seamless is None else vars(options.seamless),
         },
     )
 

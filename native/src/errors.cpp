@@ -22,12 +22,15 @@ const char* name(Code code) {
     case Code::pin_index: return "PIN_INDEX";
     case Code::pin_non_finite: return "PIN_NON_FINITE";
     case Code::pins_conflict: return "PINS_CONFLICT";
+    case Code::wrong_parameter: return "WRONG_PARAMETER";
     case Code::not_orientable: return "NOT_ORIENTABLE";
     case Code::too_few_cones: return "TOO_FEW_CONES";
     case Code::cuts_blocked: return "CUTS_BLOCKED";
     case Code::cone_angle_range: return "CONE_ANGLE_RANGE";
     case Code::gauss_bonnet: return "GAUSS_BONNET";
+    case Code::seamless_impossible: return "SEAMLESS_IMPOSSIBLE";
     case Code::solver_failed: return "SOLVER_FAILED";
+    case Code::grid_too_coarse: return "GRID_TOO_COARSE";
     case Code::component_skipped: return "COMPONENT_SKIPPED";
     case Code::isolated_vertices: return "ISOLATED_VERTICES";
     case Code::degenerate_faces: return "DEGENERATE_FACES";
@@ -45,6 +48,10 @@ const char* name(Code code) {
     case Code::inexact_angles: return "INEXACT_ANGLES";
     case Code::flipped_triangles: return "FLIPPED_TRIANGLES";
     case Code::wrong_angle_sums: return "WRONG_ANGLE_SUMS";
+    case Code::flat_cones: return "FLAT_CONES";
+    case Code::grid_refined: return "GRID_REFINED";
+    case Code::cones_merged: return "CONES_MERGED";
+    case Code::cones_not_snapped: return "CONES_NOT_SNAPPED";
   }
   return "UNKNOWN";
 }
@@ -64,8 +71,10 @@ ErrorKind error_kind(Code code) {
     case Code::too_few_cones:
     case Code::cuts_blocked: return ErrorKind::topology;
     case Code::cone_angle_range:
-    case Code::gauss_bonnet: return ErrorKind::curvature;
-    case Code::solver_failed: return ErrorKind::solver;
+    case Code::gauss_bonnet:
+    case Code::seamless_impossible: return ErrorKind::curvature;
+    case Code::solver_failed:
+    case Code::grid_too_coarse: return ErrorKind::solver;
     default: return ErrorKind::input;
   }
 }

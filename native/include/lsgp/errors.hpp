@@ -38,6 +38,7 @@ enum class Code {
   pin_index,
   pin_non_finite,
   pins_conflict,
+  wrong_parameter,
   // TopologyError
   not_orientable,
   too_few_cones,
@@ -45,8 +46,10 @@ enum class Code {
   // CurvatureError
   cone_angle_range,
   gauss_bonnet,
+  seamless_impossible,
   // SolverError
   solver_failed,
+  grid_too_coarse,
   // warnings
   component_skipped,
   isolated_vertices,
@@ -65,6 +68,10 @@ enum class Code {
   inexact_angles,
   flipped_triangles,
   wrong_angle_sums,
+  flat_cones,
+  grid_refined,
+  cones_merged,
+  cones_not_snapped,
 };
 
 enum class ErrorKind { input, topology, curvature, solver };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -38,6 +39,34 @@ enum class BorderMode {
   straight,  // borders run straight from marked cone to marked cone
 };
 
+// The points that cones and translations lie on in a seamless layout, and the rotations that leave them in place.
+enum class Lattice {
+  square,       // quarter turns of the unit squares: any tileable texture that looks the same turned by 90 degrees
+  stripe,       // half turns of the unit squares
+  translation,  // no turns, of the unit squares
+  triangle,     // third turns of the triangles of side 1
+  hexagon,      // sixth turns of the triangles of side 1
+};
+
+// What to do where no layout is valid on a grid as coarse as asked for.
+enum class CoarseGrid {
+  refine,  // take the next finer grid
+  merge,   // merge cones less than a cell apart
+  relax,   // leave cones off the grid that find no place on it (the paper's section 8)
+};
+
+// A layout in which a tileable texture shows no seam (the paper's section 8): cone angles are multiples of the
+// lattice's turn, and translations across cuts lead from lattice point to lattice point.
+struct Seamless {
+  Lattice lattice = Lattice::square;
+  std::optional<double> tiles;      // cells along the layout's longer side, before rounding
+  std::optional<double> tile_size;  // or the side of a cell on the surface; neither: the coarsest grid that is valid
+                                    // and costs at most a tenth in distortion
+  bool parity = false;              // square lattice: black and white cells match as well
+  CoarseGrid coarse_grid = CoarseGrid::refine;
+  double cell = 1;  // its side in texture coordinates, a power of two: 1 is a whole tile
+};
+
 struct Options {
   PrescriptionRule prescription = PrescriptionRule::least_distortion;
   UnfoldMethod unfold = UnfoldMethod::poisson;
@@ -46,6 +75,7 @@ struct Options {
   BorderMode border = BorderMode::free;
   // Total turning of boundary loops, radians, each named by a vertex on it; other loops turn as they distort least.
   std::vector<std::pair<Index, double>> loop_turning;
+  std::optional<Seamless> seamless;
 };
 
 }  // namespace lsgp

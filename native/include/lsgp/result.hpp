@@ -2,6 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +32,30 @@ struct SeamQuality {
 
 using StageSeconds = std::vector<std::pair<std::string, double>>;  // wall clock
 
+// How one cut of a seamless layout is crossed, from its left side to its right one: z -> e^{2 pi i turns / q} z + t
+// with t = cell (translation[0] + translation[1] g), where g is i on square lattices and e^{i pi / 3} on triangular
+// ones.
+struct SeamlessCut {
+  Index tail, head;                           // vertices
+  int turns;                                  // 0 .. q - 1
+  std::array<std::int64_t, 2> translation{};  // in cells
+  double error = 0;  // largest distance of a vertex, as float32 stores it, from the image of its sister, in cells
+};
+
+// What makes a layout seamless, and at what cost.
+struct SeamlessReport {
+  int symmetry = 4;                            // q
+  double tiles = 0;                            // cells along the layout's longer side, before rounding
+  double tile_size = 0;                        // side of a cell on the surface
+  double cell = 1;                             // the same in texture coordinates
+  double energy_before = 1, energy_after = 1;  // symmetric Dirichlet energy, 1 is isometric, around the rounding
+  std::vector<SeamlessCut> cuts;
+  double error = 0;                  // the largest of the cuts'
+  std::vector<Index> flat_cones;     // came out flat and are no cones any more
+  std::vector<Index> merged_cones;   // given up for another within a cell
+  std::vector<Index> relaxed_cones;  // off the lattice: the cuts to them show a seam
+};
+
 struct CutPaths {
   VertexPairs edges;                      // (c, 2)
   std::vector<std::vector<Index>> paths;  // vertices from node to node
@@ -54,6 +81,7 @@ struct Result {
   std::vector<Index> wrong_angle_sums;  // vertices whose UV angles are off by a turn
   double cone_angle_error = 0;          // largest deviation of a cone's UV angle sum, radians
   Eigen::VectorXd log_scale;            // (n) as in Prescription
+  std::optional<SeamlessReport> seamless;
   std::vector<Finding> warnings;
   StageSeconds stage_seconds;
 };
