@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "point_lattice.hpp"
 #include "text.hpp"
 #include "validation.hpp"
 
@@ -21,6 +22,7 @@ std::vector<ComponentTask> hand_out(const Surface& surface, const std::vector<Co
     const Component& component = components[c];
     ComponentCones& own = tasks[c].cones;
     own.border = options.border;
+    if (options.seamless) own.symmetry = symmetry(options.seamless->lattice);
     own.loop_turning.resize(component.mesh.boundary_loops.size());
     std::vector<std::pair<Index, Index>> found;  // place in the caller's list, vertex
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {

@@ -8,6 +8,7 @@
 
 #include "cut_mesh.hpp"
 #include "energies/quadratic_forms.hpp"
+#include "quantize_curvature.hpp"
 #include "straightness.hpp"
 #include "text.hpp"
 
@@ -292,6 +293,25 @@ std::vector<char> shiftable_loops(const HalfedgeMesh& mesh, const BorderConditio
   return out;
 }
 
+// The turning of all borders rounded to multiples of 2 pi / symmetry, the sum kept: those that lose most by it give
+// way.
+void quantize_turning(const Eigen::VectorXd& turning, int symmetry, std::vector<std::optional<double>>& wanted) {
+  const Eigen::Index count = turning.size();
+  Eigen::VectorXd exact = turning * (symmetry / (2 * M_PI));
+  for (Eigen::Index i = 0; i < count; ++i) {
+    if (wanted[i]) exact[i] = *wanted[i] * symmetry / (2 * M_PI);
+  }
+  Eigen::VectorXd rounded = exact.array().round();
+  for (double missing = std::round(turning.sum() * symmetry / (2 * M_PI)) - rounded.sum(); missing != 0;) {
+    const double step = missing > 0 ? 1 : -1;
+    Eigen::Index at;
+    (step * (exact - rounded)).maxCoeff(&at);
+    rounded[at] += step;
+    missing -= step;
+  }
+  for (Eigen::Index i = 0; i < count; ++i) wanted[i] = rounded[i] * 2 * M_PI / symmetry;
+}
+
 // Prescribed turning, and holes closed without a cut.  Changes the log scale, which is 0 along held borders.
 void prescribe_turning(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
                        const BorderConditions& border, const LogScale& scale, Curvature& curvature) {
@@ -309,6 +329,7 @@ void prescribe_turning(const HalfedgeMesh& mesh, const Geometry& geometry, const
   const LoopScales loops(mesh, geometry, scale);
   std::vector<std::optional<double>> wanted = cones.loop_turning;
   wanted.resize(mesh.boundary_loops.size());
+  if (cones.symmetry > 0) quantize_turning(loops.turning(curvature.log_scale), cones.symmetry, wanted);
   curvature.log_scale = loops.adjust(curvature.log_scale, wanted).first;
   const Eigen::VectorXd turning = loops.turning(curvature.log_scale);
   std::vector<std::optional<double>> closed = wanted;
@@ -318,9 +339,8 @@ void prescribe_turning(const HalfedgeMesh& mesh, const Geometry& geometry, const
     if (hole) closed[i] = -2 * M_PI;
     left_free += !closed[i] && shiftable[i];
   }
-  if (left_free == 0) return;  // one border has to take up the rest
   // Without the holes that take too much, until those that are left can be closed.
-  while (true) {
+  while (left_free > 0) {  // one border has to take up the rest
     const auto [log_scale, shifts] = loops.adjust(curvature.log_scale, closed);
     bool dropped = false;
     for (std::size_t i = 0; i < closed.size(); ++i) {
@@ -332,7 +352,8 @@ void prescribe_turning(const HalfedgeMesh& mesh, const Geometry& geometry, const
     curvature.log_scale = log_scale;
     break;
   }
-  for (std::size_t i = 0; i < closed.size(); ++i) curvature.needs_no_cut[i] = closed[i] && *closed[i] == -2 * M_PI;
+  const std::vector<std::optional<double>>& reached = left_free > 0 ? closed : wanted;
+  for (std::size_t i = 0; i < reached.size(); ++i) curvature.needs_no_cut[i] = reached[i] && *reached[i] == -2 * M_PI;
 }
 
 }  // namespace
@@ -369,7 +390,9 @@ Curvature prescribe(const HalfedgeMesh& mesh, const Geometry& geometry, const Co
   } else {
     curvature = least_distortion(mesh, asked, scale);
   }
-  if (border.balanced && curvature.size() > 0) {
+  if (asked.symmetry > 0) {
+    curvature = quantize_curvature(mesh, asked, scale, curvature, asked.symmetry);
+  } else if (border.balanced && curvature.size() > 0) {
     curvature.array() += (scale.required_sum() - curvature.sum()) / static_cast<double>(curvature.size());
   }
 

@@ -47,6 +47,13 @@ class LogScale {
 
   double predicted_l2(const Eigen::VectorXd& log_scale) const;
 
+  // The area-weighted variance of y: constant + 2 gradient . kappa + kappa . hessian kappa.
+  struct Variance {
+    Eigen::MatrixXd hessian;
+    Eigen::VectorXd gradient;
+  };
+  Variance variance() const;
+
  private:
   Eigen::MatrixXd solve_columns(const Eigen::MatrixXd& right_sides) const;  // (n, k)
 
@@ -67,6 +74,7 @@ struct ComponentCones {
   std::vector<std::optional<double>> angles;  // radians, none: automatic
   BorderMode border = BorderMode::free;
   std::vector<std::optional<double>> loop_turning;  // (loops) radians, none: as it comes out
+  int symmetry = 0;  // q: angles of cones and turning of borders are multiples of 2 pi / q; 0: any
 };
 
 // What a component's map has to realise.

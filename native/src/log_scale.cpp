@@ -129,4 +129,15 @@ double LogScale::predicted_l2(const Eigen::VectorXd& log_scale) const {
   return std::exp((log_mean_exp(weight_, 2 * log_scale) + log_mean_exp(weight_, -2 * log_scale)) / 2);
 }
 
+LogScale::Variance LogScale::variance() const {
+  const Eigen::VectorXd mean = green_.transpose() * weight_;
+  const Eigen::MatrixXd weighted = weight_.cwiseSqrt().asDiagonal() * green_;
+  Variance out{Eigen::MatrixXd::Zero(mean.size(), mean.size()), {}};
+  out.hessian.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
+  out.hessian.triangularView<Eigen::StrictlyUpper>() = out.hessian.transpose();
+  out.hessian -= mean * mean.transpose();
+  out.gradient = green_.transpose() * weight_.cwiseProduct(without_cones_) - weight_.dot(without_cones_) * mean;
+  return out;
+}
+
 }  // namespace lsgp
