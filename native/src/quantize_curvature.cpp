@@ -5,7 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <tuple>
+#include <optional>
+#include <vector>
 
 #include "text.hpp"
 
@@ -13,27 +14,26 @@ namespace lsgp {
 
 namespace {
 
-// Angles a map can be expected to realise on the lattice's own mesh: a cone from a quarter of a turn to one and a half
-// turns, more only where many triangles share it.
+// Angles a map can be expected to realise: a cone from a quarter of a turn to one and a half turns, or where that
+// distorts less to two, as far as its triangles can share them.
 constexpr double smallest_angle = M_PI / 2;
-constexpr double largest_angle = 3 * M_PI;
-constexpr double usual_share = 100 * M_PI / 180;   // of a triangle in the angle of its cone
-constexpr double crowded_share = 80 * M_PI / 180;  // the same beyond the largest angle
-constexpr double exact_multiple = 1e-6;            // radians, between a given angle and the multiple it is taken for
+constexpr double largest_angles[] = {3 * M_PI, 4 * M_PI};
+constexpr double largest_share = 100 * M_PI / 180;  // of a triangle in the angle of its cone
+constexpr double exact_multiple = 1e-6;             // radians, between a given angle and the multiple it is taken for
 
 // Bounds of the turns a cone may take away.
 struct TurnBounds {
   Eigen::VectorXi low, high;
 };
 
-TurnBounds usual_bounds(const HalfedgeMesh& mesh, const ComponentCones& cones, int symmetry) {
+TurnBounds usual_bounds(const HalfedgeMesh& mesh, const ComponentCones& cones, int symmetry, double largest_angle) {
   const Index k = static_cast<Index>(cones.vertices.size());
   const double unit = 2 * M_PI / symmetry, slack = 1e-9;
   TurnBounds bounds{Eigen::VectorXi(k), Eigen::VectorXi(k)};
   for (Index i = 0; i < k; ++i) {
     const double flat = mesh.flat_angle(cones.vertices[i]);
     const int triangles = valence(mesh, cones.vertices[i]);
-    const double most = std::min(usual_share * triangles, std::max(largest_angle, crowded_share * triangles));
+    const double most = std::min(largest_share * triangles, largest_angle);
     bounds.high[i] = static_cast<int>(std::floor((flat - smallest_angle) / unit + slack));
     bounds.low[i] = std::min(0, static_cast<int>(std::ceil((flat - most) / unit - slack)));
   }
@@ -66,8 +66,9 @@ void keep_given(const HalfedgeMesh& mesh, const ComponentCones& cones, int symme
 
 // A torus whose only cones are one of +1 and one of -1 turns does not exist (Izmestiev, Kusner, Rote, Springborn,
 // Sullivan: There is no triangulation of the torus with vertex degrees 5, 6, ..., 6, 7, 2013, theorem 5).
-bool is_impossible_torus(const HalfedgeMesh& mesh, const Eigen::VectorXi& turns, int symmetry) {
-  if (!mesh.closed() || mesh.genus != 1 || symmetry == 1) return false;
+bool is_torus(const HalfedgeMesh& mesh) { return mesh.closed() && mesh.genus == 1; }
+bool is_impossible_on_torus(const Eigen::VectorXi& turns, int symmetry) {
+  if (symmetry == 1) return false;
   int cones = 0;
   bool coprime = true;
   for (const int t : turns) {
@@ -81,39 +82,20 @@ bool is_impossible_torus(const HalfedgeMesh& mesh, const Eigen::VectorXi& turns,
 // The quadratic form var(turns) and its exchanges.
 class Exchange {
  public:
-  Exchange(const HalfedgeMesh& mesh, const LogScale& scale, const TurnBounds& bounds, int symmetry,
+  Exchange(const HalfedgeMesh& mesh, const LogScale::Variance& variance, TurnBounds bounds, int symmetry,
            Eigen::VectorXi turns)
-      : mesh_(mesh), bounds_(bounds), symmetry_(symmetry), turns_(std::move(turns)) {
-    const LogScale::Variance variance = scale.variance();
+      : torus_(is_torus(mesh)), bounds_(std::move(bounds)), symmetry_(symmetry), turns_(std::move(turns)) {
     const double unit = 2 * M_PI / symmetry;
     hessian_ = unit * unit * variance.hessian;
     gradient_ = unit * variance.gradient + hessian_ * turns_.cast<double>();
-  }
-
-  // What adding `first` to cone i and `second` to cone j changes the variance by.
-  double change(Index i, int first, Index j, int second) const {
-    return 2 * (gradient_[i] * first + gradient_[j] * second) + hessian_(i, i) * first * first +
-           hessian_(j, j) * second * second + 2 * hessian_(i, j) * first * second;
   }
 
   bool allowed(Index i, int step) const {
     return turns_[i] + step >= bounds_.low[i] && turns_[i] + step <= bounds_.high[i];
   }
 
-  bool possible_after(Index i, int first, Index j, int second) const {
-    Eigen::VectorXi moved = turns_;
-    moved[i] += first;
-    moved[j] += second;
-    return !is_impossible_torus(mesh_, moved, symmetry_);
-  }
-
-  void add(Index i, int step) {
-    turns_[i] += step;
-    gradient_ += step * hessian_.col(i);
-  }
-
-  // Single steps towards a sum of turns, the cheapest first.  Returns whether it was reached.
-  bool reach(int sum) {
+  // Single steps towards a sum of turns within the bounds, the cheapest first.
+  void reach(int sum) {
     for (int missing = sum - turns_.sum(); missing != 0; missing = sum - turns_.sum()) {
       const int step = missing > 0 ? 1 : -1;
       Index best = none;
@@ -125,47 +107,129 @@ class Exchange {
           best = i;
         }
       }
-      if (best == none) return false;
       add(best, step);
     }
-    return true;
   }
 
   // The best exchange of one turn between two cones, or where the sum is free between a cone and nothing, until none
-  // lowers the variance.
-  void descend(bool keep_sum) {
-    constexpr double least_gain = 1e-12;
+  // lowers the variance.  Returns by how much it was lowered; `held` cones stay.
+  double descend(bool keep_sum, const std::vector<Index>& held = {}) {
+    double lowered = 0;
     while (true) {
-      Index first = none, second = none;
-      int first_step = 0, second_step = 0;
-      double least = -least_gain;
-      const auto consider = [&](Index i, int step_i, Index j, int step_j) {
-        const double cost = change(i, step_i, j, step_j);
-        if (cost >= least || !possible_after(i, step_i, j, step_j)) return;
-        least = cost;
-        std::tie(first, first_step, second, second_step) = std::tuple{i, step_i, j, step_j};
-      };
-      for (Index i = 0; i < turns_.size(); ++i) {
-        for (const int step : {1, -1}) {
-          if (!allowed(i, step)) continue;
-          if (!keep_sum) consider(i, step, i == 0 ? Index(turns_.size()) - 1 : 0, 0);
-          for (Index j = 0; j < turns_.size(); ++j) {
-            if (j != i && allowed(j, -step)) consider(i, step, j, -step);
-          }
-        }
+      const std::vector<Swap> best = swaps(keep_sum, held, 1);
+      if (best.empty() || best.front().cost >= -least_gain) return lowered;
+      apply(best.front());
+      lowered -= best.front().cost;
+    }
+  }
+
+  // Descents stop where two exchanges at once are needed.  From there each of the cheapest exchanges is made in turn
+  // and held while the others follow.
+  void search(bool keep_sum) {
+    descend(keep_sum);
+    for (bool lowered = true; lowered;) {
+      lowered = false;
+      for (const Swap& swap : swaps(keep_sum, {}, most_trials)) {
+        Exchange trial = *this;
+        trial.apply(swap);
+        double gain = -swap.cost + trial.descend(keep_sum, {swap.first, swap.second});
+        gain += trial.descend(keep_sum);
+        if (gain <= least_gain) continue;
+        turns_ = trial.turns_;
+        gradient_ = trial.gradient_;
+        lowered = true;
+        break;
       }
-      if (first == none) return;
-      add(first, first_step);
-      if (second_step != 0) add(second, second_step);
+    }
+  }
+
+  // The variance underrates what lies far out.  Exchanges that cost least by it are tried by the predicted stretch.
+  void refine(const LogScale& scale, bool keep_sum) {
+    double least = scale.predicted_l2(scale.evaluate(curvature()));
+    int trials = 0;
+    for (bool lowered = true; lowered && trials < most_stretch_trials;) {
+      lowered = false;
+      for (const Swap& swap : swaps(keep_sum, {}, most_stretch_trials / 4)) {
+        Exchange trial = *this;
+        trial.apply(swap);
+        const double tried = scale.predicted_l2(scale.evaluate(trial.curvature()));
+        ++trials;
+        if (!(tried < least * (1 - 1e-9))) continue;
+        least = tried;
+        turns_ = trial.turns_;
+        gradient_ = trial.gradient_;
+        lowered = true;
+        break;
+      }
     }
   }
 
   const Eigen::VectorXi& turns() const { return turns_; }
+  Eigen::VectorXd curvature() const { return turns_.cast<double>() * (2 * M_PI / symmetry_); }
 
  private:
-  const HalfedgeMesh& mesh_;
-  const TurnBounds& bounds_;
-  const int symmetry_;
+  static constexpr double least_gain = 1e-12;
+  static constexpr std::size_t most_trials = 100;
+  static constexpr int most_stretch_trials = 200;
+
+  // One turn more at a cone, and one less at another where the sum is kept.
+  struct Swap {
+    double cost;  // what it changes the variance by
+    Index first, second;
+    int step;
+  };
+
+  void add(Index i, int step) {
+    turns_[i] += step;
+    gradient_ += step * hessian_.col(i);
+  }
+
+  void apply(const Swap& swap) {
+    add(swap.first, swap.step);
+    if (swap.second != none) add(swap.second, -swap.step);
+  }
+
+  bool leads_to_impossible(const Swap& swap) const {
+    Eigen::VectorXi moved = turns_;
+    moved[swap.first] += swap.step;
+    if (swap.second != none) moved[swap.second] -= swap.step;
+    return torus_ && is_impossible_on_torus(moved, symmetry_);
+  }
+
+  // The cheapest possible ones, in order.
+  std::vector<Swap> swaps(bool keep_sum, const std::vector<Index>& held, std::size_t count) const {
+    const Index k = static_cast<Index>(turns_.size());
+    std::vector<char> is_held(k, 0);
+    for (const Index i : held) {
+      if (i != none) is_held[i] = 1;
+    }
+    std::vector<Swap> all;
+    const auto consider = [&](const Swap& swap) {
+      const bool improves = count > 1 || all.empty() || swap.cost < all.front().cost;
+      if (!improves || leads_to_impossible(swap)) return;
+      if (count == 1) all.clear();
+      all.push_back(swap);
+    };
+    for (Index i = 0; i < k; ++i) {
+      if (is_held[i]) continue;
+      for (const int step : {1, -1}) {
+        if (!allowed(i, step)) continue;
+        const double alone = 2 * gradient_[i] * step + hessian_(i, i);
+        if (!keep_sum) consider({alone, i, none, step});
+        for (Index j = 0; j < k; ++j) {
+          if (j == i || is_held[j] || !allowed(j, -step)) continue;
+          consider({alone - 2 * gradient_[j] * step + hessian_(j, j) - 2 * hessian_(i, j), i, j, step});
+        }
+      }
+    }
+    std::stable_sort(all.begin(), all.end(), [](const Swap& a, const Swap& b) { return a.cost < b.cost; });
+    if (all.size() > count) all.resize(count);
+    return all;
+  }
+
+  bool torus_;
+  TurnBounds bounds_;
+  int symmetry_;
   Eigen::VectorXi turns_;
   Eigen::MatrixXd hessian_;
   Eigen::VectorXd gradient_;  // half the derivative at the present turns
@@ -191,27 +255,42 @@ Eigen::VectorXd quantize_curvature(const HalfedgeMesh& mesh, const ComponentCone
   if (k == 0) return wanted;
   const bool balanced = scale.balanced();
   const int sum = balanced ? turns_of(scale.required_sum(), symmetry) : 0;
-  TurnBounds bounds = usual_bounds(mesh, cones, symmetry), widest = widest_bounds(mesh, cones, symmetry);
-  keep_given(mesh, cones, symmetry, bounds);
+  TurnBounds widest = widest_bounds(mesh, cones, symmetry);
   keep_given(mesh, cones, symmetry, widest);
-  if (balanced && (sum < widest.low.sum() || sum > widest.high.sum())) {
-    throw_out_of_reach(cones, symmetry, sum, widest);
+  const auto reachable = [&](const TurnBounds& bounds) {
+    return !balanced || (bounds.low.sum() <= sum && sum <= bounds.high.sum());
+  };
+  if (!reachable(widest)) throw_out_of_reach(cones, symmetry, sum, widest);
+  const LogScale::Variance variance = scale.variance();
+  std::optional<Exchange> best;
+  double least = std::numeric_limits<double>::infinity();
+  const auto search = [&](const TurnBounds& bounds) {
+    Eigen::VectorXi turns(k);
+    for (Eigen::Index i = 0; i < k; ++i) {
+      turns[i] = std::clamp(turns_of(wanted[i], symmetry), bounds.low[i], bounds.high[i]);
+    }
+    Exchange exchange(mesh, variance, bounds, symmetry, std::move(turns));
+    if (balanced) exchange.reach(sum);
+    exchange.search(balanced);
+    const double stretch = scale.predicted_l2(scale.evaluate(exchange.curvature()));
+    if (best && !(stretch < least)) return;
+    least = stretch;
+    best = std::move(exchange);
+  };
+  for (const double largest_angle : largest_angles) {
+    TurnBounds bounds = usual_bounds(mesh, cones, symmetry, largest_angle);
+    keep_given(mesh, cones, symmetry, bounds);
+    if (reachable(bounds)) search(bounds);
   }
-  if (balanced && (sum < bounds.low.sum() || sum > bounds.high.sum())) bounds = widest;
-  Eigen::VectorXi turns(k);
-  for (Eigen::Index i = 0; i < k; ++i) {
-    turns[i] = std::clamp(turns_of(wanted[i], symmetry), bounds.low[i], bounds.high[i]);
-  }
-  Exchange exchange(mesh, scale, bounds, symmetry, std::move(turns));
-  if (balanced) exchange.reach(sum);
-  exchange.descend(balanced);
-  if (is_impossible_torus(mesh, exchange.turns(), symmetry)) {
+  if (!best) search(widest);
+  best->refine(scale, balanced);
+  if (is_torus(mesh) && is_impossible_on_torus(best->turns(), symmetry)) {
     throw Error(Code::seamless_impossible,
                 concat("No torus has just one cone of ", 360 - 360 / symmetry, " and one of ", 360 + 360 / symmetry,
                        " degrees. Mark another cone, or give both 360 degrees."),
                 {ElementKind::vertices, cones.vertices});
   }
-  return exchange.turns().cast<double>() * (2 * M_PI / symmetry);
+  return best->curvature();
 }
 
 }  // namespace lsgp
