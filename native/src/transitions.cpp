@@ -20,10 +20,15 @@ void add_scaled(Expression& sum, Complex factor, const Expression& terms) {
 // translation towards the root, whose coefficient has modulus 1, is solved for instead.
 constexpr double clear_turn = 0.01;
 
+enum class Eliminate {
+  positions,     // of nodes that turn clearly: local expressions, small coefficients
+  translations,  // towards the root, whose coefficients are units: what is left lies on the lattice independently
+};
+
 class Elimination {
  public:
   Elimination(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh, const NodeGraph& nodes,
-              const Eigen::VectorXd& rotation)
+              const Eigen::VectorXd& node_curvature, std::vector<Complex> turn, Eliminate eliminate)
       : mesh_(mesh),
         cut_graph_(cut_graph),
         cut_mesh_(cut_mesh),
@@ -31,16 +36,63 @@ class Elimination {
         n_(mesh.vertex_count()),
         solved_(n_ + cut_graph.cuts.size()),
         is_solved_(solved_.size(), 0),
-        turn_(rotation.size()) {
-    for (Eigen::Index p = 0; p < rotation.size(); ++p) turn_[p] = std::polar(1.0, rotation[p]);
-  }
-
-  Reduction reduce(const Eigen::VectorXd& node_curvature) {
+        turn_(std::move(turn)),
+        eliminate_(eliminate) {
     for (std::size_t i = nodes_.order.size(); i-- > 0;) {
       const Index node = nodes_.order[i];
       if (nodes_.vertex[node] != none) close_node(node, node_curvature[node]);
     }
-    return number_unknowns();
+  }
+
+  Reduction reduce() {
+    Reduction reduction;
+    express_all_copies(number(find_ground(), reduction), reduction);
+    return reduction;
+  }
+
+  LatticeReduction reduce_to_lattice(const Eigen::VectorXd& node_curvature, const PointLattice& lattice, bool parity) {
+    std::vector<Index> ids;  // of the integers
+    for (std::size_t node = 0; node < nodes_.vertex.size(); ++node) {
+      const Index v = nodes_.vertex[node];
+      if (v != none && node_curvature[node] != 0 && !is_solved_[v]) ids.push_back(v);
+    }
+    // A layout may be shifted from lattice point to lattice point: one cone is put to the origin.
+    Index ground = ids.empty() ? none : ids.front();
+    if (ground != none) ids.erase(ids.begin());
+    bool shifts = ground != none;
+    const std::size_t cone_count = ids.size();
+    for (Index id = n_; id < static_cast<Index>(solved_.size()); ++id) {
+      if (is_solved_[id]) continue;
+      ids.push_back(id);
+      shifts = shifts || turn_[id - n_] != 1.0;
+    }
+    if (!shifts) ground = find_ground();
+    LatticeReduction out;
+    const std::vector<Index> unknown = number(ground, out.reduction);
+    express_all_copies(unknown, out.reduction);
+    const Eigen::Index count = static_cast<Eigen::Index>(ids.size());
+    std::vector<Index> column(solved_.size(), none);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      out.integers.push_back(unknown[ids[k]]);
+      column[ids[k]] = static_cast<Index>(k);
+    }
+    const auto add_row = [&](Index id, auto row) {
+      for (const auto& [other, coefficient] : resolve(id)) {
+        if (column[other] != none) row[column[other]] += coefficient;
+      }
+    };
+    out.translation = Eigen::MatrixXcd::Zero(static_cast<Eigen::Index>(turn_.size()), count);
+    for (std::size_t p = 0; p < turn_.size(); ++p)
+      add_row(translation_id(static_cast<Index>(p)), out.translation.row(p));
+    out.basis = Eigen::MatrixXcd::Identity(count, count);
+    if (parity) out.basis.diagonal().tail(count - static_cast<Eigen::Index>(cone_count)).setConstant(Complex(1, 1));
+    const Index root = nodes_.order.empty() ? none : nodes_.vertex[nodes_.order.front()];
+    if (root != none && is_solved_[root]) {
+      Eigen::RowVectorXcd condition = Eigen::RowVectorXcd::Zero(count);
+      add_row(root, condition.row(0));
+      restrict_to_integral(condition * out.basis, lattice, out.basis);
+    }
+    return out;
   }
 
  private:
@@ -76,7 +128,8 @@ class Elimination {
     Expression round = cross(express_copies(v).back().second, all.front().opened_by);
     const Complex gap = curvature == 0 ? 0.0 : 1.0 - round[v];
     round.erase(v);
-    if (std::abs(gap) >= clear_turn) {
+    const bool solves_position = eliminate_ == Eliminate::positions || nodes_.parent_cut[node] == none;
+    if (std::abs(gap) >= clear_turn && solves_position) {
       for (auto& [id, coefficient] : round) coefficient /= gap;
       solve_for(v, std::move(round));
       return;
@@ -88,9 +141,12 @@ class Elimination {
       for (const auto& [id, coefficient] : round) add_scaled(resolved, coefficient, resolve(id));
       round = std::move(resolved);
       for (const auto& [id, coefficient] : round) {
-        if (pivot == none || std::abs(coefficient) > std::abs(round[pivot])) pivot = id;
+        if (std::abs(coefficient) < clear_turn) continue;
+        const bool larger = pivot == none || std::abs(coefficient) > std::abs(round[pivot]);
+        // On a lattice the smallest coefficient is the one that may divide the others.
+        if (pivot == none || larger == (eliminate_ == Eliminate::positions)) pivot = id;
       }
-      if (pivot == none || std::abs(round[pivot]) < clear_turn) return;  // closes by itself, as on a flat torus
+      if (pivot == none) return;  // closes by itself, as on a flat torus
     }
     const Complex scale = -1.0 / round[pivot];
     round.erase(pivot);
@@ -121,15 +177,18 @@ class Elimination {
     return ground;
   }
 
-  Reduction number_unknowns() {
-    Reduction reduction;
-    const Index ground = find_ground();
+  // Numbers what is not solved for but the ground, (ids).
+  std::vector<Index> number(Index ground, Reduction& reduction) {
     std::vector<Index> unknown(solved_.size(), none);
     for (std::size_t id = 0; id < solved_.size(); ++id) {
       if (!is_solved_[id] && static_cast<Index>(id) != ground) unknown[id] = reduction.unknown_count++;
       // One pass makes later look-ups short: expressions stop at unsolved ones.
       if (is_solved_[id]) solved_[id] = resolve(static_cast<Index>(id));
     }
+    return unknown;
+  }
+
+  void express_all_copies(const std::vector<Index>& unknown, Reduction& reduction) const {
     std::vector<Expression> of_copy(cut_mesh_.copy_count());
     const std::vector<char> on_cut = on_cuts(mesh_, cut_graph_);
     for (Index v = 0; v < n_; ++v) {
@@ -147,7 +206,46 @@ class Elimination {
       for (const auto& [id, coefficient] : of_copy[copy]) push(id, coefficient);
       reduction.begin.push_back(static_cast<Index>(reduction.terms.size()));
     }
-    return reduction;
+  }
+
+  // Restricts lattice points x to those for which condition * x is on the lattice, where its coefficients are quotients
+  // of lattice points by 1 - e^{i curvature}: modulo the lattice they are multiples of one of them.
+  void restrict_to_integral(const Eigen::RowVectorXcd& condition, const PointLattice& lattice,
+                            Eigen::MatrixXcd& basis) const {
+    constexpr double rounding = 1e-6;
+    const auto integral = [&](Complex z) { return std::abs(z - lattice.nearest(z)) < rounding; };
+    Eigen::Index pivot = -1;
+    for (Eigen::Index k = 0; k < condition.size(); ++k) {
+      if (!integral(condition[k])) pivot = k;
+    }
+    if (pivot < 0) return;
+    std::vector<Complex> small{0.0};  // multipliers to try
+    for (int turns = 0; turns < lattice.symmetry(); ++turns) small.push_back(lattice.unit(turns));
+    for (const Complex unit : {Complex(-1), lattice.generator(), -lattice.generator()}) small.push_back(unit);
+    Eigen::MatrixXcd step = Eigen::MatrixXcd::Identity(condition.size(), condition.size());
+    bool found = true;
+    for (Eigen::Index k = 0; k < condition.size() && found; ++k) {
+      if (k == pivot) continue;
+      found = false;
+      for (const Complex multiplier : small) {
+        if (!integral(condition[k] - multiplier * condition[pivot])) continue;
+        step(pivot, k) = -multiplier;
+        found = true;
+        break;
+      }
+    }
+    const Complex g = lattice.generator();
+    Complex period = 0;
+    for (const Complex tried : {Complex(2), 1.0 + g}) {
+      if (integral(tried * condition[pivot])) period = tried;
+    }
+    if (!found || period == 0.0) {
+      throw Error(Code::seamless_impossible,
+                  "The cones leave no layout in which all of them lie on the lattice. Mark one more cone, or choose "
+                  "another lattice.");
+    }
+    step(pivot, pivot) = period;
+    basis *= step;
   }
 
   const HalfedgeMesh& mesh_;
@@ -158,6 +256,7 @@ class Elimination {
   std::vector<Expression> solved_;  // by id: vertices, then cuts
   std::vector<char> is_solved_;
   std::vector<Complex> turn_;  // (cuts) e^{i rotation}
+  const Eliminate eliminate_;
 };
 
 }  // namespace
@@ -165,7 +264,18 @@ class Elimination {
 Reduction impose_transitions(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh,
                              const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
                              const Eigen::VectorXd& rotation) {
-  return Elimination(mesh, cut_graph, cut_mesh, nodes, rotation).reduce(node_curvature);
+  std::vector<Complex> turn(rotation.size());
+  for (Eigen::Index p = 0; p < rotation.size(); ++p) turn[p] = std::polar(1.0, rotation[p]);
+  return Elimination(mesh, cut_graph, cut_mesh, nodes, node_curvature, std::move(turn), Eliminate::positions).reduce();
+}
+
+LatticeReduction impose_on_lattice(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh,
+                                   const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
+                                   const std::vector<int>& turns, const PointLattice& lattice, bool parity) {
+  std::vector<Complex> turn;
+  for (const int t : turns) turn.push_back(lattice.unit(t));
+  return Elimination(mesh, cut_graph, cut_mesh, nodes, node_curvature, std::move(turn), Eliminate::translations)
+      .reduce_to_lattice(node_curvature, lattice, parity);
 }
 
 Reduction leave_free(const CutMesh& cut_mesh, Index grounded) {
@@ -181,15 +291,16 @@ Reduction leave_free(const CutMesh& cut_mesh, Index grounded) {
 Eigen::VectorXcd motion_of_copies(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh,
                                   const Eigen::VectorXd& rotation) {
   Eigen::VectorXcd motion = Eigen::VectorXcd::Ones(cut_mesh.copy_count());
-  for (std::size_t p = 0; p < cut_graph.cuts.size(); ++p) {
-    const Complex turn = std::polar(1.0, rotation[p]);
-    const std::vector<Index>& halfedges = cut_graph.cuts[p].halfedges;
-    for (std::size_t i = 1; i < halfedges.size(); ++i) {
-      const Sisters sisters = origin_sisters(mesh, cut_mesh, halfedges[i]);
-      if (sisters.right >= mesh.vertex_count())
-        motion[sisters.right] = turn;
-      else
-        motion[sisters.left] = std::conj(turn);
+  const std::vector<char> on_cut = on_cuts(mesh, cut_graph);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (!on_cut[v]) continue;
+    Complex turn = 1;
+    for (const Sector& sector : sectors(mesh, cut_graph, cut_mesh, v)) {
+      if (sector.copy != v) {
+        const double crossed = rotation[cut_graph.cut_of[sector.opened_by]];
+        turn *= std::polar(1.0, cut_graph.runs_forward[sector.opened_by] ? -crossed : crossed);
+      }
+      motion[sector.copy] = turn;
     }
   }
   return motion;

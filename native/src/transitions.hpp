@@ -10,6 +10,7 @@
 
 #include "cut_mesh.hpp"
 #include "holonomy.hpp"
+#include "point_lattice.hpp"
 
 namespace lsgp {
 
@@ -37,11 +38,27 @@ Reduction impose_transitions(const HalfedgeMesh& mesh, const CutGraph& cut_graph
                              const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
                              const Eigen::VectorXd& rotation);
 
+// The same with the positions of cones as unknowns, as far as they can be: those and the translations that are left
+// over may each take any value of the lattice, and all other cones and translations then lie on it too.
+struct LatticeReduction {
+  Reduction reduction;
+  std::vector<Index> integers;   // (d) unknowns that take values on the lattice
+  Eigen::MatrixXcd basis;        // (d, d) their values are basis * any lattice points
+  Eigen::MatrixXcd translation;  // (cuts, d) translations as functions of the integers
+};
+
+// turns: (cuts) rotations in multiples of 2 pi / q.  nodes: rooted at a boundary loop, or at a cone whose 1 - e^{i
+// curvature} is as small as can be but not 0.  parity: translations lead from white cells to white ones.
+// Throws SEAMLESS_IMPOSSIBLE.
+LatticeReduction impose_on_lattice(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh,
+                                   const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
+                                   const std::vector<int>& turns, const PointLattice& lattice, bool parity);
+
 // Every copy an unknown of its own but `grounded`, which is held at zero: no transitions.
 Reduction leave_free(const CutMesh& cut_mesh, Index grounded);
 
 // How every copy of a vertex moves when its first copy moves by 1 and all translations stay: a factor of modulus 1.
-// Holds for vertices that are no node; a node's position follows from its translations.
+// Holds for vertices that are no cone; a cone's position follows from its translations.
 Eigen::VectorXcd motion_of_copies(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh,
                                   const Eigen::VectorXd& rotation);
 

@@ -12,8 +12,8 @@ namespace lsgp {
 
 // Moves the vertices around flipped triangles until none is flipped, on growing neighbourhoods, by Newton's method on
 // the foldover-free energy (Garanzha et al. 2021) with rest shapes scaled to the prescribed metric, then smooths the
-// place with a conformal barrier.  Nodes of the cut graph and translations stay, so the seams stay exact. position:
-// (copies) u + iv.  fixed: (n) further vertices that stay.  Returns the positions with the fewest defects found.
+// place with a conformal barrier.  Cones and translations stay, so the seams stay exact.  position: (copies) u + iv.
+// fixed: (n) further vertices that stay.  Returns the positions with the fewest defects found.
 Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
                           const CutMesh& cut_mesh, const Eigen::VectorXd& rotation, const Curvature& curvature,
                           const std::vector<char>& fixed, const Eigen::VectorXcd& position);

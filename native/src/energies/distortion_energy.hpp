@@ -39,6 +39,12 @@ inline RadialTerms foldover_free(double d, double epsilon) {
 // Conformal barrier (MIPS, Hormann and Greiner 2000): (p + q) / d, infinite at d = 0.
 inline RadialTerms conformal_barrier(double d) { return {1 / d, -1 / (d * d), 2 / (d * d * d), 0, 0, 0}; }
 
+// Symmetric Dirichlet energy, the squared norms of the Jacobian and of its inverse: (p + q) (2 + 2 / d^2).
+inline RadialTerms symmetric_dirichlet(double d) {
+  const double square = d * d;
+  return {2 + 2 / square, -4 / (d * square), 12 / (square * square), 0, 0, 0};
+}
+
 // Gradient and positive semidefinite Hessian in (Re f_z, Im f_z, Re f_zbar, Im f_zbar).
 struct EnergyExpansion {
   Eigen::Vector4d gradient;

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lattice points near a given point, by a quadratic form and under the condition that some triangles keep their area.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "point_lattice.hpp"
+
+namespace lsgp {
+
+// A basis of the same lattice of d-tuples whose vectors are short and nearly orthogonal in the form (Lenstra, Lenstra
+// and Lovasz 1982, over the Gaussian or Eisenstein integers).  form: (d, d) Hermitian positive definite.
+// Returns the new basis vectors as columns over the old ones.
+Eigen::MatrixXcd reduce_basis(const Eigen::MatrixXcd& form, const PointLattice& lattice);
+
+// A triangle whose corners are offset + slope * x, x the lattice points looked for.
+struct MovingTriangle {
+  std::array<Complex, 3> offset;
+  std::array<Eigen::RowVectorXcd, 3> slope;  // (d)
+};
+
+// Looks for tuples x of lattice points with small (x - wanted)^H form (x - wanted) that leave every triangle a doubled
+// area of at least a lattice cell's.
+class LatticeSearch {
+ public:
+  LatticeSearch(Eigen::MatrixXcd form, std::vector<MovingTriangle> triangles, const PointLattice& lattice);
+
+  struct Choice {
+    Eigen::VectorXcd x;
+    double cost = 0;       // of the quadratic form
+    double violation = 0;  // the doubled areas that are missing, in cells
+    bool valid() const { return violation < 1e-6; }
+  };
+
+  // The nearest plane's point (Babai 1986), moved by single steps along short vectors until no step lowers the cost,
+  // and where triangles have lost their area with growing penalties for that.
+  Choice find(const Eigen::VectorXcd& wanted) const;
+
+ private:
+  struct Move {
+    Eigen::VectorXcd x;                           // (d)
+    Eigen::VectorXcd pull;                        // form * x
+    double cost;                                  // x^H form x
+    std::vector<std::array<Complex, 3>> corners;  // of the triangles it moves
+    std::vector<int> triangles;                   // which those are
+  };
+
+  Eigen::VectorXcd nearest_plane(const Eigen::VectorXcd& wanted) const;
+  void descend(const Eigen::VectorXcd& wanted, double penalty, Choice& choice) const;
+  double violation(const std::array<Complex, 3>& corners) const;
+
+  Eigen::MatrixXcd form_;
+  std::vector<MovingTriangle> triangles_;
+  PointLattice lattice_;
+  Eigen::MatrixXcd reduced_;     // columns: the reduced basis
+  Eigen::MatrixXcd triangular_;  // R of form = ..., over the reduced basis
+  std::vector<Move> moves_;
+};
+
+}  // namespace lsgp

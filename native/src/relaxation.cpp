@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "relaxation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solvers/cholesky.hpp"
+#include "solvers/sparse_assembly.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr int most_newton_steps = 60;
+constexpr double smallest_epsilon = 1e-3;
+constexpr double ridge = 1e-9;         // of the mean diagonal
+constexpr double barrier_share = 0.9;  // of the step at which the first triangle would collapse
+
+}  // namespace
+
+Freedom free_vertices(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Eigen::VectorXcd& motion,
+                      const std::vector<char>& marked) {
+  Freedom out;
+  std::vector<Index> unknown(mesh.vertex_count(), none);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (marked[v]) unknown[v] = out.displacement.unknown_count++;
+  }
+  out.displacement.begin.assign(1, 0);
+  for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
+    const Index of_vertex = unknown[cut_mesh.source[copy]];
+    if (of_vertex != none) out.displacement.terms.push_back({of_vertex, motion[copy]});
+    out.displacement.begin.push_back(static_cast<Index>(out.displacement.terms.size()));
+  }
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    const auto moves = [&](int c) { return unknown[mesh.triangles(f, c)] != none; };
+    if (moves(0) || moves(1) || moves(2)) out.triangles.push_back(f);
+  }
+  return out;
+}
+
+std::vector<char> mark_around(const HalfedgeMesh& mesh, const std::vector<Index>& triangles, int rings) {
+  std::vector<char> inside(mesh.vertex_count(), 0);
+  std::vector<Index> front;
+  const auto reach = [&](Index v, std::vector<Index>& reached) {
+    if (inside[v]) return;
+    inside[v] = 1;
+    reached.push_back(v);
+  };
+  for (const Index f : triangles) {
+    for (int c = 0; c < 3; ++c) reach(mesh.triangles(f, c), front);
+  }
+  for (int ring = 1; ring < rings; ++ring) {
+    std::vector<Index> reached;
+    for (const Index v : front) {
+      mesh.for_each_outgoing(v, [&](Index h) {
+        reach(mesh.target(h), reached);
+        reach(mesh.origin(prev(h)), reached);
+      });
+    }
+    front = std::move(reached);
+  }
+  return inside;
+}
+
+Relaxation::Relaxation(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+                       const Eigen::VectorXd& log_scale, Freedom freedom, Eigen::VectorXcd& position)
+    : displacement_(std::move(freedom.displacement)), position_(position) {
+  shapes_.reserve(freedom.triangles.size());
+  for (const Index f : freedom.triangles) {
+    const double scale = std::exp(
+        (log_scale[mesh.triangles(f, 0)] + log_scale[mesh.triangles(f, 1)] + log_scale[mesh.triangles(f, 2)]) / 3);
+    Shape shape;
+    shape.weight = geometry.area[f] * scale * scale;
+    shape.begin = static_cast<Index>(slopes_.size());
+    for (int c = 0; c < 3; ++c) {
+      // f_z = sum g_j z_j and f_zbar = sum h_j z_j with g = -i conj(e) / (4 A), h = i e / (4 A), e opposite corner j.
+      const Complex edge = edge_vector(geometry, next(3 * f + c)) / (4 * geometry.area[f] * scale);
+      shape.g[c] = Complex(0, -1) * std::conj(edge);
+      shape.h[c] = Complex(0, 1) * edge;
+      shape.copy[c] = cut_mesh.copy_of_corner[3 * f + c];
+      displacement_.for_each_term(shape.copy[c], [&](const Term& term) {
+        add_slope(shape.begin, {term.unknown, shape.g[c] * term.coefficient, shape.h[c] * term.coefficient});
+      });
+    }
+    shape.end = static_cast<Index>(slopes_.size());
+    shapes_.push_back(shape);
+  }
+}
+
+bool Relaxation::unfold() {
+  double lowest = smallest_determinant();
+  double epsilon = std::max(smallest_epsilon, -lowest);
+  for (int step = 0; step < most_newton_steps && !(lowest > 0); ++step) {
+    const auto terms = [&](double d) { return foldover_free(d, epsilon); };
+    const double before = energy(terms);
+    const Eigen::VectorXcd direction = newton_direction(terms);
+    double after = before;
+    if (!search(terms, direction, 1, before, after)) return false;
+    lowest = smallest_determinant();
+    // Garanzha et al. 2021, equation (7): epsilon falls as fast as the energy does.
+    const double decrease = std::max(0.1, 1 - after / before);
+    const double mu = (1 - decrease) * foldover_chi(lowest, epsilon);
+    if (lowest < mu) epsilon = std::max(2 * std::sqrt(mu * (mu - lowest)), std::numeric_limits<double>::min());
+  }
+  return lowest > 0;
+}
+
+void Relaxation::smooth(RadialTerms (*barrier)(double), int steps, double least_share) {
+  for (int step = 0; step < steps; ++step) {
+    const double before = energy(barrier);
+    const Eigen::VectorXcd direction = newton_direction(barrier);
+    double after = before;
+    if (!search(barrier, direction, std::min(1.0, barrier_share * collapse_step(direction)), before, after)) return;
+    if (before - after < least_share * before) return;
+  }
+}
+
+void Relaxation::add_slope(Index begin, const Slope& slope) {
+  for (std::size_t i = begin; i < slopes_.size(); ++i) {
+    if (slopes_[i].unknown != slope.unknown) continue;
+    slopes_[i].f_z += slope.f_z;
+    slopes_[i].f_zbar += slope.f_zbar;
+    return;
+  }
+  slopes_.push_back(slope);
+}
+
+Relaxation::Jacobian Relaxation::jacobian(const Shape& shape) const {
+  Jacobian out{0, 0};
+  for (int c = 0; c < 3; ++c) {
+    out.f_z += shape.g[c] * position_[shape.copy[c]];
+    out.f_zbar += shape.h[c] * position_[shape.copy[c]];
+  }
+  return out;
+}
+
+Relaxation::Jacobian Relaxation::change(const Shape& shape, const Eigen::VectorXcd& direction) const {
+  Jacobian out{0, 0};
+  for (Index i = shape.begin; i < shape.end; ++i) {
+    out.f_z += slopes_[i].f_z * direction[slopes_[i].unknown];
+    out.f_zbar += slopes_[i].f_zbar * direction[slopes_[i].unknown];
+  }
+  return out;
+}
+
+double Relaxation::smallest_determinant() const {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Shape& shape : shapes_) lowest = std::min(lowest, jacobian(shape).determinant());
+  return lowest;
+}
+
+template <typename Terms>
+double Relaxation::energy(const Terms& terms_at) const {
+  double total = 0;
+  for (const Shape& shape : shapes_) {
+    const Jacobian at = jacobian(shape);
+    const RadialTerms terms = terms_at(at.determinant());
+    total += shape.weight * ((std::norm(at.f_z) + std::norm(at.f_zbar)) * terms.phi + terms.psi);
+  }
+  return total;
+}
+
+template <typename Terms>
+Eigen::VectorXcd Relaxation::newton_direction(const Terms& terms_at) const {
+  const Index count = displacement_.unknown_count;
+  const int size = 2 * count;
+  LowerAssembly<double> assembly(size, 25 * shapes_.size());
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(size);
+  double trace = 0;
+  std::vector<Eigen::Matrix<double, 4, 2>> maps;
+  for (const Shape& shape : shapes_) {
+    const Jacobian at = jacobian(shape);
+    const EnergyExpansion expansion = expand_energy(at.f_z, at.f_zbar, terms_at(at.determinant()));
+    // Real form of (f_z, f_zbar) as functions of each unknown.
+    maps.clear();
+    for (Index i = shape.begin; i < shape.end; ++i) {
+      const Complex a = slopes_[i].f_z, b = slopes_[i].f_zbar;
+      maps.emplace_back();
+      maps.back() << a.real(), -a.imag(), a.imag(), a.real(), b.real(), -b.imag(), b.imag(), b.real();
+    }
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+      const int row = 2 * slopes_[shape.begin + i].unknown;
+      gradient.segment<2>(row) += shape.weight * maps[i].transpose() * expansion.gradient;
+      const Eigen::Matrix<double, 2, 4> left = shape.weight * maps[i].transpose() * expansion.hessian;
+      for (std::size_t j = 0; j <= i; ++j) {
+        const int column = 2 * slopes_[shape.begin + j].unknown;
+        const Eigen::Matrix2d bend = left * maps[j];
+        if (i == j) {
+          trace += bend.trace();
+          assembly.add(row, row, bend(0, 0));
+          assembly.add(row + 1, row, bend(1, 0));
+          assembly.add(row + 1, row + 1, bend(1, 1));
+        } else {
+          for (int k = 0; k < 4; ++k) assembly.add(row + k / 2, column + k % 2, bend(k / 2, k % 2));
+        }
+      }
+    }
+  }
+  for (int i = 0; i < size; ++i) assembly.add(i, i, ridge * trace / size);
+  const Eigen::VectorXd step = Cholesky<double>(assembly.build()).solve(Eigen::VectorXd(-gradient));
+  Eigen::VectorXcd out(count);
+  for (Index i = 0; i < count; ++i) out[i] = {step[2 * i], step[2 * i + 1]};
+  return out;
+}
+
+template <typename Terms>
+bool Relaxation::search(const Terms& terms, const Eigen::VectorXcd& direction, double longest, double before,
+                        double& after) {
+  const Eigen::VectorXcd start = position_, displaced = expand(displacement_, direction);
+  for (double length = longest; length > 1e-8; length /= 2) {
+    position_ = start + length * displaced;
+    after = energy(terms);
+    if (after < before) return true;
+  }
+  position_ = start;
+  after = before;
+  return false;
+}
+
+double Relaxation::collapse_step(const Eigen::VectorXcd& direction) const {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const Shape& shape : shapes_) {
+    const Jacobian at = jacobian(shape), moved = change(shape, direction);
+    const double a = moved.determinant();
+    const double b = 2 * (std::real(std::conj(at.f_z) * moved.f_z) - std::real(std::conj(at.f_zbar) * moved.f_zbar));
+    const double c = at.determinant(), discriminant = b * b - 4 * a * c;
+    if (discriminant < 0) continue;
+    const double q = -(b + std::copysign(std::sqrt(discriminant), b)) / 2;
+    for (const double root : {q / a, c / q}) {
+      if (root > 0) shortest = std::min(shortest, root);
+    }
+  }
+  return shortest;
+}
+
+}  // namespace lsgp
