@@ -6,6 +6,7 @@ Vintescu, Dupont, Lavoué, Memari, Tierny: Least Squares Affine Transitions for 
 
 from importlib.metadata import version
 
+from . import lattice
 from .api import (
     CutGraph,
     Distortion,
@@ -61,6 +62,7 @@ __all__ = [
     "correct_aspect",
     "find_cuts",
     "fit_placement",
+    "lattice",
     "measure_distortion",
     "parameterize",
     "place_cones",

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Islands of seamless layouts moved by whole cells, so that a tileable texture shows no seam before or after.
+
+Coordinates are those that float32 stores. A move by whole cells keeps every cut's turn and leads its translation from
+lattice point to lattice point; only the grid on which float32 can hold both sides exactly may get coarser.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .api import FloatArray, IndexArray
+
+# Mantissa of float32: below 2^e it holds every multiple of 2^(e - 24).
+_MANTISSA_BITS = 24
+_QUARTER_TURNS = np.array([1, 1j, -1, -1j])
+
+
+def whole_cells(shift: ArrayLike, symmetry: int, cell: float) -> FloatArray:
+    """Moves by whole cells near the given ones, (k, 2): in the nearest row of lattice points, the nearest.
+
+    symmetry, cell: as in `SeamlessReport`.
+    """
+    x, y = np.asarray(shift, np.float64).reshape(-1, 2).T
+    gx, gy = _second_vector(symmetry)
+    rows = np.round(y / (gy * cell))
+    return _points(np.round(x / cell - rows * gx), rows, symmetry, cell)
+
+
+def nearest_places(
+    corner_uv: FloatArray, old_uv: FloatArray, island: IndexArray, symmetry: int, cell: float
+) -> FloatArray:
+    """The move by whole cells, (islands, 2), that takes each island nearest to where its corners were.
+
+    corner_uv, old_uv: (m, 3, 2). island: (m,), -1 for none. An island with an old coordinate that is not finite stays.
+    """
+    count = int(island.max(initial=-1)) + 1
+    solved = island >= 0
+    of_corner = np.repeat(island[solved], 3)
+    away = (old_uv - corner_uv)[solved].reshape(-1, 2)
+    corners = np.maximum(np.bincount(of_corner, minlength=count), 1)
+    with np.errstate(invalid="ignore"):
+        mean = np.stack([np.bincount(of_corner, away[:, i], count) for i in (0, 1)], axis=1) / corners[:, None]
+    mean[~np.isfinite(mean).all(axis=1)] = 0.0
+    return whole_cells(mean, symmetry, cell)
+
+
+def shelf_places(boxes: ArrayLike, symmetry: int, cell: float) -> FloatArray:
+    """Moves by whole cells, (k, 2), that put boxes onto shelves from the origin upwards; none overlaps another.
+
+    boxes: (k, 4), the least u and v and the largest u and v of each. The tallest come first.
+    """
+    boxes = np.asarray(boxes, np.float64).reshape(-1, 4)
+    shifts = np.zeros((len(boxes), 2))
+    if not len(boxes):
+        return shifts
+    sizes = boxes[:, 2:] - boxes[:, :2] + cell  # a box starts within a cell of where it may
+    width = max(math.sqrt(sizes.prod(axis=1).sum()), sizes[:, 0].max())
+    right = floor = ceiling = 0.0
+    for i in np.argsort(-sizes[:, 1], kind="stable").tolist():
+        if right > 0 and right + sizes[i, 0] > width:
+            right, floor = 0.0, ceiling
+        shifts[i] = _cells_beyond((right, floor) - boxes[i, :2], symmetry, cell)
+        right = boxes[i, 2] + shifts[i, 0]
+        ceiling = max(ceiling, boxes[i, 3] + shifts[i, 1])
+    return shifts
+
+
+def island_boxes(corner_uv: FloatArray, island: IndexArray) -> FloatArray:
+    """(islands, 4): the least u and v and the largest u and v of each island."""
+    count = int(island.max(initial=-1)) + 1
+    solved = island >= 0
+    of_corner = np.repeat(island[solved], 3)
+    uv = corner_uv[solved].reshape(-1, 2)
+    least, largest = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
+    np.minimum.at(least, of_corner, uv)
+    np.maximum.at(largest, of_corner, uv)
+    return np.concatenate([least, largest], axis=1)
+
+
+def shift_islands(
+    triangles: IndexArray, corner_uv: FloatArray, island: IndexArray, cut_edges: IndexArray, shifts: FloatArray
+) -> FloatArray:
+    """Move islands of a seamless layout and round to what float32 holds, so that both sides of every cut still match.
+
+    triangles: (m, 3). corner_uv: (m, 3, 2), island: (m,), cut_edges: (c, 2): of the `Result`. shifts: (islands, 2),
+    whole cells each. Where float32 is too coarse for the vertices of cuts at their new place, they go to its grid, both
+    sides together; cuts crossed by third or sixth turns, which it never holds exactly, are right to its rounding.
+    Returns a new array.
+    """
+    moved = corner_uv + np.append(shifts, [[0.0, 0.0]], axis=0)[island][:, None, :]
+    on_cut = np.zeros(int(triangles.max(initial=-1)) + 1, bool)
+    on_cut[cut_edges] = True
+    corners = np.flatnonzero(on_cut[triangles].ravel() & np.repeat(island >= 0, 3))
+    flat = moved.reshape(-1, 2)
+    if not np.array_equal(flat[corners], flat[corners].astype(np.float32)):
+        flat[corners] = _on_coarser_grid(triangles, flat, island, cut_edges, corners)
+    return moved.astype(np.float32).astype(np.float64)
+
+
+def _on_coarser_grid(
+    triangles: IndexArray, uv: FloatArray, island: IndexArray, cut_edges: IndexArray, corners: NDArray[np.intp]
+) -> FloatArray:
+    """New coordinates (k, 2) of these corners: multiples of what float32 resolves at the largest of all."""
+    largest = float(np.abs(uv[corners]).max())
+    step = 2.0 ** (math.ceil(math.log2(largest + 1)) - _MANTISSA_BITS)
+    # A copy of a vertex on a cut: all corners that share its place.
+    keys = np.stack([triangles.ravel()[corners], np.repeat(island, 3)[corners], *uv[corners].T])
+    _, first, copy_of = np.unique(keys, axis=1, return_index=True, return_inverse=True)
+    copy_of = copy_of.reshape(-1)
+    old = uv[corners[first]] @ (1, 1j)
+    copy_at = np.full(len(uv), -1)
+    copy_at[corners] = copy_of
+    crossings: list[list[tuple[int, complex]]] = [[] for _ in old]
+    for left, right, turn in _crossings(triangles, uv, island, cut_edges):
+        a, b = copy_at[left], copy_at[right]
+        crossings[a].append((b, turn))
+        crossings[b].append((a, turn.conjugate()))
+
+    # One copy is rounded, the others follow through the cuts they were related by.
+    new = np.full(len(old), np.nan, complex)
+    for start in range(len(old)):
+        if not np.isnan(new[start]):
+            continue
+        new[start] = complex(*(np.round(np.array([old[start].real, old[start].imag]) / step) * step))
+        waiting = [start]
+        while waiting:
+            a = waiting.pop()
+            for b, turn in crossings[a]:
+                if np.isnan(new[b]):
+                    new[b] = turn * new[a] + (old[b] - turn * old[a])
+                    waiting.append(b)
+    return np.stack([new.real, new.imag], axis=1)[copy_of]
+
+
+def _crossings(
+    triangles: IndexArray, uv: FloatArray, island: IndexArray, cut_edges: IndexArray
+) -> Iterator[tuple[int, int, complex]]:
+    """Corners left and right of the cuts, in pairs of the same vertex, where a quarter turn relates them exactly."""
+    solved = np.flatnonzero(island >= 0)
+    tail = (3 * solved[:, None] + np.arange(3)).ravel()
+    head = (3 * solved[:, None] + [1, 2, 0]).ravel()
+    vertex = triangles.ravel().astype(np.int64)
+    size = int(vertex.max()) + 1
+    low, high = np.minimum(vertex[tail], vertex[head]), np.maximum(vertex[tail], vertex[head])
+    key = low * size + high
+    on_cut = np.isin(key, cut_edges.min(axis=1).astype(np.int64) * size + cut_edges.max(axis=1))
+    tail, head, key = tail[on_cut], head[on_cut], key[on_cut]
+    order = np.argsort(key, kind="stable")
+    # The first side of each edge with every other one; doubles of a triangle make more than two.
+    _, first, edge = np.unique(key[order], return_index=True, return_inverse=True)
+    left, right = order[first[edge.reshape(-1)]], order
+    left, right = left[left != right], right[left != right]
+    alike = vertex[tail[left]] == vertex[tail[right]]
+    ends = np.where(alike, [tail[right], head[right]], [head[right], tail[right]])
+    pairs = np.stack([tail[left], head[left], *ends])
+    l0, l1, r0, r1 = uv[pairs] @ (1, 1j)
+    related = _QUARTER_TURNS[:, None] * (l1 - l0) == r1 - r0
+    for pair in np.flatnonzero(related.any(axis=0)).tolist():
+        turn = complex(_QUARTER_TURNS[related[:, pair].argmax()])
+        for side in (0, 1):
+            yield int(pairs[side, pair]), int(pairs[side + 2, pair]), turn
+
+
+def _second_vector(symmetry: int) -> tuple[float, float]:
+    """From a lattice point to its neighbour in the next row, in cells; in its own row the neighbour is at (1, 0)."""
+    return (0.5, math.sqrt(3) / 2) if symmetry in (3, 6) else (0.0, 1.0)
+
+
+def _points(columns: FloatArray, rows: FloatArray, symmetry: int, cell: float) -> FloatArray:
+    gx, gy = _second_vector(symmetry)
+    return np.stack([columns + rows * gx, rows * gy], axis=-1) * cell
+
+
+def _cells_beyond(shift: FloatArray, symmetry: int, cell: float) -> FloatArray:
+    """The smallest move by whole cells, first upwards, then to the right, that is no less than the given one."""
+    gx, gy = _second_vector(symmetry)
+    rows = np.ceil(shift[1] / (gy * cell))
+    return _points(np.ceil(shift[0] / cell - rows * gx), rows, symmetry, cell)
