@@ -24,12 +24,16 @@ from numpy.typing import NDArray
 
 from . import __version__
 from . import report as reports
-from .api import Options, Surface, measure_distortion, parameterize, place_cones
+from .api import Options, Seamless, Surface, measure_distortion, parameterize, place_cones
+from .certificate import certificate_table
 from .errors import Elements, Finding, InputError, LsgpError
 from .mesh_files import read_mesh, write_obj, write_whole
 from .polygons import PolygonMesh, Triangulation, triangulate
 
 OK, USAGE, REFUSED = 0, 2, 3
+
+DEFAULT_TEXTURE_SIZE = 1024
+LARGEST_TEXTURE_SIZE = 65536
 
 
 class UsageError(Exception):
@@ -123,6 +127,7 @@ def _parser() -> argparse.ArgumentParser:
         default="free",
         help="borders take the shape of least distortion, or run straight from cone to cone (default: free)",
     )
+    _add_seamless_options(unwrap)
     unwrap.set_defaults(run=_unwrap)
 
     measure = commands.add_parser(
@@ -136,6 +141,58 @@ def _parser() -> argparse.ArgumentParser:
     for command in (unwrap, measure):
         command.add_argument("--report", metavar="FILE.json", type=Path, help="write a report, also when refused")
     return parser
+
+
+def _add_seamless_options(unwrap: argparse.ArgumentParser) -> None:
+    unwrap.add_argument(
+        "--seamless",
+        action="store_true",
+        help="round angles and translations so that a tileable texture shows no seam; coordinates are in tiles",
+    )
+    seamless = unwrap.add_argument_group("with --seamless")
+    scale = seamless.add_mutually_exclusive_group()
+    scale.add_argument(
+        "--tiles",
+        metavar="N",
+        type=float,
+        help="tiles along the layout's longer side (default: as few as cost at most a tenth in distortion)",
+    )
+    scale.add_argument("--tile-size", metavar="X", type=float, help="side of a tile on the surface, in its unit")
+    seamless.add_argument(
+        "--lattice",
+        choices=["square", "stripe", "translation", "triangle", "hexagon"],
+        help="what leaves the texture as it is: quarter turns, half turns or none of squares, third or sixth turns of "
+        "triangles (default: square)",
+    )
+    seamless.add_argument(
+        "--parity", action="store_true", default=None, help="the black and white squares of a checker match as well"
+    )
+    seamless.add_argument(
+        "--coarse-grid",
+        choices=["refine", "merge", "relax"],
+        help="where the tiles are too large for a valid layout: take smaller ones, merge cones less than a tile apart, "
+        "or leave cones off the grid (default: refine)",
+    )
+    seamless.add_argument(
+        "--texture-size",
+        metavar="T",
+        type=_texture_size_option,
+        help=f"texels of the texture's side, a power of two; errors are told in them (default: {DEFAULT_TEXTURE_SIZE})",
+    )
+    seamless.add_argument(
+        "--mip-levels",
+        metavar="L",
+        type=int,
+        help="cells of 2^L texels instead of whole tiles, for a texture that repeats in them; its first L mipmaps "
+        "match as well",
+    )
+
+
+def _texture_size_option(text: str) -> int:
+    size = int(text) if text.isascii() and text.isdigit() and len(text) < 10 else 0
+    if not (1 <= size <= LARGEST_TEXTURE_SIZE and size.bit_count() == 1):
+        raise argparse.ArgumentTypeError(f"'{text}': T is a power of two, at most {LARGEST_TEXTURE_SIZE}")
+    return size
 
 
 def _cones_option(text: str) -> str | int | Path:
@@ -177,12 +234,16 @@ def _refusal(error: LsgpError, run: Run) -> reports.Report:
 def _unwrap(args: argparse.Namespace, run: Run) -> reports.Report:
     if args.prescription == "manual" and not isinstance(args.cones, Path):
         raise UsageError("--prescription manual needs a cones file with angles; give one with --cones FILE.json")
+    texture_size = DEFAULT_TEXTURE_SIZE if args.texture_size is None else args.texture_size
+    cell = _cell(args, texture_size)
     cones_json = _load_json(args.cones) if isinstance(args.cones, Path) else None
     seams_json = [] if args.seam_edges is None else _load_json(args.seam_edges)
     mesh, triangulation = _read(args.input, run)
     seams = _seam_edges(seams_json, args.seam_edges)
     surface = Surface(mesh.positions, triangulation.triangles, triangulation.edges, seams)
-    options = Options(args.prescription, args.unfold, args.method, args.seams, args.border)
+    options = Options(
+        args.prescription, args.unfold, args.method, args.seams, args.border, seamless=_seamless(args, cell)
+    )
     if isinstance(args.cones, Path):
         cones, angles = _cones(cones_json, args.cones, args.prescription)
     else:
@@ -196,13 +257,38 @@ def _unwrap(args: argparse.Namespace, run: Run) -> reports.Report:
         write_obj(args.output, mesh, triangulation.to_polygon_corners(result.corner_uv, len(mesh.corners)))
     _warn(result.warnings, triangulation)
     islands = len(np.unique(result.island[result.solved]))
-    _say(
-        sys.stdout,
+    lines = [
         f"{args.output}: {int(result.solved.sum())} of {len(result.solved)} triangles unwrapped, "
-        f"{len(result.cones)} cones, {islands} {'island' if islands == 1 else 'islands'}\n"
-        + reports.quality_table(result.distortion, result.seams, len(result.flipped), len(result.wrong_angle_sums)),
-    )
-    return reports.unwrap_report(result, triangulation, run.stage_seconds)
+        f"{len(result.cones)} cones, {islands} {'island' if islands == 1 else 'islands'}",
+        reports.quality_table(result.distortion, result.seams, len(result.flipped), len(result.wrong_angle_sums)),
+    ]
+    if result.seamless is not None:
+        lines.append(certificate_table(result.seamless, texture_size))
+    _say(sys.stdout, "\n".join(lines))
+    return reports.unwrap_report(result, triangulation, run.stage_seconds, texture_size)
+
+
+def _cell(args: argparse.Namespace, texture_size: int) -> float:
+    """The side of a cell in texture coordinates.  Raises UsageError where the options for seamless do not fit."""
+    if not args.seamless:
+        for name in ("tiles", "tile_size", "lattice", "parity", "coarse_grid", "texture_size", "mip_levels"):
+            if getattr(args, name) is not None:
+                raise UsageError(f"--{name.replace('_', '-')} is for seamless layouts; add --seamless")
+    if args.mip_levels is None:
+        return 1.0
+    most = texture_size.bit_length() - 1
+    if not 0 <= args.mip_levels <= most:
+        raise UsageError(
+            f"--mip-levels {args.mip_levels}: a texture of {texture_size} texels a side has levels 0 to {most}"
+        )
+    return 2.0**args.mip_levels / texture_size
+
+
+def _seamless(args: argparse.Namespace, cell: float) -> Seamless | None:
+    if not args.seamless:
+        return None
+    wanted = {name: getattr(args, name) for name in ("lattice", "tiles", "tile_size", "parity", "coarse_grid")}
+    return Seamless(**{name: value for name, value in wanted.items() if value is not None}, cell=cell)
 
 
 def _measure(args: argparse.Namespace, run: Run) -> reports.Report:

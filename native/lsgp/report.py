@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from .api import Distortion, Measurement, Result, SeamQuality
+from .certificate import certificate
 from .errors import Elements, Finding, LsgpError
 from .polygons import Triangulation
 
@@ -29,6 +30,7 @@ EMPTY: Report = {
     "cone_angles": [],
     "distortion": None,
     "seams": None,
+    "seamless": None,
     "flipped": None,
     "wrong_angle_sums": None,
     "stage_seconds": {},
@@ -53,9 +55,13 @@ def refusal_report(error: LsgpError, triangulation: Triangulation | None) -> Rep
     }
 
 
-def unwrap_report(result: Result, triangulation: Triangulation, stage_seconds: Mapping[str, float]) -> Report:
+def unwrap_report(
+    result: Result, triangulation: Triangulation, stage_seconds: Mapping[str, float], texture_size: int
+) -> Report:
     """The report of a map. "flipped" and "wrong_angle_sums" are counts; the warnings name the faces and vertices.
-    "cones" and "cone_angles" are those that were imposed, so that a report serves as a cones file too."""
+    "cones" and "cone_angles" are those that were imposed, so that a report serves as a cones file too.
+
+    texture_size: texels of the side of the texture that errors of a seamless layout are told in."""
     return EMPTY | {
         "warnings": _warnings(result.warnings, triangulation),
         "triangles": len(triangulation.triangles),
@@ -63,6 +69,7 @@ def unwrap_report(result: Result, triangulation: Triangulation, stage_seconds: M
         "cone_angles": result.cone_angles.tolist(),
         "distortion": asdict(result.distortion),
         "seams": asdict(result.seams),
+        "seamless": None if result.seamless is None else certificate(result.seamless, texture_size),
         "flipped": len(result.flipped),
         "wrong_angle_sums": len(result.wrong_angle_sums),
         "stage_seconds": dict(stage_seconds),

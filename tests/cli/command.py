@@ -13,7 +13,7 @@ from polygon_meshes import faces_of
 
 REPORT_KEYS = [
     *["status", "code", "message", "elements", "warnings", "triangles", "cones", "cone_angles", "distortion", "seams"],
-    *["flipped", "wrong_angle_sums", "stage_seconds"],
+    *["seamless", "flipped", "wrong_angle_sums", "stage_seconds"],
 ]
 DISTORTION_KEYS = [
     *["quasi_conformal", "quasi_conformal_area_weighted", "area", "area_p10", "area_p90", "l2_stretch"],
