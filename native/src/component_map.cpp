@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "component_map.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "border.hpp"
 #include "holonomy.hpp"
+#include "quantize_curvature.hpp"
 #include "transitions.hpp"
 #include "unfold.hpp"
 #include "untangle.hpp"
@@ -31,8 +33,6 @@ std::vector<Index> inside_only(const HalfedgeMesh& mesh, const std::vector<Index
   return out;
 }
 
-namespace {
-
 Eigen::VectorXd curvature_of_nodes(const HalfedgeMesh& mesh, const NodeGraph& nodes, const Eigen::VectorXd& at_vertex) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(nodes.vertex.size());
   for (std::size_t node = 0; node < nodes.vertex.size(); ++node) {
@@ -44,6 +44,8 @@ Eigen::VectorXd curvature_of_nodes(const HalfedgeMesh& mesh, const NodeGraph& no
   }
   return out;
 }
+
+namespace {
 
 // A surface with boundary has conformal maps without number, so the spectral step would return an arbitrary one; only
 // without cones does the smallest eigenvector still mean something (Mullen et al. 2008).
@@ -66,15 +68,42 @@ struct Connection {
   Reduction reduction;
 };
 
-Connection connect(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map) {
+// The rotations about handles, which curvature leaves free: those of the metric, which distort least, but for layouts
+// that admit fewer.
+Eigen::VectorXd choose_rotations(const HalfedgeMesh& mesh, const NodeGraph& nodes, const Eigen::VectorXd& natural,
+                                 const Eigen::VectorXd& node_curvature, int symmetry) {
+  // The holonomy of a flat torus without cones is trivial.
+  const bool flat = mesh.closed() && node_curvature.cwiseAbs().maxCoeff() == 0;
+  Eigen::VectorXd out = natural;
+  for (Eigen::Index p = 0; p < out.size(); ++p) {
+    if (nodes.in_tree[p]) continue;
+    if (flat) {
+      out[p] = 2 * M_PI * std::round(natural[p] / (2 * M_PI));
+    } else if (symmetry > 0) {
+      out[p] = angle_of_turns(turns_of(natural[p], symmetry), symmetry);
+    }
+  }
+  return out;
+}
+
+Connection connect(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, int symmetry) {
   const Curvature& curvature = map.curvature;
   Connection out;
   out.frames = integrate_frames(mesh, geometry, map.cut_graph, curvature.log_scale);
   // The better a root, the farther its curvature is from whole turns.
   const NodeGraph nodes = build_node_graph(mesh, map.cut_graph, (curvature.at_vertex / 2).array().sin().abs());
   const Eigen::VectorXd node_curvature = curvature_of_nodes(mesh, nodes, curvature.at_vertex);
-  out.rotation = find_rotations(nodes, node_curvature,
-                                read_rotations(mesh, geometry, map.cut_graph, curvature.log_scale, out.frames));
+  const Eigen::VectorXd natural = read_rotations(mesh, geometry, map.cut_graph, curvature.log_scale, out.frames);
+  const Eigen::VectorXd chosen = choose_rotations(mesh, nodes, natural, node_curvature, symmetry);
+  out.rotation = find_rotations(nodes, node_curvature, chosen);
+  if (symmetry > 0) {
+    for (double& rotation : out.rotation) rotation = angle_of_turns(turns_of(rotation, symmetry), symmetry);
+  }
+  if (chosen != natural) {
+    const Eigen::VectorXd none_imposed = Eigen::VectorXd::Zero(node_curvature.size());
+    out.frames +=
+        spread_rotations(mesh, geometry, map.cut_graph, find_rotations(nodes, none_imposed, chosen - natural));
+  }
   out.reduction = impose_transitions(mesh, map.cut_graph, map.cut_mesh, nodes, node_curvature, out.rotation);
   return out;
 }
@@ -152,7 +181,12 @@ ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, c
   }
   {
     StageTimer timer(seconds, "cut");
-    map.cut_graph = connect_cones(mesh, geometry, inside_only(mesh, cones.vertices), map.curvature.needs_no_cut);
+    map.cones = inside_only(mesh, cones.vertices);
+    if (cones.symmetry > 0) {  // those that came out flat need no cut
+      const auto flat = [&](Index v) { return map.curvature.at_vertex[v] == 0; };
+      map.cones.erase(std::remove_if(map.cones.begin(), map.cones.end(), flat), map.cones.end());
+    }
+    map.cut_graph = connect_cones(mesh, geometry, map.cones, map.curvature.needs_no_cut);
     map.cut_mesh = cut_open(mesh, map.cut_graph);
     map.pins = pins_of_copies(map.cut_mesh, pinned_corners);
   }
@@ -163,7 +197,7 @@ ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, c
     check(mesh, map);
     return map;
   }
-  const Connection connection = connect(mesh, geometry, map);
+  const Connection connection = connect(mesh, geometry, map, cones.symmetry);
   map.rotation = connection.rotation;
   const bool spectral = usable_unfold(mesh, cones, options.unfold, findings) == UnfoldMethod::spectral;
   if (spectral) {
@@ -183,7 +217,7 @@ ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, c
   }
   check(mesh, map);
   if (!map.validity.flipped.empty() && !spectral) {
-    map.position = untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, target,
+    map.position = untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, target, connection.frames,
                             fixed_vertices(mesh, map, aligned), map.position);
     check(mesh, map);
   }

@@ -11,6 +11,7 @@
 #include "cut_graph.hpp"
 #include "cut_mesh.hpp"
 #include "distortion.hpp"
+#include "holonomy.hpp"
 #include "pins.hpp"
 
 namespace lsgp {
@@ -20,6 +21,7 @@ struct ComponentMap {
   CutGraph cut_graph;
   CutMesh cut_mesh;
   Curvature curvature;
+  std::vector<Index> cones;                 // inside vertices of imposed curvature
   std::optional<Eigen::VectorXd> rotation;  // (cuts) imposed, radians; none without transitions
   Eigen::VectorXcd position;                // (copies) u + iv
   std::vector<Pin> pins;
@@ -41,5 +43,8 @@ void check_triangles(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners, 
 
 // Those of the vertices that lie on no border.
 std::vector<Index> inside_only(const HalfedgeMesh& mesh, const std::vector<Index>& vertices);
+
+// The imposed curvature of every node: a vertex' own, the sum along a loop.
+Eigen::VectorXd curvature_of_nodes(const HalfedgeMesh& mesh, const NodeGraph& nodes, const Eigen::VectorXd& at_vertex);
 
 }  // namespace lsgp

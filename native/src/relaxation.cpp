@@ -64,7 +64,8 @@ std::vector<char> mark_around(const HalfedgeMesh& mesh, const std::vector<Index>
 }
 
 Relaxation::Relaxation(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                       const Eigen::VectorXd& log_scale, Freedom freedom, Eigen::VectorXcd& position)
+                       const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames, Freedom freedom,
+                       Eigen::VectorXcd& position)
     : displacement_(std::move(freedom.displacement)), position_(position) {
   shapes_.reserve(freedom.triangles.size());
   for (const Index f : freedom.triangles) {
@@ -74,9 +75,10 @@ Relaxation::Relaxation(const HalfedgeMesh& mesh, const Geometry& geometry, const
     shape.weight = geometry.area[f] * scale * scale;
     shape.begin = static_cast<Index>(slopes_.size());
     for (int c = 0; c < 3; ++c) {
-      // f_z = sum g_j z_j and f_zbar = sum h_j z_j with g = -i conj(e) / (4 A), h = i e / (4 A), e opposite corner j.
+      // f_z = sum g_j z_j and f_zbar = sum h_j z_j with g = -i conj(e) / (4 A), h = i e / (4 A), e opposite corner j;
+      // a turn of f_zbar changes no energy.
       const Complex edge = edge_vector(geometry, next(3 * f + c)) / (4 * geometry.area[f] * scale);
-      shape.g[c] = Complex(0, -1) * std::conj(edge);
+      shape.g[c] = std::polar(1.0, -frames[f]) * Complex(0, -1) * std::conj(edge);
       shape.h[c] = Complex(0, 1) * edge;
       shape.copy[c] = cut_mesh.copy_of_corner[3 * f + c];
       displacement_.for_each_term(shape.copy[c], [&](const Term& term) {
@@ -88,30 +90,31 @@ Relaxation::Relaxation(const HalfedgeMesh& mesh, const Geometry& geometry, const
   }
 }
 
-bool Relaxation::unfold() {
-  double lowest = smallest_determinant();
-  double epsilon = std::max(smallest_epsilon, -lowest);
+bool Relaxation::unfold(DistortionEnergy::Kind kind) {
+  DistortionEnergy energy{kind};
+  double lowest = smallest_determinant(energy);
+  energy.epsilon = std::max(smallest_epsilon, -lowest);
   for (int step = 0; step < most_newton_steps && !(lowest > 0); ++step) {
-    const auto terms = [&](double d) { return foldover_free(d, epsilon); };
-    const double before = energy(terms);
-    const Eigen::VectorXcd direction = newton_direction(terms);
+    const double before = total(energy);
+    const Eigen::VectorXcd direction = newton_direction(energy);
     double after = before;
-    if (!search(terms, direction, 1, before, after)) return false;
-    lowest = smallest_determinant();
+    if (!search(energy, direction, 1, before, after)) return false;
+    lowest = smallest_determinant(energy);
     // Garanzha et al. 2021, equation (7): epsilon falls as fast as the energy does.
     const double decrease = std::max(0.1, 1 - after / before);
-    const double mu = (1 - decrease) * foldover_chi(lowest, epsilon);
-    if (lowest < mu) epsilon = std::max(2 * std::sqrt(mu * (mu - lowest)), std::numeric_limits<double>::min());
+    const double mu = (1 - decrease) * foldover_chi(lowest, energy.epsilon);
+    if (lowest < mu) energy.epsilon = std::max(2 * std::sqrt(mu * (mu - lowest)), std::numeric_limits<double>::min());
   }
   return lowest > 0;
 }
 
-void Relaxation::smooth(RadialTerms (*barrier)(double), int steps, double least_share) {
+void Relaxation::smooth(DistortionEnergy::Kind barrier, int steps, double least_share) {
+  const DistortionEnergy energy{barrier};
   for (int step = 0; step < steps; ++step) {
-    const double before = energy(barrier);
-    const Eigen::VectorXcd direction = newton_direction(barrier);
+    const double before = total(energy);
+    const Eigen::VectorXcd direction = newton_direction(energy);
     double after = before;
-    if (!search(barrier, direction, std::min(1.0, barrier_share * collapse_step(direction)), before, after)) return;
+    if (!search(energy, direction, std::min(1.0, barrier_share * collapse_step(direction)), before, after)) return;
     if (before - after < least_share * before) return;
   }
 }
@@ -144,25 +147,25 @@ Relaxation::Jacobian Relaxation::change(const Shape& shape, const Eigen::VectorX
   return out;
 }
 
-double Relaxation::smallest_determinant() const {
+double Relaxation::smallest_determinant(const DistortionEnergy& energy) const {
   double lowest = std::numeric_limits<double>::infinity();
-  for (const Shape& shape : shapes_) lowest = std::min(lowest, jacobian(shape).determinant());
+  for (const Shape& shape : shapes_) {
+    const Jacobian at = jacobian(shape);
+    lowest = std::min(lowest, energy.determinant(at.f_z, at.f_zbar));
+  }
   return lowest;
 }
 
-template <typename Terms>
-double Relaxation::energy(const Terms& terms_at) const {
-  double total = 0;
+double Relaxation::total(const DistortionEnergy& energy) const {
+  double sum = 0;
   for (const Shape& shape : shapes_) {
     const Jacobian at = jacobian(shape);
-    const RadialTerms terms = terms_at(at.determinant());
-    total += shape.weight * ((std::norm(at.f_z) + std::norm(at.f_zbar)) * terms.phi + terms.psi);
+    sum += shape.weight * energy.value(at.f_z, at.f_zbar);
   }
-  return total;
+  return sum;
 }
 
-template <typename Terms>
-Eigen::VectorXcd Relaxation::newton_direction(const Terms& terms_at) const {
+Eigen::VectorXcd Relaxation::newton_direction(const DistortionEnergy& energy) const {
   const Index count = displacement_.unknown_count;
   const int size = 2 * count;
   LowerAssembly<double> assembly(size, 25 * shapes_.size());
@@ -171,7 +174,7 @@ Eigen::VectorXcd Relaxation::newton_direction(const Terms& terms_at) const {
   std::vector<Eigen::Matrix<double, 4, 2>> maps;
   for (const Shape& shape : shapes_) {
     const Jacobian at = jacobian(shape);
-    const EnergyExpansion expansion = expand_energy(at.f_z, at.f_zbar, terms_at(at.determinant()));
+    const EnergyExpansion expansion = energy.expand(at.f_z, at.f_zbar);
     // Real form of (f_z, f_zbar) as functions of each unknown.
     maps.clear();
     for (Index i = shape.begin; i < shape.end; ++i) {
@@ -204,13 +207,12 @@ Eigen::VectorXcd Relaxation::newton_direction(const Terms& terms_at) const {
   return out;
 }
 
-template <typename Terms>
-bool Relaxation::search(const Terms& terms, const Eigen::VectorXcd& direction, double longest, double before,
-                        double& after) {
+bool Relaxation::search(const DistortionEnergy& energy, const Eigen::VectorXcd& direction, double longest,
+                        double before, double& after) {
   const Eigen::VectorXcd start = position_, displaced = expand(displacement_, direction);
   for (double length = longest; length > 1e-8; length /= 2) {
     position_ = start + length * displaced;
-    after = energy(terms);
+    after = total(energy);
     if (after < before) return true;
   }
   position_ = start;
@@ -222,9 +224,9 @@ double Relaxation::collapse_step(const Eigen::VectorXcd& direction) const {
   double shortest = std::numeric_limits<double>::infinity();
   for (const Shape& shape : shapes_) {
     const Jacobian at = jacobian(shape), moved = change(shape, direction);
-    const double a = moved.determinant();
+    const double a = std::norm(moved.f_z) - std::norm(moved.f_zbar);
     const double b = 2 * (std::real(std::conj(at.f_z) * moved.f_z) - std::real(std::conj(at.f_zbar) * moved.f_zbar));
-    const double c = at.determinant(), discriminant = b * b - 4 * a * c;
+    const double c = std::norm(at.f_z) - std::norm(at.f_zbar), discriminant = b * b - 4 * a * c;
     if (discriminant < 0) continue;
     const double q = -(b + std::copysign(std::sqrt(discriminant), b)) / 2;
     for (const double root : {q / a, c / q}) {

@@ -27,17 +27,19 @@ std::vector<char> mark_around(const HalfedgeMesh& mesh, const std::vector<Index>
 
 class Relaxation {
  public:
-  // Rest shapes are the surface's triangles scaled by e^{log_scale}, (n).  position: (copies) u + iv, which is moved.
+  // Rest shapes are the surface's triangles scaled by e^{log_scale}, (n), and turned by frames, (m) radians.
+  // position: (copies) u + iv, which is moved.
   Relaxation(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-             const Eigen::VectorXd& log_scale, Freedom freedom, Eigen::VectorXcd& position);
+             const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames, Freedom freedom,
+             Eigen::VectorXcd& position);
 
-  // Newton steps on the foldover-free energy (Garanzha et al. 2021) until every moving triangle is upright.  Returns
-  // whether that was reached.  Throws SOLVER_FAILED.
-  bool unfold();
+  // Newton steps on a foldover-free energy (Garanzha et al. 2021) until every moving triangle is upright, and with the
+  // framed one within 90 degrees of its frame.  Returns whether that was reached.  Throws SOLVER_FAILED.
+  bool unfold(DistortionEnergy::Kind kind);
 
   // Newton steps on a barrier from a map without flips; none arises on the way.  At most `steps`, fewer where the
   // energy falls by less than a share of itself.  Throws SOLVER_FAILED.
-  void smooth(RadialTerms (*barrier)(double), int steps, double least_share = 0);
+  void smooth(DistortionEnergy::Kind barrier, int steps, double least_share = 0);
 
  private:
   struct Shape {
@@ -57,20 +59,17 @@ class Relaxation {
 
   struct Jacobian {
     Complex f_z, f_zbar;
-    double determinant() const { return std::norm(f_z) - std::norm(f_zbar); }
   };
   Jacobian jacobian(const Shape& shape) const;
   Jacobian change(const Shape& shape, const Eigen::VectorXcd& direction) const;
-  double smallest_determinant() const;
+  double smallest_determinant(const DistortionEnergy& energy) const;
 
-  template <typename Terms>
-  double energy(const Terms& terms_at) const;
-  template <typename Terms>
-  Eigen::VectorXcd newton_direction(const Terms& terms_at) const;
+  double total(const DistortionEnergy& energy) const;
+  Eigen::VectorXcd newton_direction(const DistortionEnergy& energy) const;
 
   // Halves the step until the energy falls; leaves the positions as they were where it never does.
-  template <typename Terms>
-  bool search(const Terms& terms, const Eigen::VectorXcd& direction, double longest, double before, double& after);
+  bool search(const DistortionEnergy& energy, const Eigen::VectorXcd& direction, double longest, double before,
+              double& after);
 
   // The step along a direction at which the first triangle has no area any more.
   double collapse_step(const Eigen::VectorXcd& direction) const;

@@ -60,14 +60,16 @@ class Elimination {
     Index ground = ids.empty() ? none : ids.front();
     if (ground != none) ids.erase(ids.begin());
     bool shifts = ground != none;
-    const std::size_t cone_count = ids.size();
+    LatticeReduction out;
+    out.origin = ground;
+    out.cones = ids;
     for (Index id = n_; id < static_cast<Index>(solved_.size()); ++id) {
       if (is_solved_[id]) continue;
       ids.push_back(id);
+      out.cuts.push_back(id - n_);
       shifts = shifts || turn_[id - n_] != 1.0;
     }
     if (!shifts) ground = find_ground();
-    LatticeReduction out;
     const std::vector<Index> unknown = number(ground, out.reduction);
     express_all_copies(unknown, out.reduction);
     const Eigen::Index count = static_cast<Eigen::Index>(ids.size());
@@ -85,12 +87,13 @@ class Elimination {
     for (std::size_t p = 0; p < turn_.size(); ++p)
       add_row(translation_id(static_cast<Index>(p)), out.translation.row(p));
     out.basis = Eigen::MatrixXcd::Identity(count, count);
-    if (parity) out.basis.diagonal().tail(count - static_cast<Eigen::Index>(cone_count)).setConstant(Complex(1, 1));
-    const Index root = nodes_.order.empty() ? none : nodes_.vertex[nodes_.order.front()];
-    if (root != none && is_solved_[root]) {
-      Eigen::RowVectorXcd condition = Eigen::RowVectorXcd::Zero(count);
-      add_row(root, condition.row(0));
-      restrict_to_integral(condition * out.basis, lattice, out.basis);
+    if (parity) out.basis.diagonal().tail(static_cast<Eigen::Index>(out.cuts.size())).setConstant(Complex(1, 1));
+    const Index first = nodes_.order.empty() ? none : nodes_.vertex[nodes_.order.front()];
+    if (first != none && is_solved_[first]) {
+      out.root = first;
+      out.root_position = Eigen::RowVectorXcd::Zero(count);
+      add_row(first, out.root_position.row(0));
+      restrict_to_integral(out.root_position * out.basis, lattice, out.basis);
     }
     return out;
   }

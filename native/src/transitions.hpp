@@ -42,9 +42,14 @@ Reduction impose_transitions(const HalfedgeMesh& mesh, const CutGraph& cut_graph
 // over may each take any value of the lattice, and all other cones and translations then lie on it too.
 struct LatticeReduction {
   Reduction reduction;
-  std::vector<Index> integers;   // (d) unknowns that take values on the lattice
-  Eigen::MatrixXcd basis;        // (d, d) their values are basis * any lattice points
-  Eigen::MatrixXcd translation;  // (cuts, d) translations as functions of the integers
+  Index origin = none;                // the cone that is held at 0, if any
+  std::vector<Index> integers;        // (d) unknowns that take values on the lattice:
+  std::vector<Index> cones;           // the positions of these vertices, and after them
+  std::vector<Index> cuts;            // the translations of these cuts
+  Eigen::MatrixXcd translation;       // (cuts, d) all translations as functions of the integers
+  Index root = none;                  // the cone whose position follows from the integers, if any
+  Eigen::RowVectorXcd root_position;  // (d) as a function of them
+  Eigen::MatrixXcd basis;             // (d, d) the integers are basis * any lattice points
 };
 
 // turns: (cuts) rotations in multiples of 2 pi / q.  nodes: rooted at a boundary loop, or at a cone whose 1 - e^{i

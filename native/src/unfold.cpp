@@ -82,6 +82,34 @@ Eigen::VectorXd read_rotations(const HalfedgeMesh& mesh, const Geometry& geometr
   return rotation;
 }
 
+Eigen::VectorXd spread_rotations(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
+                                 const Eigen::VectorXd& change) {
+  // Least squares of the differences across edges, each weighted by its length over the distance of the centroids
+  // along which it is crossed.
+  const Index faces = mesh.triangle_count();
+  LowerAssembly<double> assembly(faces - 1, 2 * static_cast<std::size_t>(mesh.halfedge_count()));
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(faces);
+  const auto add = [&](Index row, Index column, double value) {
+    if (row > 0 && column > 0) assembly.add(row - 1, column - 1, value);  // the first triangle stays
+  };
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    const Index twin = mesh.twin[h];
+    if (twin < h) continue;
+    const Index f = h / 3, g = twin / 3;
+    const double weight = geometry.length[h] * geometry.length[h] / (geometry.area[f] + geometry.area[g]);
+    add(f, f, weight);
+    add(g, g, weight);
+    if (f != g) add(f, g, -weight);
+    if (!cut_graph.is_cut[h]) continue;
+    const double jump = (cut_graph.runs_forward[h] ? 1 : -1) * change[cut_graph.cut_of[h]];  // from f to g
+    right[f] -= weight * jump;
+    right[g] += weight * jump;
+  }
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(faces);
+  out.tail(faces - 1) = Cholesky<double>(assembly.build()).solve(Eigen::VectorXd(right.tail(faces - 1)));
+  return out;
+}
+
 PoissonSystem::PoissonSystem(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
                              const Reduction& reduction)
     : mesh_(mesh),

@@ -23,6 +23,11 @@ Eigen::VectorXd integrate_frames(const HalfedgeMesh& mesh, const Geometry& geome
 Eigen::VectorXd read_rotations(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
                                const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames);
 
+// What to add to the frames, (m), so that the rotation of every cut changes by what is given, (cuts): the smoothest
+// such turning.  It closes around every node.
+Eigen::VectorXd spread_rotations(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
+                                 const Eigen::VectorXd& change);
+
 // Each returns the positions u + iv of all copies.
 
 // Least squares fit of the map's Jacobians to e^{y + i phi}: one solve with the Dirichlet matrix.

@@ -2,6 +2,7 @@
 #include "untangle.hpp"
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "distortion.hpp"
@@ -12,15 +13,33 @@ namespace lsgp {
 
 namespace {
 
+using Kind = DistortionEnergy::Kind;
+
 constexpr std::array<int, 3> neighbourhoods{2, 5, 10};  // rings of vertices around flipped triangles
 constexpr double hopeless_share = 0.02;                 // of the triangles flipped: not a place is tangled but the map
 constexpr int barrier_steps = 3;
+
+// How a map is turned as a whole against frames.
+double turn_against(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+                    const Eigen::VectorXd& frames, const Eigen::VectorXcd& position) {
+  Complex along = 0;
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    Complex f_z = 0;  // times 4 area
+    for (int c = 0; c < 3; ++c) {
+      f_z += Complex(0, -1) * std::conj(edge_vector(geometry, next(3 * f + c))) *
+             position[cut_mesh.copy_of_corner[3 * f + c]];
+    }
+    along += f_z * std::polar(1.0, -frames[f]);
+  }
+  return std::arg(along);
+}
 
 }  // namespace
 
 Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
                           const CutMesh& cut_mesh, const Eigen::VectorXd& rotation, const Curvature& curvature,
-                          const std::vector<char>& fixed, const Eigen::VectorXcd& position) {
+                          const Eigen::VectorXd& frames, const std::vector<char>& fixed,
+                          const Eigen::VectorXcd& position) {
   const Eigen::VectorXcd motion = motion_of_copies(mesh, cut_graph, cut_mesh, rotation);
   const auto check = [&](const Eigen::VectorXcd& tried) {
     return check_map(mesh, at_corners(cut_mesh, tried), curvature.at_vertex, curvature.is_free);
@@ -28,29 +47,34 @@ Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, co
   const Validity initial = check(position);
   Eigen::VectorXcd best = position;
   std::size_t fewest = initial.defects();
-  const bool hopeless = static_cast<double>(initial.flipped.size()) > hopeless_share * mesh.triangle_count();
-  for (const int rings : neighbourhoods) {
-    if (fewest == 0 || hopeless) break;
-    std::vector<char> marked = mark_around(mesh, initial.flipped, rings);
+  const Eigen::VectorXd turned = frames.array() + turn_against(mesh, geometry, cut_mesh, frames, position);
+  const auto try_out = [&](std::vector<char> marked, Kind energy) {
     for (Index v = 0; v < mesh.vertex_count(); ++v) {
       const bool is_cone = mesh.loop_of_vertex[v] == none && curvature.at_vertex[v] != 0;
       if (fixed[v] || is_cone) marked[v] = 0;
     }
     Freedom freedom = free_vertices(mesh, cut_mesh, motion, marked);
-    if (freedom.displacement.unknown_count == 0) continue;
+    if (freedom.displacement.unknown_count == 0) return;
     Eigen::VectorXcd tried = position;
-    Relaxation relaxation(mesh, geometry, cut_mesh, curvature.log_scale, std::move(freedom), tried);
+    Relaxation relaxation(mesh, geometry, cut_mesh, curvature.log_scale, turned, std::move(freedom), tried);
     try {
-      if (relaxation.unfold()) relaxation.smooth(conformal_barrier, barrier_steps);
+      if (relaxation.unfold(energy)) relaxation.smooth(Kind::conformal_barrier, barrier_steps);
     } catch (const Error&) {
-      continue;  // what cannot be factored cannot be repaired, but it is still a map
+      return;  // what cannot be factored cannot be repaired, but it is still a map
     }
     const std::size_t left = check(tried).defects();
-    if (left < fewest) {
-      fewest = left;
-      best = std::move(tried);
+    if (left >= fewest) return;
+    fewest = left;
+    best = std::move(tried);
+  };
+  const bool hopeless = static_cast<double>(initial.flipped.size()) > hopeless_share * mesh.triangle_count();
+  if (hopeless) return best;
+  for (const Kind energy : {Kind::foldover_free, Kind::framed_foldover_free}) {
+    for (const int rings : neighbourhoods) {
+      if (fewest > 0) try_out(mark_around(mesh, initial.flipped, rings), energy);
     }
   }
+  if (fewest > 0) try_out(std::vector<char>(mesh.vertex_count(), 1), Kind::framed_foldover_free);
   return best;
 }
 

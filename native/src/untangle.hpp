@@ -16,6 +16,7 @@ namespace lsgp {
 // fixed: (n) further vertices that stay.  Returns the positions with the fewest defects found.
 Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
                           const CutMesh& cut_mesh, const Eigen::VectorXd& rotation, const Curvature& curvature,
-                          const std::vector<char>& fixed, const Eigen::VectorXcd& position);
+                          const Eigen::VectorXd& frames, const std::vector<char>& fixed,
+                          const Eigen::VectorXcd& position);
 
 }  // namespace lsgp

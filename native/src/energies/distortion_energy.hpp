@@ -50,6 +50,23 @@ struct EnergyExpansion {
   Eigen::Vector4d gradient;
   Eigen::Matrix4d hessian;
 };
-EnergyExpansion expand_energy(std::complex<double> f_z, std::complex<double> f_zbar, const RadialTerms& terms);
+
+// One of the energies, as a function of f_z and f_zbar.
+struct DistortionEnergy {
+  enum class Kind {
+    foldover_free,
+    // The same with the determinant replaced by a |a| - q, a = Re f_z: where that is positive the triangle is upright
+    // and turned by less than 90 degrees against the frame in which f_z is given.
+    framed_foldover_free,
+    conformal_barrier,
+    symmetric_dirichlet,
+  };
+  Kind kind;
+  double epsilon = 0;  // of the foldover-free ones
+
+  double determinant(std::complex<double> f_z, std::complex<double> f_zbar) const;
+  double value(std::complex<double> f_z, std::complex<double> f_zbar) const;
+  EnergyExpansion expand(std::complex<double> f_z, std::complex<double> f_zbar) const;
+};
 
 }  // namespace lsgp
