@@ -68,22 +68,56 @@ struct Connection {
   Reduction reduction;
 };
 
-// The rotations about handles, which curvature leaves free: those of the metric, which distort least, but for layouts
-// that admit fewer.
-Eigen::VectorXd choose_rotations(const HalfedgeMesh& mesh, const NodeGraph& nodes, const Eigen::VectorXd& natural,
-                                 const Eigen::VectorXd& node_curvature, int symmetry) {
-  // The holonomy of a flat torus without cones is trivial.
-  const bool flat = mesh.closed() && node_curvature.cwiseAbs().maxCoeff() == 0;
-  Eigen::VectorXd out = natural;
-  for (Eigen::Index p = 0; p < out.size(); ++p) {
+// The changes of all rotations, (cuts, loops), that turn each of the loops about handles by 1.
+Eigen::MatrixXd loop_changes(const NodeGraph& nodes) {
+  const Eigen::Index cuts = static_cast<Eigen::Index>(nodes.tail.size());
+  std::vector<Eigen::VectorXd> columns;
+  for (Eigen::Index p = 0; p < cuts; ++p) {
     if (nodes.in_tree[p]) continue;
-    if (flat) {
-      out[p] = 2 * M_PI * std::round(natural[p] / (2 * M_PI));
-    } else if (symmetry > 0) {
-      out[p] = angle_of_turns(turns_of(natural[p], symmetry), symmetry);
+    columns.push_back(
+        find_rotations(nodes, Eigen::VectorXd::Zero(nodes.vertex.size()), Eigen::VectorXd::Unit(cuts, p)));
+  }
+  Eigen::MatrixXd out(cuts, static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) out.col(static_cast<Eigen::Index>(k)) = columns[k];
+  return out;
+}
+
+// Whole numbers near `exact` with small (x - exact)^T form (x - exact): the nearest ones, changed one or two at a time.
+Eigen::VectorXd round_by_energy(const Eigen::MatrixXd& form, const Eigen::VectorXd& exact) {
+  Eigen::VectorXd x = exact.array().round();
+  const auto cost = [&](const Eigen::VectorXd& tried) { return (tried - exact).dot(form * (tried - exact)); };
+  double least = cost(x);
+  for (bool lowered = true; lowered;) {
+    lowered = false;
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      for (Eigen::Index j = i; j < x.size(); ++j) {
+        for (const auto& [a, b] : {std::pair{1, 0}, {-1, 0}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}) {
+          if ((b == 0) != (i == j)) continue;
+          Eigen::VectorXd tried = x;
+          tried[i] += a;
+          tried[j] += b;
+          const double value = cost(tried);
+          if (value >= least * (1 - 1e-9)) continue;
+          least = value;
+          x = tried;
+          lowered = true;
+        }
+      }
     }
   }
-  return out;
+  return x;
+}
+
+// By how much the loops about handles, which curvature leaves free, are turned against the metric, radians: not at all,
+// but for layouts that admit fewer rotations.  Those twist the frames as little as they can.
+Eigen::VectorXd choose_turning(const FrameTwist& twist, const NodeGraph& nodes, const Eigen::VectorXd& natural,
+                               const Eigen::MatrixXd& loops, double unit) {
+  Eigen::VectorXd exact(loops.cols());
+  Eigen::Index k = 0;
+  for (Eigen::Index p = 0; p < natural.size(); ++p) {
+    if (!nodes.in_tree[p]) exact[k++] = natural[p] / unit;
+  }
+  return unit * (round_by_energy(twist.energy(loops), exact) - exact);
 }
 
 Connection connect(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, int symmetry) {
@@ -94,15 +128,19 @@ Connection connect(const HalfedgeMesh& mesh, const Geometry& geometry, const Com
   const NodeGraph nodes = build_node_graph(mesh, map.cut_graph, (curvature.at_vertex / 2).array().sin().abs());
   const Eigen::VectorXd node_curvature = curvature_of_nodes(mesh, nodes, curvature.at_vertex);
   const Eigen::VectorXd natural = read_rotations(mesh, geometry, map.cut_graph, curvature.log_scale, out.frames);
-  const Eigen::VectorXd chosen = choose_rotations(mesh, nodes, natural, node_curvature, symmetry);
-  out.rotation = find_rotations(nodes, node_curvature, chosen);
+  out.rotation = find_rotations(nodes, node_curvature, natural);
+  // The holonomy of a flat torus without cones is trivial.
+  const bool flat = mesh.closed() && node_curvature.size() > 0 && node_curvature.cwiseAbs().maxCoeff() == 0;
+  const Eigen::MatrixXd loops = loop_changes(nodes);
+  if (loops.cols() > 0 && (symmetry > 0 || flat)) {
+    const FrameTwist twist(mesh, geometry, map.cut_graph);
+    const double unit = flat ? 2 * M_PI : 2 * M_PI / symmetry;
+    const Eigen::VectorXd change = loops * choose_turning(twist, nodes, natural, loops, unit);
+    out.rotation += change;
+    out.frames += twist.spread(change);
+  }
   if (symmetry > 0) {
     for (double& rotation : out.rotation) rotation = angle_of_turns(turns_of(rotation, symmetry), symmetry);
-  }
-  if (chosen != natural) {
-    const Eigen::VectorXd none_imposed = Eigen::VectorXd::Zero(node_curvature.size());
-    out.frames +=
-        spread_rotations(mesh, geometry, map.cut_graph, find_rotations(nodes, none_imposed, chosen - natural));
   }
   out.reduction = impose_transitions(mesh, map.cut_graph, map.cut_mesh, nodes, node_curvature, out.rotation);
   return out;

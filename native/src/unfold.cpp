@@ -82,31 +82,56 @@ Eigen::VectorXd read_rotations(const HalfedgeMesh& mesh, const Geometry& geometr
   return rotation;
 }
 
-Eigen::VectorXd spread_rotations(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
-                                 const Eigen::VectorXd& change) {
-  // Least squares of the differences across edges, each weighted by its length over the distance of the centroids
-  // along which it is crossed.
-  const Index faces = mesh.triangle_count();
-  LowerAssembly<double> assembly(faces - 1, 2 * static_cast<std::size_t>(mesh.halfedge_count()));
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(faces);
+// Differences across edges weigh as much as the edge is longer than the path between centroids that crosses it.
+double FrameTwist::weight(Index h) const {
+  return geometry_.length[h] * geometry_.length[h] / (geometry_.area[h / 3] + geometry_.area[mesh_.twin[h] / 3]);
+}
+
+template <typename Visit>
+void FrameTwist::for_each_crossing(Visit visit) const {
+  for (std::size_t p = 0; p < cut_graph_.cuts.size(); ++p) {
+    for (const Index h : cut_graph_.cuts[p].halfedges) {
+      visit(static_cast<Eigen::Index>(p), h / 3, mesh_.twin[h] / 3, weight(h));
+    }
+  }
+}
+
+FrameTwist::FrameTwist(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph)
+    : mesh_(mesh), geometry_(geometry), cut_graph_(cut_graph) {
+  LowerAssembly<double> assembly(mesh.triangle_count() - 1, 2 * static_cast<std::size_t>(mesh.halfedge_count()));
   const auto add = [&](Index row, Index column, double value) {
     if (row > 0 && column > 0) assembly.add(row - 1, column - 1, value);  // the first triangle stays
   };
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    const Index twin = mesh.twin[h];
-    if (twin < h) continue;
-    const Index f = h / 3, g = twin / 3;
-    const double weight = geometry.length[h] * geometry.length[h] / (geometry.area[f] + geometry.area[g]);
-    add(f, f, weight);
-    add(g, g, weight);
-    if (f != g) add(f, g, -weight);
-    if (!cut_graph.is_cut[h]) continue;
-    const double jump = (cut_graph.runs_forward[h] ? 1 : -1) * change[cut_graph.cut_of[h]];  // from f to g
-    right[f] -= weight * jump;
-    right[g] += weight * jump;
+    if (mesh.twin[h] < h) continue;
+    const Index f = h / 3, g = mesh.twin[h] / 3;
+    add(f, f, weight(h));
+    add(g, g, weight(h));
+    if (f != g) add(f, g, -weight(h));
   }
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(faces);
-  out.tail(faces - 1) = Cholesky<double>(assembly.build()).solve(Eigen::VectorXd(right.tail(faces - 1)));
+  factor_.emplace(assembly.build());
+}
+
+Eigen::VectorXd FrameTwist::spread(const Eigen::VectorXd& change) const {
+  Eigen::VectorXd pull = Eigen::VectorXd::Zero(mesh_.triangle_count());
+  for_each_crossing([&](Eigen::Index cut, Index left, Index right, double weight) {
+    pull[left] -= weight * change[cut];
+    pull[right] += weight * change[cut];
+  });
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(pull.size());
+  out.tail(out.size() - 1) = factor_->solve(Eigen::VectorXd(pull.tail(pull.size() - 1)));
+  return out;
+}
+
+Eigen::MatrixXd FrameTwist::energy(const Eigen::MatrixXd& changes) const {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(changes.cols(), changes.cols());
+  for (Eigen::Index k = 0; k < changes.cols(); ++k) {
+    // What is left between change and spread is orthogonal to every spread.
+    const Eigen::VectorXd turned = spread(changes.col(k));
+    for_each_crossing([&](Eigen::Index cut, Index left, Index right, double weight) {
+      out.col(k) += weight * (changes(cut, k) - turned[right] + turned[left]) * changes.row(cut).transpose();
+    });
+  }
   return out;
 }
 

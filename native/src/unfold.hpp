@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "cut_mesh.hpp"
 #include "geometry.hpp"
@@ -23,10 +24,28 @@ Eigen::VectorXd integrate_frames(const HalfedgeMesh& mesh, const Geometry& geome
 Eigen::VectorXd read_rotations(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
                                const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames);
 
-// What to add to the frames, (m), so that the rotation of every cut changes by what is given, (cuts): the smoothest
-// such turning.  It closes around every node.
-Eigen::VectorXd spread_rotations(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
-                                 const Eigen::VectorXd& change);
+// Turns the frames so that the rotations of the cuts change: the smoothest way there is, a harmonic form.
+class FrameTwist {
+ public:
+  FrameTwist(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph);
+
+  // What to add to the frames, (m).  change: (cuts) of the rotations, radians; it closes around every node.
+  Eigen::VectorXd spread(const Eigen::VectorXd& change) const;
+
+  // How much the frames are twisted by each of several changes, (cuts, k): their products in the Dirichlet energy.
+  Eigen::MatrixXd energy(const Eigen::MatrixXd& changes) const;
+
+ private:
+  // Across the cuts: from the triangle on the left to the one on the right.
+  template <typename Visit>
+  void for_each_crossing(Visit visit) const;
+  double weight(Index h) const;
+
+  const HalfedgeMesh& mesh_;
+  const Geometry& geometry_;
+  const CutGraph& cut_graph_;
+  std::optional<Cholesky<double>> factor_;
+};
 
 // Each returns the positions u + iv of all copies.
 
