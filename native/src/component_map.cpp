@@ -5,9 +5,7 @@
 #include <cmath>
 
 #include "border.hpp"
-#include "holonomy.hpp"
-#include "quantize_curvature.hpp"
-#include "transitions.hpp"
+#include "connection.hpp"
 #include "unfold.hpp"
 #include "untangle.hpp"
 
@@ -33,18 +31,6 @@ std::vector<Index> inside_only(const HalfedgeMesh& mesh, const std::vector<Index
   return out;
 }
 
-Eigen::VectorXd curvature_of_nodes(const HalfedgeMesh& mesh, const NodeGraph& nodes, const Eigen::VectorXd& at_vertex) {
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(nodes.vertex.size());
-  for (std::size_t node = 0; node < nodes.vertex.size(); ++node) {
-    if (nodes.vertex[node] != none) {
-      out[node] = at_vertex[nodes.vertex[node]];
-    } else {
-      for (const Index v : mesh.boundary_loops[nodes.loop[node]]) out[node] += at_vertex[v];
-    }
-  }
-  return out;
-}
-
 namespace {
 
 // A surface with boundary has conformal maps without number, so the spectral step would return an arbitrary one; only
@@ -60,90 +46,6 @@ UnfoldMethod usable_unfold(const HalfedgeMesh& mesh, const ComponentCones& cones
        "used instead.",
        {}});
   return UnfoldMethod::poisson;
-}
-
-// The rotations of the cuts under a curvature, and the frames that go with them.
-struct Connection {
-  Eigen::VectorXd frames, rotation;
-  Reduction reduction;
-};
-
-// The changes of all rotations, (cuts, loops), that turn each of the loops about handles by 1.
-Eigen::MatrixXd loop_changes(const NodeGraph& nodes) {
-  const Eigen::Index cuts = static_cast<Eigen::Index>(nodes.tail.size());
-  std::vector<Eigen::VectorXd> columns;
-  for (Eigen::Index p = 0; p < cuts; ++p) {
-    if (nodes.in_tree[p]) continue;
-    columns.push_back(
-        find_rotations(nodes, Eigen::VectorXd::Zero(nodes.vertex.size()), Eigen::VectorXd::Unit(cuts, p)));
-  }
-  Eigen::MatrixXd out(cuts, static_cast<Eigen::Index>(columns.size()));
-  for (std::size_t k = 0; k < columns.size(); ++k) out.col(static_cast<Eigen::Index>(k)) = columns[k];
-  return out;
-}
-
-// Whole numbers near `exact` with small (x - exact)^T form (x - exact): the nearest ones, changed one or two at a time.
-Eigen::VectorXd round_by_energy(const Eigen::MatrixXd& form, const Eigen::VectorXd& exact) {
-  Eigen::VectorXd x = exact.array().round();
-  const auto cost = [&](const Eigen::VectorXd& tried) { return (tried - exact).dot(form * (tried - exact)); };
-  double least = cost(x);
-  for (bool lowered = true; lowered;) {
-    lowered = false;
-    for (Eigen::Index i = 0; i < x.size(); ++i) {
-      for (Eigen::Index j = i; j < x.size(); ++j) {
-        for (const auto& [a, b] : {std::pair{1, 0}, {-1, 0}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}) {
-          if ((b == 0) != (i == j)) continue;
-          Eigen::VectorXd tried = x;
-          tried[i] += a;
-          tried[j] += b;
-          const double value = cost(tried);
-          if (value >= least * (1 - 1e-9)) continue;
-          least = value;
-          x = tried;
-          lowered = true;
-        }
-      }
-    }
-  }
-  return x;
-}
-
-// By how much the loops about handles, which curvature leaves free, are turned against the metric, radians: not at all,
-// but for layouts that admit fewer rotations.  Those twist the frames as little as they can.
-Eigen::VectorXd choose_turning(const FrameTwist& twist, const NodeGraph& nodes, const Eigen::VectorXd& natural,
-                               const Eigen::MatrixXd& loops, double unit) {
-  Eigen::VectorXd exact(loops.cols());
-  Eigen::Index k = 0;
-  for (Eigen::Index p = 0; p < natural.size(); ++p) {
-    if (!nodes.in_tree[p]) exact[k++] = natural[p] / unit;
-  }
-  return unit * (round_by_energy(twist.energy(loops), exact) - exact);
-}
-
-Connection connect(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, int symmetry) {
-  const Curvature& curvature = map.curvature;
-  Connection out;
-  out.frames = integrate_frames(mesh, geometry, map.cut_graph, curvature.log_scale);
-  // The better a root, the farther its curvature is from whole turns.
-  const NodeGraph nodes = build_node_graph(mesh, map.cut_graph, (curvature.at_vertex / 2).array().sin().abs());
-  const Eigen::VectorXd node_curvature = curvature_of_nodes(mesh, nodes, curvature.at_vertex);
-  const Eigen::VectorXd natural = read_rotations(mesh, geometry, map.cut_graph, curvature.log_scale, out.frames);
-  out.rotation = find_rotations(nodes, node_curvature, natural);
-  // The holonomy of a flat torus without cones is trivial.
-  const bool flat = mesh.closed() && node_curvature.size() > 0 && node_curvature.cwiseAbs().maxCoeff() == 0;
-  const Eigen::MatrixXd loops = loop_changes(nodes);
-  if (loops.cols() > 0 && (symmetry > 0 || flat)) {
-    const FrameTwist twist(mesh, geometry, map.cut_graph);
-    const double unit = flat ? 2 * M_PI : 2 * M_PI / symmetry;
-    const Eigen::VectorXd change = loops * choose_turning(twist, nodes, natural, loops, unit);
-    out.rotation += change;
-    out.frames += twist.spread(change);
-  }
-  if (symmetry > 0) {
-    for (double& rotation : out.rotation) rotation = angle_of_turns(turns_of(rotation, symmetry), symmetry);
-  }
-  out.reduction = impose_transitions(mesh, map.cut_graph, map.cut_mesh, nodes, node_curvature, out.rotation);
-  return out;
 }
 
 // What decides about a repair; what is returned is checked in the layout.
@@ -196,12 +98,52 @@ Eigen::VectorXcd unfold_along_borders(const HalfedgeMesh& mesh, const Geometry& 
   const Eigen::VectorXd& log_scale = map.curvature.log_scale;
   Eigen::VectorXd directions = metric_directions(mesh, geometry, log_scale, connection.frames, edges);
   if (cones.border == BorderMode::straight) {
-    const Eigen::VectorXcd natural =
-        PoissonSystem(mesh, geometry, map.cut_mesh, connection.reduction).unfold(log_scale, connection.frames);
+    const Eigen::VectorXcd natural = PoissonSystem(mesh, geometry, map.cut_mesh, connection.reduction)
+                                         .fit(prescribed_jacobians(mesh, log_scale, connection.frames));
     turn_cornerless_borders(mesh, map.cut_mesh, cones.vertices, natural, edges, directions);
   }
   return unfold_aligned(mesh, geometry, map.cut_mesh, connection.reduction, log_scale, connection.frames, edges,
                         directions);
+}
+
+// Takes a valid map from the metric's own rotations about handles to the chosen ones, in steps over which it stays
+// valid. Leaves the map as it is where that does not succeed.
+void twist_gradually(const HalfedgeMesh& mesh, const Geometry& geometry, const ConnectionChoice& connections,
+                     const std::vector<char>& fixed, ComponentMap& map) {
+  constexpr double first_step = 0.25, shortest_step = 0.02;
+  ComponentMap moved = map;
+  // The map under a share of the twist, from its Jacobians under less.
+  const auto move_to = [&](double share, const Jacobians& jacobians) {
+    const Connection connection = connections.at(share);
+    moved.rotation = connection.rotation;
+    moved.position = PoissonSystem(mesh, geometry, map.cut_mesh, connection.reduction).fit(jacobians);
+    check(mesh, moved);
+    if (moved.validity.defects() == 0) return true;
+    moved.position = untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, map.curvature,
+                              jacobians.f_z.array().arg(), fixed, moved.position);
+    check(mesh, moved);
+    return moved.validity.defects() == 0;
+  };
+  if (!move_to(0, prescribed_jacobians(mesh, map.curvature.log_scale, connections.at(0).frames))) return;
+  double reached = 0;
+  for (double step = first_step; step > shortest_step && reached < 1;) {
+    const double share = std::min(1.0, reached + step);
+    const Eigen::VectorXcd before = moved.position;
+    const Eigen::VectorXd turn = (share - reached) * connections.twist();
+    Jacobians jacobians = measure_jacobians(mesh, geometry, map.cut_mesh, before);
+    for (Index f = 0; f < mesh.triangle_count(); ++f) {
+      jacobians.f_z[f] *= std::polar(1.0, turn[f]);
+      jacobians.f_zbar[f] *= std::polar(1.0, turn[f]);
+    }
+    if (move_to(share, jacobians)) {
+      reached = share;
+      step *= 1.5;
+    } else {
+      moved.position = before;
+      step /= 2;
+    }
+  }
+  if (reached == 1) map = std::move(moved);
 }
 
 }  // namespace
@@ -235,7 +177,8 @@ ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, c
     check(mesh, map);
     return map;
   }
-  const Connection connection = connect(mesh, geometry, map, cones.symmetry);
+  const ConnectionChoice connections(mesh, geometry, map.cut_graph, map.cut_mesh, map.curvature, cones.symmetry);
+  const Connection connection = connections.at(1);
   map.rotation = connection.rotation;
   const bool spectral = usable_unfold(mesh, cones, options.unfold, findings) == UnfoldMethod::spectral;
   if (spectral) {
@@ -244,7 +187,7 @@ ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, c
     map.position = unfold_along_borders(mesh, geometry, map, cones, connection, aligned);
   } else {
     map.position = PoissonSystem(mesh, geometry, map.cut_mesh, connection.reduction)
-                       .unfold(map.curvature.log_scale, connection.frames);
+                       .fit(prescribed_jacobians(mesh, map.curvature.log_scale, connection.frames));
   }
   Curvature target = map.curvature;
   if (map.pins.size() > 1) {
@@ -255,9 +198,13 @@ ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, c
   }
   check(mesh, map);
   if (!map.validity.flipped.empty() && !spectral) {
+    const std::vector<char> fixed = fixed_vertices(mesh, map, aligned);
     map.position = untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, target, connection.frames,
-                            fixed_vertices(mesh, map, aligned), map.position);
+                            fixed, map.position);
     check(mesh, map);
+    if (map.validity.defects() > 0 && connections.is_twisted()) {
+      twist_gradually(mesh, geometry, connections, fixed, map);
+    }
   }
   return map;
 }

@@ -11,7 +11,6 @@
 #include "cut_graph.hpp"
 #include "cut_mesh.hpp"
 #include "distortion.hpp"
-#include "holonomy.hpp"
 #include "pins.hpp"
 
 namespace lsgp {
@@ -43,8 +42,5 @@ void check_triangles(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners, 
 
 // Those of the vertices that lie on no border.
 std::vector<Index> inside_only(const HalfedgeMesh& mesh, const std::vector<Index>& vertices);
-
-// The imposed curvature of every node: a vertex' own, the sum along a loop.
-Eigen::VectorXd curvature_of_nodes(const HalfedgeMesh& mesh, const NodeGraph& nodes, const Eigen::VectorXd& at_vertex);
 
 }  // namespace lsgp

@@ -12,7 +12,6 @@ namespace lsgp {
 
 namespace {
 
-constexpr int most_newton_steps = 60;
 constexpr double smallest_epsilon = 1e-3;
 constexpr double ridge = 1e-9;         // of the mean diagonal
 constexpr double barrier_share = 0.9;  // of the step at which the first triangle would collapse
@@ -90,11 +89,11 @@ Relaxation::Relaxation(const HalfedgeMesh& mesh, const Geometry& geometry, const
   }
 }
 
-bool Relaxation::unfold(DistortionEnergy::Kind kind) {
+bool Relaxation::unfold(DistortionEnergy::Kind kind, int most_steps) {
   DistortionEnergy energy{kind};
   double lowest = smallest_determinant(energy);
   energy.epsilon = std::max(smallest_epsilon, -lowest);
-  for (int step = 0; step < most_newton_steps && !(lowest > 0); ++step) {
+  for (int step = 0; step < most_steps && !(lowest > 0); ++step) {
     const double before = total(energy);
     const Eigen::VectorXcd direction = newton_direction(energy);
     double after = before;

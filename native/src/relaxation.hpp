@@ -35,7 +35,7 @@ class Relaxation {
 
   // Newton steps on a foldover-free energy (Garanzha et al. 2021) until every moving triangle is upright, and with the
   // framed one within 90 degrees of its frame.  Returns whether that was reached.  Throws SOLVER_FAILED.
-  bool unfold(DistortionEnergy::Kind kind);
+  bool unfold(DistortionEnergy::Kind kind, int most_steps);
 
   // Newton steps on a barrier from a map without flips; none arises on the way.  At most `steps`, fewer where the
   // energy falls by less than a share of itself.  Throws SOLVER_FAILED.

@@ -20,18 +20,17 @@ double connection_step(const HalfedgeMesh& mesh, const Geometry& geometry, const
          cotangent_weight(mesh, geometry, h) * scale_change;
 }
 
-// What the target Jacobians T = e^{y + i phi} pull at the copies with:
-// min sum A (|f_z - T|^2 + |f_zbar|^2) is z^H L z / 2 - 2 Re(...), and the right side at a corner is 2 A conj(g) T with
-// g = -i conj(e) / (4 A), e the edge opposite the corner.
-Eigen::VectorXcd pull_of_frames(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                                const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames) {
+// What target Jacobians (T, S) pull at the copies with: min sum A (|f_z - T|^2 + |f_zbar - S|^2) is
+// z^H L z / 2 - 2 Re(...), and the right side at a corner is 2 A (conj(g) T + conj(h) S) with g = -i conj(e) / (4 A),
+// h = i e / (4 A), e the edge opposite the corner.
+Eigen::VectorXcd pull_of(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+                         const Jacobians& jacobians) {
   Eigen::VectorXcd pull = Eigen::VectorXcd::Zero(cut_mesh.copy_count());
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
-    double scale = 0;
-    for (int c = 0; c < 3; ++c) scale += log_scale[mesh.triangles(f, c)] / 3;
-    const Complex target = std::polar(std::exp(scale), frames[f]);
     for (Index corner = 3 * f; corner < 3 * f + 3; ++corner) {
-      pull[cut_mesh.copy_of_corner[corner]] += Complex(0, 0.5) * edge_vector(geometry, next(corner)) * target;
+      const Complex edge = edge_vector(geometry, next(corner));
+      pull[cut_mesh.copy_of_corner[corner]] +=
+          Complex(0, 0.5) * (edge * jacobians.f_z[f] - std::conj(edge) * jacobians.f_zbar[f]);
     }
   }
   return pull;
@@ -135,6 +134,30 @@ Eigen::MatrixXd FrameTwist::energy(const Eigen::MatrixXd& changes) const {
   return out;
 }
 
+Jacobians prescribed_jacobians(const HalfedgeMesh& mesh, const Eigen::VectorXd& log_scale,
+                               const Eigen::VectorXd& frames) {
+  Jacobians out{Eigen::VectorXcd(frames.size()), Eigen::VectorXcd::Zero(frames.size())};
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    double scale = 0;
+    for (int c = 0; c < 3; ++c) scale += log_scale[mesh.triangles(f, c)] / 3;
+    out.f_z[f] = std::polar(std::exp(scale), frames[f]);
+  }
+  return out;
+}
+
+Jacobians measure_jacobians(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+                            const Eigen::VectorXcd& position) {
+  Jacobians out{Eigen::VectorXcd::Zero(mesh.triangle_count()), Eigen::VectorXcd::Zero(mesh.triangle_count())};
+  for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
+    const Index f = corner / 3;
+    const Complex edge = edge_vector(geometry, next(corner)) / (4 * geometry.area[f]);
+    const Complex z = position[cut_mesh.copy_of_corner[corner]];
+    out.f_z[f] += Complex(0, -1) * std::conj(edge) * z;
+    out.f_zbar[f] += Complex(0, 1) * edge * z;
+  }
+  return out;
+}
+
 PoissonSystem::PoissonSystem(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
                              const Reduction& reduction)
     : mesh_(mesh),
@@ -143,9 +166,8 @@ PoissonSystem::PoissonSystem(const HalfedgeMesh& mesh, const Geometry& geometry,
       reduction_(reduction),
       factor_(assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction)) {}
 
-Eigen::VectorXcd PoissonSystem::unfold(const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames) const {
-  return expand(reduction_,
-                factor_.solve(gather(reduction_, pull_of_frames(mesh_, geometry_, cut_mesh_, log_scale, frames))));
+Eigen::VectorXcd PoissonSystem::fit(const Jacobians& jacobians) const {
+  return expand(reduction_, factor_.solve(gather(reduction_, pull_of(mesh_, geometry_, cut_mesh_, jacobians))));
 }
 
 Eigen::VectorXd metric_directions(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& log_scale,
@@ -164,7 +186,8 @@ Eigen::VectorXcd unfold_aligned(const HalfedgeMesh& mesh, const Geometry& geomet
                                 const Eigen::VectorXd& frames, const std::vector<Index>& edges,
                                 const Eigen::VectorXd& directions) {
   const Eigen::SparseMatrix<Complex> form = assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction);
-  const Eigen::VectorXcd pull = gather(reduction, pull_of_frames(mesh, geometry, cut_mesh, log_scale, frames));
+  const Eigen::VectorXcd pull =
+      gather(reduction, pull_of(mesh, geometry, cut_mesh, prescribed_jacobians(mesh, log_scale, frames)));
   // Unknown k becomes its real part, 2k, and its imaginary part, 2k + 1.
   const int size = 2 * reduction.unknown_count;
   LowerAssembly<double> assembly(size, 4 * static_cast<std::size_t>(form.nonZeros()));

@@ -47,14 +47,24 @@ class FrameTwist {
   std::optional<Cholesky<double>> factor_;
 };
 
+// The Jacobian of a map in every triangle's own frame.
+struct Jacobians {
+  Eigen::VectorXcd f_z, f_zbar;  // (m)
+};
+// Those of the flat metric: e^{y + i phi}, and no shear.
+Jacobians prescribed_jacobians(const HalfedgeMesh& mesh, const Eigen::VectorXd& log_scale,
+                               const Eigen::VectorXd& frames);
+Jacobians measure_jacobians(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+                            const Eigen::VectorXcd& position);
+
 // Each returns the positions u + iv of all copies.
 
-// Least squares fit of the map's Jacobians to e^{y + i phi}: one solve with the Dirichlet matrix.
+// Least squares fit of the map to given Jacobians, usually the prescribed ones: one solve with the Dirichlet matrix.
 class PoissonSystem {
  public:
   PoissonSystem(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
                 const Reduction& reduction);
-  Eigen::VectorXcd unfold(const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames) const;
+  Eigen::VectorXcd fit(const Jacobians& jacobians) const;
 
  private:
   const HalfedgeMesh& mesh_;

@@ -8,6 +8,7 @@
 #include "distortion.hpp"
 #include "relaxation.hpp"
 #include "transitions.hpp"
+#include "unfold.hpp"
 
 namespace lsgp {
 
@@ -18,18 +19,17 @@ using Kind = DistortionEnergy::Kind;
 constexpr std::array<int, 3> neighbourhoods{2, 5, 10};  // rings of vertices around flipped triangles
 constexpr double hopeless_share = 0.02;                 // of the triangles flipped: not a place is tangled but the map
 constexpr int barrier_steps = 3;
+// Of Newton's method, which takes a few where it succeeds.
+constexpr int local_steps = 60;
+constexpr int global_steps = 15;
 
 // How a map is turned as a whole against frames.
 double turn_against(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
                     const Eigen::VectorXd& frames, const Eigen::VectorXcd& position) {
+  const Jacobians jacobians = measure_jacobians(mesh, geometry, cut_mesh, position);
   Complex along = 0;
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
-    Complex f_z = 0;  // times 4 area
-    for (int c = 0; c < 3; ++c) {
-      f_z += Complex(0, -1) * std::conj(edge_vector(geometry, next(3 * f + c))) *
-             position[cut_mesh.copy_of_corner[3 * f + c]];
-    }
-    along += f_z * std::polar(1.0, -frames[f]);
+    along += geometry.area[f] * jacobians.f_z[f] * std::polar(1.0, -frames[f]);
   }
   return std::arg(along);
 }
@@ -48,7 +48,7 @@ Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, co
   Eigen::VectorXcd best = position;
   std::size_t fewest = initial.defects();
   const Eigen::VectorXd turned = frames.array() + turn_against(mesh, geometry, cut_mesh, frames, position);
-  const auto try_out = [&](std::vector<char> marked, Kind energy) {
+  const auto try_out = [&](std::vector<char> marked, Kind energy, int most_steps) {
     for (Index v = 0; v < mesh.vertex_count(); ++v) {
       const bool is_cone = mesh.loop_of_vertex[v] == none && curvature.at_vertex[v] != 0;
       if (fixed[v] || is_cone) marked[v] = 0;
@@ -58,7 +58,7 @@ Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, co
     Eigen::VectorXcd tried = position;
     Relaxation relaxation(mesh, geometry, cut_mesh, curvature.log_scale, turned, std::move(freedom), tried);
     try {
-      if (relaxation.unfold(energy)) relaxation.smooth(Kind::conformal_barrier, barrier_steps);
+      if (relaxation.unfold(energy, most_steps)) relaxation.smooth(Kind::conformal_barrier, barrier_steps);
     } catch (const Error&) {
       return;  // what cannot be factored cannot be repaired, but it is still a map
     }
@@ -71,10 +71,10 @@ Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, co
   if (hopeless) return best;
   for (const Kind energy : {Kind::foldover_free, Kind::framed_foldover_free}) {
     for (const int rings : neighbourhoods) {
-      if (fewest > 0) try_out(mark_around(mesh, initial.flipped, rings), energy);
+      if (fewest > 0) try_out(mark_around(mesh, initial.flipped, rings), energy, local_steps);
     }
   }
-  if (fewest > 0) try_out(std::vector<char>(mesh.vertex_count(), 1), Kind::framed_foldover_free);
+  if (fewest > 0) try_out(std::vector<char>(mesh.vertex_count(), 1), Kind::framed_foldover_free, global_steps);
   return best;
 }
 

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "connection.hpp"
+
+#include <cmath>
+
+#include "quantize_curvature.hpp"
+#include "unfold.hpp"
+
+namespace lsgp {
+
+Eigen::VectorXd curvature_of_nodes(const HalfedgeMesh& mesh, const NodeGraph& nodes, const Eigen::VectorXd& at_vertex) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(nodes.vertex.size());
+  for (std::size_t node = 0; node < nodes.vertex.size(); ++node) {
+    if (nodes.vertex[node] != none) {
+      out[node] = at_vertex[nodes.vertex[node]];
+    } else {
+      for (const Index v : mesh.boundary_loops[nodes.loop[node]]) out[node] += at_vertex[v];
+    }
+  }
+  return out;
+}
+
+namespace {
+
+// The changes of all rotations, (cuts, loops), that turn each of the loops about handles by 1.
+Eigen::MatrixXd loop_changes(const NodeGraph& nodes) {
+  const Eigen::Index cuts = static_cast<Eigen::Index>(nodes.tail.size());
+  std::vector<Eigen::VectorXd> columns;
+  for (Eigen::Index p = 0; p < cuts; ++p) {
+    if (nodes.in_tree[p]) continue;
+    columns.push_back(
+        find_rotations(nodes, Eigen::VectorXd::Zero(nodes.vertex.size()), Eigen::VectorXd::Unit(cuts, p)));
+  }
+  Eigen::MatrixXd out(cuts, static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) out.col(static_cast<Eigen::Index>(k)) = columns[k];
+  return out;
+}
+
+// Whole numbers near `exact` with small (x - exact)^T form (x - exact): the nearest ones, changed one or two at a time.
+Eigen::VectorXd round_by_energy(const Eigen::MatrixXd& form, const Eigen::VectorXd& exact) {
+  Eigen::VectorXd x = exact.array().round();
+  const auto cost = [&](const Eigen::VectorXd& tried) { return (tried - exact).dot(form * (tried - exact)); };
+  double least = cost(x);
+  for (bool lowered = true; lowered;) {
+    lowered = false;
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      for (Eigen::Index j = i; j < x.size(); ++j) {
+        for (const auto& [a, b] : {std::pair{1, 0}, {-1, 0}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}) {
+          if ((b == 0) != (i == j)) continue;
+          Eigen::VectorXd tried = x;
+          tried[i] += a;
+          tried[j] += b;
+          const double value = cost(tried);
+          if (value >= least * (1 - 1e-9)) continue;
+          least = value;
+          x = tried;
+          lowered = true;
+        }
+      }
+    }
+  }
+  return x;
+}
+
+// By how much the loops about handles turn otherwise than in the metric, radians, for rotations that are multiples of a
+// unit and twist the frames least.
+Eigen::VectorXd choose_turning(const FrameTwist& twist, const NodeGraph& nodes, const Eigen::VectorXd& natural,
+                               const Eigen::MatrixXd& loops, double unit) {
+  Eigen::VectorXd exact(loops.cols());
+  Eigen::Index k = 0;
+  for (Eigen::Index p = 0; p < natural.size(); ++p) {
+    if (!nodes.in_tree[p]) exact[k++] = natural[p] / unit;
+  }
+  return unit * (round_by_energy(twist.energy(loops), exact) - exact);
+}
+
+}  // namespace
+
+ConnectionChoice::ConnectionChoice(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
+                                   const CutMesh& cut_mesh, const Curvature& curvature, int symmetry)
+    : mesh_(mesh), cut_graph_(cut_graph), cut_mesh_(cut_mesh), symmetry_(symmetry) {
+  frames_ = integrate_frames(mesh, geometry, cut_graph, curvature.log_scale);
+  // The better a root, the farther its curvature is from whole turns.
+  nodes_ = build_node_graph(mesh, cut_graph, (curvature.at_vertex / 2).array().sin().abs());
+  node_curvature_ = curvature_of_nodes(mesh, nodes_, curvature.at_vertex);
+  const Eigen::VectorXd natural = read_rotations(mesh, geometry, cut_graph, curvature.log_scale, frames_);
+  rotation_ = find_rotations(nodes_, node_curvature_, natural);
+  // The holonomy of a flat torus without cones is trivial.
+  const bool flat = mesh.closed() && node_curvature_.size() > 0 && node_curvature_.cwiseAbs().maxCoeff() == 0;
+  const Eigen::MatrixXd loops = loop_changes(nodes_);
+  if (loops.cols() == 0 || (symmetry == 0 && !flat)) return;
+  const FrameTwist twist(mesh, geometry, cut_graph);
+  change_ = loops * choose_turning(twist, nodes_, natural, loops, 2 * M_PI / (flat ? 1 : symmetry));
+  twist_ = twist.spread(change_);
+}
+
+Connection ConnectionChoice::at(double share) const {
+  Connection out{frames_, rotation_, {}};
+  if (is_twisted()) {
+    out.frames += share * twist_;
+    out.rotation += share * change_;
+  }
+  if (symmetry_ > 0 && share == 1) {
+    for (double& rotation : out.rotation) rotation = angle_of_turns(turns_of(rotation, symmetry_), symmetry_);
+  }
+  out.reduction = impose_transitions(mesh_, cut_graph_, cut_mesh_, nodes_, node_curvature_, out.rotation);
+  return out;
+}
+
+}  // namespace lsgp
