@@ -102,7 +102,10 @@ void Assembly::collect_checks(const Component& component, const ComponentMap& ma
 Index Assembly::add_islands(const Component& component, const Geometry& geometry, const ComponentMap& map) {
   const HalfedgeMesh& mesh = component.mesh;
   std::vector<char> open(mesh.halfedge_count());
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) open[h] = map.cut_graph.is_cut[h] || mesh.seam[h];
+  // A seamless layout runs on across seams that were not cut.
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    open[h] = map.cut_graph.is_cut[h] || (mesh.seam[h] && !result_.seamless);
+  }
   std::vector<Index> part;
   const Index part_count = label_parts(mesh, open, part);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
@@ -115,7 +118,7 @@ Index Assembly::add_islands(const Component& component, const Geometry& geometry
   island_count_ += part_count;
   for (Index f = 0; f < mesh.triangle_count(); ++f) result_.island[component.source_triangle[f]] = first + part[f];
   const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
-  if (map.pins.size() > 1) {  // in its place already
+  if (map.pins.size() > 1 || result_.seamless) {  // in its place already
     for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
       pinned_.emplace_back(component.source_corner(corner),
                            Eigen::RowVector2d(corners[corner].real(), corners[corner].imag()));

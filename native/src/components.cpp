@@ -87,12 +87,13 @@ Work prepare(const Surface& surface, const Cones& cones, const Options& options,
   require_valid(surface);
   require_valid(surface, cones);
   Surface used = surface;
-  used.positions *= unit_scale(surface);
+  const double scale = unit_scale(surface);
+  used.positions *= scale;
   if (options.seams == SeamMode::ignore) used.seams.resize(0, 2);
   OpenSeams open;
   if (options.seams == SeamMode::boundary) open.assign(surface.triangles.rows(), 1);
   std::vector<Finding> repairs;
-  Work work{build_topology(used, open, repairs), {}};
+  Work work{build_topology(used, open, repairs), {}, scale};
   work.tasks = hand_out(surface, work.topology.components, cones, options);
 
   std::vector<Index> opened;

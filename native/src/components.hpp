@@ -22,6 +22,7 @@ struct ComponentTask {
 struct Work {
   Topology topology;
   std::vector<ComponentTask> tasks;  // (components)
+  double unit_scale = 1;             // of the components' positions to the caller's
 };
 
 // Validates the call, splits the surface as the seam mode says and hands out cones and loop turnings.  A closed

@@ -34,7 +34,50 @@ std::vector<Complex> convex_hull(const Eigen::VectorXcd& position) {
   return hull;
 }
 
-// The unit vector along the longer side of the smallest box around the points: it lies along an edge of their hull.
+struct Box {
+  double width, height;
+};
+
+// Moves the island so that its bounding box begins at the origin.
+Box settle(Eigen::VectorXcd& position) {
+  const double left = position.real().minCoeff(), bottom = position.imag().minCoeff();
+  position.array() -= Complex(left, bottom);
+  return {position.real().maxCoeff(), position.imag().maxCoeff()};
+}
+
+// Puts boxes on shelves about as wide as all together are high; returns where each begins.
+struct Shelves {
+  std::vector<Complex> place;
+  double size;  // of the square that holds them
+};
+Shelves shelve(const std::vector<Box>& boxes, double gap) {
+  double total = 0, widest = 0;
+  for (const Box& box : boxes) {
+    total += box.width * box.height;
+    widest = std::max(widest, box.width);
+  }
+  std::vector<std::size_t> order(boxes.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return boxes[a].height > boxes[b].height; });
+  const double shelf_width = std::max(widest, 1.05 * std::sqrt(total)) + gap;
+  Shelves out{std::vector<Complex>(boxes.size()), 0};
+  double x = 0, y = 0, shelf_height = 0, right = 0;
+  for (const std::size_t i : order) {
+    if (x > 0 && x + boxes[i].width > shelf_width) {
+      y += shelf_height + gap;
+      x = shelf_height = 0;
+    }
+    out.place[i] = {x, y};
+    right = std::max(right, x + boxes[i].width);
+    shelf_height = std::max(shelf_height, boxes[i].height);
+    x += boxes[i].width + gap;
+  }
+  out.size = std::max(right, y + shelf_height);
+  return out;
+}
+
+}  // namespace
+
 Complex upright(const Eigen::VectorXcd& position) {
   const std::vector<Complex> hull = convex_hull(position);
   Complex best(1, 0);
@@ -58,50 +101,38 @@ Complex upright(const Eigen::VectorXcd& position) {
   return best;
 }
 
-struct Box {
-  double width, height;
-};
-
-// Moves the island so that its bounding box begins at the origin.
-Box settle(Eigen::VectorXcd& position) {
-  const double left = position.real().minCoeff(), bottom = position.imag().minCoeff();
-  position.array() -= Complex(left, bottom);
-  return {position.real().maxCoeff(), position.imag().maxCoeff()};
-}
-
-}  // namespace
-
 void arrange(std::vector<Island>& islands) {
   if (islands.empty()) return;
   std::vector<Box> boxes;
-  double total = 0, widest = 0;
+  double total = 0;
   for (Island& island : islands) {
     island.position *= std::conj(upright(island.position));
     boxes.push_back(settle(island.position));
     total += boxes.back().width * boxes.back().height;
-    widest = std::max(widest, boxes.back().width);
   }
-  const double gap = islands.size() > 1 ? margin * std::sqrt(total) : 0.0;
-  std::vector<std::size_t> order(islands.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return boxes[a].height > boxes[b].height; });
-
-  const double shelf_width = std::max(widest, 1.05 * std::sqrt(total)) + gap;
-  double x = 0, y = 0, shelf_height = 0, right = 0;
-  for (const std::size_t i : order) {
-    if (x > 0 && x + boxes[i].width > shelf_width) {
-      y += shelf_height + gap;
-      x = shelf_height = 0;
-    }
-    islands[i].position.array() += Complex(x, y);
-    right = std::max(right, x + boxes[i].width);
-    shelf_height = std::max(shelf_height, boxes[i].height);
-    x += boxes[i].width + gap;
-  }
-  const double size = std::max(right, y + shelf_height);
-  for (Island& island : islands) {
-    if (size > 0) island.position /= size;
+  const Shelves shelves = shelve(boxes, islands.size() > 1 ? margin * std::sqrt(total) : 0.0);
+  for (std::size_t i = 0; i < islands.size(); ++i) {
+    Island& island = islands[i];
+    island.position.array() += shelves.place[i];
+    if (shelves.size > 0) island.position /= shelves.size;
     if (island.pin) island.position.array() += island.pin->second - island.position[island.pin->first];
+  }
+}
+
+void arrange_on_lattice(std::vector<Eigen::VectorXcd*>& layouts, const PointLattice& lattice, int step) {
+  // Rows of the lattice that have points straight above each other.
+  const double width = step, height = step * (lattice.square() ? 1 : 2 * lattice.generator().imag());
+  std::vector<Box> boxes;
+  std::vector<std::array<double, 2>> corners;  // in steps
+  for (const Eigen::VectorXcd* layout : layouts) {
+    corners.push_back({std::floor(layout->real().minCoeff() / width), std::floor(layout->imag().minCoeff() / height)});
+    boxes.push_back({std::floor(layout->real().maxCoeff() / width) + 1 - corners.back()[0],
+                     std::floor(layout->imag().maxCoeff() / height) + 1 - corners.back()[1]});
+  }
+  const Shelves shelves = shelve(boxes, 0);
+  for (std::size_t i = 0; i < layouts.size(); ++i) {
+    const Complex place = shelves.place[i] - Complex(corners[i][0], corners[i][1]);
+    layouts[i]->array() += Complex(place.real() * width, place.imag() * height);
   }
 }
 

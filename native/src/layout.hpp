@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lsgp/surface.hpp"
+#include "point_lattice.hpp"
 
 namespace lsgp {
 
@@ -20,5 +21,12 @@ struct Island {
 // Turns every island so that its bounding box is smallest, puts the islands on shelves without overlap and scales all
 // of them alike into the unit square; then moves those with a pin to it.
 void arrange(std::vector<Island>& islands);
+
+// The unit vector along the longer side of the smallest box around the points.
+Complex upright(const Eigen::VectorXcd& position);
+
+// Moves layouts side by side without turning or scaling them: each by a lattice point, its coordinates multiples of
+// `step`, into the first quadrant.
+void arrange_on_lattice(std::vector<Eigen::VectorXcd*>& layouts, const PointLattice& lattice, int step);
 
 }  // namespace lsgp

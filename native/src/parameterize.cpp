@@ -7,6 +7,7 @@
 #include "component_map.hpp"
 #include "components.hpp"
 #include "lsgp/lsgp.hpp"
+#include "seamless.hpp"
 #include "text.hpp"
 #include "validation.hpp"
 
@@ -54,22 +55,36 @@ Result parameterize(const Surface& surface, const Cones& cones, const Options& o
   const std::vector<Component>& components = work.topology.components;
   std::vector<Index> pin_at(pins.corners.empty() ? 0 : 3 * surface.triangles.rows(), none);
   for (std::size_t i = 0; i < pins.corners.size(); ++i) pin_at[pins.corners[i]] = static_cast<Index>(i);
-  Assembly assembly(surface, components, result);
+  if (options.seamless) require_valid(*options.seamless, options, pins);
+  std::vector<std::optional<Geometry>> geometries(components.size());
+  std::vector<std::optional<ComponentMap>> maps(components.size());
   for_each_component(components, result.warnings, [&](std::size_t i) {
     const Component& component = components[i];
     const ComponentTask& task = work.tasks[i];
     std::vector<Finding> findings;
-    const Geometry geometry = [&] {
+    {
       StageTimer timer(result.stage_seconds, "geometry");
-      return require_geometry(component, result.warnings);
-    }();
-    ComponentMap map = map_component(component.mesh, geometry, task.cones, pinned_corners(component, pin_at, pins),
-                                     options, findings, result.stage_seconds);
+      geometries[i] = require_geometry(component, result.warnings);
+    }
+    maps[i] = map_component(component.mesh, *geometries[i], task.cones, pinned_corners(component, pin_at, pins),
+                            options, findings, result.stage_seconds);
+    if (options.seamless) require_quantizable(component.mesh, *maps[i]);
     report_border_cones(component, task.border_cones, result.warnings);
     move_findings(component, findings, result.warnings);
-    assembly.add(i, task.cones, geometry, std::move(map));
   });
+  if (options.seamless) {
+    StageTimer timer(result.stage_seconds, "quantize");
+    std::vector<SeamlessPart> parts;
+    for (std::size_t i = 0; i < components.size(); ++i) {
+      if (maps[i]) parts.push_back({&components[i], &*geometries[i], &*maps[i]});
+    }
+    result.seamless = make_seamless(*options.seamless, work.unit_scale, parts, result.warnings);
+  }
   StageTimer timer(result.stage_seconds, "layout");
+  Assembly assembly(surface, components, result);
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    if (maps[i]) assembly.add(i, work.tasks[i].cones, *geometries[i], std::move(*maps[i]));
+  }
   assembly.finish(cones, work.topology.duplicates);
   return result;
 }

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cones and translations moved onto a lattice (the paper's section 8).
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "component_map.hpp"
+#include "lattice_search.hpp"
+#include "point_lattice.hpp"
+#include "solvers/cholesky.hpp"
+#include "unfold.hpp"
+
+namespace lsgp {
+
+// A layout whose transitions are a lattice's, 1 being the side of a cell.
+struct QuantizedLayout {
+  Eigen::VectorXcd position;   // (copies)
+  double energy = 1;           // symmetric Dirichlet energy, 1 is isometric
+  std::vector<Index> relaxed;  // cones that are off the lattice
+};
+
+// The layouts of one map on grids of any size.  What does not depend on the size is computed once.
+class LayoutQuantizer {
+ public:
+  // map: without flips and with the right angles, its rotations multiples of the lattice's turn.
+  // Throws SEAMLESS_IMPOSSIBLE.
+  LayoutQuantizer(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
+                  const PointLattice& lattice, bool parity);
+
+  // The layout's longer side, where it has the surface's area.
+  double extent() const { return extent_; }
+  double energy() const { return energy_; }
+
+  // The layout with `density` cells a unit of length, rounded to lattice points: first by the displacement of least
+  // Dirichlet energy, then repaired or followed in steps.  None where no choice of points keeps it valid.
+  std::optional<QuantizedLayout> quantize(double density) const;
+
+ private:
+  struct Target {
+    double angle;  // by which the layout is turned
+    LatticeSearch::Choice choice;
+  };
+
+  std::vector<MovingTriangle> moving_triangles(const ComponentMap& map) const;
+  Eigen::VectorXcd integers_of(const Eigen::VectorXcd& position) const;
+  std::vector<Target> find_targets(double density) const;
+  Eigen::VectorXcd displacement(const Eigen::VectorXcd& change) const;
+  bool is_valid(const Eigen::VectorXcd& position) const;
+  bool repair(double density, const Eigen::VectorXcd& before, Eigen::VectorXcd& position) const;
+  bool move(double density, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const;
+  bool follow(double density, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const;
+
+  const HalfedgeMesh& mesh_;
+  const Geometry& geometry_;
+  const CutGraph& cut_graph_;
+  const CutMesh& cut_mesh_;
+  const Curvature& curvature_;
+  const PointLattice lattice_;
+  Eigen::VectorXd rotation_;
+  Eigen::VectorXcd start_;  // (copies) with the surface's area, the origin cone at 0
+  Eigen::VectorXd rest_;    // (n) log of its scale
+  double extent_ = 0, energy_ = 1;
+  LatticeReduction reduction_;
+  Eigen::VectorXcd integers_;  // (d) at the start
+  std::vector<Index> row_of_unknown_;
+  std::optional<Cholesky<Complex>> factor_;  // of the Dirichlet form with the integers held
+  Eigen::SparseMatrix<Complex> coupling_;    // (rows, d) of the form
+  std::optional<LatticeSearch> search_;
+};
+
+// Symmetric Dirichlet energy of a map, area-weighted, at its best scale; 1 is isometric.
+double symmetric_dirichlet_energy(const Geometry& geometry, const Jacobians& jacobians);
+
+}  // namespace lsgp

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "seamless.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "layout.hpp"
+#include "quantize_curvature.hpp"
+#include "quantize_layout.hpp"
+#include "text.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr double most_tiles = 16384;       // beyond, float32 has too few digits left within a cell
+constexpr double coarsest_tiles = 4;       // tried for an automatic grid
+constexpr double acceptable_growth = 1.1;  // of the energy by an automatic grid
+
+// The next finer size of 1, 1.5, 2, 3, 4, 6, ...
+double next_size(double tiles) {
+  const double power = std::exp2(std::floor(std::log2(tiles * (1 + 1e-9))));
+  return tiles * (1 + 1e-9) < 1.5 * power ? 1.5 * power : 2 * power;
+}
+
+struct Grid {
+  double tiles, density;  // cells along the layout's longer side, and a unit of length
+  std::vector<QuantizedLayout> layouts;
+};
+
+class GridSearch {
+ public:
+  GridSearch(const Seamless& seamless, const PointLattice& lattice, const std::vector<SeamlessPart>& parts) {
+    for (const SeamlessPart& part : parts) {
+      quantizers_.push_back(
+          std::make_unique<LayoutQuantizer>(part.component->mesh, *part.geometry, *part.map, lattice, seamless.parity));
+      extent_ = std::max(extent_, quantizers_.back()->extent());
+    }
+  }
+
+  double extent() const { return extent_; }
+  double energy(std::size_t part) const { return quantizers_[part]->energy(); }
+
+  // None where a part has no valid layout, or one that is distorted more than allowed.
+  std::optional<Grid> lay_out(double tiles, double most_growth) const {
+    Grid grid{tiles, tiles / extent_, {}};
+    for (const auto& quantizer : quantizers_) {
+      auto layout = quantizer->quantize(grid.density);
+      if (!layout || layout->energy > most_growth * quantizer->energy()) return std::nullopt;
+      grid.layouts.push_back(std::move(*layout));
+    }
+    return grid;
+  }
+
+  // The first of the sizes from `tiles` on that can be laid out.
+  std::optional<Grid> refine(double tiles, double most_growth) const {
+    for (; tiles <= most_tiles; tiles = next_size(tiles)) {
+      if (auto grid = lay_out(tiles, most_growth)) return grid;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::vector<std::unique_ptr<LayoutQuantizer>> quantizers_;
+  double extent_ = 0;
+};
+
+Grid find_grid(const Seamless& seamless, double unit_scale, const GridSearch& search, std::vector<Finding>& findings) {
+  constexpr double any = std::numeric_limits<double>::infinity();
+  if (!seamless.tiles && !seamless.tile_size) {
+    if (auto grid = search.refine(coarsest_tiles, acceptable_growth)) return std::move(*grid);
+    if (auto grid = search.refine(coarsest_tiles, any)) return std::move(*grid);
+  } else {
+    const double asked = seamless.tiles ? *seamless.tiles : search.extent() / (*seamless.tile_size * unit_scale);
+    if (!(asked >= 1e-6 && asked <= most_tiles)) {
+      throw Error(Code::wrong_parameter,
+                  concat("The grid would have ", asked, " cells along the layout; up to ", most_tiles,
+                         " can be stored exactly. Choose another number or size of tiles."));
+    }
+    if (auto grid = search.lay_out(asked, any)) return std::move(*grid);
+    if (auto grid = search.refine(next_size(std::max(1.0, asked)), any)) {
+      findings.push_back({Code::grid_refined,
+                          concat("No layout is valid on a grid of ", asked, " cells along its longer side; it has ",
+                                 grid->tiles, " now. Use fewer cones for larger tiles."),
+                          {}});
+      return std::move(*grid);
+    }
+  }
+  throw Error(Code::grid_too_coarse,
+              concat("No grid of up to ", most_tiles,
+                     " cells leaves a valid layout. Move cones that are close to each other apart, or use fewer."));
+}
+
+// The spacing of the binary fractions below which float32 holds all coordinates of the layout exactly, a bit left for
+// later moves by whole cells.
+double fraction_for(double largest) { return std::exp2(std::ceil(std::log2(largest + 1)) + 1 - 24); }
+
+Complex round_to(Complex z, double fraction) {
+  return {std::round(z.real() / fraction) * fraction, std::round(z.imag() / fraction) * fraction};
+}
+
+Complex as_float(Complex z) { return {static_cast<float>(z.real()), static_cast<float>(z.imag())}; }
+
+// Replaces what is almost on the lattice by what is, and everything else by numbers that float32 holds.
+class ExactLayout {
+ public:
+  ExactLayout(const SeamlessPart& part, const PointLattice& lattice, Complex shift, Eigen::VectorXcd& position)
+      : mesh_(part.component->mesh), map_(*part.map), lattice_(lattice), shift_(shift), position_(position) {
+    for (std::size_t p = 0; p < map_.cut_graph.cuts.size(); ++p) {
+      turns_.push_back(
+          (turns_of((*map_.rotation)[static_cast<Eigen::Index>(p)], lattice.symmetry()) % lattice.symmetry() +
+           lattice.symmetry()) %
+          lattice.symmetry());
+      const Sisters sisters = origin_sisters(mesh_, map_.cut_mesh, map_.cut_graph.cuts[p].halfedges.front());
+      translations_.push_back(
+          lattice.nearest_coordinates(position[sisters.right] - lattice.unit(turns_.back()) * position[sisters.left]));
+    }
+  }
+
+  void snap() {
+    const double largest = std::max(position_.real().cwiseAbs().maxCoeff(), position_.imag().cwiseAbs().maxCoeff());
+    const double fraction = fraction_for(largest);
+    const std::vector<char> on_cut = on_cuts(mesh_, map_.cut_graph);
+    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+      if (!on_cut[v]) {
+        if (lattice_.square()) position_[v] = as_float(position_[v]);
+        continue;
+      }
+      const auto all = sectors(mesh_, map_.cut_graph, map_.cut_mesh, v);
+      Complex z = position_[all.front().copy];
+      if (mesh_.loop_of_vertex[v] == none && map_.curvature.at_vertex[v] != 0) {
+        z = lattice_.nearest(z - shift_) + shift_;
+      } else if (lattice_.square()) {
+        z = round_to(z, fraction);
+      }
+      for (const Sector& sector : all) {
+        if (sector.copy != all.front().copy) z = cross(z, sector.opened_by);
+        position_[sector.copy] = z;
+      }
+    }
+  }
+
+  // Errors as stored: see SeamlessCut.
+  std::vector<SeamlessCut> certify(const Component& component) const {
+    std::vector<SeamlessCut> out;
+    for (std::size_t p = 0; p < map_.cut_graph.cuts.size(); ++p) {
+      const Cut& path = map_.cut_graph.cuts[p];
+      SeamlessCut cut{component.source_vertex[path.tail], component.source_vertex[path.head], turns_[p],
+                      translations_[p]};
+      const auto add = [&](const Sisters& sisters) {
+        const Complex image =
+            lattice_.unit(turns_[p]) * as_float(position_[sisters.left]) + lattice_.point(translations_[p]);
+        cut.error = std::max(cut.error, std::abs(as_float(position_[sisters.right]) - image));
+      };
+      for (const Index h : path.halfedges) {
+        add(origin_sisters(mesh_, map_.cut_mesh, h));
+        add(target_sisters(mesh_, map_.cut_mesh, h));
+      }
+      out.push_back(cut);
+    }
+    return out;
+  }
+
+ private:
+  // From the copy on the right of an outgoing cut halfedge to the one on its left, seen from the vertex.
+  Complex cross(Complex z, Index h) const {
+    const Index cut = map_.cut_graph.cut_of[h];
+    const Complex turn = lattice_.unit(turns_[cut]), translation = lattice_.point(translations_[cut]);
+    return map_.cut_graph.runs_forward[h] ? std::conj(turn) * (z - translation) : turn * z + translation;
+  }
+
+  const HalfedgeMesh& mesh_;
+  const ComponentMap& map_;
+  const PointLattice& lattice_;
+  const Complex shift_;  // of the lattice that cones are on
+  Eigen::VectorXcd& position_;
+  std::vector<int> turns_;
+  std::vector<PointLattice::Coordinates> translations_;
+};
+
+[[noreturn]] void refuse(const std::string& what, const char* remedy) {
+  throw Error(Code::wrong_parameter, concat(what, " ", remedy));
+}
+
+}  // namespace
+
+void require_valid(const Seamless& seamless, const Options& options, const Pins& pins) {
+  const auto positive = [](const std::optional<double>& value) {
+    return !value || (std::isfinite(*value) && *value > 0);
+  };
+  if (seamless.tiles && seamless.tile_size) {
+    refuse("Both a number and a size of tiles are given.", "Give one of them.");
+  }
+  if (!positive(seamless.tiles) || (seamless.tiles && *seamless.tiles > most_tiles)) {
+    refuse(concat("The number of tiles is ", *seamless.tiles, "."), "Choose one above 0, up to 16384.");
+  }
+  if (!positive(seamless.tile_size)) {
+    refuse(concat("The tiles' size is ", *seamless.tile_size, "."), "Choose one above 0.");
+  }
+  int exponent = 0;
+  if (!positive(seamless.cell) || std::frexp(seamless.cell, &exponent) != 0.5 || seamless.cell > 1 ||
+      seamless.cell < 1 / most_tiles) {
+    refuse(concat("The cell's side is ", seamless.cell, "."), "Choose a power of two, 1 or less.");
+  }
+  if (seamless.parity && seamless.lattice != Lattice::square) {
+    refuse("Only square cells can be told black from white.", "Choose the square lattice, or no parity.");
+  }
+  if (options.method == Method::lscm) {
+    refuse("Least squares conformal maps have no transitions to round.", "Choose the method lsgp.");
+  }
+  if (options.border == BorderMode::straight) {
+    refuse("Straight borders cannot be kept in a seamless layout.", "Leave the borders free.");
+  }
+  if (!pins.corners.empty()) {
+    throw Error(Code::pins_conflict,
+                "Pinned texture coordinates cannot be kept in a seamless layout, whose places are the lattice's. "
+                "Unpin them.");
+  }
+}
+
+void require_quantizable(const HalfedgeMesh& mesh, const ComponentMap& map) {
+  if (map.validity.defects() == 0) return;
+  std::vector<Index> where = map.validity.wrong_angle_sums;
+  for (const Index f : map.validity.flipped) {
+    for (int c = 0; c < 3; ++c) where.push_back(mesh.triangles(f, c));
+  }
+  throw Error(
+      Code::seamless_impossible,
+      concat("With angles rounded for the lattice ", count(map.validity.flipped.size(), "triangle is", "triangles are"),
+             " flipped and ", count(map.validity.wrong_angle_sums.size(), "vertex turns", "vertices turn"),
+             " wrongly, so there is no layout to start from. Move or add cones nearby."),
+      {ElementKind::vertices, std::move(where)});
+}
+
+SeamlessReport make_seamless(const Seamless& seamless, double unit_scale, std::vector<SeamlessPart>& parts,
+                             std::vector<Finding>& findings) {
+  const PointLattice lattice(symmetry(seamless.lattice));
+  const GridSearch search(seamless, lattice, parts);
+  Grid grid = find_grid(seamless, unit_scale, search, findings);
+  // With parity cones are at the centres of cells: around a corner of cells an odd number of them may meet.
+  const Complex shift = seamless.parity ? Complex(0.5, 0.5) : Complex(0, 0);
+  std::vector<Eigen::VectorXcd*> layouts;
+  for (QuantizedLayout& layout : grid.layouts) {
+    layout.position.array() += shift;
+    layouts.push_back(&layout.position);
+  }
+  arrange_on_lattice(layouts, lattice, seamless.parity ? 2 : 1);
+
+  SeamlessReport report;
+  report.symmetry = lattice.symmetry();
+  report.tiles = grid.tiles;
+  report.tile_size = 1 / (grid.density * unit_scale);
+  report.cell = seamless.cell;
+  double area = 0, before = 0, after = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const SeamlessPart& part = parts[i];
+    ExactLayout exact(part, lattice, shift, *layouts[i]);
+    exact.snap();
+    for (const SeamlessCut& cut : exact.certify(*part.component)) {
+      report.cuts.push_back(cut);
+      report.error = std::max(report.error, cut.error);
+    }
+    part.map->position = seamless.cell * *layouts[i];
+    area += part.geometry->total_area;
+    before += part.geometry->total_area * search.energy(i);
+    after += part.geometry->total_area * grid.layouts[i].energy;
+  }
+  report.energy_before = before / area;
+  report.energy_after = after / area;
+  return report;
+}
+
+}  // namespace lsgp
