@@ -17,6 +17,7 @@ from lsgp.cli import main
 from polygon_meshes import cube, obj_text, off_text, patch
 
 UNWRAP = ["unwrap", "in.obj", "-o", "out.obj"]
+SEAMLESS = [*UNWRAP, "--seamless"]
 REFUSED = {
     "vertices only": ({"in.obj": "v 0 0 0\nv 1 0 0\n"}, UNWRAP, "EMPTY_MESH"),
     "empty file": ({"in.obj": ""}, UNWRAP, "EMPTY_MESH"),
@@ -101,6 +102,10 @@ REFUSED = {
         ["measure", "in.obj"],
         "INDEX_OUT_OF_RANGE",
     ),
+} | {
+    f"{option} {value}": ({"in.obj": "CUBE"}, [*SEAMLESS, option, value], "WRONG_PARAMETER")
+    for option, extreme in (("--tiles", "1e300"), ("--tile-size", "1e-300"))
+    for value in ("0", "-8", "nan", "inf", "1e999", extreme)
 }
 WRONG_USAGE = {
     "no command": ([], "command"),
@@ -131,6 +136,27 @@ WRONG_USAGE = {
     "report over measured file": (["measure", "in.obj", "--report", "in.obj"], "same file"),
     "manual for automatic cones": ([*UNWRAP, "--prescription", "manual"], "manual"),
     "measure missing": (["measure", "none.obj"], "none.obj"),
+    "tiles without seamless": ([*UNWRAP, "--tiles", "8"], "--tiles"),
+    "tile size without seamless": ([*UNWRAP, "--tile-size", "0.1"], "--tile-size"),
+    "lattice without seamless": ([*UNWRAP, "--lattice", "square"], "--lattice"),
+    "parity without seamless": ([*UNWRAP, "--parity"], "--parity"),
+    "coarse grid without seamless": ([*UNWRAP, "--coarse-grid", "refine"], "--coarse-grid"),
+    "texture size without seamless": ([*UNWRAP, "--texture-size", "1024"], "--texture-size"),
+    "mip levels without seamless": ([*UNWRAP, "--mip-levels", "0"], "--mip-levels"),
+    "tiles and tile size": ([*SEAMLESS, "--tiles", "8", "--tile-size", "0.1"], "not allowed with"),
+    "tiles that are no number": ([*SEAMLESS, "--tiles", "many"], "many"),
+    "unknown lattice": ([*SEAMLESS, "--lattice", "cubic"], "cubic"),
+    "unknown coarse grid": ([*SEAMLESS, "--coarse-grid", "snap"], "snap"),
+    "texture size 0": ([*SEAMLESS, "--texture-size", "0"], "power of two"),
+    "negative texture size": ([*SEAMLESS, "--texture-size", "-1024"], "power of two"),
+    "texture size 1000": ([*SEAMLESS, "--texture-size", "1000"], "power of two"),
+    "texture size of half texels": ([*SEAMLESS, "--texture-size", "0.5"], "power of two"),
+    "texture too large": ([*SEAMLESS, "--texture-size", "131072"], "power of two"),
+    "texture size of 5000 digits": ([*SEAMLESS, "--texture-size", "1" + "0" * 5000], "power of two"),
+    "negative mip level": ([*SEAMLESS, "--mip-levels", "-1"], "levels 0 to 10"),
+    "more levels than mipmaps": ([*SEAMLESS, "--mip-levels", "11"], "levels 0 to 10"),
+    "more levels than a small texture has": ([*SEAMLESS, "--texture-size", "64", "--mip-levels", "7"], "levels 0 to 6"),
+    "half a mip level": ([*SEAMLESS, "--mip-levels", "1.5"], "1.5"),
     "measure nothing": (["measure"], "FILE.obj"),
 }
 
