@@ -57,6 +57,7 @@ CLASS_OF_CODE = {
     "HIGH_DISTORTION": "W_POOR_QUALITY",
     "INEXACT_SEAMS": "W_POOR_QUALITY",
     "INEXACT_ANGLES": "W_POOR_QUALITY",
+    "CONES_NOT_SNAPPED": "W_CONES_NOT_SNAPPED",
 }
 
 # Findings on the quality of a result, and triangles without one: it is then no plain success.
@@ -86,12 +87,19 @@ def triangulated(case: Case) -> tuple[lsgp.Surface, polygons.Triangulation | Non
     return lsgp.Surface(positions, cut.triangles, cut.edges, seams), cut
 
 
+def options_of(case: Case) -> lsgp.Options:
+    """A resolution is a number of tiles.  Raises InputError."""
+    if "resolution" in case["params"]:
+        return lsgp.Options(seamless=lsgp.Seamless(tiles=case["params"]["resolution"]))
+    return lsgp.Options()
+
+
 def outcome(case: Case) -> tuple[lsgp.Surface | None, lsgp.Result | lsgp.LsgpError]:
     """How a case ends through the API; anything but an error of the library passes through."""
     surface = None
     try:
         surface, _ = triangulated(case)
-        return surface, lsgp.parameterize(surface, case["cones"], case["cone_angles"])
+        return surface, lsgp.parameterize(surface, case["cones"], case["cone_angles"], options_of(case))
     except lsgp.LsgpError as error:
         return surface, error
 
@@ -102,9 +110,10 @@ def classes_of_result(codes: list[str]) -> set[str]:
     )
 
 
-def without_later_options(name: str) -> None:
-    if load(name)["params"]:
-        pytest.skip(f"{name} sets {load(name)['params']}: an option of seamless maps, which do not exist yet")
+def require_options(name: str) -> None:
+    without = set(load(name)["params"]) - {"resolution"}
+    if without:
+        pytest.skip(f"{name} sets {', '.join(sorted(without))}: there is no such option")
 
 
 if not case_names():
@@ -117,7 +126,7 @@ def test_no_case_is_missing() -> None:
 
 @pytest.mark.parametrize("name", case_names())
 def test_through_the_api(name: str) -> None:
-    without_later_options(name)
+    require_options(name)
     case = load(name)
     begin = time.perf_counter()
     surface, ended = outcome(case)
@@ -125,7 +134,8 @@ def test_through_the_api(name: str) -> None:
     if isinstance(ended, lsgp.LsgpError):
         assert CLASS_OF_CODE.get(ended.code) in case["expect"], f"{ended.code}: {ended.message}"
     else:
-        assert undeclared_faults(surface, ended) == []
+        assert undeclared_faults(surface, ended, options_of(case)) == []
+        assert (ended.seamless is not None) == bool(case["params"])
         codes = [finding.code for finding in ended.warnings]
         assert classes_of_result(codes) & set(case["expect"]), f"a result with {codes}"
     assert seconds < SECONDS
@@ -134,7 +144,7 @@ def test_through_the_api(name: str) -> None:
 @pytest.mark.parametrize("name", case_names())
 def test_through_the_command_line(tmp_path: Path, name: str) -> None:
     """The same end as through the API, with the same coordinates."""
-    without_later_options(name)
+    require_options(name)
     case = load(name)
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in case["V"]]
     lines += ["f " + " ".join(str(v + 1) for v in face) for face in case["F"]]
@@ -143,6 +153,8 @@ def test_through_the_command_line(tmp_path: Path, name: str) -> None:
     (tmp_path / "seams.json").write_text(json.dumps(case["seams"]))
     command = [sys.executable, "-m", "lsgp", "unwrap", "in.obj", "-o", "out.obj", "--report", "report.json"]
     command += ["--cones", "cones.json", "--seam-edges", "seams.json"]
+    if "resolution" in case["params"]:
+        command += ["--seamless", "--tiles", str(case["params"]["resolution"])]
     begin = time.perf_counter()
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
     seconds = time.perf_counter() - begin
