@@ -4,8 +4,9 @@
 import bpy
 import numpy as np
 
-from .. import findings, identifiers, mesh_read, mesh_write, native, packing, reporting, unwrapping
+from .. import cells, findings, identifiers, mesh_read, mesh_write, native, packing, reporting, unwrapping
 from .common import SEAMS, ConeGroupProperty, SeamsProperty, enum_items, poll_computation, require_region
+from .seamless import SeamlessProperties
 
 # Identifier: (value for the library, label, description); "Automatic" leaves the rule to the library.
 PRESCRIPTIONS = {
@@ -29,7 +30,7 @@ MARGIN_METHODS = (
 )
 
 
-class UV_OT_cone_unwrap(ConeGroupProperty, SeamsProperty, bpy.types.Operator):
+class UV_OT_cone_unwrap(ConeGroupProperty, SeamsProperty, SeamlessProperties, bpy.types.Operator):
     """Unwrap from Cones."""
 
     bl_idname = identifiers.UNWRAP
@@ -58,17 +59,20 @@ class UV_OT_cone_unwrap(ConeGroupProperty, SeamsProperty, bpy.types.Operator):
     )
     keep_placement: bpy.props.BoolProperty(
         name="Keep Placement",
-        description="Move, turn and scale each island to where its faces were, instead of into the UV square",
+        description="Move, turn and scale each island to where its faces were, instead of into the UV square; "
+        "in a seamless layout islands are moved by whole tiles only",
         default=False,
     )
     correct_aspect: bpy.props.BoolProperty(
         name="Correct Aspect",
-        description="Map UVs taking aspect ratio of the image associated with the material into account",
+        description="Map UVs taking aspect ratio of the image associated with the material into account; "
+        "not in a seamless layout, whose tiles would no longer match after it",
         default=True,
     )
     pack: bpy.props.BoolProperty(
         name="Pack Islands",
-        description="Pack the islands of all objects together with Blender's packer; islands with pins stay",
+        description="Pack the islands of all objects together with Blender's packer; islands with pins stay. "
+        "In a seamless layout islands are moved side by side by whole tiles only",
         default=False,
     )
     margin_method: bpy.props.EnumProperty(name="Margin Method", items=MARGIN_METHODS)
@@ -83,14 +87,18 @@ class UV_OT_cone_unwrap(ConeGroupProperty, SeamsProperty, bpy.types.Operator):
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
-        for name in ("prescription", "unfold", "seams", "border", "use_pins", "correct_aspect"):
+        for name in ("prescription", "unfold", "seams", "border", "use_pins"):
             layout.prop(self, name)
+        self.draw_seamless(layout)
+        row = layout.row()
+        row.active = not self.seamless
+        row.prop(self, "correct_aspect")
         row = layout.row()
         row.active = not self.pack
         row.prop(self, "keep_placement")
         layout.prop(self, "pack")
         column = layout.column()
-        column.active = self.pack
+        column.active = self.pack and not self.seamless
         column.prop(self, "margin_method")
         column.prop(self, "margin")
         self.draw_vertex_group(layout, context)
@@ -103,7 +111,7 @@ class UV_OT_cone_unwrap(ConeGroupProperty, SeamsProperty, bpy.types.Operator):
         layouts = [unwrapped.corner_uv for unwrapped in solved]
         if self.pack and solved:
             try:
-                layouts = self._packed(solved)
+                layouts = cells.pack(solved) if self.seamless else self._packed(solved)
             except (reporting.Refused, MemoryError) as error:
                 failures |= {unwrapped.obj.name: _refusal(error) for unwrapped in solved}
                 solved = layouts = []
@@ -139,13 +147,14 @@ class UV_OT_cone_unwrap(ConeGroupProperty, SeamsProperty, bpy.types.Operator):
             unfold=UNFOLDINGS[self.unfold][0],
             seams=SEAMS[self.seams][0],
             border=BORDERS[self.border][0],
+            seamless=self.seamless_options(),
         )
         return unwrapping.Settings(
             options=options,
             group=self.vertex_group,
             use_pins=self.use_pins,
             keep_placement=self.keep_placement and not self.pack,
-            correct_aspect=self.correct_aspect,
+            correct_aspect=self.correct_aspect and not self.seamless,
         )
 
     def _packed(self, solved: list[unwrapping.Unwrapped]) -> list[np.ndarray]:
@@ -171,4 +180,5 @@ def _summary(unwrapped: unwrapping.Unwrapped) -> str:
     return (
         f"{unwrapped.obj.name}: {islands} through {reporting.counted(len(result.cones), 'cone')}, "
         f"stretch {result.distortion.l2_stretch:.3f} (1 is none)"
+        f"{'' if result.seamless is None else ', ' + cells.certified(unwrapped)}"
     )
