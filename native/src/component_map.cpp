@@ -120,7 +120,7 @@ void twist_gradually(const HalfedgeMesh& mesh, const Geometry& geometry, const C
     check(mesh, moved);
     if (moved.validity.defects() == 0) return true;
     moved.position = untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, map.curvature,
-                              jacobians.f_z.array().arg(), fixed, moved.position);
+                              jacobians.f_z.array().arg(), fixed, Effort::local, moved.position);
     check(mesh, moved);
     return moved.validity.defects() == 0;
   };
@@ -199,11 +199,15 @@ ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, c
   check(mesh, map);
   if (!map.validity.flipped.empty() && !spectral) {
     const std::vector<char> fixed = fixed_vertices(mesh, map, aligned);
-    map.position = untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, target, connection.frames,
-                            fixed, map.position);
-    check(mesh, map);
+    const auto repair = [&](Effort effort) {
+      map.position = untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, target,
+                              connection.frames, fixed, effort, map.position);
+      check(mesh, map);
+    };
+    repair(connections.is_twisted() ? Effort::local : Effort::global);
     if (map.validity.defects() > 0 && connections.is_twisted()) {
       twist_gradually(mesh, geometry, connections, fixed, map);
+      if (map.validity.defects() > 0) repair(Effort::global);
     }
   }
   return map;

@@ -4,6 +4,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <queue>
+#include <utility>
 
 #include "cone_triangulation.hpp"
 #include "connection.hpp"
@@ -21,12 +26,40 @@ namespace {
 
 constexpr int tried_angles = 16;          // of the layout, within one turn of the lattice
 constexpr std::size_t tried_targets = 4;  // choices of points that are worth a repair
-constexpr int smoothing_steps = 3;
+constexpr double stretched_energy = 1.5;  // symmetric Dirichlet energy of a triangle that calls for smoothing
+constexpr int smoothed_rings = 4;
+constexpr int smoothing_steps = 4;
+constexpr double least_decrease = 1e-3;  // of the energy, for which a further step is taken
+constexpr double poor_energy = 1.5;      // of a start that is smoothed first
+constexpr int poor_steps = 20;
 constexpr double shortest_step = 1e-3;  // of the way to the lattice points
 
 std::vector<int> turns_of_cuts(const Eigen::VectorXd& rotation, int symmetry) {
   std::vector<int> out;
   for (const double r : rotation) out.push_back(turns_of(r, symmetry));
+  return out;
+}
+
+// Lengths of shortest paths along edges to the nearest of some vertices, (n).
+Eigen::VectorXd distance_to(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& sources) {
+  Eigen::VectorXd out = Eigen::VectorXd::Constant(mesh.vertex_count(), std::numeric_limits<double>::infinity());
+  using Entry = std::pair<double, Index>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  const auto reach = [&](Index v, double distance) {
+    if (distance >= out[v]) return;
+    out[v] = distance;
+    queue.emplace(distance, v);
+  };
+  for (const Index v : sources) reach(v, 0);
+  while (!queue.empty()) {
+    const auto [distance, v] = queue.top();
+    queue.pop();
+    if (distance > out[v]) continue;
+    mesh.for_each_outgoing(v, [&](Index h) {
+      reach(mesh.target(h), distance + geometry.length[h]);
+      reach(mesh.origin(prev(h)), distance + geometry.length[prev(h)]);
+    });
+  }
   return out;
 }
 
@@ -38,6 +71,25 @@ Eigen::VectorXd rank_roots(const Eigen::VectorXd& curvature) {
     rank[v] = gap < 1e-6 ? 0 : 1 / (1 + gap);
   }
   return rank;
+}
+
+// The geometry with Dirichlet weights that grow towards the cones like the inverse square of their distance.  A
+// harmonic displacement has a pole where a single vertex is moved; with these weights all that surrounds a cone moves
+// with it, and the displacement fades over its whole neighbourhood.
+Geometry stiffen_around(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& cones) {
+  constexpr double stiffest = 1e4;
+  Geometry out = geometry;
+  if (cones.empty()) return out;
+  const double radius = std::sqrt(geometry.total_area / (M_PI * static_cast<double>(cones.size())));
+  const Eigen::VectorXd distance = distance_to(mesh, geometry, cones);
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    double mean = 0;
+    for (int c = 0; c < 3; ++c) mean += distance[mesh.triangles(f, c)] / 3;
+    const double share = radius / std::max(mean, std::numeric_limits<double>::min());
+    const double weight = std::clamp(share * share, 1.0, stiffest);
+    for (Index h = 3 * f; h < 3 * f + 3; ++h) out.half_cotangent[h] *= weight;
+  }
+  return out;
 }
 
 }  // namespace
@@ -61,21 +113,17 @@ LayoutQuantizer::LayoutQuantizer(const HalfedgeMesh& mesh, const Geometry& geome
       curvature_(map.curvature),
       lattice_(lattice),
       rotation_(*map.rotation) {
-  const double scale = std::sqrt(geometry.total_area / map.uv_area);
-  start_ = scale * map.position * std::conj(upright(map.position));
-  extent_ = start_.real().maxCoeff() - start_.real().minCoeff();
-  energy_ = symmetric_dirichlet_energy(geometry, measure_jacobians(mesh, geometry, map.cut_mesh, start_));
-  rest_ = curvature_.log_scale.array() + std::log(scale);
-
   const NodeGraph nodes = build_node_graph(mesh, map.cut_graph, rank_roots(map.curvature.at_vertex));
   reduction_ = impose_on_lattice(mesh, map.cut_graph, map.cut_mesh, nodes,
                                  curvature_of_nodes(mesh, nodes, map.curvature.at_vertex),
                                  turns_of_cuts(rotation_, lattice.symmetry()), lattice, parity);
-  if (reduction_.origin != none) start_.array() -= start_[reduction_.origin];
+  motion_of_copies_ = motion_of_copies(mesh, map.cut_graph, map.cut_mesh, rotation_);
+  set_start(map);
   integers_ = integers_of(start_);
 
   // The Dirichlet form by blocks: what moves freely, and the integers.
-  const auto form = assemble_form(Form::dirichlet, mesh, geometry, map.cut_mesh, reduction_.reduction);
+  const auto form = assemble_form(Form::dirichlet, mesh, stiffen_around(mesh, geometry, map.cones), map.cut_mesh,
+                                  reduction_.reduction);
   const Index unknowns = reduction_.reduction.unknown_count, count = static_cast<Index>(reduction_.integers.size());
   std::vector<Index> column_of_unknown(unknowns, none);
   for (Index k = 0; k < count; ++k) column_of_unknown[reduction_.integers[k]] = k;
@@ -113,8 +161,34 @@ LayoutQuantizer::LayoutQuantizer(const HalfedgeMesh& mesh, const Geometry& geome
     const Eigen::MatrixXcd columns = coupling_.middleCols(first, width);
     schur.middleCols(first, width) -= coupling_.adjoint() * factor_->solve(columns);
   }
-  const Eigen::MatrixXcd restricted = reduction_.basis.adjoint() * schur * reduction_.basis;
+  schur_ = (schur + schur.adjoint()) / 2;
+  const Eigen::MatrixXcd restricted = reduction_.basis.adjoint() * schur_ * reduction_.basis;
   search_.emplace((restricted + restricted.adjoint()) / 2, moving_triangles(map), lattice);
+}
+
+void LayoutQuantizer::set_start(const ComponentMap& map) {
+  start_ = std::sqrt(geometry_.total_area / map.uv_area) * map.position * std::conj(upright(map.position));
+  energy_ = symmetric_dirichlet_energy(geometry_, measure_jacobians(mesh_, geometry_, cut_mesh_, start_));
+  if (energy_ > poor_energy) {
+    Freedom all{reduction_.reduction, std::vector<Index>(mesh_.triangle_count())};
+    std::iota(all.triangles.begin(), all.triangles.end(), 0);
+    Relaxation(mesh_, geometry_, cut_mesh_, Eigen::VectorXd::Zero(mesh_.vertex_count()),
+               Eigen::VectorXd::Zero(mesh_.triangle_count()), std::move(all), start_)
+        .smooth(DistortionEnergy::Kind::symmetric_dirichlet, poor_steps, least_decrease);
+  }
+  const Jacobians jacobians = measure_jacobians(mesh_, geometry_, cut_mesh_, start_);
+  energy_ = symmetric_dirichlet_energy(geometry_, jacobians);
+  extent_ = start_.real().maxCoeff() - start_.real().minCoeff();
+  if (reduction_.origin != none) start_.array() -= start_[reduction_.origin];
+  // Its scale at the vertices is the mean over the triangles around.
+  rest_ = Eigen::VectorXd::Zero(mesh_.vertex_count());
+  for (Index f = 0; f < mesh_.triangle_count(); ++f) {
+    const double determinant = std::norm(jacobians.f_z[f]) - std::norm(jacobians.f_zbar[f]);
+    for (int c = 0; c < 3; ++c) {
+      const Index v = mesh_.triangles(f, c);
+      rest_[v] += geometry_.area[f] / 3 * std::log(determinant) / 2 / geometry_.vertex_area[v];
+    }
+  }
 }
 
 std::vector<MovingTriangle> LayoutQuantizer::moving_triangles(const ComponentMap& map) const {
@@ -158,18 +232,21 @@ Eigen::VectorXcd LayoutQuantizer::integers_of(const Eigen::VectorXcd& position) 
 }
 
 std::vector<LayoutQuantizer::Target> LayoutQuantizer::find_targets(double density) const {
+  if (integers_.size() == 0) return {{density, integers_, 0}};
   std::vector<Target> out;
-  const Eigen::PartialPivLU<Eigen::MatrixXcd> basis(reduction_.basis);
-  const Eigen::VectorXcd wanted = integers_.size() > 0 ? Eigen::VectorXcd(basis.solve(integers_)) : integers_;
+  const Eigen::VectorXcd wanted = reduction_.basis.partialPivLu().solve(integers_);
+  const Eigen::VectorXcd pull = schur_ * integers_;
   for (int i = 0; i < tried_angles; ++i) {
     const double angle = 2 * M_PI / lattice_.symmetry() * i / tried_angles;
-    out.push_back({angle, search_->find(std::polar(density, angle) * wanted)});
-    if (integers_.size() == 0) break;
+    const LatticeSearch::Choice choice = search_->find(std::polar(density, angle) * wanted);
+    if (!choice.valid()) continue;
+    // What a similarity of the whole layout does costs nothing.
+    Target target{0, reduction_.basis * choice.x, choice.cost};
+    target.motion = pull.dot(target.integers) / pull.dot(integers_);
+    if (target.motion == 0.0) target.motion = std::polar(density, angle);
+    out.push_back(std::move(target));
   }
-  std::stable_sort(out.begin(), out.end(), [](const Target& a, const Target& b) {
-    if (a.choice.valid() != b.choice.valid()) return a.choice.valid();
-    return a.choice.cost < b.choice.cost;
-  });
+  std::stable_sort(out.begin(), out.end(), [](const Target& a, const Target& b) { return a.cost < b.cost; });
   if (out.size() > tried_targets) out.resize(tried_targets);
   return out;
 }
@@ -191,45 +268,66 @@ bool LayoutQuantizer::is_valid(const Eigen::VectorXcd& position) const {
 }
 
 // before: a valid map from which the present one was moved.
-bool LayoutQuantizer::repair(double density, const Eigen::VectorXcd& before, Eigen::VectorXcd& position) const {
+bool LayoutQuantizer::repair(double scale, const Eigen::VectorXcd& before, Eigen::VectorXcd& position) const {
   if (is_valid(position)) return true;
   Curvature target = curvature_;
-  target.log_scale = rest_.array() + std::log(density);
+  target.log_scale = rest_.array() + std::log(scale);
   const Eigen::VectorXd frames = measure_jacobians(mesh_, geometry_, cut_mesh_, before).f_z.array().arg();
   position = untangle(mesh_, geometry_, cut_graph_, cut_mesh_, rotation_, target, frames,
-                      std::vector<char>(mesh_.vertex_count(), 0), position);
+                      std::vector<char>(mesh_.vertex_count(), 0), Effort::local, position);
   return is_valid(position);
 }
 
-// Moves the integers of a valid map by `change` at once.
-bool LayoutQuantizer::move(double density, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const {
-  const Eigen::VectorXcd before = position;
-  position += displacement(change);
-  return repair(density, before, position);
-}
-
-// The same in steps over which the map stays valid, smoothed after each.
-bool LayoutQuantizer::follow(double density, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const {
-  std::vector<char> marked(mesh_.vertex_count(), 1);
+// Newton steps on the symmetric Dirichlet energy over the marked vertices.
+void LayoutQuantizer::smooth(double scale, std::vector<char> marked, int steps, Eigen::VectorXcd& position) const {
   for (Index v = 0; v < mesh_.vertex_count(); ++v) {
     if (mesh_.loop_of_vertex[v] == none && curvature_.at_vertex[v] != 0) marked[v] = 0;
   }
-  const Freedom freedom =
-      free_vertices(mesh_, cut_mesh_, motion_of_copies(mesh_, cut_graph_, cut_mesh_, rotation_), marked);
-  const Eigen::VectorXd rest = rest_.array() + std::log(density);
+  Relaxation(mesh_, geometry_, cut_mesh_, rest_.array() + std::log(scale),
+             Eigen::VectorXd::Zero(mesh_.triangle_count()), free_vertices(mesh_, cut_mesh_, motion_of_copies_, marked),
+             position)
+      .smooth(DistortionEnergy::Kind::symmetric_dirichlet, steps, least_decrease);
+}
+
+// The same around triangles that are much more distorted than the start.
+void LayoutQuantizer::smooth_stretched(double scale, Eigen::VectorXcd& position) const {
+  const Jacobians jacobians = measure_jacobians(mesh_, geometry_, cut_mesh_, position);
+  std::vector<Index> stretched;
+  for (Index f = 0; f < mesh_.triangle_count(); ++f) {
+    double rest = 0;
+    for (int c = 0; c < 3; ++c) rest += rest_[mesh_.triangles(f, c)] / 3;
+    const double unit = scale * std::exp(rest);
+    const Complex f_z = jacobians.f_z[f] / unit, f_zbar = jacobians.f_zbar[f] / unit;
+    // 4 for an isometry.
+    const double energy = DistortionEnergy{DistortionEnergy::Kind::symmetric_dirichlet}.value(f_z, f_zbar);
+    if (!(energy < 4 * stretched_energy)) stretched.push_back(f);
+  }
+  if (stretched.empty()) return;
+  smooth(scale, mark_around(mesh_, stretched, smoothed_rings), smoothing_steps, position);
+}
+
+// Moves the integers of a valid map by `change` at once.
+bool LayoutQuantizer::move(double scale, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const {
+  const Eigen::VectorXcd before = position;
+  position += displacement(change);
+  if (!repair(scale, before, position)) return false;
+  smooth_stretched(scale, position);
+  return true;
+}
+
+// The same in steps over which the map stays valid.
+bool LayoutQuantizer::follow(double scale, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const {
   double reached = 0;
   for (double step = 0.5; reached < 1 && step > shortest_step;) {
     const double share = std::min(step, 1 - reached);
     Eigen::VectorXcd tried = position;
-    if (!move(density, share * change, tried)) {
+    if (!move(scale, share * change, tried)) {
       step /= 2;
       continue;
     }
     reached = share == 1 - reached ? 1 : reached + share;
     step *= 1.7;
     position = std::move(tried);
-    Relaxation(mesh_, geometry_, cut_mesh_, rest, Eigen::VectorXd::Zero(mesh_.triangle_count()), freedom, position)
-        .smooth(DistortionEnergy::Kind::symmetric_dirichlet, smoothing_steps, 1e-3);
   }
   return reached == 1;
 }
@@ -238,11 +336,10 @@ std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density) const {
   const std::vector<Target> targets = find_targets(density);
   for (const bool in_steps : {false, true}) {
     for (const Target& target : targets) {
-      if (!target.choice.valid()) continue;
-      const Complex motion = std::polar(density, target.angle);
-      const Eigen::VectorXcd change = reduction_.basis * target.choice.x - motion * integers_;
-      QuantizedLayout out{motion * start_, 1, {}};
-      if (!(in_steps ? follow(density, change, out.position) : move(density, change, out.position))) continue;
+      const double scale = std::abs(target.motion);
+      const Eigen::VectorXcd change = target.integers - target.motion * integers_;
+      QuantizedLayout out{target.motion * start_, 1, {}};
+      if (!(in_steps ? follow(scale, change, out.position) : move(scale, change, out.position))) continue;
       out.energy = symmetric_dirichlet_energy(geometry_, measure_jacobians(mesh_, geometry_, cut_mesh_, out.position));
       return out;
     }

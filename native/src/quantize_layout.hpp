@@ -39,18 +39,22 @@ class LayoutQuantizer {
 
  private:
   struct Target {
-    double angle;  // by which the layout is turned
-    LatticeSearch::Choice choice;
+    Complex motion;             // turn and scale of the start
+    Eigen::VectorXcd integers;  // (d)
+    double cost;
   };
 
+  void set_start(const ComponentMap& map);
   std::vector<MovingTriangle> moving_triangles(const ComponentMap& map) const;
   Eigen::VectorXcd integers_of(const Eigen::VectorXcd& position) const;
   std::vector<Target> find_targets(double density) const;
   Eigen::VectorXcd displacement(const Eigen::VectorXcd& change) const;
   bool is_valid(const Eigen::VectorXcd& position) const;
-  bool repair(double density, const Eigen::VectorXcd& before, Eigen::VectorXcd& position) const;
-  bool move(double density, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const;
-  bool follow(double density, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const;
+  bool repair(double scale, const Eigen::VectorXcd& before, Eigen::VectorXcd& position) const;
+  void smooth(double scale, std::vector<char> marked, int steps, Eigen::VectorXcd& position) const;
+  void smooth_stretched(double scale, Eigen::VectorXcd& position) const;
+  bool move(double scale, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const;
+  bool follow(double scale, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const;
 
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
@@ -61,6 +65,8 @@ class LayoutQuantizer {
   Eigen::VectorXd rotation_;
   Eigen::VectorXcd start_;  // (copies) with the surface's area, the origin cone at 0
   Eigen::VectorXd rest_;    // (n) log of its scale
+  Eigen::VectorXcd motion_of_copies_;
+  Eigen::MatrixXcd schur_;  // (d, d) of the stiffened Dirichlet form on the integers
   double extent_ = 0, energy_ = 1;
   LatticeReduction reduction_;
   Eigen::VectorXcd integers_;  // (d) at the start

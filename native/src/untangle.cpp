@@ -38,7 +38,7 @@ double turn_against(const HalfedgeMesh& mesh, const Geometry& geometry, const Cu
 
 Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
                           const CutMesh& cut_mesh, const Eigen::VectorXd& rotation, const Curvature& curvature,
-                          const Eigen::VectorXd& frames, const std::vector<char>& fixed,
+                          const Eigen::VectorXd& frames, const std::vector<char>& fixed, Effort effort,
                           const Eigen::VectorXcd& position) {
   const Eigen::VectorXcd motion = motion_of_copies(mesh, cut_graph, cut_mesh, rotation);
   const auto check = [&](const Eigen::VectorXcd& tried) {
@@ -74,7 +74,8 @@ Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, co
       if (fewest > 0) try_out(mark_around(mesh, initial.flipped, rings), energy, local_steps);
     }
   }
-  if (fewest > 0) try_out(std::vector<char>(mesh.vertex_count(), 1), Kind::framed_foldover_free, global_steps);
+  if (fewest > 0 && effort == Effort::global)
+    try_out(std::vector<char>(mesh.vertex_count(), 1), Kind::framed_foldover_free, global_steps);
   return best;
 }
 
