@@ -11,13 +11,13 @@ namespace lsgp {
 namespace {
 
 constexpr double lovasz = 0.85;  // of a vector's length that an exchange has to leave
-constexpr double ridge = 1e-12;  // of the mean diagonal: the layout's place may be free
+constexpr double ridge = 1e-12;  // of the diagonal: the layout's place may be free
 // Weights of missing areas, of the form's median diagonal.
 constexpr std::array<double, 6> penalties{0.25, 1, 4, 16, 1e3, 1e6};
 
 // The upper triangular R with R^H R = form.
 Eigen::MatrixXcd upper_factor(Eigen::MatrixXcd form) {
-  form.diagonal().array() += ridge * form.diagonal().real().mean();
+  form.diagonal().array() += ridge * (1 + form.diagonal().real().maxCoeff());
   return form.llt().matrixU();
 }
 
@@ -63,6 +63,7 @@ Eigen::MatrixXcd reduce_basis(const Eigen::MatrixXcd& form, const PointLattice& 
 
 LatticeSearch::LatticeSearch(Eigen::MatrixXcd form, std::vector<MovingTriangle> triangles, const PointLattice& lattice)
     : form_(std::move(form)), triangles_(std::move(triangles)), lattice_(lattice) {
+  if (form_.size() == 0) return;
   reduced_ = reduce_basis(form_, lattice_);
   triangular_ = upper_factor(reduced_.adjoint() * form_ * reduced_);
   const auto add_move = [&](const Eigen::VectorXcd& x) {
@@ -84,15 +85,26 @@ LatticeSearch::LatticeSearch(Eigen::MatrixXcd form, std::vector<MovingTriangle> 
   }
 }
 
-Eigen::VectorXcd LatticeSearch::nearest_plane(const Eigen::VectorXcd& wanted) const {
+LatticeSearch::Choice LatticeSearch::nearest(const Eigen::VectorXcd& wanted) const {
   Eigen::VectorXcd rest = triangular_ * reduced_.partialPivLu().solve(wanted);
-  Eigen::VectorXcd x = Eigen::VectorXcd::Zero(wanted.size());
+  Choice out;
+  out.x = Eigen::VectorXcd::Zero(wanted.size());
   for (Eigen::Index k = wanted.size(); k-- > 0;) {
     const Complex multiple = lattice_.nearest(rest[k] / triangular_(k, k));
     rest -= multiple * triangular_.col(k);
-    x += multiple * reduced_.col(k);
+    out.x += multiple * reduced_.col(k);
   }
-  return x;
+  out.cost = std::real((out.x - wanted).dot(form_ * (out.x - wanted)));
+  for (const auto& corners : corners_at(out.x)) out.violation += violation(corners);
+  return out;
+}
+
+std::vector<std::array<Complex, 3>> LatticeSearch::corners_at(const Eigen::VectorXcd& x) const {
+  std::vector<std::array<Complex, 3>> out(triangles_.size());
+  for (std::size_t f = 0; f < triangles_.size(); ++f) {
+    for (int c = 0; c < 3; ++c) out[f][c] = triangles_[f].offset[c] + (triangles_[f].slope[c] * x).value();
+  }
+  return out;
 }
 
 double LatticeSearch::violation(const std::array<Complex, 3>& corners) const {
@@ -100,19 +112,17 @@ double LatticeSearch::violation(const std::array<Complex, 3>& corners) const {
 }
 
 void LatticeSearch::descend(const Eigen::VectorXcd& wanted, double penalty, Choice& choice) const {
-  std::vector<std::array<Complex, 3>> corners(triangles_.size());
-  std::vector<double> missing(triangles_.size());
-  for (std::size_t f = 0; f < triangles_.size(); ++f) {
-    for (int c = 0; c < 3; ++c) corners[f][c] = triangles_[f].offset[c] + (triangles_[f].slope[c] * choice.x).value();
-    missing[f] = violation(corners[f]);
-  }
+  std::vector<std::array<Complex, 3>> corners = corners_at(choice.x);
+  std::vector<double> missing;
+  for (const auto& triangle : corners) missing.push_back(violation(triangle));
   Eigen::VectorXcd away = choice.x - wanted;
   const int directions = lattice_.square() ? 4 : 6;
   const PointLattice units(directions);
+  const double least_gain = 1e-9 * (penalty + std::real(away.dot(form_ * away)));
   while (true) {
     const Move* best = nullptr;
     Complex best_unit = 0;
-    double most = -1e-9 * penalty;
+    double most = -least_gain;
     for (const Move& move : moves_) {
       const Complex slope = move.pull.dot(away);  // conj(pull) . away
       for (int turn = 0; turn < directions; ++turn) {
@@ -143,18 +153,15 @@ void LatticeSearch::descend(const Eigen::VectorXcd& wanted, double penalty, Choi
   for (const double area : missing) choice.violation += area;
 }
 
-LatticeSearch::Choice LatticeSearch::find(const Eigen::VectorXcd& wanted) const {
-  Choice choice;
-  choice.x = nearest_plane(wanted);
-  if (wanted.size() == 0) return choice;
+LatticeSearch::Choice LatticeSearch::improve(const Eigen::VectorXcd& wanted, Choice choice) const {
   Eigen::VectorXd diagonal = form_.diagonal().real();
   std::nth_element(diagonal.data(), diagonal.data() + diagonal.size() / 2, diagonal.data() + diagonal.size());
   const double unit = diagonal[diagonal.size() / 2];
-  Choice least;
+  Choice least = choice;
   for (const double penalty : penalties) {
     descend(wanted, penalty * unit, choice);
-    if (penalty == penalties.front() || choice.violation < least.violation) least = choice;
-    if (choice.valid()) return choice;
+    if (choice.violation < least.violation) least = choice;
+    if (choice.valid()) break;
   }
   return least;
 }

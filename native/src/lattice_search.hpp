@@ -34,9 +34,12 @@ class LatticeSearch {
     bool valid() const { return violation < 1e-6; }
   };
 
-  // The nearest plane's point (Babai 1986), moved by single steps along short vectors until no step lowers the cost,
-  // and where triangles have lost their area with growing penalties for that.
-  Choice find(const Eigen::VectorXcd& wanted) const;
+  // The nearest plane's point (Babai 1986).
+  Choice nearest(const Eigen::VectorXcd& wanted) const;
+
+  // Moves a choice by single steps along short vectors, with growing penalties for missing areas, until none is
+  // missing and no step lowers the cost.
+  Choice improve(const Eigen::VectorXcd& wanted, Choice choice) const;
 
  private:
   struct Move {
@@ -47,7 +50,7 @@ class LatticeSearch {
     std::vector<int> triangles;                   // which those are
   };
 
-  Eigen::VectorXcd nearest_plane(const Eigen::VectorXcd& wanted) const;
+  std::vector<std::array<Complex, 3>> corners_at(const Eigen::VectorXcd& x) const;
   void descend(const Eigen::VectorXcd& wanted, double penalty, Choice& choice) const;
   double violation(const std::array<Complex, 3>& corners) const;
 

@@ -28,11 +28,13 @@ constexpr int tried_angles = 16;          // of the layout, within one turn of t
 constexpr std::size_t tried_targets = 4;  // choices of points that are worth a repair
 constexpr double stretched_energy = 1.5;  // symmetric Dirichlet energy of a triangle that calls for smoothing
 constexpr int smoothed_rings = 4;
+constexpr int searched_angles = 6;  // of those, where the nearest points are not valid
 constexpr int smoothing_steps = 4;
 constexpr double least_decrease = 1e-3;  // of the energy, for which a further step is taken
 constexpr double poor_energy = 1.5;      // of a start that is smoothed first
 constexpr int poor_steps = 20;
-constexpr double shortest_step = 1e-3;  // of the way to the lattice points
+constexpr double shortest_step = 0.01;  // of the way to the lattice points
+constexpr int most_moves = 20;          // on it
 
 std::vector<int> turns_of_cuts(const Eigen::VectorXd& rotation, int symmetry) {
   std::vector<int> out;
@@ -236,18 +238,31 @@ std::vector<LayoutQuantizer::Target> LayoutQuantizer::find_targets(double densit
   std::vector<Target> out;
   const Eigen::VectorXcd wanted = reduction_.basis.partialPivLu().solve(integers_);
   const Eigen::VectorXcd pull = schur_ * integers_;
+  struct Candidate {
+    Complex motion;
+    LatticeSearch::Choice choice;
+  };
+  std::vector<Candidate> candidates;
   for (int i = 0; i < tried_angles; ++i) {
-    const double angle = 2 * M_PI / lattice_.symmetry() * i / tried_angles;
-    const LatticeSearch::Choice choice = search_->find(std::polar(density, angle) * wanted);
-    if (!choice.valid()) continue;
+    const Complex motion = std::polar(density, 2 * M_PI / lattice_.symmetry() * i / tried_angles);
+    candidates.push_back({motion, search_->nearest(motion * wanted)});
+  }
+  // The cheapest are taken as they are where they are valid; where few are, they are worth a search.
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.choice.cost < b.choice.cost; });
+  for (Candidate& candidate : candidates) {
+    if (!candidate.choice.valid()) {
+      candidate.choice = search_->improve(candidate.motion * wanted, candidate.choice);
+    }
+    if (!candidate.choice.valid()) continue;
     // What a similarity of the whole layout does costs nothing.
-    Target target{0, reduction_.basis * choice.x, choice.cost};
+    Target target{0, reduction_.basis * candidate.choice.x, candidate.choice.cost};
     target.motion = pull.dot(target.integers) / pull.dot(integers_);
-    if (target.motion == 0.0) target.motion = std::polar(density, angle);
+    if (target.motion == 0.0) target.motion = candidate.motion;
     out.push_back(std::move(target));
+    if (out.size() == tried_targets) break;
   }
   std::stable_sort(out.begin(), out.end(), [](const Target& a, const Target& b) { return a.cost < b.cost; });
-  if (out.size() > tried_targets) out.resize(tried_targets);
   return out;
 }
 
@@ -318,7 +333,8 @@ bool LayoutQuantizer::move(double scale, const Eigen::VectorXcd& change, Eigen::
 // The same in steps over which the map stays valid.
 bool LayoutQuantizer::follow(double scale, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const {
   double reached = 0;
-  for (double step = 0.5; reached < 1 && step > shortest_step;) {
+  double step = 0.5;
+  for (int moves = 0; reached < 1 && step > shortest_step && moves < most_moves; ++moves) {
     const double share = std::min(step, 1 - reached);
     Eigen::VectorXcd tried = position;
     if (!move(scale, share * change, tried)) {
@@ -335,7 +351,8 @@ bool LayoutQuantizer::follow(double scale, const Eigen::VectorXcd& change, Eigen
 std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density) const {
   const std::vector<Target> targets = find_targets(density);
   for (const bool in_steps : {false, true}) {
-    for (const Target& target : targets) {
+    for (std::size_t i = 0; i < (in_steps ? std::min<std::size_t>(targets.size(), 2) : targets.size()); ++i) {
+      const Target& target = targets[i];
       const double scale = std::abs(target.motion);
       const Eigen::VectorXcd change = target.integers - target.motion * integers_;
       QuantizedLayout out{target.motion * start_, 1, {}};

@@ -20,7 +20,7 @@ constexpr std::array<int, 3> neighbourhoods{2, 5, 10};  // rings of vertices aro
 constexpr double hopeless_share = 0.02;                 // of the triangles flipped: not a place is tangled but the map
 constexpr int barrier_steps = 3;
 // Of Newton's method, which takes a few where it succeeds.
-constexpr int local_steps = 60;
+constexpr int local_steps = 30;
 constexpr int global_steps = 15;
 
 // How a map is turned as a whole against frames.
@@ -34,6 +34,13 @@ double turn_against(const HalfedgeMesh& mesh, const Geometry& geometry, const Cu
   return std::arg(along);
 }
 
+// Those that are flipped, and those around vertices whose angles are wrong.
+std::vector<Index> defective_triangles(const HalfedgeMesh& mesh, const Validity& validity) {
+  std::vector<Index> out = validity.flipped;
+  for (const Index v : validity.wrong_angle_sums) mesh.for_each_outgoing(v, [&](Index h) { out.push_back(h / 3); });
+  return out;
+}
+
 }  // namespace
 
 Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
@@ -44,9 +51,8 @@ Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, co
   const auto check = [&](const Eigen::VectorXcd& tried) {
     return check_map(mesh, at_corners(cut_mesh, tried), curvature.at_vertex, curvature.is_free);
   };
-  const Validity initial = check(position);
   Eigen::VectorXcd best = position;
-  std::size_t fewest = initial.defects();
+  Validity left = check(best);
   const Eigen::VectorXd turned = frames.array() + turn_against(mesh, geometry, cut_mesh, frames, position);
   const auto try_out = [&](std::vector<char> marked, Kind energy, int most_steps) {
     for (Index v = 0; v < mesh.vertex_count(); ++v) {
@@ -55,27 +61,28 @@ Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, co
     }
     Freedom freedom = free_vertices(mesh, cut_mesh, motion, marked);
     if (freedom.displacement.unknown_count == 0) return;
-    Eigen::VectorXcd tried = position;
+    Eigen::VectorXcd tried = best;
     Relaxation relaxation(mesh, geometry, cut_mesh, curvature.log_scale, turned, std::move(freedom), tried);
     try {
       if (relaxation.unfold(energy, most_steps)) relaxation.smooth(Kind::conformal_barrier, barrier_steps);
     } catch (const Error&) {
       return;  // what cannot be factored cannot be repaired, but it is still a map
     }
-    const std::size_t left = check(tried).defects();
-    if (left >= fewest) return;
-    fewest = left;
+    Validity after = check(tried);
+    if (after.defects() >= left.defects()) return;
+    left = std::move(after);
     best = std::move(tried);
   };
-  const bool hopeless = static_cast<double>(initial.flipped.size()) > hopeless_share * mesh.triangle_count();
+  const bool hopeless = static_cast<double>(left.flipped.size()) > hopeless_share * mesh.triangle_count();
   if (hopeless) return best;
-  for (const Kind energy : {Kind::foldover_free, Kind::framed_foldover_free}) {
-    for (const int rings : neighbourhoods) {
-      if (fewest > 0) try_out(mark_around(mesh, initial.flipped, rings), energy, local_steps);
+  for (const int rings : neighbourhoods) {
+    for (const Kind energy : {Kind::framed_foldover_free, Kind::foldover_free}) {
+      if (left.defects() > 0) try_out(mark_around(mesh, defective_triangles(mesh, left), rings), energy, local_steps);
     }
   }
-  if (fewest > 0 && effort == Effort::global)
+  if (left.defects() > 0 && effort == Effort::global) {
     try_out(std::vector<char>(mesh.vertex_count(), 1), Kind::framed_foldover_free, global_steps);
+  }
   return best;
 }
 
