@@ -26,6 +26,9 @@ void Assembly::add(std::size_t component_index, const ComponentCones& cones, con
   for (const Index v : cones.vertices) {
     cone_angle_[component.source_vertex[v]] = component.mesh.flat_angle(v) - map.curvature.at_vertex[v];
   }
+  for (const Index v : map.flat_cones) {
+    cone_angle_[component.source_vertex[v]] = std::numeric_limits<double>::quiet_NaN();
+  }
   const Index islands = add_islands(component, geometry, map);
   solved_.push_back({&component, std::move(map), islands});
 }

@@ -6,6 +6,7 @@
 
 #include "border.hpp"
 #include "connection.hpp"
+#include "text.hpp"
 #include "unfold.hpp"
 #include "untangle.hpp"
 
@@ -161,10 +162,15 @@ ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, c
   }
   {
     StageTimer timer(seconds, "cut");
-    map.cones = inside_only(mesh, cones.vertices);
-    if (cones.symmetry > 0) {  // those that came out flat need no cut
-      const auto flat = [&](Index v) { return map.curvature.at_vertex[v] == 0; };
-      map.cones.erase(std::remove_if(map.cones.begin(), map.cones.end(), flat), map.cones.end());
+    for (const Index v : inside_only(mesh, cones.vertices)) {
+      const bool flat = cones.symmetry > 0 && map.curvature.at_vertex[v] == 0;
+      (flat ? map.flat_cones : map.cones).push_back(v);
+    }
+    if (!map.flat_cones.empty()) {
+      findings.push_back({Code::flat_cones,
+                          concat(count(map.flat_cones.size(), "cone", "cones"),
+                                 " came out flat when angles were rounded: ordinary vertices now, which need no cut."),
+                          {ElementKind::vertices, map.flat_cones}});
     }
     map.cut_graph = connect_cones(mesh, geometry, map.cones, map.curvature.needs_no_cut);
     map.cut_mesh = cut_open(mesh, map.cut_graph);

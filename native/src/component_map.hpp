@@ -20,7 +20,8 @@ struct ComponentMap {
   CutGraph cut_graph;
   CutMesh cut_mesh;
   Curvature curvature;
-  std::vector<Index> cones;                 // inside vertices of imposed curvature
+  std::vector<Index> cones;                 // inside
+  std::vector<Index> flat_cones;            // and those that rounding has left no curvature
   std::optional<Eigen::VectorXd> rotation;  // (cuts) imposed, radians; none without transitions
   Eigen::VectorXcd position;                // (copies) u + iv
   std::vector<Pin> pins;

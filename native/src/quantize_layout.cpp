@@ -258,7 +258,8 @@ std::vector<LayoutQuantizer::Target> LayoutQuantizer::find_targets(double densit
     // What a similarity of the whole layout does costs nothing.
     Target target{0, reduction_.basis * candidate.choice.x, candidate.choice.cost};
     target.motion = pull.dot(target.integers) / pull.dot(integers_);
-    if (target.motion == 0.0) target.motion = candidate.motion;
+    const double growth = std::abs(target.motion) / density;
+    if (!(growth > 0.5 && growth < 2)) target.motion = candidate.motion;  // only the layout's place is rounded
     out.push_back(std::move(target));
     if (out.size() == tried_targets) break;
   }

@@ -258,6 +258,7 @@ SeamlessReport make_seamless(const Seamless& seamless, double unit_scale, std::v
     const SeamlessPart& part = parts[i];
     ExactLayout exact(part, lattice, shift, *layouts[i]);
     exact.snap();
+    for (const Index v : part.map->flat_cones) report.flat_cones.push_back(part.component->source_vertex[v]);
     for (const SeamlessCut& cut : exact.certify(*part.component)) {
       report.cuts.push_back(cut);
       report.error = std::max(report.error, cut.error);
