@@ -33,6 +33,8 @@ class LogScale {
   Eigen::VectorXd evaluate(const Eigen::VectorXd& cone_curvature) const;
   // The same, unshifted: 0 where held.
   Eigen::VectorXd evaluate_held(const Eigen::VectorXd& cone_curvature) const;
+  // What a cone's curvature adds to that, each unit of it.
+  auto effect(Index cone) const { return green_.col(cone); }
 
   // Solves L y = right side, (n), where y is not held; the sum of the right side is 0 when balanced.
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;

@@ -111,6 +111,13 @@ class Exchange {
     }
   }
 
+  // Rounding may have led to what no torus has, and exchanges do not lead there: the cheapest one leads away.
+  void leave_impossible(bool keep_sum) {
+    if (!torus_ || !is_impossible_on_torus(turns_, symmetry_)) return;
+    const std::vector<Swap> best = swaps(keep_sum, {}, 1);
+    if (!best.empty()) apply(best.front());
+  }
+
   // The best exchange of one turn between two cones, or where the sum is free between a cone and nothing, until none
   // lowers the variance.  Returns by how much it was lowered; `held` cones stay.
   double descend(bool keep_sum, const std::vector<Index>& held = {}) {
@@ -143,24 +150,52 @@ class Exchange {
     }
   }
 
-  // The variance underrates what lies far out.  Exchanges that cost least by it are tried by the predicted stretch.
+  // The variance underrates what lies far out.  Exchanges that cost least by it, and pairs of them, are tried by the
+  // predicted stretch.
   void refine(const LogScale& scale, bool keep_sum) {
-    double least = scale.predicted_l2(scale.evaluate(curvature()));
+    const double unit = 2 * M_PI / symmetry_;
+    Eigen::VectorXd y = scale.evaluate_held(curvature());
+    const auto moved = [&](Eigen::VectorXd at, const Swap& swap) {
+      at += swap.step * unit * scale.effect(swap.first);
+      if (swap.second != none) at -= swap.step * unit * scale.effect(swap.second);
+      return at;
+    };
+    double least = scale.predicted_l2(y);
     int trials = 0;
-    for (bool lowered = true; lowered && trials < most_stretch_trials;) {
-      lowered = false;
-      for (const Swap& swap : swaps(keep_sum, {}, most_stretch_trials / 4)) {
-        Exchange trial = *this;
-        trial.apply(swap);
-        const double tried = scale.predicted_l2(scale.evaluate(trial.curvature()));
+    struct Trial {
+      double stretch;
+      Swap swap;
+    };
+    // The first exchange at some turns that improves on all before is kept; otherwise all of them with their stretch.
+    const auto try_at = [&](Exchange turns, const Eigen::VectorXd& at, std::size_t count) {
+      std::vector<Trial> tried;
+      for (const Swap& swap : turns.swaps(keep_sum, {}, count)) {
+        Eigen::VectorXd there = moved(at, swap);
+        tried.push_back({scale.predicted_l2(there), swap});
         ++trials;
-        if (!(tried < least * (1 - 1e-9))) continue;
-        least = tried;
-        turns_ = trial.turns_;
-        gradient_ = trial.gradient_;
-        lowered = true;
-        break;
+        if (!(tried.back().stretch < least * (1 - 1e-9))) continue;
+        least = tried.back().stretch;
+        y = std::move(there);
+        turns.apply(swap);
+        turns_ = turns.turns_;
+        gradient_ = turns.gradient_;
+        return std::vector<Trial>();
       }
+      std::stable_sort(tried.begin(), tried.end(),
+                       [](const Trial& a, const Trial& b) { return a.stretch < b.stretch; });
+      return tried;
+    };
+    while (trials < most_stretch_trials) {
+      const double before = least;
+      std::vector<Trial> first = try_at(*this, y, first_exchanges);
+      if (first.size() > continued_exchanges) first.resize(continued_exchanges);
+      for (const Trial& trial : first) {
+        Exchange turns = *this;
+        turns.apply(trial.swap);
+        try_at(turns, moved(y, trial.swap), second_exchanges);
+        if (least < before || trials >= most_stretch_trials) break;
+      }
+      if (!(least < before)) break;
     }
   }
 
@@ -170,7 +205,8 @@ class Exchange {
  private:
   static constexpr double least_gain = 1e-12;
   static constexpr std::size_t most_trials = 100;
-  static constexpr int most_stretch_trials = 200;
+  static constexpr int most_stretch_trials = 400;
+  static constexpr std::size_t first_exchanges = 50, continued_exchanges = 10, second_exchanges = 30;
 
   // One turn more at a cone, and one less at another where the sum is kept.
   struct Swap {
@@ -190,10 +226,11 @@ class Exchange {
   }
 
   bool leads_to_impossible(const Swap& swap) const {
+    if (!torus_) return false;
     Eigen::VectorXi moved = turns_;
     moved[swap.first] += swap.step;
     if (swap.second != none) moved[swap.second] -= swap.step;
-    return torus_ && is_impossible_on_torus(moved, symmetry_);
+    return is_impossible_on_torus(moved, symmetry_);
   }
 
   // The cheapest possible ones, in order.
@@ -271,6 +308,7 @@ Eigen::VectorXd quantize_curvature(const HalfedgeMesh& mesh, const ComponentCone
     }
     Exchange exchange(mesh, variance, bounds, symmetry, std::move(turns));
     if (balanced) exchange.reach(sum);
+    exchange.leave_impossible(balanced);
     exchange.search(balanced);
     const double stretch = scale.predicted_l2(scale.evaluate(exchange.curvature()));
     if (best && !(stretch < least)) return;
