@@ -102,7 +102,7 @@ LatticeSearch::Choice LatticeSearch::nearest(const Eigen::VectorXcd& wanted) con
 std::vector<std::array<Complex, 3>> LatticeSearch::corners_at(const Eigen::VectorXcd& x) const {
   std::vector<std::array<Complex, 3>> out(triangles_.size());
   for (std::size_t f = 0; f < triangles_.size(); ++f) {
-    for (int c = 0; c < 3; ++c) out[f][c] = triangles_[f].offset[c] + (triangles_[f].slope[c] * x).value();
+    for (int c = 0; c < 3; ++c) out[f][c] = (triangles_[f].slope[c] * x).value();
   }
   return out;
 }

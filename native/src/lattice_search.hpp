@@ -15,9 +15,8 @@ namespace lsgp {
 // Returns the new basis vectors as columns over the old ones.
 Eigen::MatrixXcd reduce_basis(const Eigen::MatrixXcd& form, const PointLattice& lattice);
 
-// A triangle whose corners are offset + slope * x, x the lattice points looked for.
+// A triangle whose corners are slope * x, x the lattice points looked for.
 struct MovingTriangle {
-  std::array<Complex, 3> offset;
   std::array<Eigen::RowVectorXcd, 3> slope;  // (d)
 };
 

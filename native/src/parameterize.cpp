@@ -47,7 +47,7 @@ void move_findings(const Component& component, std::vector<Finding>& from, std::
 
 Result parameterize(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins) {
   Result result;
-  const Work work = [&] {
+  Work work = [&] {
     StageTimer timer(result.stage_seconds, "topology");
     return prepare(surface, cones, options, result.warnings);
   }();
@@ -76,9 +76,9 @@ Result parameterize(const Surface& surface, const Cones& cones, const Options& o
     StageTimer timer(result.stage_seconds, "quantize");
     std::vector<SeamlessPart> parts;
     for (std::size_t i = 0; i < components.size(); ++i) {
-      if (maps[i]) parts.push_back({&components[i], &*geometries[i], &*maps[i]});
+      if (maps[i]) parts.push_back({&components[i], &*geometries[i], &work.tasks[i].cones, &*maps[i]});
     }
-    result.seamless = make_seamless(*options.seamless, work.unit_scale, parts, result.warnings);
+    result.seamless = make_seamless(options, work.unit_scale, parts, result.warnings, result.stage_seconds);
   }
   StageTimer timer(result.stage_seconds, "layout");
   Assembly assembly(surface, components, result);

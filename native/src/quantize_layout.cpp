@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <queue>
 #include <utility>
@@ -18,7 +19,6 @@
 #include "relaxation.hpp"
 #include "solvers/sparse_assembly.hpp"
 #include "unfold.hpp"
-#include "untangle.hpp"
 
 namespace lsgp {
 
@@ -107,18 +107,22 @@ double symmetric_dirichlet_energy(const Geometry& geometry, const Jacobians& jac
 }
 
 LayoutQuantizer::LayoutQuantizer(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                                 const PointLattice& lattice, bool parity)
+                                 const PointLattice& lattice, bool parity, const std::vector<Index>& relaxed)
     : mesh_(mesh),
       geometry_(geometry),
       cut_graph_(map.cut_graph),
       cut_mesh_(map.cut_mesh),
       curvature_(map.curvature),
       lattice_(lattice),
-      rotation_(*map.rotation) {
-  const NodeGraph nodes = build_node_graph(mesh, map.cut_graph, rank_roots(map.curvature.at_vertex));
+      rotation_(*map.rotation),
+      relaxed_(!relaxed.empty()) {
+  // With relaxed cones the root leaves the lattice too: best it is one of a pair that is too close.
+  Eigen::VectorXd rank = rank_roots(map.curvature.at_vertex);
+  if (!relaxed.empty()) rank[relaxed.front()] = 1;
+  const NodeGraph nodes = build_node_graph(mesh, map.cut_graph, rank);
   reduction_ = impose_on_lattice(mesh, map.cut_graph, map.cut_mesh, nodes,
                                  curvature_of_nodes(mesh, nodes, map.curvature.at_vertex),
-                                 turns_of_cuts(rotation_, lattice.symmetry()), lattice, parity);
+                                 turns_of_cuts(rotation_, lattice.symmetry()), lattice, parity, relaxed);
   motion_of_copies_ = motion_of_copies(mesh, map.cut_graph, map.cut_mesh, rotation_);
   set_start(map);
   integers_ = integers_of(start_);
@@ -165,7 +169,7 @@ LayoutQuantizer::LayoutQuantizer(const HalfedgeMesh& mesh, const Geometry& geome
   }
   schur_ = (schur + schur.adjoint()) / 2;
   const Eigen::MatrixXcd restricted = reduction_.basis.adjoint() * schur_ * reduction_.basis;
-  search_.emplace((restricted + restricted.adjoint()) / 2, moving_triangles(map), lattice);
+  search_.emplace((restricted + restricted.adjoint()) / 2, moving_triangles(map, relaxed), lattice);
 }
 
 void LayoutQuantizer::set_start(const ComponentMap& map) {
@@ -193,30 +197,50 @@ void LayoutQuantizer::set_start(const ComponentMap& map) {
   }
 }
 
-std::vector<MovingTriangle> LayoutQuantizer::moving_triangles(const ComponentMap& map) const {
+// Also lists the pairs of cones that share an edge of their triangulation.
+std::vector<MovingTriangle> LayoutQuantizer::moving_triangles(const ComponentMap& map,
+                                                              const std::vector<Index>& relaxed) {
   std::vector<MovingTriangle> out;
   if (!mesh_.closed() || map.cones.empty()) return out;
   std::vector<Complex> turn;
   for (const int t : turns_of_cuts(rotation_, lattice_.symmetry())) turn.push_back(lattice_.unit(t));
   const auto triangulation = triangulate_cones(mesh_, cut_graph_, cut_mesh_, turn, map.cones, start_);
   if (!triangulation) return out;
-  const Eigen::Index count = static_cast<Eigen::Index>(reduction_.integers.size());
-  const auto corner_slope = [&](const ConeCorner& corner) {
-    Eigen::RowVectorXcd slope = Eigen::RowVectorXcd::Zero(count);
-    if (corner.cone == reduction_.root) slope = corner.turn * reduction_.root_position;
-    const auto found = std::find(reduction_.cones.begin(), reduction_.cones.end(), corner.cone);
-    if (found != reduction_.cones.end()) slope[found - reduction_.cones.begin()] = corner.turn;
-    for (const auto& [cut, coefficient] : corner.translations) slope += coefficient * reduction_.translation.row(cut);
-    return Eigen::RowVectorXcd(slope * reduction_.basis);
+  const auto translation_at_start = [&](Index cut) {
+    const Sisters sisters = origin_sisters(mesh_, cut_mesh_, cut_graph_.cuts[cut].halfedges.front());
+    return start_[sisters.right] - turn[cut] * start_[sisters.left];
   };
+  const Eigen::Index count = static_cast<Eigen::Index>(reduction_.integers.size());
+  std::map<std::pair<Index, Index>, double> nearest;
   for (const auto& corners : triangulation->triangles) {
     MovingTriangle triangle;
+    std::array<Complex, 3> at_start;
     for (int c = 0; c < 3; ++c) {
-      triangle.offset[c] = 0;
-      triangle.slope[c] = corner_slope(corners[c]);
+      const ConeCorner& corner = corners[c];
+      Eigen::RowVectorXcd slope = Eigen::RowVectorXcd::Zero(count);
+      if (corner.cone == reduction_.root) slope = corner.turn * reduction_.root_position;
+      const auto found = std::find(reduction_.cones.begin(), reduction_.cones.end(), corner.cone);
+      if (found != reduction_.cones.end()) slope[found - reduction_.cones.begin()] = corner.turn;
+      at_start[c] = corner.turn * start_[corner.cone];
+      for (const auto& [cut, coefficient] : corner.translations) {
+        slope += coefficient * reduction_.translation.row(cut);
+        at_start[c] += coefficient * translation_at_start(cut);
+      }
+      triangle.slope[c] = slope * reduction_.basis;
     }
-    out.push_back(std::move(triangle));
+    // Relaxed cones may be anywhere, so no triangle can be told to collapse.
+    if (relaxed.empty()) out.push_back(std::move(triangle));
+    for (int c = 0; c < 3; ++c) {
+      const auto [first, second] = std::minmax(corners[c].cone, corners[(c + 1) % 3].cone);
+      if (first == second) continue;
+      const double distance = std::abs(at_start[(c + 1) % 3] - at_start[c]);
+      const auto [entry, added] = nearest.try_emplace({first, second}, distance);
+      if (!added) entry->second = std::min(entry->second, distance);
+    }
   }
+  for (const auto& [pair, distance] : nearest) cone_pairs_.push_back({distance, pair.first, pair.second});
+  std::stable_sort(cone_pairs_.begin(), cone_pairs_.end(),
+                   [](const ConePair& a, const ConePair& b) { return a.distance < b.distance; });
   return out;
 }
 
@@ -349,14 +373,16 @@ bool LayoutQuantizer::follow(double scale, const Eigen::VectorXcd& change, Eigen
   return reached == 1;
 }
 
-std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density) const {
+std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, Effort effort) const {
   const std::vector<Target> targets = find_targets(density);
-  for (const bool in_steps : {false, true}) {
+  // Beside relaxed cones nothing tells whether the points can be reached, and following them would take too long.
+  const int ways = relaxed_ || effort == Effort::local ? 1 : 2;
+  for (int in_steps = 0; in_steps < ways; ++in_steps) {
     for (std::size_t i = 0; i < (in_steps ? std::min<std::size_t>(targets.size(), 2) : targets.size()); ++i) {
       const Target& target = targets[i];
       const double scale = std::abs(target.motion);
       const Eigen::VectorXcd change = target.integers - target.motion * integers_;
-      QuantizedLayout out{target.motion * start_, 1, {}};
+      QuantizedLayout out{target.motion * start_, 1};
       if (!(in_steps ? follow(scale, change, out.position) : move(scale, change, out.position))) continue;
       out.energy = symmetric_dirichlet_energy(geometry_, measure_jacobians(mesh_, geometry_, cut_mesh_, out.position));
       return out;

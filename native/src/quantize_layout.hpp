@@ -11,31 +11,41 @@
 #include "point_lattice.hpp"
 #include "solvers/cholesky.hpp"
 #include "unfold.hpp"
+#include "untangle.hpp"
 
 namespace lsgp {
 
 // A layout whose transitions are a lattice's, 1 being the side of a cell.
 struct QuantizedLayout {
-  Eigen::VectorXcd position;   // (copies)
-  double energy = 1;           // symmetric Dirichlet energy, 1 is isometric
-  std::vector<Index> relaxed;  // cones that are off the lattice
+  Eigen::VectorXcd position;  // (copies)
+  double energy = 1;          // symmetric Dirichlet energy, 1 is isometric
+};
+
+// Two cones next to each other.
+struct ConePair {
+  double distance;  // in the flat metric, where it has the surface's area
+  Index first, second;
 };
 
 // The layouts of one map on grids of any size.  What does not depend on the size is computed once.
 class LayoutQuantizer {
  public:
   // map: without flips and with the right angles, its rotations multiples of the lattice's turn.
-  // Throws SEAMLESS_IMPOSSIBLE.
+  // relaxed: cones that need not lie on the lattice.  Throws SEAMLESS_IMPOSSIBLE.
   LayoutQuantizer(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                  const PointLattice& lattice, bool parity);
+                  const PointLattice& lattice, bool parity, const std::vector<Index>& relaxed);
 
   // The layout's longer side, where it has the surface's area.
   double extent() const { return extent_; }
   double energy() const { return energy_; }
 
-  // The layout with `density` cells a unit of length, rounded to lattice points: first by the displacement of least
-  // Dirichlet energy, then repaired or followed in steps.  None where no choice of points keeps it valid.
-  std::optional<QuantizedLayout> quantize(double density) const;
+  // The nearest first; closed surfaces.
+  const std::vector<ConePair>& cone_pairs() const { return cone_pairs_; }
+
+  // The layout with `density` cells a unit of length, rounded to lattice points: by the displacement of least Dirichlet
+  // energy, then repaired.  None where no choice of points keeps it valid.
+  // effort: global also follows the layout to the points in steps.
+  std::optional<QuantizedLayout> quantize(double density, Effort effort) const;
 
  private:
   struct Target {
@@ -45,7 +55,7 @@ class LayoutQuantizer {
   };
 
   void set_start(const ComponentMap& map);
-  std::vector<MovingTriangle> moving_triangles(const ComponentMap& map) const;
+  std::vector<MovingTriangle> moving_triangles(const ComponentMap& map, const std::vector<Index>& relaxed);
   Eigen::VectorXcd integers_of(const Eigen::VectorXcd& position) const;
   std::vector<Target> find_targets(double density) const;
   Eigen::VectorXcd displacement(const Eigen::VectorXcd& change) const;
@@ -63,6 +73,7 @@ class LayoutQuantizer {
   const Curvature& curvature_;
   const PointLattice lattice_;
   Eigen::VectorXd rotation_;
+  const bool relaxed_;      // some cones are
   Eigen::VectorXcd start_;  // (copies) with the surface's area, the origin cone at 0
   Eigen::VectorXd rest_;    // (n) log of its scale
   Eigen::VectorXcd motion_of_copies_;
@@ -73,6 +84,7 @@ class LayoutQuantizer {
   std::vector<Index> row_of_unknown_;
   std::optional<Cholesky<Complex>> factor_;  // of the Dirichlet form with the integers held
   Eigen::SparseMatrix<Complex> coupling_;    // (rows, d) of the form
+  std::vector<ConePair> cone_pairs_;
   std::optional<LatticeSearch> search_;
 };
 

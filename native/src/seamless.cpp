@@ -32,43 +32,132 @@ struct Grid {
 
 class GridSearch {
  public:
-  GridSearch(const Seamless& seamless, const PointLattice& lattice, const std::vector<SeamlessPart>& parts) {
-    for (const SeamlessPart& part : parts) {
-      quantizers_.push_back(
-          std::make_unique<LayoutQuantizer>(part.component->mesh, *part.geometry, *part.map, lattice, seamless.parity));
-      extent_ = std::max(extent_, quantizers_.back()->extent());
-    }
+  GridSearch(const Seamless& seamless, const PointLattice& lattice, std::vector<SeamlessPart>& parts)
+      : seamless_(seamless), lattice_(lattice), parts_(parts), quantizers_(parts.size()), relaxed_(parts.size()) {
+    for (std::size_t i = 0; i < parts.size(); ++i) prepare(i);
   }
 
-  double extent() const { return extent_; }
+  double extent() const {
+    double longest = 0;
+    for (const auto& quantizer : quantizers_) longest = std::max(longest, quantizer->extent());
+    return longest;
+  }
   double energy(std::size_t part) const { return quantizers_[part]->energy(); }
+  const std::vector<Index>& relaxed(std::size_t part) const { return relaxed_[part]; }
+  const std::vector<Index>& merged() const { return merged_; }
 
-  // None where a part has no valid layout, or one that is distorted more than allowed.
-  std::optional<Grid> lay_out(double tiles, double most_growth) const {
-    Grid grid{tiles, tiles / extent_, {}};
-    for (const auto& quantizer : quantizers_) {
-      auto layout = quantizer->quantize(grid.density);
-      if (!layout || layout->energy > most_growth * quantizer->energy()) return std::nullopt;
+  // None where a part has no valid layout, or one that is distorted more than allowed; a layout that takes more than
+  // local repair is.
+  std::optional<Grid> lay_out(double tiles, double most_growth) {
+    const Effort effort = std::isfinite(most_growth) ? Effort::local : Effort::global;
+    Grid grid{tiles, tiles / extent(), {}};
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      auto layout = quantizers_[i]->quantize(grid.density, effort);
+      if (!layout || layout->energy > most_growth * quantizers_[i]->energy()) {
+        failed_ = i;
+        return std::nullopt;
+      }
       grid.layouts.push_back(std::move(*layout));
     }
     return grid;
   }
 
   // The first of the sizes from `tiles` on that can be laid out.
-  std::optional<Grid> refine(double tiles, double most_growth) const {
+  std::optional<Grid> refine(double tiles, double most_growth) {
     for (; tiles <= most_tiles; tiles = next_size(tiles)) {
       if (auto grid = lay_out(tiles, most_growth)) return grid;
     }
     return std::nullopt;
   }
 
+  // Merges the two nearest cones of the part that could not be laid out.  Returns whether there are any so near on a
+  // grid of so many tiles.
+  bool merge_nearest(double tiles, const Options& options, StageSeconds& seconds) {
+    for (const ConePair& pair : quantizers_[failed_]->cone_pairs()) {
+      if (pair.distance * tiles > near * extent()) return false;
+      if (!merge(pair, options, seconds)) continue;
+      prepare(failed_);
+      return true;
+    }
+    return false;
+  }
+
+  void restore_relaxed() {
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      if (relaxed_[i].empty()) continue;
+      relaxed_[i].clear();
+      prepare(i);
+    }
+  }
+
+  // Relaxes one of every two cones so near in that part.  Returns whether there are any.
+  bool relax_near(double tiles) {
+    std::vector<Index> relaxed;
+    for (const ConePair& pair : quantizers_[failed_]->cone_pairs()) {
+      if (pair.distance * tiles > near * extent()) break;
+      const auto listed = [&](Index v) { return std::find(relaxed.begin(), relaxed.end(), v) != relaxed.end(); };
+      if (!listed(pair.first) && !listed(pair.second)) relaxed.push_back(pair.second);
+    }
+    if (relaxed.empty() || !relaxed_[failed_].empty()) return false;
+    relaxed_[failed_] = std::move(relaxed);
+    prepare(failed_);
+    return true;
+  }
+
  private:
+  static constexpr double near = 2;  // cells
+
+  void prepare(std::size_t part) {
+    const SeamlessPart& of = parts_[part];
+    quantizers_[part] = std::make_unique<LayoutQuantizer>(of.component->mesh, *of.geometry, *of.map, lattice_,
+                                                          seamless_.parity, relaxed_[part]);
+  }
+
+  // One of the cones takes up the curvature of both: the one whose own is nearer to that.
+  bool merge(const ConePair& pair, const Options& options, StageSeconds& seconds) {
+    SeamlessPart& part = parts_[failed_];
+    const HalfedgeMesh& mesh = part.component->mesh;
+    const Eigen::VectorXd& curvature = part.map->curvature.at_vertex;
+    const double sum = curvature[pair.first] + curvature[pair.second];
+    const auto away = [&](Index v) { return std::abs(part.geometry->angle_defect[v] - sum); };
+    const auto [kept, given_up] =
+        away(pair.first) <= away(pair.second) ? std::pair{pair.first, pair.second} : std::pair{pair.second, pair.first};
+    ComponentCones merged = *part.cones;
+    merged.vertices.clear();
+    merged.angles.clear();
+    for (const Index v : part.cones->vertices) {
+      if (v == given_up) continue;
+      merged.vertices.push_back(v);
+      merged.angles.push_back(mesh.flat_angle(v) - (v == kept ? sum : curvature[v]));
+    }
+    Options manual = options;
+    manual.prescription = PrescriptionRule::manual;
+    try {
+      std::vector<Finding> unsaid;
+      ComponentMap map = map_component(mesh, *part.geometry, merged, {}, manual, unsaid, seconds);
+      if (map.validity.defects() > 0) return false;
+      *part.map = std::move(map);
+    } catch (const Error&) {
+      return false;  // this pair cannot be merged, another may
+    }
+    *part.cones = std::move(merged);
+    merged_.push_back(part.component->source_vertex[given_up]);
+    return true;
+  }
+
+  const Seamless& seamless_;
+  const PointLattice& lattice_;
+  std::vector<SeamlessPart>& parts_;
   std::vector<std::unique_ptr<LayoutQuantizer>> quantizers_;
-  double extent_ = 0;
+  std::vector<std::vector<Index>> relaxed_;  // by part
+  std::vector<Index> merged_;                // the caller's vertices
+  std::size_t failed_ = 0;
 };
 
-Grid find_grid(const Seamless& seamless, double unit_scale, const GridSearch& search, std::vector<Finding>& findings) {
+Grid find_grid(const Options& options, double unit_scale, GridSearch& search, std::vector<Finding>& findings,
+               StageSeconds& seconds) {
   constexpr double any = std::numeric_limits<double>::infinity();
+  const Seamless& seamless = *options.seamless;
   if (!seamless.tiles && !seamless.tile_size) {
     if (auto grid = search.refine(coarsest_tiles, acceptable_growth)) return std::move(*grid);
     if (auto grid = search.refine(coarsest_tiles, any)) return std::move(*grid);
@@ -79,13 +168,23 @@ Grid find_grid(const Seamless& seamless, double unit_scale, const GridSearch& se
                   concat("The grid would have ", asked, " cells along the layout; up to ", most_tiles,
                          " can be stored exactly. Choose another number or size of tiles."));
     }
-    if (auto grid = search.lay_out(asked, any)) return std::move(*grid);
-    if (auto grid = search.refine(next_size(std::max(1.0, asked)), any)) {
+    auto grid = search.lay_out(asked, any);
+    const auto give_up_cones = [&] {
+      switch (seamless.coarse_grid) {
+        case CoarseGrid::merge: return search.merge_nearest(asked, options, seconds);
+        case CoarseGrid::relax: return search.relax_near(asked);
+        default: return false;
+      }
+    };
+    while (!grid && give_up_cones()) grid = search.lay_out(asked, any);
+    if (grid) return std::move(*grid);
+    search.restore_relaxed();
+    if (auto finer = search.refine(next_size(std::max(1.0, asked)), any)) {
       findings.push_back({Code::grid_refined,
                           concat("No layout is valid on a grid of ", asked, " cells along its longer side; it has ",
-                                 grid->tiles, " now. Use fewer cones for larger tiles."),
+                                 finer->tiles, " now. Use fewer cones for larger tiles."),
                           {}});
-      return std::move(*grid);
+      return std::move(*finer);
     }
   }
   throw Error(Code::grid_too_coarse,
@@ -109,19 +208,19 @@ class ExactLayout {
   ExactLayout(const SeamlessPart& part, const PointLattice& lattice, Complex shift, Eigen::VectorXcd& position)
       : mesh_(part.component->mesh), map_(*part.map), lattice_(lattice), shift_(shift), position_(position) {
     for (std::size_t p = 0; p < map_.cut_graph.cuts.size(); ++p) {
-      turns_.push_back(
-          (turns_of((*map_.rotation)[static_cast<Eigen::Index>(p)], lattice.symmetry()) % lattice.symmetry() +
-           lattice.symmetry()) %
-          lattice.symmetry());
+      const int q = lattice.symmetry();
+      turns_.push_back((turns_of((*map_.rotation)[static_cast<Eigen::Index>(p)], q) % q + q) % q);
       const Sisters sisters = origin_sisters(mesh_, map_.cut_mesh, map_.cut_graph.cuts[p].halfedges.front());
-      translations_.push_back(
-          lattice.nearest_coordinates(position[sisters.right] - lattice.unit(turns_.back()) * position[sisters.left]));
+      translations_.push_back(position[sisters.right] - lattice.unit(turns_.back()) * position[sisters.left]);
     }
   }
 
   void snap() {
     const double largest = std::max(position_.real().cwiseAbs().maxCoeff(), position_.imag().cwiseAbs().maxCoeff());
     const double fraction = fraction_for(largest);
+    for (Complex& translation : translations_) {
+      translation = on_lattice(translation) ? lattice_.nearest(translation) : round_to(translation, fraction);
+    }
     const std::vector<char> on_cut = on_cuts(mesh_, map_.cut_graph);
     for (Index v = 0; v < mesh_.vertex_count(); ++v) {
       if (!on_cut[v]) {
@@ -130,7 +229,8 @@ class ExactLayout {
       }
       const auto all = sectors(mesh_, map_.cut_graph, map_.cut_mesh, v);
       Complex z = position_[all.front().copy];
-      if (mesh_.loop_of_vertex[v] == none && map_.curvature.at_vertex[v] != 0) {
+      const bool is_cone = mesh_.loop_of_vertex[v] == none && map_.curvature.at_vertex[v] != 0;
+      if (is_cone && on_lattice(z - shift_)) {
         z = lattice_.nearest(z - shift_) + shift_;
       } else if (lattice_.square()) {
         z = round_to(z, fraction);
@@ -148,10 +248,10 @@ class ExactLayout {
     for (std::size_t p = 0; p < map_.cut_graph.cuts.size(); ++p) {
       const Cut& path = map_.cut_graph.cuts[p];
       SeamlessCut cut{component.source_vertex[path.tail], component.source_vertex[path.head], turns_[p],
-                      translations_[p]};
+                      lattice_.nearest_coordinates(translations_[p])};
       const auto add = [&](const Sisters& sisters) {
         const Complex image =
-            lattice_.unit(turns_[p]) * as_float(position_[sisters.left]) + lattice_.point(translations_[p]);
+            lattice_.unit(turns_[p]) * as_float(position_[sisters.left]) + lattice_.point(cut.translation);
         cut.error = std::max(cut.error, std::abs(as_float(position_[sisters.right]) - image));
       };
       for (const Index h : path.halfedges) {
@@ -167,9 +267,13 @@ class ExactLayout {
   // From the copy on the right of an outgoing cut halfedge to the one on its left, seen from the vertex.
   Complex cross(Complex z, Index h) const {
     const Index cut = map_.cut_graph.cut_of[h];
-    const Complex turn = lattice_.unit(turns_[cut]), translation = lattice_.point(translations_[cut]);
+    const Complex turn = lattice_.unit(turns_[cut]), translation = translations_[cut];
     return map_.cut_graph.runs_forward[h] ? std::conj(turn) * (z - translation) : turn * z + translation;
   }
+
+  bool on_lattice(Complex z) const { return std::abs(z - lattice_.nearest(z)) < rounding; }
+
+  static constexpr double rounding = 1e-6;  // cells
 
   const HalfedgeMesh& mesh_;
   const ComponentMap& map_;
@@ -177,8 +281,30 @@ class ExactLayout {
   const Complex shift_;  // of the lattice that cones are on
   Eigen::VectorXcd& position_;
   std::vector<int> turns_;
-  std::vector<PointLattice::Coordinates> translations_;
+  std::vector<Complex> translations_;
 };
+
+void report_cones_given_up(const GridSearch& search, const std::vector<SeamlessPart>& parts, SeamlessReport& report,
+                           std::vector<Finding>& findings) {
+  report.merged_cones = search.merged();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    for (const Index v : search.relaxed(i)) report.relaxed_cones.push_back(parts[i].component->source_vertex[v]);
+  }
+  if (!report.merged_cones.empty()) {
+    findings.push_back({Code::cones_merged,
+                        concat(count(report.merged_cones.size(), "cone was", "cones were"),
+                               " merged with the next one, closer than the grid can tell apart. Use smaller tiles to "
+                               "keep them all."),
+                        {ElementKind::vertices, report.merged_cones}});
+  }
+  if (!report.relaxed_cones.empty()) {
+    findings.push_back({Code::cones_not_snapped,
+                        concat(count(report.relaxed_cones.size(), "cone found", "cones found"),
+                               " no place on the grid; cuts towards it show a seam of up to ", report.error,
+                               " tiles. Use smaller tiles, or merge cones."),
+                        {ElementKind::vertices, report.relaxed_cones}});
+  }
+}
 
 [[noreturn]] void refuse(const std::string& what, const char* remedy) {
   throw Error(Code::wrong_parameter, concat(what, " ", remedy));
@@ -234,11 +360,12 @@ void require_quantizable(const HalfedgeMesh& mesh, const ComponentMap& map) {
       {ElementKind::vertices, std::move(where)});
 }
 
-SeamlessReport make_seamless(const Seamless& seamless, double unit_scale, std::vector<SeamlessPart>& parts,
-                             std::vector<Finding>& findings) {
+SeamlessReport make_seamless(const Options& options, double unit_scale, std::vector<SeamlessPart>& parts,
+                             std::vector<Finding>& findings, StageSeconds& seconds) {
+  const Seamless& seamless = *options.seamless;
   const PointLattice lattice(symmetry(seamless.lattice));
-  const GridSearch search(seamless, lattice, parts);
-  Grid grid = find_grid(seamless, unit_scale, search, findings);
+  GridSearch search(seamless, lattice, parts);
+  Grid grid = find_grid(options, unit_scale, search, findings, seconds);
   // With parity cones are at the centres of cells: around a corner of cells an odd number of them may meet.
   const Complex shift = seamless.parity ? Complex(0.5, 0.5) : Complex(0, 0);
   std::vector<Eigen::VectorXcd*> layouts;
@@ -257,7 +384,7 @@ SeamlessReport make_seamless(const Seamless& seamless, double unit_scale, std::v
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const SeamlessPart& part = parts[i];
     ExactLayout exact(part, lattice, shift, *layouts[i]);
-    exact.snap();
+    if (search.relaxed(i).empty()) exact.snap();  // otherwise no binary fractions satisfy all transitions
     for (const Index v : part.map->flat_cones) report.flat_cones.push_back(part.component->source_vertex[v]);
     for (const SeamlessCut& cut : exact.certify(*part.component)) {
       report.cuts.push_back(cut);
@@ -268,6 +395,7 @@ SeamlessReport make_seamless(const Seamless& seamless, double unit_scale, std::v
     before += part.geometry->total_area * search.energy(i);
     after += part.geometry->total_area * grid.layouts[i].energy;
   }
+  report_cones_given_up(search, parts, report, findings);
   report.energy_before = before / area;
   report.energy_after = after / area;
   return report;

@@ -15,6 +15,7 @@ namespace lsgp {
 struct SeamlessPart {
   const Component* component;
   const Geometry* geometry;
+  ComponentCones* cones;
   ComponentMap* map;
 };
 
@@ -26,9 +27,9 @@ void require_quantizable(const HalfedgeMesh& mesh, const ComponentMap& map);
 
 // Brings the cuts of all maps onto one grid and the maps into texture coordinates: side by side, cut vertices on
 // binary fractions, so that transitions hold exactly in float32 (on triangular lattices, whose points are irrational,
-// to its last digit).  unit_scale: of the components' positions to the caller's.  Throws GRID_TOO_COARSE,
-// SEAMLESS_IMPOSSIBLE.
-SeamlessReport make_seamless(const Seamless& seamless, double unit_scale, std::vector<SeamlessPart>& parts,
-                             std::vector<Finding>& findings);
+// to its last digit).  Maps are made again where cones are merged.  unit_scale: of the components' positions to the
+// caller's.  Throws GRID_TOO_COARSE, SEAMLESS_IMPOSSIBLE.
+SeamlessReport make_seamless(const Options& options, double unit_scale, std::vector<SeamlessPart>& parts,
+                             std::vector<Finding>& findings, StageSeconds& seconds);
 
 }  // namespace lsgp

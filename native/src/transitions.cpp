@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "transitions.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -50,11 +51,13 @@ class Elimination {
     return reduction;
   }
 
-  LatticeReduction reduce_to_lattice(const Eigen::VectorXd& node_curvature, const PointLattice& lattice, bool parity) {
+  LatticeReduction reduce_to_lattice(const Eigen::VectorXd& node_curvature, const PointLattice& lattice, bool parity,
+                                     const std::vector<Index>& relaxed) {
     std::vector<Index> ids;  // of the integers
     for (std::size_t node = 0; node < nodes_.vertex.size(); ++node) {
       const Index v = nodes_.vertex[node];
-      if (v != none && node_curvature[node] != 0 && !is_solved_[v]) ids.push_back(v);
+      const bool free = std::find(relaxed.begin(), relaxed.end(), v) != relaxed.end();
+      if (v != none && node_curvature[node] != 0 && !is_solved_[v] && !free) ids.push_back(v);
     }
     // A layout may be shifted from lattice point to lattice point: one cone is put to the origin.
     Index ground = ids.empty() ? none : ids.front();
@@ -93,7 +96,7 @@ class Elimination {
       out.root = first;
       out.root_position = Eigen::RowVectorXcd::Zero(count);
       add_row(first, out.root_position.row(0));
-      restrict_to_integral(out.root_position * out.basis, lattice, out.basis);
+      if (relaxed.empty()) restrict_to_integral(out.root_position * out.basis, lattice, out.basis);
     }
     return out;
   }
@@ -274,11 +277,12 @@ Reduction impose_transitions(const HalfedgeMesh& mesh, const CutGraph& cut_graph
 
 LatticeReduction impose_on_lattice(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh,
                                    const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
-                                   const std::vector<int>& turns, const PointLattice& lattice, bool parity) {
+                                   const std::vector<int>& turns, const PointLattice& lattice, bool parity,
+                                   const std::vector<Index>& relaxed) {
   std::vector<Complex> turn;
   for (const int t : turns) turn.push_back(lattice.unit(t));
   return Elimination(mesh, cut_graph, cut_mesh, nodes, node_curvature, std::move(turn), Eliminate::translations)
-      .reduce_to_lattice(node_curvature, lattice, parity);
+      .reduce_to_lattice(node_curvature, lattice, parity, relaxed);
 }
 
 Reduction leave_free(const CutMesh& cut_mesh, Index grounded) {

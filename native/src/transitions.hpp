@@ -54,10 +54,12 @@ struct LatticeReduction {
 
 // turns: (cuts) rotations in multiples of 2 pi / q.  nodes: rooted at a boundary loop, or at a cone whose 1 - e^{i
 // curvature} is as small as can be but not 0.  parity: translations lead from white cells to white ones.
+// relaxed: cones that may be anywhere; then the root and what lies between leave the lattice too.
 // Throws SEAMLESS_IMPOSSIBLE.
 LatticeReduction impose_on_lattice(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh,
                                    const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
-                                   const std::vector<int>& turns, const PointLattice& lattice, bool parity);
+                                   const std::vector<int>& turns, const PointLattice& lattice, bool parity,
+                                   const std::vector<Index>& relaxed);
 
 // Every copy an unknown of its own but `grounded`, which is held at zero: no transitions.
 Reduction leave_free(const CutMesh& cut_mesh, Index grounded);
