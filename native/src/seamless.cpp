@@ -200,7 +200,12 @@ Complex round_to(Complex z, double fraction) {
   return {std::round(z.real() / fraction) * fraction, std::round(z.imag() / fraction) * fraction};
 }
 
-Complex as_float(Complex z) { return {static_cast<float>(z.real()), static_cast<float>(z.imag())}; }
+// Volatile: GCC 12 takes two conversions to float and back, side by side, for no conversion at all.
+double as_float(double x) {
+  const volatile float stored = static_cast<float>(x);
+  return stored;
+}
+Complex as_float(Complex z) { return {as_float(z.real()), as_float(z.imag())}; }
 
 // Replaces what is almost on the lattice by what is, and everything else by numbers that float32 holds.
 class ExactLayout {
