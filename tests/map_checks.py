@@ -51,13 +51,22 @@ def only(findings: Sequence[lsgp.Finding], code: str) -> lsgp.Finding:
 
 def digest(result: lsgp.Result) -> str:
     """Of all that a result holds but the time it took: arrays by their bytes, figures and findings by their digits."""
-    parts = []
-    for field in dataclasses.fields(result):
-        value = getattr(result, field.name)
+    parts: list[bytes] = []
+
+    def add(value: object) -> None:
         if isinstance(value, np.ndarray):
             parts.append(value.tobytes())
-        elif field.name != "stage_seconds":
+        elif isinstance(value, lsgp.SeamlessReport):
+            add_fields(value)
+        else:
             parts.append(repr(value).encode())
+
+    def add_fields(of: object) -> None:
+        for field in dataclasses.fields(of):
+            if field.name != "stage_seconds":
+                add(getattr(of, field.name))
+
+    add_fields(result)
     return hashlib.sha256(b"|".join(parts)).hexdigest()
 
 

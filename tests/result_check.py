@@ -7,13 +7,11 @@ a map must be said by a warning that names the elements.  Nothing here is shared
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import lsgp
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.sparse import csgraph
+from opened_surface import Opened, edge_keys, labels, named_by, next_corner, open_surface
+from seamless_check import seamless_faults
 
 TURN = 2 * np.pi
 ANGLE = 1e-6  # radians
@@ -21,12 +19,6 @@ SISTER_RATIO = 1e-9
 RESIDUAL = 1e-12  # relative to the layout
 GAUSS_BONNET = 1e-9  # radians
 DEFAULTS = lsgp.Options()
-
-
-def named_by(result: lsgp.Result, code: str) -> NDArray[np.int32]:
-    """The elements of all warnings with this code."""
-    found = [finding.elements.indices for finding in result.warnings if finding.code == code]
-    return np.concatenate(found) if found else np.empty(0, np.int32)
 
 
 def undeclared_faults(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Options = DEFAULTS) -> list[str]:
@@ -44,17 +36,19 @@ def undeclared_faults(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.
     if bad:
         return [*faults, f"{bad} triangles of a map have coordinates that are not finite"]
 
-    opened = _open(surface, result, _border_seams(surface, result, options))
+    opened = open_surface(surface, result, options)
     z = opened.z.reshape(-1, 3)
     area = np.imag((z[:, 1] - z[:, 0]).conj() * (z[:, 2] - z[:, 0]))
     flipped = opened.triangle[~(area > 0)]
     if not np.isin(flipped, named_by(result, "FLIPPED_TRIANGLES")).all() or not np.isin(flipped, result.flipped).all():
         faults.append(f"{len(flipped)} flipped triangles {flipped[:5].tolist()}, {len(result.flipped)} listed")
-    unlisted = ~np.isin(_edge_keys(*_open_edges(opened)), _edge_keys(*result.cut_edges.T))
+    unlisted = ~np.isin(edge_keys(*_open_edges(opened)), edge_keys(*result.cut_edges.T))
     if unlisted.any():
         faults.append(f"{int(unlisted.sum())} sides of edges are apart that cut_edges does not list")
     if options.method == "lsgp":
         faults += _wrong_angles(result, opened, flipped) + _open_seams(result, opened)
+    if options.seamless is not None:
+        faults += seamless_faults(opened, result, options.seamless)
     return faults
 
 
@@ -77,88 +71,15 @@ def _wrong_figures(result: lsgp.Result) -> list[str]:
     return faults
 
 
-@dataclass
-class _Opened:
-    """The solved triangles, turned alike, each double only once, glued where exactly two of them meet along an edge.
-
-    triangle: (m,) their numbers.  z: (3m) u + iv.  vertex: (3m) of the surface.  twin: (3m) opposite halfedge or -1.
-    fan: (3m) corners around one vertex share a number.  closed: (fans,) whether the triangles go all the way round.
-    component: (m,) joined by edges.
-    """
-
-    triangle: NDArray[np.int64]
-    z: NDArray[np.complex128]
-    vertex: NDArray[np.int64]
-    twin: NDArray[np.int64]
-    fan: NDArray[np.int64]
-    closed: NDArray[np.bool_]
-    component: NDArray[np.int64]
-
-
-def _labels(a: NDArray[np.int64], b: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    graph = sp.coo_matrix((np.ones(len(a), bool), (a, b)), (count, count))
-    return csgraph.connected_components(graph, directed=False)[1]
-
-
-def _next(h: NDArray[np.int64]) -> NDArray[np.int64]:
-    return h // 3 * 3 + (h + 1) % 3
-
-
-def _edge_keys(a: NDArray[np.integer], b: NDArray[np.integer]) -> NDArray[np.int64]:
-    return (np.minimum(a, b).astype(np.int64) << 32) + np.maximum(a, b)
-
-
-def _border_seams(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Options) -> NDArray[np.int64]:
-    """The keys of the seams that are open borders and not cuts."""
-    keys = _edge_keys(*surface.seams.T)
-    if options.seams == "boundary":
-        return keys
-    opened = surface.triangles[named_by(result, "SEAMS_OPENED")]
-    return np.intersect1d(keys, _edge_keys(opened.ravel(), opened[:, [1, 2, 0]].ravel()))
-
-
-def _open(surface: lsgp.Surface, result: lsgp.Result, borders: NDArray[np.int64]) -> _Opened:
-    single = np.ones(len(surface.triangles), bool)
-    single[named_by(result, "DUPLICATE_FACE")] = False
-    kept = result.solved & single
-    turned = np.zeros(len(kept), bool)
-    turned[named_by(result, "REORIENTED")] = True
-    order = np.where(turned[:, None], [2, 1, 0], [0, 1, 2])[kept]
-    triangle = np.flatnonzero(kept)
-    vertex = np.take_along_axis(surface.triangles[kept].astype(np.int64), order, axis=1).ravel()
-    uv = np.take_along_axis(result.corner_uv[kept], order[:, :, None], axis=1)
-
-    h = np.arange(len(vertex))
-    tail, head = vertex, vertex[_next(h)]
-    key = _edge_keys(tail, head)
-    # Triangles without a map count: with them more than two may meet, and then the edge is open.
-    everyone = surface.triangles[single]
-    keys, meeting = np.unique(_edge_keys(everyone.ravel(), everyone[:, [1, 2, 0]].ravel()), return_counts=True)
-    borders = np.union1d(borders, keys[meeting > 2])
-    by_edge = np.argsort(key, kind="stable")
-    first, count = np.unique(key[by_edge], return_index=True, return_counts=True)[1:]
-    one, other = by_edge[first[count == 2]], by_edge[first[count == 2] + 1]
-    glued = (tail[one] == head[other]) & ~np.isin(key[one], borders)
-    one, other = one[glued], other[glued]
-    twin = np.full(len(h), -1)
-    twin[one], twin[other] = other, one
-    fan = _labels(np.concatenate([one, _next(one)]), np.concatenate([_next(other), other]), len(h))
-    closed = np.ones(int(fan.max()) + 1, bool)
-    rim = twin < 0
-    closed[fan[rim]] = closed[fan[_next(h)[rim]]] = False
-    component = _labels(one // 3, other // 3, len(triangle))
-    return _Opened(triangle, (uv[..., 0] + 1j * uv[..., 1]).ravel(), vertex, twin, fan, closed, component)
-
-
-def _open_edges(opened: _Opened) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _open_edges(opened: Opened) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Both vertices of all halfedges at which the two sides have different coordinates."""
     h = np.flatnonzero(opened.twin >= 0)
     other = opened.twin[h]
-    apart = (opened.z[h] != opened.z[_next(other)]) | (opened.z[_next(h)] != opened.z[other])
-    return opened.vertex[h[apart]], opened.vertex[_next(h[apart])]
+    apart = (opened.z[h] != opened.z[next_corner(other)]) | (opened.z[next_corner(h)] != opened.z[other])
+    return opened.vertex[h[apart]], opened.vertex[next_corner(h[apart])]
 
 
-def _wrong_angles(result: lsgp.Result, opened: _Opened, flipped: NDArray[np.int64]) -> list[str]:
+def _wrong_angles(result: lsgp.Result, opened: Opened, flipped: NDArray[np.int64]) -> list[str]:
     faults = []
     z, fan_count = opened.z.reshape(-1, 3), len(opened.closed)
     here = np.angle((z[:, [2, 0, 1]] - z) * (z[:, [1, 2, 0]] - z).conj())
@@ -194,12 +115,12 @@ def _wrong_angles(result: lsgp.Result, opened: _Opened, flipped: NDArray[np.int6
     return faults
 
 
-def _open_seams(result: lsgp.Result, opened: _Opened) -> list[str]:
+def _open_seams(result: lsgp.Result, opened: Opened) -> list[str]:
     """Each path of the cut between nodes (cones, branchings, the border) is one rotation and one translation."""
     z, twin = opened.z, opened.twin
     h = np.flatnonzero(twin >= 0)
-    left = np.stack([z[h], z[_next(h)]], axis=1)
-    right = np.stack([z[_next(twin[h])], z[twin[h]]], axis=1)
+    left = np.stack([z[h], z[next_corner(h)]], axis=1)
+    right = np.stack([z[next_corner(twin[h])], z[twin[h]]], axis=1)
     cut = (left != right).any(axis=1)
     h, left, right = h[cut], left[cut], right[cut]
     if not len(h):
@@ -207,22 +128,12 @@ def _open_seams(result: lsgp.Result, opened: _Opened) -> list[str]:
     faults = []
     lengths = np.abs(left[:, 1] - left[:, 0]), np.abs(right[:, 1] - right[:, 0])
     named = named_by(result, "INEXACT_SEAMS").reshape(-1, 2)
-    excused = np.isin(_edge_keys(opened.vertex[h], opened.vertex[_next(h)]), _edge_keys(*named.T))
+    excused = np.isin(edge_keys(opened.vertex[h], opened.vertex[next_corner(h)]), edge_keys(*named.T))
     ratio = np.divide(*lengths, where=lengths[1] > 0, out=np.ones(len(h)))[~excused].max(initial=1)
     if ratio - 1 > SISTER_RATIO:
         faults.append(f"sister edges differ in length by {ratio - 1:.1e}")
 
-    # Halfedges follow each other where a path passes straight through a vertex.
-    leaving = np.bincount(opened.fan[h], minlength=len(opened.closed))
-    passes = opened.closed & (leaving == 2)
-    passes[opened.fan[np.isin(opened.vertex, result.cones)]] = False
-    out = h[passes[opened.fan[h]]]
-    out = out[np.argsort(opened.fan[out], kind="stable")].reshape(-1, 2)
-    place = np.full(len(z), -1)
-    place[h] = np.arange(len(h))
-    before = place[np.concatenate([twin[out[:, 1]], twin[out[:, 0]]])]
-    after = place[np.concatenate([out[:, 0], out[:, 1]])]
-    path = _labels(before, after, len(h))
+    path = labels(*opened.straight_on(h, result.cones), len(h))
 
     def mean(values: NDArray[np.complex128], weights: NDArray[np.float64] | None = None) -> NDArray[np.complex128]:
         total = np.bincount(path, values.real) + 1j * np.bincount(path, values.imag)

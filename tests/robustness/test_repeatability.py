@@ -23,9 +23,11 @@ from map_checks import digest, surface, unwrap
 from meshes import Mesh
 
 RUNS = 50
-# A quick input of each kind of way through the library: cones chosen and placed, seams, borders, handles, leftovers.
+# A quick input of each kind of way through the library: cones chosen and placed, seams, borders, handles, leftovers,
+# lattices.
 BALL = meshes.bumpy_sphere(2)
 HOLES = meshes.disk_with_holes(12, 2)
+HANDLE = meshes.torus(14, 8)._replace(cones=np.array([0, 5, 60, 90], np.int32))
 PATCH = meshes.saddle(8)._replace(cones=np.array([0, 8, 72, 80], np.int32))
 
 
@@ -42,6 +44,9 @@ def answers() -> dict[str, str]:
         "handles": digest(unwrap(meshes.torus(14, 8))),
         "straight": digest(unwrap(PATCH, border="straight")),
         "leftovers": digest(unwrap(mixed)),
+        "seamless": digest(unwrap(BALL, seamless=lsgp.Seamless())),
+        "seamless handles": digest(unwrap(HANDLE, seamless=lsgp.Seamless("hexagon", tiles=12))),
+        "seamless parts": digest(unwrap(meshes.merge([BALL, HOLES]), seamless=lsgp.Seamless(tiles=20, parity=True))),
     }
 
 

@@ -91,3 +91,114 @@ def test_seams_as_borders_need_no_transitions() -> None:
     options = lsgp.Options(seams="boundary")
     result = lsgp.parameterize(opened, MESH.cones, None, options)
     assert undeclared_faults(opened, result, options) == []
+
+
+TILED = {
+    lattice: lsgp.Options(seamless=lsgp.Seamless(lattice, tiles=20, parity=lattice == "square"))
+    for lattice in ("square", "stripe", "hexagon")
+}
+SEAMLESS = {lattice: unwrap(MESH, seamless=options.seamless) for lattice, options in TILED.items()}
+TORUS = meshes.torus(14, 8)
+
+
+@pytest.mark.parametrize("lattice", TILED)
+def test_sound_seamless_layouts_pass(lattice: str) -> None:
+    assert undeclared_faults(SURFACE, SEAMLESS[lattice], TILED[lattice]) == []
+    options = lsgp.Options(seamless=lsgp.Seamless(lattice, tiles=10))
+    assert undeclared_faults(surface(TORUS), unwrap(TORUS, seamless=options.seamless), options) == []
+
+
+def moved_seamless(lattice: str, change: Callable[[np.ndarray, lsgp.Result], object]) -> lsgp.Result:
+    """The seamless layout with its coordinates changed in place, still numbers of float32."""
+    uv = SEAMLESS[lattice].corner_uv.copy()
+    change(uv, SEAMLESS[lattice])
+    return replace(SEAMLESS[lattice], corner_uv=uv.astype(np.float32).astype(float))
+
+
+def last_place(uv: np.ndarray) -> float:
+    return float(np.spacing(np.float32(np.abs(uv).max())))
+
+
+def one_side(uv: np.ndarray, result: lsgp.Result, by: float) -> None:
+    """All corners that are at one place of a vertex inside a cut."""
+    inside = np.setdiff1d(result.cut_edges, result.seamless.cut_nodes)[3]
+    at = uv[MESH.triangles == inside][0]
+    uv[(MESH.triangles == inside) & (uv == at).all(axis=2)] += by
+
+
+def cone_with_its_sides(uv: np.ndarray, by: float) -> None:
+    uv[MESH.triangles == MESH.cones[0]] += by
+
+
+def certificate(lattice: str, **changes: Callable[[np.ndarray], object]) -> lsgp.Result:
+    """The seamless layout with arrays of its certificate changed in place."""
+    report = SEAMLESS[lattice].seamless
+    for name, change in changes.items():
+        array = getattr(report, name).copy()
+        change(array)
+        report = replace(report, **{name: array})
+    return replace(SEAMLESS[lattice], seamless=report)
+
+
+def stated(lattice: str, **changes: object) -> lsgp.Result:
+    return replace(SEAMLESS[lattice], seamless=replace(SEAMLESS[lattice].seamless, **changes))
+
+
+def without_a_cut(lattice: str) -> lsgp.Result:
+    report = SEAMLESS[lattice].seamless
+    names = ("cut_nodes", "cut_turns", "cut_translations", "cut_errors")
+    return stated(lattice, **{name: getattr(report, name)[1:] for name in names})
+
+
+UNSOUND = {
+    "one side moved by a last place": lambda a: moved_seamless(a, lambda uv, r: one_side(uv, r, 2 * last_place(uv))),
+    "one side moved by a cell": lambda a: moved_seamless(a, lambda uv, r: one_side(uv, r, 1.0)),
+    "a cone off its place": lambda a: moved_seamless(a, lambda uv, r: cone_with_its_sides(uv, 2 * last_place(uv))),
+    "everything off the lattice": lambda a: moved_seamless(a, lambda uv, r: uv.__iadd__(0.25)),
+    "scaled": lambda a: moved_seamless(a, lambda uv, r: uv.__imul__(1.001)),
+    "turned": lambda a: moved_seamless(a, lambda uv, r: uv.__imatmul__(np.array([[0.6, 0.8], [-0.8, 0.6]]))),
+    "another turn stated": lambda a: certificate(a, cut_turns=lambda turns: turns[:1].__iadd__(1)),
+    "another shift stated": lambda a: certificate(a, cut_translations=lambda shifts: shifts[2].__iadd__([0, 1])),
+    "another end stated": lambda a: certificate(a, cut_nodes=lambda nodes: nodes[0].__iadd__([0, 1])),
+    "ends exchanged": lambda a: certificate(
+        a, cut_nodes=lambda nodes: nodes[0].__setitem__(slice(None), nodes[0, ::-1])
+    ),
+    "a cut left out": without_a_cut,
+    "an error stated": lambda a: stated(a, error=1e-3),
+    "an error of a cut stated": lambda a: certificate(a, cut_errors=lambda errors: errors[:1].__iadd__(1e-3)),
+    "other cells stated": lambda a: stated(a, cell=0.5),
+    "another symmetry stated": lambda a: stated(a, symmetry=12),
+    "a flat cone stated": lambda a: stated(a, flat_cones=MESH.cones[:1]),
+    "a cone said to be off the lattice": lambda a: stated(a, relaxed_cones=MESH.cones[:1]),
+    "no certificate": lambda a: replace(SEAMLESS[a], seamless=None),
+}
+
+
+@pytest.mark.parametrize("lattice", TILED)
+@pytest.mark.parametrize("name", UNSOUND)
+def test_unsound_seamless_layouts_are_noticed(name: str, lattice: str) -> None:
+    assert undeclared_faults(SURFACE, UNSOUND[name](lattice), TILED[lattice]) != []
+
+
+def test_a_layout_of_other_parity_is_noticed() -> None:
+    """Cones on corners of cells instead of centres, and translations that lead from black to white."""
+    plain = lsgp.Options(seamless=lsgp.Seamless(tiles=20))
+    result = unwrap(MESH, seamless=plain.seamless)
+    assert undeclared_faults(SURFACE, result, plain) == []
+    assert undeclared_faults(SURFACE, result, TILED["square"]) != []
+    shifted = replace(result, corner_uv=result.corner_uv + 0.5)
+    assert not [fault for fault in undeclared_faults(SURFACE, shifted, TILED["square"]) if "off the lattice" in fault]
+    black = 0  # some of the grids lead about a handle from black to white
+    for tiles in range(17, 24):
+        plain, even = (lsgp.Options(seamless=lsgp.Seamless(tiles=tiles, parity=parity)) for parity in (False, True))
+        found = [undeclared_faults(surface(TORUS), unwrap(TORUS, seamless=plain.seamless), o) for o in (plain, even)]
+        assert found[0] == []
+        black += any("black" in fault for fault in found[1])
+    assert black > 0
+
+
+def test_a_layout_that_float32_does_not_hold_is_noticed() -> None:
+    inside = np.setdiff1d(MESH.triangles, np.union1d(SOUND.cut_edges, SEAMLESS["square"].cut_edges))[0]
+    uv = SEAMLESS["square"].corner_uv + np.where((MESH.triangles == inside)[..., None], 1e-12, 0)
+    spoiled_result = replace(SEAMLESS["square"], corner_uv=uv)
+    assert undeclared_faults(SURFACE, spoiled_result, TILED["square"]) == ["coordinates that float32 does not hold"]

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The triangles of a result glued to each other again, on any surface however messy, for checks of its coordinates.
+
+Nothing here is shared with the library or the oracle.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import lsgp
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from scipy.sparse import csgraph
+
+
+def named_by(result: lsgp.Result, code: str) -> NDArray[np.int32]:
+    """The elements of all warnings with this code."""
+    found = [finding.elements.indices for finding in result.warnings if finding.code == code]
+    return np.concatenate(found) if found else np.empty(0, np.int32)
+
+
+def labels(a: NDArray[np.int64], b: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+    """A number for each of `count` elements, the same for those that pairs (a, b) connect."""
+    graph = sp.coo_matrix((np.ones(len(a), bool), (a, b)), (count, count))
+    return csgraph.connected_components(graph, directed=False)[1]
+
+
+def next_corner(h: NDArray[np.int64]) -> NDArray[np.int64]:
+    return h // 3 * 3 + (h + 1) % 3
+
+
+def edge_keys(a: NDArray[np.integer], b: NDArray[np.integer]) -> NDArray[np.int64]:
+    return (np.minimum(a, b).astype(np.int64) << 32) + np.maximum(a, b)
+
+
+@dataclass
+class Opened:
+    """The solved triangles, turned alike, each double only once, glued where exactly two of them meet along an edge.
+
+    triangle: (m,) their numbers.  z: (3m) u + iv.  vertex: (3m) of the surface.  twin: (3m) opposite halfedge or -1.
+    fan: (3m) corners around one vertex share a number.  closed: (fans,) whether the triangles go all the way round.
+    component: (m,) joined by edges.
+    """
+
+    triangle: NDArray[np.int64]
+    z: NDArray[np.complex128]
+    vertex: NDArray[np.int64]
+    twin: NDArray[np.int64]
+    fan: NDArray[np.int64]
+    closed: NDArray[np.bool_]
+    component: NDArray[np.int64]
+
+    def straight_on(self, h: NDArray[np.int64], nodes: NDArray[np.integer]) -> tuple[NDArray[np.int64], ...]:
+        """Of cut halfedges h, both directions of each: those that lead to a vertex which the cut passes straight
+        through, neither branching nor ending nor a node, and those by which it goes on, as places in h."""
+        leaving = np.bincount(self.fan[h], minlength=len(self.closed))
+        passes = self.closed & (leaving == 2)
+        passes[self.fan[np.isin(self.vertex, nodes)]] = False
+        out = h[passes[self.fan[h]]]
+        out = out[np.argsort(self.fan[out], kind="stable")].reshape(-1, 2)
+        place = np.full(len(self.z), -1)
+        place[h] = np.arange(len(h))
+        before = place[np.concatenate([self.twin[out[:, 1]], self.twin[out[:, 0]]])]
+        return before, place[np.concatenate([out[:, 0], out[:, 1]])]
+
+
+def open_surface(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Options) -> Opened:
+    """options: what the map was made with; seams may be open borders."""
+    single = np.ones(len(surface.triangles), bool)
+    single[named_by(result, "DUPLICATE_FACE")] = False
+    kept = result.solved & single
+    turned = np.zeros(len(kept), bool)
+    turned[named_by(result, "REORIENTED")] = True
+    order = np.where(turned[:, None], [2, 1, 0], [0, 1, 2])[kept]
+    triangle = np.flatnonzero(kept)
+    vertex = np.take_along_axis(surface.triangles[kept].astype(np.int64), order, axis=1).ravel()
+    uv = np.take_along_axis(result.corner_uv[kept], order[:, :, None], axis=1)
+
+    h = np.arange(len(vertex))
+    tail, head = vertex, vertex[next_corner(h)]
+    key = edge_keys(tail, head)
+    # Triangles without a map count: with them more than two may meet, and then the edge is open.
+    everyone = surface.triangles[single]
+    keys, meeting = np.unique(edge_keys(everyone.ravel(), everyone[:, [1, 2, 0]].ravel()), return_counts=True)
+    borders = np.union1d(_border_seams(surface, result, options), keys[meeting > 2])
+    by_edge = np.argsort(key, kind="stable")
+    first, count = np.unique(key[by_edge], return_index=True, return_counts=True)[1:]
+    one, other = by_edge[first[count == 2]], by_edge[first[count == 2] + 1]
+    glued = (tail[one] == head[other]) & ~np.isin(key[one], borders)
+    one, other = one[glued], other[glued]
+    twin = np.full(len(h), -1)
+    twin[one], twin[other] = other, one
+    fan = labels(np.concatenate([one, next_corner(one)]), np.concatenate([next_corner(other), other]), len(h))
+    closed = np.ones(int(fan.max()) + 1, bool)
+    rim = twin < 0
+    closed[fan[rim]] = closed[fan[next_corner(h)[rim]]] = False
+    component = labels(one // 3, other // 3, len(triangle))
+    return Opened(triangle, (uv[..., 0] + 1j * uv[..., 1]).ravel(), vertex, twin, fan, closed, component)
+
+
+def _border_seams(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Options) -> NDArray[np.int64]:
+    """The keys of the seams that are open borders and not cuts."""
+    keys = edge_keys(*surface.seams.T)
+    if options.seams == "boundary":
+        return keys
+    opened = surface.triangles[named_by(result, "SEAMS_OPENED")]
+    return np.intersect1d(keys, edge_keys(opened.ravel(), opened[:, [1, 2, 0]].ravel()))
