@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Time of `lsgp.parameterize` beside libigl's LSCM on the same cut, as a Markdown table.
+"""Time of `lsgp.parameterize` beside libigl's LSCM on the same cut, and what rounding for seamless layouts adds to it,
+as Markdown tables.
 
 Both get arrays and give texture coordinates. lsgp also finds the cut, prescribes the cone angles and measures the map;
 LSCM gets the surface cut open along lsgp's cut and two pins. Times are CPU seconds of all threads together (the stages'
@@ -41,8 +42,9 @@ def main() -> None:
     else:
         print(f"{SHARED} is not there: made surfaces instead.", file=sys.stderr)
         cases = [(f"bumpy sphere {level}", *bumpy_sphere(level)) for level in (3, 4, 5)]
-    rows = [measure_case(*case, arguments.repetitions) for case in cases]
-    print_table(rows)
+    print_table([measure_case(*case, arguments.repetitions) for case in cases])
+    print("\nRounding angles and translations, repair included, as a multiple of the whole unwrap without it:\n")
+    print_table([measure_rounding(*case, arguments.repetitions) for case in cases])
 
 
 def read_case(name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -132,6 +134,21 @@ def measure_case(
         "ratio": f"{own / lscm:.2f}",
         **{f"{stage} ms": f"{1e3 * statistics.median(s[stage] for s in stages):.1f}" for stage in stages[0]},
     }
+
+
+def measure_rounding(
+    name: str, positions: np.ndarray, triangles: np.ndarray, cones: np.ndarray, repetitions: int
+) -> dict[str, object]:
+    surface = lsgp.Surface(positions, triangles.astype(np.int32))
+    grids = {"32 tiles": 32, "64 tiles": 64, "automatic": None}
+    options = [lsgp.Options()] + [lsgp.Options(seamless=lsgp.Seamless(tiles=tiles)) for tiles in grids.values()]
+    runs = [lambda chosen=chosen: lsgp.parameterize(surface, cones, options=chosen) for chosen in options]
+    for run in runs:
+        run()
+    times = [[cpu_seconds(run) for run in runs] for _ in range(repetitions)]
+    plain, *seamless = (statistics.median(column) for column in zip(*times, strict=True))
+    row: dict[str, object] = {"mesh": name, "cones": len(cones), "unwrap ms": f"{1e3 * plain:.1f}"}
+    return row | {grid: f"{(time - plain) / plain:.2f}" for grid, time in zip(grids, seamless, strict=True)}
 
 
 def cpu_seconds(run: Callable[[], None]) -> float:

@@ -185,7 +185,10 @@ class Exchange {
                        [](const Trial& a, const Trial& b) { return a.stretch < b.stretch; });
       return tried;
     };
-    while (trials < most_stretch_trials) {
+    const int most = static_cast<int>(std::clamp(stretch_work / static_cast<double>(y.size()),
+                                                 static_cast<double>(least_stretch_trials),
+                                                 static_cast<double>(most_stretch_trials)));
+    while (trials < most) {
       const double before = least;
       std::vector<Trial> first = try_at(*this, y, first_exchanges);
       if (first.size() > continued_exchanges) first.resize(continued_exchanges);
@@ -193,7 +196,7 @@ class Exchange {
         Exchange turns = *this;
         turns.apply(trial.swap);
         try_at(turns, moved(y, trial.swap), second_exchanges);
-        if (least < before || trials >= most_stretch_trials) break;
+        if (least < before || trials >= most) break;
       }
       if (!(least < before)) break;
     }
@@ -205,7 +208,8 @@ class Exchange {
  private:
   static constexpr double least_gain = 1e-12;
   static constexpr std::size_t most_trials = 100;
-  static constexpr int most_stretch_trials = 400;
+  static constexpr int least_stretch_trials = 24, most_stretch_trials = 400;
+  static constexpr double stretch_work = 2e6;  // vertices times trials
   static constexpr std::size_t first_exchanges = 50, continued_exchanges = 10, second_exchanges = 30;
 
   // One turn more at a cone, and one less at another where the sum is kept.

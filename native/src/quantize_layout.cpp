@@ -19,6 +19,7 @@
 #include "relaxation.hpp"
 #include "solvers/sparse_assembly.hpp"
 #include "unfold.hpp"
+#include "untangle.hpp"
 
 namespace lsgp {
 
@@ -26,6 +27,7 @@ namespace {
 
 constexpr int tried_angles = 16;          // of the layout, within one turn of the lattice
 constexpr std::size_t tried_targets = 4;  // choices of points that are worth a repair
+constexpr std::size_t few_targets = 2;    // that are worth following, and all that are tried on an automatic grid
 constexpr double stretched_energy = 1.5;  // symmetric Dirichlet energy of a triangle that calls for smoothing
 constexpr int smoothed_rings = 4;
 constexpr int searched_angles = 6;  // of those, where the nearest points are not valid
@@ -34,7 +36,9 @@ constexpr double least_decrease = 1e-3;  // of the energy, for which a further s
 constexpr double poor_energy = 1.5;      // of a start that is smoothed first
 constexpr int poor_steps = 20;
 constexpr double shortest_step = 0.01;  // of the way to the lattice points
-constexpr int most_moves = 20;          // on it
+constexpr double any_energy = std::numeric_limits<double>::infinity();
+constexpr double easy_share = 2e-4;  // of the triangles, flipped, that are repaired on an automatic grid
+constexpr int most_moves = 20;       // on it
 
 std::vector<int> turns_of_cuts(const Eigen::VectorXd& rotation, int symmetry) {
   std::vector<int> out;
@@ -303,19 +307,18 @@ Eigen::VectorXcd LayoutQuantizer::displacement(const Eigen::VectorXcd& change) c
   return expand(reduction_.reduction, unknowns);
 }
 
-bool LayoutQuantizer::is_valid(const Eigen::VectorXcd& position) const {
-  return check_map(mesh_, at_corners(cut_mesh_, position), curvature_.at_vertex, curvature_.is_free).defects() == 0;
+Validity LayoutQuantizer::check(const Eigen::VectorXcd& position) const {
+  return check_map(mesh_, at_corners(cut_mesh_, position), curvature_.at_vertex, curvature_.is_free);
 }
 
 // before: a valid map from which the present one was moved.
 bool LayoutQuantizer::repair(double scale, const Eigen::VectorXcd& before, Eigen::VectorXcd& position) const {
-  if (is_valid(position)) return true;
   Curvature target = curvature_;
   target.log_scale = rest_.array() + std::log(scale);
   const Eigen::VectorXd frames = measure_jacobians(mesh_, geometry_, cut_mesh_, before).f_z.array().arg();
   position = untangle(mesh_, geometry_, cut_graph_, cut_mesh_, rotation_, target, frames,
                       std::vector<char>(mesh_.vertex_count(), 0), Effort::local, position);
-  return is_valid(position);
+  return check(position).defects() == 0;
 }
 
 // Newton steps on the symmetric Dirichlet energy over the marked vertices.
@@ -329,29 +332,39 @@ void LayoutQuantizer::smooth(double scale, std::vector<char> marked, int steps, 
       .smooth(DistortionEnergy::Kind::symmetric_dirichlet, steps, least_decrease);
 }
 
-// The same around triangles that are much more distorted than the start.
-void LayoutQuantizer::smooth_stretched(double scale, Eigen::VectorXcd& position) const {
-  const Jacobians jacobians = measure_jacobians(mesh_, geometry_, cut_mesh_, position);
-  std::vector<Index> stretched;
+// Triangles that are much more distorted than the start.
+std::vector<Index> LayoutQuantizer::find_stretched(double scale, const Jacobians& jacobians) const {
+  constexpr DistortionEnergy energy{DistortionEnergy::Kind::symmetric_dirichlet};
+  std::vector<Index> out;
   for (Index f = 0; f < mesh_.triangle_count(); ++f) {
     double rest = 0;
     for (int c = 0; c < 3; ++c) rest += rest_[mesh_.triangles(f, c)] / 3;
     const double unit = scale * std::exp(rest);
-    const Complex f_z = jacobians.f_z[f] / unit, f_zbar = jacobians.f_zbar[f] / unit;
     // 4 for an isometry.
-    const double energy = DistortionEnergy{DistortionEnergy::Kind::symmetric_dirichlet}.value(f_z, f_zbar);
-    if (!(energy < 4 * stretched_energy)) stretched.push_back(f);
+    if (!(energy.value(jacobians.f_z[f] / unit, jacobians.f_zbar[f] / unit) < 4 * stretched_energy)) out.push_back(f);
   }
-  if (stretched.empty()) return;
-  smooth(scale, mark_around(mesh_, stretched, smoothed_rings), smoothing_steps, position);
+  return out;
 }
 
 // Moves the integers of a valid map by `change` at once.
-bool LayoutQuantizer::move(double scale, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const {
+bool LayoutQuantizer::move(double scale, double most_energy, const Eigen::VectorXcd& change,
+                           Eigen::VectorXcd& position) const {
   const Eigen::VectorXcd before = position;
   position += displacement(change);
-  if (!repair(scale, before, position)) return false;
-  smooth_stretched(scale, position);
+  const Validity validity = check(position);
+  if (std::isfinite(most_energy)) {
+    // What smoothing will not mend tells early that a grid is too coarse.
+    if (static_cast<double>(validity.flipped.size()) > 1 + easy_share * mesh_.triangle_count()) return false;
+    Jacobians jacobians = measure_jacobians(mesh_, geometry_, cut_mesh_, position);
+    for (const Index f : find_stretched(scale, jacobians)) {
+      jacobians.f_z[f] = scale;
+      jacobians.f_zbar[f] = 0;
+    }
+    if (symmetric_dirichlet_energy(geometry_, jacobians) > most_energy) return false;
+  }
+  if (validity.defects() > 0 && !repair(scale, before, position)) return false;
+  const std::vector<Index> stretched = find_stretched(scale, measure_jacobians(mesh_, geometry_, cut_mesh_, position));
+  if (!stretched.empty()) smooth(scale, mark_around(mesh_, stretched, smoothed_rings), smoothing_steps, position);
   return true;
 }
 
@@ -362,7 +375,7 @@ bool LayoutQuantizer::follow(double scale, const Eigen::VectorXcd& change, Eigen
   for (int moves = 0; reached < 1 && step > shortest_step && moves < most_moves; ++moves) {
     const double share = std::min(step, 1 - reached);
     Eigen::VectorXcd tried = position;
-    if (!move(scale, share * change, tried)) {
+    if (!move(scale, any_energy, share * change, tried)) {
       step /= 2;
       continue;
     }
@@ -373,19 +386,21 @@ bool LayoutQuantizer::follow(double scale, const Eigen::VectorXcd& change, Eigen
   return reached == 1;
 }
 
-std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, Effort effort) const {
+std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, double most_energy) const {
+  const bool quick = std::isfinite(most_energy);
   const std::vector<Target> targets = find_targets(density);
   // Beside relaxed cones nothing tells whether the points can be reached, and following them would take too long.
-  const int ways = relaxed_ || effort == Effort::local ? 1 : 2;
+  const int ways = relaxed_ || quick ? 1 : 2;
   for (int in_steps = 0; in_steps < ways; ++in_steps) {
-    for (std::size_t i = 0; i < (in_steps ? std::min<std::size_t>(targets.size(), 2) : targets.size()); ++i) {
+    const std::size_t count = std::min(targets.size(), in_steps || quick ? few_targets : tried_targets);
+    for (std::size_t i = 0; i < count; ++i) {
       const Target& target = targets[i];
       const double scale = std::abs(target.motion);
       const Eigen::VectorXcd change = target.integers - target.motion * integers_;
       QuantizedLayout out{target.motion * start_, 1};
-      if (!(in_steps ? follow(scale, change, out.position) : move(scale, change, out.position))) continue;
+      if (!(in_steps ? follow(scale, change, out.position) : move(scale, most_energy, change, out.position))) continue;
       out.energy = symmetric_dirichlet_energy(geometry_, measure_jacobians(mesh_, geometry_, cut_mesh_, out.position));
-      return out;
+      if (out.energy <= most_energy) return out;
     }
   }
   return std::nullopt;

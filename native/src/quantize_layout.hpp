@@ -11,7 +11,6 @@
 #include "point_lattice.hpp"
 #include "solvers/cholesky.hpp"
 #include "unfold.hpp"
-#include "untangle.hpp"
 
 namespace lsgp {
 
@@ -44,8 +43,9 @@ class LayoutQuantizer {
 
   // The layout with `density` cells a unit of length, rounded to lattice points: by the displacement of least Dirichlet
   // energy, then repaired.  None where no choice of points keeps it valid.
-  // effort: global also follows the layout to the points in steps.
-  std::optional<QuantizedLayout> quantize(double density, Effort effort) const;
+  // most_energy: where finite, only layouts are wanted that reach it with little repair; otherwise the layout is also
+  // followed to the points in steps.
+  std::optional<QuantizedLayout> quantize(double density, double most_energy) const;
 
  private:
   struct Target {
@@ -59,11 +59,11 @@ class LayoutQuantizer {
   Eigen::VectorXcd integers_of(const Eigen::VectorXcd& position) const;
   std::vector<Target> find_targets(double density) const;
   Eigen::VectorXcd displacement(const Eigen::VectorXcd& change) const;
-  bool is_valid(const Eigen::VectorXcd& position) const;
+  Validity check(const Eigen::VectorXcd& position) const;
   bool repair(double scale, const Eigen::VectorXcd& before, Eigen::VectorXcd& position) const;
   void smooth(double scale, std::vector<char> marked, int steps, Eigen::VectorXcd& position) const;
-  void smooth_stretched(double scale, Eigen::VectorXcd& position) const;
-  bool move(double scale, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const;
+  std::vector<Index> find_stretched(double scale, const Jacobians& jacobians) const;
+  bool move(double scale, double most_energy, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const;
   bool follow(double scale, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const;
 
   const HalfedgeMesh& mesh_;

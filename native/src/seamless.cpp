@@ -46,14 +46,12 @@ class GridSearch {
   const std::vector<Index>& relaxed(std::size_t part) const { return relaxed_[part]; }
   const std::vector<Index>& merged() const { return merged_; }
 
-  // None where a part has no valid layout, or one that is distorted more than allowed; a layout that takes more than
-  // local repair is.
+  // None where a part has no valid layout, or one that is distorted more than allowed.
   std::optional<Grid> lay_out(double tiles, double most_growth) {
-    const Effort effort = std::isfinite(most_growth) ? Effort::local : Effort::global;
     Grid grid{tiles, tiles / extent(), {}};
     for (std::size_t i = 0; i < parts_.size(); ++i) {
-      auto layout = quantizers_[i]->quantize(grid.density, effort);
-      if (!layout || layout->energy > most_growth * quantizers_[i]->energy()) {
+      auto layout = quantizers_[i]->quantize(grid.density, most_growth * quantizers_[i]->energy());
+      if (!layout) {
         failed_ = i;
         return std::nullopt;
       }
