@@ -37,8 +37,9 @@ constexpr double poor_energy = 1.5;      // of a start that is smoothed first
 constexpr int poor_steps = 20;
 constexpr double shortest_step = 0.01;  // of the way to the lattice points
 constexpr double any_energy = std::numeric_limits<double>::infinity();
-constexpr double easy_share = 2e-4;  // of the triangles, flipped, that are repaired on an automatic grid
-constexpr int most_moves = 20;       // on it
+constexpr double mendable_share = 0.1;  // of the triangles, stretched, that are smoothed there
+constexpr double easy_share = 2e-4;     // of the triangles, flipped, that are repaired on an automatic grid
+constexpr int most_moves = 20;          // on it
 
 std::vector<int> turns_of_cuts(const Eigen::VectorXd& rotation, int symmetry) {
   std::vector<int> out;
@@ -356,7 +357,9 @@ bool LayoutQuantizer::move(double scale, double most_energy, const Eigen::Vector
     // What smoothing will not mend tells early that a grid is too coarse.
     if (static_cast<double>(validity.flipped.size()) > 1 + easy_share * mesh_.triangle_count()) return false;
     Jacobians jacobians = measure_jacobians(mesh_, geometry_, cut_mesh_, position);
-    for (const Index f : find_stretched(scale, jacobians)) {
+    const std::vector<Index> stretched = find_stretched(scale, jacobians);
+    if (static_cast<double>(stretched.size()) > mendable_share * mesh_.triangle_count()) return false;
+    for (const Index f : stretched) {
       jacobians.f_z[f] = scale;
       jacobians.f_zbar[f] = 0;
     }
