@@ -34,6 +34,8 @@ std::vector<Index> inside_only(const HalfedgeMesh& mesh, const std::vector<Index
 
 namespace {
 
+using Kind = DistortionEnergy::Kind;
+
 // A surface with boundary has conformal maps without number, so the spectral step would return an arbitrary one; only
 // without cones does the smallest eigenvector still mean something (Mullen et al. 2008).
 UnfoldMethod usable_unfold(const HalfedgeMesh& mesh, const ComponentCones& cones, UnfoldMethod asked,
@@ -120,8 +122,9 @@ void twist_gradually(const HalfedgeMesh& mesh, const Geometry& geometry, const C
     moved.position = PoissonSystem(mesh, geometry, map.cut_mesh, connection.reduction).fit(jacobians);
     check(mesh, moved);
     if (moved.validity.defects() == 0) return true;
-    moved.position = untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, map.curvature,
-                              jacobians.f_z.array().arg(), fixed, Effort::local, moved.position);
+    moved.position =
+        untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, map.curvature,
+                 jacobians.f_z.array().arg(), fixed, Effort::local, Kind::framed_foldover_free, moved.position);
     check(mesh, moved);
     return moved.validity.defects() == 0;
   };
@@ -206,8 +209,9 @@ ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, c
   if (!map.validity.flipped.empty() && !spectral) {
     const std::vector<char> fixed = fixed_vertices(mesh, map, aligned);
     const auto repair = [&](Effort effort) {
-      map.position = untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, target,
-                              connection.frames, fixed, effort, map.position);
+      map.position =
+          untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, target, connection.frames, fixed,
+                   effort, connections.is_twisted() ? Kind::framed_foldover_free : Kind::foldover_free, map.position);
       check(mesh, map);
     };
     repair(connections.is_twisted() ? Effort::local : Effort::global);

@@ -318,7 +318,8 @@ bool LayoutQuantizer::repair(double scale, const Eigen::VectorXcd& before, Eigen
   target.log_scale = rest_.array() + std::log(scale);
   const Eigen::VectorXd frames = measure_jacobians(mesh_, geometry_, cut_mesh_, before).f_z.array().arg();
   position = untangle(mesh_, geometry_, cut_graph_, cut_mesh_, rotation_, target, frames,
-                      std::vector<char>(mesh_.vertex_count(), 0), Effort::local, position);
+                      std::vector<char>(mesh_.vertex_count(), 0), Effort::local,
+                      DistortionEnergy::Kind::framed_foldover_free, position);
   return check(position).defects() == 0;
 }
 

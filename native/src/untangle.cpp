@@ -45,7 +45,7 @@ std::vector<Index> defective_triangles(const HalfedgeMesh& mesh, const Validity&
 
 Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
                           const CutMesh& cut_mesh, const Eigen::VectorXd& rotation, const Curvature& curvature,
-                          const Eigen::VectorXd& frames, const std::vector<char>& fixed, Effort effort,
+                          const Eigen::VectorXd& frames, const std::vector<char>& fixed, Effort effort, Kind first,
                           const Eigen::VectorXcd& position) {
   const Eigen::VectorXcd motion = motion_of_copies(mesh, cut_graph, cut_mesh, rotation);
   const auto check = [&](const Eigen::VectorXcd& tried) {
@@ -75,8 +75,9 @@ Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, co
   };
   const bool hopeless = static_cast<double>(left.flipped.size()) > hopeless_share * mesh.triangle_count();
   if (hopeless) return best;
+  const Kind second = first == Kind::foldover_free ? Kind::framed_foldover_free : Kind::foldover_free;
   for (const int rings : neighbourhoods) {
-    for (const Kind energy : {Kind::framed_foldover_free, Kind::foldover_free}) {
+    for (const Kind energy : {first, second}) {
       if (left.defects() > 0) try_out(mark_around(mesh, defective_triangles(mesh, left), rings), energy, local_steps);
     }
   }

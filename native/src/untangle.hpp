@@ -6,6 +6,7 @@
 
 #include "curvature.hpp"
 #include "cut_mesh.hpp"
+#include "energies/distortion_energy.hpp"
 #include "geometry.hpp"
 
 namespace lsgp {
@@ -18,11 +19,12 @@ enum class Effort {
 // Moves the vertices around flipped triangles until none is flipped, on growing neighbourhoods, by Newton's method on
 // the foldover-free energies (Garanzha et al. 2021) with rest shapes scaled to the prescribed metric and turned by
 // frames, (m), then smooths the place with a conformal barrier.  Cones and translations stay, so the seams stay exact.
-// position: (copies) u + iv.  fixed: (n) further vertices that stay.  Returns the positions with the fewest defects
-// found.
+// position: (copies) u + iv.  fixed: (n) further vertices that stay.  first: the energy that is tried first on each
+// neighbourhood: the plain one disturbs a map less that is almost right, the framed one keeps to the frames.  Returns
+// the positions with the fewest defects found.
 Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
                           const CutMesh& cut_mesh, const Eigen::VectorXd& rotation, const Curvature& curvature,
                           const Eigen::VectorXd& frames, const std::vector<char>& fixed, Effort effort,
-                          const Eigen::VectorXcd& position);
+                          DistortionEnergy::Kind first, const Eigen::VectorXcd& position);
 
 }  // namespace lsgp
