@@ -235,8 +235,8 @@ class ExactLayout {
       const bool is_cone = mesh_.loop_of_vertex[v] == none && map_.curvature.at_vertex[v] != 0;
       if (is_cone && on_lattice(z - shift_)) {
         z = lattice_.nearest(z - shift_) + shift_;
-      } else if (lattice_.square()) {
-        z = round_to(z, fraction);
+      } else {
+        z = lattice_.square() ? round_to(z, fraction) : as_float(z);
       }
       for (const Sector& sector : all) {
         if (sector.copy != all.front().copy) z = cross(z, sector.opened_by);

@@ -129,6 +129,13 @@ def test_coarse_and_fine_grids(name: str, tiles: int) -> None:
     assert ("GRID_REFINED" in codes(result.warnings)) == (result.seamless.tiles != tiles)
 
 
+@pytest.mark.parametrize("lattice", ["triangle", "hexagon"])
+def test_triangular_lattices_match_to_the_last_place(lattice: str) -> None:
+    """Were both sides of a cut rounded for themselves, some of these would miss each other by more."""
+    for tiles in range(16, 56):
+        checked(HANDLES["torus with cones"], lattice=lattice, tiles=tiles)
+
+
 @pytest.mark.parametrize("lattice", ["square", "triangle", "hexagon"])
 def test_the_finest_grid_is_exact_too(lattice: str) -> None:
     checked(BALL, lattice=lattice, tiles=16384)
