@@ -6,6 +6,7 @@
 
 #include "border.hpp"
 #include "connection.hpp"
+#include "energies/quadratic_forms.hpp"
 #include "text.hpp"
 #include "unfold.hpp"
 #include "untangle.hpp"
@@ -35,6 +36,8 @@ std::vector<Index> inside_only(const HalfedgeMesh& mesh, const std::vector<Index
 namespace {
 
 using Kind = DistortionEnergy::Kind;
+
+constexpr double tangled_share = 0.002;  // of the triangles flipped, for which another fit is tried
 
 // A surface with boundary has conformal maps without number, so the spectral step would return an arbitrary one; only
 // without cones does the smallest eigenvector still mean something (Mullen et al. 2008).
@@ -109,6 +112,19 @@ Eigen::VectorXcd unfold_along_borders(const HalfedgeMesh& mesh, const Geometry& 
                         directions);
 }
 
+// The fit to the prescribed Jacobians with every triangle's error relative to its scale: where scales differ much, the
+// plain fit loses what is small to what is large.  One more factorization.
+Eigen::VectorXcd unfold_relatively(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
+                                   const Connection& connection) {
+  Jacobians jacobians = prescribed_jacobians(mesh, map.curvature.log_scale, connection.frames);
+  constexpr double widest_range = 1e8;  // of the weights, so that the form can be factored
+  Eigen::VectorXd weight = jacobians.f_z.cwiseAbs2().cwiseInverse();
+  weight = weight.cwiseMin(widest_range * weight.minCoeff());
+  const Geometry weighted = with_weights(geometry, weight);
+  jacobians.f_z = jacobians.f_z.cwiseProduct(weight);
+  return PoissonSystem(mesh, weighted, map.cut_mesh, connection.reduction).fit(jacobians);
+}
+
 // Takes a valid map from the metric's own rotations about handles to the chosen ones, in steps over which it stays
 // valid. Leaves the map as it is where that does not succeed.
 void twist_gradually(const HalfedgeMesh& mesh, const Geometry& geometry, const ConnectionChoice& connections,
@@ -150,11 +166,9 @@ void twist_gradually(const HalfedgeMesh& mesh, const Geometry& geometry, const C
   if (reached == 1) map = std::move(moved);
 }
 
-}  // namespace
-
-ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
-                           const std::vector<std::pair<Index, Complex>>& pinned_corners, const Options& options,
-                           std::vector<Finding>& findings, StageSeconds& seconds) {
+ComponentMap attempt_map(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
+                         const std::vector<std::pair<Index, Complex>>& pinned_corners, const Options& options,
+                         Effort effort, std::vector<Finding>& findings, StageSeconds& seconds) {
   // Border edges whose direction is imposed.
   const std::vector<Index> aligned =
       cones.border == BorderMode::straight ? straight_edges(mesh, cones.vertices) : corner_edges(mesh, cones.vertices);
@@ -206,21 +220,67 @@ ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, c
     target.log_scale.array() += std::log(pinned.scale);
   }
   check(mesh, map);
+  if (static_cast<double>(map.validity.flipped.size()) > tangled_share * mesh.triangle_count() && !spectral &&
+      aligned.empty() && map.pins.size() < 2) {
+    ComponentMap relative = map;
+    relative.position = unfold_relatively(mesh, geometry, map, connection);
+    check(mesh, relative);
+    if (relative.validity.defects() < map.validity.defects()) map = std::move(relative);
+  }
   if (!map.validity.flipped.empty() && !spectral) {
     const std::vector<char> fixed = fixed_vertices(mesh, map, aligned);
-    const auto repair = [&](Effort effort) {
-      map.position =
-          untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, target, connection.frames, fixed,
-                   effort, connections.is_twisted() ? Kind::framed_foldover_free : Kind::foldover_free, map.position);
+    const auto repair = [&](Effort of_repair) {
+      map.position = untangle(
+          mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, target, connection.frames, fixed, of_repair,
+          connections.is_twisted() ? Kind::framed_foldover_free : Kind::foldover_free, map.position);
       check(mesh, map);
     };
-    repair(connections.is_twisted() ? Effort::local : Effort::global);
+    repair(connections.is_twisted() ? Effort::local : effort);
     if (map.validity.defects() > 0 && connections.is_twisted()) {
       twist_gradually(mesh, geometry, connections, fixed, map);
       if (map.validity.defects() > 0) repair(Effort::global);
     }
   }
   return map;
+}
+
+// Whether other angles may be tried where those of least distortion have no valid map.
+bool has_choice(const ComponentCones& cones, const Options& options) {
+  if (options.method != Method::lsgp || options.unfold != UnfoldMethod::poisson || cones.symmetry > 0) return false;
+  const bool fixed =
+      std::all_of(cones.angles.begin(), cones.angles.end(), [](const auto& angle) { return angle.has_value(); });
+  return options.prescription == PrescriptionRule::least_distortion ||
+         (options.prescription == PrescriptionRule::manual && !fixed);
+}
+
+}  // namespace
+
+ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
+                           const std::vector<std::pair<Index, Complex>>& pinned_corners, const Options& options,
+                           std::vector<Finding>& findings, StageSeconds& seconds) {
+  if (!has_choice(cones, options)) {
+    return attempt_map(mesh, geometry, cones, pinned_corners, options, Effort::global, findings, seconds);
+  }
+  // Wide angles distort least but may leave turns with neighbouring vertices.
+  std::optional<ComponentMap> best;
+  ComponentCones bounded = cones, best_bounded = cones;
+  std::vector<Finding> of_best;
+  for (const double largest : {largest_angle, 2.5 * M_PI, 2 * M_PI}) {
+    bounded.largest_angle = largest;
+    std::vector<Finding> found;
+    ComponentMap map = attempt_map(mesh, geometry, bounded, pinned_corners, options, Effort::local, found, seconds);
+    if (best && map.validity.defects() >= best->validity.defects()) continue;
+    best = std::move(map);
+    best_bounded = bounded;
+    of_best = std::move(found);
+    if (best->validity.defects() == 0) break;
+  }
+  if (best->validity.defects() > 0) {
+    of_best.clear();
+    best = attempt_map(mesh, geometry, best_bounded, pinned_corners, options, Effort::global, of_best, seconds);
+  }
+  findings.insert(findings.end(), of_best.begin(), of_best.end());
+  return std::move(*best);
 }
 
 }  // namespace lsgp

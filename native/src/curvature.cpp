@@ -19,7 +19,6 @@ namespace {
 // Automatic angles stay where a map with them can be expected to have no flips; the bounds are widened where the
 // harmonic angles lie outside, since a sharp tip may need less and a branching limb more.
 constexpr double smallest_angle = M_PI / 4;
-constexpr double largest_angle = 4 * M_PI;
 constexpr double largest_share_of_valence = 0.6;  // of pi per triangle
 // Outside these no map exists, or none worth having.
 constexpr double impossible_angle = 0.02 * M_PI;
@@ -129,10 +128,10 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, con
 
 Eigen::VectorXd least_distortion(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale) {
   const Eigen::VectorXd harmonic = scale.harmonic_curvature();
-  Bounds bounds = bounds_from_angles(mesh, cones, smallest_angle, largest_angle, largest_share_of_valence);
+  Bounds bounds = bounds_from_angles(mesh, cones, smallest_angle, cones.largest_angle, largest_share_of_valence);
   const Bounds widest = widest_bounds(mesh, cones);
   for (Eigen::Index i = 0; i < harmonic.size(); ++i) {
-    if (cones.angles[i]) continue;
+    if (cones.angles[i] || cones.largest_angle <= 2 * M_PI) continue;
     bounds.low[i] = std::max(widest.low[i], std::min(bounds.low[i], harmonic[i]));
     bounds.high[i] = std::min(widest.high[i], std::max(bounds.high[i], harmonic[i]));
   }

@@ -80,23 +80,22 @@ Eigen::VectorXd rank_roots(const Eigen::VectorXd& curvature) {
   return rank;
 }
 
-// The geometry with Dirichlet weights that grow towards the cones like the inverse square of their distance.  A
+// Dirichlet weights of triangles, (m), that grow towards the cones like the inverse square of their distance.  A
 // harmonic displacement has a pole where a single vertex is moved; with these weights all that surrounds a cone moves
 // with it, and the displacement fades over its whole neighbourhood.
-Geometry stiffen_around(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& cones) {
+Eigen::VectorXd stiffness_around(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& cones) {
   constexpr double stiffest = 1e4;
-  Geometry out = geometry;
-  if (cones.empty()) return out;
+  Eigen::VectorXd weight = Eigen::VectorXd::Ones(mesh.triangle_count());
+  if (cones.empty()) return weight;
   const double radius = std::sqrt(geometry.total_area / (M_PI * static_cast<double>(cones.size())));
   const Eigen::VectorXd distance = distance_to(mesh, geometry, cones);
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
     double mean = 0;
     for (int c = 0; c < 3; ++c) mean += distance[mesh.triangles(f, c)] / 3;
     const double share = radius / std::max(mean, std::numeric_limits<double>::min());
-    const double weight = std::clamp(share * share, 1.0, stiffest);
-    for (Index h = 3 * f; h < 3 * f + 3; ++h) out.half_cotangent[h] *= weight;
+    weight[f] = std::clamp(share * share, 1.0, stiffest);
   }
-  return out;
+  return weight;
 }
 
 }  // namespace
@@ -133,8 +132,9 @@ LayoutQuantizer::LayoutQuantizer(const HalfedgeMesh& mesh, const Geometry& geome
   integers_ = integers_of(start_);
 
   // The Dirichlet form by blocks: what moves freely, and the integers.
-  const auto form = assemble_form(Form::dirichlet, mesh, stiffen_around(mesh, geometry, map.cones), map.cut_mesh,
-                                  reduction_.reduction);
+  const auto form =
+      assemble_form(Form::dirichlet, mesh, with_weights(geometry, stiffness_around(mesh, geometry, map.cones)),
+                    map.cut_mesh, reduction_.reduction);
   const Index unknowns = reduction_.reduction.unknown_count, count = static_cast<Index>(reduction_.integers.size());
   std::vector<Index> column_of_unknown(unknowns, none);
   for (Index k = 0; k < count; ++k) column_of_unknown[reduction_.integers[k]] = k;
@@ -403,7 +403,14 @@ std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, double 
       const Eigen::VectorXcd change = target.integers - target.motion * integers_;
       QuantizedLayout out{target.motion * start_, 1};
       if (!(in_steps ? follow(scale, change, out.position) : move(scale, most_energy, change, out.position))) continue;
-      out.energy = symmetric_dirichlet_energy(geometry_, measure_jacobians(mesh_, geometry_, cut_mesh_, out.position));
+      const auto measure = [&] {
+        return symmetric_dirichlet_energy(geometry_, measure_jacobians(mesh_, geometry_, cut_mesh_, out.position));
+      };
+      out.energy = measure();
+      if (!quick && out.energy > stretched_energy * energy_) {
+        smooth(scale, std::vector<char>(mesh_.vertex_count(), 1), smoothing_steps, out.position);
+        out.energy = measure();
+      }
       if (out.energy <= most_energy) return out;
     }
   }

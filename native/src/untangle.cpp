@@ -17,7 +17,7 @@ namespace {
 using Kind = DistortionEnergy::Kind;
 
 constexpr std::array<int, 3> neighbourhoods{2, 5, 10};  // rings of vertices around flipped triangles
-constexpr double hopeless_share = 0.02;                 // of the triangles flipped: not a place is tangled but the map
+constexpr double hopeless_share = 0.005;                // of the triangles flipped: not a place is tangled but the map
 constexpr int barrier_steps = 3;
 // Of Newton's method, which takes a few where it succeeds.
 constexpr int local_steps = 30;

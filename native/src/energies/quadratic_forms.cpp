@@ -50,6 +50,12 @@ Eigen::SparseMatrix<Complex> assemble_form(Form form, const HalfedgeMesh& mesh, 
   return assembly.build();
 }
 
+Geometry with_weights(const Geometry& geometry, const Eigen::VectorXd& weight) {
+  Geometry out = geometry;
+  for (Eigen::Index h = 0; h < out.half_cotangent.size(); ++h) out.half_cotangent[h] *= weight[h / 3];
+  return out;
+}
+
 Laplacian assemble_laplacian(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<char>& held) {
   const Index n = mesh.vertex_count();
   Laplacian laplacian;

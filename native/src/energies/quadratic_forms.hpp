@@ -19,6 +19,9 @@ enum class Form {
 Eigen::SparseMatrix<Complex> assemble_form(Form form, const HalfedgeMesh& mesh, const Geometry& geometry,
                                            const CutMesh& cut_mesh, const Reduction& reduction);
 
+// The geometry whose Dirichlet form weighs triangles, (m).
+Geometry with_weights(const Geometry& geometry, const Eigen::VectorXd& weight);
+
 // The cotangent Laplacian of the surface itself, positive semidefinite, without the rows and columns of `held`
 // vertices; lower triangle.  row_of_vertex: (n) row numbers, none at held vertices.
 struct Laplacian {
