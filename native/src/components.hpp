@@ -60,14 +60,14 @@ void for_each_component(const std::vector<Component>& components, std::vector<Fi
 // Adds the wall-clock time until its end to a stage.
 class StageTimer {
  public:
-  StageTimer(StageSeconds& stages, const char* stage) : stages_(stages), stage_(stage) {}
+  StageTimer(StageSeconds& stages, const char* stage);
   ~StageTimer();
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;
 
  private:
   StageSeconds& stages_;
-  const char* stage_;
+  std::size_t place_ = 0;  // of the stage in them
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 

@@ -17,6 +17,7 @@ template <typename... Parts>
 std::string concat(const Parts&... parts) {
   std::ostringstream out;
   out.imbue(std::locale::classic());
+  out.exceptions(std::ios_base::badbit);  // a stream would keep it to itself when memory ends
   (out << ... << parts);
   return out.str();
 }
