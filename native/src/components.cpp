@@ -137,6 +137,7 @@ Geometry require_geometry(const Component& component, std::vector<Finding>& find
         concat("None of the ", geometry.degenerate.size(), " triangles has an area. Restore the surface's shape."),
         {ElementKind::triangles, geometry.degenerate});
   }
+  require_comparable(component.mesh.positions);  // what lies far away has degenerate triangles only
   findings.push_back(
       {Code::degenerate_faces,
        concat(count(geometry.degenerate.size(), "triangle has", "triangles have"),

@@ -30,7 +30,7 @@ struct Work {
 // Throws what require_valid and build_topology throw, and LOOP_TURNING.
 Work prepare(const Surface& surface, const Cones& cones, const Options& options, std::vector<Finding>& findings);
 
-// Throws NOT_ORIENTABLE, DEGENERATE_MESH.
+// Throws NOT_ORIENTABLE, DEGENERATE_MESH, SCALE_RANGE.
 Geometry require_geometry(const Component& component, std::vector<Finding>& findings);
 
 // Renames a component's vertices, triangles or edges into the caller's.

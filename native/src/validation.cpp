@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "validation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -13,6 +14,8 @@ namespace {
 // Squared areas and their sums must neither overflow nor vanish in double precision.
 constexpr double largest_extent = 1e60;
 constexpr double smallest_extent = 1e-60;
+// What lies so much farther out leaves the rest no digit, in lengths or in angles.
+constexpr double farthest = 1e20;
 constexpr double smallest_cone_angle = 1e-6;  // radians; less is lost beside the angles of triangles
 
 void require_indices(const VertexPairs& pairs, Index vertex_count, const char* what) {
@@ -90,6 +93,34 @@ void require_valid(const Surface& surface) {
   require_extent(surface.positions, used);
   if (surface.edges) require_indices(*surface.edges, n, "edges");
   require_indices(surface.seams, n, "seams");
+}
+
+void require_comparable(const Positions& positions) {
+  const Index n = static_cast<Index>(positions.rows());
+  Eigen::RowVector3d middle;
+  std::vector<double> sorted(n);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (Index v = 0; v < n; ++v) sorted[v] = positions(v, axis);
+    std::nth_element(sorted.begin(), sorted.begin() + n / 2, sorted.end());
+    middle[axis] = sorted[n / 2];
+  }
+  const Eigen::VectorXd distance = (positions.rowwise() - middle).cwiseAbs().rowwise().maxCoeff();
+  for (Index v = 0; v < n; ++v) sorted[v] = distance[v];
+  std::sort(sorted.begin(), sorted.end());
+  // Where more than a few are apart it is the surface's shape.
+  for (Index reached = n - n / 4; reached < n; ++reached) {
+    const double reach = sorted[reached - 1];
+    if (!(reach > 0 && sorted[reached] > farthest * reach)) continue;
+    std::vector<Index> far;
+    for (Index v = 0; v < n; ++v) {
+      if (distance[v] > reach) far.push_back(v);
+    }
+    throw Error(Code::scale_range,
+                concat(count(far.size(), "vertex lies", "vertices lie"), " more than ", farthest,
+                       " times as far out as the others, whose shape is lost beside that. Move or delete ",
+                       far.size() == 1 ? "it." : "them."),
+                {ElementKind::vertices, far});
+  }
 }
 
 void require_valid(const Surface& surface, const Cones& cones) {

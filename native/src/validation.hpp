@@ -10,6 +10,10 @@ namespace lsgp {
 // Throws EMPTY_MESH, INDEX_OUT_OF_RANGE, BAD_FACE, NON_FINITE_POSITION, SCALE_RANGE, DEGENERATE_MESH.
 void require_valid(const Surface& surface);
 
+// For the vertices of one component.  Throws SCALE_RANGE where a few of them lie immeasurably far from all others, as
+// Blender leaves infinite coordinates.
+void require_comparable(const Positions& positions);
+
 // Throws CONE_INDEX, CONE_DUPLICATE, CONE_NOT_ON_SURFACE, ANGLE_COUNT, CONE_ANGLE_NON_FINITE, CONE_ANGLE_RANGE.
 void require_valid(const Surface& surface, const Cones& cones);
 

@@ -28,6 +28,10 @@ def with_y(value: float) -> lsgp.Surface:
     return surface(meshes.with_coordinate(TRIANGLE, 2, value))
 
 
+def with_far_tip(x: float) -> lsgp.Surface:
+    return surface(meshes.with_coordinate(TETRAHEDRON, 3, x))
+
+
 def tetrahedron(**fields: object) -> lsgp.Surface:
     return lsgp.Surface(TETRAHEDRON.positions, TETRAHEDRON.triangles, **fields)
 
@@ -63,6 +67,7 @@ REFUSALS = {
     "infinity": ("NON_FINITE_POSITION", INPUT, with_y(-np.inf), [], None, "vertices", [2]),
     "too large": ("SCALE_RANGE", INPUT, moved(1e100), [], None, None, None),
     "too small": ("SCALE_RANGE", INPUT, moved(1e-100), [], None, None, None),
+    "too far": ("SCALE_RANGE", INPUT, with_far_tip(3.4e38), range(4), None, "vertices", [3]),
     "one point": ("DEGENERATE_MESH", INPUT, moved(0), [], None, None, None),
     "one line": ("DEGENERATE_MESH", INPUT, with_y(0), [], None, None, None),
     "cuttable no edge": (

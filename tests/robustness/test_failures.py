@@ -14,7 +14,8 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
-from map_checks import surface
+from map_checks import only, surface
+from meshes import Mesh
 from result_check import undeclared_faults
 
 if sys.platform != "linux":
@@ -84,14 +85,20 @@ def peak(call: str) -> int:
     return found["grown"]
 
 
+def with_far_vertices(mesh: Mesh, seed: int, least: float, most: float) -> tuple[Mesh, np.ndarray]:
+    """One to three vertices moved out by so many powers of ten, and which."""
+    random = np.random.default_rng(seed)
+    far = random.permutation(len(mesh.positions))[: 1 + seed % 3]
+    positions = mesh.positions.copy()
+    positions[far] *= 10.0 ** random.uniform(least, most, (len(far), 1))
+    return mesh._replace(positions=positions), far
+
+
 def test_a_surface_that_cannot_be_computed_with_is_named() -> None:
     """Vertices so far apart that linear systems lose all digits: an honest map or SOLVER_FAILED, never NaN."""
     failed = 0
     for seed in range(40):
-        random = np.random.default_rng(seed)
-        mesh = meshes.torus(6, 4)
-        far = random.permutation(len(mesh.positions))[: 1 + seed % 3]
-        mesh.positions[far] *= 10.0 ** random.uniform(25, 55, (len(far), 1))
+        mesh, _ = with_far_vertices(meshes.torus(6, 4), seed, 3, 19)
         try:
             result = lsgp.parameterize(surface(mesh), mesh.cones)
         except lsgp.LsgpError as error:
@@ -100,6 +107,86 @@ def test_a_surface_that_cannot_be_computed_with_is_named() -> None:
         else:
             assert undeclared_faults(surface(mesh), result) == []
     assert failed > 0
+
+
+FINE = {
+    "cube": meshes.cube(4),
+    "sphere": meshes.bumpy_sphere(2),
+    "torus": meshes.torus(6, 4),
+    "grid": meshes.grid(8, 8, lambda x, y: np.sin(x + y)),
+}
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("name", FINE)
+def test_vertices_beyond_all_measure_are_named(name: str, seed: int) -> None:
+    mesh, far = with_far_vertices(FINE[name], seed, 25, 55)
+    for verb in (lsgp.parameterize, lsgp.prescribe_curvature, lsgp.find_cuts):
+        with pytest.raises(lsgp.InputError) as caught:
+            verb(surface(mesh), mesh.cones)
+        assert caught.value.code == "SCALE_RANGE"
+        assert caught.value.elements.kind == "vertices"
+        assert np.array_equal(caught.value.elements.indices, np.sort(far))
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+@pytest.mark.parametrize("name", FINE)
+def test_infinite_coordinates_as_blender_keeps_them(name: str, count: int) -> None:
+    """Some beside each other and some opposite; the other coordinates stay."""
+    mesh = FINE[name]._replace(positions=FINE[name].positions.copy())
+    random = np.random.default_rng(count)
+    far = random.permutation(len(mesh.positions))[:count]
+    mesh.positions[far, random.integers(0, 3, count)] = np.finfo(np.float32).max * random.choice([-1, 1], count)
+    with pytest.raises(lsgp.InputError) as caught:
+        lsgp.parameterize(surface(mesh), mesh.cones)
+    assert caught.value.code == "SCALE_RANGE"
+    assert np.array_equal(caught.value.elements.indices, np.sort(far))
+
+
+@pytest.mark.parametrize("neighbours", [False, True])
+def test_far_vertices_of_one_triangle(neighbours: bool) -> None:
+    mesh = FINE["sphere"]._replace(positions=FINE["sphere"].positions.copy())
+    far = np.sort(mesh.triangles[7])
+    mesh.positions[far, 0] = 3.4e38 * np.array([1, 1 if neighbours else -1, 1])
+    with pytest.raises(lsgp.InputError) as caught:
+        lsgp.parameterize(surface(mesh), mesh.cones)
+    assert caught.value.code == "SCALE_RANGE" and np.array_equal(caught.value.elements.indices, far)
+
+
+def test_a_part_with_far_vertices_does_not_stop_the_rest() -> None:
+    mesh = meshes.merge([FINE["sphere"], FINE["grid"]])
+    count = len(FINE["sphere"].positions)
+    mesh.positions[count + 5] = 3.4e38
+    whole = lsgp.parameterize(surface(mesh), mesh.cones)
+    skipped = only(whole.warnings, "COMPONENT_SKIPPED")
+    assert "SCALE_RANGE" in skipped.message
+    assert np.array_equal(skipped.elements.indices, np.arange(len(mesh.triangles))[len(FINE["sphere"].triangles) :])
+    alone = mesh.triangles[whole.solved]
+    assert np.array_equal(
+        whole.corner_uv[whole.solved], lsgp.parameterize(lsgp.Surface(mesh.positions, alone), mesh.cones).corner_uv
+    )
+
+
+def test_sizes_that_change_gradually_are_no_far_vertices() -> None:
+    """A flat ring of rings, each sqrt(10) times as large as the one inside: it is its own map."""
+    rings = 20
+    tube = meshes.cylinder(16, rings)
+    level = np.rint(tube.positions[:, 2] / tube.positions[:, 2].max() * rings)
+    direction = tube.positions[:, :2] / np.linalg.norm(tube.positions[:, :2], axis=1, keepdims=True)
+    flat = np.concatenate([direction * 10.0 ** (level[:, None] / 2), np.zeros((len(level), 1))], axis=1)
+    result = lsgp.parameterize(lsgp.Surface(flat, tube.triangles), [])
+    assert result.flipped.size == 0 and abs(result.distortion.l2_stretch - 1) <= 1e-9
+
+
+@pytest.mark.parametrize("distance", [1e9, 1e15, 1e25, 1e40])
+def test_parts_far_from_each_other_are_no_far_vertices(distance: float) -> None:
+    """Each has its own measure; what its digits do not hold at that distance is named."""
+    near, away = FINE["sphere"], FINE["torus"]
+    moved = away._replace(positions=away.positions * max(1.0, 1e-12 * distance) + distance)
+    mesh = meshes.merge([near, moved])
+    mesh = mesh._replace(positions=np.concatenate([near.positions, moved.positions]))
+    result = lsgp.parameterize(surface(mesh), mesh.cones)
+    assert result.solved.all() and undeclared_faults(surface(mesh), result) == []
 
 
 @pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="AddressSanitizer reserves terabytes")
