@@ -242,10 +242,10 @@ def add_tubes(name: str, lines: list[np.ndarray], radius: float, colour: tuple[f
     add_object(name, curve)
 
 
-def add_balls(places: np.ndarray, colour: tuple[float, float, float]) -> None:
+def add_balls(places: np.ndarray, colour: tuple[float, float, float], radius: float = CONE_BALL) -> None:
     material = plain_material("cone", colour, roughness=0.25)
     for place in places:
-        bpy.ops.mesh.primitive_uv_sphere_add(radius=CONE_BALL, location=place, segments=32, ring_count=16)
+        bpy.ops.mesh.primitive_uv_sphere_add(radius=radius, location=place, segments=32, ring_count=16)
         bpy.ops.object.shade_smooth()
         bpy.context.object.data.materials.append(material)
 
@@ -254,26 +254,36 @@ def add_studio() -> None:
     """A pale wall behind both halves, soft light from the upper left, a long lens in front."""
     bpy.ops.mesh.primitive_plane_add(size=60, location=(0, WALL_DEPTH, 0), rotation=(np.pi / 2, 0, 0))
     bpy.context.object.data.materials.append(plain_material("wall", PAPER, roughness=1.0))
+    add_light(0.5, (("key", (5, -12, 9), 7, 1250), ("fill", (-9, -12, 2), 10, 450)))
+    add_camera(lens=120, distance=8 * 120 / 36)
+
+
+def add_light(strength: float, lamps: tuple[tuple[str, tuple[float, float, float], float, float], ...]) -> None:
+    """A pale sky and lamps that shine at the origin; name, place, size and power of each."""
     world = bpy.data.worlds.new("studio")
     world.use_nodes = True
     world.node_tree.nodes["Background"].inputs["Color"].default_value = linear((0.97, 0.98, 1.0))
-    world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.5
+    world.node_tree.nodes["Background"].inputs["Strength"].default_value = strength
     bpy.context.scene.world = world
-    for name, place, size, power in (("key", (5, -12, 9), 7, 1250), ("fill", (-9, -12, 2), 10, 450)):
+    for name, place, size, power in lamps:
         lamp = bpy.data.lights.new(name, "AREA")
         lamp.size, lamp.energy = size, power
         added = add_object(name, lamp)
         added.location = place
         added.rotation_euler = (-added.location).to_track_quat("-Z", "Y").to_euler()
+
+
+def add_camera(lens: float, distance: float) -> None:
+    """Looks along +y at the origin; the picture is 36 * distance / lens units wide there."""
     camera = bpy.data.cameras.new("camera")
-    camera.lens, camera.sensor_width = 120, 36
+    camera.lens, camera.sensor_width = lens, 36
     added = add_object("camera", camera)
-    added.location = (0, -8 * 120 / 36, 0)
+    added.location = (0, -distance, 0)
     added.rotation_euler = (np.pi / 2, 0, 0)
     bpy.context.scene.camera = added
 
 
-def render(path: Path, samples: int) -> None:
+def render(path: Path, samples: int, width: int = WIDTH, height: int = HEIGHT) -> None:
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.cycles.device, scene.cycles.samples, scene.cycles.seed = "CPU", samples, 0
@@ -284,8 +294,8 @@ def render(path: Path, samples: int) -> None:
         scene.cycles.use_denoising, scene.cycles.samples = False, 4 * samples
     scene.render.dither_intensity = 0  # flat tones stay flat, which halves the file
     scene.view_settings.view_transform = "Standard"
-    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = WIDTH, HEIGHT, 100
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = width, height, 100
     scene.render.image_settings.file_format = "PNG"
-    scene.render.image_settings.color_mode, scene.render.image_settings.compression = "RGB", 100
+    scene.render.image_settings.color_mode, scene.render.image_settings.compression = "RGBA", 100
     scene.render.filepath = str(path)
     bpy.ops.render.render(write_still=True)

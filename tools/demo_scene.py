@@ -12,6 +12,7 @@ import importlib
 import os
 import sys
 import traceback
+from collections.abc import Callable
 from pathlib import Path
 
 import bpy
@@ -54,14 +55,14 @@ def main() -> None:
 def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--extension", type=Path, required=True, help="the extension's zip")
-    parser.add_argument("--out", type=Path, required=True, help="folder for suzanne.blend and suzanne.png")
+    parser.add_argument("--out", type=Path, required=True, help="folder for the scene and the picture")
     parser.add_argument("--samples", type=int, default=64, help="samples a pixel of the picture")
     own = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
     return parser.parse_args(own)
 
 
 def install_extension(archive: Path):
-    """Install the zip as a user would and return the lsgp it brought."""
+    """Install the zip as a user would, leave an empty scene with it enabled, and return the lsgp it brought."""
     bpy.ops.extensions.package_install_files(filepath=str(archive), repo="user_default", enable_on_install=True)
     if ADDON not in bpy.context.preferences.addons:
         raise SystemExit(f"demo: Blender did not enable {archive}; the lines above say why")
@@ -70,12 +71,12 @@ def install_extension(archive: Path):
         raise SystemExit(
             f"demo: lsgp came from {lsgp.__file__} and not from the extension; remove it from Python's path"
         )
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    bpy.ops.preferences.addon_enable(module=ADDON)  # the factory settings have dropped it
     return lsgp
 
 
 def add_suzanne(subdivisions: int) -> bpy.types.Object:
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    bpy.ops.preferences.addon_enable(module=ADDON)  # the factory settings have dropped it
     bpy.ops.mesh.primitive_monkey_add()
     suzanne = bpy.context.object
     suzanne.modifiers.new("Subdivision", "SUBSURF").levels = subdivisions
@@ -119,7 +120,16 @@ def measure(lsgp, obj: bpy.types.Object):
 
 
 def unwrapped_by_blender(lsgp, obj: bpy.types.Object, cut_edges: np.ndarray, method: str):
-    """A copy of the mesh with seams on the given cuts, unwrapped by Blender and measured; the copy is removed."""
+    """What Blender makes of the mesh with seams on the given cuts, measured."""
+    copy = add_copy_unwrapped_by_blender(obj, cut_edges, method)
+    measured = measure(lsgp, copy)[1]
+    bpy.data.meshes.remove(copy.data)
+    bpy.context.view_layer.objects.active = obj
+    return measured
+
+
+def add_copy_unwrapped_by_blender(obj: bpy.types.Object, cut_edges: np.ndarray, method: str) -> bpy.types.Object:
+    """A copy of the object with seams on the given cuts, unwrapped by Blender."""
     copy = obj.copy()
     copy.data = obj.data.copy()
     bpy.context.collection.objects.link(copy)
@@ -128,10 +138,7 @@ def unwrapped_by_blender(lsgp, obj: bpy.types.Object, cut_edges: np.ndarray, met
         edge.use_seam = frozenset(edge.vertices) in cuts
     bpy.ops.object.select_all(action="DESELECT")
     run_in_edit_mode(copy, bpy.ops.uv.unwrap, method=method)
-    measured = measure(lsgp, copy)[1]
-    bpy.data.meshes.remove(copy.data)
-    bpy.context.view_layer.objects.active = obj
-    return measured
+    return copy
 
 
 def print_table(rows: list[tuple[str, object]]) -> None:
@@ -146,10 +153,11 @@ def print_table(rows: list[tuple[str, object]]) -> None:
     print(flush=True)
 
 
-if __name__ == "__main__":
+def run_as_program(job: Callable[[], None]) -> None:
+    """Run the job and end the process with its exit code."""
     status = 0
     try:
-        main()
+        job()
     except SystemExit as ending:
         status = ending.code if isinstance(ending.code, int) else 1
         if isinstance(ending.code, str):
@@ -161,3 +169,7 @@ if __name__ == "__main__":
     sys.stderr.flush()
     # The bpy module hangs at exit while classes of an add-on are registered.
     os._exit(status)
+
+
+if __name__ == "__main__":
+    run_as_program(main)
