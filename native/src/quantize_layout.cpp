@@ -25,21 +25,24 @@ namespace lsgp {
 
 namespace {
 
+// Choices of lattice points.
 constexpr int tried_angles = 16;          // of the layout, within one turn of the lattice
-constexpr std::size_t tried_targets = 4;  // choices of points that are worth a repair
+constexpr std::size_t tried_targets = 4;  // that are worth a repair
 constexpr std::size_t few_targets = 2;    // that are worth following, and all that are tried on an automatic grid
-constexpr double stretched_energy = 1.5;  // symmetric Dirichlet energy of a triangle that calls for smoothing
-constexpr int smoothed_rings = 4;
-constexpr int searched_angles = 6;  // of those, where the nearest points are not valid
+// Following them.
+constexpr int most_moves = 20;
+constexpr double shortest_step = 0.01;  // of the way
+// Smoothing by the symmetric Dirichlet energy, 1 for an isometry.
+constexpr double stretched_energy = 1.5;  // of a triangle, or of a layout beside its start, that calls for it
+constexpr int smoothed_rings = 4;         // around stretched triangles
 constexpr int smoothing_steps = 4;
-constexpr double least_decrease = 1e-3;  // of the energy, for which a further step is taken
-constexpr double poor_energy = 1.5;      // of a start that is smoothed first
+constexpr double poor_energy = 1.5;  // of a start that is smoothed first
 constexpr int poor_steps = 20;
-constexpr double shortest_step = 0.01;  // of the way to the lattice points
-constexpr double any_energy = std::numeric_limits<double>::infinity();
-constexpr double mendable_share = 0.1;  // of the triangles, stretched, that are smoothed there
-constexpr double easy_share = 2e-4;     // of the triangles, flipped, that are repaired on an automatic grid
-constexpr int most_moves = 20;          // on it
+constexpr double least_decrease = 1e-3;  // of the energy, for which a further step is taken
+// Automatic grids.
+constexpr double mendable_share = 0.1;  // of the triangles, stretched, that are smoothed
+constexpr double easy_share = 2e-4;     // of the triangles, flipped, that are repaired
+constexpr double any_energy = std::numeric_limits<double>::infinity();  // where the grid is given
 
 std::vector<int> turns_of_cuts(const Eigen::VectorXd& rotation, int symmetry) {
   std::vector<int> out;
@@ -328,10 +331,14 @@ void LayoutQuantizer::smooth(double scale, std::vector<char> marked, int steps, 
   for (Index v = 0; v < mesh_.vertex_count(); ++v) {
     if (mesh_.loop_of_vertex[v] == none && curvature_.at_vertex[v] != 0) marked[v] = 0;
   }
-  Relaxation(mesh_, geometry_, cut_mesh_, rest_.array() + std::log(scale),
-             Eigen::VectorXd::Zero(mesh_.triangle_count()), free_vertices(mesh_, cut_mesh_, motion_of_copies_, marked),
-             position)
-      .smooth(DistortionEnergy::Kind::symmetric_dirichlet, steps, least_decrease);
+  try {
+    Relaxation(mesh_, geometry_, cut_mesh_, rest_.array() + std::log(scale),
+               Eigen::VectorXd::Zero(mesh_.triangle_count()),
+               free_vertices(mesh_, cut_mesh_, motion_of_copies_, marked), position)
+        .smooth(DistortionEnergy::Kind::symmetric_dirichlet, steps, least_decrease);
+  } catch (const Error&) {
+    // What cannot be factored stays as it is: valid, if not smooth.
+  }
 }
 
 // Triangles that are much more distorted than the start.
