@@ -206,8 +206,8 @@ class SeamlessReport:
     tile_size: side of a cell on the surface. cell: the same in texture coordinates.
     energy_before, energy_after: symmetric Dirichlet energy, 1 is isometric, around the rounding of the translations.
     cut_nodes: (c, 2) int32 vertices at the cuts' tails and heads. cut_turns: (c,) int32, 0 .. symmetry - 1.
-    cut_translations: (c, 2) int64, (a, b). cut_errors: (c,) float64, the largest distance of a vertex, as float32 stores
-        it, from the image of its sister, in cells. error: the largest of them, 0 on square lattices.
+    cut_translations: (c, 2) int64, (a, b). cut_errors: (c,) float64, the largest distance of a vertex, as float32
+        stores it, from the image of its sister, in cells. error: the largest of them, 0 on square lattices.
     flat_cones: cones that came out flat and are none any more. merged_cones: cones given up for another within a cell.
     relaxed_cones: cones off the lattice; the cuts to them show a seam.
     """
