@@ -209,7 +209,7 @@ class Exchange {
   static constexpr double least_gain = 1e-12;
   static constexpr std::size_t most_trials = 100;
   static constexpr int least_stretch_trials = 24, most_stretch_trials = 400;
-  static constexpr double stretch_work = 2e6;  // vertices times trials
+  static constexpr double stretch_work = 5e5;  // vertices times trials
   static constexpr std::size_t first_exchanges = 50, continued_exchanges = 10, second_exchanges = 30;
 
   // One turn more at a cone, and one less at another where the sum is kept.

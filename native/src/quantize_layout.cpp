@@ -27,6 +27,7 @@ namespace {
 
 // Choices of lattice points.
 constexpr int tried_angles = 16;          // of the layout, within one turn of the lattice
+constexpr int few_angles = 4;             // of those that are searched from on an automatic grid
 constexpr std::size_t tried_targets = 4;  // that are worth a repair
 constexpr std::size_t few_targets = 2;    // that are worth following, and all that are tried on an automatic grid
 // Following them.
@@ -265,7 +266,7 @@ Eigen::VectorXcd LayoutQuantizer::integers_of(const Eigen::VectorXcd& position) 
   return out;
 }
 
-std::vector<LayoutQuantizer::Target> LayoutQuantizer::find_targets(double density) const {
+std::vector<LayoutQuantizer::Target> LayoutQuantizer::find_targets(double density, int searched_angles) const {
   if (integers_.size() == 0) return {{density, integers_, 0}};
   std::vector<Target> out;
   const Eigen::VectorXcd wanted = reduction_.basis.partialPivLu().solve(integers_);
@@ -283,7 +284,7 @@ std::vector<LayoutQuantizer::Target> LayoutQuantizer::find_targets(double densit
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.choice.cost < b.choice.cost; });
   for (Candidate& candidate : candidates) {
-    if (!candidate.choice.valid()) {
+    if (!candidate.choice.valid() && searched_angles-- > 0) {
       candidate.choice = search_->improve(candidate.motion * wanted, candidate.choice);
     }
     if (!candidate.choice.valid()) continue;
@@ -399,7 +400,7 @@ bool LayoutQuantizer::follow(double scale, const Eigen::VectorXcd& change, Eigen
 
 std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, double most_energy) const {
   const bool quick = std::isfinite(most_energy);
-  const std::vector<Target> targets = find_targets(density);
+  const std::vector<Target> targets = find_targets(density, quick ? few_angles : tried_angles);
   // Beside relaxed cones nothing tells whether the points can be reached, and following them would take too long.
   const int ways = relaxed_ || quick ? 1 : 2;
   for (int in_steps = 0; in_steps < ways; ++in_steps) {

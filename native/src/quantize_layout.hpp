@@ -57,7 +57,7 @@ class LayoutQuantizer {
   void set_start(const ComponentMap& map);
   std::vector<MovingTriangle> moving_triangles(const ComponentMap& map, const std::vector<Index>& relaxed);
   Eigen::VectorXcd integers_of(const Eigen::VectorXcd& position) const;
-  std::vector<Target> find_targets(double density) const;
+  std::vector<Target> find_targets(double density, int searched_angles) const;
   Eigen::VectorXcd displacement(const Eigen::VectorXcd& change) const;
   Validity check(const Eigen::VectorXcd& position) const;
   bool repair(double scale, const Eigen::VectorXcd& before, Eigen::VectorXcd& position) const;
