@@ -34,10 +34,10 @@ ALWAYS_ELSEWHERE = 32
 SELECTED = {
     "cube-768": TILES,
     "octa-flower": (AUTOMATIC, 8, 32, 512),
-    "fandisk": (16, 32),
+    "fandisk": (AUTOMATIC, 16, 32),
     "igea-16k": (32,),
     "max-planck-25k": (64,),
-    "hand-5k": (32, 64, 128),
+    "hand-5k": (AUTOMATIC, 32, 64, 128),
     "bird": (16, 32, 128),
     "kitten-genus1": (32,),
     "eight-genus2": TILES,
@@ -109,6 +109,7 @@ def test_every_grid_is_exact_or_refused(name: str, tiles: float) -> None:
     report = found.result.seamless
     assert report.error == 0
     assert found.result.flipped.size == found.result.wrong_angle_sums.size == 0
+    assert tiles != AUTOMATIC or report.energy_after <= 1.1 * report.energy_before
     assert tiles == AUTOMATIC or (report.tiles != tiles) == any(w.code == "GRID_REFINED" for w in found.result.warnings)
 
 
