@@ -90,6 +90,7 @@ const char* exception_name(lsgp::ErrorKind kind) {
     case lsgp::ErrorKind::topology: return "TopologyError";
     case lsgp::ErrorKind::curvature: return "CurvatureError";
     case lsgp::ErrorKind::solver: return "SolverError";
+    case lsgp::ErrorKind::cancelled: return "Cancelled";
   }
   return "LsgpError";
 }
@@ -123,6 +124,14 @@ py::dict to_dict(const lsgp::SeamQuality& seams) {
   out["sister_ratio_max"] = seams.sister_ratio_max;
   out["rotation_residual"] = seams.rotation_residual;
   out["translation_residual"] = seams.translation_residual;
+  return out;
+}
+
+py::dict to_dict(const lsgp::RepairReport& repair) {
+  py::dict out;
+  out["flipped_before"] = repair.flipped_before;
+  out["wrong_angle_sums_before"] = repair.wrong_angle_sums_before;
+  out["iterations"] = repair.iterations;
   return out;
 }
 
@@ -207,19 +216,36 @@ lsgp::Options to_options(const py::dict& values) {
   for (const auto& [vertex, turning] : values["loop_turning"].cast<py::dict>()) {
     options.loop_turning.emplace_back(vertex.cast<Index>(), turning.cast<double>());
   }
+  using lsgp::Mode, lsgp::Overlaps;
+  options.mode = choose<Mode>(text("mode"), {{"conformal", Mode::conformal}, {"low-stretch", Mode::low_stretch}});
+  options.stretch = values["stretch"].cast<double>();
+  options.repair = values["repair"].cast<bool>();
+  options.overlaps = choose<Overlaps>(text("overlaps"), {{"keep", Overlaps::keep}, {"split", Overlaps::split}});
   if (!values["seamless"].is_none()) options.seamless = to_seamless(values["seamless"].cast<py::dict>());
   return options;
+}
+
+// A callable that takes what is done; False from it stops the verb, and so does what it raises.
+lsgp::Progress to_progress(const py::object& callback) {
+  if (callback.is_none()) return {};
+  return [&callback](double done) {
+    const py::gil_scoped_acquire acquire;
+    return !callback(done).is(py::bool_(false));
+  };
 }
 
 py::dict parameterize(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
                       const IndexArray& seams, const IndexArray& cones, const FloatArray& angles,
                       const BoolArray& has_angle, const py::dict& option_values, const IndexArray& pinned_corners,
-                      const FloatArray& pinned_uv) {
-  const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
+                      const FloatArray& pinned_uv, const FloatArray& importance, const py::object& progress) {
+  lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
+  if (importance.ndim() != 1) throw py::value_error("array of the wrong shape");
+  surface.importance = Eigen::Map<const Eigen::VectorXd>(importance.data(), importance.size());
   const lsgp::Cones wanted = to_cones(cones, angles, has_angle);
   const lsgp::Options options = to_options(option_values);
   const lsgp::Pins pins{to_vector(pinned_corners), to_matrix<lsgp::CornerUv>(pinned_uv)};
-  const lsgp::Result result = without_gil([&] { return lsgp::parameterize(surface, wanted, options, pins); });
+  const lsgp::Progress tell = to_progress(progress);
+  const lsgp::Result result = without_gil([&] { return lsgp::parameterize(surface, wanted, options, pins, tell); });
   py::array_t<bool> solved(static_cast<py::ssize_t>(result.island.size()));
   for (std::size_t f = 0; f < result.island.size(); ++f) solved.mutable_at(f) = result.island[f] >= 0;
   py::dict seconds;
@@ -235,6 +261,9 @@ py::dict parameterize(const FloatArray& positions, const IndexArray& triangles, 
   out["seams"] = to_dict(result.seams);
   out["flipped"] = to_array(result.flipped);
   out["wrong_angle_sums"] = to_array(result.wrong_angle_sums);
+  out["overlapping"] = to_array(result.overlapping);
+  out["overlap_area"] = result.overlap_area;
+  out["repair"] = to_dict(result.repair);
   out["cone_angle_error"] = result.cone_angle_error;
   out["log_scale"] = to_array(result.log_scale);
   out["seamless"] = result.seamless ? py::object(to_dict(*result.seamless)) : py::none();

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Native verbs; call them through `lsgp.api`, which checks and converts."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,8 @@ def parameterize(
     options: dict[str, Any],
     pinned_corners: _Indices,
     pinned_uv: _Floats,
+    importance: _Floats,
+    progress: Callable[[float], bool | None] | None,
 ) -> dict[str, Any]: ...
 def find_cuts(
     positions: _Floats,

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from numbers import Integral, Real
 from typing import Any, Literal, get_args
@@ -24,6 +24,10 @@ SeamMode = Literal["follow", "boundary", "ignore"]
 BorderMode = Literal["free", "straight"]
 Lattice = Literal["square", "stripe", "translation", "triangle", "hexagon"]
 CoarseGrid = Literal["refine", "merge", "relax"]
+Mode = Literal["conformal", "low-stretch"]
+Overlaps = Literal["keep", "split"]
+
+Progress = Callable[[float], bool | None]
 
 
 def _require_choice(name: str, value: Any, choices: tuple[str, ...]) -> None:
@@ -40,12 +44,15 @@ class Surface:
     edges: (e, 2) int32, the edges a cut may follow (mesh edges, not the diagonals of triangulated polygons);
         None for all edges of the triangles.
     seams: (s, 2) int32, marked edges; `Options.seams` says what they mean.
+    importance: (n,) float64, at least 0: how much stretch at each vertex weighs in the mode "low-stretch"; None: all
+        vertices alike.
     """
 
     positions: FloatArray
     triangles: IndexArray
     edges: IndexArray | None = None
     seams: IndexArray | None = None
+    importance: FloatArray | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "positions", _float_rows(self.positions, 3, "positions"))
@@ -54,6 +61,13 @@ class Surface:
             object.__setattr__(self, "edges", _index_rows(self.edges, 2, "edges"))
         seams = np.empty((0, 2), np.int32) if self.seams is None else self.seams
         object.__setattr__(self, "seams", _index_rows(seams, 2, "seams"))
+        if self.importance is not None:
+            importance = np.asarray(self.importance)
+            if importance.shape != (len(self.positions),):
+                raise InputError(
+                    "WRONG_SHAPE", f"importance has shape {importance.shape}; pass ({len(self.positions)},)."
+                )
+            object.__setattr__(self, "importance", _floats(importance, "importance"))
 
 
 @dataclass(frozen=True)
@@ -77,6 +91,8 @@ _CHOICES = {
     "method": Method,
     "seams": SeamMode,
     "border": BorderMode,
+    "mode": Mode,
+    "overlaps": Overlaps,
 }
 
 
@@ -132,6 +148,11 @@ class Options:
     loop_turning: total turning of borders, radians, by any vertex on each; others turn as they distort least. A free
         border about which the metric turns almost once, a hole, needs no cut and gets none.
     seamless: round angles and translations so that a tileable texture shows no seam; None: leave them.
+    mode: "conformal" keeps angles; "low-stretch" keeps lengths as far as the cone angles let it.
+    stretch: with "low-stretch", from 0, the conformal map, to 1, that of least stretch.
+    repair: turn flipped triangles over and put angles right that are off by a turn.
+    overlaps: "keep" islands that lie on themselves, or "split" them along further cuts until none does; transitions
+        stay exact.
     """
 
     prescription: PrescriptionRule | None = None
@@ -141,6 +162,10 @@ class Options:
     border: BorderMode = "free"
     loop_turning: Mapping[int, float] = field(default_factory=dict)
     seamless: Seamless | None = None
+    mode: Mode = "conformal"
+    stretch: float = 1.0
+    repair: bool = True
+    overlaps: Overlaps = "keep"
 
     def __post_init__(self) -> None:
         for name, choices in _CHOICES.items():
@@ -149,6 +174,10 @@ class Options:
                 _require_choice(name, value, get_args(choices))
         if not (self.seamless is None or isinstance(self.seamless, Seamless)):
             raise InputError("WRONG_PARAMETER", f"seamless is {self.seamless!r}; pass a Seamless, or None.")
+        if not isinstance(self.stretch, Real) or isinstance(self.stretch, bool):
+            raise InputError("WRONG_PARAMETER", f"stretch is {self.stretch!r}; pass a number from 0 to 1.")
+        if not isinstance(self.repair, bool):
+            raise InputError("WRONG_PARAMETER", f"repair is {self.repair!r}; pass True or False.")
         if not isinstance(self.loop_turning, Mapping):
             raise InputError(
                 "WRONG_PARAMETER", f"loop_turning is {self.loop_turning!r}; pass angles by vertices of borders."
@@ -229,6 +258,19 @@ class SeamlessReport:
 
 
 @dataclass(frozen=True, slots=True)
+class RepairReport:
+    """What the unfolding left to repair, and the work of that and of relaxing the map.
+
+    flipped_before, wrong_angle_sums_before: counts after the first unfolding. iterations: of Newton's method, those of
+    the mode "low-stretch" included.
+    """
+
+    flipped_before: int
+    wrong_angle_sums_before: int
+    iterations: int
+
+
+@dataclass(frozen=True, slots=True)
 class Result:
     """A map and everything imposed on it and measured of it.
 
@@ -240,6 +282,9 @@ class Result:
     cones, cone_angles: (k,) int32 and (k,) float64, radians, the angles that were imposed.
     flipped: indices of triangles with UV area <= 0. wrong_angle_sums: vertices whose UV angles do not add up to their
         prescribed angle (a deviation is a whole turn). The map is valid when both are empty.
+    overlapping: indices of triangles that lie on others. overlap_area: area of all pairs of them together, as a share
+        of the layout's area.
+    repair: what the unfolding left to repair.
     cone_angle_error: largest deviation of a cone's UV angle sum from its imposed angle, radians.
     log_scale: (n,) float64, predicted logarithm of the length scale at each vertex, area-weighted mean 0 on an island.
     seamless: the certificate of a seamless layout; None where none was asked for. Such a layout is not scaled into the
@@ -258,6 +303,9 @@ class Result:
     seams: SeamQuality
     flipped: IndexArray
     wrong_angle_sums: IndexArray
+    overlapping: IndexArray
+    overlap_area: float
+    repair: RepairReport
     cone_angle_error: float
     log_scale: FloatArray
     seamless: SeamlessReport | None
@@ -312,6 +360,7 @@ def parameterize(
     angles: Sequence[float | None] | None = None,
     options: Options = Options(),
     pins: Pins | None = None,
+    progress: Progress | None = None,
 ) -> Result:
     """Cut the surface through its cones and unfold it with exact transitions across every cut.
 
@@ -319,10 +368,20 @@ def parameterize(
     pins: with two or more on a component its map goes through them, and its place, size and turn are theirs; with one,
         its place is.
     Components that cannot be solved are named in a warning when others could; the first error is raised otherwise.
-    Raises InputError, TopologyError, CurvatureError, SolverError.
+    progress: called now and then with how much is done, 0 to 1; where it returns False, Cancelled is raised, and what
+        it raises itself is raised here.
+    Raises InputError, TopologyError, CurvatureError, SolverError, Cancelled.
     """
     pins = Pins(np.empty(0, np.int32), np.empty((0, 2))) if pins is None else pins
-    out = _lsgp.parameterize(*_surface_arrays(surface), *_cone_arrays(cones, angles, options), pins.corners, pins.uv)
+    out = _lsgp.parameterize(
+        *_surface_arrays(surface),
+        *_cone_arrays(cones, angles, options),
+        pins.corners,
+        pins.uv,
+        np.empty(0) if surface.importance is None else surface.importance,
+        progress,
+    )
+    out["repair"] = RepairReport(**out["repair"])
     out["distortion"] = Distortion(**out["distortion"])
     out["seams"] = SeamQuality(**out["seams"])
     out["seamless"] = None if out["seamless"] is None else SeamlessReport(**out["seamless"])

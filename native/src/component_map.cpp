@@ -168,17 +168,17 @@ void twist_gradually(const HalfedgeMesh& mesh, const Geometry& geometry, const C
 
 ComponentMap attempt_map(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
                          const std::vector<std::pair<Index, Complex>>& pinned_corners, const Options& options,
-                         Effort effort, std::vector<Finding>& findings, StageSeconds& seconds) {
+                         Effort effort, std::vector<Finding>& findings, Monitor& monitor) {
   // Border edges whose direction is imposed.
   const std::vector<Index> aligned =
       cones.border == BorderMode::straight ? straight_edges(mesh, cones.vertices) : corner_edges(mesh, cones.vertices);
   ComponentMap map;
   {
-    StageTimer timer(seconds, "prescribe");
+    const Monitor::Stage stage(monitor, "prescribe");
     map.curvature = prescribe(mesh, geometry, cones, options.prescription, findings);
   }
   {
-    StageTimer timer(seconds, "cut");
+    const Monitor::Stage stage(monitor, "cut");
     for (const Index v : inside_only(mesh, cones.vertices)) {
       const bool flat = cones.symmetry > 0 && map.curvature.at_vertex[v] == 0;
       (flat ? map.flat_cones : map.cones).push_back(v);
@@ -193,7 +193,7 @@ ComponentMap attempt_map(const HalfedgeMesh& mesh, const Geometry& geometry, con
     map.cut_mesh = cut_open(mesh, map.cut_graph);
     map.pins = pins_of_copies(map.cut_mesh, pinned_corners);
   }
-  StageTimer timer(seconds, "unfold");
+  const Monitor::Stage stage(monitor, "unfold");
   if (options.method == Method::lscm) {
     map.pins.clear();  // a comparison: its two pins are its own
     map.position = unfold_lscm(mesh, geometry, map.cut_mesh);
@@ -257,9 +257,9 @@ bool has_choice(const ComponentCones& cones, const Options& options) {
 
 ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
                            const std::vector<std::pair<Index, Complex>>& pinned_corners, const Options& options,
-                           std::vector<Finding>& findings, StageSeconds& seconds) {
+                           std::vector<Finding>& findings, Monitor& monitor) {
   if (!has_choice(cones, options)) {
-    return attempt_map(mesh, geometry, cones, pinned_corners, options, Effort::global, findings, seconds);
+    return attempt_map(mesh, geometry, cones, pinned_corners, options, Effort::global, findings, monitor);
   }
   // Wide angles distort least but may leave turns with neighbouring vertices.
   std::optional<ComponentMap> best;
@@ -268,7 +268,7 @@ ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, c
   for (const double largest : {largest_angle, 2.5 * M_PI, 2 * M_PI}) {
     bounded.largest_angle = largest;
     std::vector<Finding> found;
-    ComponentMap map = attempt_map(mesh, geometry, bounded, pinned_corners, options, Effort::local, found, seconds);
+    ComponentMap map = attempt_map(mesh, geometry, bounded, pinned_corners, options, Effort::local, found, monitor);
     if (best && map.validity.defects() >= best->validity.defects()) continue;
     best = std::move(map);
     best_bounded = bounded;
@@ -277,7 +277,7 @@ ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, c
   }
   if (best->validity.defects() > 0) {
     of_best.clear();
-    best = attempt_map(mesh, geometry, best_bounded, pinned_corners, options, Effort::global, of_best, seconds);
+    best = attempt_map(mesh, geometry, best_bounded, pinned_corners, options, Effort::global, of_best, monitor);
   }
   findings.insert(findings.end(), of_best.begin(), of_best.end());
   return std::move(*best);

@@ -11,6 +11,7 @@
 #include "cut_graph.hpp"
 #include "cut_mesh.hpp"
 #include "distortion.hpp"
+#include "monitor.hpp"
 #include "pins.hpp"
 
 namespace lsgp {
@@ -31,11 +32,11 @@ struct ComponentMap {
   Validity validity;
 };
 
-// pinned_corners: corners of the component and their places.  findings and seconds are added to.
+// pinned_corners: corners of the component and their places.  findings are added to.
 // Throws what the stages throw, in the component's own numbering.
 ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
                            const std::vector<std::pair<Index, Complex>>& pinned_corners, const Options& options,
-                           std::vector<Finding>& findings, StageSeconds& seconds);
+                           std::vector<Finding>& findings, Monitor& monitor);
 
 // Measure positions u + iv at the component's corners, (3m), against what the map imposed.
 void check_seams(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners, ComponentMap& map);

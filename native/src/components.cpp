@@ -156,14 +156,4 @@ Elements in_source(const Component& component, Elements elements) {
   return elements;
 }
 
-StageTimer::StageTimer(StageSeconds& stages, const char* stage) : stages_(stages) {
-  const auto is_stage = [&](const auto& entry) { return entry.first == stage; };
-  place_ = static_cast<std::size_t>(std::find_if(stages.begin(), stages.end(), is_stage) - stages.begin());
-  if (place_ == stages.size()) stages.emplace_back(stage, 0.0);  // here, because a destructor must not throw
-}
-
-StageTimer::~StageTimer() {
-  stages_[place_].second += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-}
-
 }  // namespace lsgp

@@ -2,7 +2,6 @@
 // From the caller's surface to its components and back: every component is solved for itself.
 #pragma once
 
-#include <chrono>
 #include <string>
 
 #include "curvature.hpp"
@@ -45,6 +44,7 @@ void for_each_component(const std::vector<Component>& components, std::vector<Fi
     try {
       solve(i);
     } catch (const Error& error) {
+      if (error.code() == Code::cancelled) throw;
       failures.emplace_back(i, Error(error.code(), error.what(), in_source(components[i], error.elements())));
       if (failures.size() == components.size()) throw failures.front().second;
     }
@@ -56,19 +56,5 @@ void for_each_component(const std::vector<Component>& components, std::vector<Fi
          {ElementKind::triangles, components[i].source_triangle}});
   }
 }
-
-// Adds the wall-clock time until its end to a stage.
-class StageTimer {
- public:
-  StageTimer(StageSeconds& stages, const char* stage);
-  ~StageTimer();
-  StageTimer(const StageTimer&) = delete;
-  StageTimer& operator=(const StageTimer&) = delete;
-
- private:
-  StageSeconds& stages_;
-  std::size_t place_ = 0;  // of the stage in them
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-};
 
 }  // namespace lsgp

@@ -28,9 +28,11 @@ const char* name(Code code) {
     case Code::cuts_blocked: return "CUTS_BLOCKED";
     case Code::cone_angle_range: return "CONE_ANGLE_RANGE";
     case Code::gauss_bonnet: return "GAUSS_BONNET";
+    case Code::angles_impossible: return "ANGLES_IMPOSSIBLE";
     case Code::seamless_impossible: return "SEAMLESS_IMPOSSIBLE";
     case Code::solver_failed: return "SOLVER_FAILED";
     case Code::grid_too_coarse: return "GRID_TOO_COARSE";
+    case Code::cancelled: return "CANCELLED";
     case Code::component_skipped: return "COMPONENT_SKIPPED";
     case Code::isolated_vertices: return "ISOLATED_VERTICES";
     case Code::degenerate_faces: return "DEGENERATE_FACES";
@@ -52,6 +54,8 @@ const char* name(Code code) {
     case Code::grid_refined: return "GRID_REFINED";
     case Code::cones_merged: return "CONES_MERGED";
     case Code::cones_not_snapped: return "CONES_NOT_SNAPPED";
+    case Code::angles_adjusted: return "ANGLES_ADJUSTED";
+    case Code::overlapping_triangles: return "OVERLAPPING_TRIANGLES";
   }
   return "UNKNOWN";
 }
@@ -72,9 +76,11 @@ ErrorKind error_kind(Code code) {
     case Code::cuts_blocked: return ErrorKind::topology;
     case Code::cone_angle_range:
     case Code::gauss_bonnet:
+    case Code::angles_impossible:
     case Code::seamless_impossible: return ErrorKind::curvature;
     case Code::solver_failed:
     case Code::grid_too_coarse: return ErrorKind::solver;
+    case Code::cancelled: return ErrorKind::cancelled;
     default: return ErrorKind::input;
   }
 }

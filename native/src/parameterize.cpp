@@ -7,6 +7,7 @@
 #include "component_map.hpp"
 #include "components.hpp"
 #include "lsgp/lsgp.hpp"
+#include "monitor.hpp"
 #include "seamless.hpp"
 #include "text.hpp"
 #include "validation.hpp"
@@ -45,47 +46,61 @@ void move_findings(const Component& component, std::vector<Finding>& from, std::
 
 }  // namespace
 
-Result parameterize(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins) {
+Result parameterize(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
+                    const Progress& progress) {
   Result result;
+  Monitor monitor(progress, result.stage_seconds);
   Work work = [&] {
-    StageTimer timer(result.stage_seconds, "topology");
+    const Monitor::Stage stage(monitor, "topology");
     return prepare(surface, cones, options, result.warnings);
   }();
   require_valid(surface, pins);
   const std::vector<Component>& components = work.topology.components;
   std::vector<Index> pin_at(pins.corners.empty() ? 0 : 3 * surface.triangles.rows(), none);
   for (std::size_t i = 0; i < pins.corners.size(); ++i) pin_at[pins.corners[i]] = static_cast<Index>(i);
+  require_valid(options);
   if (options.seamless) require_valid(*options.seamless, options, pins);
+  constexpr double share_of_rounding = 0.5;
+  const double share_of_maps = options.seamless ? 1 - share_of_rounding : 1;
+  Index triangles_before = 0;
   std::vector<std::optional<Geometry>> geometries(components.size());
   std::vector<std::optional<ComponentMap>> maps(components.size());
   for_each_component(components, result.warnings, [&](std::size_t i) {
     const Component& component = components[i];
     const ComponentTask& task = work.tasks[i];
     std::vector<Finding> findings;
+    const auto share_up_to = [&](Index count) { return share_of_maps * count / surface.triangles.rows(); };
+    const double begin = share_up_to(triangles_before);
+    triangles_before += component.mesh.triangle_count();
+    const Monitor::Part part(monitor, begin, share_up_to(triangles_before));
+    monitor.advance(0);
     {
-      StageTimer timer(result.stage_seconds, "geometry");
+      const Monitor::Stage stage(monitor, "geometry");
       geometries[i] = require_geometry(component, result.warnings);
     }
     maps[i] = map_component(component.mesh, *geometries[i], task.cones, pinned_corners(component, pin_at, pins),
-                            options, findings, result.stage_seconds);
+                            options, findings, monitor);
     if (options.seamless) require_quantizable(component.mesh, *maps[i]);
     report_border_cones(component, task.border_cones, result.warnings);
     move_findings(component, findings, result.warnings);
   });
   if (options.seamless) {
-    StageTimer timer(result.stage_seconds, "quantize");
+    const Monitor::Stage stage(monitor, "quantize");
+    const Monitor::Part part(monitor, share_of_maps, 1);
+    monitor.advance(0);
     std::vector<SeamlessPart> parts;
     for (std::size_t i = 0; i < components.size(); ++i) {
       if (maps[i]) parts.push_back({&components[i], &*geometries[i], &work.tasks[i].cones, &*maps[i]});
     }
-    result.seamless = make_seamless(options, work.unit_scale, parts, result.warnings, result.stage_seconds);
+    result.seamless = make_seamless(options, work.unit_scale, parts, result.warnings, monitor);
   }
-  StageTimer timer(result.stage_seconds, "layout");
+  const Monitor::Stage stage(monitor, "layout");
   Assembly assembly(surface, components, result);
   for (std::size_t i = 0; i < components.size(); ++i) {
     if (maps[i]) assembly.add(i, work.tasks[i].cones, *geometries[i], std::move(*maps[i]));
   }
   assembly.finish(cones, work.topology.duplicates);
+  monitor.advance(1);
   return result;
 }
 

@@ -70,10 +70,10 @@ class GridSearch {
 
   // Merges the two nearest cones of the part that could not be laid out.  Returns whether there are any so near on a
   // grid of so many tiles.
-  bool merge_nearest(double tiles, const Options& options, StageSeconds& seconds) {
+  bool merge_nearest(double tiles, const Options& options, Monitor& monitor) {
     for (const ConePair& pair : quantizers_[failed_]->cone_pairs()) {
       if (pair.distance * tiles > near * extent()) return false;
-      if (!merge(pair, options, seconds)) continue;
+      if (!merge(pair, options, monitor)) continue;
       prepare(failed_);
       return true;
     }
@@ -112,7 +112,7 @@ class GridSearch {
   }
 
   // One of the cones takes up the curvature of both: the one whose own is nearer to that.
-  bool merge(const ConePair& pair, const Options& options, StageSeconds& seconds) {
+  bool merge(const ConePair& pair, const Options& options, Monitor& monitor) {
     SeamlessPart& part = parts_[failed_];
     const HalfedgeMesh& mesh = part.component->mesh;
     const Eigen::VectorXd& curvature = part.map->curvature.at_vertex;
@@ -132,7 +132,7 @@ class GridSearch {
     manual.prescription = PrescriptionRule::manual;
     try {
       std::vector<Finding> unsaid;
-      ComponentMap map = map_component(mesh, *part.geometry, merged, {}, manual, unsaid, seconds);
+      ComponentMap map = map_component(mesh, *part.geometry, merged, {}, manual, unsaid, monitor);
       if (map.validity.defects() > 0) return false;
       *part.map = std::move(map);
     } catch (const Error&) {
@@ -153,7 +153,7 @@ class GridSearch {
 };
 
 Grid find_grid(const Options& options, double unit_scale, GridSearch& search, std::vector<Finding>& findings,
-               StageSeconds& seconds) {
+               Monitor& monitor) {
   constexpr double any = std::numeric_limits<double>::infinity();
   const Seamless& seamless = *options.seamless;
   if (!seamless.tiles && !seamless.tile_size) {
@@ -169,7 +169,7 @@ Grid find_grid(const Options& options, double unit_scale, GridSearch& search, st
     auto grid = search.lay_out(asked, any);
     const auto give_up_cones = [&] {
       switch (seamless.coarse_grid) {
-        case CoarseGrid::merge: return search.merge_nearest(asked, options, seconds);
+        case CoarseGrid::merge: return search.merge_nearest(asked, options, monitor);
         case CoarseGrid::relax: return search.relax_near(asked);
         default: return false;
       }
@@ -364,11 +364,11 @@ void require_quantizable(const HalfedgeMesh& mesh, const ComponentMap& map) {
 }
 
 SeamlessReport make_seamless(const Options& options, double unit_scale, std::vector<SeamlessPart>& parts,
-                             std::vector<Finding>& findings, StageSeconds& seconds) {
+                             std::vector<Finding>& findings, Monitor& monitor) {
   const Seamless& seamless = *options.seamless;
   const PointLattice lattice(symmetry(seamless.lattice));
   GridSearch search(seamless, lattice, parts);
-  Grid grid = find_grid(options, unit_scale, search, findings, seconds);
+  Grid grid = find_grid(options, unit_scale, search, findings, monitor);
   // With parity cones are at the centres of cells: around a corner of cells an odd number of them may meet.
   const Complex shift = seamless.parity ? Complex(0.5, 0.5) : Complex(0, 0);
   std::vector<Eigen::VectorXcd*> layouts;

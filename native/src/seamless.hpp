@@ -8,6 +8,7 @@
 #include "components.hpp"
 #include "lsgp/options.hpp"
 #include "lsgp/result.hpp"
+#include "monitor.hpp"
 
 namespace lsgp {
 
@@ -30,6 +31,6 @@ void require_quantizable(const HalfedgeMesh& mesh, const ComponentMap& map);
 // to its last digit).  Maps are made again where cones are merged.  unit_scale: of the components' positions to the
 // caller's.  Throws GRID_TOO_COARSE, SEAMLESS_IMPOSSIBLE.
 SeamlessReport make_seamless(const Options& options, double unit_scale, std::vector<SeamlessPart>& parts,
-                             std::vector<Finding>& findings, StageSeconds& seconds);
+                             std::vector<Finding>& findings, Monitor& monitor);
 
 }  // namespace lsgp

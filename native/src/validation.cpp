@@ -49,7 +49,31 @@ void require_extent(const Positions& positions, const std::vector<char>& used) {
   }
 }
 
+void require_importance(const Eigen::VectorXd& importance, Index vertex_count) {
+  if (importance.size() == 0) return;
+  if (importance.size() != vertex_count) {
+    throw Error(Code::wrong_parameter, concat("There are ", importance.size(), " weights of importance for ",
+                                              vertex_count, " vertices. Give one for each."));
+  }
+  std::vector<Index> bad;
+  for (Index v = 0; v < vertex_count; ++v) {
+    if (!(importance[v] >= 0 && std::isfinite(importance[v]))) bad.push_back(v);
+  }
+  if (!bad.empty()) {
+    throw Error(Code::wrong_parameter,
+                concat("The importance of ", count(bad.size(), "vertex", "vertices"),
+                       " is negative or no finite number. Give weights of 0 or more."),
+                {ElementKind::vertices, bad});
+  }
+}
+
 }  // namespace
+
+void require_valid(const Options& options) {
+  if (options.stretch >= 0 && options.stretch <= 1) return;
+  throw Error(Code::wrong_parameter,
+              concat("The share of stretch to take away is ", options.stretch, ". Choose one from 0 to 1."));
+}
 
 void require_valid(const Surface& surface) {
   const Index n = static_cast<Index>(surface.positions.rows());
@@ -91,6 +115,7 @@ void require_valid(const Surface& surface) {
                 {ElementKind::vertices, bad});
   }
   require_extent(surface.positions, used);
+  require_importance(surface.importance, n);
   if (surface.edges) require_indices(*surface.edges, n, "edges");
   require_indices(surface.seams, n, "seams");
 }

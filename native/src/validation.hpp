@@ -3,11 +3,13 @@
 #pragma once
 
 #include "lsgp/errors.hpp"
+#include "lsgp/options.hpp"
 #include "lsgp/surface.hpp"
 
 namespace lsgp {
 
-// Throws EMPTY_MESH, INDEX_OUT_OF_RANGE, BAD_FACE, NON_FINITE_POSITION, SCALE_RANGE, DEGENERATE_MESH.
+// Throws EMPTY_MESH, INDEX_OUT_OF_RANGE, BAD_FACE, NON_FINITE_POSITION, SCALE_RANGE, DEGENERATE_MESH,
+// WRONG_PARAMETER.
 void require_valid(const Surface& surface);
 
 // For the vertices of one component.  Throws SCALE_RANGE where a few of them lie immeasurably far from all others, as
@@ -16,6 +18,9 @@ void require_comparable(const Positions& positions);
 
 // Throws CONE_INDEX, CONE_DUPLICATE, CONE_NOT_ON_SURFACE, ANGLE_COUNT, CONE_ANGLE_NON_FINITE, CONE_ANGLE_RANGE.
 void require_valid(const Surface& surface, const Cones& cones);
+
+// Throws WRONG_PARAMETER.
+void require_valid(const Options& options);
 
 // Throws PIN_INDEX, PIN_NON_FINITE.
 void require_valid(const Surface& surface, const Pins& pins);

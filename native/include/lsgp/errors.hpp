@@ -46,10 +46,13 @@ enum class Code {
   // CurvatureError
   cone_angle_range,
   gauss_bonnet,
+  angles_impossible,
   seamless_impossible,
   // SolverError
   solver_failed,
   grid_too_coarse,
+  // Cancelled
+  cancelled,
   // warnings
   component_skipped,
   isolated_vertices,
@@ -72,9 +75,11 @@ enum class Code {
   grid_refined,
   cones_merged,
   cones_not_snapped,
+  angles_adjusted,
+  overlapping_triangles,
 };
 
-enum class ErrorKind { input, topology, curvature, solver };
+enum class ErrorKind { input, topology, curvature, solver, cancelled };
 
 LSGP_API const char* name(Code code);  // "EMPTY_MESH", ...
 LSGP_API const char* name(ElementKind kind);

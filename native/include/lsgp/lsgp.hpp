@@ -8,6 +8,7 @@
 #include "lsgp/errors.hpp"
 #include "lsgp/export.hpp"
 #include "lsgp/options.hpp"
+#include "lsgp/progress.hpp"
 #include "lsgp/result.hpp"
 #include "lsgp/surface.hpp"
 
@@ -17,8 +18,9 @@ namespace lsgp {
 // A component that cannot be solved is reported as a finding when another one could, thrown otherwise.
 // pins: with two or more on a component its map goes through them, and its place, size and turn are theirs; with one,
 // its place is.
+// progress: may be empty.
 LSGP_API Result parameterize(const Surface& surface, const Cones& cones, const Options& options = {},
-                             const Pins& pins = {});
+                             const Pins& pins = {}, const Progress& progress = {});
 
 // The cuts alone (section 4.1): shortest paths that join cones and boundary loops and open every handle.  A map needs
 // fewer where the metric turns exactly once about a hole, which only its prescription tells.

@@ -27,6 +27,18 @@ enum class Method {
   lscm,  // the paper's comparison: the same cuts, two pinned vertices, no transitions (Levy et al. 2002)
 };
 
+// What a map keeps where it cannot keep both.
+enum class Mode {
+  conformal,    // angles
+  low_stretch,  // lengths, as far as the cone angles let it
+};
+
+// What becomes of islands that lie on themselves, as those with cones of negative curvature do.
+enum class Overlaps {
+  keep,
+  split,  // along further cuts, until no island does; transitions stay exact
+};
+
 // What a marked seam means.
 enum class SeamMode {
   follow,    // cuts run along seams wherever they can; seams that close off a part make it an island of its own
@@ -76,6 +88,10 @@ struct Options {
   // Total turning of boundary loops, radians, each named by a vertex on it; other loops turn as they distort least.
   std::vector<std::pair<Index, double>> loop_turning;
   std::optional<Seamless> seamless;
+  Mode mode = Mode::conformal;
+  double stretch = 1;  // with low_stretch: from 0, the conformal map, to 1, that of least stretch
+  bool repair = true;  // of flipped triangles and angles off by a turn
+  Overlaps overlaps = Overlaps::keep;
 };
 
 }  // namespace lsgp

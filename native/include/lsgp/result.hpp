@@ -56,6 +56,12 @@ struct SeamlessReport {
   std::vector<Index> relaxed_cones;  // off the lattice: the cuts to them show a seam
 };
 
+// What the unfolding left to repair, and the work of that and of relaxing the map.
+struct RepairReport {
+  Index flipped_before = 0, wrong_angle_sums_before = 0;  // of the first unfolding
+  int iterations = 0;                                     // of Newton's method, low stretch included
+};
+
 struct CutPaths {
   VertexPairs edges;                      // (c, 2)
   std::vector<std::vector<Index>> paths;  // vertices from node to node
@@ -79,8 +85,11 @@ struct Result {
   SeamQuality seams;
   std::vector<Index> flipped;           // triangles with UV area <= 0
   std::vector<Index> wrong_angle_sums;  // vertices whose UV angles are off by a turn
-  double cone_angle_error = 0;          // largest deviation of a cone's UV angle sum, radians
-  Eigen::VectorXd log_scale;            // (n) as in Prescription
+  std::vector<Index> overlapping;       // triangles that lie on others
+  double overlap_area = 0;              // of all pairs of triangles together, as a share of the layout's area
+  RepairReport repair;
+  double cone_angle_error = 0;  // largest deviation of a cone's UV angle sum, radians
+  Eigen::VectorXd log_scale;    // (n) as in Prescription
   std::optional<SeamlessReport> seamless;
   std::vector<Finding> warnings;
   StageSeconds stage_seconds;

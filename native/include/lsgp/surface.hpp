@@ -24,6 +24,7 @@ struct Surface {
   Triangles triangles;               // (m, 3), counter-clockwise seen from outside
   std::optional<VertexPairs> edges;  // (e, 2) edges a cut may follow; absent: every edge of the triangles
   VertexPairs seams;                 // (s, 2) marked edges; cuts are drawn to them
+  Eigen::VectorXd importance;        // (n) weights of stretch at vertices, or empty: all weigh alike
 };
 
 struct Cones {

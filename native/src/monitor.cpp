@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "monitor.hpp"
+
+#include <algorithm>
+
+#include "lsgp/errors.hpp"
+
+namespace lsgp {
+
+void Monitor::advance(double done) {
+  if (!progress_) return;
+  told_ = std::max(told_, low_ + std::clamp(done, 0.0, 1.0) * (high_ - low_));
+  if (!progress_(told_)) throw Error(Code::cancelled, "Stopped as asked; nothing was changed.");
+}
+
+Monitor::Part::Part(Monitor& monitor, double begin, double end)
+    : monitor_(monitor), low_(monitor.low_), high_(monitor.high_) {
+  monitor.low_ = low_ + begin * (high_ - low_);
+  monitor.high_ = low_ + end * (high_ - low_);
+}
+
+Monitor::Part::~Part() {
+  monitor_.low_ = low_;
+  monitor_.high_ = high_;
+}
+
+Monitor::Stage::Stage(Monitor& monitor, const char* name) : seconds_(monitor.seconds_) {
+  const auto is_stage = [&](const auto& entry) { return entry.first == name; };
+  place_ = static_cast<std::size_t>(std::find_if(seconds_.begin(), seconds_.end(), is_stage) - seconds_.begin());
+  if (place_ == seconds_.size()) seconds_.emplace_back(name, 0.0);  // here, because a destructor must not throw
+}
+
+Monitor::Stage::~Stage() {
+  seconds_[place_].second += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+}
+
+}  // namespace lsgp

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a running verb tells about itself: how much is done, and how long its stages take.
+#pragma once
+
+#include <chrono>
+
+#include "lsgp/progress.hpp"
+#include "lsgp/result.hpp"
+
+namespace lsgp {
+
+class Monitor {
+ public:
+  Monitor(const Progress& progress, StageSeconds& seconds) : progress_(progress), seconds_(seconds) {}
+  Monitor(const Monitor&) = delete;
+  Monitor& operator=(const Monitor&) = delete;
+
+  // done: of the innermost part under way, 0 to 1.  Throws CANCELLED.
+  void advance(double done);
+
+  // While it lives, what is done is told as what lies between two shares of the part around it.
+  class Part {
+   public:
+    Part(Monitor& monitor, double begin, double end);
+    ~Part();
+    Part(const Part&) = delete;
+    Part& operator=(const Part&) = delete;
+
+   private:
+    Monitor& monitor_;
+    const double low_, high_;  // of the part around it
+  };
+
+  // Adds the wall-clock time until its end to a stage.
+  class Stage {
+   public:
+    Stage(Monitor& monitor, const char* name);
+    ~Stage();
+    Stage(const Stage&) = delete;
+    Stage& operator=(const Stage&) = delete;
+
+   private:
+    StageSeconds& seconds_;
+    std::size_t place_;  // in them
+    const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  };
+
+ private:
+  const Progress& progress_;
+  StageSeconds& seconds_;
+  double low_ = 0, high_ = 1, told_ = 0;
+};
+
+}  // namespace lsgp

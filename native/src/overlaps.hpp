@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Triangles of a layout that lie on others.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "lsgp/surface.hpp"
+
+namespace lsgp {
+
+// Two triangles whose insides meet, and the area they share.
+struct Overlap {
+  Index first, second;  // first < second
+  double area;
+};
+
+// All such pairs of a layout, sorted.  position: (3m) u + iv at the corners, NaN for triangles to leave out.  Pairs that
+// share less than rounding explains of the smaller one are neighbours and no overlap.
+std::vector<Overlap> find_overlaps(const Eigen::VectorXcd& position);
+
+// Whether a layout overlaps itself at all; no triangle may be flipped.  twin: (3m) the halfedge on the other side of
+// each where the layout runs on, none where it ends.  Looks at its border alone: an immersed surface whose border
+// neither crosses itself nor encloses another part of it lies on itself nowhere.
+bool has_overlap(const Eigen::VectorXcd& position, const std::vector<Index>& twin);
+
+}  // namespace lsgp
