@@ -20,10 +20,19 @@ class FlowNetwork {
   // Sends as much as possible on top of what flows already; returns how much more.
   Units maximize(int source, int sink);
 
-  Units flow(int arc) const;
+  Units flow(int arc) const;  // net, from its first node to its second
 
   // (nodes) which of them `source` can still send to: its side of a minimum cut once the flow is maximal.
   std::vector<char> reachable(int source) const;
+
+ private:
+  bool find_distances(int source, int sink);
+  Units send_along_shortest(int source, int sink);
+
+  // Arc a and the one back, a ^ 1, lie side by side.  The arcs of a node are a chain.
+  std::vector<int> first_, next_, to_;      // (nodes), (arcs), (arcs) -1 at a chain's end
+  std::vector<Units> residual_, capacity_;  // (arcs) what they can still carry, and could at first
+  std::vector<int> distance_, current_;     // (nodes) arcs to the sink, -1 without a way; the arc to try next
 };
 
 }  // namespace lsgp
