@@ -2,42 +2,37 @@
 """The command line: `lsgp unwrap` and `lsgp measure`.
 
 Exit code 0: a result, with warnings or not; 2: wrong usage, a file that is missing or cannot be written; 3: the input
-was refused, with a code and a sentence that says what to do.
+was refused, with a code and a sentence that says what to do; 130: interrupted, with Ctrl-C for instance.  Files are
+written at the end, each as a whole or not at all.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
-import math
 import os
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TextIO
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import __version__
 from . import report as reports
-from .api import Options, Seamless, Surface, measure_distortion, parameterize, place_cones
+from .api import Options, Result, Seamless, Surface, measure_distortion, parameterize, place_cones
 from .certificate import certificate_table
 from .errors import Elements, Finding, InputError, LsgpError
 from .mesh_files import read_mesh, write_obj, write_whole
 from .polygons import PolygonMesh, Triangulation, triangulate
+from .side_files import UsageError, cones_in, load_importance, load_json, seam_edges_in
+from .terminal import ProgressLine, say
 
-OK, USAGE, REFUSED = 0, 2, 3
+OK, USAGE, REFUSED, INTERRUPTED = 0, 2, 3, 130
 
 DEFAULT_TEXTURE_SIZE = 1024
 LARGEST_TEXTURE_SIZE = 65536
-
-
-class UsageError(Exception):
-    """A command that cannot be carried out as it was given."""
 
 
 @dataclass
@@ -60,7 +55,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         args = parser.parse_args(argv)
         if args.version:
-            _say(sys.stdout, f"lsgp {__version__}")
+            say(sys.stdout, f"lsgp {__version__}")
             return OK
         if args.command is None:
             parser.error("a command is needed: unwrap or measure")
@@ -69,10 +64,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         return _reported(args)
     except UsageError as error:
-        _say(sys.stderr, f"lsgp: error: {error}")
+        say(sys.stderr, f"lsgp: error: {error}")
     except OSError as error:
         where = "" if error.filename is None else f": '{os.fsdecode(error.filename)}'"
-        _say(sys.stderr, f"lsgp: error: {error.strerror or error}{where}")
+        say(sys.stderr, f"lsgp: error: {error.strerror or error}{where}")
+    except KeyboardInterrupt:
+        say(sys.stderr, "lsgp: interrupted")
+        return INTERRUPTED
     return USAGE
 
 
@@ -80,7 +78,8 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="lsgp",
         description="Unwrap triangle and polygon meshes through cones, continuous across every cut.",
-        epilog="Exit code: 0 a result, 2 wrong usage or a file missing or not writable, 3 input refused.",
+        epilog="Exit code: 0 a result, 2 wrong usage or a file missing or not writable, 3 input refused, 130 "
+        "interrupted.",
         allow_abbrev=False,
     )
     parser.add_argument("--version", action="store_true", help="print the version and exit")
@@ -127,6 +126,25 @@ def _parser() -> argparse.ArgumentParser:
         default="free",
         help="borders take the shape of least distortion, or run straight from cone to cone (default: free)",
     )
+    unwrap.add_argument(
+        "--mode",
+        choices=["conformal", "low-stretch"],
+        default="conformal",
+        help="keep angles, or lengths as far as the cone angles let it (default: conformal)",
+    )
+    unwrap.add_argument(
+        "--no-repair",
+        dest="repair",
+        action="store_false",
+        help="leave flipped triangles and angles off by a turn as they come out",
+    )
+    unwrap.add_argument(
+        "--overlaps",
+        choices=["keep", "split"],
+        default="keep",
+        help="keep islands that lie on themselves, or split them along further cuts (default: keep)",
+    )
+    _add_low_stretch_options(unwrap)
     _add_seamless_options(unwrap)
     unwrap.set_defaults(run=_unwrap)
 
@@ -141,6 +159,22 @@ def _parser() -> argparse.ArgumentParser:
     for command in (unwrap, measure):
         command.add_argument("--report", metavar="FILE.json", type=Path, help="write a report, also when refused")
     return parser
+
+
+def _add_low_stretch_options(unwrap: argparse.ArgumentParser) -> None:
+    low_stretch = unwrap.add_argument_group("with --mode low-stretch")
+    low_stretch.add_argument(
+        "--stretch",
+        metavar="S",
+        type=float,
+        help="from 0, the conformal map, to 1, that of least stretch (default: 1)",
+    )
+    low_stretch.add_argument(
+        "--importance",
+        metavar="FILE",
+        type=Path,
+        help="how much stretch at each vertex weighs, numbers from 0 up, as text or [number, ...] (default: all alike)",
+    )
 
 
 def _add_seamless_options(unwrap: argparse.ArgumentParser) -> None:
@@ -227,45 +261,70 @@ def _reported(args: argparse.Namespace) -> int:
 
 
 def _refusal(error: LsgpError, run: Run) -> reports.Report:
-    _say(sys.stderr, f"lsgp: refused: {error.code}: {error.message}{_where(error.elements, run.triangulation)}")
+    say(sys.stderr, f"lsgp: refused: {error.code}: {error.message}{_where(error.elements, run.triangulation)}")
     return reports.refusal_report(error, run.triangulation)
 
 
 def _unwrap(args: argparse.Namespace, run: Run) -> reports.Report:
     if args.prescription == "manual" and not isinstance(args.cones, Path):
         raise UsageError("--prescription manual needs a cones file with angles; give one with --cones FILE.json")
+    if args.mode != "low-stretch":
+        for name in ("stretch", "importance"):
+            if getattr(args, name) is not None:
+                raise UsageError(f"--{name} is for maps of low stretch; add --mode low-stretch")
     texture_size = DEFAULT_TEXTURE_SIZE if args.texture_size is None else args.texture_size
-    cell = _cell(args, texture_size)
-    cones_json = _load_json(args.cones) if isinstance(args.cones, Path) else None
-    seams_json = [] if args.seam_edges is None else _load_json(args.seam_edges)
-    mesh, triangulation = _read(args.input, run)
-    seams = _seam_edges(seams_json, args.seam_edges)
-    surface = Surface(mesh.positions, triangulation.triangles, triangulation.edges, seams)
     options = Options(
-        args.prescription, args.unfold, args.method, args.seams, args.border, seamless=_seamless(args, cell)
+        prescription=args.prescription,
+        unfold=args.unfold,
+        method=args.method,
+        seams=args.seams,
+        border=args.border,
+        seamless=_seamless(args, _cell(args, texture_size)),
+        mode=args.mode,
+        stretch=Options.stretch if args.stretch is None else args.stretch,
+        repair=args.repair,
+        overlaps=args.overlaps,
     )
+    with ProgressLine(sys.stderr) as progress:
+        mesh, result = _map(args, options, run, progress)
+        with run.stage("write_file"):
+            corner_uv = run.triangulation.to_polygon_corners(result.corner_uv, len(mesh.corners))
+            write_obj(args.output, mesh, corner_uv)
+    _warn(result.warnings, run.triangulation)
+    islands = reports.island_count(result.island)
+    lines = [
+        f"{args.output}: {int(result.solved.sum())} of {len(result.solved)} triangles unwrapped, "
+        f"{len(result.cones)} cones, {islands} {'island' if islands == 1 else 'islands'}",
+        reports.quality_table(result),
+    ]
+    if result.seamless is not None:
+        lines.append(certificate_table(result.seamless, texture_size))
+    say(sys.stdout, "\n".join(lines))
+    return reports.unwrap_report(result, run.triangulation, run.stage_seconds, texture_size)
+
+
+def _map(args: argparse.Namespace, options: Options, run: Run, progress: ProgressLine) -> tuple[PolygonMesh, Result]:
+    """The mesh that was given and its map."""
+    cones_json = load_json(args.cones) if isinstance(args.cones, Path) else None
+    seams_json = [] if args.seam_edges is None else load_json(args.seam_edges)
+    importance = None if args.importance is None else load_importance(args.importance)
+    mesh, triangulation = _read(args.input, run)
+    if importance is not None and len(importance) != len(mesh.positions):
+        raise InputError(
+            "WRONG_PARAMETER",
+            f"'{args.importance}' has {len(importance)} numbers for {len(mesh.positions)} vertices. Give one for each.",
+        )
+    seams = seam_edges_in(seams_json, args.seam_edges)
+    surface = Surface(mesh.positions, triangulation.triangles, triangulation.edges, seams, importance)
     if isinstance(args.cones, Path):
-        cones, angles = _cones(cones_json, args.cones, args.prescription)
+        cones, angles = cones_in(cones_json, args.cones, args.prescription)
     else:
         with run.stage("place_cones"):
             wanted = None if args.cones == "auto" else args.cones
             cones, angles = place_cones(surface, wanted, options=options), None
-    result = parameterize(surface, cones, angles, options)
+    result = parameterize(surface, cones, angles, options, progress=progress)
     run.stage_seconds.update(result.stage_seconds)
-
-    with run.stage("write_file"):
-        write_obj(args.output, mesh, triangulation.to_polygon_corners(result.corner_uv, len(mesh.corners)))
-    _warn(result.warnings, triangulation)
-    islands = len(np.unique(result.island[result.solved]))
-    lines = [
-        f"{args.output}: {int(result.solved.sum())} of {len(result.solved)} triangles unwrapped, "
-        f"{len(result.cones)} cones, {islands} {'island' if islands == 1 else 'islands'}",
-        reports.quality_table(result.distortion, result.seams, len(result.flipped), len(result.wrong_angle_sums)),
-    ]
-    if result.seamless is not None:
-        lines.append(certificate_table(result.seamless, texture_size))
-    _say(sys.stdout, "\n".join(lines))
-    return reports.unwrap_report(result, triangulation, run.stage_seconds, texture_size)
+    return mesh, result
 
 
 def _cell(args: argparse.Namespace, texture_size: int) -> float:
@@ -308,10 +367,9 @@ def _measure(args: argparse.Namespace, run: Run) -> reports.Report:
         measurement = measure_distortion(surface, mesh.corner_uv[triangulation.corner])
     _warn(warnings, triangulation)
     total = len(triangulation.triangles)
-    _say(
+    say(
         sys.stdout,
-        f"{args.input}: {total - len(without)} of {total} triangles measured\n"
-        + reports.quality_table(measurement.distortion, measurement.seams, len(measurement.flipped), None),
+        f"{args.input}: {total - len(without)} of {total} triangles measured\n" + reports.quality_table(measurement),
     )
     return reports.measure_report(measurement, warnings, triangulation, run.stage_seconds)
 
@@ -349,97 +407,13 @@ def _require_writable(args: argparse.Namespace) -> None:
             raise UsageError(f"'{path}' cannot be written")
 
 
-def _load_json(path: Path) -> Any:
-    try:
-        return json.loads(path.read_bytes())
-    except (ValueError, RecursionError) as error:
-        raise UsageError(f"'{path}' is no JSON: {error}") from error
-
-
-def _cones(content: Any, path: Path, prescription: str | None) -> tuple[NDArray[np.int32], list[float | None] | None]:
-    """Cones of a cones file and the angles to use, in radians.  Raises InputError."""
-    cones = content.get("cones") if isinstance(content, dict) else None
-    if not _is_list_of(cones, _is_integer):
-        raise _unlike(path, '{"cones": [vertex, ...]} with vertices counted from 0')
-    angles = {}
-    for key, unit in (("cone_angles", 1.0), ("angles_over_pi_2", math.pi / 2)):
-        values = content.get(key)
-        if values is None:
-            continue
-        if not _is_list_of(values, _is_number_or_null):
-            raise _unlike(path, f'"{key}": [number or null, ...]')
-        if len(values) != len(cones):
-            raise InputError(
-                "ANGLE_COUNT",
-                f"'{path}' has {len(cones)} cones but {len(values)} {key}. Give one for each cone, null for automatic.",
-            )
-        angles[key] = [None if value is None else unit * _as_float(value) for value in values]
-    indices = _indices(cones, "CONE_INDEX", "cone").reshape(-1)
-    if prescription == "manual":
-        if not angles:
-            raise InputError(
-                "ANGLE_COUNT", f"'{path}' has no angles for the manual prescription. Add \"cone_angles\" in radians."
-            )
-        return indices, angles.get("cone_angles", angles.get("angles_over_pi_2"))
-    return indices, angles.get("cone_angles") if prescription is None else None
-
-
-def _seam_edges(content: Any, path: Path | None) -> NDArray[np.int32]:
-    """(s, 2) vertex pairs of a seam edges file.  Raises InputError."""
-    if not _is_list_of(content, lambda pair: _is_list_of(pair, _is_integer) and len(pair) == 2):
-        raise _unlike(path, "[[a, b], ...] with vertices counted from 0")
-    return _indices([vertex for pair in content for vertex in pair], "INDEX_OUT_OF_RANGE", "seam vertex").reshape(-1, 2)
-
-
-def _is_list_of(value: Any, accepts: Callable[[Any], bool]) -> bool:
-    return isinstance(value, list) and all(map(accepts, value))
-
-
-def _is_integer(value: Any) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool)
-
-
-def _is_number_or_null(value: Any) -> bool:
-    return value is None or _is_integer(value) or isinstance(value, float)
-
-
-def _as_float(value: float) -> float:
-    try:
-        return float(value)
-    except OverflowError:  # an integer of more than 308 digits
-        return math.inf
-
-
-def _indices(values: list[int], code: str, what: str) -> NDArray[np.int32]:
-    limit = np.iinfo(np.int32)
-    wrong = next((value for value in values if not limit.min <= value <= limit.max), None)
-    if wrong is not None:
-        raise InputError(
-            code, f"A {what} lies outside the mesh: {_as_float(wrong):.3g}. Use vertices of the file, counted from 0."
-        )
-    return np.array(values, np.int32)
-
-
-def _unlike(path: Path | None, form: str) -> InputError:
-    return InputError("MALFORMED_FILE", f"'{path}' does not have the form {form}. Correct the file.")
-
-
 def _warn(findings: Sequence[Finding], triangulation: Triangulation) -> None:
     for finding in findings:
         where = _where(finding.elements, triangulation)
-        _say(sys.stderr, f"lsgp: warning: {finding.code}: {finding.message}{where}")
+        say(sys.stderr, f"lsgp: warning: {finding.code}: {finding.message}{where}")
 
 
 def _where(elements: Elements, triangulation: Triangulation | None) -> str:
     """The elements a message speaks of, in brackets and in the file's numbering."""
     named = str(reports.on_faces(elements, triangulation))
     return f" ({named})" if named else ""
-
-
-def _say(stream: TextIO, text: str) -> None:
-    """Print a line at once; characters the terminal has not are escaped."""
-    encoding = stream.encoding or "utf-8"
-    try:
-        print(text.encode(encoding, "backslashreplace").decode(encoding), file=stream, flush=True)
-    except BrokenPipeError:  # whoever read along has seen enough; files are still to be written
-        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

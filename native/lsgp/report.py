@@ -10,8 +10,9 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .api import Distortion, Measurement, Result, SeamQuality
+from .api import Measurement, Result
 from .certificate import certificate
 from .errors import Elements, Finding, LsgpError
 from .polygons import Triangulation
@@ -31,8 +32,12 @@ EMPTY: Report = {
     "distortion": None,
     "seams": None,
     "seamless": None,
+    "islands": None,
     "flipped": None,
     "wrong_angle_sums": None,
+    "repair": None,
+    "overlapping": None,
+    "overlap_area": None,
     "stage_seconds": {},
 }
 
@@ -58,8 +63,8 @@ def refusal_report(error: LsgpError, triangulation: Triangulation | None) -> Rep
 def unwrap_report(
     result: Result, triangulation: Triangulation, stage_seconds: Mapping[str, float], texture_size: int
 ) -> Report:
-    """The report of a map. "flipped" and "wrong_angle_sums" are counts; the warnings name the faces and vertices.
-    "cones" and "cone_angles" are those that were imposed, so that a report serves as a cones file too.
+    """The report of a map. "flipped", "wrong_angle_sums" and "overlapping" are counts; the warnings name the faces and
+    vertices. "cones" and "cone_angles" are those that were imposed, so that a report serves as a cones file too.
 
     texture_size: texels of the side of the texture that errors of a seamless layout are told in."""
     return EMPTY | {
@@ -70,8 +75,12 @@ def unwrap_report(
         "distortion": asdict(result.distortion),
         "seams": asdict(result.seams),
         "seamless": None if result.seamless is None else certificate(result.seamless, texture_size),
+        "islands": island_count(result.island),
         "flipped": len(result.flipped),
         "wrong_angle_sums": len(result.wrong_angle_sums),
+        "repair": asdict(result.repair),
+        "overlapping": len(result.overlapping),
+        "overlap_area": result.overlap_area,
         "stage_seconds": dict(stage_seconds),
     }
 
@@ -88,6 +97,7 @@ def measure_report(
         "triangles": len(triangulation.triangles),
         "distortion": asdict(measurement.distortion),
         "seams": asdict(measurement.seams),
+        "islands": island_count(measurement.island),
         "flipped": len(measurement.flipped),
         "stage_seconds": dict(stage_seconds),
     }
@@ -98,9 +108,14 @@ def to_json(report: Report) -> bytes:
     return (json.dumps(_finite(report), indent=1, allow_nan=False) + "\n").encode("ascii")
 
 
-def quality_table(distortion: Distortion, seams: SeamQuality, flipped: int, wrong_angle_sums: int | None) -> str:
-    """The quality of a map as lines of text, the ideal value beside each figure."""
-    d, s = distortion, seams
+def island_count(island: NDArray[np.int32]) -> int:
+    """island: the island of each triangle, negative where it has none."""
+    return len(np.unique(island[island >= 0]))
+
+
+def quality_table(measured: Result | Measurement) -> str:
+    """The quality of a map as lines of text, the ideal value beside each figure that has one."""
+    d, s = measured.distortion, measured.seams
     rows = [
         ("quasi-conformal", f"{d.quasi_conformal:.4f}", "1", f"area-weighted {d.quasi_conformal_area_weighted:.4f}"),
         ("area", f"{d.area:.4f}", "1", f"10 % {d.area_p10:.4f}, 90 % {d.area_p90:.4f}"),
@@ -108,10 +123,19 @@ def quality_table(distortion: Distortion, seams: SeamQuality, flipped: int, wron
         ("sister ratio - 1", f"{s.sister_ratio_max - 1:.1e}", "0", ""),
         ("rotation residual", f"{s.rotation_residual:.1e}", "0", "radians"),
         ("translation residual", f"{s.translation_residual:.1e}", "0", "of the layout"),
-        ("flipped triangles", f"{flipped}", "0", ""),
     ]
-    if wrong_angle_sums is not None:
-        rows.append(("wrong angle sums", f"{wrong_angle_sums}", "0", "vertices"))
+    flips = ""
+    further = []
+    if isinstance(measured, Result):
+        repair, overlap = measured.repair, 100 * measured.overlap_area
+        wrong, before = len(measured.wrong_angle_sums), repair.wrong_angle_sums_before
+        flips = f"{repair.flipped_before} as first unfolded"
+        further = [
+            ("wrong angle sums", f"{wrong}", "0", f"vertices, {before} as first unfolded"),
+            ("Newton iterations", f"{repair.iterations}", "", ""),
+            ("overlapping triangles", f"{len(measured.overlapping)}", "0", f"{overlap:.3g} % of the layout"),
+        ]
+    rows += [("flipped triangles", f"{len(measured.flipped)}", "0", flips), *further]
     lines = [f"{'':<22}{'value':>10}{'ideal':>7}"]
     lines += [f"{label:<22}{value:>10}{ideal:>7}  {note}".rstrip() for label, value, ideal, note in rows]
     return "\n".join(lines)

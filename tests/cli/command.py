@@ -13,11 +13,12 @@ from polygon_meshes import faces_of
 
 REPORT_KEYS = [
     *["status", "code", "message", "elements", "warnings", "triangles", "cones", "cone_angles", "distortion", "seams"],
-    *["seamless", "flipped", "wrong_angle_sums", "stage_seconds"],
+    *["seamless", "islands", "flipped", "wrong_angle_sums", "repair", "overlapping", "overlap_area", "stage_seconds"],
 ]
 DISTORTION_KEYS = [
     *["quasi_conformal", "quasi_conformal_area_weighted", "area", "area_p10", "area_p90", "l2_stretch"],
 ]
+REPAIR_KEYS = ["flipped_before", "wrong_angle_sums_before", "iterations"]
 SEAM_KEYS = ["sister_ratio_max", "rotation_residual", "translation_residual"]
 
 

@@ -18,95 +18,140 @@ from polygon_meshes import cube, obj_text, off_text, patch
 
 UNWRAP = ["unwrap", "in.obj", "-o", "out.obj"]
 SEAMLESS = [*UNWRAP, "--seamless"]
-REFUSED = {
-    "vertices only": ({"in.obj": "v 0 0 0\nv 1 0 0\n"}, UNWRAP, "EMPTY_MESH"),
-    "empty file": ({"in.obj": ""}, UNWRAP, "EMPTY_MESH"),
-    "isolated cone": ({"in.obj": "PATCH", "c.json": '{"cones": [99]}'}, [*UNWRAP, "--cones", "c.json"], "CONE_INDEX"),
-    "negative cone": ({"in.obj": "PATCH", "c.json": '{"cones": [-1]}'}, [*UNWRAP, "--cones", "c.json"], "CONE_INDEX"),
-    "enormous cone": (
-        {"in.obj": "PATCH", "c.json": '{"cones": [99999999999]}'},
-        [*UNWRAP, "--cones", "c.json"],
-        "CONE_INDEX",
-    ),
-    "unlike cones": ({"in.obj": "PATCH", "c.json": "[1, 2]"}, [*UNWRAP, "--cones", "c.json"], "MALFORMED_FILE"),
-    "cones of text": (
-        {"in.obj": "PATCH", "c.json": '{"cones": ["1"]}'},
-        [*UNWRAP, "--cones", "c.json"],
-        "MALFORMED_FILE",
-    ),
-    "fraction of a cone": (
-        {"in.obj": "PATCH", "c.json": '{"cones": [1.5]}'},
-        [*UNWRAP, "--cones", "c.json"],
-        "MALFORMED_FILE",
-    ),
-    "angle of text": (
-        {"in.obj": "PATCH", "c.json": '{"cones": [7], "cone_angles": ["pi"]}'},
-        [*UNWRAP, "--cones", "c.json"],
-        "MALFORMED_FILE",
-    ),
-    "angle NaN": (
-        {"in.obj": "PATCH", "c.json": '{"cones": [7], "cone_angles": [NaN]}'},
-        [*UNWRAP, "--cones", "c.json"],
-        "CONE_ANGLE_NON_FINITE",
-    ),
-    "angle of 400 digits": (
-        {"in.obj": "PATCH", "c.json": '{"cones": [7], "cone_angles": [1' + "0" * 400 + "]}"},
-        [*UNWRAP, "--cones", "c.json"],
-        "CONE_ANGLE_NON_FINITE",
-    ),
-    "angles too few": (
-        {"in.obj": "PATCH", "c.json": '{"cones": [7, 8], "cone_angles": [4]}'},
-        [*UNWRAP, "--cones", "c.json"],
-        "ANGLE_COUNT",
-    ),
-    "quarter turns too many": (
-        {"in.obj": "PATCH", "c.json": '{"cones": [7], "angles_over_pi_2": [3, 3]}'},
-        [*UNWRAP, "--cones", "c.json", "--prescription", "manual"],
-        "ANGLE_COUNT",
-    ),
-    "manual without angles": (
-        {"in.obj": "PATCH", "c.json": '{"cones": [7]}'},
-        [*UNWRAP, "--cones", "c.json", "--prescription", "manual"],
-        "ANGLE_COUNT",
-    ),
-    "Gauss-Bonnet": (
-        {"in.obj": "CUBE", "c.json": '{"cones": [0, 1, 2], "cone_angles": [3, 3, 3]}'},
-        [*UNWRAP, "--cones", "c.json"],
-        "GAUSS_BONNET",
-    ),
-    "closed without cones": (
-        {"in.obj": "CUBE", "c.json": '{"cones": []}'},
-        [*UNWRAP, "--cones", "c.json"],
-        "TOO_FEW_CONES",
-    ),
-    "seam beside the mesh": (
-        {"in.obj": "PATCH", "s.json": "[[0, 24]]"},
-        [*UNWRAP, "--seam-edges", "s.json"],
-        "SEAM_NOT_AN_EDGE",
-    ),
-    "unlike seams": (
-        {"in.obj": "PATCH", "s.json": "[[0, 1, 2]]"},
-        [*UNWRAP, "--seam-edges", "s.json"],
-        "MALFORMED_FILE",
-    ),
-    "malformed mesh": ({"in.obj": "v 0 0\n"}, UNWRAP, "MALFORMED_FILE"),
-    "index out of range": ({"in.obj": "v 0 0 0\nf 1 2 3\n"}, UNWRAP, "INDEX_OUT_OF_RANGE"),
-    "face of two corners": ({"in.obj": "v 0 0 0\nv 1 0 0\nf 1 2\n"}, UNWRAP, "BAD_FACE"),
-    "not finite": ({"in.obj": "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}, UNWRAP, "NON_FINITE_POSITION"),
-    "other format": ({"in.stl": "solid\n"}, ["unwrap", "in.stl", "-o", "out.obj"], "UNKNOWN_FORMAT"),
-    "measure without uv": ({"in.obj": "PATCH"}, ["measure", "in.obj"], "NO_UV"),
-    "measure an off": ({"in.off": "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"}, ["measure", "in.off"], "NO_UV"),
-    "measure no faces": ({"in.obj": "v 0 0 0\nvt 0 0\n"}, ["measure", "in.obj"], "EMPTY_MESH"),
-    "measure broken vt": (
-        {"in.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/2 3/3\n"},
-        ["measure", "in.obj"],
-        "INDEX_OUT_OF_RANGE",
-    ),
-} | {
-    f"{option} {value}": ({"in.obj": "CUBE"}, [*SEAMLESS, option, value], "WRONG_PARAMETER")
-    for option, extreme in (("--tiles", "1e300"), ("--tile-size", "1e-300"))
-    for value in ("0", "-8", "nan", "inf", "1e999", extreme)
+LOW_STRETCH = [*UNWRAP, "--mode", "low-stretch"]
+ROOF = "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"
+# For the four vertices of it.
+IMPORTANCE = {
+    "1 1 1": "WRONG_PARAMETER",
+    "1 1 1 1 1": "WRONG_PARAMETER",
+    "": "WRONG_PARAMETER",
+    "[1, 1, 1]": "WRONG_PARAMETER",
+    "[]": "WRONG_PARAMETER",
+    "1 -1e-300 1 1": "WRONG_PARAMETER",
+    "1 1 nan 1": "WRONG_PARAMETER",
+    "inf 1 1 1": "WRONG_PARAMETER",
+    "[1, 1, 1, NaN]": "WRONG_PARAMETER",
+    "[1, -1, 1, 1]": "WRONG_PARAMETER",
+    "[1, 1" + "0" * 400 + ", 1, 1]": "WRONG_PARAMETER",
+    "1 1 one 1": "MALFORMED_FILE",
+    "1_0 1 1 1": "MALFORMED_FILE",
+    "[1, null, 1, 1]": "MALFORMED_FILE",
+    "[1, true, 1, 1]": "MALFORMED_FILE",
+    "[[1], [1], [1], [1]]": "MALFORMED_FILE",
+    '{"importance": [1, 1, 1, 1]}': "MALFORMED_FILE",
 }
+REFUSED = (
+    {
+        "vertices only": ({"in.obj": "v 0 0 0\nv 1 0 0\n"}, UNWRAP, "EMPTY_MESH"),
+        "empty file": ({"in.obj": ""}, UNWRAP, "EMPTY_MESH"),
+        "isolated cone": (
+            {"in.obj": "PATCH", "c.json": '{"cones": [99]}'},
+            [*UNWRAP, "--cones", "c.json"],
+            "CONE_INDEX",
+        ),
+        "negative cone": (
+            {"in.obj": "PATCH", "c.json": '{"cones": [-1]}'},
+            [*UNWRAP, "--cones", "c.json"],
+            "CONE_INDEX",
+        ),
+        "enormous cone": (
+            {"in.obj": "PATCH", "c.json": '{"cones": [99999999999]}'},
+            [*UNWRAP, "--cones", "c.json"],
+            "CONE_INDEX",
+        ),
+        "unlike cones": ({"in.obj": "PATCH", "c.json": "[1, 2]"}, [*UNWRAP, "--cones", "c.json"], "MALFORMED_FILE"),
+        "cones of text": (
+            {"in.obj": "PATCH", "c.json": '{"cones": ["1"]}'},
+            [*UNWRAP, "--cones", "c.json"],
+            "MALFORMED_FILE",
+        ),
+        "fraction of a cone": (
+            {"in.obj": "PATCH", "c.json": '{"cones": [1.5]}'},
+            [*UNWRAP, "--cones", "c.json"],
+            "MALFORMED_FILE",
+        ),
+        "angle of text": (
+            {"in.obj": "PATCH", "c.json": '{"cones": [7], "cone_angles": ["pi"]}'},
+            [*UNWRAP, "--cones", "c.json"],
+            "MALFORMED_FILE",
+        ),
+        "angle NaN": (
+            {"in.obj": "PATCH", "c.json": '{"cones": [7], "cone_angles": [NaN]}'},
+            [*UNWRAP, "--cones", "c.json"],
+            "CONE_ANGLE_NON_FINITE",
+        ),
+        "angle of 400 digits": (
+            {"in.obj": "PATCH", "c.json": '{"cones": [7], "cone_angles": [1' + "0" * 400 + "]}"},
+            [*UNWRAP, "--cones", "c.json"],
+            "CONE_ANGLE_NON_FINITE",
+        ),
+        "angles too few": (
+            {"in.obj": "PATCH", "c.json": '{"cones": [7, 8], "cone_angles": [4]}'},
+            [*UNWRAP, "--cones", "c.json"],
+            "ANGLE_COUNT",
+        ),
+        "quarter turns too many": (
+            {"in.obj": "PATCH", "c.json": '{"cones": [7], "angles_over_pi_2": [3, 3]}'},
+            [*UNWRAP, "--cones", "c.json", "--prescription", "manual"],
+            "ANGLE_COUNT",
+        ),
+        "manual without angles": (
+            {"in.obj": "PATCH", "c.json": '{"cones": [7]}'},
+            [*UNWRAP, "--cones", "c.json", "--prescription", "manual"],
+            "ANGLE_COUNT",
+        ),
+        "Gauss-Bonnet": (
+            {"in.obj": "CUBE", "c.json": '{"cones": [0, 1, 2], "cone_angles": [3, 3, 3]}'},
+            [*UNWRAP, "--cones", "c.json"],
+            "GAUSS_BONNET",
+        ),
+        "closed without cones": (
+            {"in.obj": "CUBE", "c.json": '{"cones": []}'},
+            [*UNWRAP, "--cones", "c.json"],
+            "TOO_FEW_CONES",
+        ),
+        "seam beside the mesh": (
+            {"in.obj": "PATCH", "s.json": "[[0, 24]]"},
+            [*UNWRAP, "--seam-edges", "s.json"],
+            "SEAM_NOT_AN_EDGE",
+        ),
+        "unlike seams": (
+            {"in.obj": "PATCH", "s.json": "[[0, 1, 2]]"},
+            [*UNWRAP, "--seam-edges", "s.json"],
+            "MALFORMED_FILE",
+        ),
+        "malformed mesh": ({"in.obj": "v 0 0\n"}, UNWRAP, "MALFORMED_FILE"),
+        "index out of range": ({"in.obj": "v 0 0 0\nf 1 2 3\n"}, UNWRAP, "INDEX_OUT_OF_RANGE"),
+        "face of two corners": ({"in.obj": "v 0 0 0\nv 1 0 0\nf 1 2\n"}, UNWRAP, "BAD_FACE"),
+        "not finite": ({"in.obj": "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}, UNWRAP, "NON_FINITE_POSITION"),
+        "other format": ({"in.stl": "solid\n"}, ["unwrap", "in.stl", "-o", "out.obj"], "UNKNOWN_FORMAT"),
+        "measure without uv": ({"in.obj": "PATCH"}, ["measure", "in.obj"], "NO_UV"),
+        "measure an off": ({"in.off": "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"}, ["measure", "in.off"], "NO_UV"),
+        "measure no faces": ({"in.obj": "v 0 0 0\nvt 0 0\n"}, ["measure", "in.obj"], "EMPTY_MESH"),
+        "measure broken vt": (
+            {"in.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/2 3/3\n"},
+            ["measure", "in.obj"],
+            "INDEX_OUT_OF_RANGE",
+        ),
+    }
+    | {
+        f"{option} {value}": ({"in.obj": "CUBE"}, [*SEAMLESS, option, value], "WRONG_PARAMETER")
+        for option, extreme in (("--tiles", "1e300"), ("--tile-size", "1e-300"))
+        for value in ("0", "-8", "nan", "inf", "1e999", extreme)
+    }
+    | {
+        f"--stretch {value}": ({"in.obj": "CUBE"}, [*LOW_STRETCH, "--stretch", value], "WRONG_PARAMETER")
+        for value in ("-0.001", "1.001", "nan", "inf")
+    }
+    | {
+        f"importance {content[:12]!r}": (
+            {"in.obj": "ROOF", "weights": content},
+            [*LOW_STRETCH, "--importance", "weights"],
+            code,
+        )
+        for content, code in IMPORTANCE.items()
+    }
+)
 WRONG_USAGE = {
     "no command": ([], "command"),
     "unknown command": (["wrap"], "wrap"),
@@ -157,12 +202,21 @@ WRONG_USAGE = {
     "more levels than mipmaps": ([*SEAMLESS, "--mip-levels", "11"], "levels 0 to 10"),
     "more levels than a small texture has": ([*SEAMLESS, "--texture-size", "64", "--mip-levels", "7"], "levels 0 to 6"),
     "half a mip level": ([*SEAMLESS, "--mip-levels", "1.5"], "1.5"),
+    "unknown mode": ([*UNWRAP, "--mode", "isometric"], "isometric"),
+    "unknown overlaps": ([*UNWRAP, "--overlaps", "cut"], "cut"),
+    "stretch without low stretch": ([*UNWRAP, "--stretch", "0.5"], "--stretch is for maps of low stretch"),
+    "stretch of a conformal map": ([*UNWRAP, "--mode", "conformal", "--stretch", "1"], "add --mode low-stretch"),
+    "importance without low stretch": ([*UNWRAP, "--importance", "in.obj"], "--importance is for maps of low stretch"),
+    "stretch that is no number": ([*LOW_STRETCH, "--stretch", "much"], "much"),
+    "repair with a value": ([*UNWRAP, "--no-repair=yes"], "--no-repair"),
+    "missing importance": ([*LOW_STRETCH, "--importance", "none.txt"], "none.txt"),
+    "importance without end": ([*LOW_STRETCH, "--importance", "deep.json"], "deep.json"),
     "measure nothing": (["measure"], "FILE.obj"),
 }
 
 
 def write_files(folder: Path, files: dict[str, str]) -> None:
-    made = {"PATCH": lambda: obj_text(*patch()), "CUBE": lambda: obj_text(*cube(2))}
+    made = {"PATCH": lambda: obj_text(*patch()), "CUBE": lambda: obj_text(*cube(2)), "ROOF": lambda: ROOF}
     for name, text in files.items():
         (folder / name).write_text(made[text]() if text in made else text)
 
@@ -227,7 +281,7 @@ def test_same_codes_from_a_process(lsgp, cube_files: Path) -> None:
 def test_not_enough_memory_is_a_refusal(
     cube_files: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def exhaust(*arguments: object) -> None:
+    def exhaust(*arguments: object, **options: object) -> None:
         raise MemoryError
 
     monkeypatch.chdir(cube_files)

@@ -5,12 +5,14 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
+import lsgp as library
 import numpy as np
 import pytest
-from command import DISTORTION_KEYS, REPORT_KEYS, SEAM_KEYS
-from lsgp import Distortion, Elements, LsgpError, SeamQuality
+from command import DISTORTION_KEYS, REPAIR_KEYS, REPORT_KEYS, SEAM_KEYS
+from lsgp import Distortion, Elements, LsgpError, RepairReport, SeamQuality
 from lsgp.polygons import triangulate
 from lsgp.report import on_faces, quality_table, refusal_report, to_json
 from polygon_meshes import cube, cube_corners, obj_text, patch, polygon_mesh
@@ -52,17 +54,39 @@ def test_elements_in_a_sentence() -> None:
     assert str(Elements("vertices", np.arange(9, dtype=np.int32))) == "vertices 0, 1, 2, 3, 4 and 4 more"
 
 
+def rows_of(table: str) -> dict[str, list[str]]:
+    return {line[:22].strip(): line[22:].split() for line in table.splitlines()}
+
+
 def test_table_has_every_figure() -> None:
-    distortion = Distortion(1.01, 1.02, 1.03, 0.84, 1.25, 1.06)
-    table = quality_table(distortion, SeamQuality(1 + 2**-40, 3e-13, 4e-16), 5, 6)
-    rows = {line[:22].strip(): line[22:].split() for line in table.splitlines()}
+    surface = library.Surface([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    figures = {
+        "distortion": Distortion(1.01, 1.02, 1.03, 0.84, 1.25, 1.06),
+        "seams": SeamQuality(1 + 2**-40, 3e-13, 4e-16),
+        "flipped": np.arange(5, dtype=np.int32),
+    }
+    of_a_map = {
+        "wrong_angle_sums": np.arange(6, dtype=np.int32),
+        "repair": RepairReport(7, 8, 9),
+        "overlapping": np.arange(10, dtype=np.int32),
+        "overlap_area": 0.0123,
+    }
+    rows = rows_of(quality_table(replace(library.parameterize(surface, []), **figures, **of_a_map)))
     assert rows["quasi-conformal"] == ["1.0100", "1", "area-weighted", "1.0200"]
     assert rows["area"] == ["1.0300", "1", "10", "%", "0.8400,", "90", "%", "1.2500"]
     assert rows["L2 stretch"][0] == "1.0600"
     assert rows["sister ratio - 1"][0] == "9.1e-13"
     assert (rows["rotation residual"][0], rows["translation residual"][0]) == ("3.0e-13", "4.0e-16")
-    assert (rows["flipped triangles"][0], rows["wrong angle sums"][0]) == ("5", "6")
-    assert "wrong angle sums" not in quality_table(distortion, SeamQuality(1, 0, 0), 0, None)
+    assert rows["flipped triangles"] == ["5", "0", "7", "as", "first", "unfolded"]
+    assert rows["wrong angle sums"] == ["6", "0", "vertices,", "8", "as", "first", "unfolded"]
+    assert rows["Newton iterations"] == ["9"]
+    assert rows["overlapping triangles"] == ["10", "0", "1.23", "%", "of", "the", "layout"]
+
+    measured = library.measure_distortion(surface, np.zeros((1, 3, 2)))
+    of_a_measurement = rows_of(quality_table(replace(measured, **figures)))
+    assert of_a_measurement["flipped triangles"] == ["5", "0"]
+    assert set(rows) - set(of_a_measurement) == {"wrong angle sums", "Newton iterations", "overlapping triangles"}
+    assert all(of_a_measurement[label] == rows[label] for label in of_a_measurement if label != "flipped triangles")
 
 
 # --- of unwrap ------------------------------------------------------------------------------------------------------
@@ -82,7 +106,10 @@ def test_report_of_a_result(lsgp, ball_files: Path) -> None:
     assert report["distortion"]["area_p10"] <= report["distortion"]["area"] <= report["distortion"]["area_p90"]
     assert report["seams"]["sister_ratio_max"] == pytest.approx(1, abs=1e-9)
     assert report["seams"]["translation_residual"] <= 1e-12
-    assert (report["flipped"], report["wrong_angle_sums"]) == (0, 0)
+    assert (report["flipped"], report["wrong_angle_sums"], report["islands"]) == (0, 0, 1)
+    assert list(report["repair"]) == REPAIR_KEYS
+    assert all(isinstance(count, int) and count >= 0 for count in report["repair"].values())
+    assert (report["overlapping"] > 0) == (report["overlap_area"] > 0)
     assert {"read_file", "triangulate", "write_file"} < set(report["stage_seconds"])
     assert all(seconds >= 0 for seconds in report["stage_seconds"].values())
     for figure in (
@@ -105,12 +132,9 @@ def test_report_of_a_refusal(lsgp, ball_files: Path) -> None:
     assert (report["status"], report["code"]) == ("refused", "CONE_DUPLICATE")
     assert report["elements"] == {"kind": "vertices", "indices": [0]}
     assert (report["triangles"], report["warnings"], report["distortion"], report["seams"]) == (432, [], None, None)
-    assert (report["flipped"], report["wrong_angle_sums"], report["cones"], report["cone_angles"]) == (
-        None,
-        None,
-        [],
-        [],
-    )
+    for key in ("islands", "flipped", "wrong_angle_sums", "repair", "overlapping", "overlap_area"):
+        assert report[key] is None
+    assert (report["cones"], report["cone_angles"]) == ([], [])
     assert report["message"] in done.err
     assert "CONE_DUPLICATE" in done.err
     assert done.out == ""
@@ -150,7 +174,9 @@ def test_measure_agrees_with_unwrap(lsgp, ball_files: Path) -> None:
     assert measured["distortion"] == pytest.approx(unwrapped["distortion"], rel=1e-9)
     assert measured["seams"]["sister_ratio_max"] == pytest.approx(1, abs=1e-9)
     assert (measured["flipped"], measured["triangles"]) == (0, 432)
-    assert (measured["cones"], measured["cone_angles"], measured["wrong_angle_sums"]) == ([], [], None)
+    assert (measured["cones"], measured["cone_angles"], measured["islands"]) == ([], [], 1)
+    for key in ("wrong_angle_sums", "repair", "overlapping", "overlap_area"):
+        assert measured[key] is None
     assert f"{measured['distortion']['l2_stretch']:.4f}" in done.out
 
 
@@ -180,5 +206,6 @@ def test_measure_leaves_faces_without_coordinates_out_and_names_them(lsgp, tmp_p
     assert [(w["code"], w["elements"]) for w in report["warnings"]] == [
         ("FACES_WITHOUT_UV", {"kind": "faces", "indices": [1]})
     ]
+    assert report["islands"] == 1
     assert "FACES_WITHOUT_UV" in done.err
     assert "2 of 4 triangles" in done.out
