@@ -7,6 +7,8 @@ a map must be said by a warning that names the elements.  Nothing here is shared
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import lsgp
 import numpy as np
 from numpy.typing import NDArray
@@ -21,12 +23,18 @@ GAUSS_BONNET = 1e-9  # radians
 DEFAULTS = lsgp.Options()
 
 
-def undeclared_faults(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Options = DEFAULTS) -> list[str]:
+def undeclared_faults(
+    surface: lsgp.Surface,
+    result: lsgp.Result,
+    options: lsgp.Options = DEFAULTS,
+    given: Mapping[int, float | None] | None = None,
+) -> list[str]:
     """Everything that is wrong with a result and that no warning of it names; empty for an honest one.
 
     options: what the map was made with: seams may be open borders, and the method "lscm" knows no transitions.
+    given: the angles that were asked for, by cone, None for automatic ones; not judged where they are not told.
     """
-    faults = _wrong_figures(result)
+    faults = _wrong_figures(result) + ([] if given is None else _changed_angles(result, options, given))
     skipped = np.flatnonzero(~result.solved)
     if not np.array_equal(np.unique(named_by(result, "COMPONENT_SKIPPED")), skipped):
         faults.append(f"{len(skipped)} triangles without a map are not those of COMPONENT_SKIPPED")
@@ -56,9 +64,15 @@ def _wrong_figures(result: lsgp.Result) -> list[str]:
     faults = []
     if not np.array_equal(result.solved, result.island >= 0):
         faults.append("`solved` and `island` disagree")
-    for listed, code in ((result.flipped, "FLIPPED_TRIANGLES"), (result.wrong_angle_sums, "WRONG_ANGLE_SUMS")):
+    for listed, code in (
+        (result.flipped, "FLIPPED_TRIANGLES"),
+        (result.wrong_angle_sums, "WRONG_ANGLE_SUMS"),
+        (result.overlapping, "OVERLAPPING_TRIANGLES"),
+    ):
         if not np.array_equal(np.sort(listed), np.sort(named_by(result, code))):
             faults.append(f"{code} does not name what the result lists")
+    if (result.overlap_area > 0) != (len(result.overlapping) > 0):
+        faults.append(f"{len(result.overlapping)} triangles overlap by an area of {result.overlap_area}")
     if len(result.cones) != len(result.cone_angles) or not (result.cone_angles > 0).all():
         faults.append("a cone without an angle above 0")
     figures = {name: getattr(result.seams, name) for name in ("sister_ratio_max", "rotation_residual")}
@@ -68,6 +82,21 @@ def _wrong_figures(result: lsgp.Result) -> list[str]:
     faults += [f"{name} is {value}" for name, value in figures.items() if not np.isfinite(value)]
     if not np.isfinite(result.log_scale).all():
         faults.append("log_scale is not finite")
+    return faults
+
+
+def _changed_angles(result: lsgp.Result, options: lsgp.Options, given: Mapping[int, float | None]) -> list[str]:
+    """Angles that were asked for are imposed, but on a lattice, or ANGLES_ADJUSTED names their cones."""
+    adjusted = named_by(result, "ANGLES_ADJUSTED")
+    if options.seamless is not None or options.prescription not in (None, "manual"):
+        return ["ANGLES_ADJUSTED where no angles were to be kept"] if len(adjusted) else []
+    asked = np.array([np.nan if given.get(cone) is None else given[cone] for cone in result.cones.tolist()])
+    other = result.cones[np.abs(result.cone_angles - asked) > ANGLE]
+    faults = []
+    if not np.isin(other, adjusted).all():
+        faults.append(f"the angles of {other[:5].tolist()} are not those asked for")
+    if len(adjusted) and not len(other):
+        faults.append("ANGLES_ADJUSTED where all angles are those asked for")
     return faults
 
 

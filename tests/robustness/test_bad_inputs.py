@@ -42,6 +42,7 @@ CLASS_OF_CODE = {
     "CONE_ANGLE_NON_FINITE": "E_CONE_ANGLE_NON_FINITE",
     "CONE_ANGLE_RANGE": "E_CONE_ANGLE_RANGE",
     "GAUSS_BONNET": "E_GAUSS_BONNET",
+    "ANGLES_IMPOSSIBLE": "E_CONE_ANGLE_RANGE",
     "ANGLE_COUNT": "E_WRONG_PARAMETER",
     "WRONG_PARAMETER": "E_WRONG_PARAMETER",
     "COMPONENT_SKIPPED": "W_COMPONENT_SKIPPED",
@@ -57,11 +58,15 @@ CLASS_OF_CODE = {
     "HIGH_DISTORTION": "W_POOR_QUALITY",
     "INEXACT_SEAMS": "W_POOR_QUALITY",
     "INEXACT_ANGLES": "W_POOR_QUALITY",
+    "ANGLES_ADJUSTED": "W_POOR_QUALITY",
     "CONES_NOT_SNAPPED": "W_CONES_NOT_SNAPPED",
 }
 
 # Findings on the quality of a result, and triangles without one: it is then no plain success.
-DEFECTS = {"FLIPPED_TRIANGLES", "WRONG_ANGLE_SUMS", "INEXACT_SEAMS", "INEXACT_ANGLES", "COMPONENT_SKIPPED"}
+DEFECTS = {
+    *("FLIPPED_TRIANGLES", "WRONG_ANGLE_SUMS", "INEXACT_SEAMS", "INEXACT_ANGLES", "ANGLES_ADJUSTED"),
+    "COMPONENT_SKIPPED",
+}
 
 Case = dict[str, Any]
 
@@ -78,20 +83,30 @@ def triangulated(case: Case) -> tuple[lsgp.Surface, polygons.Triangulation | Non
     """The surface of a case; triangles go in as they are, larger polygons the way a file of them would."""
     positions = np.array(case["V"], float).reshape(-1, 3)
     faces, seams = case["F"], np.array(case["seams"], np.int64).reshape(-1, 2)
+    importance = importance_in(case)
     if all(len(face) == 3 for face in faces):
-        return lsgp.Surface(positions, np.array(faces, np.int64).reshape(-1, 3), None, seams), None
+        return lsgp.Surface(positions, np.array(faces, np.int64).reshape(-1, 3), None, seams, importance), None
     corners = np.array([v for face in faces for v in face], np.int64)
     sizes = np.array([len(face) for face in faces], np.int64)
     polygons.require_polygons(len(positions), corners, sizes)
     cut = polygons.triangulate(polygons.PolygonMesh(positions, corners.astype(np.int32), sizes))
-    return lsgp.Surface(positions, cut.triangles, cut.edges, seams), cut
+    return lsgp.Surface(positions, cut.triangles, cut.edges, seams, importance), cut
+
+
+def importance_in(case: Case) -> list[float] | None:
+    """A weight is the importance of every vertex."""
+    return [case["params"]["weight"]] * len(case["V"]) if "weight" in case["params"] else None
 
 
 def options_of(case: Case) -> lsgp.Options:
-    """A resolution is a number of tiles.  Raises InputError."""
-    if "resolution" in case["params"]:
-        return lsgp.Options(seamless=lsgp.Seamless(tiles=case["params"]["resolution"]))
-    return lsgp.Options()
+    """A resolution is a number of tiles; weights are for low stretch.  Raises InputError."""
+    unknown = set(case["params"]) - {"resolution", "weight"}
+    assert not unknown, f"there are no such options: {unknown}"
+    tiles = case["params"].get("resolution")
+    return lsgp.Options(
+        seamless=None if tiles is None else lsgp.Seamless(tiles=tiles),
+        mode="low-stretch" if "weight" in case["params"] else "conformal",
+    )
 
 
 def outcome(case: Case) -> tuple[lsgp.Surface | None, lsgp.Result | lsgp.LsgpError]:
@@ -110,12 +125,6 @@ def classes_of_result(codes: list[str]) -> set[str]:
     )
 
 
-def require_options(name: str) -> None:
-    without = set(load(name)["params"]) - {"resolution"}
-    if without:
-        pytest.skip(f"{name} sets {', '.join(sorted(without))}: there is no such option")
-
-
 if not case_names():
     pytest.skip(f"no cases in {shared_folder() / 'bad'}: set LSGP_SHARED to run them", allow_module_level=True)
 
@@ -126,7 +135,6 @@ def test_no_case_is_missing() -> None:
 
 @pytest.mark.parametrize("name", case_names())
 def test_through_the_api(name: str) -> None:
-    require_options(name)
     case = load(name)
     begin = time.perf_counter()
     surface, ended = outcome(case)
@@ -134,8 +142,9 @@ def test_through_the_api(name: str) -> None:
     if isinstance(ended, lsgp.LsgpError):
         assert CLASS_OF_CODE.get(ended.code) in case["expect"], f"{ended.code}: {ended.message}"
     else:
-        assert undeclared_faults(surface, ended, options_of(case)) == []
-        assert (ended.seamless is not None) == bool(case["params"])
+        given = dict(zip(case["cones"], case["cone_angles"] or [None] * len(case["cones"]), strict=True))
+        assert undeclared_faults(surface, ended, options_of(case), given) == []
+        assert (ended.seamless is not None) == ("resolution" in case["params"])
         codes = [finding.code for finding in ended.warnings]
         assert classes_of_result(codes) & set(case["expect"]), f"a result with {codes}"
     assert seconds < SECONDS
@@ -144,7 +153,6 @@ def test_through_the_api(name: str) -> None:
 @pytest.mark.parametrize("name", case_names())
 def test_through_the_command_line(tmp_path: Path, name: str) -> None:
     """The same end as through the API, with the same coordinates."""
-    require_options(name)
     case = load(name)
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in case["V"]]
     lines += ["f " + " ".join(str(v + 1) for v in face) for face in case["F"]]
@@ -155,6 +163,9 @@ def test_through_the_command_line(tmp_path: Path, name: str) -> None:
     command += ["--cones", "cones.json", "--seam-edges", "seams.json"]
     if "resolution" in case["params"]:
         command += ["--seamless", "--tiles", str(case["params"]["resolution"])]
+    if "weight" in case["params"]:
+        (tmp_path / "importance.json").write_text(json.dumps(importance_in(case)))
+        command += ["--mode", "low-stretch", "--importance", "importance.json"]
     begin = time.perf_counter()
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
     seconds = time.perf_counter() - begin

@@ -51,6 +51,12 @@ def corner_on_seam(uv: np.ndarray, by: float) -> None:
     uv[(MESH.triangles == a) & (uv == at).all(axis=2)] += by
 
 
+def named(code: str, kind: str, indices: list[int]) -> lsgp.Result:
+    """The sound map with a warning."""
+    finding = lsgp.Finding(code, "", lsgp.Elements(kind, np.array(indices, np.int32)))
+    return replace(SOUND, warnings=[*SOUND.warnings, finding])
+
+
 SPOILED = {
     "not finite": lambda: spoiled(lambda uv: uv[7, 1].fill(np.nan)),
     "flipped": lambda: spoiled(lambda uv: moved_vertex(uv, 0.5)),
@@ -67,6 +73,12 @@ SPOILED = {
     "unsolved triangles": lambda: replace(SOUND, solved=SOUND.solved & (np.arange(len(SOUND.solved)) > 3)),
     "stretch is no number": lambda: replace(SOUND, distortion=replace(SOUND.distortion, l2_stretch=np.nan)),
     "flips listed, not named": lambda: replace(SOUND, flipped=np.array([3], np.int32)),
+    "overlaps listed, not named": lambda: replace(SOUND, overlapping=np.array([3, 4], np.int32), overlap_area=0.1),
+    "overlaps named, not listed": lambda: named("OVERLAPPING_TRIANGLES", "triangles", [3, 4]),
+    "overlaps without an area": lambda: replace(
+        named("OVERLAPPING_TRIANGLES", "triangles", [3, 4]), overlapping=np.array([3, 4], np.int32)
+    ),
+    "an area of overlaps alone": lambda: replace(SOUND, overlap_area=1e-9),
 }
 
 
@@ -83,6 +95,24 @@ def test_a_warning_withheld_is_noticed() -> None:
     assert len(undeclared_faults(SURFACE, silent)) >= 1
     skipped = lsgp.parameterize(surface(MIXED), MIXED.cones)
     assert undeclared_faults(surface(MIXED), replace(skipped, warnings=[])) != []
+
+
+def test_angles_other_than_those_asked_for_are_noticed() -> None:
+    as_asked = dict(zip(SOUND.cones.tolist(), SOUND.cone_angles.tolist(), strict=True))
+    first = int(SOUND.cones[0])
+    other = as_asked | {first: as_asked[first] + 1e-3}
+    automatic = as_asked | {first: None}
+    adjusted = named("ANGLES_ADJUSTED", "vertices", [first])
+    assert undeclared_faults(SURFACE, SOUND, given=as_asked) == undeclared_faults(SURFACE, SOUND, given=automatic) == []
+    assert undeclared_faults(SURFACE, adjusted, given=other) == []
+    assert undeclared_faults(SURFACE, SOUND, given=other) != []
+    assert undeclared_faults(SURFACE, named("ANGLES_ADJUSTED", "vertices", [int(SOUND.cones[1])]), given=other) != []
+    for given in (as_asked, automatic, {}):
+        assert undeclared_faults(SURFACE, adjusted, given=given) != []
+    assert undeclared_faults(SURFACE, adjusted) == []
+    free = lsgp.Options("harmonic")  # a rule that keeps no angles
+    assert undeclared_faults(SURFACE, SOUND, free, other) == []
+    assert undeclared_faults(SURFACE, adjusted, free, other) != []
 
 
 def test_seams_as_borders_need_no_transitions() -> None:

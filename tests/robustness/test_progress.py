@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Progress rises from 0 to 1, and a run can be stopped at each time it is told, with no trace left behind."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import lsgp
+import meshes
+import numpy as np
+import pytest
+from map_checks import digest, surface
+from meshes import Mesh
+
+PI = np.pi
+
+
+@dataclass(frozen=True)
+class Run:
+    mesh: Mesh
+    angles: list[float] | None = None
+    options: lsgp.Options = field(default_factory=lsgp.Options)
+
+    def __call__(self, progress: Callable[[float], object] | None = None) -> lsgp.Result:
+        return lsgp.parameterize(surface(self.mesh), self.mesh.cones, self.angles, self.options, progress=progress)
+
+
+TORUS = meshes.torus(10, 6)
+CUBE = meshes.cube(4)
+BALL = meshes.bumpy_sphere(1)
+HARD = [0.5 * PI, 0.5 * PI, 2.5 * PI, 1.5 * PI, 1.5 * PI, 1.5 * PI, 2 * PI, 2 * PI]
+RUNS = {
+    "cube": Run(CUBE, HARD),
+    "torus": Run(TORUS),
+    "spectral": Run(BALL, None, lsgp.Options(unfold="spectral")),
+    "seamless ball": Run(BALL, None, lsgp.Options(seamless=lsgp.Seamless())),
+    "seamless torus": Run(TORUS, None, lsgp.Options(seamless=lsgp.Seamless(tiles=10))),
+    "coarse": Run(BALL, None, lsgp.Options(seamless=lsgp.Seamless(tiles=2, coarse_grid="merge"))),
+    "left off": Run(BALL, None, lsgp.Options(seamless=lsgp.Seamless(tiles=2, coarse_grid="relax"))),
+    "two parts": Run(meshes.merge([BALL, CUBE])),
+    "low stretch": Run(BALL, None, lsgp.Options(mode="low-stretch")),
+    "seamless low stretch": Run(BALL, None, lsgp.Options(seamless=lsgp.Seamless(tiles=12), mode="low-stretch")),
+    "split": Run(CUBE, HARD, lsgp.Options(overlaps="split")),
+}
+
+
+@pytest.fixture(params=RUNS)
+def run(request: pytest.FixtureRequest) -> Run:
+    return RUNS[request.param]
+
+
+def told_by(run: Run) -> list[float]:
+    told: list[float] = []
+    run(told.append)
+    return told
+
+
+def test_progress_rises_to_1(run: Run) -> None:
+    told = told_by(run)
+    assert len(told) >= 2
+    assert all(type(done) is float for done in told)
+    assert told[0] >= 0 and told[-1] == 1
+    assert (np.diff(told) >= 0).all()
+
+
+def test_the_same_is_told_every_time(run: Run) -> None:
+    assert told_by(run) == told_by(run)
+
+
+def test_a_run_that_is_watched_gives_the_same_bytes(run: Run) -> None:
+    assert digest(run(lambda done: None)) == digest(run())
+
+
+def test_a_run_stopped_at_any_time_leaves_no_trace(run: Run) -> None:
+    plain, told = digest(run()), told_by(run)
+    for call in range(len(told)):
+        heard: list[float] = []
+        with pytest.raises(lsgp.Cancelled) as caught:
+            run(lambda done, heard=heard, call=call: heard.append(done) or len(heard) <= call)
+        assert heard == told[: call + 1], "told again after it was stopped"
+        assert caught.value.code == "CANCELLED"
+        assert not len(caught.value.elements.indices)
+    assert digest(run()) == plain
+
+
+class Pressed(BaseException):
+    """Not an Exception, as KeyboardInterrupt is none."""
+
+
+@pytest.mark.parametrize("kind", [ValueError, Pressed, KeyboardInterrupt, lsgp.SolverError])
+def test_what_progress_raises_comes_through_as_it_is(run: Run, kind: type[BaseException]) -> None:
+    plain, told = digest(run()), told_by(run)
+    for call in range(len(told)):
+        raised = kind("code", "message")
+        heard: list[float] = []
+
+        def tell(done: float, raised: BaseException = raised, heard: list[float] = heard, call: int = call) -> None:
+            heard.append(done)
+            if len(heard) > call:
+                raise raised
+
+        with pytest.raises(kind) as caught:
+            run(tell)
+        assert caught.value is raised
+        assert len(heard) == call + 1
+    assert digest(run()) == plain
+
+
+@pytest.mark.parametrize("answer", [None, True, 1, 0, "", []])
+def test_only_false_stops(answer: object) -> None:
+    assert digest(RUNS["torus"](lambda done: answer)) == digest(RUNS["torus"]())
+
+
+def test_progress_is_told_on_the_thread_that_called() -> None:
+    heard: dict[str, set[int]] = {}
+
+    def work(name: str) -> None:
+        heard[name] = set()
+        RUNS[name](lambda done: heard[name].add(threading.get_ident()))
+        assert heard[name] == {threading.get_ident()}
+
+    threads = [threading.Thread(target=work, args=(name,)) for name in ("cube", "torus", "seamless ball")]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sorted(map(len, heard.values())) == [1, 1, 1]
+
+
+def test_a_run_may_be_started_from_progress() -> None:
+    outer, inner = RUNS["torus"], RUNS["two parts"]
+    found: list[str] = []
+    watched = outer(lambda done: found.append(digest(inner())))
+    assert set(found) == {digest(inner())} and digest(watched) == digest(outer())
+
+
+@pytest.mark.parametrize("progress", [1, "done", [], np.zeros(2)])
+def test_progress_that_cannot_be_called_is_a_type_error(progress: object) -> None:
+    with pytest.raises(TypeError):
+        RUNS["torus"](progress)
