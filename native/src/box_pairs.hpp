@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which of many boxes in the plane meet.
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "lsgp/surface.hpp"
+
+namespace lsgp {
+
+// Closed, sides parallel to the axes.
+struct Box {
+  double left, right, bottom, top;
+};
+
+inline bool meet(const Box& a, const Box& b) {
+  return a.left <= b.right && b.left <= a.right && a.bottom <= b.top && b.bottom <= a.top;
+}
+
+inline Box around(const Box& a, const Box& b) {
+  return {std::min(a.left, b.left), std::max(a.right, b.right), std::min(a.bottom, b.bottom), std::max(a.top, b.top)};
+}
+
+// A binary tree of boxes, halved by number: it does not mind that they differ much in size or crowd in one place.
+class BoxTree {
+ public:
+  explicit BoxTree(const std::vector<Box>& boxes);
+
+  // Calls visit(i, j), i < j, for every two boxes that meet, in a fixed order.
+  template <typename Visit>
+  void for_each_meeting_pair(Visit visit) const {
+    std::vector<std::pair<Index, Index>> open;  // nodes
+    if (!nodes_.empty()) open.emplace_back(0, 0);
+    while (!open.empty()) {
+      const auto [a, b] = open.back();
+      open.pop_back();
+      const Node &first = nodes_[a], &second = nodes_[b];
+      if (a == b) {
+        if (first.is_leaf())
+          visit_pairs(first, visit);
+        else
+          open.insert(open.end(), {{a + 1, a + 1}, {first.right, first.right}, {a + 1, first.right}});
+      } else if (meet(first.box, second.box)) {
+        if (first.is_leaf() && second.is_leaf())
+          visit_pairs(first, second, visit);
+        else if (second.is_leaf() || (!first.is_leaf() && first.count() >= second.count()))
+          open.insert(open.end(), {{a + 1, b}, {first.right, b}});
+        else
+          open.insert(open.end(), {{a, b + 1}, {a, second.right}});
+      }
+    }
+  }
+
+ private:
+  struct Node {
+    Box box;
+    Index begin, end;  // in item_
+    Index right;       // node of the second half, the first half's follows its parent; none for a leaf
+    bool is_leaf() const { return right < 0; }
+    Index count() const { return end - begin; }
+  };
+  struct Center {
+    double x, y;
+    Index item;
+  };
+
+  Index build(Center* centers, Index begin, Index end, const std::vector<Box>& boxes);
+
+  template <typename Visit>
+  void visit_pairs(const Node& node, Visit& visit) const {
+    for (Index i = node.begin; i < node.end; ++i) {
+      for (Index j = i + 1; j < node.end; ++j) {
+        if (meet(box_[i], box_[j])) visit(std::min(item_[i], item_[j]), std::max(item_[i], item_[j]));
+      }
+    }
+  }
+  template <typename Visit>
+  void visit_pairs(const Node& a, const Node& b, Visit& visit) const {
+    for (Index i = a.begin; i < a.end; ++i) {
+      if (!meet(box_[i], b.box)) continue;
+      for (Index j = b.begin; j < b.end; ++j) {
+        if (meet(box_[i], box_[j])) visit(std::min(item_[i], item_[j]), std::max(item_[i], item_[j]));
+      }
+    }
+  }
+
+  std::vector<Index> item_;  // the boxes in the order of the leaves
+  std::vector<Box> box_;     // theirs
+  std::vector<Node> nodes_;
+};
+
+}  // namespace lsgp
