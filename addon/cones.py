@@ -11,28 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .identifiers import CONE_ANGLE_ATTRIBUTE
+from .mesh_read import vertex_weights
 
 CONE_WEIGHT = 1.0
 
 
 def marked_cones(obj: bpy.types.Object, group_name: str) -> NDArray[np.int32]:
     """Vertices with a weight above zero in the group, ascending; none where there is no such group."""
-    group = obj.vertex_groups.get(group_name)
-    if group is None:
-        return np.empty(0, np.int32)
-    if obj.mode == "EDIT":
-        bm = bmesh.from_edit_mesh(obj.data)
-        bm.verts.index_update()
-        deform = bm.verts.layers.deform.active
-        weighted = bm.verts if deform is not None else ()
-        found = [vertex.index for vertex in weighted if vertex[deform].get(group.index, 0.0) > 0.0]
-    else:
-        found = [
-            vertex.index
-            for vertex in obj.data.vertices
-            if any(entry.group == group.index and entry.weight > 0.0 for entry in vertex.groups)
-        ]
-    return np.array(found, np.int32)
+    weights = vertex_weights(obj, group_name)
+    return np.empty(0, np.int32) if weights is None else np.flatnonzero(weights > 0.0).astype(np.int32)
 
 
 def given_angles(mesh: bpy.types.Mesh, vertices: Iterable[int]) -> list[float | None]:

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import bmesh
 import bpy
 import numpy as np
 from numpy.typing import NDArray
@@ -70,6 +71,25 @@ def read_region(obj: bpy.types.Object, by_uv: bool = False) -> Region | None:
     """
     with _readable_mesh(obj) as mesh:
         return _read_mesh(mesh, obj.mode == "EDIT", by_uv)
+
+
+def vertex_weights(obj: bpy.types.Object, group_name: str) -> NDArray[np.float64] | None:
+    """(n,) weight of each vertex in the group, 0 where it is not in it; None where there is no such group."""
+    group = obj.vertex_groups.get(group_name)
+    if group is None:
+        return None
+    if obj.mode == "EDIT":
+        bm = bmesh.from_edit_mesh(obj.data)
+        deform = bm.verts.layers.deform.active
+        if deform is None:
+            return np.zeros(len(bm.verts))
+        return np.array([vertex[deform].get(group.index, 0.0) for vertex in bm.verts], np.float64)
+    weights = np.zeros(len(obj.data.vertices))
+    for vertex in obj.data.vertices:
+        for entry in vertex.groups:
+            if entry.group == group.index:
+                weights[vertex.index] = entry.weight
+    return weights
 
 
 def _read_mesh(mesh: bpy.types.Mesh, only_selected: bool, by_uv: bool) -> Region | None:

@@ -20,8 +20,10 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
-def explain(error: lsgp.LsgpError | lsgp.Finding | Refused) -> str:
+def explain(error: lsgp.LsgpError | lsgp.Finding | Refused | MemoryError) -> str:
     """The library's sentence, its code, and how many elements it concerns."""
+    if isinstance(error, MemoryError):
+        return "there is not enough memory; unwrap fewer faces at once"
     if isinstance(error, Refused):
         return str(error)
     size = len(error.elements.indices)

@@ -1,46 +1,56 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One mesh from its region to a finished map: pins in, the library's result, aspect and placement, nothing written."""
+"""Regions to finished maps: pins in, the library's result, aspect and placement, nothing written.
+
+Runs in a thread of its own while Blender goes on: nothing here touches what is Blender's.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from . import cells, cones, native
-from .image_aspect import image_aspect
-from .mesh_read import Region
+from . import cells, native
 from .packing import Islands
-from .reporting import Refused
 
 if TYPE_CHECKING:
     import lsgp
 
+    from .mesh_read import Region
+
+    Progress = Callable[[float], bool | None]
+
 
 @dataclass(frozen=True, slots=True)
-class Settings:
-    """What the artist chose.  group: the vertex group of the cones; the others as in the operator."""
+class Task:
+    """All that the map of one object's region is computed from.
 
+    cones: (k,) int32. angles: of each in radians, None for automatic. pinned: (m, 3) bool, the corners to hold.
+    keep_placement: of the islands in the region's old coordinates. aspect: of the image the coordinates are for; 1
+    where they are not to be corrected for one.
+    """
+
+    region: Region
+    cones: NDArray[np.int32]
+    angles: list[float | None]
     options: lsgp.Options
-    group: str
-    use_pins: bool
+    pinned: NDArray[np.bool_]
     keep_placement: bool
-    correct_aspect: bool
+    aspect: float
 
 
 @dataclass(frozen=True, slots=True)
 class Unwrapped:
-    """A finished map of one object's region.
+    """A finished map.
 
     corner_uv: (m, 3, 2) float64 as they are to be written, NaN where not solved. pinned: (m, 3) bool, the corners that
-    were held. aspect: of the image they are for; 1 where they are not corrected for one. step: the side of the cells
-    that islands of a seamless layout may be moved by; None for other layouts.
+    were held. aspect: as in the task. step: the side of the cells that islands of a seamless layout may be moved by;
+    None for other layouts.
     """
 
-    obj: bpy.types.Object
     region: Region
     result: lsgp.Result
     corner_uv: NDArray[np.float64]
@@ -57,46 +67,48 @@ class Unwrapped:
         )
 
 
-def unwrap(obj: bpy.types.Object, region: Region, settings: Settings) -> Unwrapped:
-    """Solve the region.  Raises the library's errors and Refused."""
-    lsgp = native.lsgp
-    marked = cones.marked_cones(obj, settings.group)
-    marked = marked[region.vertex_used[marked]]
-    angles = cones.given_angles(obj.data, marked)
+def unwrap_all(tasks: Sequence[Task], progress: Progress | None = None) -> list[Unwrapped | Exception]:
+    """The maps of all tasks; in the place of one that cannot be solved, why.  Raises Cancelled.
 
-    aspect = image_aspect(obj) if settings.correct_aspect else 1.0
+    progress: as the library's, over all tasks.
+    """
+    sizes = [len(task.region.surface.triangles) for task in tasks]
+    outcomes: list[Unwrapped | Exception] = []
+    for i, task in enumerate(tasks):
+        try:
+            outcomes.append(_unwrap(task, _part_of(progress, sum(sizes[:i]) / sum(sizes), sizes[i] / sum(sizes))))
+        except native.lsgp.Cancelled:
+            raise
+        except (native.lsgp.LsgpError, MemoryError) as error:
+            outcomes.append(error)
+    return outcomes
+
+
+def _part_of(progress: Progress | None, begin: float, share: float) -> Progress | None:
+    return None if progress is None else lambda done: progress(begin + share * done)
+
+
+def _unwrap(task: Task, progress: Progress | None) -> Unwrapped:
+    lsgp = native.lsgp
+    region, pinned = task.region, task.pinned
     # The library solves where lengths are equal both ways.
-    squeeze = lsgp.correct_aspect((1.0, 1.0), aspect)
-    pinned = region.pinned if settings.use_pins else np.zeros_like(region.pinned)
-    options = _options_on(obj, settings.options)
-    result = lsgp.parameterize(
-        region.surface, marked, angles, options, _pins(region, pinned, region.corner_uv / squeeze)
-    )
+    squeeze = lsgp.correct_aspect((1.0, 1.0), task.aspect)
+    pins = _pins(region, pinned, region.corner_uv / squeeze)
+    result = lsgp.parameterize(region.surface, task.cones, task.angles, task.options, pins, progress)
     uv = result.corner_uv
-    step = None if result.seamless is None else cells.step(options.seamless)
-    if settings.keep_placement and step is not None:
+    step = None if result.seamless is None else cells.step(task.options.seamless)
+    if task.keep_placement and step is not None:
         uv = cells.keep_places(region, result, step)
-    elif settings.keep_placement:
+    elif task.keep_placement:
         old = region.corner_uv / squeeze
         # Pins have placed their island already.
         old[np.isin(result.island, result.island[pinned.any(axis=1)])] = np.nan
         uv = lsgp.fit_placement(uv, old, result.island)
-    uv = lsgp.correct_aspect(uv, aspect)
+    uv = lsgp.correct_aspect(uv, task.aspect)
     # A pinned UV keeps its bytes; it would return from double precision up to rounding.
     held = pinned & result.solved[:, None]
     uv[held] = region.corner_uv[held]
-    return Unwrapped(obj, region, result, uv, held, aspect, step)
-
-
-def _options_on(obj: bpy.types.Object, options: lsgp.Options) -> lsgp.Options:
-    """Tiles have their size on the object as it is scaled, the mesh knows of no scale.  Raises Refused."""
-    seamless = options.seamless
-    if seamless is None or seamless.tile_size is None:
-        return options
-    scale = obj.matrix_world.median_scale
-    if not scale:
-        raise Refused("the object is scaled to nothing, where no tile has a size; scale it up or give a count of tiles")
-    return replace(options, seamless=replace(seamless, tile_size=seamless.tile_size / scale))
+    return Unwrapped(region, result, uv, held, task.aspect, step)
 
 
 def _pins(region: Region, pinned: NDArray[np.bool_], uv: NDArray[np.float64]) -> lsgp.Pins | None:

@@ -25,7 +25,7 @@ class ConeGroupProperty:
     """Mix-in: the vertex group whose members are the cones."""
 
     vertex_group: bpy.props.StringProperty(
-        name="Vertex Group",
+        name="Cone Group",
         description="Vertex group that holds the cones; a weight above zero marks a vertex as a cone",
         default=CONE_GROUP,
     )

@@ -1,11 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Unwrap from Cones."""
 
+from collections.abc import Iterable
+from functools import partial
+
 import bpy
 import numpy as np
 
-from .. import cells, findings, identifiers, mesh_read, mesh_write, native, packing, reporting, unwrapping
+from .. import (
+    cells,
+    findings,
+    gathering,
+    identifiers,
+    mesh_read,
+    mesh_write,
+    native,
+    packing,
+    reporting,
+    targets,
+    unwrapping,
+)
+from .background import BackgroundComputation
 from .common import SEAMS, ConeGroupProperty, SeamsProperty, enum_items, poll_computation, require_region
+from .low_stretch import MODES, LowStretchProperties
 from .seamless import SeamlessProperties
 
 # Identifier: (value for the library, label, description); "Automatic" leaves the rule to the library.
@@ -23,6 +40,15 @@ BORDERS = {
     "FREE": ("free", "Free", "Borders take the shape of least distortion; a cone with an angle there is a corner"),
     "STRAIGHT": ("straight", "Straight", "Borders run straight from cone to cone: a cylinder becomes a strip"),
 }
+OVERLAPS = {
+    "KEEP": ("keep", "Keep", "Leave islands that lie on themselves as they are; where they do is reported"),
+    "SPLIT": (
+        "split",
+        "Split",
+        "Cut islands further until none lies on itself; both sides of every cut still match. "
+        "The islands are packed then, unless they keep their placement or are seamless",
+    ),
+}
 MARGIN_METHODS = (
     ("SCALED", "Scaled", "Use scale of existing UVs to multiply margin"),
     ("ADD", "Add", "Just add the margin, ignoring any UV scale"),
@@ -30,7 +56,14 @@ MARGIN_METHODS = (
 )
 
 
-class UV_OT_cone_unwrap(ConeGroupProperty, SeamsProperty, SeamlessProperties, bpy.types.Operator):
+class UV_OT_cone_unwrap(
+    ConeGroupProperty,
+    SeamsProperty,
+    LowStretchProperties,
+    SeamlessProperties,
+    BackgroundComputation,
+    bpy.types.Operator,
+):
     """Unwrap from Cones."""
 
     bl_idname = identifiers.UNWRAP
@@ -41,6 +74,7 @@ class UV_OT_cone_unwrap(ConeGroupProperty, SeamsProperty, SeamlessProperties, bp
         "selected), on all faces of the selected objects in object mode; each object fills the UV square by itself"
     )
     bl_options = {"REGISTER", "UNDO"}
+    activity = "Unwrapping from cones"
 
     prescription: bpy.props.EnumProperty(
         name="Cone Angles", description="How the angle left at each cone is chosen", items=enum_items(PRESCRIPTIONS)
@@ -50,6 +84,14 @@ class UV_OT_cone_unwrap(ConeGroupProperty, SeamsProperty, SeamlessProperties, bp
     )
     border: bpy.props.EnumProperty(
         name="Borders", description="The shape of the mesh's own borders", items=enum_items(BORDERS)
+    )
+    repair: bpy.props.BoolProperty(
+        name="Repair Flips",
+        description="Turn flipped faces over, and put angles right that are off by a whole turn",
+        default=True,
+    )
+    overlaps: bpy.props.EnumProperty(
+        name="Overlaps", description="What becomes of islands that lie on themselves", items=enum_items(OVERLAPS)
     )
     use_pins: bpy.props.BoolProperty(
         name="Use Pins",
@@ -87,98 +129,145 @@ class UV_OT_cone_unwrap(ConeGroupProperty, SeamsProperty, SeamlessProperties, bp
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
-        for name in ("prescription", "unfold", "seams", "border", "use_pins"):
-            layout.prop(self, name)
-        self.draw_seamless(layout)
-        row = layout.row()
-        row.active = not self.seamless
-        row.prop(self, "correct_aspect")
-        row = layout.row()
-        row.active = not self.pack
-        row.prop(self, "keep_placement")
-        layout.prop(self, "pack")
-        column = layout.column()
-        column.active = self.pack and not self.seamless
-        column.prop(self, "margin_method")
-        column.prop(self, "margin")
+        self.draw_mode(layout, context)
+        layout.separator()
         self.draw_vertex_group(layout, context)
+        for name in ("prescription", "unfold", "seams", "border"):
+            layout.prop(self, name)
+        layout.separator()
+        layout.prop(self, "overlaps")
+        layout.prop(self, "repair")
+        self.draw_seamless(layout)
+        layout.separator()
+        layout.prop(self, "use_pins")
+        if not self.seamless:
+            layout.prop(self, "correct_aspect")
+        if not self.pack:
+            layout.prop(self, "keep_placement")
+        if self.pack or not self._uses_packer():
+            layout.prop(self, "pack")
+        if self._uses_packer():
+            layout.prop(self, "margin_method")
+            layout.prop(self, "margin")
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        # Without a window there are no events.
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        gathered, self._failures = self._gather(context)
+        self._targets = [targets.target(obj) for obj, _ in gathered]
+        self._tasks = [task for _, task in gathered]
+        return self.start(context, partial(unwrapping.unwrap_all, self._tasks))
+
+    def conclude_computation(
+        self, _context: bpy.types.Context, outcomes: list[unwrapping.Unwrapped | Exception]
+    ) -> set[str]:
+        found = []
+        failures = self._failures
+        for target, task, outcome in zip(self._targets, self._tasks, outcomes, strict=True):
+            try:
+                found.append((target.find(), task, outcome))
+            except reporting.Refused as error:
+                failures[target.name] = error
+        return self._conclude_unwrap(found, failures)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        solved, failures = self._solve(context)
+        gathered, failures = self._gather(context)
+        outcomes = unwrapping.unwrap_all([task for _, task in gathered])
+        found = [(obj, task, outcome) for (obj, task), outcome in zip(gathered, outcomes, strict=True)]
+        return self._conclude_unwrap(found, failures)
+
+    def _gather(
+        self, context: bpy.types.Context
+    ) -> tuple[list[tuple[bpy.types.Object, unwrapping.Task]], dict[str, Exception]]:
+        """What is to be solved, and by object name what went wrong with the others."""
+        settings = self._settings()
+        by_uv = mesh_read.selects_by_uv(context)
+        gathered = []
+        failures = {}
+        for obj in mesh_read.target_objects(context):
+            try:
+                region = require_region(obj, by_uv)
+                if region is not None:
+                    gathered.append((obj, gathering.gather(obj, region, settings)))
+            except (native.lsgp.LsgpError, reporting.Refused, MemoryError) as error:
+                failures[obj.name] = error
+                findings.keep(obj, None, [error])
+        return gathered, failures
+
+    def _conclude_unwrap(
+        self,
+        outcomes: Iterable[tuple[bpy.types.Object, unwrapping.Task, unwrapping.Unwrapped | Exception]],
+        failures: dict[str, Exception],
+    ) -> set[str]:
+        """Pack, write and report.  failures: by object name, of objects that are not among the outcomes."""
+        solved = []
+        for obj, task, outcome in outcomes:
+            if isinstance(outcome, Exception):
+                failures[obj.name] = outcome
+                findings.keep(obj, task.region, [outcome])
+            else:
+                solved.append((obj, outcome))
+                findings.keep(obj, task.region, outcome.result.warnings)
         if not solved and not failures:
             self.report({"ERROR"}, "No face is selected; select the faces to unwrap")
             return {"CANCELLED"}
-        layouts = [unwrapped.corner_uv for unwrapped in solved]
-        if self.pack and solved:
-            try:
-                layouts = cells.pack(solved) if self.seamless else self._packed(solved)
-            except (reporting.Refused, MemoryError) as error:
-                failures |= {unwrapped.obj.name: _refusal(error) for unwrapped in solved}
-                solved = layouts = []
+        try:
+            layouts = self._packed([unwrapped for _, unwrapped in solved]) if solved else []
+        except (reporting.Refused, MemoryError) as error:
+            failures |= {obj.name: error for obj, _ in solved}
+            solved = layouts = []
         # Only now, with all computation behind, is anything written.
-        for unwrapped, corner_uv in zip(solved, layouts, strict=True):
-            mesh_write.write_uv(unwrapped.obj, unwrapped.region, unwrapped.result.solved, corner_uv)
-        done = [_summary(unwrapped) for unwrapped in solved]
-        warnings = {unwrapped.obj.name: unwrapped.result.warnings for unwrapped in solved}
+        for (obj, unwrapped), corner_uv in zip(solved, layouts, strict=True):
+            mesh_write.write_uv(obj, unwrapped.region, unwrapped.result.solved, corner_uv)
+        done = [_summary(obj, unwrapped) for obj, unwrapped in solved]
+        warnings = {obj.name: unwrapped.result.warnings for obj, unwrapped in solved}
         return reporting.conclude(self, done, warnings, failures)
 
-    def _solve(self, context: bpy.types.Context) -> tuple[list[unwrapping.Unwrapped], dict[str, Exception]]:
-        """The finished maps, and by object name what went wrong with the others; nothing is written."""
-        settings = self._settings()
-        by_uv = mesh_read.selects_by_uv(context)
-        solved = []
-        failures = {}
-        for obj in mesh_read.target_objects(context):
-            region = None
-            try:
-                region = require_region(obj, by_uv)
-                if region is None:
-                    continue
-                solved.append(unwrapping.unwrap(obj, region, settings))
-                findings.keep(obj, region, solved[-1].result.warnings)
-            except (native.lsgp.LsgpError, reporting.Refused, MemoryError) as error:
-                failures[obj.name] = _refusal(error)
-                findings.keep(obj, region, [error])
-        return solved, failures
-
-    def _settings(self) -> unwrapping.Settings:
+    def _settings(self) -> gathering.Settings:
         options = native.lsgp.Options(
             prescription=PRESCRIPTIONS[self.prescription][0],
             unfold=UNFOLDINGS[self.unfold][0],
             seams=SEAMS[self.seams][0],
             border=BORDERS[self.border][0],
             seamless=self.seamless_options(),
+            mode=MODES[self.mode][0],
+            stretch=self.stretch,
+            repair=self.repair,
+            overlaps=OVERLAPS[self.overlaps][0],
         )
-        return unwrapping.Settings(
+        return gathering.Settings(
             options=options,
             group=self.vertex_group,
+            weight_group=self.weight_group if self.use_weights else None,
+            weight_factor=self.weight_factor,
             use_pins=self.use_pins,
             keep_placement=self.keep_placement and not self.pack,
             correct_aspect=self.correct_aspect and not self.seamless,
         )
 
+    def _uses_packer(self) -> bool:
+        """Whether islands go through Blender's packer, as they do where it is asked for and after splitting."""
+        return not self.seamless and (self.pack or (self.overlaps == "SPLIT" and not self.keep_placement))
+
     def _packed(self, solved: list[unwrapping.Unwrapped]) -> list[np.ndarray]:
-        """The coordinates of each object after Blender's packer, as (m, 3, 2) arrays."""
-        packed = packing.pack([unwrapped.islands() for unwrapped in solved], self.margin_method, self.margin)
-        layouts = []
-        for unwrapped, uv in zip(solved, packed, strict=True):
-            layouts.append(unwrapped.corner_uv.copy())
-            layouts[-1][unwrapped.result.solved] = uv
+        """The coordinates of each object as they are to be written, (m, 3, 2) arrays.  Raises Refused."""
+        if self.seamless and self.pack:
+            return cells.pack(solved)
+        layouts = [unwrapped.corner_uv for unwrapped in solved]
+        if self._uses_packer():
+            packed = packing.pack([unwrapped.islands() for unwrapped in solved], self.margin_method, self.margin)
+            layouts = [uv.copy() for uv in layouts]
+            for layout, unwrapped, uv in zip(layouts, solved, packed, strict=True):
+                layout[unwrapped.result.solved] = uv
         return layouts
 
 
-def _refusal(error: Exception) -> Exception:
-    """The error as it can be told."""
-    if isinstance(error, MemoryError):
-        return reporting.Refused("there is not enough memory; unwrap fewer faces at once")
-    return error
-
-
-def _summary(unwrapped: unwrapping.Unwrapped) -> str:
+def _summary(obj: bpy.types.Object, unwrapped: unwrapping.Unwrapped) -> str:
     result = unwrapped.result
     islands = reporting.counted(int(result.island.max()) + 1, "island")
     return (
-        f"{unwrapped.obj.name}: {islands} through {reporting.counted(len(result.cones), 'cone')}, "
+        f"{obj.name}: {islands} through {reporting.counted(len(result.cones), 'cone')}, "
         f"stretch {result.distortion.l2_stretch:.3f} (1 is none)"
         f"{'' if result.seamless is None else ', ' + cells.certified(unwrapped)}"
     )

@@ -7,8 +7,11 @@ from .. import identifiers
 
 
 def draw_unwrap(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
-    self.layout.separator()
-    self.layout.operator(identifiers.UNWRAP)
+    layout = self.layout
+    layout.separator()
+    # So that long runs show their progress.
+    layout.operator_context = "INVOKE_DEFAULT"
+    layout.operator(identifiers.UNWRAP)
 
 
 def draw_cones(self: bpy.types.Menu, _context: bpy.types.Context) -> None:

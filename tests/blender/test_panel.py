@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The operator's panel: short, because what has no say is left out."""
+
+import inspect
+import os
+
+import bpy
+from scenes import add_cone_cube
+
+EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
+SEAMLESS_ONLY = {
+    "lattice",
+    "tile_fit",
+    "tiles",
+    "tile_size",
+    "coarse_grid",
+    "parity",
+    "mip_safe",
+    "texture_size",
+    "mip_levels",
+}
+
+
+class RecordingLayout:
+    """Stands for the redo panel and keeps which properties were drawn, and whether they were greyed out."""
+
+    def __init__(self, drawn, active=True):
+        self.drawn, self.active = drawn, active
+        self.use_property_split = False
+
+    def _part(self):
+        return RecordingLayout(self.drawn, self.active)
+
+    row = column = box = _part
+
+    def separator(self):
+        pass
+
+    def prop(self, _owner, name, expand=False):
+        self.drawn[name] = self.active
+
+    def prop_search(self, _owner, name, *_where):
+        self.drawn[name] = self.active
+
+
+def our_properties():
+    """The operator's properties but those that every operator has."""
+    common = {"rna_type", "bl_idname", "bl_label"}
+    return [p for p in bpy.ops.uv.cone_unwrap.get_rna_type().properties if p.identifier not in common]
+
+
+def panel(**options):
+    """Names of the properties drawn with these options; True where they can be changed."""
+    add_cone_cube()
+    ours = [cls for cls in bpy.types.UV_OT_cone_unwrap.__mro__ if cls.__module__.startswith(EXTENSION)]
+    functions = {name: f for cls in reversed(ours) for name, f in vars(cls).items() if inspect.isfunction(f)}
+    stand_in = type("Operator", (), functions)()
+    values = {prop.identifier: prop.default for prop in our_properties()} | options
+    for name, value in values.items():
+        setattr(stand_in, name, value)
+    stand_in.layout = RecordingLayout({})
+    stand_in.draw(bpy.context)
+    return stand_in.layout.drawn
+
+
+def test_every_property_is_drawn_once_with_the_options_it_has_a_say_in():
+    plain = panel()
+    everything = {prop.identifier for prop in our_properties()}
+    low_stretch = {"stretch", "use_weights"}
+    weights = {"weight_group", "weight_factor"}
+    margins = {"margin_method", "margin"}
+    assert plain.keys() == everything - low_stretch - weights - margins - SEAMLESS_ONLY
+    assert panel(mode="LOW_STRETCH").keys() - plain.keys() == low_stretch
+    assert panel(mode="LOW_STRETCH", use_weights=True).keys() - plain.keys() == low_stretch | weights
+    assert panel(use_weights=True).keys() == plain.keys()
+
+
+def test_options_of_seamless_layouts_are_drawn_only_with_it():
+    plain, seamless = panel(), panel(seamless=True)
+    assert seamless.keys() - plain.keys() == {"lattice", "tile_fit", "coarse_grid", "parity", "mip_safe"}
+    assert plain.keys() - seamless.keys() == {"correct_aspect"}
+    assert panel(seamless=True, tile_fit="TILES").keys() - seamless.keys() == {"tiles"}
+    assert panel(seamless=True, tile_fit="SIZE").keys() - seamless.keys() == {"tile_size"}
+    assert panel(seamless=True, mip_safe=True).keys() - seamless.keys() == {"texture_size", "mip_levels"}
+    assert seamless["parity"] and not panel(seamless=True, lattice="HEXAGON")["parity"]
+
+
+def test_margins_are_drawn_where_blenders_packer_is_used():
+    def drawn(**options):
+        names = panel(**options)
+        return {name: name in names for name in ("margin", "margin_method", "keep_placement", "pack")}
+
+    packer = {"margin": True, "margin_method": True}
+    no_packer = {"margin": False, "margin_method": False}
+    assert drawn() == no_packer | {"keep_placement": True, "pack": True}
+    assert drawn(pack=True) == packer | {"keep_placement": False, "pack": True}
+    # Split islands are packed unless they are to stay where they were.
+    assert drawn(overlaps="SPLIT") == packer | {"keep_placement": True, "pack": False}
+    assert drawn(overlaps="SPLIT", keep_placement=True) == no_packer | {"keep_placement": True, "pack": True}
+    # Seamless islands are moved by whole tiles only.
+    assert drawn(seamless=True, pack=True) == no_packer | {"keep_placement": False, "pack": True}
+    assert drawn(seamless=True, overlaps="SPLIT") == no_packer | {"keep_placement": True, "pack": True}
+
+
+def test_every_property_has_a_tooltip_in_blenders_manner():
+    told = {prop.identifier: prop for prop in our_properties() if prop.identifier != "margin_method"}
+    assert told.keys() >= SEAMLESS_ONLY | {"seamless"}
+    for prop in told.values():
+        assert prop.name and prop.description and not prop.description.endswith(".")
+        for item in getattr(prop, "enum_items", ()):
+            assert item.name and item.description and not item.description.endswith(".")
+
+
+def test_importance_weights_are_named_as_in_blenders_own_unwrap():
+    # From the version on that has them.
+    theirs = bpy.ops.uv.unwrap.get_rna_type().properties
+    ours = {prop.identifier: prop for prop in our_properties()}
+    assert ours["weight_group"].default == "uv_importance"
+    assert ours["weight_factor"].default == 1.0
+    for name in {"use_weights", "weight_group", "weight_factor"} & set(theirs.keys()):
+        assert ours[name].name == theirs[name].name
+        assert ours[name].default == theirs[name].default
