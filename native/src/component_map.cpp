@@ -6,7 +6,9 @@
 
 #include "border.hpp"
 #include "connection.hpp"
+#include "continuation.hpp"
 #include "energies/quadratic_forms.hpp"
+#include "low_stretch.hpp"
 #include "text.hpp"
 #include "unfold.hpp"
 #include "untangle.hpp"
@@ -54,25 +56,16 @@ UnfoldMethod usable_unfold(const HalfedgeMesh& mesh, const ComponentCones& cones
   return UnfoldMethod::poisson;
 }
 
-// What decides about a repair; what is returned is checked in the layout.
-void check(const HalfedgeMesh& mesh, ComponentMap& map) {
-  if (!map.position.allFinite()) {
-    throw Error(Code::solver_failed,
-                "The unfolding returned values that are not finite. Clean the mesh (merge by distance, "
-                "dissolve degenerate faces) and try again.");
-  }
-  const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
-  map.uv_area = 0;
-  for (Index f = 0; f < mesh.triangle_count(); ++f) map.uv_area += doubled_area(corners, f) / 2;
-  check_triangles(mesh, corners, map);
+// Ranges of the automatic angles: wide ones distort least but may leave turns with neighbouring vertices; a map of
+// angles up to 2 pi that has no flips has the right angles too.
+constexpr AngleRange angle_ranges[]{widest_angles, {M_PI / 2, 2.5 * M_PI}, {M_PI / 2, 2 * M_PI, false}};
+
+bool any_given(const ComponentCones& cones) {
+  return std::any_of(cones.angles.begin(), cones.angles.end(), [](const auto& angle) { return angle.has_value(); });
 }
 
-// Vertices a repair has to leave where they are.
-std::vector<char> fixed_vertices(const HalfedgeMesh& mesh, const ComponentMap& map, const std::vector<Index>& aligned) {
-  std::vector<char> fixed(mesh.vertex_count(), 0);
-  for (const Pin& pin : map.pins) fixed[map.cut_mesh.source[pin.copy]] = 1;
-  for (const Index h : aligned) fixed[mesh.origin(h)] = fixed[mesh.target(h)] = 1;
-  return fixed;
+bool all_given(const ComponentCones& cones) {
+  return std::all_of(cones.angles.begin(), cones.angles.end(), [](const auto& angle) { return angle.has_value(); });
 }
 
 // A border without corners is one straight line along its own translation, but the discrete metric knows the angle
@@ -114,73 +107,121 @@ Eigen::VectorXcd unfold_along_borders(const HalfedgeMesh& mesh, const Geometry& 
 
 // The fit to the prescribed Jacobians with every triangle's error relative to its scale: where scales differ much, the
 // plain fit loses what is small to what is large.  One more factorization.
-Eigen::VectorXcd unfold_relatively(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
+Eigen::VectorXcd unfold_relatively(const CutSurface& surface, const Curvature& curvature,
                                    const Connection& connection) {
-  Jacobians jacobians = prescribed_jacobians(mesh, map.curvature.log_scale, connection.frames);
+  Jacobians jacobians = prescribed_jacobians(surface.mesh, curvature.log_scale, connection.frames);
   constexpr double widest_range = 1e8;  // of the weights, so that the form can be factored
   Eigen::VectorXd weight = jacobians.f_z.cwiseAbs2().cwiseInverse();
   weight = weight.cwiseMin(widest_range * weight.minCoeff());
-  const Geometry weighted = with_weights(geometry, weight);
+  const Geometry weighted = with_weights(surface.geometry, weight);
   jacobians.f_z = jacobians.f_z.cwiseProduct(weight);
-  return PoissonSystem(mesh, weighted, map.cut_mesh, connection.reduction).fit(jacobians);
+  return PoissonSystem(surface.mesh, weighted, surface.cut_mesh, connection.reduction).fit(jacobians);
 }
 
-// Takes a valid map from the metric's own rotations about handles to the chosen ones, in steps over which it stays
-// valid. Leaves the map as it is where that does not succeed.
-void twist_gradually(const HalfedgeMesh& mesh, const Geometry& geometry, const ConnectionChoice& connections,
-                     const std::vector<char>& fixed, ComponentMap& map) {
-  constexpr double first_step = 0.25, shortest_step = 0.02;
-  ComponentMap moved = map;
-  // The map under a share of the twist, from its Jacobians under less.
-  const auto move_to = [&](double share, const Jacobians& jacobians) {
-    const Connection connection = connections.at(share);
-    moved.rotation = connection.rotation;
-    moved.position = PoissonSystem(mesh, geometry, map.cut_mesh, connection.reduction).fit(jacobians);
-    check(mesh, moved);
-    if (moved.validity.defects() == 0) return true;
-    moved.position =
-        untangle(mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, map.curvature,
-                 jacobians.f_z.array().arg(), fixed, Effort::local, Kind::framed_foldover_free, moved.position);
-    check(mesh, moved);
-    return moved.validity.defects() == 0;
-  };
-  if (!move_to(0, prescribed_jacobians(mesh, map.curvature.log_scale, connections.at(0).frames))) return;
-  double reached = 0;
-  for (double step = first_step; step > shortest_step && reached < 1;) {
-    const double share = std::min(1.0, reached + step);
-    const Eigen::VectorXcd before = moved.position;
-    const Eigen::VectorXd turn = (share - reached) * connections.twist();
-    Jacobians jacobians = measure_jacobians(mesh, geometry, map.cut_mesh, before);
-    for (Index f = 0; f < mesh.triangle_count(); ++f) {
-      jacobians.f_z[f] *= std::polar(1.0, turn[f]);
-      jacobians.f_zbar[f] *= std::polar(1.0, turn[f]);
+// The way from a component to its map, and what its attempts share.
+class Mapping {
+ public:
+  Mapping(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentTask& task, const Options& options,
+          Monitor& monitor)
+      : mesh_(mesh), geometry_(geometry), task_(task), options_(options), monitor_(monitor) {}
+
+  ComponentMap run(std::vector<Finding>& findings) {
+    ComponentMap map = has_choice() ? choose_angles(findings) : attempt(task_.cones, Effort::global, findings);
+    if (map.validity.defects() > 0 && is_repaired() && (any_given(task_.cones) || task_.cones.symmetry > 0)) {
+      approach_angles(map, findings);
     }
-    if (move_to(share, jacobians)) {
-      reached = share;
-      step *= 1.5;
+    if (options_.mode == Mode::low_stretch && map.validity.defects() == 0) relax(map);
+    map.repair = repair_;
+    return map;
+  }
+
+ private:
+  bool is_repaired() const {
+    return options_.repair && options_.method == Method::lsgp && options_.unfold == UnfoldMethod::poisson;
+  }
+
+  // Whether other angles may be tried where those of least distortion have no valid map.
+  bool has_choice() const {
+    if (!is_repaired() || task_.cones.symmetry > 0) return false;
+    return options_.prescription == PrescriptionRule::least_distortion ||
+           (options_.prescription == PrescriptionRule::manual && !all_given(task_.cones));
+  }
+
+  ComponentMap choose_angles(std::vector<Finding>& findings) {
+    std::optional<ComponentMap> best;
+    ComponentCones cones = task_.cones;
+    std::vector<Finding> of_best;
+    for (const Effort effort : {Effort::local, Effort::global}) {
+      for (const AngleRange& range : angle_ranges) {
+        if (best && best->validity.defects() == 0) break;
+        cones.range = range;
+        std::vector<Finding> found;
+        ComponentMap map = attempt(cones, effort, found);
+        if (best && map.validity.defects() >= best->validity.defects()) continue;
+        best = std::move(map);
+        of_best = std::move(found);
+      }
+    }
+    findings.insert(findings.end(), of_best.begin(), of_best.end());
+    return std::move(*best);
+  }
+
+  ComponentMap attempt(const ComponentCones& cones, Effort effort, std::vector<Finding>& findings) {
+    ComponentMap map;
+    {
+      const Monitor::Stage stage(monitor_, "prescribe");
+      monitor_.advance(0);
+      map.curvature = prescribe(mesh_, geometry_, cones, options_.prescription, findings);
+    }
+    {
+      const Monitor::Stage stage(monitor_, "cut");
+      monitor_.advance(0.2);
+      cut(map, findings);
+    }
+    const Monitor::Stage stage(monitor_, "unfold");
+    monitor_.advance(0.3);
+    const CutSurface surface = open(map);
+    if (options_.method == Method::lscm) {
+      map.pins.clear();  // a comparison: its two pins are its own
+      map.position = unfold_lscm(mesh_, geometry_, map.cut_mesh);
+      check(map);
+      return map;
+    }
+    const ConnectionChoice connections(surface, map.curvature, cones.symmetry);
+    const Connection connection = connections.at(1, map.curvature);
+    map.rotation = connection.rotation;
+    const std::vector<Index> aligned = aligned_edges();
+    const bool spectral = usable_unfold(mesh_, cones, options_.unfold, findings) == UnfoldMethod::spectral;
+    if (spectral) {
+      map.position = unfold_spectral(mesh_, geometry_, map.cut_mesh, connection.reduction);
+    } else if (!aligned.empty()) {
+      map.position = unfold_along_borders(mesh_, geometry_, map, cones, connection, aligned);
     } else {
-      moved.position = before;
-      step /= 2;
+      map.position = PoissonSystem(mesh_, geometry_, map.cut_mesh, connection.reduction)
+                         .fit(prescribed_jacobians(mesh_, map.curvature.log_scale, connection.frames));
     }
+    Curvature target = map.curvature;
+    if (map.pins.size() > 1) {
+      PinnedMap pinned = move_onto_pins(mesh_, geometry_, map.cut_mesh, connection.reduction, map.pins,
+                                        !aligned.empty(), map.position);
+      map.position = std::move(pinned.position);
+      target.log_scale.array() += std::log(pinned.scale);
+    }
+    check(map);
+    if (!first_checked_) {
+      first_checked_ = true;
+      repair_.flipped_before = static_cast<Index>(map.validity.flipped.size());
+      repair_.wrong_angle_sums_before = static_cast<Index>(map.validity.wrong_angle_sums.size());
+    }
+    if (map.validity.defects() > 0 && is_repaired() && !spectral) {
+      repair(connections, connection, target, effort, map);
+    }
+    return map;
   }
-  if (reached == 1) map = std::move(moved);
-}
 
-ComponentMap attempt_map(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
-                         const std::vector<std::pair<Index, Complex>>& pinned_corners, const Options& options,
-                         Effort effort, std::vector<Finding>& findings, Monitor& monitor) {
-  // Border edges whose direction is imposed.
-  const std::vector<Index> aligned =
-      cones.border == BorderMode::straight ? straight_edges(mesh, cones.vertices) : corner_edges(mesh, cones.vertices);
-  ComponentMap map;
-  {
-    const Monitor::Stage stage(monitor, "prescribe");
-    map.curvature = prescribe(mesh, geometry, cones, options.prescription, findings);
-  }
-  {
-    const Monitor::Stage stage(monitor, "cut");
-    for (const Index v : inside_only(mesh, cones.vertices)) {
-      const bool flat = cones.symmetry > 0 && map.curvature.at_vertex[v] == 0;
+  void cut(ComponentMap& map, std::vector<Finding>& findings) const {
+    for (const Index v : inside_only(mesh_, task_.cones.vertices)) {
+      const bool flat = task_.cones.symmetry > 0 && map.curvature.at_vertex[v] == 0;
       (flat ? map.flat_cones : map.cones).push_back(v);
     }
     if (!map.flat_cones.empty()) {
@@ -189,98 +230,157 @@ ComponentMap attempt_map(const HalfedgeMesh& mesh, const Geometry& geometry, con
                                  " came out flat when angles were rounded: ordinary vertices now, which need no cut."),
                           {ElementKind::vertices, map.flat_cones}});
     }
-    map.cut_graph = connect_cones(mesh, geometry, map.cones, map.curvature.needs_no_cut);
-    map.cut_mesh = cut_open(mesh, map.cut_graph);
-    map.pins = pins_of_copies(map.cut_mesh, pinned_corners);
+    map.cut_graph = connect_cones(mesh_, geometry_, map.cones, map.curvature.needs_no_cut);
+    map.cut_mesh = cut_open(mesh_, map.cut_graph);
+    map.pins = pins_of_copies(map.cut_mesh, task_.pinned_corners);
   }
-  const Monitor::Stage stage(monitor, "unfold");
-  if (options.method == Method::lscm) {
-    map.pins.clear();  // a comparison: its two pins are its own
-    map.position = unfold_lscm(mesh, geometry, map.cut_mesh);
-    check(mesh, map);
-    return map;
-  }
-  const ConnectionChoice connections(mesh, geometry, map.cut_graph, map.cut_mesh, map.curvature, cones.symmetry);
-  const Connection connection = connections.at(1);
-  map.rotation = connection.rotation;
-  const bool spectral = usable_unfold(mesh, cones, options.unfold, findings) == UnfoldMethod::spectral;
-  if (spectral) {
-    map.position = unfold_spectral(mesh, geometry, map.cut_mesh, connection.reduction);
-  } else if (!aligned.empty()) {
-    map.position = unfold_along_borders(mesh, geometry, map, cones, connection, aligned);
-  } else {
-    map.position = PoissonSystem(mesh, geometry, map.cut_mesh, connection.reduction)
-                       .fit(prescribed_jacobians(mesh, map.curvature.log_scale, connection.frames));
-  }
-  Curvature target = map.curvature;
-  if (map.pins.size() > 1) {
-    PinnedMap pinned =
-        move_onto_pins(mesh, geometry, map.cut_mesh, connection.reduction, map.pins, !aligned.empty(), map.position);
-    map.position = std::move(pinned.position);
-    target.log_scale.array() += std::log(pinned.scale);
-  }
-  check(mesh, map);
-  if (static_cast<double>(map.validity.flipped.size()) > tangled_share * mesh.triangle_count() && !spectral &&
-      aligned.empty() && map.pins.size() < 2) {
-    ComponentMap relative = map;
-    relative.position = unfold_relatively(mesh, geometry, map, connection);
-    check(mesh, relative);
-    if (relative.validity.defects() < map.validity.defects()) map = std::move(relative);
-  }
-  if (!map.validity.flipped.empty() && !spectral) {
-    const std::vector<char> fixed = fixed_vertices(mesh, map, aligned);
-    const auto repair = [&](Effort of_repair) {
-      map.position = untangle(
-          mesh, geometry, map.cut_graph, map.cut_mesh, connection.rotation, target, connection.frames, fixed, of_repair,
-          connections.is_twisted() ? Kind::framed_foldover_free : Kind::foldover_free, map.position);
-      check(mesh, map);
-    };
-    repair(connections.is_twisted() ? Effort::local : effort);
-    if (map.validity.defects() > 0 && connections.is_twisted()) {
-      twist_gradually(mesh, geometry, connections, fixed, map);
-      if (map.validity.defects() > 0) repair(Effort::global);
-    }
-  }
-  return map;
-}
 
-// Whether other angles may be tried where those of least distortion have no valid map.
-bool has_choice(const ComponentCones& cones, const Options& options) {
-  if (options.method != Method::lsgp || options.unfold != UnfoldMethod::poisson || cones.symmetry > 0) return false;
-  const bool fixed =
-      std::all_of(cones.angles.begin(), cones.angles.end(), [](const auto& angle) { return angle.has_value(); });
-  return options.prescription == PrescriptionRule::least_distortion ||
-         (options.prescription == PrescriptionRule::manual && !fixed);
-}
+  // What decides about a repair; what is returned is checked in the layout.
+  void check(ComponentMap& map) {
+    const Monitor::Stage stage(monitor_, "check");
+    if (!map.position.allFinite()) {
+      throw Error(Code::solver_failed,
+                  "The unfolding returned values that are not finite. Clean the mesh (merge by distance, "
+                  "dissolve degenerate faces) and try again.");
+    }
+    const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
+    map.uv_area = 0;
+    for (Index f = 0; f < mesh_.triangle_count(); ++f) map.uv_area += doubled_area(corners, f) / 2;
+    check_triangles(mesh_, corners, map);
+  }
+
+  void repair(const ConnectionChoice& connections, const Connection& connection, const Curvature& target, Effort effort,
+              ComponentMap& map) {
+    const Monitor::Stage stage(monitor_, "repair");
+    const CutSurface surface = open(map);
+    const std::vector<char> fixed = fixed_vertices(map);
+    const bool tangled = static_cast<double>(map.validity.flipped.size()) > tangled_share * mesh_.triangle_count();
+    if (tangled && aligned_edges().empty() && map.pins.size() < 2) {
+      ComponentMap relative = map;
+      relative.position = unfold_relatively(surface, map.curvature, connection);
+      check(relative);
+      if (relative.validity.defects() < map.validity.defects()) map = std::move(relative);
+    }
+    const auto repair_with = [&](Effort of_repair) {
+      const auto first = connections.is_twisted() ? Kind::framed_foldover_free : Kind::foldover_free;
+      map.position = untangle(surface, connection, target, fixed, of_repair, first, counter(), map.position);
+      check(map);
+    };
+    repair_with(connections.is_twisted() ? Effort::local : effort);
+    if (map.validity.defects() == 0 || !connections.is_twisted()) return;
+    twist_gradually(connections, fixed, map);
+    if (map.validity.defects() > 0) repair_with(Effort::global);
+  }
+
+  // Takes the map of the metric's own rotations about handles to the chosen ones; leaves the map as it is where that
+  // does not succeed.
+  void twist_gradually(const ConnectionChoice& connections, const std::vector<char>& fixed, ComponentMap& map) {
+    const CutSurface surface = open(map);
+    const Connection natural = connections.at(0, map.curvature);
+    ComponentMap moved = map;
+    moved.position = PoissonSystem(mesh_, geometry_, map.cut_mesh, natural.reduction)
+                         .fit(prescribed_jacobians(mesh_, map.curvature.log_scale, natural.frames));
+    moved.position = untangle(surface, natural, map.curvature, fixed, Effort::local, Kind::framed_foldover_free,
+                              counter(), moved.position);
+    check(moved);
+    if (moved.validity.defects() > 0) return;
+    Continuation end = follow(surface, path_between(map.curvature, connections, map.curvature), fixed, Effort::local,
+                              counter(), moved.position);
+    if (end.reached < 1) return;
+    map.position = std::move(end.position);
+    check(map);
+  }
+
+  // Angles that were asked for and have no valid map at once can often be reached from others that have one.  Where
+  // they cannot, those nearest to them are taken, but for rounded ones.
+  void approach_angles(ComponentMap& map, std::vector<Finding>& findings) {
+    if (!aligned_edges().empty() || map.pins.size() > 1 || map.cones.empty()) return;
+    const Monitor::Stage stage(monitor_, "repair");
+    ComponentTask automatic = task_;
+    automatic.cones.vertices = map.cones;
+    automatic.cones.angles.assign(map.cones.size(), std::nullopt);
+    automatic.cones.symmetry = 0;
+    for (std::size_t loop = 0; loop < map.curvature.needs_no_cut.size(); ++loop) {
+      if (map.curvature.needs_no_cut[loop]) automatic.cones.loop_turning[loop] = -2 * M_PI;
+    }
+    Options plain = options_;
+    plain.prescription = PrescriptionRule::least_distortion;
+    plain.mode = Mode::conformal;
+    std::vector<Finding> unsaid;
+    Mapping of_automatic(mesh_, geometry_, automatic, plain, monitor_);
+    const ComponentMap start = of_automatic.run(unsaid);
+    repair_.iterations += of_automatic.repair_.iterations;
+    if (start.validity.defects() > 0 || start.cut_graph.is_cut != map.cut_graph.is_cut) return;
+    const CutSurface surface = open(map);
+    const ConnectionChoice connections(surface, map.curvature, task_.cones.symmetry);
+    Continuation end = follow(surface, path_between(start.curvature, connections, map.curvature), fixed_vertices(map),
+                              Effort::global, counter(), start.position);
+    if (end.reached < 1) {
+      if (task_.cones.symmetry > 0) return;
+      report_adjusted(map, end, findings);
+    }
+    map.curvature = std::move(end.at.curvature);
+    map.rotation = std::move(end.at.connection.rotation);
+    map.position = std::move(end.position);
+    check(map);
+  }
+
+  void report_adjusted(const ComponentMap& map, const Continuation& end, std::vector<Finding>& findings) const {
+    Eigen::Index most = 0;
+    const double off = (map.curvature.at_vertex - end.at.curvature.at_vertex).cwiseAbs().maxCoeff(&most);
+    findings.push_back(
+        {Code::angles_adjusted,
+         concat("No map without flips was found for the angles given; this one has angles ",
+                std::round(100 * end.reached), " % of the way to them from those of least distortion, up to ",
+                off * 180 / M_PI, " degrees off. Take angles nearer to the automatic ones, or subdivide the mesh at ",
+                "the cones."),
+         {ElementKind::vertices, map.cones}});
+  }
+
+  void relax(ComponentMap& map) {
+    const Monitor::Stage stage(monitor_, "relax");
+    const CutSurface surface = open(map);
+    const Connection connection = ConnectionChoice(surface, map.curvature, task_.cones.symmetry).at(1, map.curvature);
+    map.position = lower_stretch(surface, connection, map.curvature, options_.stretch, fixed_vertices(map),
+                                 task_.importance, counter(), map.position);
+    check(map);
+  }
+
+  CutSurface open(const ComponentMap& map) const { return {mesh_, geometry_, map.cut_graph, map.cut_mesh}; }
+
+  // Border edges whose direction is imposed.
+  std::vector<Index> aligned_edges() const {
+    return task_.cones.border == BorderMode::straight ? straight_edges(mesh_, task_.cones.vertices)
+                                                      : corner_edges(mesh_, task_.cones.vertices);
+  }
+
+  // Vertices a repair has to leave where they are.
+  std::vector<char> fixed_vertices(const ComponentMap& map) const {
+    std::vector<char> fixed(mesh_.vertex_count(), 0);
+    for (const Pin& pin : map.pins) fixed[map.cut_mesh.source[pin.copy]] = 1;
+    for (const Index h : aligned_edges()) fixed[mesh_.origin(h)] = fixed[mesh_.target(h)] = 1;
+    return fixed;
+  }
+
+  // Counts the steps of Newton's method.  Nobody knows how many there will be.
+  StepHook counter() {
+    return [this] { monitor_.advance(1 - 0.5 * std::pow(0.98, ++repair_.iterations)); };
+  }
+
+  const HalfedgeMesh& mesh_;
+  const Geometry& geometry_;
+  const ComponentTask& task_;
+  const Options& options_;
+  Monitor& monitor_;
+  RepairReport repair_;
+  bool first_checked_ = false;
+};
 
 }  // namespace
 
-ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
-                           const std::vector<std::pair<Index, Complex>>& pinned_corners, const Options& options,
-                           std::vector<Finding>& findings, Monitor& monitor) {
-  if (!has_choice(cones, options)) {
-    return attempt_map(mesh, geometry, cones, pinned_corners, options, Effort::global, findings, monitor);
-  }
-  // Wide angles distort least but may leave turns with neighbouring vertices.
-  std::optional<ComponentMap> best;
-  ComponentCones bounded = cones, best_bounded = cones;
-  std::vector<Finding> of_best;
-  for (const double largest : {largest_angle, 2.5 * M_PI, 2 * M_PI}) {
-    bounded.largest_angle = largest;
-    std::vector<Finding> found;
-    ComponentMap map = attempt_map(mesh, geometry, bounded, pinned_corners, options, Effort::local, found, monitor);
-    if (best && map.validity.defects() >= best->validity.defects()) continue;
-    best = std::move(map);
-    best_bounded = bounded;
-    of_best = std::move(found);
-    if (best->validity.defects() == 0) break;
-  }
-  if (best->validity.defects() > 0) {
-    of_best.clear();
-    best = attempt_map(mesh, geometry, best_bounded, pinned_corners, options, Effort::global, of_best, monitor);
-  }
-  findings.insert(findings.end(), of_best.begin(), of_best.end());
-  return std::move(*best);
+ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentTask& task,
+                           const Options& options, std::vector<Finding>& findings, Monitor& monitor) {
+  return Mapping(mesh, geometry, task, options, monitor).run(findings);
 }
 
 }  // namespace lsgp

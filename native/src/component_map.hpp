@@ -30,13 +30,12 @@ struct ComponentMap {
   SeamQuality seams;
   std::vector<Index> inexact_seams;  // halfedges
   Validity validity;
+  RepairReport repair;
 };
 
-// pinned_corners: corners of the component and their places.  findings are added to.
-// Throws what the stages throw, in the component's own numbering.
-ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
-                           const std::vector<std::pair<Index, Complex>>& pinned_corners, const Options& options,
-                           std::vector<Finding>& findings, Monitor& monitor);
+// findings are added to.  Throws what the stages throw, in the component's own numbering.
+ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentTask& task,
+                           const Options& options, std::vector<Finding>& findings, Monitor& monitor);
 
 // Measure positions u + iv at the component's corners, (3m), against what the map imposed.
 void check_seams(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners, ComponentMap& map);

@@ -67,6 +67,30 @@ void hand_out_turning(const std::vector<Component>& components, const Options& o
   }
 }
 
+void hand_out_pins(const Surface& surface, const Pins& pins, Work& work) {
+  if (pins.corners.empty()) return;
+  std::vector<Index> pin_at(3 * surface.triangles.rows(), none);
+  for (std::size_t i = 0; i < pins.corners.size(); ++i) pin_at[pins.corners[i]] = static_cast<Index>(i);
+  for (std::size_t c = 0; c < work.tasks.size(); ++c) {
+    const Component& component = work.topology.components[c];
+    for (Index corner = 0; corner < component.mesh.halfedge_count(); ++corner) {
+      const Index pin = pin_at[component.source_corner(corner)];
+      if (pin == none) continue;
+      work.tasks[c].pinned_corners.emplace_back(corner, Complex(pins.positions(pin, 0), pins.positions(pin, 1)));
+    }
+  }
+}
+
+void hand_out_importance(const Eigen::VectorXd& importance, Work& work) {
+  if (importance.size() == 0) return;
+  for (std::size_t c = 0; c < work.tasks.size(); ++c) {
+    const Component& component = work.topology.components[c];
+    Eigen::VectorXd& own = work.tasks[c].importance;
+    own.resize(component.mesh.vertex_count());
+    for (Index v = 0; v < own.size(); ++v) own[v] = importance[component.source_vertex[v]];
+  }
+}
+
 // The power of two that brings the surface to about unit size: exact, and areas can neither overflow nor vanish.
 double unit_scale(const Surface& surface) {
   double largest = 0;
@@ -83,9 +107,12 @@ bool has_seam(const HalfedgeMesh& mesh) { return std::find(mesh.seam.begin(), me
 
 }  // namespace
 
-Work prepare(const Surface& surface, const Cones& cones, const Options& options, std::vector<Finding>& findings) {
+Work prepare(const Surface& surface, const Cones& cones, const Options& options, std::vector<Finding>& findings,
+             const Pins& pins) {
   require_valid(surface);
   require_valid(surface, cones);
+  require_valid(surface, pins);
+  require_valid(options);
   Surface used = surface;
   const double scale = unit_scale(surface);
   used.positions *= scale;
@@ -115,6 +142,8 @@ Work prepare(const Surface& surface, const Cones& cones, const Options& options,
                         "Mark cones to have the texture run on across them.",
                         {ElementKind::triangles, opened}});
   }
+  hand_out_pins(surface, pins, work);
+  hand_out_importance(surface.importance, work);
   hand_out_turning(work.topology.components, options, surface.positions.rows(), work.tasks);
   findings.insert(findings.end(), std::make_move_iterator(repairs.begin()), std::make_move_iterator(repairs.end()));
   return work;

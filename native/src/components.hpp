@@ -13,8 +13,10 @@ namespace lsgp {
 
 // What the caller asks of one component, in its own numbering.
 struct ComponentTask {
-  ComponentCones cones;             // in the caller's order
-  std::vector<Index> border_cones;  // vertices of cones on a free border that prescribe nothing
+  ComponentCones cones;                                   // in the caller's order
+  std::vector<Index> border_cones;                        // vertices of cones on a free border that prescribe nothing
+  std::vector<std::pair<Index, Complex>> pinned_corners;  // and their places
+  Eigen::VectorXd importance;                             // (n) weights of stretch, or empty
 };
 
 // A surface's components and what is asked of each.
@@ -24,10 +26,11 @@ struct Work {
   double unit_scale = 1;             // of the components' positions to the caller's
 };
 
-// Validates the call, splits the surface as the seam mode says and hands out cones and loop turnings.  A closed
+// Validates the call, splits the surface as the seam mode says and hands out what is asked.  A closed
 // component without cones but with seams is opened along these, as an artist who marked seams means it.
 // Throws what require_valid and build_topology throw, and LOOP_TURNING.
-Work prepare(const Surface& surface, const Cones& cones, const Options& options, std::vector<Finding>& findings);
+Work prepare(const Surface& surface, const Cones& cones, const Options& options, std::vector<Finding>& findings,
+             const Pins& pins = {});
 
 // Throws NOT_ORIENTABLE, DEGENERATE_MESH, SCALE_RANGE.
 Geometry require_geometry(const Component& component, std::vector<Finding>& findings);

@@ -74,28 +74,40 @@ Eigen::VectorXd choose_turning(const FrameTwist& twist, const NodeGraph& nodes, 
   return unit * (round_by_energy(twist.energy(loops), exact) - exact);
 }
 
+// How the metric turns by itself.
+struct MetricConnection {
+  NodeGraph nodes;
+  Eigen::VectorXd node_curvature;  // (nodes)
+  Eigen::VectorXd frames;          // (m)
+  Eigen::VectorXd natural;         // (cuts) rotations, those about handles among them
+
+  // The better a root, the farther its curvature is from whole turns.
+  MetricConnection(const CutSurface& surface, const Curvature& curvature)
+      : nodes(build_node_graph(surface.mesh, surface.cut_graph, (curvature.at_vertex / 2).array().sin().abs())),
+        node_curvature(curvature_of_nodes(surface.mesh, nodes, curvature.at_vertex)),
+        frames(integrate_frames(surface.mesh, surface.geometry, surface.cut_graph, curvature.log_scale)),
+        natural(read_rotations(surface.mesh, surface.geometry, surface.cut_graph, curvature.log_scale, frames)) {}
+};
+
 }  // namespace
 
-ConnectionChoice::ConnectionChoice(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
-                                   const CutMesh& cut_mesh, const Curvature& curvature, int symmetry)
-    : mesh_(mesh), cut_graph_(cut_graph), cut_mesh_(cut_mesh), symmetry_(symmetry) {
-  frames_ = integrate_frames(mesh, geometry, cut_graph, curvature.log_scale);
-  // The better a root, the farther its curvature is from whole turns.
-  nodes_ = build_node_graph(mesh, cut_graph, (curvature.at_vertex / 2).array().sin().abs());
-  node_curvature_ = curvature_of_nodes(mesh, nodes_, curvature.at_vertex);
-  const Eigen::VectorXd natural = read_rotations(mesh, geometry, cut_graph, curvature.log_scale, frames_);
-  rotation_ = find_rotations(nodes_, node_curvature_, natural);
+ConnectionChoice::ConnectionChoice(const CutSurface& surface, const Curvature& curvature, int symmetry)
+    : surface_(surface), symmetry_(symmetry) {
+  if (surface.mesh.genus == 0) return;
+  const MetricConnection metric(surface, curvature);
   // The holonomy of a flat torus without cones is trivial.
-  const bool flat = mesh.closed() && node_curvature_.size() > 0 && node_curvature_.cwiseAbs().maxCoeff() == 0;
-  const Eigen::MatrixXd loops = loop_changes(nodes_);
-  if (loops.cols() == 0 || (symmetry == 0 && !flat)) return;
-  const FrameTwist twist(mesh, geometry, cut_graph);
-  change_ = loops * choose_turning(twist, nodes_, natural, loops, 2 * M_PI / (flat ? 1 : symmetry));
+  const bool flat =
+      surface.mesh.closed() && metric.node_curvature.size() > 0 && metric.node_curvature.cwiseAbs().maxCoeff() == 0;
+  if (symmetry == 0 && !flat) return;
+  const Eigen::MatrixXd loops = loop_changes(metric.nodes);
+  const FrameTwist twist(surface.mesh, surface.geometry, surface.cut_graph);
+  change_ = loops * choose_turning(twist, metric.nodes, metric.natural, loops, 2 * M_PI / (flat ? 1 : symmetry));
   twist_ = twist.spread(change_);
 }
 
-Connection ConnectionChoice::at(double share) const {
-  Connection out{frames_, rotation_, {}};
+Connection ConnectionChoice::at(double share, const Curvature& curvature) const {
+  MetricConnection metric(surface_, curvature);
+  Connection out{std::move(metric.frames), find_rotations(metric.nodes, metric.node_curvature, metric.natural), {}};
   if (is_twisted()) {
     out.frames += share * twist_;
     out.rotation += share * change_;
@@ -103,7 +115,8 @@ Connection ConnectionChoice::at(double share) const {
   if (symmetry_ > 0 && share == 1) {
     for (double& rotation : out.rotation) rotation = angle_of_turns(turns_of(rotation, symmetry_), symmetry_);
   }
-  out.reduction = impose_transitions(mesh_, cut_graph_, cut_mesh_, nodes_, node_curvature_, out.rotation);
+  out.reduction = impose_transitions(surface_.mesh, surface_.cut_graph, surface_.cut_mesh, metric.nodes,
+                                     metric.node_curvature, out.rotation);
   return out;
 }
 

@@ -21,25 +21,19 @@ struct Connection {
 // twist the metric's frames least.
 class ConnectionChoice {
  public:
-  ConnectionChoice(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
-                   const CutMesh& cut_mesh, const Curvature& curvature, int symmetry);
+  ConnectionChoice(const CutSurface& surface, const Curvature& curvature, int symmetry);
 
   // Whether loops about handles turn otherwise than in the metric.
   bool is_twisted() const { return twist_.size() > 0; }
   const Eigen::VectorXd& twist() const { return twist_; }  // (m) what that adds to the frames
 
-  // share: of the twist, 1 for the rotations that were chosen.
-  Connection at(double share) const;
+  // share: of the twist, 1 for the rotations that were chosen.  curvature: that of a metric with the same cones.
+  Connection at(double share, const Curvature& curvature) const;
 
  private:
-  const HalfedgeMesh& mesh_;
-  const CutGraph& cut_graph_;
-  const CutMesh& cut_mesh_;
+  const CutSurface surface_;
   const int symmetry_;
-  NodeGraph nodes_;
-  Eigen::VectorXd node_curvature_;
-  Eigen::VectorXd frames_, rotation_;  // of the metric
-  Eigen::VectorXd twist_, change_;     // of them, empty where none
+  Eigen::VectorXd twist_, change_;  // of frames and rotations, empty where none
 };
 
 // The imposed curvature of every node: a vertex' own, the sum along a loop.

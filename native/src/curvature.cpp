@@ -17,8 +17,6 @@ namespace lsgp {
 namespace {
 
 // Automatic angles stay where a map with them can be expected to have no flips; the bounds are widened where the
-// harmonic angles lie outside, since a sharp tip may need less and a branching limb more.
-constexpr double smallest_angle = M_PI / 4;
 constexpr double largest_share_of_valence = 0.6;  // of pi per triangle
 // Outside these no map exists, or none worth having.
 constexpr double impossible_angle = 0.02 * M_PI;
@@ -128,17 +126,18 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, con
 
 Eigen::VectorXd least_distortion(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale) {
   const Eigen::VectorXd harmonic = scale.harmonic_curvature();
-  Bounds bounds = bounds_from_angles(mesh, cones, smallest_angle, cones.largest_angle, largest_share_of_valence);
+  Bounds bounds = bounds_from_angles(mesh, cones, cones.range.smallest, cones.range.largest, largest_share_of_valence);
   const Bounds widest = widest_bounds(mesh, cones);
   for (Eigen::Index i = 0; i < harmonic.size(); ++i) {
-    if (cones.angles[i] || cones.largest_angle <= 2 * M_PI) continue;
+    if (cones.angles[i] || !cones.range.widened) continue;
     bounds.low[i] = std::max(widest.low[i], std::min(bounds.low[i], harmonic[i]));
     bounds.high[i] = std::min(widest.high[i], std::max(bounds.high[i], harmonic[i]));
   }
   Eigen::VectorXd start = harmonic.cwiseMax(bounds.low).cwiseMin(bounds.high);
   if (scale.balanced()) {
     const double required = scale.required_sum();
-    if (bounds.low.sum() > required || bounds.high.sum() < required) bounds = widest;
+    if (bounds.low.sum() > required) bounds.low = widest.low;
+    if (bounds.high.sum() < required) bounds.high = widest.high;
     start = shift_into(bounds, start, required);
   }
   return scale.least_distortion_curvature(bounds.low, bounds.high, std::move(start));

@@ -70,9 +70,12 @@ class LogScale {
   Eigen::MatrixXd green_;  // (n, k) G_c
 };
 
-// Automatic cone angles beyond this are not chosen, but where harmonic ones are.  A map of angles up to 2 pi alone that
-// has no flips has the right angles too.
-constexpr double largest_angle = 4 * M_PI;
+// Bounds of the angles of automatic cones, radians; widened where Gauss-Bonnet wants more.
+struct AngleRange {
+  double smallest, largest;
+  bool widened = true;  // to the harmonic angles: a sharp tip may need less and a branching limb more
+};
+constexpr AngleRange widest_angles{M_PI / 4, 4 * M_PI};
 
 // What the caller asks of one component's metric, in its own vertex numbers.
 struct ComponentCones {
@@ -80,7 +83,7 @@ struct ComponentCones {
   std::vector<std::optional<double>> angles;  // radians, none: automatic
   BorderMode border = BorderMode::free;
   std::vector<std::optional<double>> loop_turning;  // (loops) radians, none: as it comes out
-  double largest_angle = lsgp::largest_angle;       // of automatic ones
+  AngleRange range = widest_angles;                 // of automatic ones
   int symmetry = 0;  // q: angles of cones and turning of borders are multiples of 2 pi / q; 0: any
 };
 

@@ -16,6 +16,14 @@ struct CutMesh {
   Index copy_count() const { return static_cast<Index>(source.size()); }
 };
 
+// A surface and how it is opened.
+struct CutSurface {
+  const HalfedgeMesh& mesh;
+  const Geometry& geometry;
+  const CutGraph& cut_graph;
+  const CutMesh& cut_mesh;
+};
+
 // Values of copies, (copies), at the corners, (3m).
 Eigen::VectorXcd at_corners(const CutMesh& cut_mesh, const Eigen::VectorXcd& of_copies);
 

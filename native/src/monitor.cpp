@@ -24,14 +24,24 @@ Monitor::Part::~Part() {
   monitor_.high_ = high_;
 }
 
-Monitor::Stage::Stage(Monitor& monitor, const char* name) : seconds_(monitor.seconds_) {
+Monitor::Stage::Stage(Monitor& monitor, const char* name) : monitor_(monitor), around_(monitor.innermost_) {
+  StageSeconds& seconds = monitor.seconds_;
   const auto is_stage = [&](const auto& entry) { return entry.first == name; };
-  place_ = static_cast<std::size_t>(std::find_if(seconds_.begin(), seconds_.end(), is_stage) - seconds_.begin());
-  if (place_ == seconds_.size()) seconds_.emplace_back(name, 0.0);  // here, because a destructor must not throw
+  place_ = static_cast<std::size_t>(std::find_if(seconds.begin(), seconds.end(), is_stage) - seconds.begin());
+  if (place_ == seconds.size()) seconds.emplace_back(name, 0.0);  // here, because a destructor must not throw
+  if (around_ != nullptr) around_->stop();
+  monitor.innermost_ = this;
+  begin_ = std::chrono::steady_clock::now();
 }
 
 Monitor::Stage::~Stage() {
-  seconds_[place_].second += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  stop();
+  if (around_ != nullptr) around_->begin_ = std::chrono::steady_clock::now();
+  monitor_.innermost_ = around_;
+}
+
+void Monitor::Stage::stop() {
+  monitor_.seconds_[place_].second += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
 }
 
 }  // namespace lsgp

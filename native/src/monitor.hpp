@@ -31,7 +31,8 @@ class Monitor {
     const double low_, high_;  // of the part around it
   };
 
-  // Adds the wall-clock time until its end to a stage.
+  // Adds the wall-clock time until its end to a stage; while another one is under way within it, that counts for the
+  // other alone.
   class Stage {
    public:
     Stage(Monitor& monitor, const char* name);
@@ -40,15 +41,19 @@ class Monitor {
     Stage& operator=(const Stage&) = delete;
 
    private:
-    StageSeconds& seconds_;
-    std::size_t place_;  // in them
-    const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+    void stop();
+
+    Monitor& monitor_;
+    Stage* const around_;
+    std::size_t place_;  // in the seconds
+    std::chrono::steady_clock::time_point begin_;
   };
 
  private:
   const Progress& progress_;
   StageSeconds& seconds_;
   double low_ = 0, high_ = 1, told_ = 0;
+  Stage* innermost_ = nullptr;
 };
 
 }  // namespace lsgp

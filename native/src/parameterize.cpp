@@ -10,7 +10,6 @@
 #include "monitor.hpp"
 #include "seamless.hpp"
 #include "text.hpp"
-#include "validation.hpp"
 
 namespace lsgp {
 
@@ -27,17 +26,6 @@ void report_border_cones(const Component& component, const std::vector<Index>& b
        in_source(component, {ElementKind::vertices, border_cones})});
 }
 
-std::vector<std::pair<Index, Complex>> pinned_corners(const Component& component, const std::vector<Index>& pin_at,
-                                                      const Pins& pins) {
-  std::vector<std::pair<Index, Complex>> out;
-  if (pins.corners.empty()) return out;
-  for (Index corner = 0; corner < component.mesh.halfedge_count(); ++corner) {
-    const Index pin = pin_at[component.source_corner(corner)];
-    if (pin != none) out.emplace_back(corner, Complex(pins.positions(pin, 0), pins.positions(pin, 1)));
-  }
-  return out;
-}
-
 void move_findings(const Component& component, std::vector<Finding>& from, std::vector<Finding>& to) {
   for (Finding& finding : from) {
     to.push_back({finding.code, std::move(finding.message), in_source(component, std::move(finding.elements))});
@@ -52,13 +40,9 @@ Result parameterize(const Surface& surface, const Cones& cones, const Options& o
   Monitor monitor(progress, result.stage_seconds);
   Work work = [&] {
     const Monitor::Stage stage(monitor, "topology");
-    return prepare(surface, cones, options, result.warnings);
+    return prepare(surface, cones, options, result.warnings, pins);
   }();
-  require_valid(surface, pins);
   const std::vector<Component>& components = work.topology.components;
-  std::vector<Index> pin_at(pins.corners.empty() ? 0 : 3 * surface.triangles.rows(), none);
-  for (std::size_t i = 0; i < pins.corners.size(); ++i) pin_at[pins.corners[i]] = static_cast<Index>(i);
-  require_valid(options);
   if (options.seamless) require_valid(*options.seamless, options, pins);
   constexpr double share_of_rounding = 0.5;
   const double share_of_maps = options.seamless ? 1 - share_of_rounding : 1;
@@ -78,8 +62,10 @@ Result parameterize(const Surface& surface, const Cones& cones, const Options& o
       const Monitor::Stage stage(monitor, "geometry");
       geometries[i] = require_geometry(component, result.warnings);
     }
-    maps[i] = map_component(component.mesh, *geometries[i], task.cones, pinned_corners(component, pin_at, pins),
-                            options, findings, monitor);
+    maps[i] = map_component(component.mesh, *geometries[i], task, options, findings, monitor);
+    result.repair.flipped_before += maps[i]->repair.flipped_before;
+    result.repair.wrong_angle_sums_before += maps[i]->repair.wrong_angle_sums_before;
+    result.repair.iterations += maps[i]->repair.iterations;
     if (options.seamless) require_quantizable(component.mesh, *maps[i]);
     report_border_cones(component, task.border_cones, result.warnings);
     move_findings(component, findings, result.warnings);
@@ -90,7 +76,7 @@ Result parameterize(const Surface& surface, const Cones& cones, const Options& o
     monitor.advance(0);
     std::vector<SeamlessPart> parts;
     for (std::size_t i = 0; i < components.size(); ++i) {
-      if (maps[i]) parts.push_back({&components[i], &*geometries[i], &work.tasks[i].cones, &*maps[i]});
+      if (maps[i]) parts.push_back({&components[i], &*geometries[i], &work.tasks[i], &*maps[i]});
     }
     result.seamless = make_seamless(options, work.unit_scale, parts, result.warnings, monitor);
   }

@@ -15,6 +15,7 @@
 #include "connection.hpp"
 #include "energies/quadratic_forms.hpp"
 #include "layout.hpp"
+#include "low_stretch.hpp"
 #include "quantize_curvature.hpp"
 #include "relaxation.hpp"
 #include "solvers/sparse_assembly.hpp"
@@ -37,6 +38,7 @@ constexpr double shortest_step = 0.01;  // of the way
 constexpr double stretched_energy = 1.5;  // of a triangle, or of a layout beside its start, that calls for it
 constexpr int smoothed_rings = 4;         // around stretched triangles
 constexpr int smoothing_steps = 4;
+constexpr int relaxing_steps = 30;
 constexpr double poor_energy = 1.5;  // of a start that is smoothed first
 constexpr int poor_steps = 20;
 constexpr double least_decrease = 1e-3;  // of the energy, for which a further step is taken
@@ -115,13 +117,15 @@ double symmetric_dirichlet_energy(const Geometry& geometry, const Jacobians& jac
 }
 
 LayoutQuantizer::LayoutQuantizer(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                                 const PointLattice& lattice, bool parity, const std::vector<Index>& relaxed)
+                                 const PointLattice& lattice, bool parity, const std::vector<Index>& relaxed,
+                                 StepHook before_step)
     : mesh_(mesh),
       geometry_(geometry),
       cut_graph_(map.cut_graph),
       cut_mesh_(map.cut_mesh),
       curvature_(map.curvature),
       lattice_(lattice),
+      before_step_(std::move(before_step)),
       rotation_(*map.rotation),
       relaxed_(!relaxed.empty()) {
   // With relaxed cones the root leaves the lattice too: best it is one of a pair that is too close.
@@ -183,12 +187,12 @@ LayoutQuantizer::LayoutQuantizer(const HalfedgeMesh& mesh, const Geometry& geome
 
 void LayoutQuantizer::set_start(const ComponentMap& map) {
   start_ = std::sqrt(geometry_.total_area / map.uv_area) * map.position * std::conj(upright(map.position));
-  energy_ = symmetric_dirichlet_energy(geometry_, measure_jacobians(mesh_, geometry_, cut_mesh_, start_));
+  energy_ = measure_energy(start_);
   if (energy_ > poor_energy) {
     Freedom all{reduction_.reduction, std::vector<Index>(mesh_.triangle_count())};
     std::iota(all.triangles.begin(), all.triangles.end(), 0);
-    Relaxation(mesh_, geometry_, cut_mesh_, Eigen::VectorXd::Zero(mesh_.vertex_count()),
-               Eigen::VectorXd::Zero(mesh_.triangle_count()), std::move(all), start_)
+    Relaxation(surface(), Eigen::VectorXd::Zero(mesh_.vertex_count()), Eigen::VectorXd::Zero(mesh_.triangle_count()),
+               std::move(all), before_step_, start_)
         .smooth(DistortionEnergy::Kind::symmetric_dirichlet, poor_steps, least_decrease);
   }
   const Jacobians jacobians = measure_jacobians(mesh_, geometry_, cut_mesh_, start_);
@@ -320,26 +324,18 @@ Validity LayoutQuantizer::check(const Eigen::VectorXcd& position) const {
 bool LayoutQuantizer::repair(double scale, const Eigen::VectorXcd& before, Eigen::VectorXcd& position) const {
   Curvature target = curvature_;
   target.log_scale = rest_.array() + std::log(scale);
-  const Eigen::VectorXd frames = measure_jacobians(mesh_, geometry_, cut_mesh_, before).f_z.array().arg();
-  position = untangle(mesh_, geometry_, cut_graph_, cut_mesh_, rotation_, target, frames,
-                      std::vector<char>(mesh_.vertex_count(), 0), Effort::local,
-                      DistortionEnergy::Kind::framed_foldover_free, position);
+  const Connection connection{measure_jacobians(mesh_, geometry_, cut_mesh_, before).f_z.array().arg(), rotation_, {}};
+  position = untangle(surface(), connection, target, std::vector<char>(mesh_.vertex_count(), 0), Effort::local,
+                      DistortionEnergy::Kind::framed_foldover_free, before_step_, position);
   return check(position).defects() == 0;
 }
 
 // Newton steps on the symmetric Dirichlet energy over the marked vertices.
 void LayoutQuantizer::smooth(double scale, std::vector<char> marked, int steps, Eigen::VectorXcd& position) const {
-  for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-    if (mesh_.loop_of_vertex[v] == none && curvature_.at_vertex[v] != 0) marked[v] = 0;
-  }
-  try {
-    Relaxation(mesh_, geometry_, cut_mesh_, rest_.array() + std::log(scale),
-               Eigen::VectorXd::Zero(mesh_.triangle_count()),
-               free_vertices(mesh_, cut_mesh_, motion_of_copies_, marked), position)
-        .smooth(DistortionEnergy::Kind::symmetric_dirichlet, steps, least_decrease);
-  } catch (const Error&) {
-    // What cannot be factored stays as it is: valid, if not smooth.
-  }
+  Relaxation(surface(), rest_.array() + std::log(scale), Eigen::VectorXd::Zero(mesh_.triangle_count()),
+             free_vertices(mesh_, cut_mesh_, motion_of_copies_, without_cones(std::move(marked))), before_step_,
+             position)
+      .smooth(DistortionEnergy::Kind::symmetric_dirichlet, steps, least_decrease);
 }
 
 // Triangles that are much more distorted than the start.
@@ -398,6 +394,37 @@ bool LayoutQuantizer::follow(double scale, const Eigen::VectorXcd& change, Eigen
   return reached == 1;
 }
 
+void LayoutQuantizer::lower_stretch(double stretch, const Eigen::VectorXd& importance, QuantizedLayout& layout) const {
+  Eigen::VectorXd rest = (1 - stretch) * curvature_.log_scale;
+  double area = 0, rest_area = 0;
+  const Jacobians jacobians = measure_jacobians(mesh_, geometry_, cut_mesh_, layout.position);
+  for (Index f = 0; f < mesh_.triangle_count(); ++f) {
+    double mean = 0;
+    for (int c = 0; c < 3; ++c) mean += rest[mesh_.triangles(f, c)] / 3;
+    area += geometry_.area[f] * (std::norm(jacobians.f_z[f]) - std::norm(jacobians.f_zbar[f]));
+    rest_area += geometry_.area[f] * std::exp(2 * mean);
+  }
+  rest.array() += std::log(area / rest_area) / 2;
+  Relaxation relaxation(
+      surface(), rest, Eigen::VectorXd::Zero(mesh_.triangle_count()),
+      free_vertices(mesh_, cut_mesh_, motion_of_copies_, without_cones(std::vector<char>(mesh_.vertex_count(), 1))),
+      before_step_, layout.position);
+  relaxation.weigh(importance_of_triangles(mesh_, geometry_, importance));
+  relaxation.smooth(DistortionEnergy::Kind::symmetric_dirichlet, relaxing_steps, least_decrease);
+  layout.energy = measure_energy(layout.position);
+}
+
+std::vector<char> LayoutQuantizer::without_cones(std::vector<char> marked) const {
+  for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+    if (mesh_.loop_of_vertex[v] == none && curvature_.at_vertex[v] != 0) marked[v] = 0;
+  }
+  return marked;
+}
+
+double LayoutQuantizer::measure_energy(const Eigen::VectorXcd& position) const {
+  return symmetric_dirichlet_energy(geometry_, measure_jacobians(mesh_, geometry_, cut_mesh_, position));
+}
+
 std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, double most_energy) const {
   const bool quick = std::isfinite(most_energy);
   const std::vector<Target> targets = find_targets(density, quick ? few_angles : tried_angles);
@@ -411,13 +438,10 @@ std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, double 
       const Eigen::VectorXcd change = target.integers - target.motion * integers_;
       QuantizedLayout out{target.motion * start_, 1};
       if (!(in_steps ? follow(scale, change, out.position) : move(scale, most_energy, change, out.position))) continue;
-      const auto measure = [&] {
-        return symmetric_dirichlet_energy(geometry_, measure_jacobians(mesh_, geometry_, cut_mesh_, out.position));
-      };
-      out.energy = measure();
+      out.energy = measure_energy(out.position);
       if (!quick && out.energy > stretched_energy * energy_) {
         smooth(scale, std::vector<char>(mesh_.vertex_count(), 1), smoothing_steps, out.position);
-        out.energy = measure();
+        out.energy = measure_energy(out.position);
       }
       if (out.energy <= most_energy) return out;
     }

@@ -9,6 +9,7 @@
 #include "component_map.hpp"
 #include "lattice_search.hpp"
 #include "point_lattice.hpp"
+#include "relaxation.hpp"
 #include "solvers/cholesky.hpp"
 #include "unfold.hpp"
 
@@ -32,7 +33,7 @@ class LayoutQuantizer {
   // map: without flips and with the right angles, its rotations multiples of the lattice's turn.
   // relaxed: cones that need not lie on the lattice.  Throws SEAMLESS_IMPOSSIBLE.
   LayoutQuantizer(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                  const PointLattice& lattice, bool parity, const std::vector<Index>& relaxed);
+                  const PointLattice& lattice, bool parity, const std::vector<Index>& relaxed, StepHook before_step);
 
   // The layout's longer side, where it has the surface's area.
   double extent() const { return extent_; }
@@ -47,6 +48,9 @@ class LayoutQuantizer {
   // followed to the points in steps.
   std::optional<QuantizedLayout> quantize(double density, double most_energy) const;
 
+  // Moves what lies between the lattice points to where it stretches least; see low_stretch.hpp.
+  void lower_stretch(double stretch, const Eigen::VectorXd& importance, QuantizedLayout& layout) const;
+
  private:
   struct Target {
     Complex motion;             // turn and scale of the start
@@ -54,6 +58,9 @@ class LayoutQuantizer {
     double cost;
   };
 
+  CutSurface surface() const { return {mesh_, geometry_, cut_graph_, cut_mesh_}; }
+  std::vector<char> without_cones(std::vector<char> marked) const;
+  double measure_energy(const Eigen::VectorXcd& position) const;
   void set_start(const ComponentMap& map);
   std::vector<MovingTriangle> moving_triangles(const ComponentMap& map, const std::vector<Index>& relaxed);
   Eigen::VectorXcd integers_of(const Eigen::VectorXcd& position) const;
@@ -72,6 +79,7 @@ class LayoutQuantizer {
   const CutMesh& cut_mesh_;
   const Curvature& curvature_;
   const PointLattice lattice_;
+  const StepHook before_step_;
   Eigen::VectorXd rotation_;
   const bool relaxed_;      // some cones are
   Eigen::VectorXcd start_;  // (copies) with the surface's area, the origin cone at 0

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
+#include "lsgp/errors.hpp"
 #include "solvers/cholesky.hpp"
 #include "solvers/sparse_assembly.hpp"
 
@@ -13,7 +15,7 @@ namespace lsgp {
 namespace {
 
 constexpr double smallest_epsilon = 1e-3;
-constexpr double ridge = 1e-9;         // of the mean diagonal
+constexpr double ridge = 1e-9;         // of the diagonal
 constexpr double barrier_share = 0.9;  // of the step at which the first triangle would collapse
 
 }  // namespace
@@ -35,6 +37,29 @@ Freedom free_vertices(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const E
     const auto moves = [&](int c) { return unknown[mesh.triangles(f, c)] != none; };
     if (moves(0) || moves(1) || moves(2)) out.triangles.push_back(f);
   }
+  return out;
+}
+
+Freedom free_all(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Reduction& reduction,
+                 const std::vector<char>& fixed) {
+  std::vector<Index> row(reduction.unknown_count, 0);
+  for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
+    if (!fixed[cut_mesh.source[copy]]) continue;
+    reduction.for_each_term(copy, [&](const Term& term) { row[term.unknown] = none; });
+  }
+  Freedom out;
+  for (Index& unknown : row) {
+    if (unknown != none) unknown = out.displacement.unknown_count++;
+  }
+  out.displacement.begin.assign(1, 0);
+  for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
+    reduction.for_each_term(copy, [&](const Term& term) {
+      if (row[term.unknown] != none) out.displacement.terms.push_back({row[term.unknown], term.coefficient});
+    });
+    out.displacement.begin.push_back(static_cast<Index>(out.displacement.terms.size()));
+  }
+  out.triangles.resize(mesh.triangle_count());
+  std::iota(out.triangles.begin(), out.triangles.end(), 0);
   return out;
 }
 
@@ -62,16 +87,17 @@ std::vector<char> mark_around(const HalfedgeMesh& mesh, const std::vector<Index>
   return inside;
 }
 
-Relaxation::Relaxation(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                       const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames, Freedom freedom,
-                       Eigen::VectorXcd& position)
-    : displacement_(std::move(freedom.displacement)), position_(position) {
+Relaxation::Relaxation(const CutSurface& surface, const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames,
+                       Freedom freedom, StepHook before_step, Eigen::VectorXcd& position)
+    : displacement_(std::move(freedom.displacement)), before_step_(std::move(before_step)), position_(position) {
+  const auto& [mesh, geometry, cut_graph, cut_mesh] = surface;
   shapes_.reserve(freedom.triangles.size());
   for (const Index f : freedom.triangles) {
     const double scale = std::exp(
         (log_scale[mesh.triangles(f, 0)] + log_scale[mesh.triangles(f, 1)] + log_scale[mesh.triangles(f, 2)]) / 3);
     Shape shape;
-    shape.weight = geometry.area[f] * scale * scale;
+    shape.triangle = f;
+    shape.weight = geometry.area[f];
     shape.begin = static_cast<Index>(slopes_.size());
     for (int c = 0; c < 3; ++c) {
       // f_z = sum g_j z_j and f_zbar = sum h_j z_j with g = -i conj(e) / (4 A), h = i e / (4 A), e opposite corner j;
@@ -89,15 +115,20 @@ Relaxation::Relaxation(const HalfedgeMesh& mesh, const Geometry& geometry, const
   }
 }
 
+void Relaxation::weigh(const Eigen::VectorXd& factors) {
+  for (Shape& shape : shapes_) shape.weight *= factors[shape.triangle];
+}
+
 bool Relaxation::unfold(DistortionEnergy::Kind kind, int most_steps) {
   DistortionEnergy energy{kind};
   double lowest = smallest_determinant(energy);
   energy.epsilon = std::max(smallest_epsilon, -lowest);
   for (int step = 0; step < most_steps && !(lowest > 0); ++step) {
+    before_step_();
     const double before = total(energy);
-    const Eigen::VectorXcd direction = newton_direction(energy);
+    const auto direction = newton_direction(energy);
     double after = before;
-    if (!search(energy, direction, 1, before, after)) return false;
+    if (!direction || !search(energy, *direction, 1, before, after)) return false;
     lowest = smallest_determinant(energy);
     // Garanzha et al. 2021, equation (7): epsilon falls as fast as the energy does.
     const double decrease = std::max(0.1, 1 - after / before);
@@ -110,10 +141,12 @@ bool Relaxation::unfold(DistortionEnergy::Kind kind, int most_steps) {
 void Relaxation::smooth(DistortionEnergy::Kind barrier, int steps, double least_share) {
   const DistortionEnergy energy{barrier};
   for (int step = 0; step < steps; ++step) {
+    before_step_();
     const double before = total(energy);
-    const Eigen::VectorXcd direction = newton_direction(energy);
+    const auto direction = newton_direction(energy);
+    if (!direction) return;
     double after = before;
-    if (!search(energy, direction, std::min(1.0, barrier_share * collapse_step(direction)), before, after)) return;
+    if (!search(energy, *direction, std::min(1.0, barrier_share * collapse_step(*direction)), before, after)) return;
     if (before - after < least_share * before) return;
   }
 }
@@ -164,12 +197,11 @@ double Relaxation::total(const DistortionEnergy& energy) const {
   return sum;
 }
 
-Eigen::VectorXcd Relaxation::newton_direction(const DistortionEnergy& energy) const {
+std::optional<Eigen::VectorXcd> Relaxation::newton_direction(const DistortionEnergy& energy) const {
   const Index count = displacement_.unknown_count;
   const int size = 2 * count;
   LowerAssembly<double> assembly(size, 25 * shapes_.size());
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(size);
-  double trace = 0;
   std::vector<Eigen::Matrix<double, 4, 2>> maps;
   for (const Shape& shape : shapes_) {
     const Jacobian at = jacobian(shape);
@@ -189,18 +221,22 @@ Eigen::VectorXcd Relaxation::newton_direction(const DistortionEnergy& energy) co
         const int column = 2 * slopes_[shape.begin + j].unknown;
         const Eigen::Matrix2d bend = left * maps[j];
         if (i == j) {
-          trace += bend.trace();
-          assembly.add(row, row, bend(0, 0));
+          assembly.add(row, row, (1 + ridge) * bend(0, 0));
           assembly.add(row + 1, row, bend(1, 0));
-          assembly.add(row + 1, row + 1, bend(1, 1));
+          assembly.add(row + 1, row + 1, (1 + ridge) * bend(1, 1));
         } else {
           for (int k = 0; k < 4; ++k) assembly.add(row + k / 2, column + k % 2, bend(k / 2, k % 2));
         }
       }
     }
   }
-  for (int i = 0; i < size; ++i) assembly.add(i, i, ridge * trace / size);
-  const Eigen::VectorXd step = Cholesky<double>(assembly.build()).solve(Eigen::VectorXd(-gradient));
+  Eigen::VectorXd step;
+  try {
+    step = Cholesky<double>(assembly.build()).solve(Eigen::VectorXd(-gradient));
+  } catch (const Error& error) {
+    if (error.code() != Code::solver_failed) throw;
+    return std::nullopt;
+  }
   Eigen::VectorXcd out(count);
   for (Index i = 0; i < count; ++i) out[i] = {step[2 * i], step[2 * i + 1]};
   return out;

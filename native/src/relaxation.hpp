@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "cut_mesh.hpp"
@@ -22,29 +24,38 @@ struct Freedom {
 Freedom free_vertices(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Eigen::VectorXcd& motion,
                       const std::vector<char>& marked);
 
+// All positions and translations but those that vertices marked as fixed, (n), depend on.
+Freedom free_all(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Reduction& reduction,
+                 const std::vector<char>& fixed);
+
 // The vertices within some rings of triangles, those of the triangles themselves being the first ring; (n).
 std::vector<char> mark_around(const HalfedgeMesh& mesh, const std::vector<Index>& triangles, int rings);
+
+// Called before every step of Newton's method; what it throws ends the method.
+using StepHook = std::function<void()>;
 
 class Relaxation {
  public:
   // Rest shapes are the surface's triangles scaled by e^{log_scale}, (n), and turned by frames, (m) radians.
-  // position: (copies) u + iv, which is moved.
-  Relaxation(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-             const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames, Freedom freedom,
-             Eigen::VectorXcd& position);
+  // Every triangle weighs as much as its area.  position: (copies) u + iv, which is moved.
+  Relaxation(const CutSurface& surface, const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames,
+             Freedom freedom, StepHook before_step, Eigen::VectorXcd& position);
+
+  // Multiplies the weights of triangles, (m).
+  void weigh(const Eigen::VectorXd& factors);
 
   // Newton steps on a foldover-free energy (Garanzha et al. 2021) until every moving triangle is upright, and with the
-  // framed one within 90 degrees of its frame.  Returns whether that was reached.  Throws SOLVER_FAILED.
+  // framed one within 90 degrees of its frame.  Returns whether that was reached.
   bool unfold(DistortionEnergy::Kind kind, int most_steps);
 
   // Newton steps on a barrier from a map without flips; none arises on the way.  At most `steps`, fewer where the
-  // energy falls by less than a share of itself.  Throws SOLVER_FAILED.
+  // energy falls by less than a share of itself or where a step cannot be computed.
   void smooth(DistortionEnergy::Kind barrier, int steps, double least_share = 0);
 
  private:
   struct Shape {
     Complex g[3], h[3];
-    Index copy[3];
+    Index triangle, copy[3];
     Index begin, end;  // of its slopes
     double weight;
   };
@@ -65,7 +76,8 @@ class Relaxation {
   double smallest_determinant(const DistortionEnergy& energy) const;
 
   double total(const DistortionEnergy& energy) const;
-  Eigen::VectorXcd newton_direction(const DistortionEnergy& energy) const;
+  // None where the Hessian cannot be factored.
+  std::optional<Eigen::VectorXcd> newton_direction(const DistortionEnergy& energy) const;
 
   // Halves the step until the energy falls; leaves the positions as they were where it never does.
   bool search(const DistortionEnergy& energy, const Eigen::VectorXcd& direction, double longest, double before,
@@ -75,6 +87,7 @@ class Relaxation {
   double collapse_step(const Eigen::VectorXcd& direction) const;
 
   const Reduction displacement_;
+  const StepHook before_step_;
   Eigen::VectorXcd& position_;
   std::vector<Shape> shapes_;
   std::vector<Slope> slopes_;

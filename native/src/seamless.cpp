@@ -32,8 +32,13 @@ struct Grid {
 
 class GridSearch {
  public:
-  GridSearch(const Seamless& seamless, const PointLattice& lattice, std::vector<SeamlessPart>& parts)
-      : seamless_(seamless), lattice_(lattice), parts_(parts), quantizers_(parts.size()), relaxed_(parts.size()) {
+  GridSearch(const Seamless& seamless, const PointLattice& lattice, std::vector<SeamlessPart>& parts, Monitor& monitor)
+      : seamless_(seamless),
+        lattice_(lattice),
+        parts_(parts),
+        monitor_(monitor),
+        quantizers_(parts.size()),
+        relaxed_(parts.size()) {
     for (std::size_t i = 0; i < parts.size(); ++i) prepare(i);
   }
 
@@ -68,12 +73,18 @@ class GridSearch {
     return std::nullopt;
   }
 
+  void lower_stretch(double stretch, Grid& grid) const {
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      quantizers_[i]->lower_stretch(stretch, parts_[i].task->importance, grid.layouts[i]);
+    }
+  }
+
   // Merges the two nearest cones of the part that could not be laid out.  Returns whether there are any so near on a
   // grid of so many tiles.
-  bool merge_nearest(double tiles, const Options& options, Monitor& monitor) {
+  bool merge_nearest(double tiles, const Options& options) {
     for (const ConePair& pair : quantizers_[failed_]->cone_pairs()) {
       if (pair.distance * tiles > near * extent()) return false;
-      if (!merge(pair, options, monitor)) continue;
+      if (!merge(pair, options)) continue;
       prepare(failed_);
       return true;
     }
@@ -108,11 +119,11 @@ class GridSearch {
   void prepare(std::size_t part) {
     const SeamlessPart& of = parts_[part];
     quantizers_[part] = std::make_unique<LayoutQuantizer>(of.component->mesh, *of.geometry, *of.map, lattice_,
-                                                          seamless_.parity, relaxed_[part]);
+                                                          seamless_.parity, relaxed_[part], step_);
   }
 
   // One of the cones takes up the curvature of both: the one whose own is nearer to that.
-  bool merge(const ConePair& pair, const Options& options, Monitor& monitor) {
+  bool merge(const ConePair& pair, const Options& options) {
     SeamlessPart& part = parts_[failed_];
     const HalfedgeMesh& mesh = part.component->mesh;
     const Eigen::VectorXd& curvature = part.map->curvature.at_vertex;
@@ -120,25 +131,26 @@ class GridSearch {
     const auto away = [&](Index v) { return std::abs(part.geometry->angle_defect[v] - sum); };
     const auto [kept, given_up] =
         away(pair.first) <= away(pair.second) ? std::pair{pair.first, pair.second} : std::pair{pair.second, pair.first};
-    ComponentCones merged = *part.cones;
-    merged.vertices.clear();
-    merged.angles.clear();
-    for (const Index v : part.cones->vertices) {
+    ComponentTask merged = *part.task;
+    merged.cones.vertices.clear();
+    merged.cones.angles.clear();
+    for (const Index v : part.task->cones.vertices) {
       if (v == given_up) continue;
-      merged.vertices.push_back(v);
-      merged.angles.push_back(mesh.flat_angle(v) - (v == kept ? sum : curvature[v]));
+      merged.cones.vertices.push_back(v);
+      merged.cones.angles.push_back(mesh.flat_angle(v) - (v == kept ? sum : curvature[v]));
     }
     Options manual = options;
     manual.prescription = PrescriptionRule::manual;
     try {
       std::vector<Finding> unsaid;
-      ComponentMap map = map_component(mesh, *part.geometry, merged, {}, manual, unsaid, monitor);
+      ComponentMap map = map_component(mesh, *part.geometry, merged, manual, unsaid, monitor_);
       if (map.validity.defects() > 0) return false;
       *part.map = std::move(map);
-    } catch (const Error&) {
+    } catch (const Error& error) {
+      if (error.code() == Code::cancelled) throw;
       return false;  // this pair cannot be merged, another may
     }
-    *part.cones = std::move(merged);
+    *part.task = std::move(merged);
     merged_.push_back(part.component->source_vertex[given_up]);
     return true;
   }
@@ -146,14 +158,17 @@ class GridSearch {
   const Seamless& seamless_;
   const PointLattice& lattice_;
   std::vector<SeamlessPart>& parts_;
+  Monitor& monitor_;
   std::vector<std::unique_ptr<LayoutQuantizer>> quantizers_;
   std::vector<std::vector<Index>> relaxed_;  // by part
   std::vector<Index> merged_;                // the caller's vertices
   std::size_t failed_ = 0;
+  // Nobody knows how many steps there will be.
+  int steps_ = 0;
+  const StepHook step_ = [this] { monitor_.advance(1 - std::pow(0.99, ++steps_)); };
 };
 
-Grid find_grid(const Options& options, double unit_scale, GridSearch& search, std::vector<Finding>& findings,
-               Monitor& monitor) {
+Grid find_grid(const Options& options, double unit_scale, GridSearch& search, std::vector<Finding>& findings) {
   constexpr double any = std::numeric_limits<double>::infinity();
   const Seamless& seamless = *options.seamless;
   if (!seamless.tiles && !seamless.tile_size) {
@@ -169,7 +184,7 @@ Grid find_grid(const Options& options, double unit_scale, GridSearch& search, st
     auto grid = search.lay_out(asked, any);
     const auto give_up_cones = [&] {
       switch (seamless.coarse_grid) {
-        case CoarseGrid::merge: return search.merge_nearest(asked, options, monitor);
+        case CoarseGrid::merge: return search.merge_nearest(asked, options);
         case CoarseGrid::relax: return search.relax_near(asked);
         default: return false;
       }
@@ -367,8 +382,9 @@ SeamlessReport make_seamless(const Options& options, double unit_scale, std::vec
                              std::vector<Finding>& findings, Monitor& monitor) {
   const Seamless& seamless = *options.seamless;
   const PointLattice lattice(symmetry(seamless.lattice));
-  GridSearch search(seamless, lattice, parts);
-  Grid grid = find_grid(options, unit_scale, search, findings, monitor);
+  GridSearch search(seamless, lattice, parts, monitor);
+  Grid grid = find_grid(options, unit_scale, search, findings);
+  if (options.mode == Mode::low_stretch) search.lower_stretch(options.stretch, grid);
   // With parity cones are at the centres of cells: around a corner of cells an odd number of them may meet.
   const Complex shift = seamless.parity ? Complex(0.5, 0.5) : Complex(0, 0);
   std::vector<Eigen::VectorXcd*> layouts;

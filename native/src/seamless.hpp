@@ -16,7 +16,7 @@ namespace lsgp {
 struct SeamlessPart {
   const Component* component;
   const Geometry* geometry;
-  ComponentCones* cones;
+  ComponentTask* task;
   ComponentMap* map;
 };
 

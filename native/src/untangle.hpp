@@ -4,27 +4,27 @@
 
 #include <Eigen/Core>
 
+#include "connection.hpp"
 #include "curvature.hpp"
 #include "cut_mesh.hpp"
 #include "energies/distortion_energy.hpp"
-#include "geometry.hpp"
+#include "relaxation.hpp"
 
 namespace lsgp {
 
 enum class Effort {
-  local,   // growing neighbourhoods of what is flipped
-  global,  // and if these do not suffice all vertices at once, at the cost of some whole unfoldings
+  local,   // growing neighbourhoods of what is flipped; cones and translations stay
+  global,  // and if these do not suffice everything at once, at the cost of some whole unfoldings
 };
 
-// Moves the vertices around flipped triangles until none is flipped, on growing neighbourhoods, by Newton's method on
-// the foldover-free energies (Garanzha et al. 2021) with rest shapes scaled to the prescribed metric and turned by
-// frames, (m), then smooths the place with a conformal barrier.  Cones and translations stay, so the seams stay exact.
-// position: (copies) u + iv.  fixed: (n) further vertices that stay.  first: the energy that is tried first on each
-// neighbourhood: the plain one disturbs a map less that is almost right, the framed one keeps to the frames.  Returns
-// the positions with the fewest defects found.
-Eigen::VectorXcd untangle(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
-                          const CutMesh& cut_mesh, const Eigen::VectorXd& rotation, const Curvature& curvature,
-                          const Eigen::VectorXd& frames, const std::vector<char>& fixed, Effort effort,
-                          DistortionEnergy::Kind first, const Eigen::VectorXcd& position);
+// Moves a map until no triangle is flipped, by Newton's method on the foldover-free energies (Garanzha et al. 2021)
+// with rest shapes scaled to the prescribed metric and turned by the connection's frames, then smooths what was moved
+// with a conformal barrier.  The transitions' rotations stay, so the seams stay exact. The connection's reduction is
+// used by the global effort alone.  fixed: (n) further vertices that stay. first: the energy that is tried first on
+// neighbourhoods: the plain one disturbs a map less that is almost right, the framed one keeps to the frames. position:
+// (copies) u + iv.  Returns the positions with the fewest defects found.
+Eigen::VectorXcd untangle(const CutSurface& surface, const Connection& connection, const Curvature& curvature,
+                          const std::vector<char>& fixed, Effort effort, DistortionEnergy::Kind first,
+                          const StepHook& before_step, const Eigen::VectorXcd& position);
 
 }  // namespace lsgp
