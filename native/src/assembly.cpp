@@ -5,12 +5,15 @@
 #include <cmath>
 #include <limits>
 
+#include "overlaps.hpp"
+#include "split_map.hpp"
 #include "text.hpp"
 
 namespace lsgp {
 
-Assembly::Assembly(const Surface& surface, const std::vector<Component>& components, Result& result)
-    : surface_(surface), components_(components), result_(result) {
+Assembly::Assembly(const Surface& surface, const std::vector<Component>& components, const Options& options,
+                   Result& result)
+    : surface_(surface), components_(components), options_(options), result_(result) {
   result.corner_uv = CornerUv::Constant(3 * surface.triangles.rows(), 2, std::numeric_limits<double>::quiet_NaN());
   result.island.assign(surface.triangles.rows(), none);
   result.log_scale = Eigen::VectorXd::Zero(surface.positions.rows());
@@ -28,6 +31,10 @@ void Assembly::add(std::size_t component_index, const ComponentCones& cones, con
   }
   for (const Index v : map.flat_cones) {
     cone_angle_[component.source_vertex[v]] = std::numeric_limits<double>::quiet_NaN();
+  }
+  // A seamless layout was split before its parts were put onto the lattice; pinned ones keep their place.
+  if (options_.overlaps == Overlaps::split && !result_.seamless && map.pins.size() < 2) {
+    split_map(component.mesh, geometry, open_seams(component.mesh), map);
   }
   const Index islands = add_islands(component, geometry, map);
   solved_.push_back({&component, std::move(map), islands});
@@ -57,6 +64,7 @@ void Assembly::finish(const Cones& cones, const std::vector<std::pair<Index, Ind
     check_in_layout(solved);
     collect_checks(*solved.component, solved.map);
   }
+  find_overlapping();
   for (const auto& [f, original] : duplicates) share_map(f, original);
   name_unmapped(duplicates);
   result_.distortion = measure_triangles(surface_, result_.corner_uv, triangles);
@@ -102,13 +110,15 @@ void Assembly::collect_checks(const Component& component, const ComponentMap& ma
   }
 }
 
+std::vector<char> Assembly::open_seams(const HalfedgeMesh& mesh) const {
+  // A seamless layout runs on across seams that were not cut.
+  return result_.seamless ? std::vector<char>(mesh.halfedge_count(), 0) : mesh.seam;
+}
+
 Index Assembly::add_islands(const Component& component, const Geometry& geometry, const ComponentMap& map) {
   const HalfedgeMesh& mesh = component.mesh;
-  std::vector<char> open(mesh.halfedge_count());
-  // A seamless layout runs on across seams that were not cut.
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    open[h] = map.cut_graph.is_cut[h] || (mesh.seam[h] && !result_.seamless);
-  }
+  std::vector<char> open = open_seams(mesh);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) open[h] = open[h] || map.cut_graph.is_cut[h];
   std::vector<Index> part;
   const Index part_count = label_parts(mesh, open, part);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
@@ -169,6 +179,41 @@ void Assembly::share_map(Index triangle, Index original) {
   }
 }
 
+// Triangles that lie on others, over all islands.
+void Assembly::find_overlapping() {
+  Index corner_count = 0;
+  for (const Solved& solved : solved_) corner_count += solved.component->mesh.halfedge_count();
+  Eigen::VectorXcd position(corner_count);
+  std::vector<Index> twin(corner_count), triangle(corner_count / 3);
+  Index first = 0;
+  double area = 0;
+  for (const Solved& solved : solved_) {
+    const Component& component = *solved.component;
+    const HalfedgeMesh& mesh = component.mesh;
+    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+      const Index source = component.source_corner(h), other = mesh.twin[h];
+      position[first + h] = {result_.corner_uv(source, 0), result_.corner_uv(source, 1)};
+      triangle[(first + h) / 3] = component.source_triangle[h / 3];
+      const bool runs_on =
+          other != none && !solved.map.cut_graph.is_cut[h] &&
+          result_.island[triangle[(first + h) / 3]] == result_.island[component.source_triangle[other / 3]];
+      twin[first + h] = runs_on ? first + other : none;
+    }
+    for (Index f = 0; f < mesh.triangle_count(); ++f) area += std::abs(doubled_area(position, first / 3 + f)) / 2;
+    first += mesh.halfedge_count();
+  }
+  if (result_.flipped.empty() && !has_overlap(position, twin)) return;
+  double shared = 0;
+  for (const Overlap& overlap : find_overlaps(position)) {
+    shared += overlap.area;
+    result_.overlapping.insert(result_.overlapping.end(), {triangle[overlap.first], triangle[overlap.second]});
+  }
+  std::vector<Index>& overlapping = result_.overlapping;
+  std::sort(overlapping.begin(), overlapping.end());
+  overlapping.erase(std::unique(overlapping.begin(), overlapping.end()), overlapping.end());
+  result_.overlap_area = shared > 0 ? shared / area : 0;
+}
+
 void Assembly::report_defects() {
   std::vector<Index>& flipped = result_.flipped;
   std::vector<Index>& wrong = result_.wrong_angle_sums;
@@ -201,6 +246,19 @@ void Assembly::report_defects() {
                                        " the layout turns once too often or too little. Move or add cones nearby."),
                                 {ElementKind::vertices, wrong}});
   }
+  report_overlapping();
+}
+
+void Assembly::report_overlapping() {
+  const std::vector<Index>& overlapping = result_.overlapping;
+  if (overlapping.empty()) return;
+  const char* remedy = options_.overlaps == Overlaps::keep
+                           ? "To bake onto it, choose to split overlaps."
+                           : "They could not be split: unpin corners, or improve the mesh where triangles are flipped.";
+  result_.warnings.push_back(
+      {Code::overlapping_triangles,
+       concat(count(overlapping.size(), "triangle lies", "triangles lie"), " on others in the layout. ", remedy),
+       {ElementKind::triangles, overlapping}});
 }
 
 }  // namespace lsgp

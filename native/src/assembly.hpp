@@ -13,7 +13,7 @@ namespace lsgp {
 class Assembly {
  public:
   // Everything is collected in `result`, which holds the findings so far.
-  Assembly(const Surface& surface, const std::vector<Component>& components, Result& result);
+  Assembly(const Surface& surface, const std::vector<Component>& components, const Options& options, Result& result);
 
   void add(std::size_t component_index, const ComponentCones& cones, const Geometry& geometry, ComponentMap map);
 
@@ -31,6 +31,9 @@ class Assembly {
   void check_in_layout(Solved& solved) const;
   void collect_checks(const Component& component, const ComponentMap& map);
 
+  // Halfedges at which a component's layout may end besides its cuts, (3m).
+  std::vector<char> open_seams(const HalfedgeMesh& mesh) const;
+
   // A component is one island, or several where its cuts and seams together close off parts: those keep their size and
   // are placed one by one, related across the seam by how they were moved.  Returns how many.
   Index add_islands(const Component& component, const Geometry& geometry, const ComponentMap& map);
@@ -39,10 +42,13 @@ class Assembly {
   void name_unmapped(const std::vector<std::pair<Index, Index>>& duplicates);
 
   void share_map(Index triangle, Index original);
+  void find_overlapping();
   void report_defects();
+  void report_overlapping();
 
   const Surface& surface_;
   const std::vector<Component>& components_;
+  const Options& options_;
   Result& result_;
   std::vector<double> cone_angle_;                // by the caller's vertex, NaN where none was imposed
   std::vector<Index> cut_edges_, inexact_seams_;  // vertex pairs

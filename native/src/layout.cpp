@@ -119,20 +119,36 @@ void arrange(std::vector<Island>& islands) {
   }
 }
 
-void arrange_on_lattice(std::vector<Eigen::VectorXcd*>& layouts, const PointLattice& lattice, int step) {
+void arrange_on_lattice(const std::vector<DividedLayout>& layouts, const PointLattice& lattice, int step) {
   // Rows of the lattice that have points straight above each other.
   const double width = step, height = step * (lattice.square() ? 1 : 2 * lattice.generator().imag());
-  std::vector<Box> boxes;
-  std::vector<std::array<double, 2>> corners;  // in steps
-  for (const Eigen::VectorXcd* layout : layouts) {
-    corners.push_back({std::floor(layout->real().minCoeff() / width), std::floor(layout->imag().minCoeff() / height)});
-    boxes.push_back({std::floor(layout->real().maxCoeff() / width) + 1 - corners.back()[0],
-                     std::floor(layout->imag().maxCoeff() / height) + 1 - corners.back()[1]});
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  struct Span {
+    double left = infinity, right = -infinity, bottom = infinity, top = -infinity;  // in steps
+  };
+  std::vector<Span> spans;
+  for (const DividedLayout& layout : layouts) {
+    const std::size_t first = spans.size();
+    spans.resize(first + layout.part_count);
+    for (Eigen::Index i = 0; i < layout.position->size(); ++i) {
+      const Complex z = (*layout.position)[i];
+      const double column = std::floor(z.real() / width), row = std::floor(z.imag() / height);
+      Span& span = spans[first + layout.part[i]];
+      span = {std::min(span.left, column), std::max(span.right, column + 1), std::min(span.bottom, row),
+              std::max(span.top, row + 1)};
+    }
   }
+  std::vector<Box> boxes;
+  for (const Span& span : spans) boxes.push_back({span.right - span.left, span.top - span.bottom});
   const Shelves shelves = shelve(boxes, 0);
-  for (std::size_t i = 0; i < layouts.size(); ++i) {
-    const Complex place = shelves.place[i] - Complex(corners[i][0], corners[i][1]);
-    layouts[i]->array() += Complex(place.real() * width, place.imag() * height);
+  std::size_t first = 0;
+  for (const DividedLayout& layout : layouts) {
+    for (Eigen::Index i = 0; i < layout.position->size(); ++i) {
+      const std::size_t part = first + layout.part[i];
+      const Complex steps = shelves.place[part] - Complex(spans[part].left, spans[part].bottom);
+      (*layout.position)[i] += Complex(steps.real() * width, steps.imag() * height);
+    }
+    first += layout.part_count;
   }
 }
 

@@ -25,8 +25,13 @@ void arrange(std::vector<Island>& islands);
 // The unit vector along the longer side of the smallest box around the points.
 Complex upright(const Eigen::VectorXcd& position);
 
-// Moves layouts side by side without turning or scaling them: each by a lattice point, its coordinates multiples of
-// `step`, into the first quadrant.
-void arrange_on_lattice(std::vector<Eigen::VectorXcd*>& layouts, const PointLattice& lattice, int step);
+// Moves the parts of layouts side by side without turning or scaling them: each by a lattice point, its coordinates
+// multiples of `step`, into the first quadrant.
+struct DividedLayout {
+  Eigen::VectorXcd* position;  // u + iv of its points
+  std::vector<Index> part;     // of each of them, 0 .. part_count - 1
+  Index part_count;
+};
+void arrange_on_lattice(const std::vector<DividedLayout>& layouts, const PointLattice& lattice, int step);
 
 }  // namespace lsgp

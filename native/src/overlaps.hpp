@@ -15,8 +15,8 @@ struct Overlap {
   double area;
 };
 
-// All such pairs of a layout, sorted.  position: (3m) u + iv at the corners, NaN for triangles to leave out.  Pairs that
-// share less than rounding explains of the smaller one are neighbours and no overlap.
+// All such pairs of a layout, sorted.  position: (3m) u + iv at the corners, NaN for triangles to leave out.  Pairs
+// that share less than rounding explains of the smaller one are neighbours and no overlap.
 std::vector<Overlap> find_overlaps(const Eigen::VectorXcd& position);
 
 // Whether a layout overlaps itself at all; no triangle may be flipped.  twin: (3m) the halfedge on the other side of

@@ -9,6 +9,7 @@
 #include "layout.hpp"
 #include "quantize_curvature.hpp"
 #include "quantize_layout.hpp"
+#include "split_map.hpp"
 #include "text.hpp"
 
 namespace lsgp {
@@ -324,6 +325,17 @@ void report_cones_given_up(const GridSearch& search, const std::vector<SeamlessP
   }
 }
 
+// Parts that cuts close off are placed one by one.
+DividedLayout divide(const HalfedgeMesh& mesh, ComponentMap& map) {
+  std::vector<Index> part_of_triangle;
+  DividedLayout out{&map.position, std::vector<Index>(map.cut_mesh.copy_count()), 0};
+  out.part_count = label_parts(mesh, map.cut_graph.is_cut, part_of_triangle);
+  for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
+    out.part[map.cut_mesh.copy_of_corner[corner]] = part_of_triangle[corner / 3];
+  }
+  return out;
+}
+
 [[noreturn]] void refuse(const std::string& what, const char* remedy) {
   throw Error(Code::wrong_parameter, concat(what, " ", remedy));
 }
@@ -387,10 +399,14 @@ SeamlessReport make_seamless(const Options& options, double unit_scale, std::vec
   if (options.mode == Mode::low_stretch) search.lower_stretch(options.stretch, grid);
   // With parity cones are at the centres of cells: around a corner of cells an odd number of them may meet.
   const Complex shift = seamless.parity ? Complex(0.5, 0.5) : Complex(0, 0);
-  std::vector<Eigen::VectorXcd*> layouts;
-  for (QuantizedLayout& layout : grid.layouts) {
-    layout.position.array() += shift;
-    layouts.push_back(&layout.position);
+  std::vector<DividedLayout> layouts;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const HalfedgeMesh& mesh = parts[i].component->mesh;
+    ComponentMap& map = *parts[i].map;
+    map.position = grid.layouts[i].position.array() + shift;
+    if (options.overlaps == Overlaps::split)
+      split_map(mesh, *parts[i].geometry, std::vector<char>(mesh.halfedge_count(), 0), map);
+    layouts.push_back(divide(mesh, map));
   }
   arrange_on_lattice(layouts, lattice, seamless.parity ? 2 : 1);
 
@@ -402,14 +418,14 @@ SeamlessReport make_seamless(const Options& options, double unit_scale, std::vec
   double area = 0, before = 0, after = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const SeamlessPart& part = parts[i];
-    ExactLayout exact(part, lattice, shift, *layouts[i]);
+    ExactLayout exact(part, lattice, shift, part.map->position);
     if (search.relaxed(i).empty()) exact.snap();  // otherwise no binary fractions satisfy all transitions
     for (const Index v : part.map->flat_cones) report.flat_cones.push_back(part.component->source_vertex[v]);
     for (const SeamlessCut& cut : exact.certify(*part.component)) {
       report.cuts.push_back(cut);
       report.error = std::max(report.error, cut.error);
     }
-    part.map->position = seamless.cell * *layouts[i];
+    part.map->position *= seamless.cell;
     area += part.geometry->total_area;
     before += part.geometry->total_area * search.energy(i);
     after += part.geometry->total_area * grid.layouts[i].energy;

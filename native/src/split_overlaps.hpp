@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "geometry.hpp"
 #include "overlaps.hpp"
 #include "topology.hpp"
 
