@@ -29,11 +29,13 @@ def write_uv(obj: bpy.types.Object, region: Region, solved: NDArray[np.bool_], c
 
 
 def _write_mesh(mesh: bpy.types.Mesh, loops: NDArray[np.int32], uv: NDArray[np.float32]) -> None:
-    layer = mesh.uv_layers.active
+    # Copies of the mesh and steps of undo share its arrays. The attribute makes the array the mesh's own first; the UV
+    # layer does not, up to Blender 4.5 at least, and would change theirs too.
+    attribute = mesh.attributes[mesh.uv_layers.active.name]
     all_uv = np.empty((len(mesh.loops), 2), np.float32)
-    layer.uv.foreach_get("vector", all_uv.ravel())
+    attribute.data.foreach_get("vector", all_uv.ravel())
     all_uv[loops] = uv
-    layer.uv.foreach_set("vector", all_uv.ravel())
+    attribute.data.foreach_set("vector", all_uv.ravel())
     mesh.update_tag()
 
 

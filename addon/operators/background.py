@@ -31,6 +31,7 @@ class BackgroundComputation:
         self._timer = manager.event_timer_add(INTERVAL, window=context.window)
         manager.progress_begin(0, 100)
         manager.modal_handler_add(self)
+        self._percent = None
         self._show_progress(context)
         return {"RUNNING_MODAL"}
 
@@ -53,8 +54,10 @@ class BackgroundComputation:
 
     def _show_progress(self, context: bpy.types.Context) -> None:
         percent = int(100 * self._computation.done)
-        context.window_manager.progress_update(percent)
-        context.workspace.status_text_set(f"{self.activity}... {percent} %, Esc to cancel")
+        if percent != self._percent:
+            self._percent = percent
+            context.window_manager.progress_update(percent)
+            context.workspace.status_text_set(f"{self.activity}... {percent} %, Esc to cancel")
 
     def _end_progress(self, context: bpy.types.Context) -> None:
         context.window_manager.event_timer_remove(self._timer)

@@ -54,6 +54,20 @@ def test_only_the_active_uv_layer_changes(in_edit_mode):
 
 
 @pytest.mark.parametrize("in_edit_mode", [True, False])
+def test_a_copy_of_the_mesh_keeps_its_uvs(in_edit_mode):
+    cube = add_cone_cube()
+    # A copy shares arrays with the mesh until one of them is changed.
+    twin = bpy.data.objects.new("Twin", cube.data.copy())
+    bpy.context.collection.objects.link(twin)
+    if in_edit_mode:
+        edit(cube)
+    before = UvMap(twin).uv
+    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    assert np.array_equal(UvMap(twin).uv, before)
+    assert not np.array_equal(UvMap(cube).uv, before)
+
+
+@pytest.mark.parametrize("in_edit_mode", [True, False])
 def test_of_eight_uv_layers_only_the_active_one_changes(in_edit_mode):
     cube = add_cone_cube()
     for number in range(2, 9):
