@@ -13,7 +13,7 @@ and L y = kappa - K for the log scale y.  The rotation of a cut edge a -> b is t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -468,6 +468,127 @@ def lscm_unfold(
     z[list(pins)] = places
     z[free] = spla.splu(conformal[free][:, free].tocsc()).solve(-(conformal[free][:, list(pins)] @ z[list(pins)]))
     return z[opened.corner]
+
+
+# --- angles a triangulation can carry ---------------------------------------------------------------------------------
+
+
+def angle_room(t: IntArray, wanted: FloatArray) -> float:
+    """The largest value that the smallest corner can have where triangles sum to pi and vertices to `wanted`.
+
+    wanted: radians at every vertex, NaN where any sum will do.  Negative where no triangles have these angles, and
+    -inf where not even negative corners would help.
+    """
+    m, corners = len(t), np.arange(3 * len(t))
+    bound = np.flatnonzero(~np.isnan(wanted) & (np.bincount(t.ravel(), minlength=len(wanted)) > 0))
+    row_of_vertex = np.full(len(wanted), -1)
+    row_of_vertex[bound] = m + np.arange(len(bound))
+    row = row_of_vertex[t.ravel()]
+    rows, cols = np.concatenate([corners // 3, row[row >= 0]]), np.concatenate([corners, corners[row >= 0]])
+    sums = sp.csr_matrix((np.ones(len(rows)), (rows, cols)), (m + len(bound), 3 * m))
+    # Every corner is the smallest one and what it has more; the unknowns are these and, last, the smallest one.
+    sums = sp.hstack([sums, sp.csr_matrix(sums.sum(axis=1))]).tocsr()
+    found = opt.linprog(
+        -np.eye(3 * m + 1)[-1],
+        A_eq=sums,
+        b_eq=np.concatenate([np.full(m, np.pi), wanted[bound]]),
+        bounds=[(0, None)] * (3 * m) + [(None, None)],
+        method="highs",
+    )
+    return -float(found.fun) if found.success else -np.inf
+
+
+# --- low stretch ------------------------------------------------------------------------------------------------------
+
+
+def rest_scales(t: IntArray, log_scale: FloatArray, stretch: float) -> FloatArray:
+    """(m,) lengths of the rest shapes relative to the surface's: its own at stretch 1, the prescribed metric's at 0."""
+    return np.exp((1 - stretch) * log_scale[t].mean(axis=1))
+
+
+def symmetric_dirichlet(
+    p: FloatArray, t: IntArray, corner_uv: FloatArray, scale: FloatArray | float = 1.0, weight: FloatArray | None = None
+) -> float:
+    """Mean symmetric Dirichlet energy of a map against triangles scaled by `scale`, at the best size of the layout.
+
+    1 is isometric; weight: (m,), areas by default.
+    """
+    sigma = stretches(p, t, corner_uv) / np.reshape(scale, (-1, 1))
+    weight = triangle_areas(p, t) if weight is None else weight
+    grown, shrunk = (weight @ (sigma**power).sum(axis=1) / (2 * weight.sum()) for power in (2.0, -2.0))
+    return float(np.sqrt(grown * shrunk))
+
+
+def least_symmetric_dirichlet(
+    p: FloatArray,
+    t: IntArray,
+    opened: OpenedMesh,
+    rows: sp.csr_matrix,
+    corner_uv: FloatArray,
+    scale: FloatArray | float = 1.0,
+    weight: FloatArray | None = None,
+    steps: int = 300,
+) -> FloatArray:
+    """The map of least energy that `rows` @ displacement = 0 lets a map without flips become; (m, 3, 2).
+
+    Quasi-Newton steps on a dense null space, in coordinates in which the Dirichlet form is the identity, until the
+    energy cannot fall any more.
+    """
+    gz, gzbar, area = complex_gradients(p, t, opened)
+    weight = area if weight is None else weight
+    unscale = sp.diags(np.broadcast_to(1 / np.asarray(scale, float), len(t)))
+    gz, gzbar = unscale @ gz, unscale @ gzbar
+    start = np.empty(opened.count, complex)
+    start[opened.corner.ravel()] = as_complex(corner_uv).ravel()
+    basis = la.null_space(rows.toarray(), rcond=1e-9)
+    dirichlet = (gz.conj().T @ sp.diags(weight) @ gz + gzbar.conj().T @ sp.diags(weight) @ gzbar) @ basis
+    factor = la.cholesky(basis.conj().T @ dirichlet)
+    basis = la.solve_triangular(factor, basis.T, trans="T").T  # columns orthonormal in the Dirichlet form
+
+    def energy(x: FloatArray) -> tuple[float, FloatArray]:
+        z = start + basis @ (x[: len(x) // 2] + 1j * x[len(x) // 2 :])
+        a, b = gz @ z, gzbar @ z
+        upright, mirrored = np.abs(a) ** 2, np.abs(b) ** 2
+        total, det = upright + mirrored, upright - mirrored
+        if det.min() <= 0:
+            return np.inf, x
+        slope = 1 + det**-2.0
+        along_a = weight * (slope - 2 * total * det**-3.0) * a
+        along_b = weight * (slope + 2 * total * det**-3.0) * b
+        gradient = basis.conj().T @ (gz.conj().T @ along_a + gzbar.conj().T @ along_b)
+        return float(weight @ (total * slope)) / 2, np.concatenate([gradient.real, gradient.imag])
+
+    found = _descend(energy, np.zeros(2 * basis.shape[1]), steps)
+    half = len(found) // 2
+    return as_uv((start + basis @ (found[:half] + 1j * found[half:]))[opened.corner])
+
+
+def _descend(energy: Callable[[FloatArray], tuple[float, FloatArray]], x: FloatArray, steps: int) -> FloatArray:
+    """L-BFGS with steps halved until the energy, infinite outside its domain, falls; (value, gradient) at x."""
+    value, gradient = energy(x)
+    pairs: list[tuple[FloatArray, FloatArray]] = []
+    for _ in range(steps):
+        direction, shares = -gradient, []
+        for moved, bent in reversed(pairs):
+            shares.append(moved @ direction / (moved @ bent))
+            direction = direction - shares[-1] * bent
+        if pairs:
+            moved, bent = pairs[-1]
+            direction = direction * (moved @ bent) / (bent @ bent)
+        for (moved, bent), share in zip(pairs, reversed(shares), strict=True):
+            direction = direction + (share - bent @ direction / (moved @ bent)) * moved
+        step, slope = 1.0, gradient @ direction
+        if -slope <= 1e-14 * value:
+            return x
+        while (there := energy(x + step * direction))[0] > value + 1e-4 * step * slope:
+            step /= 2
+            if step < 1e-12:
+                return x
+        moved, bent = step * direction, there[1] - gradient
+        x, (value, gradient) = x + moved, there
+        if moved @ bent > 0:
+            pairs = [*pairs[-29:], (moved, bent)]
+    return x
 
 
 # --- measures of a map, from corner coordinates alone -----------------------------------------------------------------
