@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Time of `lsgp.parameterize` beside libigl's LSCM on the same cut, and what rounding for seamless layouts adds to it,
-as Markdown tables.
+"""Time of `lsgp.parameterize` as Markdown tables: beside libigl's LSCM on the same cut, what rounding for seamless
+layouts adds to it, the shares of checks and repair, and low stretch beside Blender's Minimum Stretch.
 
-Both get arrays and give texture coordinates. lsgp also finds the cut, prescribes the cone angles and measures the map;
-LSCM gets the surface cut open along lsgp's cut and two pins. Times are CPU seconds of all threads together (the stages'
-are wall-clock), medians over repetitions that take turns, so that a busy machine hurts both alike. Needs numpy, scipy
-and libigl beside lsgp.
+All get arrays and give texture coordinates. lsgp also finds the cut, prescribes the cone angles and measures the map;
+LSCM gets the surface cut open along lsgp's cut and two pins, Blender the surface with that cut marked as seams.
+Times are CPU seconds of all threads together (the stages' are wall-clock), medians over repetitions that take turns, so
+that a busy machine hurts both alike; Blender's are taken one after the other. Needs numpy, scipy and libigl beside
+lsgp, and for the last table a Python with bpy, named by BPY_PYTHON or where tools/test puts it.
 
     python tools/benchmark.py [--repetitions 9] [mesh ...]
 """
@@ -16,7 +17,9 @@ import argparse
 import json
 import os
 import statistics
+import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -28,7 +31,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 MESHES = ("cube-768", "hand-5k", "bird", "fandisk", "octa-flower", "igea-16k", "max-planck-25k")
-SHARED = Path(__file__).resolve().parents[2] / "shared" / "meshes"
+ROOT = Path(__file__).resolve().parents[1]
+SHARED = ROOT.parent / "shared" / "meshes"
+DENSE_TRIANGLES = 50_000
 
 
 def main() -> None:
@@ -45,6 +50,19 @@ def main() -> None:
     print_table([measure_case(*case, arguments.repetitions) for case in cases])
     print("\nRounding angles and translations, repair included, as a multiple of the whole unwrap without it:\n")
     print_table([measure_rounding(*case, arguments.repetitions) for case in cases])
+    print(
+        "\nShares of the whole unwrap, by wall-clock time: checks of flips, angle sums and overlaps are to take at "
+        "most 5 %, local repair at most 20 %:\n"
+    )
+    print_table([measure_shares(*case, arguments.repetitions) for case in cases])
+    print(
+        "\nLow stretch beside Blender's Minimum Stretch with 10 iterations, on the same cut; sisters: largest ratio of "
+        "the two sides of a cut edge:\n"
+    )
+    blender = find_blender()
+    if blender is None:
+        print("Blender is left out: no Python with bpy. Run tools/test once or name one in BPY_PYTHON.\n")
+    print_table([measure_low_stretch(*case, min(3, arguments.repetitions), blender) for case in dense_cases()])
 
 
 def read_case(name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -68,6 +86,18 @@ def bumpy_sphere(level: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     positions /= np.linalg.norm(positions, axis=1)[:, None]
     radius = 1 + 0.5 * np.abs(positions).max(axis=1) ** 12
     return positions * radius[:, None], triangles, np.arange(6, dtype=np.int32)
+
+
+def dense_cases() -> list[tuple[str, np.ndarray, np.ndarray, np.ndarray]]:
+    """Surfaces of about 50,000 triangles with their cones: one smoothly subdivided and decimated, one as it is."""
+    if not SHARED.is_dir():
+        return [("bumpy sphere 6", *bumpy_sphere(6))]
+    coarse, triangles, cones = read_case("igea-16k")
+    positions, triangles = igl.loop(coarse, triangles)
+    positions, triangles, _, _ = igl.decimate(positions, triangles, DENSE_TRIANGLES)
+    nearest = [int(np.argmin(np.linalg.norm(positions - coarse[cone], axis=1))) for cone in cones]
+    igea = ("igea-16k, Loop subdivided and decimated", positions, triangles, np.array(nearest, np.int32))
+    return [igea, ("elephant-genus3", *read_case("elephant-genus3"))]
 
 
 def cut_open(triangles: np.ndarray, cut_edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -149,6 +179,80 @@ def measure_rounding(
     plain, *seamless = (statistics.median(column) for column in zip(*times, strict=True))
     row: dict[str, object] = {"mesh": name, "cones": len(cones), "unwrap ms": f"{1e3 * plain:.1f}"}
     return row | {grid: f"{(time - plain) / plain:.2f}" for grid, time in zip(grids, seamless, strict=True)}
+
+
+def measure_shares(
+    name: str, positions: np.ndarray, triangles: np.ndarray, cones: np.ndarray, repetitions: int
+) -> dict[str, object]:
+    surface = lsgp.Surface(positions, triangles.astype(np.int32))
+    results = [lsgp.parameterize(surface, cones) for _ in range(repetitions)]
+    whole = [sum(result.stage_seconds.values()) for result in results]
+    row: dict[str, object] = {
+        "mesh": name,
+        "triangles": f"{len(triangles):,}",
+        "unwrap ms": f"{1e3 * statistics.median(whole):.1f}",
+        "flips before repair": results[0].repair.flipped_before,
+    }
+    for stage in ("check", "repair"):
+        seconds = [result.stage_seconds.get(stage, 0.0) for result in results]
+        row[f"{stage} ms"] = f"{1e3 * statistics.median(seconds):.2f}"
+        row[f"{stage} %"] = f"{100 * statistics.median(s / w for s, w in zip(seconds, whole, strict=True)):.1f}"
+    return row
+
+
+def measure_low_stretch(
+    name: str,
+    positions: np.ndarray,
+    triangles: np.ndarray,
+    cones: np.ndarray,
+    repetitions: int,
+    blender: str | None,
+) -> dict[str, object]:
+    surface = lsgp.Surface(positions, triangles.astype(np.int32))
+    options = lsgp.Options(mode="low-stretch")
+    result = lsgp.parameterize(surface, cones, options=options)
+    own = statistics.median(
+        cpu_seconds(lambda: lsgp.parameterize(surface, cones, options=options)) for _ in range(repetitions)
+    )
+    row: dict[str, object] = {
+        "mesh": name,
+        "triangles": f"{len(triangles):,}",
+        "cones": len(cones),
+        "lsgp s": f"{own:.2f}",
+        "lsgp L2": f"{result.distortion.l2_stretch:.4f}",
+        "lsgp sisters": f"{result.seams.sister_ratio_max:.3f}",
+    }
+    if blender is None:
+        return row
+    corner_uv, seconds = minimum_stretch(blender, positions, triangles, result.cut_edges, repetitions)
+    theirs = statistics.median(seconds)
+    measured = lsgp.measure_distortion(surface, corner_uv)
+    return row | {
+        "Blender s": f"{theirs:.2f}",
+        "Blender L2": f"{measured.distortion.l2_stretch:.4f}",
+        "Blender sisters": f"{measured.seams.sister_ratio_max:.3f}",
+        "Blender / lsgp": f"{theirs / own:.1f}",
+    }
+
+
+def find_blender() -> str | None:
+    """A Python with bpy."""
+    python = Path(os.environ.get("BPY_PYTHON") or ROOT / "build" / "bpy" / "bin" / "python")
+    return str(python) if python.is_file() else None
+
+
+def minimum_stretch(
+    blender: str, positions: np.ndarray, triangles: np.ndarray, seams: np.ndarray, repetitions: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Blender's texture coordinates and the CPU seconds of each repetition."""
+    with tempfile.TemporaryDirectory() as folder:
+        source, target = Path(folder, "surface.npz"), Path(folder, "map.npz")
+        np.savez(source, positions=positions, triangles=triangles, seams=seams)
+        script = Path(__file__).with_name("benchmark_in_blender.py")
+        command = [blender, str(script), str(source), str(target), str(repetitions)]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL, timeout=600)
+        with np.load(target) as arrays:
+            return arrays["corner_uv"], arrays["seconds"]
 
 
 def cpu_seconds(run: Callable[[], None]) -> float:
