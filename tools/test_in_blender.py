@@ -6,7 +6,8 @@
     python tools/test_in_blender.py --chroot FOLDER                    an installation of ../shared/tools/real-blender
 
 Builds the wheel with that Python (or takes --wheel), stages and zips the extension, installs the zip into a throw-away
-profile, runs tests/blender there and prints the counts. Exit code 0 only when tests passed, none failed and none was
+profile, runs tests/blender there and prints the counts. With --window, what needs events is tried as well, in a window
+on a virtual screen; that takes an executable and xvfb-run. Exit code 0 only when tests passed, none failed and none was
 skipped. Arguments after "--" go to pytest.
 """
 
@@ -49,6 +50,16 @@ def build_wheel(python: Command, folder: Path) -> Path:
     return next(folder.glob("lsgp-*.whl"))
 
 
+def in_window(program: Command) -> Command:
+    """The same program on a virtual screen, with rendering by software."""
+    screen = ["--auto-servernum", "--server-args=-screen 0 1280x900x24"]
+    environment = {"LIBGL_ALWAYS_SOFTWARE": "1"}
+    if program.arguments[0] == str(REAL_BLENDER):
+        inside = {**program.environment, **environment, "BLENDER_EXE": "xvfb-run"}
+        return Command([*program.arguments, *screen, "blender"], inside)
+    return Command(["xvfb-run", *screen, *program.arguments], {**program.environment, **environment})
+
+
 def counts(report: Path) -> dict[str, int]:
     """Numbers of tests in a junit report: tests, failures, errors, skipped."""
     suites = ElementTree.parse(report).getroot().iter("testsuite")
@@ -59,11 +70,21 @@ def counts(report: Path) -> dict[str, int]:
     return totals
 
 
+def require_all(report: Path, what: str) -> None:
+    """Print the counts of a report; ends the program where there is no test, or one that did not pass."""
+    found = counts(report)
+    numbers = ", ".join(f"{found[key]} {key}" for key in ("failures", "errors", "skipped"))
+    print(f"test_in_blender: {found['tests']} {what}, {numbers}")
+    if found["tests"] == 0 or any(found[key] for key in ("failures", "errors", "skipped")):
+        raise SystemExit("test_in_blender: every test has to run and pass inside Blender")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--python", help="the Blender's Python; it runs the tests itself unless --blender is given")
     parser.add_argument("--blender", help="Blender executable")
     parser.add_argument("--chroot", type=Path, help="folder of a Blender installed by ../shared/tools/real-blender")
+    parser.add_argument("--window", action="store_true", help="run the tests that need a window as well")
     parser.add_argument("--wheel", type=Path, help="take this wheel instead of building one")
     parser.add_argument(
         "--out", type=Path, default=ROOT / "build" / "in_blender", help="folder for wheel, zip, profile and report"
@@ -72,6 +93,8 @@ def main() -> None:
     arguments = parser.parse_args()
     if (arguments.python is None) == (arguments.chroot is None):
         parser.error("give either --python or --chroot")
+    if arguments.window and arguments.blender is None and arguments.chroot is None:
+        parser.error("--window takes a Blender executable, by --blender or --chroot")
 
     out = arguments.out.resolve()
     shutil.rmtree(out, ignore_errors=True)
@@ -97,23 +120,26 @@ def main() -> None:
     if blender is not None:
         blender.run("--command", "extension", "validate", package, timeout=TEST_SECONDS)
 
-    script, report = ROOT / "tests" / "blender" / "run_in_blender.py", out / "report.xml"
+    tests = ROOT / "tests" / "blender"
     # PYTHONPATH could put another build of the native module before the one in the extension.
     isolation = {"BLENDER_USER_RESOURCES": str(profile), "PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": ""}
-    options = ["--", package, report, *arguments.pytest]
+    report = out / "report.xml"
+    options = [tests / "run_in_blender.py", "--", package, report, *arguments.pytest]
     try:
         if blender is not None:
             start = ["--background", "--python-exit-code", "1", "--python"]
-            blender.run(*start, script, *options, timeout=TEST_SECONDS, **isolation)
+            blender.run(*start, *options, timeout=TEST_SECONDS, **isolation)
         else:
-            python.run(script, *options, timeout=TEST_SECONDS, **isolation)
+            python.run(*options, timeout=TEST_SECONDS, **isolation)
+        require_all(report, "tests")
+        if arguments.window:
+            report = out / "window_report.xml"
+            options = [tests / "run_in_window.py", "--", package, report]
+            start = ["--factory-startup", "--enable-event-simulate", "--python-exit-code", "1", "--python"]
+            in_window(blender).run(*start, *options, timeout=TEST_SECONDS, **isolation)
+            require_all(report, "tests in a window")
     except (subprocess.CalledProcessError, subprocess.TimeoutExpired) as error:
         raise SystemExit(f"test_in_blender: {error}") from None
-
-    found = counts(report)
-    print("test_in_blender:", ", ".join(f"{number} {key}" for key, number in found.items()))
-    if found["tests"] == 0 or any(found[key] for key in ("failures", "errors", "skipped")):
-        raise SystemExit("test_in_blender: every test has to run and pass inside Blender")
 
 
 if __name__ == "__main__":

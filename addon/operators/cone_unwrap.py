@@ -265,9 +265,13 @@ class UV_OT_cone_unwrap(
 
 def _summary(obj: bpy.types.Object, unwrapped: unwrapping.Unwrapped) -> str:
     result = unwrapped.result
-    islands = reporting.counted(int(result.island.max()) + 1, "island")
-    return (
-        f"{obj.name}: {islands} through {reporting.counted(len(result.cones), 'cone')}, "
-        f"stretch {result.distortion.l2_stretch:.3f} (1 is none)"
-        f"{'' if result.seamless is None else ', ' + cells.certified(unwrapped)}"
-    )
+    parts = [
+        f"{reporting.counted(int(result.island.max()) + 1, 'island')} through "
+        f"{reporting.counted(len(result.cones), 'cone')}",
+        f"stretch {result.distortion.l2_stretch:.3f} (1 is none)",
+    ]
+    if result.overlap_area > 0:
+        parts.append(f"{100 * result.overlap_area:.2g} % overlapping")
+    if result.seamless is not None:
+        parts.append(cells.certified(unwrapped))
+    return f"{obj.name}: {', '.join(parts)}"

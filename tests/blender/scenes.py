@@ -94,6 +94,25 @@ def add_tube(name: str = "Tube", taper: float = 0.3) -> bpy.types.Object:
     return add_object(name, build)
 
 
+def add_ramp(name: str = "Ramp", turns: float = 1.75, steps: int = 48) -> bpy.types.Object:
+    """A ramp of steps x 4 quads that winds up about z: flattened, it lies on itself beyond one turn."""
+
+    def build(bm: bmesh.types.BMesh) -> None:
+        rows = [
+            [bm.verts.new((r * np.cos(angle), r * np.sin(angle), 0.05 * angle)) for r in np.linspace(1, 2, 5)]
+            for angle in np.linspace(0, 2 * np.pi * turns, steps + 1)
+        ]
+        for row, following in pairwise(rows):
+            for inner in range(4):
+                bm.faces.new((row[inner], row[inner + 1], following[inner + 1], following[inner]))
+        bm.loops.layers.uv.new("UVMap")
+
+    ramp = add_object(name, build)
+    # A cone group without cones.
+    mark(ramp, [])
+    return ramp
+
+
 def add_grid(name: str = "Grid", segments: int = 6) -> bpy.types.Object:
     """A flat square of side 2 with segments² quads and one UV layer."""
 
@@ -258,8 +277,8 @@ def uv_key(layer: str = "UVMap") -> str:
 class UvMap:
     """The active UV layer of an object with the mesh it lies on, as arrays.
 
-    uv (l, 2) and vertex (l,) of every loop; positions (n, 3); loops_of_face. sides: for each edge with two faces the
-    loop pairs of both sides, in the same vertex order.
+    uv (l, 2) and vertex (l,) of every loop; positions (n, 3); loops_of_face; triangles (t, 3), as loops, and the face
+    of each. sides: for each edge with two faces the loop pairs of both sides, in the same vertex order.
     """
 
     def __init__(self, obj: bpy.types.Object) -> None:
@@ -269,6 +288,9 @@ class UvMap:
         self.vertex = np.array([loop.vertex_index for loop in mesh.loops])
         self.positions = np.array([tuple(v.co) for v in mesh.vertices], np.float64)
         self.loops_of_face = [list(face.loop_indices) for face in mesh.polygons]
+        mesh.calc_loop_triangles()
+        self.triangles = np.array([tuple(triangle.loops) for triangle in mesh.loop_triangles])
+        self.face_of_triangle = np.array([triangle.polygon_index for triangle in mesh.loop_triangles])
         self.seams = {tuple(sorted(edge.vertices)) for edge in mesh.edges if edge.use_seam}
         pairs: dict[tuple[int, int], list[tuple[int, int]]] = {}
         for loops in self.loops_of_face:
@@ -305,15 +327,70 @@ class UvMap:
         ratios = np.concatenate(ratios)
         return float(ratios.max() / ratios.min())
 
+    def l2_stretch(self, faces: Iterable[int] | None = None) -> float:
+        """The L2 stretch of Sander et al. 2001 over all faces or these; 1 is isometric."""
+        chosen = slice(None) if faces is None else np.isin(self.face_of_triangle, list(faces))
+        loops = self.triangles[chosen]
+        a, b, c = (self.positions[self.vertex[loops[:, i]]] for i in range(3))
+        p, q, r = (self.uv[loops[:, i]] for i in range(3))
+        sides, flat = np.stack([b - a, c - a], axis=2), np.stack([q - p, r - p], axis=2)
+        # Lengths in space of what has length 1 in the map.
+        squared = (np.linalg.norm(sides @ np.linalg.inv(flat), axis=(1, 2)) ** 2) / 2
+        area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+        return float(np.sqrt(np.average(squared, weights=area) * np.abs(np.linalg.det(flat)).sum() / 2 / area.sum()))
+
+    def overlapping(self) -> set[int]:
+        """The faces that lie on others, by more than rounding: no side of either triangle parts the two."""
+        z = self._turned_triangles()
+        slack = 1e-6 * np.ptp(self.uv)
+        low, high = z.view(float).reshape(-1, 3, 2).min(axis=1), z.view(float).reshape(-1, 3, 2).max(axis=1)
+        first, second = (
+            np.concatenate(ends)
+            for ends in zip(
+                *(
+                    (np.full(len(met), i), met + i + 1)
+                    for i in range(len(z))
+                    for met in [np.flatnonzero(((low[i + 1 :] < high[i]) & (low[i] < high[i + 1 :])).all(axis=1))]
+                ),
+                strict=True,
+            )
+        )
+        apart = np.zeros(len(first), bool)
+        for one, other in ((z[first], z[second]), (z[second], z[first])):
+            for side in range(3):
+                start, along = one[:, side], one[:, (side + 1) % 3] - one[:, side]
+                depth = ((other - start[:, None]) * along.conj()[:, None]).imag.max(axis=1)
+                apart |= depth <= slack * np.abs(along)
+        return set(self.face_of_triangle[np.concatenate([first[~apart], second[~apart]])].tolist())
+
+    def overlap_area(self, resolution: int = 600) -> float:
+        """Area of all pairs of triangles together as a share of the map's, counted on a raster."""
+        z = self._turned_triangles()
+        origin = self.uv.min(axis=0) @ (1, 1j)
+        z = (z - origin) / np.ptp(self.uv) * resolution
+        covered = np.zeros((resolution + 1, resolution + 1))
+        for triangle in z:
+            x = np.arange(int(triangle.real.min()), int(triangle.real.max()) + 1)
+            y = np.arange(int(triangle.imag.min()), int(triangle.imag.max()) + 1)
+            middle = x[None, :] + 0.5 + 1j * (y[:, None] + 0.5)
+            inside = np.ones(middle.shape, bool)
+            for side in range(3):
+                inside &= ((middle - triangle[side]) * (triangle[(side + 1) % 3] - triangle[side]).conj()).imag > 0
+            covered[y[0] : y[-1] + 1, x[0] : x[-1] + 1] += inside
+        return float((covered * (covered - 1)).sum() / 2 / covered.sum())
+
+    def _turned_triangles(self) -> np.ndarray:
+        """(t, 3) complex corners, counter-clockwise."""
+        z = self.uv[self.triangles] @ (1, 1j)
+        clockwise = ((z[:, 1] - z[:, 0]).conj() * (z[:, 2] - z[:, 0])).imag < 0
+        return np.where(clockwise[:, None], z[:, ::-1], z)
+
     def angle_sum(self, vertex: int) -> float:
-        """Sum of the UV angles at a vertex, over all its faces."""
-        total = 0.0
-        for loops in self.loops_of_face:
-            for before, here, after in zip(loops[-1:] + loops[:-1], loops, loops[1:] + loops[:1], strict=True):
-                if self.vertex[here] == vertex:
-                    a, b = self.uv[after] - self.uv[here], self.uv[before] - self.uv[here]
-                    total += np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b)
-        return float(total)
+        """Sum of the UV angles at a vertex, over all its triangles."""
+        triangle, corner = np.nonzero(self.vertex[self.triangles] == vertex)
+        here, following, before = (self.triangles[triangle, (corner + step) % 3] for step in range(3))
+        along, back = ((self.uv[loops] - self.uv[here]) @ (1, 1j) for loops in (following, before))
+        return float(np.angle(back / along).sum())
 
     def islands(self) -> int:
         """Number of sets of faces connected through edges that are not split."""

@@ -44,6 +44,21 @@ def real_blender() -> list[str]:
 
 
 @pytest.fixture(scope="session")
+def has_virtual_screen() -> bool:
+    """Whether that executable can have a window here."""
+    if "BLENDER_CHROOT" in os.environ:
+        return Path(os.environ["BLENDER_CHROOT"], "usr", "bin", "xvfb-run").exists()
+    return shutil.which("xvfb-run") is not None
+
+
+@pytest.fixture
+def virtual_screen(has_virtual_screen: bool) -> None:
+    """Leaves out what needs a window where there can be none."""
+    if not has_virtual_screen:
+        leave_out("no virtual screen for Blender; install xvfb-run beside it")
+
+
+@pytest.fixture(scope="session")
 def bpy_python() -> str:
     python = python_with_bpy()
     if python is None:

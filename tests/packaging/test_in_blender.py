@@ -3,25 +3,40 @@
 
 BPY_PYTHON names a Python with bpy (default: this one, if it has bpy). BLENDER names an executable, BLENDER_PYTHON a
 Python of the same version that can build wheels; or BLENDER_CHROOT an installation of ../shared/tools/real-blender.
+What needs a window is tried where xvfb-run is installed beside that executable.
 """
 
 import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[2]
 TOOL = ROOT / "tools" / "test_in_blender.py"
 
 
-def run_tool(*arguments: str) -> None:
+def run_tool(*arguments: str) -> str:
+    """What the tool printed; fails where the tool does."""
     done = subprocess.run([sys.executable, str(TOOL), *arguments], capture_output=True, text=True, check=False)
     assert done.returncode == 0, f"{done.stdout[-8000:]}\n{done.stderr[-4000:]}"
-    assert "test_in_blender:" in done.stdout
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def said_in_real_blender(real_blender: list[str], has_virtual_screen: bool) -> str:
+    """What the tool printed of its run in the Blender executable."""
+    return run_tool(*real_blender, *(["--window"] if has_virtual_screen else []))
 
 
 def test_addon_in_bpy(bpy_python, wheel, tmp_path):
-    run_tool("--python", bpy_python, "--wheel", str(wheel), "--out", str(tmp_path))
+    assert "tests, 0 failures" in run_tool("--python", bpy_python, "--wheel", str(wheel), "--out", str(tmp_path))
 
 
-def test_addon_in_a_real_blender(real_blender):
-    run_tool(*real_blender)
+def test_addon_in_a_real_blender(said_in_real_blender):
+    assert "tests, 0 failures" in said_in_real_blender
+
+
+@pytest.mark.usefixtures("virtual_screen")
+def test_addon_in_a_window(said_in_real_blender):
+    assert "tests in a window, 0 failures" in said_in_real_blender

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Install a built extension into a throw-away profile and run window_tests.py in this Blender's window.
+
+    export BLENDER_USER_RESOURCES=EMPTY_FOLDER
+    blender --enable-event-simulate --python-exit-code 1 --python run_in_window.py -- ZIP REPORT.xml
+
+A test is a generator: it yields how many seconds Blender is to go on by itself, handling events and drawing. Exit code
+0 only when all passed; REPORT.xml is a junit report. ``tools/test_in_blender.py --window`` does all of this.
+"""
+
+import os
+import sys
+import time
+import traceback
+from collections.abc import Generator, Iterator
+from contextlib import AbstractContextManager
+from pathlib import Path
+from xml.etree import ElementTree
+
+import bpy
+
+sys.path.append(str(Path(__file__).parent))
+from run_in_blender import EXTENSION, install, require_bundled_library
+
+TEST_SECONDS = 60
+
+
+def in_view() -> AbstractContextManager:
+    """The context of the 3D view, which Blender's timers do not have."""
+    window = bpy.context.window_manager.windows[0]
+    area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    return bpy.context.temp_override(window=window, area=area, region=region)
+
+
+def run(tests: dict[str, Generator[float]], report: Path) -> Iterator[float]:
+    """Run the tests one after the other, write the report and end Blender; yields seconds to wait."""
+    suite = ElementTree.Element("testsuite", name="window", errors="0", skipped="0")
+    failures = 0
+    for name, test in tests.items():
+        case = ElementTree.SubElement(suite, "testcase", name=name)
+        begin = time.monotonic()
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        yield 0.2
+        try:
+            while True:
+                with in_view():
+                    wait = next(test)
+                if time.monotonic() - begin > TEST_SECONDS:
+                    raise TimeoutError(f"{name} takes more than {TEST_SECONDS} seconds")
+                yield wait
+        except StopIteration:
+            print(f"{name} passed")
+        except Exception:  # whatever it is belongs into the report
+            failures += 1
+            ElementTree.SubElement(case, "failure").text = traceback.format_exc()
+            print(f"{name} FAILED\n{traceback.format_exc()}")
+        finally:
+            test.close()
+    suite.set("tests", str(len(tests)))
+    suite.set("failures", str(failures))
+    ElementTree.ElementTree(suite).write(report)
+    end(1 if failures else 0)
+
+
+def end(code: int) -> None:
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(code)
+
+
+def main() -> None:
+    os.environ["CONE_UNWRAP_EXTENSION"] = EXTENSION
+    package, report = sys.argv[sys.argv.index("--") + 1 :]
+    bpy.context.preferences.view.show_splash = False
+    install(Path(package))
+    require_bundled_library()
+    import window_tests
+
+    tests = {name: test() for name, test in vars(window_tests).items() if name.startswith("test_")}
+    running = run(tests, Path(report))
+    bpy.app.timers.register(lambda: next(running), first_interval=1.0, persistent=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Repair Flips, and cone angles that no map has: told, shown, and put right as far as can be."""
+
+import bmesh
+import bpy
+import numpy as np
+import pytest
+from scenes import ANGLES, UV_ROUNDING, UvMap, add_ball, changed, edit, mark, selected, snapshot
+
+
+def ball_with_angle(turns):
+    """A ball with one more cone of so many whole turns, and the vertex that is."""
+    ball = add_ball(cuts=4)
+    towards = [v.co.normalized().dot((0.2, 1.0, -0.3)) for v in ball.data.vertices]
+    cone = int(np.argmax(towards))
+    mark(ball, [cone])
+    ball.data.attributes.new(ANGLES, "FLOAT", "POINT").data[cone].value = turns * 2 * np.pi
+    edit(ball)
+    return ball, cone
+
+
+def flipped_faces(obj):
+    uv_map = UvMap(obj)
+    z = uv_map.uv[uv_map.triangles] @ (1, 1j)
+    areas = ((z[:, 1] - z[:, 0]).conj() * (z[:, 2] - z[:, 0])).imag
+    return set(uv_map.face_of_triangle[areas <= 0].tolist())
+
+
+def test_flips_are_repaired_unless_they_are_to_stay(reports):
+    ball, cone = ball_with_angle(1.9)
+    reports()
+    assert bpy.ops.uv.cone_unwrap(repair=False) == {"FINISHED"}
+    assert "FLIPPED_TRIANGLES" in reports()
+    flipped = flipped_faces(ball)
+    assert flipped
+    bpy.ops.mesh.cone_select_reported()
+    assert flipped <= {face.index for face in bmesh.from_edit_mesh(ball.data).faces if face.select}
+
+    bpy.ops.mesh.select_all(action="SELECT")
+    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    assert "FLIPPED" not in reports()
+    assert flipped_faces(ball) == set()
+    repaired = UvMap(ball)
+    assert repaired.angle_sum(cone) == pytest.approx(1.9 * 2 * np.pi, abs=1e-3)
+    assert repaired.sister_difference() <= UV_ROUNDING
+
+
+def test_an_angle_that_the_faces_around_cannot_carry_is_refused_and_shown():
+    ball, cone = ball_with_angle(4.0)
+    before = snapshot(ball)
+    with pytest.raises(RuntimeError, match=r"Ball: .*CONE_ANGLE_RANGE, 1 vertex"):
+        bpy.ops.uv.cone_unwrap()
+    assert changed(before, snapshot(ball)) == set()
+    bpy.ops.mesh.cone_select_reported()
+    assert selected(ball) == [cone]
+
+
+def test_an_angle_that_no_map_comes_to_is_approached_and_the_cones_shown(reports):
+    ball, cone = ball_with_angle(2.5)
+    reports()
+    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    assert "ANGLES_ADJUSTED" in reports()
+    assert flipped_faces(ball) == set()
+    bpy.ops.mesh.cone_select_reported()
+    assert cone in selected(ball)

@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Unwrap from Cones as it is invoked by an artist: progress, Esc, undo.  Run by run_in_window.py; no pytest."""
+
+import os
+import threading
+import time
+from contextlib import contextmanager
+from importlib import import_module
+
+import bpy
+import numpy as np
+from scenes import add_ball, add_cone_cube, changed, edit, plain_copy, snapshot, uv_key
+
+EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
+STEP = 0.05
+
+
+@contextmanager
+def slowed(seconds):
+    """The library takes so much longer, and tells its progress meanwhile."""
+    lsgp = import_module(f"{EXTENSION}.native").lsgp
+    parameterize = lsgp.parameterize
+
+    def slowly(*arguments):
+        *_, progress = arguments
+        begin = time.monotonic()
+        while progress is not None and (share := (time.monotonic() - begin) / seconds) < 1:
+            if progress(0.9 * share) is False:
+                raise lsgp.Cancelled("CANCELLED", "Stopped.")
+            time.sleep(STEP)
+        return parameterize(*arguments)
+
+    lsgp.parameterize = slowly
+    try:
+        yield
+    finally:
+        lsgp.parameterize = parameterize
+
+
+def window():
+    return bpy.context.window_manager.windows[0]
+
+
+def unwrap(**options):
+    return bpy.ops.uv.cone_unwrap("INVOKE_DEFAULT", True, **options)
+
+
+def running():
+    return any(operator.bl_idname == "UV_OT_cone_unwrap" for operator in window().modal_operators)
+
+
+def computing():
+    return [thread for thread in threading.enumerate() if thread.name == "Cone Unwrap"]
+
+
+def press(key):
+    for value in ("PRESS", "RELEASE"):
+        window().event_simulate(type=key, value=value)
+
+
+def until(condition, seconds=20.0):
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, f"waited {seconds} seconds in vain"
+        yield STEP
+
+
+def wait_for_end():
+    yield from until(lambda: not running())
+
+
+def stored_uv(obj):
+    mesh = plain_copy(obj)
+    uv = np.empty(2 * len(mesh.loops), np.float32)
+    mesh.uv_layers["UVMap"].uv.foreach_get("vector", uv)
+    bpy.data.meshes.remove(mesh)
+    return uv.tobytes()
+
+
+def stopped_by(key, in_edit_mode):
+    cube = add_cone_cube()
+    if in_edit_mode:
+        edit(cube)
+    before = snapshot(cube)
+    with slowed(10):
+        assert unwrap(pack=True) == {"RUNNING_MODAL"}
+        yield 0.3
+        assert running() and computing()
+        press(key)
+        yield from until(lambda: not running(), 1.0)
+        assert changed(before, snapshot(cube)) == set()
+        yield from until(lambda: not computing(), 1.0)
+    yield 0.2
+    assert changed(before, snapshot(cube)) == set()
+    assert "UV_OT_cone_unwrap" not in [operator.bl_idname for operator in bpy.context.window_manager.operators]
+
+
+def test_esc_stops_at_once_and_nothing_changes():
+    for in_edit_mode in (False, True):
+        yield from stopped_by("ESC", in_edit_mode)
+        bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_the_right_mouse_button_stops_too():
+    yield from stopped_by("RIGHTMOUSE", True)
+
+
+def test_blender_goes_on_in_a_long_run_and_the_map_is_that_of_a_direct_one():
+    cube = add_cone_cube()
+    edit(cube)
+    before = snapshot(cube)
+    bpy.ops.uv.cone_unwrap()
+    direct = stored_uv(cube)
+    bpy.ops.uv.reset()
+    with slowed(3):
+        assert unwrap() == {"RUNNING_MODAL"}
+        ticks = 0
+        while running():
+            ticks += 1
+            if ticks == 1:
+                # Eaten: neither leaves edit mode nor deletes.
+                press("TAB")
+                press("X")
+            yield STEP
+        assert ticks >= 3, ticks
+    assert stored_uv(cube) == direct
+    assert changed(before, snapshot(cube)) == {uv_key()}
+    assert not computing()
+
+
+def test_a_short_run_is_over_at_once():
+    cube = add_cone_cube()
+    before = stored_uv(cube)
+    assert unwrap() == {"FINISHED"}
+    assert not running() and stored_uv(cube) != before
+    yield 0
+
+
+def test_a_long_run_is_one_step_of_undo():
+    for in_edit_mode in (False, True):
+        name = add_cone_cube().name
+        if in_edit_mode:
+            edit(bpy.data.objects[name])
+        bpy.ops.ed.undo_push(message="before")
+        before = stored_uv(bpy.data.objects[name])
+        with slowed(0.5):
+            assert unwrap() == {"RUNNING_MODAL"}
+            yield from wait_for_end()
+        after = stored_uv(bpy.data.objects[name])
+        assert after != before
+        bpy.ops.ed.undo()
+        yield 0.1
+        assert stored_uv(bpy.data.objects[name]) == before
+        bpy.ops.ed.redo()
+        yield 0.1
+        assert stored_uv(bpy.data.objects[name]) == after
+        bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_after_a_long_run_it_can_be_adjusted():
+    cube = add_cone_cube()
+    edit(cube)
+    with slowed(0.5):
+        assert unwrap(use_pins=False) == {"RUNNING_MODAL"}
+        yield from wait_for_end()
+    after = stored_uv(cube)
+    last = bpy.context.window_manager.operators[-1]
+    assert last.bl_idname == "UV_OT_cone_unwrap" and not last.properties.use_pins
+    bpy.ops.uv.reset()
+    # Runs the operator as the panel of the last operation does.
+    bpy.ops.screen.repeat_history(index=len(bpy.context.window_manager.operators) - 2)
+    yield 0.2
+    assert stored_uv(cube) == after
+
+
+def move_vertex(obj):
+    obj.data.vertices[0].co.x += 1.0
+
+
+def add_layer(obj):
+    obj.data.uv_layers.new(name="Other")
+    obj.data.uv_layers.active_index = 1
+
+
+def enter_edit_mode(obj):
+    edit(obj)
+
+
+def test_a_mesh_that_is_changed_meanwhile_is_left_alone():
+    for change in (move_vertex, add_layer, enter_edit_mode):
+        cube = add_cone_cube()
+        before = stored_uv(cube)
+        with slowed(1):
+            assert unwrap() == {"RUNNING_MODAL"}
+            yield 0.2
+            change(cube)
+            changed_by_us = snapshot(cube)
+            yield from wait_for_end()
+        assert changed(changed_by_us, snapshot(cube)) == set(), change.__name__
+        assert stored_uv(cube) == before, change.__name__
+        bpy.ops.object.mode_set(mode="OBJECT")
+        bpy.data.objects.remove(cube)
+
+
+def test_of_two_objects_one_is_removed_meanwhile_and_the_other_unwrapped():
+    gone, kept = add_cone_cube("Gone"), add_cone_cube("Kept")
+    before = stored_uv(kept)
+    with slowed(0.5):
+        assert unwrap() == {"RUNNING_MODAL"}
+        yield 0.2
+        bpy.data.objects.remove(gone)
+        yield from wait_for_end()
+    assert stored_uv(kept) != before
+
+
+def test_opening_a_file_stops_the_computation():
+    add_cone_cube()
+    with slowed(10):
+        assert unwrap() == {"RUNNING_MODAL"}
+        yield 0.2
+        bpy.app.timers.register(lambda: bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True) and None)
+        yield 1.0
+        assert not running()
+        yield from until(lambda: not computing(), 1.0)
+
+
+def test_the_library_itself_tells_its_progress_and_stops():
+    ball = add_ball(cuts=100)
+    before = stored_uv(ball)
+    assert unwrap() == {"RUNNING_MODAL"}
+    press("ESC")
+    yield from until(lambda: not running(), 2.0)
+    yield from until(lambda: not computing())
+    assert stored_uv(ball) == before
