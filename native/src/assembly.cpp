@@ -34,7 +34,7 @@ void Assembly::add(std::size_t component_index, const ComponentCones& cones, con
   }
   // A seamless layout was split before its parts were put onto the lattice; pinned ones keep their place.
   if (options_.overlaps == Overlaps::split && !result_.seamless && map.pins.size() < 2) {
-    split_map(component.mesh, geometry, open_seams(component.mesh), map);
+    split_map(component.mesh, geometry, open_seams(component.mesh), component.mesh.seam, map);
   }
   const Index islands = add_islands(component, geometry, map);
   solved_.push_back({&component, std::move(map), islands});

@@ -404,8 +404,11 @@ SeamlessReport make_seamless(const Options& options, double unit_scale, std::vec
     const HalfedgeMesh& mesh = parts[i].component->mesh;
     ComponentMap& map = *parts[i].map;
     map.position = grid.layouts[i].position.array() + shift;
-    if (options.overlaps == Overlaps::split)
-      split_map(mesh, *parts[i].geometry, std::vector<char>(mesh.halfedge_count(), 0), map);
+    if (options.overlaps == Overlaps::split) {
+      // Cones off the lattice leave translations off it, across which nothing may move.
+      const std::vector<char> nowhere(mesh.halfedge_count(), 0), everywhere(mesh.halfedge_count(), 1);
+      split_map(mesh, *parts[i].geometry, nowhere, search.relaxed(i).empty() ? mesh.seam : everywhere, map);
+    }
     layouts.push_back(divide(mesh, map));
   }
   arrange_on_lattice(layouts, lattice, seamless.parity ? 2 : 1);

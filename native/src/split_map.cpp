@@ -3,23 +3,26 @@
 
 #include <limits>
 
+#include "join_parts.hpp"
 #include "split_overlaps.hpp"
 
 namespace lsgp {
 
 namespace {
 
-// Cuts the map at all marked edges; those marked already keep their rotation.
-void cut_further(const HalfedgeMesh& mesh, std::vector<char> is_cut, ComponentMap& map) {
+// Cuts the map at all marked edges and moves its parts, (m) of every triangle.
+void cut_apart(const HalfedgeMesh& mesh, std::vector<char> is_cut, const std::vector<Index>& part,
+               const std::vector<Motion>& motion, ComponentMap& map) {
   std::vector<char> is_node(mesh.vertex_count(), 0);
-  for (const Cut& cut : map.cut_graph.cuts) is_node[cut.tail] = is_node[cut.head] = 1;
+  for (const Index v : map.cones) is_node[v] = 1;
   CutGraph graph = trace_cuts(mesh, is_node, std::move(is_cut));
   if (map.rotation) {
     Eigen::VectorXd rotation = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(graph.cuts.size()));
     for (std::size_t p = 0; p < graph.cuts.size(); ++p) {
       const Index h = graph.cuts[p].halfedges.front(), before = map.cut_graph.cut_of[h];
-      if (before == none) continue;
-      rotation[static_cast<Eigen::Index>(p)] = (map.cut_graph.runs_forward[h] ? 1 : -1) * (*map.rotation)[before];
+      double& r = rotation[static_cast<Eigen::Index>(p)];
+      if (before != none) r = (map.cut_graph.runs_forward[h] ? 1 : -1) * (*map.rotation)[before];
+      r += motion[part[mesh.twin[h] / 3]].angle - motion[part[h / 3]].angle;
     }
     map.rotation = std::move(rotation);
   }
@@ -28,7 +31,7 @@ void cut_further(const HalfedgeMesh& mesh, std::vector<char> is_cut, ComponentMa
   std::vector<Index> copy_after(map.cut_mesh.copy_count());
   for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
     const Index before = map.cut_mesh.copy_of_corner[corner], after = cut_mesh.copy_of_corner[corner];
-    position[after] = map.position[before];
+    position[after] = motion[part[corner / 3]](map.position[before]);
     copy_after[before] = after;
   }
   for (Pin& pin : map.pins) pin.copy = copy_after[pin.copy];
@@ -39,7 +42,8 @@ void cut_further(const HalfedgeMesh& mesh, std::vector<char> is_cut, ComponentMa
 
 }  // namespace
 
-Index split_map(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<char>& open, ComponentMap& map) {
+bool split_map(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<char>& open,
+               const std::vector<char>& kept, ComponentMap& map) {
   std::vector<char> is_cut = map.cut_graph.is_cut, ends = open;
   std::vector<Index> twin = mesh.twin;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
@@ -51,12 +55,20 @@ Index split_map(const HalfedgeMesh& mesh, const Geometry& geometry, const std::v
   for (const Index f : map.validity.flipped) {
     corners.segment<3>(3 * f).setConstant(std::numeric_limits<double>::quiet_NaN());
   }
-  if (!has_overlap(corners, twin)) return 0;
-  const Index opened = split_overlaps(mesh, geometry, find_overlaps(corners), ends);
-  if (opened == 0) return 0;
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) is_cut[h] = is_cut[h] || (ends[h] && !open[h]);
-  cut_further(mesh, std::move(is_cut), map);
-  return opened;
+  if (!has_overlap(corners, twin)) return false;
+  if (split_overlaps(mesh, geometry, find_overlaps(corners), ends) == 0) return false;
+  std::vector<Index> part;
+  const Index part_count = label_parts(mesh, ends, part);
+  std::vector<Motion> motion(part_count);
+  if (map.rotation) motion = join_parts(mesh, geometry, map, part, kept, ends);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (mesh.twin[h] == none || !ends[h]) continue;
+    const Motion &here = motion[part[h / 3]], &there = motion[part[mesh.twin[h] / 3]];
+    is_cut[h] = is_cut[h] || !open[h] || here.angle != there.angle || here.shift != there.shift;
+  }
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) is_cut[h] = is_cut[h] && ends[h];
+  cut_apart(mesh, std::move(is_cut), part, motion, map);
+  return true;
 }
 
 }  // namespace lsgp

@@ -8,9 +8,12 @@
 
 namespace lsgp {
 
-// Opens a map along further cuts until none of its parts overlaps itself (split_overlaps.hpp).  The parts keep their
-// places, so that the further cuts begin as the identity.  Flipped triangles lie on their neighbours by nature and are
-// let be.  open: (3m) halfedges at which the layout ends, besides the cuts.  Returns how many edges were opened.
-Index split_map(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<char>& open, ComponentMap& map);
+// Opens a map along further cuts (split_overlaps.hpp) and joins its parts across others (join_parts.hpp) until none
+// overlaps itself.  Transitions stay what they were but for how the parts moved.  Flipped triangles lie on their
+// neighbours by nature and are let be.
+// open: (3m) halfedges at which the layout ends, besides the cuts.  kept: (3m) those that may not be closed.
+// Returns whether anything changed.
+bool split_map(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<char>& open,
+               const std::vector<char>& kept, ComponentMap& map);
 
 }  // namespace lsgp

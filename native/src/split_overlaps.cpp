@@ -76,7 +76,7 @@ class Splitter {
   // The cheapest cut that parts `first` from `second` within the scope, a set of faces.
   Choice choose_cut(const std::vector<Index>& scope, const std::vector<Index>& first, const std::vector<Index>& second);
   double cost(Units units, double smaller_area) const {
-    return static_cast<double>(units) / std::min(smaller_area, enough_);
+    return static_cast<double>(units) / std::sqrt(std::min(smaller_area, enough_));
   }
   std::array<std::vector<Index>, 2> divide(const std::vector<Index>& scope, const std::vector<Index>& first,
                                            const std::vector<Index>& second) const;

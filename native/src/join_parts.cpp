@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "join_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+#include "overlaps.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr double same_place = 1e-9;       // of the layout's size
+constexpr double narrowest_joint = 0.25;  // of the square root of the smaller part's area
+
+class Joiner {
+ public:
+  Joiner(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, const std::vector<Index>& part,
+         const std::vector<char>& kept, std::vector<char>& open);
+
+  void join() {
+    while (join_next()) continue;
+  }
+  const std::vector<Motion>& motion() const { return motion_; }
+
+ private:
+  // Open edges along one cut between two parts: where the left one has to go to meet the right one.
+  struct Border {
+    Index left, right;  // parts
+    Motion across;
+    std::vector<Index> halfedges;
+    double length = 0;
+  };
+
+  bool join_next();
+  bool try_to_join(const Border& border);
+  Motion to_meet(const Border& border) const {
+    return motion_[border.right] * border.across * motion_[border.left].inverse();
+  }
+  bool overlaps(Index left, Index right, const Motion& motion, const std::vector<char>& closed) const;
+
+  const HalfedgeMesh& mesh_;
+  const std::vector<Index>& part_;
+  std::vector<char>& open_;
+  Eigen::VectorXcd corners_;
+  double size_;
+  std::vector<Border> borders_;
+  std::vector<Motion> motion_;                 // (parts)
+  std::vector<Index> group_;                   // (parts) joined ones share one
+  std::vector<std::vector<Index>> triangles_;  // (groups)
+  std::vector<double> area_;                   // (groups)
+};
+
+Joiner::Joiner(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
+               const std::vector<Index>& part, const std::vector<char>& kept, std::vector<char>& open)
+    : mesh_(mesh), part_(part), open_(open), corners_(at_corners(map.cut_mesh, map.position)) {
+  const Index part_count = 1 + *std::max_element(part.begin(), part.end());
+  motion_.resize(part_count);
+  group_.resize(part_count);
+  std::iota(group_.begin(), group_.end(), 0);
+  triangles_.resize(part_count);
+  area_.assign(part_count, 0);
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    triangles_[part[f]].push_back(f);
+    area_[part[f]] += geometry.area[f];
+  }
+  size_ = std::max(corners_.real().maxCoeff() - corners_.real().minCoeff(),
+                   corners_.imag().maxCoeff() - corners_.imag().minCoeff());
+
+  std::map<std::tuple<Index, Index, Index>, Border> borders;  // by cut, left and right part
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    const Index twin = mesh.twin[h], cut = map.cut_graph.cut_of[h];
+    if (twin == none || !open[h] || kept[h] || part[h / 3] == part[twin / 3]) continue;
+    if (cut == none ? h > twin : !map.cut_graph.runs_forward[h]) continue;
+    Border& border = borders[{cut, part[h / 3], part[twin / 3]}];
+    if (border.halfedges.empty()) {
+      border.left = part[h / 3];
+      border.right = part[twin / 3];
+      if (cut != none) {
+        const double angle = (*map.rotation)[cut];
+        border.across = {angle, corners_[next(twin)] - std::polar(1.0, angle) * corners_[h]};
+      }
+    }
+    border.halfedges.push_back(h);
+    border.length += geometry.length[h];
+  }
+  for (auto& [key, border] : borders) borders_.push_back(std::move(border));
+  std::stable_sort(borders_.begin(), borders_.end(),
+                   [](const Border& a, const Border& b) { return a.length > b.length; });
+}
+
+bool Joiner::join_next() {
+  for (const Border& border : borders_) {
+    if (group_[border.left] != group_[border.right] && try_to_join(border)) return true;
+  }
+  return false;
+}
+
+bool Joiner::try_to_join(const Border& border) {
+  const Index left = group_[border.left], right = group_[border.right];
+  const Motion motion = to_meet(border);
+  // Whatever else meets then is closed as well.
+  std::vector<char> closed(mesh_.halfedge_count(), 0);
+  double length = 0;
+  for (const Border& other : borders_) {
+    const bool runs_along = group_[other.left] == left && group_[other.right] == right;
+    if (!runs_along && !(group_[other.left] == right && group_[other.right] == left)) continue;
+    const Motion rest = runs_along ? motion.inverse() * to_meet(other) : motion * to_meet(other);
+    if (std::abs(std::polar(1.0, rest.angle) - 1.0) > same_place || std::abs(rest.shift) > same_place * size_) continue;
+    for (const Index h : other.halfedges) closed[h] = closed[mesh_.twin[h]] = 1;
+    length += other.length;
+  }
+  if (length < narrowest_joint * std::sqrt(std::min(area_[left], area_[right]))) return false;
+  if (overlaps(left, right, motion, closed)) return false;
+  for (Index h = 0; h < mesh_.halfedge_count(); ++h) open_[h] = open_[h] && !closed[h];
+  for (std::size_t p = 0; p < group_.size(); ++p) {
+    if (group_[p] != left) continue;
+    group_[p] = right;
+    motion_[p] = motion * motion_[p];
+  }
+  triangles_[right].insert(triangles_[right].end(), triangles_[left].begin(), triangles_[left].end());
+  triangles_[left].clear();
+  area_[right] += area_[left];
+  return true;
+}
+
+bool Joiner::overlaps(Index left, Index right, const Motion& motion, const std::vector<char>& closed) const {
+  std::vector<Index> place(mesh_.triangle_count(), none), triangles = triangles_[right];
+  triangles.insert(triangles.end(), triangles_[left].begin(), triangles_[left].end());
+  for (std::size_t i = 0; i < triangles.size(); ++i) place[triangles[i]] = static_cast<Index>(i);
+  Eigen::VectorXcd position(3 * triangles.size());
+  std::vector<Index> twin(3 * triangles.size(), none);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const Index f = triangles[i];
+    const Motion moved = group_[part_[f]] == left ? motion * motion_[part_[f]] : motion_[part_[f]];
+    for (Index c = 0; c < 3; ++c) {
+      const Index h = 3 * f + c, other = mesh_.twin[h];
+      position[3 * i + c] = moved(corners_[h]);
+      if (other == none || place[other / 3] == none || (open_[h] && !closed[h])) continue;
+      twin[3 * i + c] = 3 * place[other / 3] + other % 3;
+    }
+  }
+  return has_overlap(position, twin);
+}
+
+}  // namespace
+
+std::vector<Motion> join_parts(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
+                               const std::vector<Index>& part, const std::vector<char>& kept, std::vector<char>& open) {
+  Joiner joiner(mesh, geometry, map, part, kept, open);
+  joiner.join();
+  return joiner.motion();
+}
+
+}  // namespace lsgp
