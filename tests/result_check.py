@@ -13,6 +13,7 @@ import lsgp
 import numpy as np
 from numpy.typing import NDArray
 from opened_surface import Opened, edge_keys, labels, named_by, next_corner, open_surface
+from overlap_check import overlaps
 from seamless_check import seamless_faults
 
 TURN = 2 * np.pi
@@ -20,6 +21,7 @@ ANGLE = 1e-6  # radians
 SISTER_RATIO = 1e-9
 RESIDUAL = 1e-12  # relative to the layout
 GAUSS_BONNET = 1e-9  # radians
+OVERLAP = 1e-6  # of the smaller triangle, beside what rounding of the layout's digits makes of it
 DEFAULTS = lsgp.Options()
 
 
@@ -50,6 +52,7 @@ def undeclared_faults(
     flipped = opened.triangle[~(area > 0)]
     if not np.isin(flipped, named_by(result, "FLIPPED_TRIANGLES")).all() or not np.isin(flipped, result.flipped).all():
         faults.append(f"{len(flipped)} flipped triangles {flipped[:5].tolist()}, {len(result.flipped)} listed")
+    faults += _hidden_overlaps(result, opened)
     unlisted = ~np.isin(edge_keys(*_open_edges(opened)), edge_keys(*result.cut_edges.T))
     if unlisted.any():
         faults.append(f"{int(unlisted.sum())} sides of edges are apart that cut_edges does not list")
@@ -97,6 +100,26 @@ def _changed_angles(result: lsgp.Result, options: lsgp.Options, given: Mapping[i
         faults.append(f"the angles of {other[:5].tolist()} are not those asked for")
     if len(adjusted) and not len(other):
         faults.append("ANGLES_ADJUSTED where all angles are those asked for")
+    return faults
+
+
+def _hidden_overlaps(result: lsgp.Result, opened: Opened) -> list[str]:
+    z = opened.z.reshape(-1, 3)
+    pairs, shared = overlaps(z)
+    sides = np.abs(z - np.roll(z, 1, axis=1))
+    area = np.abs(np.imag((z[:, 1] - z[:, 0]).conj() * (z[:, 2] - z[:, 0]))) / 2
+    smaller = np.take_along_axis(pairs, area[pairs].argmin(axis=1)[:, None], axis=1).ravel()
+    sure = shared > OVERLAP * area[smaller] + RESIDUAL * np.abs(z).max(initial=0) * sides.sum(axis=1)[smaller]
+    faults = []
+    on_others = np.unique(opened.triangle[pairs[sure]])
+    unlisted = on_others[~np.isin(on_others, result.overlapping)]
+    if len(unlisted):
+        faults.append(f"{len(unlisted)} triangles {unlisted[:5].tolist()} lie on others that the result does not list")
+    if not np.isin(result.overlapping, opened.triangle[pairs]).all():
+        faults.append("triangles listed as overlapping that lie on no other")
+    gap = abs(shared[sure].sum() / area.sum() - result.overlap_area) if len(area) else 0
+    if gap > OVERLAP:
+        faults.append(f"the area of overlaps is off by {gap:.1e} of the layout")
     return faults
 
 

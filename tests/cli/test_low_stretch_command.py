@@ -9,7 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from command import cut_edges
+from crossings import require_certified
 from lsgp.mesh_files import read_mesh
+from lsgp.polygons import triangulate
+from overlap_check import overlaps
 from polygon_meshes import bumpy_ball, faces_of
 
 UNWRAP = ("unwrap", "ball.obj", "-o", "out.obj", "--cones", "cones.json", "--report", "report.json")
@@ -128,3 +132,47 @@ def test_without_repair_flips_stay_as_they_came_out(lsgp, cube_files: Path) -> N
     assert len(named["WRONG_ANGLE_SUMS"]["indices"]) == left["wrong_angle_sums"]
     assert named["FLIPPED_TRIANGLES"]["kind"] == "faces"
     assert not {"FLIPPED_TRIANGLES", "WRONG_ANGLE_SUMS"} & {warning["code"] for warning in mended["warnings"]}
+
+
+# --- overlaps -------------------------------------------------------------------------------------------------------
+
+
+def faces_on_others(path: Path) -> set[int]:
+    mesh = read_mesh(path, with_uv=True)
+    triangulation = triangulate(mesh)
+    z = mesh.corner_uv[triangulation.corner] @ (1, 1j)
+    pairs, area = overlaps(z)
+    return set(triangulation.polygons_of(pairs[area > 1e-12].ravel()).tolist())
+
+
+def test_overlaps_are_told(lsgp, cube_files: Path) -> None:
+    report = on_the_cube(lsgp, cube_files)
+    named = [w["elements"] for w in report["warnings"] if w["code"] == "OVERLAPPING_TRIANGLES"]
+    assert named == [{"kind": "faces", "indices": sorted(faces_on_others(cube_files / "out.obj"))}]
+    assert report["overlapping"] >= len(named[0]["indices"]) > 0
+    assert 0 < report["overlap_area"] < 1
+
+
+def test_split_islands_lie_on_nothing(lsgp, cube_files: Path) -> None:
+    kept = on_the_cube(lsgp, cube_files)
+    cuts = cut_edges(cube_files / "out.obj")
+    split = on_the_cube(lsgp, cube_files, "--overlaps", "split")
+    assert (split["overlapping"], split["overlap_area"]) == (0, 0)
+    assert "OVERLAPPING_TRIANGLES" not in {warning["code"] for warning in split["warnings"]}
+    assert faces_on_others(cube_files / "out.obj") == set()
+    assert split["islands"] >= kept["islands"] == 1
+    assert cut_edges(cube_files / "out.obj") != cuts
+    assert split["seams"]["sister_ratio_max"] == pytest.approx(1, abs=1e-9)
+    assert split["distortion"] == pytest.approx(kept["distortion"], rel=1e-9)
+    # Faces are whole: the file measures as the map did.
+    measured = lsgp("measure", "out.obj", "--report", "measured.json").report("measured.json")
+    assert measured["distortion"] == pytest.approx(split["distortion"], rel=1e-9)
+    assert (measured["islands"], measured["flipped"]) == (split["islands"], 0)
+
+
+def test_split_seamless_layouts_stay_seamless(lsgp, cube_files: Path) -> None:
+    kept = on_the_cube(lsgp, cube_files, "--seamless", "--tiles", 32)
+    split = on_the_cube(lsgp, cube_files, "--seamless", "--tiles", 32, "--overlaps", "split")
+    assert kept["overlapping"] > 0 == split["overlapping"]
+    assert faces_on_others(cube_files / "out.obj") == set()
+    assert require_certified(cube_files / "out.obj", split["seamless"]) == 0

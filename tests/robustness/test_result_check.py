@@ -96,6 +96,33 @@ def test_a_warning_withheld_is_noticed() -> None:
     assert undeclared_faults(surface(MIXED), replace(skipped, warnings=[])) != []
 
 
+HARD_CUBE = meshes.cube(4)
+LYING_ON_ITSELF = lsgp.parameterize(surface(HARD_CUBE), HARD_CUBE.cones, np.array([1, 4, 4, 6, 2, 2, 4, 1]) * np.pi / 2)
+
+
+def test_overlaps_withheld_are_noticed() -> None:
+    cube, whole = surface(HARD_CUBE), LYING_ON_ITSELF
+    assert undeclared_faults(cube, whole) == [] and len(whole.overlapping) and 0 < whole.overlap_area < 1
+    others = [finding for finding in whole.warnings if finding.code != "OVERLAPPING_TRIANGLES"]
+    silent = replace(whole, warnings=others, overlapping=whole.overlapping[:0], overlap_area=0.0)
+    assert undeclared_faults(cube, silent) != []
+    assert undeclared_faults(cube, replace(whole, overlap_area=whole.overlap_area / 2)) != []
+    beside = np.setdiff1d(np.arange(len(HARD_CUBE.triangles)), whole.overlapping)[0]
+    for listed in (whole.overlapping[1:], np.append(whole.overlapping, beside)):
+        finding = lsgp.Finding("OVERLAPPING_TRIANGLES", "", lsgp.Elements("triangles", listed))
+        assert undeclared_faults(cube, replace(whole, overlapping=listed, warnings=[*others, finding])) != []
+
+
+def test_islands_on_each_other_are_noticed() -> None:
+    both = meshes.merge([MESH, MESH])
+    result = unwrap(both)
+    assert undeclared_faults(surface(both), result) == []
+    uv = result.corner_uv.copy()
+    uv[result.island == 1] += uv[result.island == 0].mean(axis=(0, 1)) - uv[result.island == 1].mean(axis=(0, 1))
+    faults = undeclared_faults(surface(both), replace(result, corner_uv=uv))
+    assert any("lie on others" in fault for fault in faults)
+
+
 def test_angles_other_than_those_asked_for_are_noticed() -> None:
     as_asked = dict(zip(SOUND.cones.tolist(), SOUND.cone_angles.tolist(), strict=True))
     first = int(SOUND.cones[0])
