@@ -64,6 +64,10 @@ bool any_given(const ComponentCones& cones) {
   return std::any_of(cones.angles.begin(), cones.angles.end(), [](const auto& angle) { return angle.has_value(); });
 }
 
+bool repairs(const Options& options) {
+  return options.repair && options.method == Method::lsgp && options.unfold == UnfoldMethod::poisson;
+}
+
 bool all_given(const ComponentCones& cones) {
   return std::all_of(cones.angles.begin(), cones.angles.end(), [](const auto& angle) { return angle.has_value(); });
 }
@@ -118,53 +122,13 @@ Eigen::VectorXcd unfold_relatively(const CutSurface& surface, const Curvature& c
   return PoissonSystem(surface.mesh, weighted, surface.cut_mesh, connection.reduction).fit(jacobians);
 }
 
-// The way from a component to its map, and what its attempts share.
+// One component's way to its map, and what its attempts share.
 class Mapping {
  public:
+  // repair: counts what the first attempt leaves to repair, and the steps of all.
   Mapping(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentTask& task, const Options& options,
-          Monitor& monitor)
-      : mesh_(mesh), geometry_(geometry), task_(task), options_(options), monitor_(monitor) {}
-
-  ComponentMap run(std::vector<Finding>& findings) {
-    ComponentMap map = has_choice() ? choose_angles(findings) : attempt(task_.cones, Effort::global, findings);
-    if (map.validity.defects() > 0 && is_repaired() && (any_given(task_.cones) || task_.cones.symmetry > 0)) {
-      approach_angles(map, findings);
-    }
-    if (options_.mode == Mode::low_stretch && map.validity.defects() == 0) relax(map);
-    map.repair = repair_;
-    return map;
-  }
-
- private:
-  bool is_repaired() const {
-    return options_.repair && options_.method == Method::lsgp && options_.unfold == UnfoldMethod::poisson;
-  }
-
-  // Whether other angles may be tried where those of least distortion have no valid map.
-  bool has_choice() const {
-    if (!is_repaired() || task_.cones.symmetry > 0) return false;
-    return options_.prescription == PrescriptionRule::least_distortion ||
-           (options_.prescription == PrescriptionRule::manual && !all_given(task_.cones));
-  }
-
-  ComponentMap choose_angles(std::vector<Finding>& findings) {
-    std::optional<ComponentMap> best;
-    ComponentCones cones = task_.cones;
-    std::vector<Finding> of_best;
-    for (const Effort effort : {Effort::local, Effort::global}) {
-      for (const AngleRange& range : angle_ranges) {
-        if (best && best->validity.defects() == 0) break;
-        cones.range = range;
-        std::vector<Finding> found;
-        ComponentMap map = attempt(cones, effort, found);
-        if (best && map.validity.defects() >= best->validity.defects()) continue;
-        best = std::move(map);
-        of_best = std::move(found);
-      }
-    }
-    findings.insert(findings.end(), of_best.begin(), of_best.end());
-    return std::move(*best);
-  }
+          Monitor& monitor, std::optional<RepairReport>& repair)
+      : mesh_(mesh), geometry_(geometry), task_(task), options_(options), monitor_(monitor), repair_(repair) {}
 
   ComponentMap attempt(const ComponentCones& cones, Effort effort, std::vector<Finding>& findings) {
     ComponentMap map;
@@ -208,17 +172,72 @@ class Mapping {
       target.log_scale.array() += std::log(pinned.scale);
     }
     check(map);
-    if (!first_checked_) {
-      first_checked_ = true;
-      repair_.flipped_before = static_cast<Index>(map.validity.flipped.size());
-      repair_.wrong_angle_sums_before = static_cast<Index>(map.validity.wrong_angle_sums.size());
+    if (!repair_) {
+      repair_ = {static_cast<Index>(map.validity.flipped.size()),
+                 static_cast<Index>(map.validity.wrong_angle_sums.size()), 0};
     }
-    if (map.validity.defects() > 0 && is_repaired() && !spectral) {
+    if (map.validity.defects() > 0 && repairs(options_) && !spectral) {
       repair(connections, connection, target, effort, map);
     }
     return map;
   }
 
+  // Angles that were asked for and have no valid map at once can often be reached from others that have one.  Where
+  // they cannot, those nearest to them are taken, but for rounded ones.
+  void approach_angles(ComponentMap& map, std::vector<Finding>& findings) {
+    if (!aligned_edges().empty() || map.pins.size() > 1 || map.cones.empty()) return;
+    const Monitor::Stage stage(monitor_, "repair");
+    ComponentTask automatic = task_;
+    automatic.cones.vertices = map.cones;
+    automatic.cones.angles.assign(map.cones.size(), std::nullopt);
+    automatic.cones.symmetry = 0;
+    for (std::size_t loop = 0; loop < map.curvature.needs_no_cut.size(); ++loop) {
+      if (map.curvature.needs_no_cut[loop]) automatic.cones.loop_turning[loop] = -2 * M_PI;
+    }
+    Options plain = options_;
+    plain.prescription = PrescriptionRule::least_distortion;
+    plain.mode = Mode::conformal;
+    std::vector<Finding> unsaid;
+    const ComponentMap start = map_component(mesh_, geometry_, automatic, plain, unsaid, monitor_);
+    repair_->iterations += start.repair.iterations;
+    if (start.validity.defects() > 0 || start.cut_graph.is_cut != map.cut_graph.is_cut) return;
+    const CutSurface surface = open(map);
+    const ConnectionChoice connections(surface, map.curvature, task_.cones.symmetry);
+    Continuation end = follow(surface, path_between(start.curvature, connections, map.curvature), fixed_vertices(map),
+                              Effort::global, counter(), start.position);
+    if (end.reached < 1) {
+      if (task_.cones.symmetry > 0) return;
+      report_adjusted(map, end, findings);
+    }
+    map.curvature = std::move(end.at.curvature);
+    map.rotation = std::move(end.at.connection.rotation);
+    map.position = std::move(end.position);
+    check(map);
+  }
+
+  // The stretch of a valid map lowered.
+  void relax(ComponentMap& map) {
+    const Monitor::Stage stage(monitor_, "relax");
+    const CutSurface surface = open(map);
+    const Connection connection = ConnectionChoice(surface, map.curvature, task_.cones.symmetry).at(1, map.curvature);
+    map.position = lower_stretch(surface, connection, map.curvature, options_.stretch, fixed_vertices(map),
+                                 task_.importance, counter(), map.position);
+    check(map);
+  }
+
+  // Lets the conformal barrier take out what another geometry has left in a valid map.
+  void smooth(ComponentMap& map) {
+    constexpr int steps = 4;
+    const Monitor::Stage stage(monitor_, "repair");
+    const CutSurface surface = open(map);
+    const Connection connection = ConnectionChoice(surface, map.curvature, task_.cones.symmetry).at(1, map.curvature);
+    Relaxation(surface, map.curvature.log_scale, connection.frames,
+               free_all(mesh_, map.cut_mesh, connection.reduction, fixed_vertices(map)), counter(), map.position)
+        .smooth(Kind::conformal_barrier, steps);
+    check(map);
+  }
+
+ private:
   void cut(ComponentMap& map, std::vector<Finding>& findings) const {
     for (const Index v : inside_only(mesh_, task_.cones.vertices)) {
       const bool flat = task_.cones.symmetry > 0 && map.curvature.at_vertex[v] == 0;
@@ -291,40 +310,6 @@ class Mapping {
     check(map);
   }
 
-  // Angles that were asked for and have no valid map at once can often be reached from others that have one.  Where
-  // they cannot, those nearest to them are taken, but for rounded ones.
-  void approach_angles(ComponentMap& map, std::vector<Finding>& findings) {
-    if (!aligned_edges().empty() || map.pins.size() > 1 || map.cones.empty()) return;
-    const Monitor::Stage stage(monitor_, "repair");
-    ComponentTask automatic = task_;
-    automatic.cones.vertices = map.cones;
-    automatic.cones.angles.assign(map.cones.size(), std::nullopt);
-    automatic.cones.symmetry = 0;
-    for (std::size_t loop = 0; loop < map.curvature.needs_no_cut.size(); ++loop) {
-      if (map.curvature.needs_no_cut[loop]) automatic.cones.loop_turning[loop] = -2 * M_PI;
-    }
-    Options plain = options_;
-    plain.prescription = PrescriptionRule::least_distortion;
-    plain.mode = Mode::conformal;
-    std::vector<Finding> unsaid;
-    Mapping of_automatic(mesh_, geometry_, automatic, plain, monitor_);
-    const ComponentMap start = of_automatic.run(unsaid);
-    repair_.iterations += of_automatic.repair_.iterations;
-    if (start.validity.defects() > 0 || start.cut_graph.is_cut != map.cut_graph.is_cut) return;
-    const CutSurface surface = open(map);
-    const ConnectionChoice connections(surface, map.curvature, task_.cones.symmetry);
-    Continuation end = follow(surface, path_between(start.curvature, connections, map.curvature), fixed_vertices(map),
-                              Effort::global, counter(), start.position);
-    if (end.reached < 1) {
-      if (task_.cones.symmetry > 0) return;
-      report_adjusted(map, end, findings);
-    }
-    map.curvature = std::move(end.at.curvature);
-    map.rotation = std::move(end.at.connection.rotation);
-    map.position = std::move(end.position);
-    check(map);
-  }
-
   void report_adjusted(const ComponentMap& map, const Continuation& end, std::vector<Finding>& findings) const {
     Eigen::Index most = 0;
     const double off = (map.curvature.at_vertex - end.at.curvature.at_vertex).cwiseAbs().maxCoeff(&most);
@@ -335,15 +320,6 @@ class Mapping {
                 off * 180 / M_PI, " degrees off. Take angles nearer to the automatic ones, or subdivide the mesh at ",
                 "the cones."),
          {ElementKind::vertices, map.cones}});
-  }
-
-  void relax(ComponentMap& map) {
-    const Monitor::Stage stage(monitor_, "relax");
-    const CutSurface surface = open(map);
-    const Connection connection = ConnectionChoice(surface, map.curvature, task_.cones.symmetry).at(1, map.curvature);
-    map.position = lower_stretch(surface, connection, map.curvature, options_.stretch, fixed_vertices(map),
-                                 task_.importance, counter(), map.position);
-    check(map);
   }
 
   CutSurface open(const ComponentMap& map) const { return {mesh_, geometry_, map.cut_graph, map.cut_mesh}; }
@@ -364,7 +340,7 @@ class Mapping {
 
   // Counts the steps of Newton's method.  Nobody knows how many there will be.
   StepHook counter() {
-    return [this] { monitor_.advance(1 - 0.5 * std::pow(0.98, ++repair_.iterations)); };
+    return [this] { monitor_.advance(1 - 0.5 * std::pow(0.98, ++repair_->iterations)); };
   }
 
   const HalfedgeMesh& mesh_;
@@ -372,15 +348,58 @@ class Mapping {
   const ComponentTask& task_;
   const Options& options_;
   Monitor& monitor_;
-  RepairReport repair_;
-  bool first_checked_ = false;
+  std::optional<RepairReport>& repair_;
 };
+
+// Tries out angles and geometries, easy repairs first; returns the map with the fewest defects.
+ComponentMap find_valid_map(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentTask& task,
+                            const Options& options, std::vector<Finding>& findings, Monitor& monitor,
+                            std::optional<RepairReport>& repair) {
+  constexpr double fat_margin = 0.2;
+  const bool persists = repairs(options);
+  const bool is_free = persists && task.cones.symmetry == 0 &&
+                       (options.prescription == PrescriptionRule::least_distortion ||
+                        (options.prescription == PrescriptionRule::manual && !all_given(task.cones)));
+  std::optional<ComponentMap> best;
+  std::optional<Geometry> fat;
+  for (const Effort effort : {Effort::local, Effort::global}) {
+    for (const bool is_fat : {false, true}) {
+      if (is_fat && !fat) fat = mollified(mesh, geometry, fat_margin);
+      Mapping mapping(mesh, is_fat ? *fat : geometry, task, options, monitor, repair);
+      for (const AngleRange& range : angle_ranges) {
+        ComponentCones cones = task.cones;
+        if (is_free) cones.range = range;
+        std::vector<Finding> found;
+        ComponentMap map = mapping.attempt(cones, effort, found);
+        if (!best || map.validity.defects() < best->validity.defects()) {
+          if (is_fat && map.validity.defects() == 0)
+            Mapping(mesh, geometry, task, options, monitor, repair).smooth(map);
+          best = std::move(map);
+          findings = std::move(found);
+        }
+        if (best->validity.defects() == 0 || !persists) return std::move(*best);
+        if (!is_free) break;
+      }
+    }
+  }
+  return std::move(*best);
+}
 
 }  // namespace
 
 ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentTask& task,
                            const Options& options, std::vector<Finding>& findings, Monitor& monitor) {
-  return Mapping(mesh, geometry, task, options, monitor).run(findings);
+  std::optional<RepairReport> repair;
+  std::vector<Finding> found;
+  ComponentMap map = find_valid_map(mesh, geometry, task, options, found, monitor, repair);
+  Mapping mapping(mesh, geometry, task, options, monitor, repair);
+  if (map.validity.defects() > 0 && repairs(options) && (any_given(task.cones) || task.cones.symmetry > 0)) {
+    mapping.approach_angles(map, found);
+  }
+  if (options.mode == Mode::low_stretch && map.validity.defects() == 0) mapping.relax(map);
+  map.repair = repair.value_or(RepairReport{});
+  findings.insert(findings.end(), found.begin(), found.end());
+  return map;
 }
 
 }  // namespace lsgp

@@ -156,14 +156,30 @@ Validity check_map(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position, c
     if (!(doubled_area(position, f) > 0)) out.flipped.push_back(f);
   }
   const Eigen::VectorXd sums = angle_sums(mesh, position);
+  const auto excess = [&](Index v) { return sums[v] - (mesh.flat_angle(v) - curvature[v]); };
+  // Along a free border angles come out as they do; only its turning as a whole is known.
+  std::vector<double> excess_of_loop(mesh.boundary_loops.size(), 0.0), largest(excess_of_loop);
+  std::vector<Index> at_largest(excess_of_loop.size(), none);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    const double error = std::abs(sums[v] - (mesh.flat_angle(v) - curvature[v]));
+    const double error = std::abs(excess(v));
+    if (is_free[v]) {
+      const Index loop = mesh.loop_of_vertex[v];
+      excess_of_loop[loop] += excess(v);
+      if (error < largest[loop]) continue;
+      largest[loop] = error;
+      at_largest[loop] = v;
+      continue;
+    }
     if (!(error < M_PI))
       out.wrong_angle_sums.push_back(v);
-    else if (!is_free[v] && !(error <= exact_angle))
+    else if (!(error <= exact_angle))
       out.inexact_angles.push_back(v);
-    if (!is_free[v] && curvature[v] != 0) out.cone_angle_error = std::max(out.cone_angle_error, error);
+    if (curvature[v] != 0) out.cone_angle_error = std::max(out.cone_angle_error, error);
   }
+  for (std::size_t loop = 0; loop < excess_of_loop.size(); ++loop) {
+    if (!(std::abs(excess_of_loop[loop]) < M_PI)) out.wrong_angle_sums.push_back(at_largest[loop]);
+  }
+  std::sort(out.wrong_angle_sums.begin(), out.wrong_angle_sums.end());
   return out;
 }
 

@@ -39,7 +39,8 @@ struct Validity {
 
   std::size_t defects() const { return flipped.size() + wrong_angle_sums.size(); }
 };
-// curvature: (n) imposed.  is_free: (n) vertices that need not have it but to a turn.
+// curvature: (n) imposed.  is_free: (n) border vertices that need not have it; their loop's sum has to be right to a
+// turn, or the vertex that is off most is named.
 Validity check_map(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position, const Eigen::VectorXd& curvature,
                    const std::vector<char>& is_free);
 

@@ -11,8 +11,7 @@ namespace {
 
 // A triangle counts as degenerate when its height is below this share of its longest edge.
 constexpr double degenerate_height = 1e-8;
-// Mollification leaves every triangle inequality at least this margin, in mean edge lengths.
-constexpr double mollified_margin = 1e-4;
+constexpr double least_margin = 1e-4;  // of triangle inequalities where there are degenerate triangles
 
 // Angles, half cotangents and area of one triangle from its three edge lengths (Kahan's stable area).
 void measure_from_lengths(Geometry& geometry, Index f) {
@@ -30,12 +29,13 @@ void measure_from_lengths(Geometry& geometry, Index f) {
   }
 }
 
-void mollify(Geometry& geometry) {
-  const double margin = mollified_margin * geometry.length.mean();
+// margin: in mean edge lengths.
+void mollify(Geometry& geometry, double margin) {
+  const double mean = geometry.length.mean();
   double added = 0;
   for (Index h = 0; h < geometry.length.size(); ++h) {
     const double slack = geometry.length[next(h)] + geometry.length[prev(h)] - geometry.length[h];
-    added = std::max(added, margin - slack);
+    added = std::max(added, margin * mean - slack);
   }
   geometry.length.array() += added;
   for (Index f = 0; f < geometry.area.size(); ++f) measure_from_lengths(geometry, f);
@@ -81,7 +81,13 @@ Geometry build_geometry(const HalfedgeMesh& mesh) {
       geometry.angle[3 * f + (c + 2) % 3] = std::atan2(doubled_area, dot);
     }
   }
-  if (!geometry.degenerate.empty()) mollify(geometry);
+  if (!geometry.degenerate.empty()) mollify(geometry, least_margin);
+  add_up_vertices(mesh, geometry);
+  return geometry;
+}
+
+Geometry mollified(const HalfedgeMesh& mesh, Geometry geometry, double margin) {
+  mollify(geometry, margin);
   add_up_vertices(mesh, geometry);
   return geometry;
 }

@@ -24,6 +24,9 @@ struct Geometry {
 // inequality a margin (Sharp and Crane 2020, section 4.5).
 Geometry build_geometry(const HalfedgeMesh& mesh);
 
+// The same with a margin given, in mean edge lengths: fatter triangles, for which more maps are valid.
+Geometry mollified(const HalfedgeMesh& mesh, Geometry geometry, double margin);
+
 // The edge vector of halfedge h in its triangle's own frame, in which the triangle's first halfedge is real.
 inline Complex edge_vector(const Geometry& geometry, Index h) {
   const Index first = h - h % 3;

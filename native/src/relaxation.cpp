@@ -130,8 +130,8 @@ bool Relaxation::unfold(DistortionEnergy::Kind kind, int most_steps) {
     double after = before;
     if (!direction || !search(energy, *direction, 1, before, after)) return false;
     lowest = smallest_determinant(energy);
-    // Garanzha et al. 2021, equation (7): epsilon falls as fast as the energy does.
-    const double decrease = std::max(0.1, 1 - after / before);
+    // Garanzha et al. 2021, equation (7): epsilon falls as fast as the energy does, but here at least by half.
+    const double decrease = std::max(0.5, 1 - after / before);
     const double mu = (1 - decrease) * foldover_chi(lowest, energy.epsilon);
     if (lowest < mu) energy.epsilon = std::max(2 * std::sqrt(mu * (mu - lowest)), std::numeric_limits<double>::min());
   }

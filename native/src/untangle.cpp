@@ -21,7 +21,7 @@ constexpr double hopeless_share = 0.005;                // of the triangles flip
 constexpr int barrier_steps = 3;
 // Of Newton's method, which takes a few where little is wrong.
 constexpr int local_steps = 30;
-constexpr int global_steps = 60;
+constexpr int global_steps = 40;
 
 // How a map is turned as a whole against frames.
 double turn_against(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
@@ -80,7 +80,7 @@ Eigen::VectorXcd untangle(const CutSurface& surface, const Connection& connectio
     }
   }
   if (effort == Effort::local) return best;
-  // The framed energy knows the angles; the plain one gets out where a triangle has collapsed against its frame.
+  // The framed energy knows the angles; the plain one gets out where no map keeps to the frames.
   for (const Kind energy : {Kind::framed_foldover_free, Kind::foldover_free}) {
     try_out(free_all(mesh, cut_mesh, connection.reduction, fixed), energy, global_steps);
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "energies/distortion_energy.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 namespace lsgp {
@@ -47,39 +46,43 @@ EnergyExpansion expand_radial(std::complex<double> f_z, std::complex<double> f_z
   return out;
 }
 
-// With d a function of a = Re f_z and f_zbar the Hessian has no simple eigenvectors any more.
-EnergyExpansion expand_framed(std::complex<double> f_z, std::complex<double> f_zbar, const RadialTerms& terms) {
-  const double a = f_z.real(), sum = std::norm(f_z) + std::norm(f_zbar);
-  const Eigen::Vector4d x(a, f_z.imag(), f_zbar.real(), f_zbar.imag());
-  const Eigen::Vector4d sum_slope = 2 * x;
-  const Eigen::Vector4d d_slope(2 * std::abs(a), 0, -2 * x[2], -2 * x[3]);
-  const double slope = sum * terms.phi1 + terms.psi1, bend = sum * terms.phi2 + terms.psi2;
+constexpr double delta = 1e-3;  // rounds the tip of the cone off
+
+EnergyExpansion expand_framed(std::complex<double> f_z, std::complex<double> f_zbar, double d, double epsilon) {
+  const double s = std::sqrt(std::norm(f_zbar) + delta * delta), r = std::hypot(epsilon, d);
+  // 1 / chi = 2 (r - d) / epsilon^2.
+  const double slope = -1 / (foldover_chi(d, epsilon) * r), bend = 2 / (r * r * r);
+  const Eigen::Vector2d along = Eigen::Vector2d(f_zbar.real(), f_zbar.imag()) / s;
+  const Eigen::Vector4d d_slope(1, 0, -along[0], -along[1]);
   EnergyExpansion out;
-  out.gradient = terms.phi * sum_slope + slope * d_slope;
-  Eigen::Matrix4d hessian = terms.phi1 * (sum_slope * d_slope.transpose() + d_slope * sum_slope.transpose()) +
-                            bend * d_slope * d_slope.transpose();
-  hessian.diagonal().array() += 2 * terms.phi;
-  hessian.diagonal() += slope * Eigen::Vector4d(std::copysign(2.0, a), 0, -2, -2);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(hessian);
-  out.hessian = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
+  out.gradient << 2 * (f_z.real() - 1), 2 * f_z.imag(), 2 * f_zbar.real(), 2 * f_zbar.imag();
+  out.gradient += slope * d_slope;
+  out.hessian = bend * d_slope * d_slope.transpose();
+  out.hessian.bottomRightCorner<2, 2>() -= slope / s * (Eigen::Matrix2d::Identity() - along * along.transpose());
+  out.hessian.diagonal().array() += 2;
   return out;
 }
 
 }  // namespace
 
 double DistortionEnergy::determinant(std::complex<double> f_z, std::complex<double> f_zbar) const {
-  const double a = f_z.real();
-  return (kind == Kind::framed_foldover_free ? a * std::abs(a) : std::norm(f_z)) - std::norm(f_zbar);
+  if (kind == Kind::framed_foldover_free) return f_z.real() - std::sqrt(std::norm(f_zbar) + delta * delta);
+  return std::norm(f_z) - std::norm(f_zbar);
 }
 
 double DistortionEnergy::value(std::complex<double> f_z, std::complex<double> f_zbar) const {
-  const RadialTerms terms = terms_at(*this, determinant(f_z, f_zbar));
+  const double d = determinant(f_z, f_zbar);
+  if (kind == Kind::framed_foldover_free) {
+    return std::norm(f_z - 1.0) + std::norm(f_zbar) + 1 / foldover_chi(d, epsilon);
+  }
+  const RadialTerms terms = terms_at(*this, d);
   return (std::norm(f_z) + std::norm(f_zbar)) * terms.phi + terms.psi;
 }
 
 EnergyExpansion DistortionEnergy::expand(std::complex<double> f_z, std::complex<double> f_zbar) const {
-  const RadialTerms terms = terms_at(*this, determinant(f_z, f_zbar));
-  return kind == Kind::framed_foldover_free ? expand_framed(f_z, f_zbar, terms) : expand_radial(f_z, f_zbar, terms);
+  const double d = determinant(f_z, f_zbar);
+  return kind == Kind::framed_foldover_free ? expand_framed(f_z, f_zbar, d, epsilon)
+                                            : expand_radial(f_z, f_zbar, terms_at(*this, d));
 }
 
 }  // namespace lsgp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Distortion energies of a triangle as functions of p = |f_z|^2 and q = |f_zbar|^2:
+// Distortion energies of a triangle, most of them as functions of p = |f_z|^2 and q = |f_zbar|^2:
 //   h = (p + q) phi(d) + psi(d),  d = p - q the determinant of its Jacobian.
 // In this form the positive part of the Hessian is explicit.
 #pragma once
@@ -55,8 +55,9 @@ struct EnergyExpansion {
 struct DistortionEnergy {
   enum class Kind {
     foldover_free,
-    // The same with the determinant replaced by a |a| - q, a = Re f_z: where that is positive the triangle is upright
-    // and turned by less than 90 degrees against the frame in which f_z is given.
+    // |f_z - 1|^2 + q + 1 / chi(D), D = Re f_z - sqrt(q + delta^2): where D is positive the triangle is upright and
+    // turned by less than 90 degrees against the frame in which f_z is given (Lipman 2012).  Convex, so such a map is
+    // found where there is one.
     framed_foldover_free,
     conformal_barrier,
     symmetric_dirichlet,
@@ -64,6 +65,7 @@ struct DistortionEnergy {
   Kind kind;
   double epsilon = 0;  // of the foldover-free ones
 
+  // What the foldover-free ones make positive.
   double determinant(std::complex<double> f_z, std::complex<double> f_zbar) const;
   double value(std::complex<double> f_z, std::complex<double> f_zbar) const;
   EnergyExpansion expand(std::complex<double> f_z, std::complex<double> f_zbar) const;
