@@ -19,6 +19,7 @@ from . import native, versions
 from .reporting import Refused
 
 LAYER = "UVMap"
+REMEDY = "switch Pack Islands off, or Keep Placement on where overlaps are split"
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,9 +65,9 @@ def _run_packer(margin_method: str, margin: float) -> None:
             rotate=True, scale=True, margin_method=margin_method, margin=margin, pin=True, pin_method="LOCKED"
         )
     except RuntimeError as error:
-        raise Refused(f"Blender's packer failed ({error}); switch Pack Islands off") from error
+        raise Refused(f"Blender's packer failed ({error}); {REMEDY}") from error
     if status != {"FINISHED"}:
-        raise Refused("Blender's packer did nothing; switch Pack Islands off")
+        raise Refused(f"Blender's packer did nothing; {REMEDY}")
 
 
 @contextmanager

@@ -46,7 +46,7 @@ OVERLAPS = {
         "split",
         "Split",
         "Cut islands further until none lies on itself; both sides of every cut still match. "
-        "The islands are packed then, unless they keep their placement or are seamless",
+        "Those of each object are packed then, unless they keep their placement or are seamless",
     ),
 }
 MARGIN_METHODS = (
@@ -247,19 +247,21 @@ class UV_OT_cone_unwrap(
         )
 
     def _uses_packer(self) -> bool:
-        """Whether islands go through Blender's packer, as they do where it is asked for and after splitting."""
+        """Whether Blender's packer is used: on all islands together as asked, or on those of each object once split."""
         return not self.seamless and (self.pack or (self.overlaps == "SPLIT" and not self.keep_placement))
 
     def _packed(self, solved: list[unwrapping.Unwrapped]) -> list[np.ndarray]:
         """The coordinates of each object as they are to be written, (m, 3, 2) arrays.  Raises Refused."""
         if self.seamless and self.pack:
             return cells.pack(solved)
-        layouts = [unwrapped.corner_uv for unwrapped in solved]
-        if self._uses_packer():
-            packed = packing.pack([unwrapped.islands() for unwrapped in solved], self.margin_method, self.margin)
-            layouts = [uv.copy() for uv in layouts]
-            for layout, unwrapped, uv in zip(layouts, solved, packed, strict=True):
-                layout[unwrapped.result.solved] = uv
+        if not self._uses_packer():
+            return [unwrapped.corner_uv for unwrapped in solved]
+        layouts = []
+        for together in [solved] if self.pack else [[unwrapped] for unwrapped in solved]:
+            packed = packing.pack([unwrapped.islands() for unwrapped in together], self.margin_method, self.margin)
+            for unwrapped, uv in zip(together, packed, strict=True):
+                layouts.append(unwrapped.corner_uv.copy())
+                layouts[-1][unwrapped.result.solved] = uv
         return layouts
 
 

@@ -77,6 +77,25 @@ def test_split_islands_are_packed_by_blender_with_the_margin_asked_for():
     assert sizes[1] < 0.8 * sizes[0]
 
 
+def test_split_islands_of_each_object_are_packed_alone_unless_all_are_to_be_together():
+    ramps = [add_ramp("First"), add_ramp("Second")]
+    assert bpy.ops.uv.cone_unwrap(overlaps="SPLIT") == {"FINISHED"}
+    alone = [UvMap(ramp) for ramp in ramps]
+    assert np.array_equal(alone[0].uv, alone[1].uv)
+    assert bpy.ops.uv.cone_unwrap(overlaps="SPLIT", pack=True) == {"FINISHED"}
+    together = [UvMap(ramp) for ramp in ramps]
+    # Of the same square each has about half.
+    for before, after in zip(alone, together, strict=True):
+        assert size(after) < 0.85 * size(before)
+        assert after.uv.min() >= 0.0 and after.uv.max() <= 1.0
+
+
+def size(uv_map):
+    """Length of all edges in the map."""
+    sides = np.array(list(uv_map.sides.values()))[:, 0]
+    return np.linalg.norm(uv_map.uv[sides[:, 0]] - uv_map.uv[sides[:, 1]], axis=1).sum()
+
+
 def test_split_islands_keep_their_place_as_asked():
     ramp = add_ramp()
     corners = np.array([tuple(ramp.data.vertices[loop.vertex_index].co) for loop in ramp.data.loops])
