@@ -377,7 +377,12 @@ ComponentMap find_valid_map(const HalfedgeMesh& mesh, const Geometry& geometry, 
           best = std::move(map);
           findings = std::move(found);
         }
-        if (best->validity.defects() == 0 || !persists) return std::move(*best);
+        if (best->validity.defects() == 0) return std::move(*best);
+        // A valid map would have been proof that its angles are possible.
+        if (effort == Effort::local && !is_fat && options.prescription == PrescriptionRule::manual) {
+          require_possible(mesh, geometry, task.cones);
+        }
+        if (!persists) return std::move(*best);
         if (!is_free) break;
       }
     }

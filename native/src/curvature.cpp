@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "angle_flow.hpp"
 #include "cut_mesh.hpp"
 #include "energies/quadratic_forms.hpp"
 #include "quantize_curvature.hpp"
@@ -16,14 +17,16 @@ namespace lsgp {
 
 namespace {
 
-// Automatic angles stay where a map with them can be expected to have no flips; the bounds are widened where the
+// Automatic angles stay where a map with them can be expected to have no flips.
 constexpr double largest_share_of_valence = 0.6;  // of pi per triangle
 // Outside these no map exists, or none worth having.
 constexpr double impossible_angle = 0.02 * M_PI;
 constexpr double impossible_share_of_valence = 1;
 
 constexpr double renormalized_mismatch = 1e-6;  // of Gauss-Bonnet, radians
+// What is warned of: from wide ranges of the log scale maps without flips can hardly be computed.
 constexpr double high_l2 = 3;
+constexpr double wide_range = 15;
 
 // Bounds of the cone curvatures; fixed cones have both equal.
 struct Bounds {
@@ -141,6 +144,11 @@ Eigen::VectorXd least_distortion(const HalfedgeMesh& mesh, const ComponentCones&
     start = shift_into(bounds, start, required);
   }
   return scale.least_distortion_curvature(bounds.low, bounds.high, std::move(start));
+}
+
+BorderConditions border_conditions(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones) {
+  return cones.border == BorderMode::straight && !mesh.closed() ? straight_border(mesh, geometry, cones.vertices)
+                                                                : free_border(mesh, cones.vertices);
 }
 
 bool possible(const HalfedgeMesh& mesh, Index vertex, double curvature) {
@@ -362,13 +370,31 @@ int valence(const HalfedgeMesh& mesh, Index vertex) {
   return triangles;
 }
 
+void require_possible(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones) {
+  if (cones.symmetry > 0) return;  // rounded angles are the tool's own choice
+  const BorderConditions border = border_conditions(mesh, geometry, cones);
+  Eigen::VectorXd angle(mesh.vertex_count());
+  std::vector<char> is_free = border.held;
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    angle[v] = mesh.flat_angle(v) - border.curvature[v];
+    is_free[v] |= border.curvature[v] != 0;  // teeth
+  }
+  std::vector<Index> given;
+  for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
+    const Index v = cones.vertices[i];
+    is_free[v] = !cones.angles[i];
+    if (!cones.angles[i]) continue;
+    angle[v] = *cones.angles[i];
+    given.push_back(v);
+  }
+  if (!given.empty()) require_possible_angles(mesh, angle, is_free, given);
+}
+
 Curvature prescribe(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
                     PrescriptionRule rule, std::vector<Finding>& findings) {
   ComponentCones asked = cones;
   if (rule != PrescriptionRule::manual) std::fill(asked.angles.begin(), asked.angles.end(), std::nullopt);
-  const BorderConditions border = asked.border == BorderMode::straight && !mesh.closed()
-                                      ? straight_border(mesh, geometry, asked.vertices)
-                                      : free_border(mesh, asked.vertices);
+  const BorderConditions border = border_conditions(mesh, geometry, asked);
   require_feasible(mesh, asked, border);
   LogScale scale(mesh, geometry, border);
   scale.add_cones(asked.vertices);
@@ -409,10 +435,12 @@ Curvature prescribe(const HalfedgeMesh& mesh, const Geometry& geometry, const Co
   for (Index v = 0; v < mesh.vertex_count(); ++v) out.is_free[v] |= border.curvature[v] != 0;  // at teeth
   for (const Index v : asked.vertices) out.is_free[v] = 0;
   out.log_scale.array() -= geometry.vertex_area.dot(out.log_scale) / geometry.total_area;
-  if (!(out.predicted_l2 < high_l2)) {
+  const double range = out.log_scale.maxCoeff() - out.log_scale.minCoeff();
+  if (!(out.predicted_l2 < high_l2 && range < wide_range)) {
     findings.push_back({Code::high_distortion,
                         concat("With these cones the map stretches much: an L2 stretch of ", out.predicted_l2,
-                               " is expected, 1 being none. Add cones where the texture becomes too small."),
+                               " is expected, 1 being none, and lengths that differ by a factor of ", std::exp(range),
+                               ". Add cones where the texture becomes too small."),
                         {ElementKind::vertices, asked.vertices}});
   }
   return out;

@@ -101,6 +101,9 @@ struct Curvature {
 Curvature prescribe(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
                     PrescriptionRule rule, std::vector<Finding>& findings);
 
+// Throws ANGLES_IMPOSSIBLE for given angles that no map has, whatever the automatic ones are.
+void require_possible(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones);
+
 // The number of triangles around a vertex.
 int valence(const HalfedgeMesh& mesh, Index vertex);
 

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "angle_flow.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "lsgp/errors.hpp"
+#include "solvers/max_flow.hpp"
+#include "text.hpp"
+
+namespace lsgp {
+
+namespace {
+
+using Units = FlowNetwork::Units;
+
+constexpr double unit = M_PI / (Units(1) << 40);
+// Radians.  Sums of given angles may be off by a millionth and are mended then.
+constexpr double smallest_corner = 1e-5, tolerance = 2e-6;
+
+Units to_units(double angle) { return static_cast<Units>(std::llround(angle / unit)); }
+
+// Angle left over when every corner has its smallest one.
+struct Transport {
+  Units of_triangle;
+  std::vector<Units> of_vertex;  // (n) -1 where free
+};
+
+Transport left_over(const HalfedgeMesh& mesh, const Eigen::VectorXd& angle, const std::vector<char>& is_free) {
+  const Units corner = to_units(smallest_corner);
+  Transport out{to_units(M_PI) - 3 * corner, std::vector<Units>(mesh.vertex_count())};
+  for (Index v = 0; v < mesh.vertex_count(); ++v) out.of_vertex[v] = is_free[v] ? -1 : to_units(angle[v]);
+  for (Index c = 0; c < mesh.halfedge_count(); ++c) {
+    Units& left = out.of_vertex[mesh.origin(c)];
+    if (left >= 0) left = std::max<Units>(0, left - corner);
+  }
+  return out;
+}
+
+enum class From { vertices, triangles };
+
+// The side of a minimum cut on which what `from` has to give finds too little room: which vertices and how many
+// triangles belong to it.  None where everything finds its place.
+struct Bottleneck {
+  std::vector<Index> vertices;
+  Index triangles = 0;
+};
+std::optional<Bottleneck> find_bottleneck(const HalfedgeMesh& mesh, const Transport& transport, From from) {
+  const int n = mesh.vertex_count(), m = mesh.triangle_count(), source = n + m, sink = source + 1;
+  FlowNetwork network(sink + 1);
+  constexpr Units unlimited = Units(1) << 60;
+  const bool from_vertices = from == From::vertices;
+  Units wanted = 0;
+  for (int v = 0; v < n; ++v) {
+    const Units left = transport.of_vertex[v];
+    if (from_vertices) {
+      if (left < 0) continue;
+      network.add_arc(source, v, left);
+      wanted += left;
+    } else {
+      network.add_arc(v, sink, left < 0 ? unlimited : left);
+    }
+  }
+  for (int f = 0; f < m; ++f) {
+    for (int c = 0; c < 3; ++c) {
+      const int v = mesh.triangles(f, c);
+      if (from_vertices)
+        network.add_arc(v, n + f, unlimited);
+      else
+        network.add_arc(n + f, v, unlimited);
+    }
+    if (from_vertices) {
+      network.add_arc(n + f, sink, transport.of_triangle);
+    } else {
+      network.add_arc(source, n + f, transport.of_triangle);
+      wanted += transport.of_triangle;
+    }
+  }
+  if (network.maximize(source, sink) + to_units(tolerance) >= wanted) return std::nullopt;
+  const std::vector<char> side = network.reachable(source);
+  Bottleneck out;
+  for (int v = 0; v < n; ++v) {
+    if (side[v]) out.vertices.push_back(v);
+  }
+  for (int f = 0; f < m; ++f) out.triangles += side[n + f];
+  return out;
+}
+
+[[noreturn]] void refuse(const Bottleneck& at, From from, const Eigen::VectorXd& angle,
+                         const std::vector<Index>& named) {
+  double sum = 0;
+  for (const Index v : at.vertices) sum += angle[v];
+  std::vector<Index> cones;
+  for (const Index v : named) {
+    if (std::binary_search(at.vertices.begin(), at.vertices.end(), v)) cones.push_back(v);
+  }
+  const double carried = M_PI * at.triangles, degrees = 180 / M_PI;
+  const std::string around =
+      concat("The ", count(at.triangles, "triangle", "triangles"), " around ", count(cones.size(), "cone", "cones"));
+  throw Error(
+      Code::angles_impossible,
+      from == From::vertices
+          ? concat(around, " can carry less than ", carried * degrees, " degrees, but the angles there add up to ",
+                   sum * degrees, ". Lower them or subdivide the mesh there.")
+          : concat(around, " carry ", carried * degrees, " degrees, but the angles there add up to only ",
+                   sum * degrees, ". Raise them or subdivide the mesh there."),
+      {ElementKind::vertices, std::move(cones)});
+}
+
+}  // namespace
+
+void require_possible_angles(const HalfedgeMesh& mesh, const Eigen::VectorXd& angle, const std::vector<char>& is_free,
+                             const std::vector<Index>& named) {
+  const Transport transport = left_over(mesh, angle, is_free);
+  // Without free vertices both sums are the same, so what finds its place from one side fills the other.
+  const bool any_free = std::find(is_free.begin(), is_free.end(), 1) != is_free.end();
+  for (const From from : {From::vertices, From::triangles}) {
+    if (from == From::triangles && !any_free) return;
+    if (const auto bottleneck = find_bottleneck(mesh, transport, from)) refuse(*bottleneck, from, angle, named);
+  }
+}
+
+}  // namespace lsgp
