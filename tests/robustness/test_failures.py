@@ -24,7 +24,7 @@ if sys.platform != "linux":
 # A child process: sizes in bytes of its address space before the call and at its peak, and how the call ended.
 CHILD = """
 import json, resource, sys, threading
-import lsgp, meshes
+import lsgp, meshes, numpy as np
 from lsgp.cli import main
 
 def size(key):
@@ -32,10 +32,14 @@ def size(key):
 
 mesh = meshes.bumpy_sphere(5)
 surface = lsgp.Surface(mesh.positions, mesh.triangles)
+overlapping, flipped = np.array([[1, 1, 1, 5, 4, 4], [3, 4, 1, 2, 1, 5]]) * np.pi / 2
 calls = {
     "poisson": lambda: lsgp.parameterize(surface, mesh.cones),
     "spectral": lambda: lsgp.parameterize(surface, mesh.cones, None, lsgp.Options(unfold="spectral")),
     "straightness": lambda: lsgp.parameterize(surface, mesh.cones, None, lsgp.Options("straightness")),
+    "low stretch": lambda: lsgp.parameterize(surface, mesh.cones, None, lsgp.Options(mode="low-stretch")),
+    "repair": lambda: lsgp.parameterize(surface, mesh.cones, flipped),
+    "split": lambda: lsgp.parameterize(surface, mesh.cones, overlapping, lsgp.Options(overlaps="split")),
     "place": lambda: lsgp.place_cones(surface),
     "measure": lambda: lsgp.measure_distortion(surface, mesh.positions[mesh.triangles][..., :2]),
     "command": lambda: main(sys.argv[3:]),
@@ -192,7 +196,9 @@ def test_parts_far_from_each_other_are_no_far_vertices(distance: float) -> None:
 @pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="AddressSanitizer reserves terabytes")
 class TestMemory:
     @pytest.mark.parametrize("percent", [10, 25, 40, 50, 60, 75, 90])
-    @pytest.mark.parametrize("call", ["poisson", "spectral", "straightness", "place", "measure"])
+    @pytest.mark.parametrize(
+        "call", ["poisson", "spectral", "straightness", "low stretch", "repair", "split", "place", "measure"]
+    )
     def test_too_little_of_it_is_an_error_and_no_crash(self, call: str, percent: int) -> None:
         found = run_child(call, peak(call) * percent // 100)
         assert found["ended"] in ("MemoryError", "result")

@@ -45,6 +45,7 @@ RUNS = {
     "two parts": Run(meshes.merge([BALL, CUBE])),
     "low stretch": Run(BALL, None, lsgp.Options(mode="low-stretch")),
     "seamless low stretch": Run(BALL, None, lsgp.Options(seamless=lsgp.Seamless(tiles=12), mode="low-stretch")),
+    "seamless split": Run(CUBE, None, lsgp.Options(seamless=lsgp.Seamless(tiles=12), overlaps="split")),
     "split": Run(CUBE, [n * PI / 2 for n in HARD], lsgp.Options(overlaps="split")),
 }
 
