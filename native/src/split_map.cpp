@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "split_map.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "join_parts.hpp"
@@ -9,6 +11,43 @@
 namespace lsgp {
 
 namespace {
+
+// A way to divide a map: where it is open then, and how its parts move.
+struct Division {
+  std::vector<char> ends;  // (3m)
+  std::vector<Index> part;
+  std::vector<Motion> motion;
+  double cost;
+};
+
+// Of every island, of one that is a scrap on top, and of cuts as long as the square root of the surface's area.
+constexpr double cost_of_island = 0.5, cost_of_scrap = 0.5, cost_of_cut = 1;
+constexpr double scrap = 0.005;  // of the area
+
+double cost(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<char>& ends) {
+  double length = 0;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (ends[h] && mesh.twin[h] > h) length += geometry.length[h];
+  }
+  std::vector<Index> island;
+  std::vector<double> area(label_parts(mesh, ends, island), 0);
+  for (Index f = 0; f < mesh.triangle_count(); ++f) area[island[f]] += geometry.area[f];
+  const auto scraps =
+      std::count_if(area.begin(), area.end(), [&](double own) { return own < scrap * geometry.total_area; });
+  return cost_of_island * static_cast<double>(area.size()) + cost_of_scrap * static_cast<double>(scraps) +
+         cost_of_cut * length / std::sqrt(geometry.total_area);
+}
+
+Division divide(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
+                const std::vector<Overlap>& overlaps, const std::vector<char>& kept, CutTaste taste,
+                std::vector<char> ends) {
+  Division out{std::move(ends), {}, {}, 0};
+  split_overlaps(mesh, geometry, overlaps, taste, out.ends);
+  out.motion.resize(label_parts(mesh, out.ends, out.part));
+  if (map.rotation) out.motion = join_parts(mesh, geometry, map, out.part, kept, out.ends);
+  out.cost = cost(mesh, geometry, out.ends);
+  return out;
+}
 
 // Cuts the map at all marked edges and moves its parts, (m) of every triangle.
 void cut_apart(const HalfedgeMesh& mesh, std::vector<char> is_cut, const std::vector<Index>& part,
@@ -56,18 +95,21 @@ bool split_map(const HalfedgeMesh& mesh, const Geometry& geometry, const std::ve
     corners.segment<3>(3 * f).setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   if (!has_overlap(corners, twin)) return false;
-  if (split_overlaps(mesh, geometry, find_overlaps(corners), ends) == 0) return false;
-  std::vector<Index> part;
-  const Index part_count = label_parts(mesh, ends, part);
-  std::vector<Motion> motion(part_count);
-  if (map.rotation) motion = join_parts(mesh, geometry, map, part, kept, ends);
+  const std::vector<Overlap> overlaps = find_overlaps(corners);
+  if (overlaps.empty()) return false;
+  const Division shortest = divide(mesh, geometry, map, overlaps, kept, CutTaste::shortest, ends),
+                 no_scraps = divide(mesh, geometry, map, overlaps, kept, CutTaste::no_scraps, ends);
+  const Division& best = shortest.cost < no_scraps.cost ? shortest : no_scraps;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    if (mesh.twin[h] == none || !ends[h]) continue;
-    const Motion &here = motion[part[h / 3]], &there = motion[part[mesh.twin[h] / 3]];
+    if (mesh.twin[h] == none || !best.ends[h]) {
+      is_cut[h] = 0;
+      continue;
+    }
+    // What was open before stays open, but becomes a cut where its sides move differently.
+    const Motion &here = best.motion[best.part[h / 3]], &there = best.motion[best.part[mesh.twin[h] / 3]];
     is_cut[h] = is_cut[h] || !open[h] || here.angle != there.angle || here.shift != there.shift;
   }
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) is_cut[h] = is_cut[h] && ends[h];
-  cut_apart(mesh, std::move(is_cut), part, motion, map);
+  cut_apart(mesh, std::move(is_cut), best.part, best.motion, map);
   return true;
 }
 

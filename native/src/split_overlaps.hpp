@@ -6,6 +6,7 @@
 
 #include "geometry.hpp"
 #include "overlaps.hpp"
+#include "part_cut.hpp"
 #include "topology.hpp"
 
 namespace lsgp {
@@ -15,6 +16,6 @@ namespace lsgp {
 // open: (3m) halfedges at which the layout ends already, on both sides of an edge; receives the further ones.
 // Returns how many edges were opened.
 Index split_overlaps(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Overlap>& overlaps,
-                     std::vector<char>& open);
+                     CutTaste taste, std::vector<char>& open);
 
 }  // namespace lsgp

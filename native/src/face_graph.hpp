@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The faces of a layout and the edges that may be opened between them.
+#pragma once
+
+#include <vector>
+
+#include "geometry.hpp"
+#include "solvers/max_flow.hpp"
+#include "topology.hpp"
+
+namespace lsgp {
+
+struct FaceGraph {
+  using Units = FlowNetwork::Units;
+
+  struct Link {
+    Index faces[2];
+    Index halfedge;  // in the first of them
+    Units cost;      // the edge's length, less along marked seams and sharp edges
+  };
+
+  std::vector<Index> face_of;  // (triangles) those that no cut may part are one face
+  std::vector<double> area;    // (faces)
+  double total_area = 0;
+  std::vector<Link> links;
+  std::vector<Index> link_begin, link_of_face;  // (faces + 1), (2 links)
+
+  Index face_count() const { return static_cast<Index>(area.size()); }
+
+  // Calls visit(other face, link).
+  template <typename Visit>
+  void for_each_link(Index face, Visit visit) const {
+    for (Index i = link_begin[face]; i < link_begin[face + 1]; ++i) {
+      const Link& link = links[link_of_face[i]];
+      visit(link.faces[link.faces[0] == face], link);
+    }
+  }
+};
+
+// open: (3m) halfedges at which the layout ends, on both sides of an edge.
+FaceGraph build_face_graph(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<char>& open);
+
+}  // namespace lsgp
