@@ -363,7 +363,8 @@ ComponentMap find_valid_map(const HalfedgeMesh& mesh, const Geometry& geometry, 
   std::optional<ComponentMap> best;
   std::optional<Geometry> fat;
   for (const Effort effort : {Effort::local, Effort::global}) {
-    for (const bool is_fat : {false, true}) {
+    // What is easy is tried on the surface itself first; what is hard is easier on fat triangles.
+    for (const bool is_fat : {effort == Effort::global, effort == Effort::local}) {
       if (is_fat && !fat) fat = mollified(mesh, geometry, fat_margin);
       Mapping mapping(mesh, is_fat ? *fat : geometry, task, options, monitor, repair);
       for (const AngleRange& range : angle_ranges) {

@@ -142,9 +142,15 @@ SeamQuality worse(const SeamQuality& a, const SeamQuality& b) {
 
 Eigen::VectorXd angle_sums(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position) {
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(mesh.vertex_count());
-  for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
-    const Complex here = position[corner];
-    sums[mesh.origin(corner)] += std::arg((position[prev(corner)] - here) * std::conj(position[next(corner)] - here));
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    double third = std::copysign(M_PI, doubled_area(position, f));
+    for (const Index corner : {3 * f, 3 * f + 1}) {
+      const Complex here = position[corner];
+      const double angle = std::arg((position[prev(corner)] - here) * std::conj(position[next(corner)] - here));
+      sums[mesh.origin(corner)] += angle;
+      third -= angle;
+    }
+    sums[mesh.origin(3 * f + 2)] += third;
   }
   return sums;
 }

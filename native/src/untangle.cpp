@@ -21,7 +21,7 @@ constexpr double hopeless_share = 0.005;                // of the triangles flip
 constexpr int barrier_steps = 3;
 // Of Newton's method, which takes a few where little is wrong.
 constexpr int local_steps = 30;
-constexpr int global_steps = 40;
+constexpr int global_steps = 25;
 
 // How a map is turned as a whole against frames.
 double turn_against(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
