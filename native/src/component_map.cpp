@@ -177,7 +177,9 @@ class Mapping {
                  static_cast<Index>(map.validity.wrong_angle_sums.size()), 0};
     }
     if (map.validity.defects() > 0 && repairs(options_) && !spectral) {
+      const std::vector<Index> flipped = map.validity.flipped;
       repair(connections, connection, target, effort, map);
+      if (map.validity.defects() == 0) polish(connection, flipped, map);
     }
     return map;
   }
@@ -289,6 +291,32 @@ class Mapping {
     if (map.validity.defects() == 0 || !connections.is_twisted()) return;
     twist_gradually(connections, fixed, map);
     if (map.validity.defects() > 0) repair_with(Effort::global);
+  }
+
+  // Lets the conformal barrier take out the shear that is left around what was flipped.
+  void polish(const Connection& connection, const std::vector<Index>& flipped, ComponentMap& map) {
+    constexpr double sheared = 1.5;  // ratio of the singular values
+    constexpr int near = 10, rings = 3, steps = 3;
+    const Monitor::Stage stage(monitor_, "repair");
+    const CutSurface surface = open(map);
+    const Jacobians jacobians = measure_jacobians(mesh_, geometry_, map.cut_mesh, map.position);
+    const std::vector<char> around = mark_around(mesh_, flipped, near);
+    std::vector<Index> where;
+    for (Index f = 0; f < mesh_.triangle_count(); ++f) {
+      if (!around[mesh_.triangles(f, 0)]) continue;
+      const double a = std::abs(jacobians.f_z[f]), b = std::abs(jacobians.f_zbar[f]);
+      if (a + b > sheared * (a - b)) where.push_back(f);
+    }
+    std::vector<char> marked = mark_around(mesh_, where, rings);
+    const std::vector<char> fixed = fixed_vertices(map);
+    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+      if (fixed[v] || (mesh_.loop_of_vertex[v] == none && map.curvature.at_vertex[v] != 0)) marked[v] = 0;
+    }
+    const Eigen::VectorXcd motion = motion_of_copies(mesh_, map.cut_graph, map.cut_mesh, connection.rotation);
+    Relaxation(surface, map.curvature.log_scale, connection.frames, free_vertices(mesh_, map.cut_mesh, motion, marked),
+               counter(), map.position)
+        .smooth(Kind::conformal_barrier, steps);
+    check(map);
   }
 
   // Takes the map of the metric's own rotations about handles to the chosen ones; leaves the map as it is where that
