@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "face_graph.hpp"
+#include "straight_cuts.hpp"
 
 namespace lsgp {
 
@@ -23,6 +24,7 @@ class Splitter {
   void split();
   void merge_back();
   void improve();
+  void straighten(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<char>& open);
 
   // (faces)
   const std::vector<Index>& part() const { return part_; }
@@ -271,6 +273,14 @@ bool Splitter::improve(Index a, Index b, Units length) {
   return false;
 }
 
+void Splitter::straighten(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<char>& open) {
+  const auto lies_on_other = [&](Index face, Index other) {
+    return std::any_of(partner_.begin() + entry_begin_[face], partner_.begin() + entry_begin_[face + 1],
+                       [&](Index partner) { return part_[partner] == other; });
+  };
+  straighten_cuts(mesh, geometry, graph_, open, lies_on_other, part_);
+}
+
 }  // namespace
 
 Index split_overlaps(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Overlap>& overlaps,
@@ -280,6 +290,7 @@ Index split_overlaps(const HalfedgeMesh& mesh, const Geometry& geometry, const s
   splitter.split();
   splitter.merge_back();
   splitter.improve();
+  splitter.straighten(mesh, geometry, open);
   Index opened = 0;
   for (const Link& link : graph.links) {
     if (splitter.part()[link.faces[0]] == splitter.part()[link.faces[1]]) continue;
