@@ -7,8 +7,6 @@
 #include <numeric>
 
 #include "lsgp/errors.hpp"
-#include "solvers/cholesky.hpp"
-#include "solvers/sparse_assembly.hpp"
 
 namespace lsgp {
 
@@ -89,7 +87,10 @@ std::vector<char> mark_around(const HalfedgeMesh& mesh, const std::vector<Index>
 
 Relaxation::Relaxation(const CutSurface& surface, const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames,
                        Freedom freedom, StepHook before_step, Eigen::VectorXcd& position)
-    : displacement_(std::move(freedom.displacement)), before_step_(std::move(before_step)), position_(position) {
+    : displacement_(std::move(freedom.displacement)),
+      before_step_(std::move(before_step)),
+      position_(position),
+      hessian_(2 * displacement_.unknown_count) {
   const auto& [mesh, geometry, cut_graph, cut_mesh] = surface;
   shapes_.reserve(freedom.triangles.size());
   for (const Index f : freedom.triangles) {
@@ -197,42 +198,47 @@ double Relaxation::total(const DistortionEnergy& energy) const {
   return sum;
 }
 
-std::optional<Eigen::VectorXcd> Relaxation::newton_direction(const DistortionEnergy& energy) const {
+std::optional<Eigen::VectorXcd> Relaxation::newton_direction(const DistortionEnergy& energy) {
   const Index count = displacement_.unknown_count;
-  const int size = 2 * count;
-  LowerAssembly<double> assembly(size, 25 * shapes_.size());
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(size);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(2 * count);
   std::vector<Eigen::Matrix<double, 4, 2>> maps;
-  for (const Shape& shape : shapes_) {
-    const Jacobian at = jacobian(shape);
-    const EnergyExpansion expansion = energy.expand(at.f_z, at.f_zbar);
-    // Real form of (f_z, f_zbar) as functions of each unknown.
-    maps.clear();
-    for (Index i = shape.begin; i < shape.end; ++i) {
-      const Complex a = slopes_[i].f_z, b = slopes_[i].f_zbar;
-      maps.emplace_back();
-      maps.back() << a.real(), -a.imag(), a.imag(), a.real(), b.real(), -b.imag(), b.imag(), b.real();
-    }
-    for (std::size_t i = 0; i < maps.size(); ++i) {
-      const int row = 2 * slopes_[shape.begin + i].unknown;
-      gradient.segment<2>(row) += shape.weight * maps[i].transpose() * expansion.gradient;
-      const Eigen::Matrix<double, 2, 4> left = shape.weight * maps[i].transpose() * expansion.hessian;
-      for (std::size_t j = 0; j <= i; ++j) {
-        const int column = 2 * slopes_[shape.begin + j].unknown;
-        const Eigen::Matrix2d bend = left * maps[j];
-        if (i == j) {
-          assembly.add(row, row, (1 + ridge) * bend(0, 0));
-          assembly.add(row + 1, row, bend(1, 0));
-          assembly.add(row + 1, row + 1, (1 + ridge) * bend(1, 1));
-        } else {
-          for (int k = 0; k < 4; ++k) assembly.add(row + k / 2, column + k % 2, bend(k / 2, k % 2));
+  const auto add_up = [&](const auto& add) {
+    for (const Shape& shape : shapes_) {
+      const Jacobian at = jacobian(shape);
+      const EnergyExpansion expansion = energy.expand(at.f_z, at.f_zbar);
+      // Real form of (f_z, f_zbar) as functions of each unknown.
+      maps.clear();
+      for (Index i = shape.begin; i < shape.end; ++i) {
+        const Complex a = slopes_[i].f_z, b = slopes_[i].f_zbar;
+        maps.emplace_back();
+        maps.back() << a.real(), -a.imag(), a.imag(), a.real(), b.real(), -b.imag(), b.imag(), b.real();
+      }
+      for (std::size_t i = 0; i < maps.size(); ++i) {
+        const int row = 2 * slopes_[shape.begin + i].unknown;
+        gradient.segment<2>(row) += shape.weight * maps[i].transpose() * expansion.gradient;
+        const Eigen::Matrix<double, 2, 4> left = shape.weight * maps[i].transpose() * expansion.hessian;
+        for (std::size_t j = 0; j <= i; ++j) {
+          const int column = 2 * slopes_[shape.begin + j].unknown;
+          const Eigen::Matrix2d bend = left * maps[j];
+          if (i == j) {
+            add(row, row, (1 + ridge) * bend(0, 0));
+            add(row + 1, row, bend(1, 0));
+            add(row + 1, row + 1, (1 + ridge) * bend(1, 1));
+          } else {
+            for (int k = 0; k < 4; ++k) add(row + k / 2, column + k % 2, bend(k / 2, k % 2));
+          }
         }
       }
     }
-  }
+  };
   Eigen::VectorXd step;
   try {
-    step = Cholesky<double>(assembly.build()).solve(Eigen::VectorXd(-gradient));
+    const Eigen::SparseMatrix<double>& hessian = hessian_.build(add_up);
+    if (factor_)
+      factor_->refactor(hessian);
+    else
+      factor_.emplace(hessian);
+    step = factor_->solve(Eigen::VectorXd(-gradient));
   } catch (const Error& error) {
     if (error.code() != Code::solver_failed) throw;
     return std::nullopt;

@@ -10,6 +10,8 @@
 #include "cut_mesh.hpp"
 #include "energies/distortion_energy.hpp"
 #include "geometry.hpp"
+#include "solvers/cholesky.hpp"
+#include "solvers/sparse_assembly.hpp"
 #include "transitions.hpp"
 
 namespace lsgp {
@@ -77,7 +79,7 @@ class Relaxation {
 
   double total(const DistortionEnergy& energy) const;
   // None where the Hessian cannot be factored.
-  std::optional<Eigen::VectorXcd> newton_direction(const DistortionEnergy& energy) const;
+  std::optional<Eigen::VectorXcd> newton_direction(const DistortionEnergy& energy);
 
   // Halves the step until the energy falls; leaves the positions as they were where it never does.
   bool search(const DistortionEnergy& energy, const Eigen::VectorXcd& direction, double longest, double before,
@@ -91,6 +93,8 @@ class Relaxation {
   Eigen::VectorXcd& position_;
   std::vector<Shape> shapes_;
   std::vector<Slope> slopes_;
+  RepeatedAssembly<double> hessian_;
+  std::optional<Cholesky<double>> factor_;
 };
 
 }  // namespace lsgp

@@ -11,15 +11,25 @@ namespace lsgp {
 template <typename Scalar>
 struct Cholesky<Scalar>::Factor {
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<Scalar>, Eigen::Lower> ldlt;
+  Definiteness definiteness;
 };
 
 template <typename Scalar>
 Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower, Definiteness definiteness)
     : factor_(std::make_unique<Factor>()) {
+  factor_->definiteness = definiteness;
   if (lower.rows() == 0) return;
-  factor_->ldlt.compute(lower);
+  factor_->ldlt.analyzePattern(lower);
+  refactor(lower);
+}
+
+template <typename Scalar>
+void Cholesky<Scalar>::refactor(const Eigen::SparseMatrix<Scalar>& lower) {
+  if (lower.rows() == 0) return;
+  factor_->ldlt.factorize(lower);
   const Eigen::VectorXd pivots = factor_->ldlt.vectorD().real();
-  const bool usable = definiteness == Definiteness::positive ? (pivots.array() > 0).all() : (pivots.array() != 0).all();
+  const bool usable =
+      factor_->definiteness == Definiteness::positive ? (pivots.array() > 0).all() : (pivots.array() != 0).all();
   if (factor_->ldlt.info() != Eigen::Success || !usable) {
     throw Error(
         Code::solver_failed,

@@ -21,6 +21,8 @@ class Cholesky {
 
   // lower: the lower triangle with its diagonal.  Throws SOLVER_FAILED where the matrix is not as definite as said.
   explicit Cholesky(const Eigen::SparseMatrix<Scalar>& lower, Definiteness definiteness = Definiteness::positive);
+  // Factors another matrix whose entries are in the same places; a part of the work is saved.
+  void refactor(const Eigen::SparseMatrix<Scalar>& lower);
   ~Cholesky();
   Cholesky(Cholesky&&) noexcept;
 

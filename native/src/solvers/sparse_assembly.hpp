@@ -23,13 +23,15 @@ class LowerAssembly {
   }
 
   // Two counting sorts, by row and then by column, leave every column in order of its rows; equal entries are added.
-  Eigen::SparseMatrix<Scalar> build() const {
+  // slot: where given, receives the place of every entry, in the order of their adding, among the matrix's values.
+  Eigen::SparseMatrix<Scalar> build(std::vector<int>* slot = nullptr) const {
     const std::vector<int> by_row = sorted({}, [](const Entry& entry) { return entry.row; });
     const std::vector<int> by_column = sorted(by_row, [](const Entry& entry) { return entry.column; });
     Eigen::SparseMatrix<Scalar> matrix(size_, size_);
     matrix.resizeNonZeros(static_cast<Eigen::Index>(entries_.size()));
     int* outer = matrix.outerIndexPtr();
     int filled = 0, column = -1;
+    if (slot != nullptr) slot->resize(entries_.size());
     for (const int i : by_column) {
       const Entry& entry = entries_[i];
       while (column < entry.column) outer[++column] = filled;
@@ -39,6 +41,7 @@ class LowerAssembly {
         matrix.innerIndexPtr()[filled] = entry.row;
         matrix.valuePtr()[filled++] = entry.value;
       }
+      if (slot != nullptr) (*slot)[i] = filled - 1;
     }
     while (column < size_) outer[++column] = filled;
     matrix.resizeNonZeros(filled);
@@ -66,6 +69,35 @@ class LowerAssembly {
 
   int size_;
   std::vector<Entry> entries_;
+};
+
+// A matrix that is summed up again and again from entries at the same places in the same order.
+template <typename Scalar>
+class RepeatedAssembly {
+ public:
+  explicit RepeatedAssembly(int size) : size_(size) {}
+
+  // fill(add) calls add(row, column, value) as for LowerAssembly.
+  template <typename Fill>
+  const Eigen::SparseMatrix<Scalar>& build(Fill fill) {
+    if (slot_.empty()) {
+      LowerAssembly<Scalar> assembly(size_);
+      fill([&](int row, int column, const Scalar& value) { assembly.add(row, column, value); });
+      matrix_ = assembly.build(&slot_);
+      return matrix_;
+    }
+    matrix_.coeffs().setZero();
+    std::size_t i = 0;
+    fill([&](int row, int column, const Scalar& value) {
+      matrix_.valuePtr()[slot_[i++]] += row >= column ? value : Eigen::numext::conj(value);
+    });
+    return matrix_;
+  }
+
+ private:
+  int size_;
+  Eigen::SparseMatrix<Scalar> matrix_;
+  std::vector<int> slot_;
 };
 
 }  // namespace lsgp
