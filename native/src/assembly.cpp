@@ -219,6 +219,14 @@ void Assembly::report_defects() {
   std::vector<Index>& wrong = result_.wrong_angle_sums;
   std::sort(flipped.begin(), flipped.end());
   std::sort(wrong.begin(), wrong.end());
+  const bool foretold = std::any_of(result_.warnings.begin(), result_.warnings.end(),
+                                    [](const Finding& finding) { return finding.code == Code::high_distortion; });
+  if (!foretold && flipped.empty() && !(result_.distortion.l2_stretch < high_l2)) {
+    result_.warnings.push_back({Code::high_distortion,
+                                concat("The map stretches much: its L2 stretch is ", result_.distortion.l2_stretch,
+                                       ", 1 being none. Add cones where the texture becomes too small."),
+                                {}});
+  }
   if (!inexact_seams_.empty()) {
     result_.warnings.push_back(
         {Code::inexact_seams,

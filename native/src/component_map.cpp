@@ -227,7 +227,7 @@ class Mapping {
     check(map);
   }
 
-  // Lets the conformal barrier take out what another geometry has left in a valid map.
+  // Lets the conformal barrier take out what other weights or another geometry have left in a valid map.
   void smooth(ComponentMap& map) {
     constexpr int steps = 4;
     const Monitor::Stage stage(monitor_, "repair");
@@ -280,7 +280,10 @@ class Mapping {
       ComponentMap relative = map;
       relative.position = unfold_relatively(surface, map.curvature, connection);
       check(relative);
-      if (relative.validity.defects() < map.validity.defects()) map = std::move(relative);
+      if (relative.validity.defects() < map.validity.defects()) {
+        map = std::move(relative);
+        if (map.validity.defects() == 0) return smooth(map);
+      }
     }
     const auto repair_with = [&](Effort of_repair) {
       const auto first = connections.is_twisted() ? Kind::framed_foldover_free : Kind::foldover_free;

@@ -24,8 +24,7 @@ constexpr double impossible_angle = 0.02 * M_PI;
 constexpr double impossible_share_of_valence = 1;
 
 constexpr double renormalized_mismatch = 1e-6;  // of Gauss-Bonnet, radians
-// What is warned of: from wide ranges of the log scale maps without flips can hardly be computed.
-constexpr double high_l2 = 3;
+// From wider ranges of the log scale maps without flips can hardly be computed.
 constexpr double wide_range = 15;
 
 // Bounds of the cone curvatures; fixed cones have both equal.

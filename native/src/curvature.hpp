@@ -77,6 +77,9 @@ struct AngleRange {
 };
 constexpr AngleRange widest_angles{M_PI / 4, 4 * M_PI};
 
+// An L2 stretch that is warned of.
+constexpr double high_l2 = 3;
+
 // What the caller asks of one component's metric, in its own vertex numbers.
 struct ComponentCones {
   std::vector<Index> vertices;                // cones, and corners on a border

@@ -18,10 +18,12 @@ using Kind = DistortionEnergy::Kind;
 
 constexpr std::array<int, 3> neighbourhoods{2, 5, 10};  // rings of vertices around flipped triangles
 constexpr double hopeless_share = 0.005;                // of the triangles flipped: not a place is tangled but the map
-constexpr int barrier_steps = 3;
-// Of Newton's method, which takes a few where little is wrong.
-constexpr int local_steps = 30;
-constexpr int global_steps = 25;
+// Of Newton's method, which takes a few where little is wrong, and of smoothing afterwards.
+struct Steps {
+  int unfolding, smoothing;
+};
+constexpr Steps local_steps{30, 3}, global_steps{25, 10};
+constexpr double least_decrease = 1e-3;  // of the energy in a step of smoothing
 
 // How a map is turned as a whole against frames.
 double turn_against(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
@@ -55,11 +57,13 @@ Eigen::VectorXcd untangle(const CutSurface& surface, const Connection& connectio
   Validity left = check(best);
   const Eigen::VectorXd frames =
       connection.frames.array() + turn_against(mesh, geometry, cut_mesh, connection.frames, position);
-  const auto try_out = [&](Freedom freedom, Kind energy, int most_steps) {
+  const auto try_out = [&](Freedom freedom, Kind energy, const Steps& most) {
     if (left.defects() == 0 || freedom.displacement.unknown_count == 0) return;
     Eigen::VectorXcd tried = best;
     Relaxation relaxation(surface, curvature.log_scale, frames, std::move(freedom), before_step, tried);
-    if (relaxation.unfold(energy, most_steps)) relaxation.smooth(Kind::conformal_barrier, barrier_steps);
+    if (relaxation.unfold(energy, most.unfolding)) {
+      relaxation.smooth(Kind::conformal_barrier, most.smoothing, least_decrease);
+    }
     Validity after = check(tried);
     if (after.defects() >= left.defects()) return;
     left = std::move(after);
