@@ -3,15 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
-#include "border.hpp"
-#include "connection.hpp"
-#include "continuation.hpp"
-#include "energies/quadratic_forms.hpp"
-#include "low_stretch.hpp"
-#include "text.hpp"
-#include "unfold.hpp"
-#include "untangle.hpp"
+#include "mapping.hpp"
 
 namespace lsgp {
 
@@ -37,25 +31,6 @@ std::vector<Index> inside_only(const HalfedgeMesh& mesh, const std::vector<Index
 
 namespace {
 
-using Kind = DistortionEnergy::Kind;
-
-constexpr double tangled_share = 0.002;  // of the triangles flipped, for which another fit is tried
-
-// A surface with boundary has conformal maps without number, so the spectral step would return an arbitrary one; only
-// without cones does the smallest eigenvector still mean something (Mullen et al. 2008).
-UnfoldMethod usable_unfold(const HalfedgeMesh& mesh, const ComponentCones& cones, UnfoldMethod asked,
-                           std::vector<Finding>& findings) {
-  const bool plain_disk =
-      mesh.boundary_loops.size() == 1 && mesh.genus == 0 && cones.vertices.empty() && cones.border == BorderMode::free;
-  if (asked == UnfoldMethod::poisson || mesh.closed() || plain_disk) return asked;
-  findings.push_back(
-      {Code::spectral_needs_closed,
-       "The spectral unfolding is ill-posed on a surface with boundary and cones; the Poisson unfolding was "
-       "used instead.",
-       {}});
-  return UnfoldMethod::poisson;
-}
-
 // Ranges of the automatic angles: wide ones distort least but may leave turns with neighbouring vertices; a map of
 // angles up to 2 pi that has no flips has the right angles too.
 constexpr AngleRange angle_ranges[]{widest_angles, {M_PI / 2, 2.5 * M_PI}, {M_PI / 2, 2 * M_PI, false}};
@@ -64,323 +39,9 @@ bool any_given(const ComponentCones& cones) {
   return std::any_of(cones.angles.begin(), cones.angles.end(), [](const auto& angle) { return angle.has_value(); });
 }
 
-bool repairs(const Options& options) {
-  return options.repair && options.method == Method::lsgp && options.unfold == UnfoldMethod::poisson;
-}
-
 bool all_given(const ComponentCones& cones) {
   return std::all_of(cones.angles.begin(), cones.angles.end(), [](const auto& angle) { return angle.has_value(); });
 }
-
-// A border without corners is one straight line along its own translation, but the discrete metric knows the angle
-// between two such borders only to the mesh's resolution.  Its direction is therefore taken from the map without
-// straight borders, whose translations are consistent.
-void turn_cornerless_borders(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const std::vector<Index>& corners,
-                             const Eigen::VectorXcd& natural, const std::vector<Index>& edges,
-                             Eigen::VectorXd& directions) {
-  const std::size_t loop_count = mesh.boundary_loops.size();
-  std::vector<char> has_corner(loop_count, 0);
-  for (const Index v : corners) {
-    if (mesh.loop_of_vertex[v] != none) has_corner[mesh.loop_of_vertex[v]] = 1;
-  }
-  std::vector<Complex> along(loop_count, 0.0);
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const Complex edge = natural[cut_mesh.copy_of_corner[next(edges[i])]] - natural[cut_mesh.copy_of_corner[edges[i]]];
-    along[mesh.loop_of_vertex[mesh.origin(edges[i])]] +=
-        std::polar(1.0, -directions[static_cast<Eigen::Index>(i)]) * edge;
-  }
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const Index loop = mesh.loop_of_vertex[mesh.origin(edges[i])];
-    if (!has_corner[loop]) directions[static_cast<Eigen::Index>(i)] += std::arg(along[loop]);
-  }
-}
-
-Eigen::VectorXcd unfold_along_borders(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                                      const ComponentCones& cones, const Connection& connection,
-                                      const std::vector<Index>& edges) {
-  const Eigen::VectorXd& log_scale = map.curvature.log_scale;
-  Eigen::VectorXd directions = metric_directions(mesh, geometry, log_scale, connection.frames, edges);
-  if (cones.border == BorderMode::straight) {
-    const Eigen::VectorXcd natural = PoissonSystem(mesh, geometry, map.cut_mesh, connection.reduction)
-                                         .fit(prescribed_jacobians(mesh, log_scale, connection.frames));
-    turn_cornerless_borders(mesh, map.cut_mesh, cones.vertices, natural, edges, directions);
-  }
-  return unfold_aligned(mesh, geometry, map.cut_mesh, connection.reduction, log_scale, connection.frames, edges,
-                        directions);
-}
-
-// The fit to the prescribed Jacobians with every triangle's error relative to its scale: where scales differ much, the
-// plain fit loses what is small to what is large.  One more factorization.
-Eigen::VectorXcd unfold_relatively(const CutSurface& surface, const Curvature& curvature,
-                                   const Connection& connection) {
-  Jacobians jacobians = prescribed_jacobians(surface.mesh, curvature.log_scale, connection.frames);
-  constexpr double widest_range = 1e8;  // of the weights, so that the form can be factored
-  Eigen::VectorXd weight = jacobians.f_z.cwiseAbs2().cwiseInverse();
-  weight = weight.cwiseMin(widest_range * weight.minCoeff());
-  const Geometry weighted = with_weights(surface.geometry, weight);
-  jacobians.f_z = jacobians.f_z.cwiseProduct(weight);
-  return PoissonSystem(surface.mesh, weighted, surface.cut_mesh, connection.reduction).fit(jacobians);
-}
-
-// One component's way to its map, and what its attempts share.
-class Mapping {
- public:
-  // repair: counts what the first attempt leaves to repair, and the steps of all.
-  Mapping(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentTask& task, const Options& options,
-          Monitor& monitor, std::optional<RepairReport>& repair)
-      : mesh_(mesh), geometry_(geometry), task_(task), options_(options), monitor_(monitor), repair_(repair) {}
-
-  ComponentMap attempt(const ComponentCones& cones, Effort effort, std::vector<Finding>& findings) {
-    ComponentMap map;
-    {
-      const Monitor::Stage stage(monitor_, "prescribe");
-      monitor_.advance(0);
-      map.curvature = prescribe(mesh_, geometry_, cones, options_.prescription, findings);
-    }
-    {
-      const Monitor::Stage stage(monitor_, "cut");
-      monitor_.advance(0.2);
-      cut(map, findings);
-    }
-    const Monitor::Stage stage(monitor_, "unfold");
-    monitor_.advance(0.3);
-    const CutSurface surface = open(map);
-    if (options_.method == Method::lscm) {
-      map.pins.clear();  // a comparison: its two pins are its own
-      map.position = unfold_lscm(mesh_, geometry_, map.cut_mesh);
-      check(map);
-      return map;
-    }
-    const ConnectionChoice connections(surface, map.curvature, cones.symmetry);
-    const Connection connection = connections.at(1, map.curvature);
-    map.rotation = connection.rotation;
-    const std::vector<Index> aligned = aligned_edges();
-    const bool spectral = usable_unfold(mesh_, cones, options_.unfold, findings) == UnfoldMethod::spectral;
-    if (spectral) {
-      map.position = unfold_spectral(mesh_, geometry_, map.cut_mesh, connection.reduction);
-    } else if (!aligned.empty()) {
-      map.position = unfold_along_borders(mesh_, geometry_, map, cones, connection, aligned);
-    } else {
-      map.position = PoissonSystem(mesh_, geometry_, map.cut_mesh, connection.reduction)
-                         .fit(prescribed_jacobians(mesh_, map.curvature.log_scale, connection.frames));
-    }
-    Curvature target = map.curvature;
-    if (map.pins.size() > 1) {
-      PinnedMap pinned = move_onto_pins(mesh_, geometry_, map.cut_mesh, connection.reduction, map.pins,
-                                        !aligned.empty(), map.position);
-      map.position = std::move(pinned.position);
-      target.log_scale.array() += std::log(pinned.scale);
-    }
-    check(map);
-    if (!repair_) {
-      repair_ = {static_cast<Index>(map.validity.flipped.size()),
-                 static_cast<Index>(map.validity.wrong_angle_sums.size()), 0};
-    }
-    if (map.validity.defects() > 0 && repairs(options_) && !spectral) {
-      const std::vector<Index> flipped = map.validity.flipped;
-      repair(connections, connection, target, effort, map);
-      if (map.validity.defects() == 0) polish(connection, flipped, map);
-    }
-    return map;
-  }
-
-  // Angles that were asked for and have no valid map at once can often be reached from others that have one.  Where
-  // they cannot, those nearest to them are taken, but for rounded ones.
-  void approach_angles(ComponentMap& map, std::vector<Finding>& findings) {
-    if (!aligned_edges().empty() || map.pins.size() > 1 || map.cones.empty()) return;
-    const Monitor::Stage stage(monitor_, "repair");
-    ComponentTask automatic = task_;
-    automatic.cones.vertices = map.cones;
-    automatic.cones.angles.assign(map.cones.size(), std::nullopt);
-    automatic.cones.symmetry = 0;
-    for (std::size_t loop = 0; loop < map.curvature.needs_no_cut.size(); ++loop) {
-      if (map.curvature.needs_no_cut[loop]) automatic.cones.loop_turning[loop] = -2 * M_PI;
-    }
-    Options plain = options_;
-    plain.prescription = PrescriptionRule::least_distortion;
-    plain.mode = Mode::conformal;
-    std::vector<Finding> unsaid;
-    const ComponentMap start = map_component(mesh_, geometry_, automatic, plain, unsaid, monitor_);
-    repair_->iterations += start.repair.iterations;
-    if (start.validity.defects() > 0 || start.cut_graph.is_cut != map.cut_graph.is_cut) return;
-    const CutSurface surface = open(map);
-    const ConnectionChoice connections(surface, map.curvature, task_.cones.symmetry);
-    Continuation end = follow(surface, path_between(start.curvature, connections, map.curvature), fixed_vertices(map),
-                              Effort::global, counter(), start.position);
-    if (end.reached < 1) {
-      if (task_.cones.symmetry > 0) return;
-      report_adjusted(map, end, findings);
-    }
-    map.curvature = std::move(end.at.curvature);
-    map.rotation = std::move(end.at.connection.rotation);
-    map.position = std::move(end.position);
-    check(map);
-  }
-
-  // The stretch of a valid map lowered.
-  void relax(ComponentMap& map) {
-    const Monitor::Stage stage(monitor_, "relax");
-    const CutSurface surface = open(map);
-    const Connection connection = ConnectionChoice(surface, map.curvature, task_.cones.symmetry).at(1, map.curvature);
-    map.position = lower_stretch(surface, connection, map.curvature, options_.stretch, fixed_vertices(map),
-                                 task_.importance, counter(), map.position);
-    check(map);
-  }
-
-  // Lets the conformal barrier take out what other weights or another geometry have left in a valid map.
-  void smooth(ComponentMap& map) {
-    constexpr int steps = 4;
-    const Monitor::Stage stage(monitor_, "repair");
-    const CutSurface surface = open(map);
-    const Connection connection = ConnectionChoice(surface, map.curvature, task_.cones.symmetry).at(1, map.curvature);
-    Relaxation(surface, map.curvature.log_scale, connection.frames,
-               free_all(mesh_, map.cut_mesh, connection.reduction, fixed_vertices(map)), counter(), map.position)
-        .smooth(Kind::conformal_barrier, steps);
-    check(map);
-  }
-
- private:
-  void cut(ComponentMap& map, std::vector<Finding>& findings) const {
-    for (const Index v : inside_only(mesh_, task_.cones.vertices)) {
-      const bool flat = task_.cones.symmetry > 0 && map.curvature.at_vertex[v] == 0;
-      (flat ? map.flat_cones : map.cones).push_back(v);
-    }
-    if (!map.flat_cones.empty()) {
-      findings.push_back({Code::flat_cones,
-                          concat(count(map.flat_cones.size(), "cone", "cones"),
-                                 " came out flat when angles were rounded: ordinary vertices now, which need no cut."),
-                          {ElementKind::vertices, map.flat_cones}});
-    }
-    map.cut_graph = connect_cones(mesh_, geometry_, map.cones, map.curvature.needs_no_cut);
-    map.cut_mesh = cut_open(mesh_, map.cut_graph);
-    map.pins = pins_of_copies(map.cut_mesh, task_.pinned_corners);
-  }
-
-  // What decides about a repair; what is returned is checked in the layout.
-  void check(ComponentMap& map) {
-    const Monitor::Stage stage(monitor_, "check");
-    if (!map.position.allFinite()) {
-      throw Error(Code::solver_failed,
-                  "The unfolding returned values that are not finite. Clean the mesh (merge by distance, "
-                  "dissolve degenerate faces) and try again.");
-    }
-    const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
-    map.uv_area = 0;
-    for (Index f = 0; f < mesh_.triangle_count(); ++f) map.uv_area += doubled_area(corners, f) / 2;
-    check_triangles(mesh_, corners, map);
-  }
-
-  void repair(const ConnectionChoice& connections, const Connection& connection, const Curvature& target, Effort effort,
-              ComponentMap& map) {
-    const Monitor::Stage stage(monitor_, "repair");
-    const CutSurface surface = open(map);
-    const std::vector<char> fixed = fixed_vertices(map);
-    const bool tangled = static_cast<double>(map.validity.flipped.size()) > tangled_share * mesh_.triangle_count();
-    if (tangled && aligned_edges().empty() && map.pins.size() < 2) {
-      ComponentMap relative = map;
-      relative.position = unfold_relatively(surface, map.curvature, connection);
-      check(relative);
-      if (relative.validity.defects() < map.validity.defects()) {
-        map = std::move(relative);
-        if (map.validity.defects() == 0) return smooth(map);
-      }
-    }
-    const auto repair_with = [&](Effort of_repair) {
-      const auto first = connections.is_twisted() ? Kind::framed_foldover_free : Kind::foldover_free;
-      map.position = untangle(surface, connection, target, fixed, of_repair, first, counter(), map.position);
-      check(map);
-    };
-    repair_with(connections.is_twisted() ? Effort::local : effort);
-    if (map.validity.defects() == 0 || !connections.is_twisted()) return;
-    twist_gradually(connections, fixed, map);
-    if (map.validity.defects() > 0) repair_with(Effort::global);
-  }
-
-  // Lets the conformal barrier take out the shear that is left around what was flipped.
-  void polish(const Connection& connection, const std::vector<Index>& flipped, ComponentMap& map) {
-    constexpr double sheared = 1.5;  // ratio of the singular values
-    constexpr int near = 10, rings = 3, steps = 3;
-    const Monitor::Stage stage(monitor_, "repair");
-    const CutSurface surface = open(map);
-    const Jacobians jacobians = measure_jacobians(mesh_, geometry_, map.cut_mesh, map.position);
-    const std::vector<char> around = mark_around(mesh_, flipped, near);
-    std::vector<Index> where;
-    for (Index f = 0; f < mesh_.triangle_count(); ++f) {
-      if (!around[mesh_.triangles(f, 0)]) continue;
-      const double a = std::abs(jacobians.f_z[f]), b = std::abs(jacobians.f_zbar[f]);
-      if (a + b > sheared * (a - b)) where.push_back(f);
-    }
-    std::vector<char> marked = mark_around(mesh_, where, rings);
-    const std::vector<char> fixed = fixed_vertices(map);
-    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-      if (fixed[v] || (mesh_.loop_of_vertex[v] == none && map.curvature.at_vertex[v] != 0)) marked[v] = 0;
-    }
-    const Eigen::VectorXcd motion = motion_of_copies(mesh_, map.cut_graph, map.cut_mesh, connection.rotation);
-    Relaxation(surface, map.curvature.log_scale, connection.frames, free_vertices(mesh_, map.cut_mesh, motion, marked),
-               counter(), map.position)
-        .smooth(Kind::conformal_barrier, steps);
-    check(map);
-  }
-
-  // Takes the map of the metric's own rotations about handles to the chosen ones; leaves the map as it is where that
-  // does not succeed.
-  void twist_gradually(const ConnectionChoice& connections, const std::vector<char>& fixed, ComponentMap& map) {
-    const CutSurface surface = open(map);
-    const Connection natural = connections.at(0, map.curvature);
-    ComponentMap moved = map;
-    moved.position = PoissonSystem(mesh_, geometry_, map.cut_mesh, natural.reduction)
-                         .fit(prescribed_jacobians(mesh_, map.curvature.log_scale, natural.frames));
-    moved.position = untangle(surface, natural, map.curvature, fixed, Effort::local, Kind::framed_foldover_free,
-                              counter(), moved.position);
-    check(moved);
-    if (moved.validity.defects() > 0) return;
-    Continuation end = follow(surface, path_between(map.curvature, connections, map.curvature), fixed, Effort::local,
-                              counter(), moved.position);
-    if (end.reached < 1) return;
-    map.position = std::move(end.position);
-    check(map);
-  }
-
-  void report_adjusted(const ComponentMap& map, const Continuation& end, std::vector<Finding>& findings) const {
-    Eigen::Index most = 0;
-    const double off = (map.curvature.at_vertex - end.at.curvature.at_vertex).cwiseAbs().maxCoeff(&most);
-    findings.push_back(
-        {Code::angles_adjusted,
-         concat("No map without flips was found for the angles given; this one has angles ",
-                std::round(100 * end.reached), " % of the way to them from those of least distortion, up to ",
-                off * 180 / M_PI, " degrees off. Take angles nearer to the automatic ones, or subdivide the mesh at ",
-                "the cones."),
-         {ElementKind::vertices, map.cones}});
-  }
-
-  CutSurface open(const ComponentMap& map) const { return {mesh_, geometry_, map.cut_graph, map.cut_mesh}; }
-
-  // Border edges whose direction is imposed.
-  std::vector<Index> aligned_edges() const {
-    return task_.cones.border == BorderMode::straight ? straight_edges(mesh_, task_.cones.vertices)
-                                                      : corner_edges(mesh_, task_.cones.vertices);
-  }
-
-  // Vertices a repair has to leave where they are.
-  std::vector<char> fixed_vertices(const ComponentMap& map) const {
-    std::vector<char> fixed(mesh_.vertex_count(), 0);
-    for (const Pin& pin : map.pins) fixed[map.cut_mesh.source[pin.copy]] = 1;
-    for (const Index h : aligned_edges()) fixed[mesh_.origin(h)] = fixed[mesh_.target(h)] = 1;
-    return fixed;
-  }
-
-  // Counts the steps of Newton's method.  Nobody knows how many there will be.
-  StepHook counter() {
-    return [this] { monitor_.advance(1 - 0.5 * std::pow(0.98, ++repair_->iterations)); };
-  }
-
-  const HalfedgeMesh& mesh_;
-  const Geometry& geometry_;
-  const ComponentTask& task_;
-  const Options& options_;
-  Monitor& monitor_;
-  std::optional<RepairReport>& repair_;
-};
 
 // Tries out angles and geometries, easy repairs first; returns the map with the fewest defects.
 ComponentMap find_valid_map(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentTask& task,
@@ -398,11 +59,17 @@ ComponentMap find_valid_map(const HalfedgeMesh& mesh, const Geometry& geometry, 
     for (const bool is_fat : {effort == Effort::global, effort == Effort::local}) {
       if (is_fat && !fat) fat = mollified(mesh, geometry, fat_margin);
       Mapping mapping(mesh, is_fat ? *fat : geometry, task, options, monitor, repair);
-      for (const AngleRange& range : angle_ranges) {
+      for (std::size_t i = 0; i < (is_free ? std::size(angle_ranges) : 1); ++i) {
         ComponentCones cones = task.cones;
-        if (is_free) cones.range = range;
+        if (is_free) cones.range = angle_ranges[i];
         std::vector<Finding> found;
-        ComponentMap map = mapping.attempt(cones, effort, found);
+        ComponentMap map;
+        try {
+          map = mapping.attempt(cones, effort, found);
+        } catch (const Error& error) {
+          if (!best || error.code() != Code::solver_failed) throw;
+          continue;
+        }
         if (!best || map.validity.defects() < best->validity.defects()) {
           if (is_fat && map.validity.defects() == 0)
             Mapping(mesh, geometry, task, options, monitor, repair).smooth(map);
@@ -415,7 +82,6 @@ ComponentMap find_valid_map(const HalfedgeMesh& mesh, const Geometry& geometry, 
           require_possible(mesh, geometry, task.cones);
         }
         if (!persists) return std::move(*best);
-        if (!is_free) break;
       }
     }
   }

@@ -2,6 +2,7 @@
 #include "low_stretch.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "distortion.hpp"
 #include "unfold.hpp"
@@ -31,11 +32,26 @@ Eigen::VectorXd importance_of_triangles(const HalfedgeMesh& mesh, const Geometry
   return (out / mean).cwiseMax(least_weight);
 }
 
+Eigen::VectorXd scale_at_rest(const CutSurface& surface, const Curvature& curvature, double stretch,
+                              const Eigen::VectorXcd& position) {
+  const auto& [mesh, geometry, cut_graph, cut_mesh] = surface;
+  const Eigen::VectorXd rest = (1 - stretch) * curvature.log_scale;
+  const Jacobians jacobians = measure_jacobians(mesh, geometry, cut_mesh, position);
+  double area = 0, rest_area = 0;
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    double mean = 0;
+    for (int c = 0; c < 3; ++c) mean += rest[mesh.triangles(f, c)] / 3;
+    area += geometry.area[f] * (std::norm(jacobians.f_z[f]) - std::norm(jacobians.f_zbar[f]));
+    rest_area += geometry.area[f] * std::exp(2 * mean);
+  }
+  return rest.array() + std::log(area / rest_area) / 2;
+}
+
 Eigen::VectorXcd lower_stretch(const CutSurface& surface, const Connection& connection, const Curvature& curvature,
                                double stretch, const std::vector<char>& fixed, const Eigen::VectorXd& importance,
                                const StepHook& before_step, const Eigen::VectorXcd& position) {
   const auto& [mesh, geometry, cut_graph, cut_mesh] = surface;
-  const Eigen::VectorXd rest = (1 - stretch) * curvature.log_scale;
+  const Eigen::VectorXd rest = scale_at_rest(surface, curvature, stretch, position);
   Eigen::VectorXcd best = position;
   // One linear step takes a map without fixed vertices almost there: frames stay, lengths are those wanted.
   if (std::find(fixed.begin(), fixed.end(), 1) == fixed.end()) {

@@ -18,6 +18,10 @@ Eigen::VectorXcd lower_stretch(const CutSurface& surface, const Connection& conn
                                double stretch, const std::vector<char>& fixed, const Eigen::VectorXd& importance,
                                const StepHook& before_step, const Eigen::VectorXcd& position);
 
+// The log scale that is aimed at, (n), with the area of the map at hand.
+Eigen::VectorXd scale_at_rest(const CutSurface& surface, const Curvature& curvature, double stretch,
+                              const Eigen::VectorXcd& position);
+
 // The weight of every triangle, (m), from those of its vertices, (n) or empty: their mean, relative to the whole
 // surface's.
 Eigen::VectorXd importance_of_triangles(const HalfedgeMesh& mesh, const Geometry& geometry,

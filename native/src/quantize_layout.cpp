@@ -395,16 +395,7 @@ bool LayoutQuantizer::follow(double scale, const Eigen::VectorXcd& change, Eigen
 }
 
 void LayoutQuantizer::lower_stretch(double stretch, const Eigen::VectorXd& importance, QuantizedLayout& layout) const {
-  Eigen::VectorXd rest = (1 - stretch) * curvature_.log_scale;
-  double area = 0, rest_area = 0;
-  const Jacobians jacobians = measure_jacobians(mesh_, geometry_, cut_mesh_, layout.position);
-  for (Index f = 0; f < mesh_.triangle_count(); ++f) {
-    double mean = 0;
-    for (int c = 0; c < 3; ++c) mean += rest[mesh_.triangles(f, c)] / 3;
-    area += geometry_.area[f] * (std::norm(jacobians.f_z[f]) - std::norm(jacobians.f_zbar[f]));
-    rest_area += geometry_.area[f] * std::exp(2 * mean);
-  }
-  rest.array() += std::log(area / rest_area) / 2;
+  const Eigen::VectorXd rest = scale_at_rest(surface(), curvature_, stretch, layout.position);
   Relaxation relaxation(
       surface(), rest, Eigen::VectorXd::Zero(mesh_.triangle_count()),
       free_vertices(mesh_, cut_mesh_, motion_of_copies_, without_cones(std::vector<char>(mesh_.vertex_count(), 1))),
