@@ -107,6 +107,13 @@ def test_the_setting_trades_conformality_for_stretch(name: str) -> None:
     assert (np.diff([figures.quasi_conformal_area_weighted for figures in of_step[1:]]) > 0).all()
 
 
+@every_surface
+def test_at_nought_it_is_as_conformal_as_the_conformal_map(name: str) -> None:
+    figures, conformal = of_surface(name, 0.0).distortion, unwrap(SURFACES[name]).distortion
+    assert figures.quasi_conformal_area_weighted <= conformal.quasi_conformal_area_weighted + 1e-9
+    assert figures.l2_stretch <= 1.02 * conformal.l2_stretch
+
+
 def test_an_isometric_map_stays_as_it_is() -> None:
     mesh = meshes.cube(4)
     assert oracle.similarity_gap(unwrap(mesh).corner_uv, low_stretch(mesh).corner_uv) <= 1e-9
@@ -158,6 +165,42 @@ def test_components_are_relaxed_each_by_itself() -> None:
         assert oracle.metric_gap(alone.corner_uv, here) <= 1e-6
         count += len(part.triangles)
     assert result.distortion.l2_stretch < unwrap(mesh).distortion.l2_stretch
+
+
+@pytest.mark.parametrize("size", [0.2, 1.0, 5.0])
+@pytest.mark.parametrize("count", [1, 2])
+@pytest.mark.parametrize("name", ["closed", "disk with a cone"])
+def test_one_or_two_pins_give_place_size_and_turn_and_cost_little(name: str, count: int, size: float) -> None:
+    mesh = SURFACES[name]
+    corners, uv = np.array([10, 190]), np.array([[3.0, -1.0], [3.0 - 0.5 * size, -1 + 1.25 * size]])
+    pins = lsgp.Pins(corners[:count], uv[:count])
+    pinned = lsgp.parameterize(surface(mesh), mesh.cones, options=lsgp.Options(mode="low-stretch"), pins=pins)
+    assert pinned.corner_uv.reshape(-1, 2)[corners[:count]] == pytest.approx(uv[:count], abs=1e-9)
+    assert energy(mesh, pinned) - 1 <= 1.03 * (energy(mesh, of_surface(name, 1.0)) - 1)
+    assert_exact_transitions(mesh, pinned)
+    assert_angles_met(mesh, pinned)
+
+
+@pytest.mark.parametrize("mesh", [BUMPY, HILL], ids=["closed", "open"])
+def test_pinned_vertices_stay_where_they_are_pinned(mesh: Mesh) -> None:
+    """Whatever the size they are pinned in."""
+    plain = unwrap(mesh).corner_uv.reshape(-1, 2)
+    _, first = np.unique(mesh.triangles, return_index=True)
+    corners = first[np.linspace(0, len(first) - 1, 6).astype(int)]
+    places = plain[corners] + 0.01 * np.random.default_rng(1).standard_normal((6, 2))
+    maps = []
+    for size in (0.2, 5.0):
+        pins = lsgp.Pins(corners, size * places)
+        conformal, relaxed = (
+            lsgp.parameterize(surface(mesh), mesh.cones, options=lsgp.Options(mode=mode), pins=pins)
+            for mode in ("conformal", "low-stretch")
+        )
+        assert relaxed.corner_uv.reshape(-1, 2)[corners] == pytest.approx(size * places, abs=1e-9)
+        assert_exact_transitions(mesh, relaxed)
+        assert relaxed.flipped.size == 0
+        assert energy(mesh, relaxed) < energy(mesh, conformal)
+        maps.append(relaxed.corner_uv)
+    assert oracle.similarity_gap(*maps) <= 1e-6
 
 
 def test_straight_borders_stay_straight() -> None:
