@@ -144,8 +144,12 @@ struct PartCutter::Cells {
 double PartCutter::enough() const { return enough_area * graph_.total_area; }
 
 double PartCutter::cost(Units length, double smaller_area) const {
-  const double size = taste_ == CutTaste::no_scraps ? std::sqrt(std::min(smaller_area, enough())) : 1;
-  return static_cast<double>(length) / size;
+  const double area = std::min(smaller_area, enough());
+  switch (taste_) {
+    case CutTaste::no_scraps: return static_cast<double>(length) / std::sqrt(area);
+    case CutTaste::no_small_parts: return static_cast<double>(length) / area;
+    default: return static_cast<double>(length);
+  }
 }
 
 PartCutter::Cells PartCutter::cells_of(const std::vector<Index>& scope, const std::vector<Index>& cell_of_place,

@@ -18,7 +18,8 @@ struct PartCut {
 // Next to what is to be parted cuts are shortest, but leave scraps.
 enum class CutTaste {
   shortest,
-  no_scraps,  // short for the size of the smaller of the two parts that are left
+  no_scraps,       // short for the width of the smaller of the two parts that are left
+  no_small_parts,  // short for its area
 };
 
 class PartCutter {

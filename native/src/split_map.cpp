@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "join_parts.hpp"
 #include "split_overlaps.hpp"
@@ -21,7 +22,7 @@ struct Division {
 };
 
 // Of every island, of one that is a scrap on top, and of cuts as long as the square root of the surface's area.
-constexpr double cost_of_island = 0.5, cost_of_scrap = 0.5, cost_of_cut = 1;
+constexpr double cost_of_island = 0.5, cost_of_scrap = 2, cost_of_cut = 1;
 constexpr double scrap = 0.005;  // of the area
 
 double cost(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<char>& ends) {
@@ -97,9 +98,11 @@ bool split_map(const HalfedgeMesh& mesh, const Geometry& geometry, const std::ve
   if (!has_overlap(corners, twin)) return false;
   const std::vector<Overlap> overlaps = find_overlaps(corners);
   if (overlaps.empty()) return false;
-  const Division shortest = divide(mesh, geometry, map, overlaps, kept, CutTaste::shortest, ends),
-                 no_scraps = divide(mesh, geometry, map, overlaps, kept, CutTaste::no_scraps, ends);
-  const Division& best = shortest.cost < no_scraps.cost ? shortest : no_scraps;
+  Division best = divide(mesh, geometry, map, overlaps, kept, CutTaste::shortest, ends);
+  for (const CutTaste taste : {CutTaste::no_scraps, CutTaste::no_small_parts}) {
+    Division other = divide(mesh, geometry, map, overlaps, kept, taste, ends);
+    if (other.cost < best.cost) best = std::move(other);
+  }
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (mesh.twin[h] == none || !best.ends[h]) {
       is_cut[h] = 0;

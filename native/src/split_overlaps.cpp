@@ -40,6 +40,20 @@ class Splitter {
 
   bool is_conflict(Index entry) const { return part_[of_[entry]] == part_[partner_[entry]]; }
   Index find_entry(Index face, Index partner) const;
+  // Calls visit for the pairs next to one: of the same faces or their neighbours.
+  template <typename Visit>
+  void for_each_beside(Index entry, Visit visit) const {
+    const auto look_up = [&](Index face, Index partner) {
+      const Index found = find_entry(face, partner);
+      if (found != none) visit(found);
+    };
+    const Index own = of_[entry], partner = partner_[entry];
+    graph_.for_each_link(partner, [&](Index beside, const Link&) { look_up(own, beside); });
+    graph_.for_each_link(own, [&](Index face, const Link&) {
+      look_up(face, partner);
+      graph_.for_each_link(partner, [&](Index beside, const Link&) { look_up(face, beside); });
+    });
+  }
   Region find_region() const;
   Region grow_region(const std::vector<Index>& entries) const;
   std::map<std::pair<Index, Index>, Units> measure_borders() const;
@@ -115,7 +129,6 @@ void Splitter::number_parts() {
   part_ = std::move(number);
 }
 
-// Pairs belong together when they have one face in common and the others are neighbours.
 Splitter::Region Splitter::find_region() const {
   const Index entry_count = static_cast<Index>(of_.size());
   std::vector<Index> group(entry_count, none);
@@ -131,12 +144,11 @@ Splitter::Region Splitter::find_region() const {
       const Index entry = members[i];
       area.back() += shared_[entry];
       const auto add = [&](Index other) {
-        if (other == none || group[other] != none || !is_conflict(other)) return;
+        if (group[other] != none || !is_conflict(other)) return;
         group[other] = number;
         members.push_back(other);
       };
-      graph_.for_each_link(of_[entry], [&](Index face, const Link&) { add(find_entry(face, partner_[entry])); });
-      graph_.for_each_link(partner_[entry], [&](Index face, const Link&) { add(find_entry(of_[entry], face)); });
+      for_each_beside(entry, add);
     }
     group_begin.push_back(static_cast<Index>(members.size()));
   }
@@ -177,12 +189,11 @@ Splitter::Region Splitter::grow_region(const std::vector<Index>& entries) const 
     side[of_[entry]] = 1;
     side[partner_[entry]] = 2;
     const auto add = [&](Index other) {
-      if (other == none || depth[other] != none || !is_conflict(other)) return;
+      if (depth[other] != none || !is_conflict(other)) return;
       depth[other] = depth[entry] + 1;
       grown.push_back(other);
     };
-    graph_.for_each_link(of_[entry], [&](Index face, const Link&) { add(find_entry(face, partner_[entry])); });
-    graph_.for_each_link(partner_[entry], [&](Index face, const Link&) { add(find_entry(of_[entry], face)); });
+    for_each_beside(entry, add);
   }
   Region region;
   for (const Index entry : grown) {
