@@ -3,10 +3,11 @@
 // nothing changed that the next call could see.  tools/sanitize builds and runs this; by hand, in any build:
 //
 //   cmake -S . -B build/faults -DLSGP_PYTHON=OFF -DLSGP_FAULTS=ON && cmake --build build/faults
-//   build/faults/tests/robustness/allocation_failures          17: every 17th after the first hundred
+//   build/faults/tests/robustness/allocation_failures          50: the first fifty of every call and as many later ones
 //
 // operator new is replaced for the whole process; malloc, calloc, realloc and free, by which Eigen allocates, are
 // wrapped by the linker in the library's own code only, so that exceptions themselves find memory.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -102,8 +103,6 @@ void operator delete[](void* block, const std::nothrow_t&) noexcept { __wrap_fre
 namespace {
 
 using lsgp::Index;
-
-constexpr long dense = 100;  // of the first allocations every one fails, whatever the stride
 
 // The bytes of arguments and answers, for comparison.  Only called while memory is not armed.
 class Bytes {
@@ -247,13 +246,15 @@ std::optional<std::string> answer(const Case& c, long first_failing, bool all_af
   return out.text();
 }
 
-// Lets allocations of a case fail, alone and with all that come after them: the first ones and every stride-th.
-void test(const Case& c, long stride) {
+// Lets allocations of a case fail, alone and with all that come after them: the first `dense` ones and about as many
+// later ones.
+void test(const Case& c, long dense) {
   const std::string arguments = c.arguments();
   const std::optional<std::string> expected = answer(c, 0, false);  // also allocates what the runtime keeps
   const long total = memory.count;
   long tried = 0;
   for (const bool all_after : {false, true}) {
+    const long stride = std::max(1L, (total - dense) / dense);
     for (long k = 1; k <= total; k += k < dense ? 1 : stride) {
       const long live = memory.live;
       {
@@ -358,6 +359,8 @@ std::deque<Case> make_cases() {
     const bool sharp = i % 2 == (i / 2 + i / 4) % 2;
     manual.cones.angles[i] = (sharp ? 0.35 : 2.65) * M_PI;
   }
+  add("low stretch", parameterize, sphere).options.mode = lsgp::Mode::low_stretch;
+  add("split overlaps", parameterize, manual).options.overlaps = lsgp::Overlaps::split;
   Case& seams = add("seams to follow", parameterize, sphere);
   seams.surface.seams = seams.surface.triangles.topLeftCorner(12, 2);
   add("seams as borders", parameterize, seams).options.seams = lsgp::SeamMode::boundary;
@@ -404,7 +407,7 @@ std::deque<Case> make_cases() {
 }  // namespace
 
 int main(int count, char** arguments) {
-  const long stride = count > 1 ? std::atol(arguments[1]) : 1;
-  if (stride < 1) return 2;
-  for (const Case& c : make_cases()) test(c, stride);
+  const long dense = count > 1 ? std::atol(arguments[1]) : std::numeric_limits<int>::max();
+  if (dense < 1) return 2;
+  for (const Case& c : make_cases()) test(c, dense);
 }
