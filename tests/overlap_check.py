@@ -17,14 +17,15 @@ CHUNK = 1 << 17  # pairs of boxes looked at at once
 def overlaps(z: NDArray[np.complex128]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Pairs (k, 2) of triangles (m, 3) whose insides meet as far as rounding lets that be seen, and the areas (k,)
     they share."""
-    turned = _cross(z[:, 1] - z[:, 0], z[:, 2] - z[:, 0]) < 0
-    z = np.where(turned[:, None], z[:, ::-1], z)
+    area = _cross(z[:, 1] - z[:, 0], z[:, 2] - z[:, 0])
+    z = np.where(area[:, None] < 0, z[:, ::-1], z)
+    has_inside = area != 0
     pairs, areas = [np.empty((0, 2), np.int64)], [np.empty(0)]
     for i, j in _meeting_boxes(z):
-        area = _shared_area(z[i] - z[i, :1], z[j] - z[i, :1])
-        found = area > 0
+        shared = _shared_area(z[i] - z[i, :1], z[j] - z[i, :1])
+        found = (shared > 0) & has_inside[i] & has_inside[j]
         pairs.append(np.stack([i, j], axis=1)[found])
-        areas.append(area[found])
+        areas.append(shared[found])
     return np.concatenate(pairs), np.concatenate(areas)
 
 

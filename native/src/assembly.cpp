@@ -142,7 +142,7 @@ Index Assembly::add_islands(const Component& component, const Geometry& geometry
   std::vector<std::vector<Index>> of_part(part_count);
   for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) of_part[part[corner / 3]].push_back(corner);
   for (const std::vector<Index>& own : of_part) {
-    Island island{Eigen::VectorXcd(own.size()), std::nullopt};
+    Island island{Eigen::VectorXcd(own.size()), std::nullopt, static_cast<Index>(solved_.size())};
     corners_.emplace_back();
     for (std::size_t k = 0; k < own.size(); ++k) {
       island.position[static_cast<Eigen::Index>(k)] = scale * corners[own[k]];

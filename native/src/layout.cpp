@@ -115,7 +115,14 @@ void arrange(std::vector<Island>& islands) {
     Island& island = islands[i];
     island.position.array() += shelves.place[i];
     if (shelves.size > 0) island.position /= shelves.size;
-    if (island.pin) island.position.array() += island.pin->second - island.position[island.pin->first];
+  }
+  for (std::size_t i = 0; i < islands.size(); ++i) {
+    if (!islands[i].pin) continue;
+    const auto [point, place] = *islands[i].pin;
+    const Complex move = place - islands[i].position[point];
+    for (Island& island : islands) {
+      if (island.component == islands[i].component) island.position.array() += move;
+    }
   }
 }
 

@@ -16,10 +16,11 @@ struct Island {
   Eigen::VectorXcd position;  // u + iv of its points, at the texel density it is to have
   // Where a pinned point has to end up; only the place of the island follows, not its size or turn.
   std::optional<std::pair<Eigen::Index, Complex>> pin;
+  Index component = 0;
 };
 
 // Turns every island so that its bounding box is smallest, puts the islands on shelves without overlap and scales all
-// of them alike into the unit square; then moves those with a pin to it.
+// of them alike into the unit square; then moves those with a pin to it, and the others of their component along.
 void arrange(std::vector<Island>& islands);
 
 // The unit vector along the longer side of the smallest box around the points.

@@ -263,6 +263,15 @@ def test_pinned_islands_are_not_split() -> None:
     assert "unpin" in only(result.warnings, "OVERLAPPING_TRIANGLES").message
 
 
+def test_parts_of_an_island_with_one_pin_stay_beside_it() -> None:
+    mesh, place = wound(100), np.array([[5.25, -3.5]])
+    surface = lsgp.Surface(mesh.positions, mesh.triangles)
+    result = lsgp.parameterize(surface, [], options=SPLIT, pins=lsgp.Pins(np.array([3]), place))
+    assert np.abs(result.corner_uv.reshape(-1, 2)[3] - place).max() <= 1e-9
+    assert result.island.max() + 1 == 3 and len(result.overlapping) == 0
+    assert faults(mesh, result, SPLIT) == []
+
+
 def test_layouts_beside_themselves_are_not_split() -> None:
     mesh = meshes.bumpy_sphere()
     surface = lsgp.Surface(mesh.positions, mesh.triangles)
