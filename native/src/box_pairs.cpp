@@ -1,52 +1,77 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "box_pairs.hpp"
 
+#include <array>
+#include <cstdint>
+
 namespace lsgp {
 
 namespace {
 
 constexpr Index leaf_size = 4;
 
+struct Place {
+  std::uint64_t along;  // the curve
+  Index item;
+};
+
+// The bits of a number, with a gap after each.
+std::uint64_t spread(std::uint64_t bits) {
+  bits = (bits | bits << 16) & 0x0000ffff0000ffff;
+  bits = (bits | bits << 8) & 0x00ff00ff00ff00ff;
+  bits = (bits | bits << 4) & 0x0f0f0f0f0f0f0f0f;
+  bits = (bits | bits << 2) & 0x3333333333333333;
+  return (bits | bits << 1) & 0x5555555555555555;
+}
+
+// Stable, byte by byte.
+void sort_along(std::vector<Place>& places) {
+  std::vector<Place> sorted(places.size());
+  for (int shift = 0; shift < 64; shift += 8) {
+    std::array<Index, 257> begin{};
+    for (const Place& place : places) ++begin[(place.along >> shift & 0xff) + 1];
+    for (int byte = 0; byte < 256; ++byte) begin[byte + 1] += begin[byte];
+    for (const Place& place : places) sorted[begin[place.along >> shift & 0xff]++] = place;
+    places.swap(sorted);
+  }
+}
+
 }  // namespace
 
 BoxTree::BoxTree(const std::vector<Box>& boxes) {
-  const Index count = static_cast<Index>(boxes.size());
-  if (count == 0) return;
-  std::vector<Center> centers(count);
-  for (Index i = 0; i < count; ++i) {
-    centers[i] = {(boxes[i].left + boxes[i].right) / 2, (boxes[i].bottom + boxes[i].top) / 2, i};
+  if (boxes.empty()) return;
+  Box all = boxes.front();
+  for (const Box& box : boxes) all = around(all, box);
+  const auto steps = [](double value, double low, double high) {
+    constexpr double most = 4294967295.0;
+    return high > low ? static_cast<std::uint64_t>((value - low) / (high - low) * most) : 0;
+  };
+  std::vector<Place> places(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Box& box = boxes[i];
+    const std::uint64_t column = steps(box.left / 2 + box.right / 2, all.left, all.right),
+                        row = steps(box.bottom / 2 + box.top / 2, all.bottom, all.top);
+    places[i] = {spread(column) | spread(row) << 1, static_cast<Index>(i)};
   }
-  item_.resize(count);
-  box_.resize(count);
-  nodes_.reserve(2 * static_cast<std::size_t>(count) / (leaf_size / 2));
-  build(centers.data(), 0, count, boxes);
+  sort_along(places);
+  for (const Place& place : places) {
+    item_.push_back(place.item);
+    box_.push_back(boxes[place.item]);
+  }
+  nodes_.reserve(2 * boxes.size() / (leaf_size / 2));
+  build(0, static_cast<Index>(boxes.size()));
 }
 
-Index BoxTree::build(Center* centers, Index begin, Index end, const std::vector<Box>& boxes) {
+Index BoxTree::build(Index begin, Index end) {
   const Index node = static_cast<Index>(nodes_.size());
-  nodes_.push_back({{}, begin, end, -1});
+  nodes_.push_back({box_[begin], begin, end, -1});
   if (end - begin <= leaf_size) {
-    Box box = boxes[centers[begin].item];
-    for (Index i = begin; i < end; ++i) {
-      item_[i] = centers[i].item;
-      box_[i] = boxes[item_[i]];
-      box = around(box, box_[i]);
-    }
-    nodes_[node].box = box;
+    for (Index i = begin + 1; i < end; ++i) nodes_[node].box = around(nodes_[node].box, box_[i]);
     return node;
   }
-  Box span{centers[begin].x, centers[begin].x, centers[begin].y, centers[begin].y};
-  for (Index i = begin + 1; i < end; ++i) {
-    span = around(span, {centers[i].x, centers[i].x, centers[i].y, centers[i].y});
-  }
-  const bool wide = span.right - span.left >= span.top - span.bottom;
   const Index middle = begin + (end - begin) / 2;
-  std::nth_element(centers + begin, centers + middle, centers + end, [wide](const Center& a, const Center& b) {
-    const double p = wide ? a.x : a.y, q = wide ? b.x : b.y;
-    return p != q ? p < q : a.item < b.item;
-  });
-  build(centers, begin, middle, boxes);
-  const Index right = build(centers, middle, end, boxes);
+  build(begin, middle);
+  const Index right = build(middle, end);
   nodes_[node].right = right;
   nodes_[node].box = around(nodes_[node + 1].box, nodes_[right].box);
   return node;

@@ -23,7 +23,8 @@ inline Box around(const Box& a, const Box& b) {
   return {std::min(a.left, b.left), std::max(a.right, b.right), std::min(a.bottom, b.bottom), std::max(a.top, b.top)};
 }
 
-// A binary tree of boxes, halved by number: it does not mind that they differ much in size or crowd in one place.
+// A binary tree of boxes in the order of a space-filling curve, halved by number: it does not mind that they differ
+// much in size or crowd in one place.
 class BoxTree {
  public:
   explicit BoxTree(const std::vector<Box>& boxes);
@@ -61,12 +62,8 @@ class BoxTree {
     bool is_leaf() const { return right < 0; }
     Index count() const { return end - begin; }
   };
-  struct Center {
-    double x, y;
-    Index item;
-  };
 
-  Index build(Center* centers, Index begin, Index end, const std::vector<Box>& boxes);
+  Index build(Index begin, Index end);
 
   template <typename Visit>
   void visit_pairs(const Node& node, Visit& visit) const {
