@@ -12,8 +12,8 @@
 namespace lsgp {
 
 Assembly::Assembly(const Surface& surface, const std::vector<Component>& components, const Options& options,
-                   Result& result)
-    : surface_(surface), components_(components), options_(options), result_(result) {
+                   Monitor& monitor, Result& result)
+    : surface_(surface), components_(components), options_(options), monitor_(monitor), result_(result) {
   result.corner_uv = CornerUv::Constant(3 * surface.triangles.rows(), 2, std::numeric_limits<double>::quiet_NaN());
   result.island.assign(surface.triangles.rows(), none);
   result.log_scale = Eigen::VectorXd::Zero(surface.positions.rows());
@@ -34,7 +34,7 @@ void Assembly::add(std::size_t component_index, const ComponentCones& cones, con
   }
   // A seamless layout was split before its parts were put onto the lattice; pinned ones keep their place.
   if (options_.overlaps == Overlaps::split && !result_.seamless && map.pins.size() < 2) {
-    split_map(component.mesh, geometry, open_seams(component.mesh), component.mesh.seam, map);
+    split_map(component.mesh, geometry, open_seams(component.mesh), component.mesh.seam, monitor_, map);
   }
   const Index islands = add_islands(component, geometry, map);
   solved_.push_back({&component, std::move(map), islands});

@@ -13,7 +13,8 @@ namespace lsgp {
 class Assembly {
  public:
   // Everything is collected in `result`, which holds the findings so far.
-  Assembly(const Surface& surface, const std::vector<Component>& components, const Options& options, Result& result);
+  Assembly(const Surface& surface, const std::vector<Component>& components, const Options& options, Monitor& monitor,
+           Result& result);
 
   void add(std::size_t component_index, const ComponentCones& cones, const Geometry& geometry, ComponentMap map);
 
@@ -49,6 +50,7 @@ class Assembly {
   const Surface& surface_;
   const std::vector<Component>& components_;
   const Options& options_;
+  Monitor& monitor_;
   Result& result_;
   std::vector<double> cone_angle_;                // by the caller's vertex, NaN where none was imposed
   std::vector<Index> cut_edges_, inexact_seams_;  // vertex pairs

@@ -81,7 +81,7 @@ Result parameterize(const Surface& surface, const Cones& cones, const Options& o
     result.seamless = make_seamless(options, work.unit_scale, parts, result.warnings, monitor);
   }
   const Monitor::Stage stage(monitor, "layout");
-  Assembly assembly(surface, components, options, result);
+  Assembly assembly(surface, components, options, monitor, result);
   for (std::size_t i = 0; i < components.size(); ++i) {
     if (maps[i]) assembly.add(i, work.tasks[i].cones, *geometries[i], std::move(*maps[i]));
   }

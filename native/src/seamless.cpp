@@ -407,7 +407,7 @@ SeamlessReport make_seamless(const Options& options, double unit_scale, std::vec
     if (options.overlaps == Overlaps::split) {
       // Cones off the lattice leave translations off it, across which nothing may move.
       const std::vector<char> nowhere(mesh.halfedge_count(), 0), everywhere(mesh.halfedge_count(), 1);
-      split_map(mesh, *parts[i].geometry, nowhere, search.relaxed(i).empty() ? mesh.seam : everywhere, map);
+      split_map(mesh, *parts[i].geometry, nowhere, search.relaxed(i).empty() ? mesh.seam : everywhere, monitor, map);
     }
     layouts.push_back(divide(mesh, map));
   }

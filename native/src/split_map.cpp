@@ -40,10 +40,11 @@ double cost(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vecto
 }
 
 Division divide(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                const std::vector<Overlap>& overlaps, const std::vector<char>& kept, CutTaste taste,
+                const std::vector<Overlap>& overlaps, const std::vector<char>& kept, CutTaste taste, Monitor& monitor,
                 std::vector<char> ends) {
   Division out{std::move(ends), {}, {}, 0};
-  split_overlaps(mesh, geometry, overlaps, taste, out.ends);
+  split_overlaps(
+      mesh, geometry, overlaps, taste, [&] { monitor.advance(0); }, out.ends);
   out.motion.resize(label_parts(mesh, out.ends, out.part));
   if (map.rotation) out.motion = join_parts(mesh, geometry, map, out.part, kept, out.ends);
   out.cost = cost(mesh, geometry, out.ends);
@@ -83,7 +84,8 @@ void cut_apart(const HalfedgeMesh& mesh, std::vector<char> is_cut, const std::ve
 }  // namespace
 
 bool split_map(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<char>& open,
-               const std::vector<char>& kept, ComponentMap& map) {
+               const std::vector<char>& kept, Monitor& monitor, ComponentMap& map) {
+  const Monitor::Stage stage(monitor, "split");
   std::vector<char> is_cut = map.cut_graph.is_cut, ends = open;
   std::vector<Index> twin = mesh.twin;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
@@ -98,9 +100,9 @@ bool split_map(const HalfedgeMesh& mesh, const Geometry& geometry, const std::ve
   if (!has_overlap(corners, twin)) return false;
   const std::vector<Overlap> overlaps = find_overlaps(corners);
   if (overlaps.empty()) return false;
-  Division best = divide(mesh, geometry, map, overlaps, kept, CutTaste::shortest, ends);
+  Division best = divide(mesh, geometry, map, overlaps, kept, CutTaste::shortest, monitor, ends);
   for (const CutTaste taste : {CutTaste::no_scraps, CutTaste::no_small_parts}) {
-    Division other = divide(mesh, geometry, map, overlaps, kept, taste, ends);
+    Division other = divide(mesh, geometry, map, overlaps, kept, taste, monitor, ends);
     if (other.cost < best.cost) best = std::move(other);
   }
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {

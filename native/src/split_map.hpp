@@ -14,6 +14,6 @@ namespace lsgp {
 // open: (3m) halfedges at which the layout ends, besides the cuts.  kept: (3m) those that may not be closed.
 // Returns whether anything changed.
 bool split_map(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<char>& open,
-               const std::vector<char>& kept, ComponentMap& map);
+               const std::vector<char>& kept, Monitor& monitor, ComponentMap& map);
 
 }  // namespace lsgp

@@ -19,7 +19,8 @@ using Units = FaceGraph::Units;
 
 class Splitter {
  public:
-  Splitter(const FaceGraph& graph, const std::vector<Overlap>& overlaps, CutTaste taste);
+  Splitter(const FaceGraph& graph, const std::vector<Overlap>& overlaps, CutTaste taste,
+           const std::function<void()>& before_cut);
 
   void split();
   void merge_back();
@@ -61,6 +62,7 @@ class Splitter {
 
   const FaceGraph& graph_;
   PartCutter cutter_;
+  const std::function<void()>& before_cut_;
 
   // Faces that lie on each other: (faces + 1), (entries) sorted by face, then partner.
   std::vector<Index> entry_begin_, of_, partner_;
@@ -70,8 +72,9 @@ class Splitter {
   Index part_count_ = 0;
 };
 
-Splitter::Splitter(const FaceGraph& graph, const std::vector<Overlap>& overlaps, CutTaste taste)
-    : graph_(graph), cutter_(graph, taste), part_(graph.face_count(), 0) {
+Splitter::Splitter(const FaceGraph& graph, const std::vector<Overlap>& overlaps, CutTaste taste,
+                   const std::function<void()>& before_cut)
+    : graph_(graph), cutter_(graph, taste), before_cut_(before_cut), part_(graph.face_count(), 0) {
   collect_conflicts(overlaps);
   number_parts();
 }
@@ -208,6 +211,7 @@ void Splitter::split() {
   for (;;) {
     const Region region = find_region();
     if (region.first.empty()) return;
+    before_cut_();
     std::vector<Index> scope;
     for (Index face = 0; face < graph_.face_count(); ++face) {
       if (part_[face] == part_[region.first.front()]) scope.push_back(face);
@@ -261,6 +265,7 @@ void Splitter::improve() {
 
 // Chooses the cut between two neighbours again, all others given.  Returns whether there was a better one.
 bool Splitter::improve(Index a, Index b, Units length) {
+  before_cut_();
   std::vector<Index> scope, first, second;
   double area[2] = {0, 0};
   for (Index face = 0; face < graph_.face_count(); ++face) {
@@ -295,9 +300,9 @@ void Splitter::straighten(const HalfedgeMesh& mesh, const Geometry& geometry, co
 }  // namespace
 
 Index split_overlaps(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Overlap>& overlaps,
-                     CutTaste taste, std::vector<char>& open) {
+                     CutTaste taste, const std::function<void()>& before_cut, std::vector<char>& open) {
   const FaceGraph graph = build_face_graph(mesh, geometry, open);
-  Splitter splitter(graph, overlaps, taste);
+  Splitter splitter(graph, overlaps, taste, before_cut);
   splitter.split();
   splitter.merge_back();
   splitter.improve();

@@ -2,6 +2,7 @@
 // Further cuts for a layout that lies on itself.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "geometry.hpp"
@@ -16,6 +17,6 @@ namespace lsgp {
 // open: (3m) halfedges at which the layout ends already, on both sides of an edge; receives the further ones.
 // Returns how many edges were opened.
 Index split_overlaps(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Overlap>& overlaps,
-                     CutTaste taste, std::vector<char>& open);
+                     CutTaste taste, const std::function<void()>& before_cut, std::vector<char>& open);
 
 }  // namespace lsgp
