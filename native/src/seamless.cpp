@@ -396,7 +396,7 @@ SeamlessReport make_seamless(const Options& options, double unit_scale, std::vec
   const PointLattice lattice(symmetry(seamless.lattice));
   GridSearch search(seamless, lattice, parts, monitor);
   Grid grid = find_grid(options, unit_scale, search, findings);
-  if (options.mode == Mode::low_stretch) search.lower_stretch(options.stretch, grid);
+  if (options.mode == Mode::low_stretch && options.stretch > 0) search.lower_stretch(options.stretch, grid);
   // With parity cones are at the centres of cells: around a corner of cells an odd number of them may meet.
   const Complex shift = seamless.parity ? Complex(0.5, 0.5) : Complex(0, 0);
   std::vector<DividedLayout> layouts;

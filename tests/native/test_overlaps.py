@@ -325,6 +325,7 @@ REAL = {
 }
 
 
+@pytest.mark.many_solves
 @pytest.mark.parametrize(("name", "seamless"), REAL)
 def test_real_meshes_are_split_with_exact_transitions(name: str, seamless: bool) -> None:
     mesh = shared_mesh(name)

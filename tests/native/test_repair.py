@@ -135,6 +135,7 @@ def own_cones(name: str) -> lsgp.Result:
     return unwrap(shared_mesh(name))
 
 
+@pytest.mark.many_solves
 def test_conformality_is_that_of_spectral_maps() -> None:
     """On average over the closed meshes; a spectral map minimises conformal energy and nothing else."""
     repaired = [own_cones(name).distortion.quasi_conformal for name in CLOSED]
@@ -144,11 +145,13 @@ def test_conformality_is_that_of_spectral_maps() -> None:
     assert np.mean(repaired) <= np.mean(spectral)
 
 
+@pytest.mark.many_solves
 @pytest.mark.parametrize("name", [*CLOSED, *OPEN])
 def test_own_cones_give_a_valid_map(name: str) -> None:
     assert_valid(shared_mesh(name), own_cones(name))
 
 
+@pytest.mark.many_solves
 @pytest.mark.parametrize("mode", ["conformal", "low-stretch"])
 @pytest.mark.parametrize("name", [*CLOSED, *OPEN, *WITHOUT_CONES])
 def test_automatic_cones_give_a_valid_map(name: str, mode: str) -> None:
