@@ -34,15 +34,22 @@ struct PartCutter::Cells {
 
   Index count() const { return static_cast<Index>(area.size()); }
 
-  void collect(std::vector<Edge> all) {
+  void collect(std::vector<Edge>& all) {
+    std::vector<Index> begin(count() + 1, 0);
     for (Edge& edge : all) {
       if (edge.cells[0] > edge.cells[1]) std::swap(edge.cells[0], edge.cells[1]);
+      ++begin[edge.cells[0] + 1];
     }
-    std::sort(all.begin(), all.end(), [](const Edge& a, const Edge& b) {
-      return a.cells[0] != b.cells[0] ? a.cells[0] < b.cells[0] : a.cells[1] < b.cells[1];
-    });
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<Index> cursor(begin.begin(), begin.end() - 1);
+    std::vector<Edge> sorted(all.size());
+    for (const Edge& edge : all) sorted[cursor[edge.cells[0]]++] = edge;
+    for (Index cell = 0; cell < count(); ++cell) {
+      std::sort(sorted.begin() + begin[cell], sorted.begin() + begin[cell + 1],
+                [](const Edge& a, const Edge& b) { return a.cells[1] < b.cells[1]; });
+    }
     edges.clear();
-    for (const Edge& edge : all) {
+    for (const Edge& edge : sorted) {
       if (edge.cells[0] == edge.cells[1]) continue;
       if (!edges.empty() && edges.back().cells[0] == edge.cells[0] && edges.back().cells[1] == edge.cells[1])
         edges.back().cost += edge.cost;
@@ -98,7 +105,7 @@ struct PartCutter::Cells {
     for (Edge& edge : all) {
       for (Index& cell : edge.cells) cell = merged[cell];
     }
-    collect(std::move(all));
+    collect(all);
     return merged;
   }
 
@@ -164,7 +171,7 @@ PartCutter::Cells PartCutter::cells_of(const std::vector<Index>& scope, const st
       edges.push_back({{cell_of_place[i], cell_of_place[place_[other]]}, link.cost});
     });
   }
-  cells.collect(std::move(edges));
+  cells.collect(edges);
   return cells;
 }
 
@@ -244,6 +251,7 @@ PartCut PartCutter::cut(const std::vector<Index>& scope, const std::vector<Index
     ++halvings;
     if (cells.count() > 0.9 * before) break;
   }
+  const int rings = 2 + static_cast<int>(2 * std::exp2(halvings / 2.0));  // cells are about so wide, twice
   PartCut best{std::vector<char>(scope.size(), 0)};
   for (const CellCut& coarse : cut_cells(cells, halvings > 0 ? cell_detour : 1.0)) {
     PartCut cut{std::vector<char>(scope.size()), coarse.cost};
@@ -252,7 +260,7 @@ PartCut PartCutter::cut(const std::vector<Index>& scope, const std::vector<Index
       cut.is_first[i] = coarse.is_first[cell[i]];
       is_held[i] = coarse.is_held[cell[i]];
     }
-    if (halvings > 0) cut = refine(scope, is_held, cut, 2 + static_cast<int>(2 * std::exp2(halvings / 2.0)));
+    if (halvings > 0) cut = refine(scope, is_held, cut, rings, best.cost);
     if (cut.cost < best.cost) best = std::move(cut);
   }
   for (const Index face : scope) place_[face] = none;
@@ -261,8 +269,8 @@ PartCut PartCutter::cut(const std::vector<Index>& scope, const std::vector<Index
 
 // The shortest cut among those within so many faces of a coarse one.
 PartCut PartCutter::refine(const std::vector<Index>& scope, const std::vector<char>& is_held, const PartCut& coarse,
-                           int rings) const {
-  std::vector<Index> cell(scope.size()), band, ring;
+                           int rings, double cost_to_beat) const {
+  std::vector<Index> cell(scope.size()), band;
   for (std::size_t i = 0; i < scope.size(); ++i) cell[i] = coarse.is_first[i] ? first_cell : second_cell;
   std::vector<char> in_band(scope.size(), 0);
   const auto add = [&](Index face) {
@@ -297,7 +305,8 @@ PartCut PartCutter::refine(const std::vector<Index>& scope, const std::vector<ch
     area += fine.is_first[i] ? graph_.area[scope[i]] : 0;
   }
   fine.cost = cost(length, std::min(area, total - area));
-  return leaves_two(scope, fine.is_first) || !leaves_two(scope, coarse.is_first) ? fine : coarse;
+  const bool is_no_use = fine.cost >= cost_to_beat;
+  return is_no_use || leaves_two(scope, fine.is_first) || !leaves_two(scope, coarse.is_first) ? fine : coarse;
 }
 
 // Whether either side of a cut is connected.

@@ -40,8 +40,8 @@ class PartCutter {
   };
   Cells cells_of(const std::vector<Index>& scope, const std::vector<Index>& cell_of_place, Index count) const;
   std::vector<CellCut> cut_cells(const Cells& cells, double slack) const;
-  PartCut refine(const std::vector<Index>& scope, const std::vector<char>& is_held, const PartCut& coarse,
-                 int rings) const;
+  PartCut refine(const std::vector<Index>& scope, const std::vector<char>& is_held, const PartCut& coarse, int rings,
+                 double cost_to_beat) const;
   bool leaves_two(const std::vector<Index>& scope, const std::vector<char>& is_first) const;
   double enough() const;
 
