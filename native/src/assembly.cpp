@@ -60,11 +60,17 @@ void Assembly::finish(const Cones& cones, const std::vector<std::pair<Index, Ind
   for (Index f = 0; f < surface_.triangles.rows(); ++f) {
     if (result_.island[f] != none) triangles.push_back(f);
   }
-  for (Solved& solved : solved_) {
-    check_in_layout(solved);
-    collect_checks(*solved.component, solved.map);
+  {
+    const Monitor::Stage stage(monitor_, "check");
+    for (Solved& solved : solved_) {
+      check_in_layout(solved);
+      collect_checks(*solved.component, solved.map);
+    }
   }
-  find_overlapping();
+  {
+    const Monitor::Stage stage(monitor_, "overlaps");
+    find_overlapping();
+  }
   for (const auto& [f, original] : duplicates) share_map(f, original);
   name_unmapped(duplicates);
   result_.distortion = measure_triangles(surface_, result_.corner_uv, triangles);
