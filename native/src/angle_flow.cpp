@@ -87,14 +87,17 @@ std::optional<Bottleneck> find_bottleneck(const HalfedgeMesh& mesh, const Transp
   return out;
 }
 
-[[noreturn]] void refuse(const Bottleneck& at, From from, const Eigen::VectorXd& angle,
-                         const std::vector<Index>& named) {
+std::vector<Index> cones_at(const Bottleneck& at, const std::vector<Index>& named) {
+  std::vector<Index> out;
+  for (const Index v : named) {
+    if (std::binary_search(at.vertices.begin(), at.vertices.end(), v)) out.push_back(v);
+  }
+  return out;
+}
+
+[[noreturn]] void refuse(const Bottleneck& at, From from, const Eigen::VectorXd& angle, std::vector<Index> cones) {
   double sum = 0;
   for (const Index v : at.vertices) sum += angle[v];
-  std::vector<Index> cones;
-  for (const Index v : named) {
-    if (std::binary_search(at.vertices.begin(), at.vertices.end(), v)) cones.push_back(v);
-  }
   const double carried = M_PI * at.triangles, degrees = 180 / M_PI;
   const std::string around =
       concat("The ", count(at.triangles, "triangle", "triangles"), " around ", count(cones.size(), "cone", "cones"));
@@ -115,10 +118,17 @@ void require_possible_angles(const HalfedgeMesh& mesh, const Eigen::VectorXd& an
   const Transport transport = left_over(mesh, angle, is_free);
   // Without free vertices both sums are the same, so what finds its place from one side fills the other.
   const bool any_free = std::find(is_free.begin(), is_free.end(), 1) != is_free.end();
-  for (const From from : {From::vertices, From::triangles}) {
-    if (from == From::triangles && !any_free) return;
-    if (const auto bottleneck = find_bottleneck(mesh, transport, from)) refuse(*bottleneck, from, angle, named);
+  const auto at_vertices = find_bottleneck(mesh, transport, From::vertices);
+  if (!at_vertices && !any_free) return;
+  const auto at_triangles = find_bottleneck(mesh, transport, From::triangles);
+  if (!at_vertices && !at_triangles) return;
+  // Too much at some cones is too little at the others: the fewer are the cause.
+  const std::vector<Index> high = at_vertices ? cones_at(*at_vertices, named) : std::vector<Index>{};
+  const std::vector<Index> low = at_triangles ? cones_at(*at_triangles, named) : std::vector<Index>{};
+  if (!at_triangles || (at_vertices && high.size() <= low.size())) {
+    refuse(*at_vertices, From::vertices, angle, high);
   }
+  refuse(*at_triangles, From::triangles, angle, low);
 }
 
 }  // namespace lsgp
