@@ -243,7 +243,9 @@ class ExactLayout {
     const std::vector<char> on_cut = on_cuts(mesh_, map_.cut_graph);
     for (Index v = 0; v < mesh_.vertex_count(); ++v) {
       if (!on_cut[v]) {
-        if (lattice_.square()) position_[v] = as_float(position_[v]);
+        if (!lattice_.square()) continue;
+        // On a border as on a cut, so that the two sides of an open seam stay together.
+        position_[v] = mesh_.loop_of_vertex[v] == none ? as_float(position_[v]) : round_to(position_[v], fraction);
         continue;
       }
       const auto all = sectors(mesh_, map_.cut_graph, map_.cut_mesh, v);
