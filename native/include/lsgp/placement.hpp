@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Automatic cones: where to place them and what angle each has.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "lsgp/errors.hpp"
+#include "lsgp/options.hpp"
+#include "lsgp/surface.hpp"
+
+namespace lsgp {
+
+struct MirrorPlane {
+  Eigen::Vector3d point, normal;
+};
+
+struct PlacementOptions {
+  std::optional<int> count;        // cones of every component, existing ones included; none: as few as reach the target
+  double target = 1.05;            // predicted L2 stretch
+  std::optional<Lattice> lattice;  // angles are multiples of its turn, for a seamless layout
+  bool prefer_sharp = false;       // sharp corners before smooth places where that costs little
+  bool symmetric = false;          // the same cones on both sides of a mirror plane
+  std::optional<MirrorPlane> mirror;  // none: found, every component its own
+  SeamMode seams = SeamMode::follow;
+};
+
+struct Placement {
+  std::vector<Index> cones;         // (k) existing ones first
+  std::vector<double> cone_angles;  // (k) radians: unwrapping with these gives what is predicted
+  Eigen::VectorXd log_scale;        // (n) predicted, area-weighted mean 0 on every island
+  double predicted_l2 = 1;          // over the whole surface
+  bool reached = true;              // the target, on every component
+  std::vector<Finding> warnings;
+  int factorizations = 0, back_substitutions = 0;
+};
+
+}  // namespace lsgp
