@@ -42,6 +42,8 @@ class View:
 
 def choose_view(model: bpy.types.Object, cut_edges: np.ndarray, cones: np.ndarray) -> View:
     """Where a cut with a turn runs through an even part of the surface, away from other cuts and from its own ends."""
+    import lsgp  # comes with the extension
+
     mesh = model.data
     positions, normals = vectors(mesh.vertices, "co"), vectors(mesh.vertices, "normal")
     uv = demo_picture.read_uv(mesh)
@@ -58,7 +60,7 @@ def choose_view(model: bpy.types.Object, cut_edges: np.ndarray, cones: np.ndarra
         return evenness + 0.5 * min(alone, 0.5), View(focus, rotation, width, path, vertex, CLOSE_SIZE)
 
     views = []
-    for path in demo_picture.split_into_paths(cut_edges, cones):
+    for path in lsgp.split_into_paths(cut_edges, cones):
         left, right = np.diff(uv[sister_loops(mesh, path[None, :2])[0]], axis=1)[:, 0]
         if left @ right <= 0:
             views += [view_of(path, vertex) for vertex in path[1:-1].tolist()]

@@ -35,6 +35,8 @@ def render_picture(model: bpy.types.Object, cut_edges: np.ndarray, cones: np.nda
 
     cut_edges: (c, 2) vertex pairs where the layout is open. cones: (k,) vertices.
     """
+    import lsgp  # comes with the extension
+
     mesh = model.data
     uv = read_uv(mesh)
     board = layout_places(uv)
@@ -49,10 +51,10 @@ def render_picture(model: bpy.types.Object, cut_edges: np.ndarray, cones: np.nda
 
     add_layout(mesh, uv, board)
     sides = Sides(mesh)
-    for number, cut in enumerate(split_into_paths(cut_edges, cones)):
+    for number, cut in enumerate(lsgp.split_into_paths(cut_edges, cones)):
         lines = [positions[cut], *(board[loops] for loops in sides.of_path(cut))]
         add_tubes(f"cut {number}", lines, TUBE, cut_colour(number))
-    borders = split_into_paths(sides.border_edges(), cut_edges.ravel())
+    borders = lsgp.split_into_paths(sides.border_edges(), cut_edges.ravel())
     lines = [positions[border] for border in borders]
     lines += [board[loops] for border in borders for loops in sides.of_path(border)]
     add_tubes("borders", lines, BORDER_TUBE, BORDER_COLOUR)
@@ -128,30 +130,6 @@ class Sides:
         ahead, back = after - here, before - here
         cross = ahead[:, 0] * back[:, 1] - ahead[:, 1] * back[:, 0]
         return float(2 * np.pi - np.arctan2(cross, (ahead * back).sum(axis=1)).sum())
-
-
-def split_into_paths(edges: np.ndarray, nodes: np.ndarray) -> list[np.ndarray]:
-    """Vertex chains between nodes: the given ones and every vertex where not exactly two of the edges meet."""
-    neighbours: dict[int, list[int]] = {}
-    for a, b in edges.tolist():
-        neighbours.setdefault(a, []).append(b)
-        neighbours.setdefault(b, []).append(a)
-    ends = set(nodes.tolist()) | {vertex for vertex, around in neighbours.items() if len(around) != 2}
-    left = {frozenset(edge) for edge in edges.tolist()}
-    paths = []
-    # After the chains that start at nodes only closed loops without nodes are left; those start anywhere.
-    for start in sorted(ends & neighbours.keys()) + sorted(neighbours):
-        for step in neighbours[start]:
-            if frozenset((start, step)) not in left:
-                continue
-            path = [start, step]
-            left.remove(frozenset(path))
-            while path[-1] not in ends and path[-1] != start:
-                onward = [vertex for vertex in neighbours[path[-1]] if frozenset((path[-1], vertex)) in left]
-                path.append(onward[0])
-                left.remove(frozenset(path[-2:]))
-            paths.append(np.array(path))
-    return paths
 
 
 def cut_colour(number: int) -> tuple[float, float, float]:

@@ -26,6 +26,7 @@ from .api import (
     place_cones,
     prescribe_curvature,
 )
+from .cut_paths import split_into_paths
 from .errors import (
     Cancelled,
     CurvatureError,
@@ -37,6 +38,7 @@ from .errors import (
     TopologyError,
 )
 from .islands import correct_aspect, fit_placement
+from .triangles import TriangleDistortion, singular_values, triangle_distortion
 
 __version__ = version("lsgp")
 
@@ -61,6 +63,7 @@ __all__ = [
     "SolverError",
     "Surface",
     "TopologyError",
+    "TriangleDistortion",
     "correct_aspect",
     "find_cuts",
     "fit_placement",
@@ -69,4 +72,7 @@ __all__ = [
     "parameterize",
     "place_cones",
     "prescribe_curvature",
+    "singular_values",
+    "split_into_paths",
+    "triangle_distortion",
 ]

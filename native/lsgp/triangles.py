@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The distortion of every single triangle, for heat maps; `measure_distortion` has that of a whole map."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .api import FloatArray, Surface
+from .errors import InputError
+
+
+@dataclass(frozen=True, slots=True)
+class TriangleDistortion:
+    """Measures of each triangle, (m,) float64; NaN where it has no area on the surface or no coordinates.
+
+    conformal: sigma_1 / sigma_2, 1 where angles are kept. area: (share of the UV area) / (share of the 3D area), 1
+    where the triangle has its part of the texture. stretch: the L2 stretch of Sander et al. 2001 of the triangle alone,
+    at the common scale of the whole map; 1 where lengths are kept. All are infinite or 0 where the triangle's image has
+    no area.
+    """
+
+    conformal: FloatArray
+    area: FloatArray
+    stretch: FloatArray
+
+
+def singular_values(surface: Surface, corner_uv: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """(m,) sigma_1 >= sigma_2 >= 0 of each triangle's linear map from its plane to the texture.
+
+    corner_uv: (m, 3, 2). NaN as in `TriangleDistortion`.  Raises InputError.
+    """
+    uv = np.asarray(corner_uv, np.float64)
+    expected = (len(surface.triangles), 3, 2)
+    if uv.shape != expected:
+        raise InputError("WRONG_SHAPE", f"corner_uv has shape {uv.shape}; pass {expected}, one (u, v) per corner.")
+    place = surface.positions[surface.triangles]
+    first, second = place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]
+    length, doubled = np.linalg.norm(first, axis=1), _doubled_areas(surface)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # The triangle in its own plane: corners 0, length, x + i height.
+        x, height = (first * second).sum(axis=1) / length, doubled / length
+        z = uv[..., 0] + 1j * uv[..., 1]
+        along = (z[:, 1] - z[:, 0]) / length
+        across = (z[:, 2] - z[:, 0] - along * x) / height
+        largest = (np.abs(along - 1j * across) + np.abs(along + 1j * across)) / 2
+        # By the area, not as a difference, which would lose the digits of thin images.
+        smallest = np.abs((along.conj() * across).imag) / largest
+    smallest[largest == 0] = 0.0
+    flat = ~(doubled > 0)
+    largest[flat] = smallest[flat] = np.nan
+    return largest, smallest
+
+
+def triangle_distortion(surface: Surface, corner_uv: ArrayLike) -> TriangleDistortion:
+    """The measures of each triangle.  Arguments and errors as in `singular_values`."""
+    largest, smallest = singular_values(surface, corner_uv)
+    measured = ~np.isnan(largest)
+    areas = np.where(measured, _doubled_areas(surface), 0.0)
+    scaled = largest * smallest
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # The area of the texture a unit of the surface has on the whole.
+        unit = (scaled[measured] * areas[measured]).sum() / areas.sum()
+        stretch = np.sqrt((1 / largest**2 + 1 / smallest**2) / 2 * unit)
+        return TriangleDistortion(
+            conformal=np.where(smallest > 0, largest / smallest, np.where(measured, np.inf, np.nan)),
+            area=scaled / unit,
+            stretch=stretch,
+        )
+
+
+def _doubled_areas(surface: Surface) -> NDArray[np.float64]:
+    place = surface.positions[surface.triangles]
+    return np.linalg.norm(np.cross(place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]), axis=1)
