@@ -285,7 +285,7 @@ def test_not_enough_memory_is_a_refusal(
         raise MemoryError
 
     monkeypatch.chdir(cube_files)
-    monkeypatch.setattr("lsgp.cli.parameterize", exhaust)
+    monkeypatch.setattr("lsgp.unwrap_file.parameterize", exhaust)
     assert main(["unwrap", "cube.obj", "-o", "out.obj", "--cones", "corners.json", "--report", "r.json"]) == 3
     assert json.loads((cube_files / "r.json").read_text())["code"] == "OUT_OF_MEMORY"
     assert "OUT_OF_MEMORY" in capsys.readouterr().err

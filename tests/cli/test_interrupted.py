@@ -138,7 +138,7 @@ def interrupt_at(call: int, monkeypatch: pytest.MonkeyPatch) -> list[float]:
 
         return library.parameterize(*arguments, progress=tell, **options)
 
-    monkeypatch.setattr("lsgp.cli.parameterize", parameterize)
+    monkeypatch.setattr("lsgp.unwrap_file.parameterize", parameterize)
     return told
 
 
@@ -180,7 +180,7 @@ def test_interrupted_while_writing_leaves_no_half_a_file(
 
 def test_measuring_can_be_interrupted(ball_files: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ball_files)
-    monkeypatch.setattr("lsgp.cli.read_mesh", lambda *arguments: signal.raise_signal(signal.SIGINT))
+    monkeypatch.setattr("lsgp.unwrap_file.read_mesh", lambda *arguments: signal.raise_signal(signal.SIGINT))
     assert main(["measure", "ball.obj", "--report", "report.json"]) == 130
     assert not Path("report.json").exists()
 
