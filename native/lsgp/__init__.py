@@ -38,6 +38,7 @@ from .errors import (
     TopologyError,
 )
 from .islands import correct_aspect, fit_placement
+from .ledger import LedgerPart, build_ledger
 from .triangles import TriangleDistortion, singular_values, triangle_distortion
 
 __version__ = version("lsgp")
@@ -50,6 +51,7 @@ __all__ = [
     "Elements",
     "Finding",
     "InputError",
+    "LedgerPart",
     "LsgpError",
     "Measurement",
     "Options",
@@ -64,6 +66,7 @@ __all__ = [
     "Surface",
     "TopologyError",
     "TriangleDistortion",
+    "build_ledger",
     "correct_aspect",
     "find_cuts",
     "fit_placement",
