@@ -38,7 +38,7 @@ from .errors import (
     TopologyError,
 )
 from .islands import correct_aspect, fit_placement
-from .ledger import LedgerPart, build_ledger
+from .ledger import LedgerPart, build_ledger, hold_complete, part_surface
 from .triangles import TriangleDistortion, singular_values, triangle_distortion
 
 __version__ = version("lsgp")
@@ -70,9 +70,11 @@ __all__ = [
     "correct_aspect",
     "find_cuts",
     "fit_placement",
+    "hold_complete",
     "lattice",
     "measure_distortion",
     "parameterize",
+    "part_surface",
     "place_cones",
     "prescribe_curvature",
     "singular_values",

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -103,6 +103,39 @@ def build_ledger(
             parts = _Parts(triangles, edges, ~opened)
     own = np.split(kept[np.argsort(parts.of_triangle, kind="stable")], np.cumsum(parts.sizes)[:-1])
     return parts.accounts(own, vertices, given, options.border == "straight") if len(kept) else []
+
+
+def hold_complete(
+    surface: Surface,
+    cones: ArrayLike,
+    angles: Sequence[float | None],
+    tentative: ArrayLike,
+    options: Options | None = None,
+) -> list[float | None]:
+    """The angles, those marked tentative, (k,) bool, only in parts whose ledger is complete with them.
+
+    Angles found for one set of cones mean nothing for another: once a cone is added, taken away or given another
+    angle, the others are automatic again.  Errors as in `build_ledger`.
+    """
+    held = list(angles)
+    tentative = np.asarray(tentative, bool)
+    if not tentative.any():
+        return held
+    for part in build_ledger(surface, cones, angles, options):
+        if not part.complete:
+            for place in part.cones[tentative[part.cones]]:
+                held[place] = None
+    return held
+
+
+def part_surface(surface: Surface, part: LedgerPart) -> Surface:
+    """One part by itself, its vertices numbered as before; cuts may follow all of its edges."""
+    triangles = surface.triangles[part.triangles]
+    count = len(surface.positions)
+    ends = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
+    seams = np.sort(surface.seams, axis=1).astype(np.int64)
+    own = np.isin(seams[:, 0] * count + seams[:, 1], ends[:, 0].astype(np.int64) * count + ends[:, 1])
+    return replace(surface, triangles=triangles, edges=None, seams=surface.seams[own])
 
 
 class _Edges:

@@ -7,7 +7,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
-from lsgp import Options, Surface, build_ledger
+from lsgp import Options, Surface, build_ledger, hold_complete, part_surface
 
 CLOSED = {
     "cube": meshes.cube(4),
@@ -190,3 +190,35 @@ def test_what_does_not_belong_together_is_refused() -> None:
 
 def test_no_triangles_no_parts() -> None:
     assert build_ledger(Surface(np.zeros((3, 3)), np.empty((0, 3), np.int32)), [0]) == []
+
+
+def test_tentative_angles_hold_while_their_part_is_complete() -> None:
+    mesh = meshes.merge([meshes.cube(2), meshes.cube(2)])
+    cones, right, every = mesh.cones, [1.5 * np.pi] * 16, [True] * 16
+    assert hold_complete(surface(mesh), cones, right, every) == right
+    # One cone less on the first cube, and its others are automatic again; so they are with one more.
+    assert hold_complete(surface(mesh), cones[1:], right[1:], every[1:]) == [None] * 7 + right[8:]
+    more = [*cones, np.setdiff1d(np.arange(len(mesh.positions)), cones)[-1]]
+    assert hold_complete(surface(mesh), more, [*right, None], [*every, False]) == right[:8] + [None] * 9
+    # What is not tentative stays.
+    changed = [np.pi, *right[1:]]
+    assert hold_complete(surface(mesh), cones, changed, [False, *every[1:]]) == [np.pi, *[None] * 7, *right[8:]]
+    assert hold_complete(surface(mesh), cones, changed, [False] * 16) == changed
+
+
+def test_a_part_by_itself_has_the_account_and_the_prescription_it_had() -> None:
+    mesh = meshes.merge([CLOSED["icosphere"], OPEN["hill"], meshes.torus()])
+    edges = meshes.edges_of(mesh.triangles)
+    whole = surface(mesh, edges=edges, seams=edges[::5])
+    for seams in ("follow", "boundary", "ignore"):
+        options = Options(seams=seams)
+        together = build_ledger(whole, mesh.cones, None, options)
+        for part in together:
+            own = mesh.cones[part.cones]
+            by_itself = build_ledger(part_surface(whole, part), own, None, options)
+            assert sum(p.euler for p in by_itself) == part.euler
+            assert sum(p.borders for p in by_itself) == part.borders
+    part = build_ledger(whole, mesh.cones)[0]
+    found = lsgp.prescribe_curvature(part_surface(whole, part), mesh.cones[part.cones])
+    together = lsgp.prescribe_curvature(whole, mesh.cones)
+    assert found.cone_angles == pytest.approx(together.cone_angles[: len(part.cones)])
