@@ -55,7 +55,6 @@ class MESH_OT_cone_place(ConeGroupProperty, SeamsProperty, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         placed: list[tuple[bpy.types.Object, np.ndarray, np.ndarray]] = []
         failures = {}
-        options = native.lsgp.Options(seams=SEAMS[self.seams][0])
         by_uv = mesh_read.selects_by_uv(context)
         for obj in mesh_read.target_objects(context):
             region = None
@@ -67,10 +66,10 @@ class MESH_OT_cone_place(ConeGroupProperty, SeamsProperty, bpy.types.Operator):
                 marked = marked[region.vertex_used[marked]]
                 found = native.lsgp.place_cones(
                     region.surface,
+                    marked if self.keep else (),
                     count=None if self.automatic else self.count,
-                    existing=marked if self.keep else (),
-                    options=options,
-                )
+                    seams=SEAMS[self.seams][0],
+                ).cones
                 placed.append((obj, marked, found))
                 findings.keep(obj, region, [])
             except (native.lsgp.LsgpError, reporting.Refused) as error:
@@ -83,7 +82,7 @@ class MESH_OT_cone_place(ConeGroupProperty, SeamsProperty, bpy.types.Operator):
         for obj, marked, found in placed:
             new = np.setdiff1d(found, marked)
             dropped = np.setdiff1d(marked, found)
-            if len(dropped):
+            if len(dropped) and not self.keep:
                 cones.clear_cones(obj, self.vertex_group, dropped)
             if len(new):
                 cones.mark_cones(obj, self.vertex_group, new)

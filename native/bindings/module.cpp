@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <array>
 #include <cstring>
 #include <initializer_list>
 
@@ -149,15 +150,20 @@ lsgp::SeamMode to_seam_mode(const std::string& name) {
       name, {{"follow", SeamMode::follow}, {"boundary", SeamMode::boundary}, {"ignore", SeamMode::ignore}});
 }
 
+lsgp::Lattice to_lattice(const std::string& name) {
+  using lsgp::Lattice;
+  return choose<Lattice>(name, {{"square", Lattice::square},
+                                {"stripe", Lattice::stripe},
+                                {"translation", Lattice::translation},
+                                {"triangle", Lattice::triangle},
+                                {"hexagon", Lattice::hexagon}});
+}
+
 // A dictionary with the fields of lsgp.Seamless.
 lsgp::Seamless to_seamless(const py::dict& values) {
-  using lsgp::CoarseGrid, lsgp::Lattice;
+  using lsgp::CoarseGrid;
   lsgp::Seamless seamless;
-  seamless.lattice = choose<Lattice>(values["lattice"].cast<std::string>(), {{"square", Lattice::square},
-                                                                             {"stripe", Lattice::stripe},
-                                                                             {"translation", Lattice::translation},
-                                                                             {"triangle", Lattice::triangle},
-                                                                             {"hexagon", Lattice::hexagon}});
+  seamless.lattice = to_lattice(values["lattice"].cast<std::string>());
   seamless.tiles = values["tiles"].cast<std::optional<double>>();
   seamless.tile_size = values["tile_size"].cast<std::optional<double>>();
   seamless.parity = values["parity"].cast<bool>();
@@ -302,13 +308,56 @@ py::dict prescribe_curvature(const FloatArray& positions, const IndexArray& tria
   return out;
 }
 
-py::array_t<Index> place_cones(const FloatArray& positions, const IndexArray& triangles,
-                               const std::optional<IndexArray>& edges, const IndexArray& seams, int count,
-                               const IndexArray& existing, const std::string& seam_mode) {
+// A dictionary with the fields of lsgp.api's placement options.
+lsgp::PlacementOptions to_placement_options(const py::dict& values) {
+  lsgp::PlacementOptions options;
+  options.count = values["count"].cast<std::optional<int>>();
+  options.target = values["target"].cast<double>();
+  if (!values["lattice"].is_none()) options.lattice = to_lattice(values["lattice"].cast<std::string>());
+  options.prefer_sharp = values["prefer_sharp"].cast<bool>();
+  options.symmetric = values["symmetric"].cast<bool>();
+  if (!values["mirror"].is_none()) {
+    const auto numbers = values["mirror"].cast<std::array<double, 6>>();
+    options.mirror = {{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};
+  }
+  options.seams = to_seam_mode(values["seams"].cast<std::string>());
+  return options;
+}
+
+py::dict place_cones(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
+                     const IndexArray& seams, const IndexArray& cones, const FloatArray& angles,
+                     const BoolArray& has_angle, const py::dict& option_values, const py::object& progress) {
   const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
-  const std::vector<Index> kept = to_vector(existing);
+  const lsgp::Cones existing = to_cones(cones, angles, has_angle);
+  const lsgp::PlacementOptions options = to_placement_options(option_values);
+  const lsgp::Progress tell = to_progress(progress);
+  const lsgp::Placement result = without_gil([&] { return lsgp::place_cones(surface, existing, options, tell); });
+  py::dict out;
+  out["cones"] = to_array(result.cones);
+  out["cone_angles"] = to_array(result.cone_angles);
+  out["log_scale"] = to_array(result.log_scale);
+  out["predicted_l2"] = result.predicted_l2;
+  out["reached"] = result.reached;
+  out["warnings"] = to_findings(result.warnings);
+  out["factorizations"] = result.factorizations;
+  out["back_substitutions"] = result.back_substitutions;
+  return out;
+}
+
+py::dict cone_gains(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
+                    const IndexArray& seams, const IndexArray& cones, const FloatArray& angles,
+                    const BoolArray& has_angle, const std::string& seam_mode, const py::object& progress) {
+  const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
+  const lsgp::Cones existing = to_cones(cones, angles, has_angle);
   const lsgp::SeamMode mode = to_seam_mode(seam_mode);
-  return to_array(without_gil([&] { return lsgp::place_cones(surface, count, kept, mode); }));
+  const lsgp::Progress tell = to_progress(progress);
+  const lsgp::ConeGains result = without_gil([&] { return lsgp::cone_gains(surface, existing, mode, tell); });
+  py::dict out;
+  out["predicted_l2"] = to_array(result.predicted_l2);
+  out["present_l2"] = result.present_l2;
+  out["best"] = result.best < 0 ? py::object(py::none()) : py::int_(result.best);
+  out["warnings"] = to_findings(result.warnings);
+  return out;
 }
 
 py::dict measure_distortion(const FloatArray& positions, const IndexArray& triangles,
@@ -344,5 +393,6 @@ PYBIND11_MODULE(_lsgp, module) {
   module.def("find_cuts", &find_cuts);
   module.def("prescribe_curvature", &prescribe_curvature);
   module.def("place_cones", &place_cones);
+  module.def("cone_gains", &cone_gains);
   module.def("measure_distortion", &measure_distortion);
 }

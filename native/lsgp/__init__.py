@@ -8,11 +8,13 @@ from importlib.metadata import version
 
 from . import lattice
 from .api import (
+    ConeGains,
     CutGraph,
     Distortion,
     Measurement,
     Options,
     Pins,
+    Placement,
     Prescription,
     RepairReport,
     Result,
@@ -20,6 +22,7 @@ from .api import (
     SeamlessReport,
     SeamQuality,
     Surface,
+    cone_gains,
     find_cuts,
     measure_distortion,
     parameterize,
@@ -45,6 +48,7 @@ __version__ = version("lsgp")
 
 __all__ = [
     "Cancelled",
+    "ConeGains",
     "CurvatureError",
     "CutGraph",
     "Distortion",
@@ -56,6 +60,7 @@ __all__ = [
     "Measurement",
     "Options",
     "Pins",
+    "Placement",
     "Prescription",
     "RepairReport",
     "Result",
@@ -67,6 +72,7 @@ __all__ = [
     "TopologyError",
     "TriangleDistortion",
     "build_ledger",
+    "cone_gains",
     "correct_aspect",
     "find_cuts",
     "fit_placement",

@@ -48,10 +48,23 @@ def place_cones(
     triangles: _Indices,
     edges: _Indices | None,
     seams: _Indices,
-    count: int,
-    existing: _Indices,
+    cones: _Indices,
+    angles: _Floats,
+    has_angle: _Flags,
+    options: dict[str, Any],
+    progress: Callable[[float], bool | None] | None,
+) -> dict[str, Any]: ...
+def cone_gains(
+    positions: _Floats,
+    triangles: _Indices,
+    edges: _Indices | None,
+    seams: _Indices,
+    cones: _Indices,
+    angles: _Floats,
+    has_angle: _Flags,
     seam_mode: str,
-) -> _Indices: ...
+    progress: Callable[[float], bool | None] | None,
+) -> dict[str, Any]: ...
 def measure_distortion(
     positions: _Floats,
     triangles: _Indices,

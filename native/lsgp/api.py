@@ -341,6 +341,43 @@ class Prescription:
 
 
 @dataclass(frozen=True, slots=True)
+class Placement:
+    """Cones placed automatically, with the angles that go with them.
+
+    cones, cone_angles: (k,) int32, (k,) float64 radians, existing ones first but for those on a border that prescribe
+        nothing. `parameterize` with both gives what is predicted here.
+    log_scale: (n,) float64, predicted, area-weighted mean 0 on an island. predicted_l2: the L2 stretch the map will
+        have. reached: whether that is within the target on every component.
+    factorizations, back_substitutions: the linear algebra it took.
+    """
+
+    cones: IndexArray
+    cone_angles: FloatArray
+    log_scale: FloatArray
+    predicted_l2: float
+    reached: bool
+    warnings: list[Finding]
+    factorizations: int
+    back_substitutions: int
+
+
+@dataclass(frozen=True, slots=True)
+class ConeGains:
+    """What one more cone would do to the stretch, its angle and the automatic ones chosen anew.
+
+    predicted_l2: (n,) float64, the L2 stretch of the vertex's component with a cone there, to first order; NaN where
+        none may be placed.
+    present_l2: the L2 stretch of the whole surface as it is; infinite where a component needs a cone.
+    best: the vertex where a cone lowers that most; None where none does.
+    """
+
+    predicted_l2: FloatArray
+    present_l2: float
+    best: int | None
+    warnings: list[Finding]
+
+
+@dataclass(frozen=True, slots=True)
 class Measurement:
     """Quality of given texture coordinates; cuts are the interior edges whose two sides differ.
 
@@ -406,20 +443,66 @@ def prescribe_curvature(
 
 
 def place_cones(
-    surface: Surface, count: int | None = None, existing: ArrayLike = (), options: Options = Options()
-) -> IndexArray:
-    """Cones at the extrema of the log scale factor, one after the other (Ben-Chen et al. 2008).
+    surface: Surface,
+    cones: ArrayLike = (),
+    angles: Sequence[float | None] | None = None,
+    *,
+    count: int | None = None,
+    target: float = 1.05,
+    lattice: Lattice | None = None,
+    prefer_sharp: bool = False,
+    symmetric: bool = False,
+    mirror: tuple[ArrayLike, ArrayLike] | None = None,
+    seams: SeamMode = "follow",
+    progress: Progress | None = None,
+) -> Placement:
+    """Place cones where they lower the stretch most, with the angles that go with them.
 
-    count: cones per component, `existing` ones included; None: as many as bring the predicted L2 stretch near 1.
-    existing: cones to keep; they come first in the answer. None is placed on a border nor, where the mesh has room,
-        within two rings of another.  Returns (k,) int32 vertex indices.
+    cones, angles: existing cones, which are kept, and angles of theirs that are, None = automatic.
+    count: cones per component, existing ones included; None: as few as bring the predicted L2 stretch to `target`.
+    lattice: angles become multiples of its turn, for a seamless layout.
+    prefer_sharp: sharp corners before smooth places where that costs little.
+    symmetric: the same cones on both sides of a plane: of `mirror`, a point on it and its normal, or None: found.
+    seams, progress: as for `parameterize`.
+    None is placed on a border nor, where the mesh has room, within two rings of another.
+    Raises InputError, TopologyError, CurvatureError, SolverError, Cancelled.
     """
-    wanted = -1
     if count is not None:
         if not isinstance(count, Integral) or not 0 <= count <= np.iinfo(np.int32).max:
             raise InputError("WRONG_PARAMETER", f"count is {count!r}; pass a number of cones, or None for automatic.")
-        wanted = int(count)
-    return _lsgp.place_cones(*_surface_arrays(surface), wanted, _index_vector(existing, "existing"), options.seams)
+        count = int(count)
+    if not isinstance(target, Real) or isinstance(target, bool):
+        raise InputError("WRONG_PARAMETER", f"target is {target!r}; pass an L2 stretch, a number above 1.")
+    for name, value in (("prefer_sharp", prefer_sharp), ("symmetric", symmetric)):
+        if not isinstance(value, bool):
+            raise InputError("WRONG_PARAMETER", f"{name} is {value!r}; pass True or False.")
+    if lattice is not None:
+        _require_choice("lattice", lattice, get_args(Lattice))
+    _require_choice("seams", seams, get_args(SeamMode))
+    options = {
+        "count": count,
+        "target": float(target),
+        "lattice": lattice,
+        "prefer_sharp": prefer_sharp,
+        "symmetric": symmetric,
+        "mirror": None if mirror is None else _mirror_numbers(mirror),
+        "seams": seams,
+    }
+    out = _lsgp.place_cones(*_surface_arrays(surface), *_given_cones(cones, angles), options, progress)
+    return Placement(**out)
+
+
+def cone_gains(
+    surface: Surface,
+    cones: ArrayLike = (),
+    angles: Sequence[float | None] | None = None,
+    *,
+    seams: SeamMode = "follow",
+    progress: Progress | None = None,
+) -> ConeGains:
+    """What one more cone would do to the stretch, wherever it is placed.  Arguments and errors as in `place_cones`."""
+    _require_choice("seams", seams, get_args(SeamMode))
+    return ConeGains(**_lsgp.cone_gains(*_surface_arrays(surface), *_given_cones(cones, angles), seams, progress))
 
 
 def measure_distortion(surface: Surface, corner_uv: ArrayLike, cones: ArrayLike | None = None) -> Measurement:
@@ -445,12 +528,28 @@ def _surface_arrays(surface: Surface) -> tuple[Any, ...]:
     return surface.positions, surface.triangles, surface.edges, surface.seams
 
 
-def _cone_arrays(cones: ArrayLike, angles: Sequence[float | None] | None, options: Options) -> tuple[Any, ...]:
-    """Vertices, angles, which of them are given, and the options with the rule for the others."""
+def _given_cones(
+    cones: ArrayLike, angles: Sequence[float | None] | None
+) -> tuple[IndexArray, FloatArray, NDArray[np.bool_]]:
+    """Vertices, angles, and which of them are given."""
     vertices = _index_vector(cones, "cones")
     given = [None] * len(vertices) if angles is None else list(angles)
     has_angle = np.array([angle is not None for angle in given], bool)
     values = np.array([0.0 if angle is None else float(angle) for angle in given], np.float64)
+    return vertices, values, has_angle
+
+
+def _mirror_numbers(mirror: tuple[ArrayLike, ArrayLike]) -> list[float]:
+    """A point on the plane and its normal."""
+    numbers = np.asarray(mirror)
+    if numbers.shape != (2, 3):
+        raise InputError("WRONG_SHAPE", f"mirror has shape {numbers.shape}; pass a point and a normal, (2, 3).")
+    return [float(x) for x in _floats(numbers, "mirror").ravel()]
+
+
+def _cone_arrays(cones: ArrayLike, angles: Sequence[float | None] | None, options: Options) -> tuple[Any, ...]:
+    """Vertices, angles, which of them are given, and the options with the rule for the others."""
+    vertices, values, has_angle = _given_cones(cones, angles)
     rule = options.prescription or ("manual" if has_angle.any() else "least-distortion")
     return (
         vertices,

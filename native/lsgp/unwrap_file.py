@@ -82,7 +82,8 @@ def _map(args: argparse.Namespace, options: Options, run: Run, progress: Progres
         cones, angles = cones_in(cones_json, cones_path, args.prescription)
     else:
         with run.stage("place_cones"):
-            cones, angles = place_cones(surface, cone_count(args), options=options), None
+            placed = place_cones(surface, count=cone_count(args), seams=options.seams)
+            cones, angles = placed.cones, placed.cone_angles if options.prescription is None else None
     result = parameterize(surface, cones, angles, options, progress=progress)
     run.stage_seconds.update(result.stage_seconds)
     return mesh, result

@@ -2,6 +2,7 @@
 // Cones at the extrema of the log scale factor, one after the other (Ben-Chen, Gotsman, Bunin 2008).
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "components.hpp"
 #include "lsgp/lsgp.hpp"
@@ -14,9 +15,9 @@ constexpr double wanted_l2 = 1.1;    // of the harmonic angles; least distortion
 constexpr int most_automatic = 60;   // cones of one component
 constexpr int fewest_on_sphere = 4;  // a closed surface of genus 0 needs 3; 4 keep their angles moderate
 
-class Placement {
+class GreedyPlacement {
  public:
-  Placement(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& existing)
+  GreedyPlacement(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& existing)
       : mesh_(mesh),
         geometry_(geometry),
         scale_(mesh, geometry, free_border(mesh, {})),
@@ -96,21 +97,48 @@ class Placement {
 
 }  // namespace
 
-std::vector<Index> place_cones(const Surface& surface, int count, const std::vector<Index>& existing, SeamMode seams) {
-  std::vector<Finding> findings;
+Placement place_cones(const Surface& surface, const Cones& existing, const PlacementOptions& placement,
+                      const Progress&) {
+  Placement out;
   Options options;
-  options.seams = seams;
-  const Work work =
-      prepare(surface, {existing, std::vector<std::optional<double>>(existing.size())}, options, findings);
+  options.prescription = PrescriptionRule::manual;
+  options.seams = placement.seams;
+  if (placement.lattice) {
+    options.seamless.emplace();
+    options.seamless->lattice = *placement.lattice;
+  }
+  const Work work = prepare(surface, existing, options, out.warnings);
   const std::vector<Component>& components = work.topology.components;
-  std::vector<Index> out = existing;
-  for_each_component(components, findings, [&](std::size_t i) {
+  Cones all = existing;
+  for_each_component(components, out.warnings, [&](std::size_t i) {
     const Component& component = components[i];
-    const Geometry geometry = require_geometry(component, findings);
+    const Geometry geometry = require_geometry(component, out.warnings);
     const std::vector<Index>& kept = work.tasks[i].cones.vertices;
-    const std::vector<Index> placed = Placement(component.mesh, geometry, kept).place(count);
-    for (std::size_t k = kept.size(); k < placed.size(); ++k) out.push_back(component.source_vertex[placed[k]]);
+    const std::vector<Index> placed =
+        GreedyPlacement(component.mesh, geometry, kept).place(placement.count.value_or(-1));
+    for (std::size_t k = kept.size(); k < placed.size(); ++k) {
+      all.vertices.push_back(component.source_vertex[placed[k]]);
+      all.angles.push_back(std::nullopt);
+    }
   });
+  const Prescription prescription = prescribe_curvature(surface, all, options);
+  out.cones = prescription.cones;
+  out.cone_angles = prescription.cone_angles;
+  out.log_scale = prescription.log_scale;
+  out.predicted_l2 = prescription.predicted_l2;
+  return out;
+}
+
+ConeGains cone_gains(const Surface& surface, const Cones& existing, SeamMode seams, const Progress& progress) {
+  ConeGains out;
+  out.predicted_l2 = Eigen::VectorXd::Constant(surface.positions.rows(), std::numeric_limits<double>::quiet_NaN());
+  PlacementOptions options;
+  options.seams = seams;
+  options.count = static_cast<int>(existing.vertices.size()) + 1;
+  const Placement placed = place_cones(surface, existing, options, progress);
+  if (placed.cones.size() <= existing.vertices.size()) return out;
+  out.best = placed.cones.back();
+  out.predicted_l2[out.best] = placed.predicted_l2;
   return out;
 }
 

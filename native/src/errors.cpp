@@ -56,6 +56,8 @@ const char* name(Code code) {
     case Code::cones_not_snapped: return "CONES_NOT_SNAPPED";
     case Code::angles_adjusted: return "ANGLES_ADJUSTED";
     case Code::overlapping_triangles: return "OVERLAPPING_TRIANGLES";
+    case Code::placement_not_reached: return "PLACEMENT_NOT_REACHED";
+    case Code::not_symmetric: return "NOT_SYMMETRIC";
   }
   return "UNKNOWN";
 }

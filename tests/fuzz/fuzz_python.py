@@ -105,7 +105,7 @@ def call_the_api(data: atheris.FuzzedDataProvider) -> None:
 
 def unwrap(data: atheris.FuzzedDataProvider, surface: lsgp.Surface, cones: object, options: lsgp.Options) -> None:
     if cones is None:
-        cones = lsgp.place_cones(surface, data.ConsumeIntInRange(0, 8), options=options)
+        cones = lsgp.place_cones(surface, count=data.ConsumeIntInRange(0, 8), seams=options.seams).cones
     angles = [pick(data, [None, data.ConsumeFloat(), 1.5 * np.pi, 3.0]) for _ in range(data.ConsumeIntInRange(0, 5))]
     result = lsgp.parameterize(surface, cones, angles or None, options)
     faults = undeclared_faults(surface, result, options)

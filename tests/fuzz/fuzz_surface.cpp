@@ -256,8 +256,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   ask(surface, [&] { lsgp::find_cuts(surface, cones.vertices, chosen); });
   ask(surface, [&] { lsgp::prescribe_curvature(surface, cones, chosen); });
   ask(surface, [&] {
-    const int count = extras / 8 % 8 - 1;
-    for (const Index v : lsgp::place_cones(surface, count, cones.vertices, chosen.seams)) {
+    lsgp::PlacementOptions placement;
+    if (extras / 8 % 8 > 0) placement.count = extras / 8 % 8 - 1;
+    placement.seams = chosen.seams;
+    for (const Index v : lsgp::place_cones(surface, cones, placement).cones) {
       require(v >= 0 && v < surface.positions.rows(), "a cone placed outside the surface");
     }
   });

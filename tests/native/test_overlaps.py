@@ -287,7 +287,7 @@ GENUS_TWO = meshes.subdivide(meshes.double_torus())
 def saddles(count: int) -> Mesh:
     """The surface of genus two with so many cones: more of them, the narrower its arms lie on each other."""
     surface = lsgp.Surface(GENUS_TWO.positions, GENUS_TWO.triangles)
-    return GENUS_TWO._replace(cones=np.array(lsgp.place_cones(surface, count), np.int32))
+    return GENUS_TWO._replace(cones=np.array(lsgp.place_cones(surface, count=count).cones, np.int32))
 
 
 @cache

@@ -156,7 +156,7 @@ def test_own_cones_give_a_valid_map(name: str) -> None:
 @pytest.mark.parametrize("name", [*CLOSED, *OPEN, *WITHOUT_CONES])
 def test_automatic_cones_give_a_valid_map(name: str, mode: str) -> None:
     mesh = shared_mesh(name)
-    mesh = mesh._replace(cones=lsgp.place_cones(surface(mesh)))
+    mesh = mesh._replace(cones=lsgp.place_cones(surface(mesh)).cones)
     assert_valid(mesh, unwrap(mesh, mode=mode))
 
 

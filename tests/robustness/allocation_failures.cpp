@@ -159,6 +159,9 @@ class Bytes {
   Bytes& operator<<(const lsgp::Prescription& p) {
     return *this << p.cones << p.cone_angles << p.log_scale << p.predicted_l2 << p.warnings;
   }
+  Bytes& operator<<(const lsgp::Placement& p) {
+    return *this << p.cones << p.cone_angles << p.log_scale << p.predicted_l2 << p.reached << p.warnings;
+  }
   Bytes& operator<<(const lsgp::Measurement& m) {
     return *this << m.distortion << m.seams << m.flipped << m.cut_edges << m.island;
   }
@@ -213,11 +216,14 @@ void prescribe_curvature(const Case& c, Bytes& out) {
 }
 
 void place_some_cones(const Case& c, Bytes& out) {
-  out << while_armed([&] { return lsgp::place_cones(c.surface, 4, c.cones.vertices, c.options.seams); });
+  lsgp::PlacementOptions some;
+  some.count = 4;
+  some.seams = c.options.seams;
+  out << while_armed([&] { return lsgp::place_cones(c.surface, c.cones, some); });
 }
 
 void place_cones(const Case& c, Bytes& out) {
-  out << while_armed([&] { return lsgp::place_cones(c.surface, -1); });
+  out << while_armed([&] { return lsgp::place_cones(c.surface); });
 }
 
 void measure_distortion(const Case& c, Bytes& out) {

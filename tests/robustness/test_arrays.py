@@ -107,7 +107,7 @@ def test_verbs_refuse_other_types_and_shapes_of_cones(kind: str) -> None:
         with pytest.raises(lsgp.InputError):
             verb(surface(MESH), cones)
     with pytest.raises(lsgp.InputError):
-        lsgp.place_cones(surface(MESH), 4, cones)
+        lsgp.place_cones(surface(MESH), cones, count=4)
     with pytest.raises(lsgp.InputError):
         lsgp.measure_distortion(surface(MESH), EXPECTED, cones)
 
@@ -157,11 +157,11 @@ def test_angles_are_numbers(angles: object) -> None:
 @pytest.mark.parametrize("count", [2**31, 2**63, 10**30, -1, 1.5, "4", np.nan])
 def test_counts_of_cones_are_small_whole_numbers(count: object) -> None:
     with pytest.raises((lsgp.InputError, TypeError)):
-        lsgp.place_cones(surface(MESH), count)
+        lsgp.place_cones(surface(MESH), count=count)
 
 
 def test_more_cones_than_vertices_end_with_those_there_are() -> None:
-    assert len(lsgp.place_cones(surface(MESH), 2**31 - 1)) <= len(MESH.positions)
+    assert len(lsgp.place_cones(surface(MESH), count=2**31 - 1).cones) <= len(MESH.positions)
 
 
 def test_arguments_may_change_after_a_call_and_results_are_writable() -> None:

@@ -33,7 +33,7 @@ PATCH = meshes.saddle(8)._replace(cones=np.array([0, 8, 72, 80], np.int32))
 
 def answers() -> dict[str, str]:
     """A digest of each input's result."""
-    placed = lsgp.place_cones(surface(BALL), 9)
+    placed = lsgp.place_cones(surface(BALL), count=9).cones
     seamed = lsgp.Surface(BALL.positions, BALL.triangles, None, BALL.triangles[:40, :2])
     mixed = meshes.merge([meshes.with_fin(meshes.cube(3))[0], meshes.moebius_strip(), HOLES])
     return {

@@ -77,6 +77,8 @@ enum class Code {
   cones_not_snapped,
   angles_adjusted,
   overlapping_triangles,
+  placement_not_reached,
+  not_symmetric,
 };
 
 enum class ErrorKind { input, topology, curvature, solver, cancelled };

@@ -8,6 +8,7 @@
 #include "lsgp/errors.hpp"
 #include "lsgp/export.hpp"
 #include "lsgp/options.hpp"
+#include "lsgp/placement.hpp"
 #include "lsgp/progress.hpp"
 #include "lsgp/result.hpp"
 #include "lsgp/surface.hpp"
@@ -29,11 +30,15 @@ LSGP_API CutPaths find_cuts(const Surface& surface, const std::vector<Index>& co
 // The cone angles alone (section 5) and the scale they imply.
 LSGP_API Prescription prescribe_curvature(const Surface& surface, const Cones& cones, const Options& options = {});
 
-// Cones at the extrema of the log scale factor, one after the other (Ben-Chen et al. 2008), `existing` ones first; none
-// on a border and, where the mesh has room, none within two rings of another.
-// count: cones of every component; negative: as many as bring the predicted L2 stretch near 1.
-LSGP_API std::vector<Index> place_cones(const Surface& surface, int count, const std::vector<Index>& existing = {},
-                                        SeamMode seams = SeamMode::follow);
+// Completes existing cones, whose given angles stay, to as many as asked for or as few as reach the target; none is
+// placed on a border.  A component without a solution is reported as a finding when another one has one, thrown
+// otherwise; a target that is not reached is a finding.
+LSGP_API Placement place_cones(const Surface& surface, const Cones& existing = {}, const PlacementOptions& options = {},
+                               const Progress& progress = {});
+
+// What one more cone would do to the stretch, wherever it is placed.
+LSGP_API ConeGains cone_gains(const Surface& surface, const Cones& existing = {}, SeamMode seams = SeamMode::follow,
+                              const Progress& progress = {});
 
 // Measures given texture coordinates, (3m, 2); triangles with a NaN are left out.  cones: where a cut may change its
 // rotation; none: every vertex whose angles do not add up to a full turn.

@@ -27,13 +27,21 @@ struct PlacementOptions {
 };
 
 struct Placement {
-  std::vector<Index> cones;         // (k) existing ones first
+  std::vector<Index> cones;         // (k) existing ones first, but for those on a border that prescribe nothing
   std::vector<double> cone_angles;  // (k) radians: unwrapping with these gives what is predicted
   Eigen::VectorXd log_scale;        // (n) predicted, area-weighted mean 0 on every island
   double predicted_l2 = 1;          // over the whole surface
   bool reached = true;              // the target, on every component
   std::vector<Finding> warnings;
   int factorizations = 0, back_substitutions = 0;
+};
+
+// What one more cone would do, its angle and the automatic ones chosen anew.
+struct ConeGains {
+  Eigen::VectorXd predicted_l2;  // (n) L2 stretch of the vertex's component with a cone there; NaN where none may be
+  double present_l2 = 1;         // over the whole surface as it is; infinite where a component needs a cone
+  Index best = -1;               // the vertex that lowers the whole surface's most; -1: none does
+  std::vector<Finding> warnings;
 };
 
 }  // namespace lsgp
