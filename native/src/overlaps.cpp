@@ -16,7 +16,7 @@ namespace {
 
 constexpr double explained_share = 1e-9;  // of a triangle's area that rounding of the map may put on another
 constexpr double last_digit = std::numeric_limits<double>::epsilon();
-constexpr double explained_digits = 16 * last_digit;  // of a coordinate
+constexpr double explained_digits = 64 * last_digit;  // of a coordinate
 
 double cross(Complex a, Complex b) { return a.real() * b.imag() - a.imag() * b.real(); }
 

@@ -1,41 +1,211 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solvers/cholesky.hpp"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <vector>
 
 #include "lsgp/errors.hpp"
+#include "solvers/elimination.hpp"
+#include "solvers/front_kernels.hpp"
 
 namespace lsgp {
 
+namespace {
+
+constexpr int solve_width = 8;  // right sides at a time
+
+[[noreturn]] void throw_unsolvable() {
+  throw Error(Code::solver_failed,
+              "A linear system could not be factored: the surface has triangles too thin or too large to compute with. "
+              "Clean the mesh (merge by distance, dissolve degenerate faces) and try again.");
+}
+
+}  // namespace
+
 template <typename Scalar>
 struct Cholesky<Scalar>::Factor {
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<Scalar>, Eigen::Lower> ldlt;
-  Definiteness definiteness;
+  Adjacency adjacency;
+  Elimination plan;
+  std::vector<Scalar> panels;
+  Matrix schur;
+
+  int size() const { return static_cast<int>(plan.position.size()); }
+  int retained() const { return size() - plan.eliminated; }
+  const int* rows(int front) const { return plan.rows.data() + plan.rows_begin[front]; }
+  Front<Scalar> front(int i) const {
+    return {const_cast<Scalar*>(panels.data()) + plan.panel_begin[i], plan.columns(i), plan.below(i),
+            plan.retained_rows[i], nullptr};
+  }
+
+  void factorize(const Eigen::SparseMatrix<Scalar>& lower, const FactorHook& hook);
+  void add_entries(const Eigen::SparseMatrix<Scalar>& lower, int front, const std::vector<int>& local);
+  void start_schur(const Eigen::SparseMatrix<Scalar>& lower);
+
+  // x: (size, width) by rows, in the order of elimination.
+  void eliminate(int width, Scalar* x) const;
+  void substitute(int width, Scalar* x) const;
+
+  // Calls work(width, x) for the columns of `sides`, some at a time, in the order of elimination.
+  template <typename Work>
+  void for_each_block(Matrix& sides, Work work) const;
 };
 
 template <typename Scalar>
-Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower, Definiteness definiteness)
-    : factor_(std::make_unique<Factor>()) {
-  factor_->definiteness = definiteness;
-  if (lower.rows() == 0) return;
-  factor_->ldlt.analyzePattern(lower);
-  refactor(lower);
+void Cholesky<Scalar>::Factor::start_schur(const Eigen::SparseMatrix<Scalar>& lower) {
+  schur = Matrix::Zero(retained(), retained());
+  for (int column = plan.eliminated; column < size(); ++column) {
+    for (typename Eigen::SparseMatrix<Scalar>::InnerIterator it(lower, column); it; ++it) {
+      schur(it.row() - plan.eliminated, column - plan.eliminated) = it.value();
+    }
+  }
+}
+
+// The matrix's own entries in a front's columns.  local: the place in the panel of every row of the front.
+template <typename Scalar>
+void Cholesky<Scalar>::Factor::add_entries(const Eigen::SparseMatrix<Scalar>& lower, int front,
+                                           const std::vector<int>& local) {
+  const int first = plan.first[front], columns = plan.columns(front), rows = columns + plan.below(front);
+  Scalar* panel = panels.data() + plan.panel_begin[front];
+  for (int c = 0; c < columns; ++c) {
+    const int row = plan.row_at[first + c];
+    Scalar* column = panel + static_cast<std::size_t>(c) * rows;
+    column[c] += lower.valuePtr()[lower.outerIndexPtr()[row]];
+    for (int k = adjacency.begin[row]; k < adjacency.begin[row + 1]; ++k) {
+      const int other = adjacency.neighbour[k], at = plan.position[other];
+      if (at < first + c) continue;
+      const Scalar value = lower.valuePtr()[adjacency.entry[k]];
+      column[local[at]] += other > row ? value : Eigen::numext::conj(value);
+    }
+  }
 }
 
 template <typename Scalar>
-void Cholesky<Scalar>::refactor(const Eigen::SparseMatrix<Scalar>& lower) {
-  if (lower.rows() == 0) return;
-  factor_->ldlt.factorize(lower);
-  const Eigen::VectorXd pivots = factor_->ldlt.vectorD().real();
-  const bool usable =
-      factor_->definiteness == Definiteness::positive ? (pivots.array() > 0).all() : (pivots.array() != 0).all();
-  if (factor_->ldlt.info() != Eigen::Success || !usable) {
-    throw Error(
-        Code::solver_failed,
-        "A linear system could not be factored: the surface has triangles too thin or too large to compute with. "
-        "Clean the mesh (merge by distance, dissolve degenerate faces) and try again.");
+void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lower, const FactorHook& hook) {
+  constexpr double operations_between_calls = 5e7;
+  const FrontKernels<Scalar>& kernels = front_kernels<Scalar>();
+  const int fronts = plan.front_count();
+  start_schur(lower);
+  panels.assign(plan.panel_begin.back(), Scalar(0));
+  std::vector<Scalar> stack(plan.stack_size), outer;
+  std::vector<std::size_t> update_end;  // of the updates on the stack
+  std::vector<int> local(size()), waiting;
+  double operations = 0, called_at = 0;
+  for (int i = 0; i < fronts; ++i) {
+    Front<Scalar> front = this->front(i);
+    const int first = plan.first[i], rows = front.columns + front.below, free = front.below - front.retained;
+    const int* below = this->rows(i);
+    for (int c = 0; c < front.columns; ++c) local[first + c] = c;
+    for (int r = 0; r < front.below; ++r) local[below[r]] = front.columns + r;
+    add_entries(lower, i, local);
+    const std::size_t top = update_end.empty() ? 0 : update_end.back();
+    const std::size_t update_size = static_cast<std::size_t>(front.below) * free;
+    front.update = stack.data() + top;
+    std::fill_n(front.update, update_size, Scalar(0));
+    std::size_t base = top;
+    while (!waiting.empty() && plan.parent[waiting.back()] == i) {
+      const int child = waiting.back();
+      waiting.pop_back();
+      update_end.pop_back();
+      base = update_end.empty() ? 0 : update_end.back();
+      const int* child_rows = this->rows(child);
+      const int child_below = plan.below(child), child_free = child_below - plan.retained_rows[child];
+      for (int c = 0; c < child_free; ++c) {
+        const Scalar* from = stack.data() + base + static_cast<std::size_t>(c) * child_below;
+        const int at = local[child_rows[c]];
+        Scalar* to = at < front.columns
+                         ? front.panel + static_cast<std::size_t>(at) * rows
+                         : front.update + static_cast<std::size_t>(at - front.columns) * front.below - front.columns;
+        for (int r = c; r < child_below; ++r) to[local[child_rows[r]]] += from[r];
+      }
+    }
+    outer.resize(std::max(outer.size(), static_cast<std::size_t>(front.retained) * front.retained));
+    if (!kernels.eliminate(front, outer.data())) throw_unsolvable();
+    for (int c = 0; c < front.retained; ++c) {
+      Scalar* column = schur.data() + static_cast<std::size_t>(below[free + c] - plan.eliminated) * retained();
+      const Scalar* from = outer.data() + static_cast<std::size_t>(c) * front.retained;
+      for (int r = c; r < front.retained; ++r) column[below[free + r] - plan.eliminated] += from[r];
+    }
+    if (plan.parent[i] != -1) {
+      std::copy_n(front.update, update_size, stack.data() + base);
+      update_end.push_back(base + update_size);
+      waiting.push_back(i);
+    }
+    operations += static_cast<double>(front.columns) * rows * rows;
+    if (hook && operations - called_at > operations_between_calls) {
+      called_at = operations;
+      hook(operations / plan.operations);
+    }
   }
+}
+
+template <typename Scalar>
+void Cholesky<Scalar>::Factor::eliminate(int width, Scalar* x) const {
+  const FrontKernels<Scalar>& kernels = front_kernels<Scalar>();
+  std::vector<Scalar> others;
+  for (int i = 0; i < plan.front_count(); ++i) {
+    const Front<Scalar> front = this->front(i);
+    others.resize(std::max(others.size(), static_cast<std::size_t>(front.below) * width));
+    kernels.substitute_forward(front, width, x + static_cast<std::size_t>(plan.first[i]) * width, others.data());
+    const int* below = rows(i);
+    for (int r = 0; r < front.below; ++r) {
+      Scalar* to = x + static_cast<std::size_t>(below[r]) * width;
+      const Scalar* from = others.data() + static_cast<std::size_t>(r) * width;
+      for (int w = 0; w < width; ++w) to[w] -= from[w];
+    }
+  }
+}
+
+template <typename Scalar>
+void Cholesky<Scalar>::Factor::substitute(int width, Scalar* x) const {
+  const FrontKernels<Scalar>& kernels = front_kernels<Scalar>();
+  std::vector<Scalar> others;
+  for (int i = plan.front_count(); i-- > 0;) {
+    const Front<Scalar> front = this->front(i);
+    others.resize(std::max(others.size(), static_cast<std::size_t>(front.below) * width));
+    const int* below = rows(i);
+    for (int r = 0; r < front.below; ++r) {
+      std::copy_n(x + static_cast<std::size_t>(below[r]) * width, width,
+                  others.data() + static_cast<std::size_t>(r) * width);
+    }
+    kernels.substitute_backward(front, width, x + static_cast<std::size_t>(plan.first[i]) * width, others.data());
+  }
+}
+
+template <typename Scalar>
+template <typename Work>
+void Cholesky<Scalar>::Factor::for_each_block(Matrix& sides, Work work) const {
+  const Eigen::Index count = sides.cols();
+  std::vector<Scalar> x;
+  for (Eigen::Index begin = 0; begin < count;) {
+    const Eigen::Index left = count - begin;
+    const int width = left > 2 ? solve_width : static_cast<int>(left);
+    const Eigen::Index used = std::min<Eigen::Index>(left, width);
+    x.assign(static_cast<std::size_t>(size()) * width, Scalar(0));
+    for (Eigen::Index w = 0; w < used; ++w) {
+      const Scalar* column = sides.col(begin + w).data();
+      for (int at = 0; at < size(); ++at) x[static_cast<std::size_t>(at) * width + w] = column[plan.row_at[at]];
+    }
+    work(width, x.data());
+    for (Eigen::Index w = 0; w < used; ++w) {
+      Scalar* column = sides.col(begin + w).data();
+      for (int at = 0; at < size(); ++at) column[plan.row_at[at]] = x[static_cast<std::size_t>(at) * width + w];
+    }
+    begin += used;
+  }
+}
+
+template <typename Scalar>
+Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retained, const FactorHook& hook)
+    : factor_(std::make_unique<Factor>()) {
+  const int size = static_cast<int>(lower.rows());
+  factor_->adjacency = adjacency_of_lower(size, lower.outerIndexPtr(), lower.innerIndexPtr());
+  factor_->plan = order_elimination(factor_->adjacency, retained);
+  refactor(lower, hook);
+}
+
+template <typename Scalar>
+void Cholesky<Scalar>::refactor(const Eigen::SparseMatrix<Scalar>& lower, const FactorHook& hook) {
+  factor_->factorize(lower, hook);
 }
 
 template <typename Scalar>
@@ -45,44 +215,32 @@ Cholesky<Scalar>::Cholesky(Cholesky&&) noexcept = default;
 
 template <typename Scalar>
 typename Cholesky<Scalar>::Vector Cholesky<Scalar>::solve(const Vector& right_side) const {
-  if (right_side.size() == 0) return right_side;
-  return factor_->ldlt.solve(right_side);
+  return solve(Matrix(right_side));
 }
 
-// Eigen solves column by column; with the columns side by side each entry of the factor is read once a block.
 template <typename Scalar>
 typename Cholesky<Scalar>::Matrix Cholesky<Scalar>::solve(const Matrix& right_sides) const {
-  constexpr int block = 8;
-  using Block = Eigen::Matrix<Scalar, Eigen::Dynamic, block, Eigen::RowMajor>;
-  const Eigen::Index n = right_sides.rows(), count = right_sides.cols();
-  Matrix solution(n, count);
-  if (n == 0) return solution;
-  const auto& ldlt = factor_->ldlt;
-  const Eigen::SparseMatrix<Scalar>& lower = ldlt.matrixL().nestedExpression();
-  const Vector diagonal = ldlt.vectorD();
-  const auto& permutation = ldlt.permutationP().indices();
-  const int* outer = lower.outerIndexPtr();
-  const int* inner = lower.innerIndexPtr();
-  const Scalar* value = lower.valuePtr();
-  Block x(n, block);
-  for (Eigen::Index begin = 0; begin < count; begin += block) {
-    const Eigen::Index width = std::min<Eigen::Index>(block, count - begin);
-    x.setZero();
-    for (Eigen::Index i = 0; i < n; ++i) x.row(permutation[i]).head(width) = right_sides.row(i).segment(begin, width);
-    for (Eigen::Index j = 0; j < n; ++j) {
-      for (int k = outer[j]; k < outer[j + 1]; ++k) {
-        if (inner[k] > j) x.row(inner[k]) -= value[k] * x.row(j);
-      }
-    }
-    for (Eigen::Index j = 0; j < n; ++j) x.row(j) /= diagonal[j];
-    for (Eigen::Index j = n; j-- > 0;) {
-      for (int k = outer[j]; k < outer[j + 1]; ++k) {
-        if (inner[k] > j) x.row(j) -= Eigen::numext::conj(value[k]) * x.row(inner[k]);
-      }
-    }
-    for (Eigen::Index i = 0; i < n; ++i) solution.row(i).segment(begin, width) = x.row(permutation[i]).head(width);
-  }
-  return solution;
+  Matrix x = right_sides;
+  factor_->for_each_block(x, [&](int width, Scalar* block) {
+    factor_->eliminate(width, block);
+    factor_->substitute(width, block);
+  });
+  return x;
+}
+
+template <typename Scalar>
+const typename Cholesky<Scalar>::Matrix& Cholesky<Scalar>::schur() const {
+  return factor_->schur;
+}
+
+template <typename Scalar>
+void Cholesky<Scalar>::eliminate(Matrix& right_sides) const {
+  factor_->for_each_block(right_sides, [&](int width, Scalar* block) { factor_->eliminate(width, block); });
+}
+
+template <typename Scalar>
+void Cholesky<Scalar>::substitute(Matrix& half_solved) const {
+  factor_->for_each_block(half_solved, [&](int width, Scalar* block) { factor_->substitute(width, block); });
 }
 
 template class Cholesky<double>;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sparse Cholesky factorization of real symmetric and complex Hermitian positive definite matrices.
+// Sparse Cholesky factorization of real symmetric and complex Hermitian positive definite matrices: multifrontal (Duff
+// and Reid 1983, Liu 1992), and able to stop before the last rows.
 #pragma once
 
 #include <Eigen/SparseCore>
 #include <complex>
+#include <functional>
 #include <memory>
 
 namespace lsgp {
 
-enum class Definiteness {
-  positive,
-  quasi,  // positive and negative definite diagonal blocks, as of a regularised saddle point (Vanderbei 1995)
-};
+// Called now and then while a matrix is factored, with the share that is done; may throw.
+using FactorHook = std::function<void(double)>;
 
 template <typename Scalar>
 class Cholesky {
@@ -19,15 +19,25 @@ class Cholesky {
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
   using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
-  // lower: the lower triangle with its diagonal.  Throws SOLVER_FAILED where the matrix is not as definite as said.
-  explicit Cholesky(const Eigen::SparseMatrix<Scalar>& lower, Definiteness definiteness = Definiteness::positive);
+  // lower: the lower triangle with its diagonal.  retained: that many of the last rows are not eliminated; what the
+  // elimination of the others makes of them is their Schur complement.
+  // Throws SOLVER_FAILED where the eliminated part is not positive definite.
+  explicit Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retained = 0, const FactorHook& hook = {});
   // Factors another matrix whose entries are in the same places; a part of the work is saved.
-  void refactor(const Eigen::SparseMatrix<Scalar>& lower);
+  void refactor(const Eigen::SparseMatrix<Scalar>& lower, const FactorHook& hook = {});
   ~Cholesky();
   Cholesky(Cholesky&&) noexcept;
 
+  // One right side a column; nothing may be retained.
   Vector solve(const Vector& right_side) const;
-  Matrix solve(const Matrix& right_sides) const;  // one right side a column, several at a time
+  Matrix solve(const Matrix& right_sides) const;
+
+  // The Schur complement of the retained rows, (retained, retained), its lower triangle.
+  const Matrix& schur() const;
+  // A solve in two halves: eliminate leaves in `right_sides` what half a solve makes of them, its last rows being the
+  // right side of the retained rows' own system; substitute takes their solution in its place and leaves the rest's.
+  void eliminate(Matrix& right_sides) const;
+  void substitute(Matrix& half_solved) const;
 
  private:
   struct Factor;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solvers/saddle_point.hpp"
 
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <complex>
 
-#include "solvers/cholesky.hpp"
+#include "lsgp/errors.hpp"
 #include "solvers/sparse_assembly.hpp"
 
 namespace lsgp {
@@ -38,7 +39,13 @@ Eigen::Matrix<Scalar, Eigen::Dynamic, 1> minimize_under(const Eigen::SparseMatri
     }
     assembly.add(n + row, n + row, Scalar(-regularization / scale));
   }
-  const Cholesky<Scalar> factor(assembly.build(), Definiteness::quasi);
+  // Quasi-definite: a factorization with a diagonal exists in any order (Vanderbei 1995).
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<Scalar>, Eigen::Lower> factor(assembly.build());
+  if (factor.info() != Eigen::Success) {
+    throw Error(Code::solver_failed,
+                "The border could not be straightened: it has edges too short to compute with. Clean the mesh (merge "
+                "by distance, dissolve degenerate faces) and try again.");
+  }
 
   // Refinement against the equations without regularisation.
   Vector solution = Vector::Zero(n + r);

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solvers/elimination.hpp"
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <numeric>
+
+namespace lsgp {
+
+Adjacency adjacency_of_lower(int size, const int* outer, const int* inner) {
+  Adjacency out;
+  out.begin.assign(size + 1, 0);
+  const auto for_each_off_diagonal = [&](auto visit) {
+    for (int column = 0; column < size; ++column) {
+      for (int k = outer[column]; k < outer[column + 1]; ++k) {
+        if (inner[k] != column) visit(column, inner[k], k);
+      }
+    }
+  };
+  for_each_off_diagonal([&](int column, int row, int) {
+    ++out.begin[column + 1];
+    ++out.begin[row + 1];
+  });
+  std::partial_sum(out.begin.begin(), out.begin.end(), out.begin.begin());
+  out.neighbour.resize(out.begin.back());
+  out.entry.resize(out.begin.back());
+  std::vector<int> cursor(out.begin.begin(), out.begin.end() - 1);
+  for_each_off_diagonal([&](int column, int row, int k) {
+    out.neighbour[cursor[column]] = row;
+    out.entry[cursor[column]++] = k;
+    out.neighbour[cursor[row]] = column;
+    out.entry[cursor[row]++] = k;
+  });
+  return out;
+}
+
+namespace {
+
+// Fronts of up to so many columns may hold this share of zeros.
+struct Merging {
+  int columns;
+  double zeros;
+};
+constexpr Merging merging[]{{4, 1.1}, {16, 0.8}, {48, 0.1}};
+constexpr double zeros_of_any = 0.05;
+
+class Ordering {
+ public:
+  Ordering(const Adjacency& adjacency, int retained)
+      : adjacency_(adjacency), size_(static_cast<int>(adjacency.begin.size()) - 1), eliminated_(size_ - retained) {}
+
+  Elimination run() {
+    reduce_fill();
+    find_parents();
+    post_order();
+    count_rows();
+    const std::vector<int> front_of = find_fronts();
+    list_rows(front_of);
+    measure();
+    return std::move(out_);
+  }
+
+ private:
+  template <typename Visit>
+  void for_each_earlier(int at, Visit visit) const {
+    const int row = out_.row_at[at];
+    for (int k = adjacency_.begin[row]; k < adjacency_.begin[row + 1]; ++k) {
+      const int other = out_.position[adjacency_.neighbour[k]];
+      if (other < at && other < eliminated_) visit(other);
+    }
+  }
+
+  void reduce_fill() {
+    using Pattern = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+    Pattern pattern(eliminated_, eliminated_);
+    int count = 0;
+    for (int row = 0; row < eliminated_; ++row) {
+      for (int k = adjacency_.begin[row]; k < adjacency_.begin[row + 1]; ++k)
+        count += adjacency_.neighbour[k] < eliminated_;
+    }
+    pattern.resizeNonZeros(count + eliminated_);
+    int filled = 0;
+    for (int row = 0; row < eliminated_; ++row) {
+      pattern.outerIndexPtr()[row] = filled;
+      pattern.innerIndexPtr()[filled++] = row;
+      for (int k = adjacency_.begin[row]; k < adjacency_.begin[row + 1]; ++k) {
+        if (adjacency_.neighbour[k] < eliminated_) pattern.innerIndexPtr()[filled++] = adjacency_.neighbour[k];
+      }
+    }
+    pattern.outerIndexPtr()[eliminated_] = filled;
+    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order(eliminated_);
+    if (eliminated_ > 0) Eigen::internal::minimum_degree_ordering(pattern, order);
+    out_.eliminated = eliminated_;
+    out_.row_at.resize(size_);
+    std::iota(out_.row_at.begin(), out_.row_at.end(), 0);
+    std::copy_n(order.indices().data(), eliminated_, out_.row_at.begin());
+    invert();
+  }
+
+  void invert() {
+    out_.position.resize(size_);
+    for (int at = 0; at < size_; ++at) out_.position[out_.row_at[at]] = at;
+  }
+
+  // The elimination tree (Liu 1990), with paths compressed; `size_` for children of what is retained.
+  void find_parents() {
+    parent_.assign(eliminated_, size_);
+    std::vector<int> ancestor(eliminated_, size_);
+    for (int at = 0; at < eliminated_; ++at) {
+      for_each_earlier(at, [&](int other) {
+        while (other != at && other != size_) {
+          const int above = ancestor[other];
+          ancestor[other] = at;
+          if (above == size_) parent_[other] = at;
+          other = above;
+        }
+      });
+    }
+  }
+
+  // Renumbers so that every subtree is contiguous.
+  void post_order() {
+    std::vector<int> child(eliminated_ + 1, -1), sibling(eliminated_, -1), order, stack;
+    const auto list_of = [&](int node) { return node == size_ ? eliminated_ : node; };
+    for (int node = eliminated_; node-- > 0;) {
+      sibling[node] = child[list_of(parent_[node])];
+      child[list_of(parent_[node])] = node;
+    }
+    order.reserve(eliminated_);
+    for (int root = child[eliminated_]; root != -1; root = sibling[root]) {
+      stack.push_back(root);
+      while (!stack.empty()) {
+        const int node = stack.back();
+        if (child[node] != -1) {
+          stack.push_back(child[node]);
+          child[node] = sibling[child[node]];
+        } else {
+          order.push_back(node);
+          stack.pop_back();
+        }
+      }
+    }
+    std::vector<int> place(size_ + 1), row_at = out_.row_at, parent(eliminated_);
+    place[size_] = size_;
+    for (int at = 0; at < eliminated_; ++at) {
+      place[order[at]] = at;
+      row_at[at] = out_.row_at[order[at]];
+    }
+    for (int node = 0; node < eliminated_; ++node) parent[place[node]] = place[parent_[node]];
+    parent_ = std::move(parent);
+    out_.row_at = std::move(row_at);
+    invert();
+  }
+
+  // Rows below the diagonal of every column: each row's entries form a subtree of the elimination tree.
+  void count_rows() {
+    count_.assign(eliminated_, 0);
+    std::vector<int> mark(eliminated_, -1);
+    for (int at = 0; at < size_; ++at) {
+      if (at < eliminated_) mark[at] = at;
+      for_each_earlier(at, [&](int column) {
+        for (; column < eliminated_ && mark[column] != at; column = parent_[column]) {
+          mark[column] = at;
+          ++count_[column];
+        }
+      });
+    }
+  }
+
+  // Whether columns that share their rows with the front that follows become part of it, at the price of zeros.
+  static bool worth_merging(double columns, double below, double zeros) {
+    const double share = zeros / (columns * (columns + 1) / 2 + columns * below);
+    bool worth = share < zeros_of_any;
+    for (const Merging& rule : merging) worth = worth || (columns <= rule.columns && share < rule.zeros);
+    return worth;
+  }
+
+  // Gathers columns into fronts, from the last to the first; returns the front of every column.
+  std::vector<int> find_fronts() {
+    std::vector<int> last;  // column of every front, from the last front to the first
+    double zeros = 0;       // in the front that grows
+    for (int end = eliminated_ - 1, begin = end; end >= 0; end = begin - 1, begin = end) {
+      while (begin > 0 && parent_[begin - 1] == begin && count_[begin - 1] == count_[begin] + 1) --begin;
+      if (!last.empty() && parent_[end] <= last.back()) {
+        const double columns = last.back() - end, below = count_[last.back()], own = end - begin + 1;
+        const double added = own * (columns + below - count_[end]);
+        if (worth_merging(own + columns, below, zeros + added)) {
+          zeros += added;
+          continue;
+        }
+      }
+      last.push_back(end);
+      zeros = 0;
+    }
+    std::reverse(last.begin(), last.end());
+    const int fronts = static_cast<int>(last.size());
+    out_.first.assign(1, 0);
+    for (const int column : last) out_.first.push_back(column + 1);
+    std::vector<int> front_of(eliminated_);
+    for (int front = 0; front < fronts; ++front) {
+      std::fill(front_of.begin() + out_.first[front], front_of.begin() + out_.first[front + 1], front);
+    }
+    out_.parent.resize(fronts);
+    out_.rows_begin.assign(1, 0);
+    for (int front = 0; front < fronts; ++front) {
+      const int above = parent_[last[front]];
+      out_.parent[front] = above == size_ ? -1 : front_of[above];
+      out_.rows_begin.push_back(out_.rows_begin.back() + count_[last[front]]);
+    }
+    return front_of;
+  }
+
+  // Rows come in ascending order, each into the fronts of its subtree.
+  void list_rows(const std::vector<int>& front_of) {
+    const int fronts = out_.front_count();
+    out_.rows.resize(out_.rows_begin.back());
+    out_.retained_rows.assign(fronts, 0);
+    std::vector<std::size_t> cursor(out_.rows_begin.begin(), out_.rows_begin.end() - 1);
+    std::vector<int> mark(fronts, -1);
+    for (int at = 0; at < size_; ++at) {
+      if (at < eliminated_) mark[front_of[at]] = at;
+      for_each_earlier(at, [&](int column) {
+        for (int front = front_of[column]; front != -1 && mark[front] != at; front = out_.parent[front]) {
+          mark[front] = at;
+          out_.rows[cursor[front]++] = at;
+          out_.retained_rows[front] += at >= eliminated_;
+        }
+      });
+    }
+  }
+
+  void measure() {
+    const int fronts = out_.front_count();
+    out_.panel_begin.assign(1, 0);
+    std::vector<std::size_t> held(fronts, 0);  // by the updates of a front's children
+    std::size_t in_use = 0;
+    for (int front = 0; front < fronts; ++front) {
+      const std::size_t columns = out_.columns(front), below = out_.below(front);
+      const std::size_t update = below * (below - out_.retained_rows[front]);
+      out_.panel_begin.push_back(out_.panel_begin.back() + columns * (columns + below));
+      out_.stack_size = std::max(out_.stack_size, in_use + update);
+      in_use += update - held[front];
+      if (out_.parent[front] != -1) held[out_.parent[front]] += update;
+      out_.operations += static_cast<double>(columns) * (columns + below) * (columns + below);
+    }
+  }
+
+  const Adjacency& adjacency_;
+  const int size_, eliminated_;
+  std::vector<int> parent_, count_;
+  Elimination out_;
+};
+
+}  // namespace
+
+Elimination order_elimination(const Adjacency& adjacency, int retained) { return Ordering(adjacency, retained).run(); }
+
+}  // namespace lsgp

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The symbolic part of a sparse Cholesky factorization: in which order, and in which fronts, a matrix is eliminated.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace lsgp {
+
+// Where the entries of a symmetric matrix are: the neighbours of every row, and which stored entry joins them.
+struct Adjacency {
+  std::vector<int> begin;      // (n + 1)
+  std::vector<int> neighbour;  // without the row itself
+  std::vector<int> entry;      // in the lower triangle as it was given
+};
+// outer, inner: the lower triangle by columns.
+Adjacency adjacency_of_lower(int size, const int* outer, const int* inner);
+
+// Columns are eliminated front by front; children stand before their parent, the last child just before it.
+struct Elimination {
+  std::vector<int> position;             // (n) of every row; retained ones come last, in their own order
+  std::vector<int> row_at;               // (n) its inverse
+  int eliminated = 0;                    // rows that are not retained
+  std::vector<int> first;                // (fronts + 1) position of each front's first column
+  std::vector<int> parent;               // (fronts) or -1
+  std::vector<std::size_t> rows_begin;   // (fronts + 1)
+  std::vector<int> rows;                 // positions of the rows below each front's columns, ascending
+  std::vector<int> retained_rows;        // (fronts) how many of them are retained
+  std::vector<std::size_t> panel_begin;  // (fronts + 1) into the factor's numbers
+  std::size_t stack_size = 0;            // the most numbers that updates take up at once
+  double operations = 0;                 // multiplications and additions, about
+
+  int front_count() const { return static_cast<int>(parent.size()); }
+  int columns(int front) const { return first[front + 1] - first[front]; }
+  int below(int front) const { return static_cast<int>(rows_begin[front + 1] - rows_begin[front]); }
+};
+
+// Minimum degree ordering of the rows but the last `retained`; supernodes of its elimination tree, merged where that
+// adds few zeros (Ashcraft and Grimes 1989; Chen, Davis, Hager, Rajamanickam 2008, section 2.4).
+Elimination order_elimination(const Adjacency& adjacency, int retained);
+
+}  // namespace lsgp
