@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The command line: `lsgp unwrap` and `lsgp measure`.
+"""The command line: `lsgp unwrap`, `lsgp batch` and `lsgp measure`.
 
 Exit code 0: a result, with warnings or not; 2: wrong usage, a file that is missing or cannot be written; 3: the input
-was refused, with a code and a sentence that says what to do; 130: interrupted, with Ctrl-C for instance.  Files are
-written at the end, each as a whole or not at all.
+was refused, with a code and a sentence that says what to do; 130: interrupted, with Ctrl-C for instance.  Of a batch 0:
+all assets have a result, 4: some, 3: none.  Files are written at the end, each as a whole or not at all.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import numpy as np
 from . import __version__
 from . import report as reports
 from .api import Surface, measure_distortion
+from .batch.command import EXIT_CODES, add_batch_options, run_batch
 from .certificate import certificate_table
 from .errors import Elements, Finding, InputError, LsgpError
 from .mesh_files import write_whole
@@ -40,11 +41,11 @@ def main(argv: Sequence[str] | None = None) -> int:
             say(sys.stdout, f"lsgp {__version__}")
             return OK
         if args.command is None:
-            parser.error("a command is needed: unwrap or measure")
+            parser.error("a command is needed: unwrap, batch or measure")
     except SystemExit as end:  # argparse has said why
         return int(end.code or 0)
     try:
-        return _reported(args)
+        return args.run(args)
     except UsageError as error:
         say(sys.stderr, f"lsgp: error: {error}")
     except OSError as error:
@@ -77,7 +78,21 @@ def _parser() -> argparse.ArgumentParser:
     unwrap.add_argument("input", metavar="IN", type=Path, help="OBJ, OFF or PLY; polygons of any size")
     unwrap.add_argument("-o", "--output", metavar="OUT.obj", type=Path, required=True)
     add_unwrap_options(unwrap)
-    unwrap.set_defaults(run=_unwrap)
+    unwrap.set_defaults(run=_reported, make=_unwrap)
+
+    batch = commands.add_parser(
+        "batch",
+        allow_abbrev=False,
+        help="unwrap many meshes",
+        description="Unwrap all meshes of a folder or a list, each as `lsgp unwrap` does it. Every asset gets a line "
+        "in DIR/journal.jsonl when it has ended; DIR/summary.txt and DIR/contact-sheet.html are written at the end. In "
+        "the names of files for --cones, --seam-edges and --importance, {} stands for a mesh's path without its "
+        "suffix.",
+        epilog=EXIT_CODES,
+    )
+    add_batch_options(batch)
+    add_unwrap_options(batch)
+    batch.set_defaults(run=run_batch)
 
     measure = commands.add_parser(
         "measure",
@@ -86,7 +101,7 @@ def _parser() -> argparse.ArgumentParser:
         description="Print the quality of the texture coordinates of an OBJ file.",
     )
     measure.add_argument("input", metavar="FILE.obj", type=Path)
-    measure.set_defaults(run=_measure, output=None)
+    measure.set_defaults(run=_reported, make=_measure, output=None)
     for command in (unwrap, measure):
         command.add_argument("--report", metavar="FILE.json", type=Path, help="write a report, also when refused")
     return parser
@@ -97,7 +112,7 @@ def _reported(args: argparse.Namespace) -> int:
     _require_writable(args)
     run = Run()
     try:
-        report = args.run(args, run)
+        report = args.make(args, run)
         code = OK
     except LsgpError as error:
         report, code = _refusal(error, run), REFUSED
@@ -109,7 +124,7 @@ def _reported(args: argparse.Namespace) -> int:
 
 
 def _refusal(error: LsgpError, run: Run) -> reports.Report:
-    say(sys.stderr, f"lsgp: refused: {error.code}: {error.message}{_where(error.elements, run.triangulation)}")
+    say(sys.stderr, f"lsgp: refused: {error.code}: {error.message}{reports.where(error.elements, run.triangulation)}")
     return reports.refusal_report(error, run.triangulation)
 
 
@@ -178,11 +193,5 @@ def _require_writable(args: argparse.Namespace) -> None:
 
 def _warn(findings: Sequence[Finding], triangulation: Triangulation) -> None:
     for finding in findings:
-        where = _where(finding.elements, triangulation)
+        where = reports.where(finding.elements, triangulation)
         say(sys.stderr, f"lsgp: warning: {finding.code}: {finding.message}{where}")
-
-
-def _where(elements: Elements, triangulation: Triangulation | None) -> str:
-    """The elements a message speaks of, in brackets and in the file's numbering."""
-    named = str(reports.on_faces(elements, triangulation))
-    return f" ({named})" if named else ""

@@ -11,6 +11,7 @@ import contextlib
 import os
 import secrets
 import shutil
+import time
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,10 @@ from .mesh_off import HEADER as OFF_HEADER
 from .mesh_off import read_off
 from .mesh_ply import read_ply
 from .polygons import PolygonMesh
+
+# Files that are being written; they stay where a process is killed.
+PARTIAL = ".lsgp-*.partial"
+ABANDONED_SECONDS = 3600.0
 
 
 def read_mesh(path: str | os.PathLike[str], with_uv: bool = False) -> PolygonMesh:
@@ -59,7 +64,7 @@ def write_whole(path: str | os.PathLike[str], data: bytes) -> None:
     if target.exists() and not target.is_file():
         target.write_bytes(data)  # a device or a pipe is written to, not replaced
         return
-    partial = target.with_name(f".lsgp-{secrets.token_hex(6)}.partial")
+    partial = target.with_name(PARTIAL.replace("*", secrets.token_hex(6)))
     try:
         with partial.open("xb") as file:
             file.write(data)
@@ -70,3 +75,11 @@ def write_whole(path: str | os.PathLike[str], data: bytes) -> None:
         with contextlib.suppress(OSError):
             partial.unlink()
         raise
+
+
+def remove_old_partials(folder: Path) -> None:
+    """Remove, at any depth, what processes left that were killed while they wrote, an hour ago or more."""
+    for partial in folder.rglob(PARTIAL):
+        with contextlib.suppress(OSError):
+            if time.time() - partial.stat().st_mtime > ABANDONED_SECONDS:
+                partial.unlink()

@@ -49,6 +49,12 @@ def on_faces(elements: Elements, triangulation: Triangulation | None) -> Element
     return Elements("faces", triangulation.polygons_of(elements.indices))
 
 
+def where(elements: Elements, triangulation: Triangulation | None) -> str:
+    """The elements a message speaks of, to stand behind it: in brackets and in the file's numbering."""
+    named = str(on_faces(elements, triangulation))
+    return f" ({named})" if named else ""
+
+
 def refusal_report(error: LsgpError, triangulation: Triangulation | None) -> Report:
     """The report of an input that was refused.  triangulation: None where the file was refused before it had one."""
     return EMPTY | {
@@ -104,8 +110,17 @@ def measure_report(
 
 
 def to_json(report: Report) -> bytes:
-    """The report as JSON text; NaN and infinity, which JSON has not, become null."""
-    return (json.dumps(_finite(report), indent=1, allow_nan=False) + "\n").encode("ascii")
+    """The report as JSON text; NaN and infinity become null."""
+    return (json.dumps(finite(report), indent=1, allow_nan=False) + "\n").encode("ascii")
+
+
+def finite(value: Any) -> Any:
+    """The value with null in the place of NaN and infinity, which JSON has not."""
+    if isinstance(value, dict):
+        return {key: finite(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def island_count(island: NDArray[np.int32]) -> int:
@@ -150,11 +165,3 @@ def _warnings(findings: Iterable[Finding], triangulation: Triangulation) -> list
 
 def _elements(elements: Elements) -> Report:
     return {"kind": elements.kind, "indices": np.asarray(elements.indices).tolist()}
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_finite(item) for item in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -32,11 +32,12 @@ class ProgressLine:
         self._shown_from = time.monotonic() + SILENT_SECONDS if stream.isatty() else math.inf
         self._line = ""
 
-    def __call__(self, done: float) -> None:
-        """done: 0 to 1."""
+    def __call__(self, done: float, note: str = "") -> None:
+        """done: 0 to 1. note: shown behind it."""
         if time.monotonic() >= self._shown_from:
             bar = "#" * int(BAR_WIDTH * done)
-            self._show(f"lsgp: [{bar:<{BAR_WIDTH}}] {int(100 * done):3} %")
+            line = f"lsgp: [{bar:<{BAR_WIDTH}}] {int(100 * done):3} %{note}"
+            self._show(f"{line:<{len(self._line)}}")  # over all of the line before
 
     def __enter__(self) -> ProgressLine:
         return self

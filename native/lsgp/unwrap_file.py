@@ -23,6 +23,7 @@ class Run:
     """What a command has found out so far; enough to report on a refusal at any point."""
 
     triangulation: Triangulation | None = None
+    surface: Surface | None = None
     stage_seconds: dict[str, float] = field(default_factory=dict)
 
     @contextmanager
@@ -78,6 +79,7 @@ def _map(args: argparse.Namespace, options: Options, run: Run, progress: Progres
         )
     seams = seam_edges_in(seams_json, seams_path)
     surface = Surface(mesh.positions, triangulation.triangles, triangulation.edges, seams, importance)
+    run.surface = surface
     if cones_path is not None:
         cones, angles = cones_in(cones_json, cones_path, args.prescription)
     else:

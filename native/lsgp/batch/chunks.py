@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which assets go to a worker together: large ones first and alone, small ones later and many at once.
+
+What is left at the end is then small, so that all workers end at nearly the same time, and handing out costs little.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable
+
+from .assets import Asset
+
+MOST_ASSETS = 32
+ROUNDS = 8
+
+
+class Queue:
+    """Assets to be worked on; largest first."""
+
+    def __init__(self, assets: Iterable[Asset], workers: int) -> None:
+        self._assets = deque(sorted(assets, key=lambda asset: (-asset.size, asset.name)))
+        self._left = sum(map(_weight, self._assets))
+        self._workers = workers
+
+    def __bool__(self) -> bool:
+        return bool(self._assets)
+
+    def take(self) -> list[Asset]:
+        """The next chunk: one asset, or as many as are a small share of what is left for every worker."""
+        most = self._left / (ROUNDS * self._workers)
+        chunk = [self._assets.popleft()]
+        weight = _weight(chunk[0])
+        while self._assets and len(chunk) < MOST_ASSETS and weight + _weight(self._assets[0]) <= most:
+            chunk.append(self._assets.popleft())
+            weight += _weight(chunk[-1])
+        self._left -= weight
+        return chunk
+
+    def put_back(self, assets: Iterable[Asset]) -> None:
+        """Assets that were taken but not worked on; they are the next."""
+        for asset in reversed(list(assets)):
+            self._assets.appendleft(asset)
+            self._left += _weight(asset)
+
+
+def _weight(asset: Asset) -> int:
+    """How much work an asset is taken for; opening the smallest file is some as well."""
+    return asset.size + 10_000

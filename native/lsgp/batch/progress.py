@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far a run is: assets done, their rate, and the time that is left."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Sequence
+
+from ..terminal import ProgressLine
+from .assets import Asset
+from .records import OK, Record
+
+
+class RunProgress:
+    """Told every record, it shows where the run is.
+
+    The time that is left is told by the bytes that are left, because large assets come first.
+    """
+
+    def __init__(self, line: ProgressLine, assets: Sequence[Asset], done: Iterable[Record]) -> None:
+        self._line = line
+        self._size = {asset.name: max(asset.size, 1) for asset in assets}
+        self._total = max(sum(self._size.values()), 1)
+        self._count = len(assets)
+        self._begin = time.monotonic()
+        self._bytes_before = self._bytes = 0
+        self._ended = self._ended_before = self._without = 0
+        for record in done:
+            self._add(record)
+        self._bytes_before, self._ended_before = self._bytes, self._ended
+        self._show()
+
+    def __call__(self, record: Record) -> None:
+        self._add(record)
+        self._show()
+
+    def _add(self, record: Record) -> None:
+        self._bytes += self._size[record["asset"]]
+        self._ended += 1
+        self._without += record["status"] != OK
+
+    def _show(self) -> None:
+        elapsed = time.monotonic() - self._begin
+        parts = [f"{self._ended}/{self._count}"]
+        if self._without:
+            parts.append(f"{self._without} without a result")
+        worked = self._bytes - self._bytes_before
+        if worked and elapsed > 0:
+            parts.append(f"{(self._ended - self._ended_before) / elapsed:.3g}/s")
+            parts.append(f"{duration((self._total - self._bytes) * elapsed / worked)} left")
+        self._line(self._bytes / self._total, ", ".join(["", *parts]))
+
+
+def duration(seconds: float) -> str:
+    """Hours, minutes and seconds: "0:05", "2:03:59"."""
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"

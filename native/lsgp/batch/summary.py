@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a run came to, as a table."""
+
+from __future__ import annotations
+
+import statistics
+from collections import Counter
+from collections.abc import Sequence
+
+from .progress import duration
+from .records import FAILED, OK, REFUSED, Record
+
+
+def summary_table(records: Sequence[Record]) -> str:
+    """Counts by outcome, and the figures of the results, as lines of text."""
+    results = [record for record in records if record["status"] == OK]
+    rows = [("results", len(results), "")]
+    warned = Counter(code for record in results for code in record["warnings"])
+    rows += [(f"  with {code}", count, "") for code, count in sorted(warned.items())]
+    for status in (REFUSED, FAILED):
+        ended = [record for record in records if record["status"] == status]
+        rows.append((status, len(ended), ""))
+        for code, count in sorted(Counter(record["code"] for record in ended).items()):
+            first = min(record["asset"] for record in ended if record["code"] == code)
+            rows.append((f"  {code}", count, f"{first}{', ...' if count > 1 else ''}"))
+    rows += _figures(records, results)
+    lines = [f"{len(records)} {'asset' if len(records) == 1 else 'assets'}"]
+    lines += [f"{label:<28}{value:>12}  {note}".rstrip() for label, value, note in rows]
+    return "\n".join(lines)
+
+
+def _figures(records: Sequence[Record], results: Sequence[Record]) -> list[tuple[str, str | int, str]]:
+    rows: list[tuple[str, str | int, str]] = []
+    if results:
+        rows.append(("triangles unwrapped", f"{sum(record['triangles'] for record in results):,}", ""))
+        rows.append(_spread(results, "L2 stretch", ".4f", lambda record: record["distortion"]["l2_stretch"]))
+    timed = [record for record in records if record["cpu_seconds"]]
+    if timed:
+        cpu = sum(record["cpu_seconds"] for record in timed)
+        rows.append(("CPU time", duration(cpu), f"{3600 * len(timed) / cpu:,.0f} assets per core-hour"))
+        rows.append(_spread(timed, "seconds an asset", ".3g", lambda record: record["seconds"]))
+    measured = [record for record in records if record["peak_memory_mb"] is not None]
+    if measured:
+        rows.append(_spread(measured, "memory in MB", ".0f", lambda record: record["peak_memory_mb"]))
+    return rows
+
+
+def _spread(records: Sequence[Record], label: str, form: str, figure) -> tuple[str, str, str]:
+    """The median of a figure, and the asset with the highest one; null, which stands for infinity, is left out."""
+    values = [(figure(record), record["asset"]) for record in records if figure(record) is not None]
+    if not values:
+        return label, "-", ""
+    highest, name = max(values)
+    return (
+        f"{label}, median",
+        format(statistics.median(value for value, _ in values), form),
+        (f"highest {highest:{form}}: {name}"),
+    )

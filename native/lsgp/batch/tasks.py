@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a worker is told: the settings of the run, then a task for each asset; plain values, to be sent anywhere."""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import os
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from .. import __version__
+from ..side_files import UsageError
+from ..unwrap_options import add_unwrap_options, library_options
+from .assets import Asset, picture_name
+
+# Options that name a file beside each mesh; "{}" in them stands for the mesh's own path without its suffix.
+SIDE_FILES = ("cones", "seam_edges", "importance")
+MESH = "{}"
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """An asset: where it is, the folder of all results, and in that the names of its result and its picture."""
+
+    asset: str
+    input: str
+    out: str
+    output: str
+    picture: str
+
+    @classmethod
+    def of(cls, asset: Asset, out: Path, output: str) -> Task:
+        return cls(asset.name, os.path.abspath(asset.path), os.path.abspath(out), output, picture_name(asset.name))
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """options: the values of the options of an unwrap, files by their whole paths. memory_limit: in MB, for what a
+    worker takes beyond what it needs without an asset; None for no limit."""
+
+    options: dict[str, Any]
+    pictures: bool = True
+    reports: bool = False
+    memory_limit: int | None = None
+
+    @classmethod
+    def of(cls, args: argparse.Namespace) -> Settings:
+        """Raises UsageError where options do not go together or a file they name is missing."""
+        names = argparse.ArgumentParser(add_help=False)
+        add_unwrap_options(names)
+        options = {name: getattr(args, name) for name in vars(names.parse_args([]))}
+        library_options(args)
+        for name in SIDE_FILES:
+            options[name] = _whole_path(name, options[name])
+        return cls(options, args.pictures, args.reports, args.memory_limit)
+
+    def options_for(self, task: Task) -> dict[str, Any]:
+        """The options with the files of this asset."""
+        mesh = os.path.splitext(task.input)[0]
+        own = {name: self.options[name].replace(MESH, mesh) for name in SIDE_FILES if self.options[name] is not None}
+        return self.options | own
+
+    def digest(self) -> str:
+        """By which results that were made with other options, or by another version, are told from these."""
+        content = json.dumps([__version__, self.options], sort_keys=True)
+        return hashlib.blake2b(content.encode(), digest_size=6).hexdigest()
+
+    def to_plain(self) -> dict[str, Any]:
+        return asdict(self)
+
+
+def _whole_path(name: str, text: str | None) -> str | None:
+    if text is None or (name == "cones" and (text == "auto" or text.startswith("auto:"))) or text.startswith(MESH):
+        return text
+    path = os.path.abspath(text)
+    if MESH not in path and not os.path.isfile(path):
+        raise UsageError(f"there is no file '{text}' for --{name.replace('_', '-')}")
+    return path

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The work on one asset: the same as `lsgp unwrap` does on one file, with a record instead of lines on a terminal."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+
+from .. import report as reports
+from ..errors import LsgpError
+from ..mesh_files import write_whole
+from ..side_files import UsageError
+from ..unwrap_file import Run, out_of_memory, unwrap_file
+from ..unwrap_options import texture_size
+from .pictures import picture_of
+from .records import FAILED, REFUSED, Record, ending, record_of
+from .tasks import Settings, Task
+
+
+def unwrap_asset(task: Task, settings: Settings) -> Record:
+    """Unwrap an asset, write its files, and say how it ended."""
+    run = Run()
+    try:
+        return _unwrap(task, settings, run)
+    except LsgpError as error:
+        return refusal(error, run)
+    except MemoryError:
+        return refusal(out_of_memory(), run)
+    except UsageError as error:
+        return ending(REFUSED, "WRONG_USAGE", str(error))
+    except OSError as error:
+        where = "" if error.filename is None else f": '{os.fsdecode(error.filename)}'"
+        return ending(FAILED, "FILE_ERROR", f"{error.strerror or error}{where}")
+
+
+def refusal(error: LsgpError, run: Run) -> Record:
+    """The record of an error of the library."""
+    status = FAILED if error.code == out_of_memory().code else REFUSED
+    count = None if run.triangulation is None else len(run.triangulation.triangles)
+    message = f"{error.message}{reports.where(error.elements, run.triangulation)}"
+    return ending(status, error.code, message, triangles=count)
+
+
+def _unwrap(task: Task, settings: Settings, run: Run) -> Record:
+    output = Path(task.out, task.output)
+    output.parent.mkdir(parents=True, exist_ok=True)
+    args = argparse.Namespace(input=Path(task.input), output=output, **settings.options_for(task))
+    result = unwrap_file(args, run)
+    report = reports.unwrap_report(result, run.triangulation, run.stage_seconds, texture_size(args))
+    if settings.reports:
+        write_whole(output.with_name(f"{output.name}.report.json"), reports.to_json(report))
+    record = record_of(report) | {"output": task.output}
+    if settings.pictures:
+        picture = Path(task.out, task.picture)
+        picture.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(picture, picture_of(run.surface, result))
+        record["picture"] = task.picture
+    return record

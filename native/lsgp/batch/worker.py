@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A worker process: told tasks on its standard input, line by line, it answers with records on its standard output.
+
+    python -m lsgp.batch.worker
+
+It ends, in the middle of an asset as well, when its input ends: whoever started it is gone or wants no more of it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import signal
+import socket
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from queue import SimpleQueue
+from typing import Any
+
+from ..report import finite
+from .records import FAILED, Record, ending
+from .tasks import Settings, Task
+
+# What begins a line that is meant; programs that workers run in print lines of their own.
+MARK = "\x1elsgp "
+
+
+def serve(work: Callable[[Task, Settings], Record]) -> None:
+    """Answer until the input ends, and end the process."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a Ctrl-C is for who started this process
+    # Whatever else is printed goes to the standard error.
+    answers = os.dup(1)
+    os.dup2(2, 1)
+    lines: SimpleQueue[bytes] = SimpleQueue()
+    threading.Thread(target=_read_lines, args=(lines,), daemon=True).start()
+    settings = Settings(**json.loads(lines.get()))
+    name = f"{socket.gethostname()}:{os.getpid()}"
+    if settings.memory_limit is not None:
+        _limit_memory(settings.memory_limit)
+    _send(answers, {"ready": name})
+    while True:
+        task = Task(**json.loads(lines.get()))
+        begin, cpu = time.perf_counter(), time.process_time()
+        _forget_peak_memory()
+        try:
+            record = work(task, settings)
+        except Exception as error:  # whatever it is costs this asset only
+            message = f"{type(error).__name__}: {error}. This is a fault of the program; please report it."
+            record = ending(FAILED, "INTERNAL_ERROR", message)
+        figures = {
+            "asset": task.asset,
+            "input_bytes": _size(task.input),
+            "seconds": round(time.perf_counter() - begin, 6),
+            "cpu_seconds": round(time.process_time() - cpu, 6),
+            "peak_memory_mb": _peak_memory_mb(),
+            "worker": name,
+            "options": settings.digest(),
+        }
+        _send(answers, record | figures)
+
+
+def _read_lines(lines: SimpleQueue[bytes]) -> None:
+    for line in sys.stdin.buffer:
+        lines.put(line)
+    os._exit(0)
+
+
+def _send(descriptor: int, value: Any) -> None:
+    data = (MARK + json.dumps(finite(value)) + "\n").encode("ascii")
+    try:
+        while data:
+            data = data[os.write(descriptor, data) :]
+    except OSError:  # nobody is left to hear it
+        os._exit(1)
+
+
+def _limit_memory(megabytes: int) -> None:
+    """Let the process have only so much memory beyond what it has now."""
+    import resource
+
+    pages = int(Path("/proc/self/statm").read_text().split()[0])
+    limit = pages * resource.getpagesize() + megabytes * 1_000_000
+    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+
+
+def _forget_peak_memory() -> None:
+    """So that the peak is that of one asset; where that cannot be done it is that of all assets so far."""
+    with contextlib.suppress(OSError):
+        Path("/proc/self/clear_refs").write_text("5")
+
+
+def _peak_memory_mb() -> float | None:
+    try:
+        status = Path("/proc/self/status").read_text()
+    except OSError:
+        return None
+    peak = next((line for line in status.splitlines() if line.startswith("VmHWM:")), None)
+    return None if peak is None else round(int(peak.split()[1]) * 1024 / 1e6, 3)
+
+
+def _size(path: str) -> int | None:
+    try:
+        return os.stat(path).st_size
+    except OSError:
+        return None
+
+
+if __name__ == "__main__":
+    from .work import unwrap_asset
+
+    serve(unwrap_asset)

@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A run from the list to the summary: the bytes of single runs, a line an asset, exit codes, shards, side files."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote
+
+import pytest
+from batch_meshes import off_text
+from lsgp.batch.records import EMPTY
+from lsgp.cli import main
+from meshes import cube, grid
+
+ASSETS = ["cube.off", "deep/ball two.off", "deep/ball.off", "moebius.off", "patch.off"]
+RESULTS = [name for name in ASSETS if name != "moebius.off"]
+
+
+def files_in(folder: Path, suffix: str) -> dict[str, bytes]:
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob(f"*{suffix}")}
+
+
+@pytest.mark.parametrize("options", [[], ["--seamless", "--tiles", "6", "--cones", "auto:8"]])
+def test_same_bytes_as_single_runs_and_a_line_an_asset(batch, lines_in, library: Path, options: list[str]) -> None:
+    done = batch("library", "--out", "out", "--jobs", 2, *options)
+    assert (done.returncode, done.stderr) == (4, "")
+    out = library.parent / "out"
+    lines = {line["asset"]: line for line in lines_in(out / "journal.jsonl")}
+    assert sorted(lines) == ASSETS
+    results = {}
+    for name in ASSETS:
+        single = library.parent / "single.obj"
+        code = main(["unwrap", str(library / name), "-o", str(single), *options])
+        line = lines[name]
+        assert list(line) == list(EMPTY)
+        if code == 0:
+            results[f"{name}.obj"] = single.read_bytes()
+            assert (line["status"], line["code"], line["output"]) == ("ok", None, f"{name}.obj")
+            assert line["distortion"]["l2_stretch"] >= 1 - 1e-9
+            assert min(line["seconds"], line["triangles"], line["input_bytes"]) > 0
+        else:
+            assert (line["status"], line["code"], line["output"]) == ("refused", "NOT_ORIENTABLE", None)
+    assert files_in(out, ".obj") == results
+    assert not list(out.rglob("*.partial"))
+
+
+def test_exit_codes_of_all_some_and_none(batch, library: Path) -> None:
+    for name, listed, code in (
+        ("all", RESULTS, 0),
+        ("some", ["patch.off", "gone.off", "moebius.off"], 4),
+        ("none", ["moebius.off", "gone.off"], 3),
+    ):
+        (library / "list.txt").write_text("\n".join(listed))
+        done = batch("library/list.txt", "--out", name)
+        assert (done.returncode, done.stderr) == (code, "")
+        assert done.stdout.startswith(f"{len(listed)} assets\n")
+        assert re.search(rf"^results +{code != 3 and len(set(listed) & set(RESULTS))}$", done.stdout, re.M) or code == 3
+
+
+WRONG_USAGE = {
+    "no source": (["nowhere", "--out", "out"], "nowhere"),
+    "no assets": (["empty", "--out", "out"], "has no assets"),
+    "no out": (["library"], "--out"),
+    "out in a file": (["library", "--out", "library/cube.off"], "cube.off"),
+    "no jobs": (["library", "--out", "out", "--jobs", "0"], "whole number"),
+    "no time": (["library", "--out", "out", "--timeout", "0"], "number of seconds"),
+    "shard outside": (["library", "--out", "out", "--shard", "3/2"], "from 1 to n"),
+    "options that do not go together": (["library", "--out", "out", "--tiles", "4"], "add --seamless"),
+    "missing cones": (["library", "--out", "out", "--cones", "none.json"], "none.json"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG_USAGE)
+def test_wrong_usage_ends_with_2_before_any_work(
+    library: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], name: str
+) -> None:
+    arguments, said = WRONG_USAGE[name]
+    monkeypatch.chdir(library.parent)
+    Path("empty").mkdir()
+    assert main(["batch", *arguments]) == 2
+    assert said in capsys.readouterr().err
+    assert not list(Path("out").glob("journal*"))
+
+
+def test_file_that_is_missing_is_told_and_tried_again(batch, lines_in, library: Path) -> None:
+    (library / "list.txt").write_text("patch.off\nlate.off\n")
+    assert batch("library/list.txt", "--out", "out").returncode == 4
+    journal = library.parent / "out" / "journal.jsonl"
+    (line,) = (line for line in lines_in(journal) if line["asset"] == "late.off")
+    assert (line["status"], line["code"]) == ("failed", "FILE_ERROR")
+    assert "late.off" in line["message"]
+    shutil.copy(library / "cube.off", library / "late.off")
+    assert batch("library/list.txt", "--out", "out", "--only-missing").returncode == 0
+    assert [line["asset"] for line in lines_in(journal)].count("patch.off") == 1
+
+
+def test_only_missing_does_what_has_no_result(batch, lines_in, library: Path) -> None:
+    assert batch("library", "--out", "out").returncode == 4
+    journal = library.parent / "out" / "journal.jsonl"
+    (library.parent / "out" / "cube.off.obj").unlink()
+    (library / "new.off").write_text(off_text(cube(2)))
+    done = batch("library", "--out", "out", "--only-missing")
+    assert done.returncode == 4
+    assert done.stdout.startswith("6 assets\n")
+    assert "\n2 of them in this run" in done.stdout
+    assert sorted(line["asset"] for line in lines_in(journal)[5:]) == ["cube.off", "new.off"]
+    before = journal.read_bytes()
+    assert batch("library", "--out", "out", "--only-missing").returncode == 4
+    assert journal.read_bytes() == before
+
+
+def test_only_missing_does_not_mix_options(batch, library: Path) -> None:
+    assert batch("library", "--out", "out").returncode == 4
+    other = batch("library", "--out", "out", "--only-missing", "--border", "straight")
+    assert (other.returncode, "other options" in other.stderr) == (2, True)
+    assert batch("library", "--out", "out", "--border", "straight").returncode == 4
+
+
+def test_shards_together_are_the_whole(batch, library: Path, lines_in) -> None:
+    out = library.parent / "out"
+    codes = {batch("library", "--out", "out", "--shard", f"{i}/3").returncode for i in (1, 2, 3)}
+    assert codes <= {0, 3, 4}
+    lines = [line for i in (1, 2, 3) for line in lines_in(out / f"journal-{i}-of-3.jsonl")]
+    assert sorted(line["asset"] for line in lines) == ASSETS
+    assert not (out / "summary.txt").exists()
+    whole = batch("library", "--out", "out", "--only-missing")
+    assert whole.returncode == 4
+    assert "\n0 of them in this run" in whole.stdout
+    assert (out / "journal.jsonl").read_bytes() == b""
+    assert (out / "summary.txt").read_text().startswith("5 assets\n")
+
+
+def test_side_files_beside_each_mesh(batch, lines_in, library: Path) -> None:
+    for name in RESULTS:
+        cones = [0, 1, 2, 3] if name == "cube.off" else []
+        (library / f"{Path(name).with_suffix('')}.cones.json").write_text(json.dumps({"cones": cones}))
+    (library / "patch.cones.json").unlink()
+    batch("library", "--out", "out", "--cones", "{}.cones.json")
+    lines = {line["asset"]: line for line in lines_in(library.parent / "out" / "journal.jsonl")}
+    assert (lines["cube.off"]["status"], lines["cube.off"]["cones"]) == ("ok", 4)
+    assert (lines["patch.off"]["status"], lines["patch.off"]["code"]) == ("failed", "FILE_ERROR")
+    assert "patch.cones.json" in lines["patch.off"]["message"]
+    assert lines["deep/ball.off"]["code"] == "TOO_FEW_CONES"
+
+
+def test_reports_are_those_of_single_runs(batch, library: Path) -> None:
+    assert batch("library", "--out", "out", "--reports", "--no-pictures").returncode == 4
+    reports = files_in(library.parent / "out", ".report.json")
+    assert sorted(reports) == [f"{name}.obj.report.json" for name in RESULTS]
+    single = library.parent / "single.json"
+    output = library.parent / "single.obj"
+    assert main(["unwrap", str(library / "cube.off"), "-o", str(output), "--report", str(single)]) == 0
+    wanted, found = json.loads(single.read_bytes()), json.loads(reports["cube.off.obj.report.json"])
+    assert found.pop("stage_seconds").keys() == wanted.pop("stage_seconds").keys()
+    assert found == wanted
+    assert not list((library.parent / "out").rglob("*.png"))
+
+
+class Sheet(HTMLParser):
+    """What a contact sheet points to, and its text."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.places: list[str] = []
+        self.text = ""
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        self.places += [unquote(value) for key, value in attributes if key in ("src", "href")]
+
+    def handle_data(self, data: str) -> None:
+        self.text += data
+
+
+def test_contact_sheet_shows_every_asset(batch, library: Path) -> None:
+    (library / "a&b <i>#?.off").write_text(off_text(grid()))
+    assert batch("library", "--out", "out").returncode == 4
+    out = library.parent / "out"
+    sheet = Sheet((out / "contact-sheet.html").read_text())
+    assert all((out / place).is_file() for place in sheet.places)
+    assert sorted(place for place in sheet.places if place.endswith(".png")) == sorted(
+        f"pictures/{name}.png" for name in [*RESULTS, "a&b <i>#?.off"]
+    )
+    assert all(name in sheet.text for name in [*ASSETS, "a&b <i>#?.off", "refused: NOT_ORIENTABLE"])
+
+
+@pytest.mark.skipif(os.name != "posix", reason="names that are no text are a POSIX matter")
+def test_names_of_any_kind(batch, lines_in, library: Path) -> None:
+    odd = [os.fsdecode(b"b\xe4r.off"), "立 方.off", "-o.off", "{}.off"]
+    for name in odd:
+        shutil.copy(library / "patch.off", library / name)
+    done = batch("library", "--out", "out")
+    assert (done.returncode, done.stderr) == (4, "")
+    lines = lines_in(library.parent / "out" / "journal.jsonl")
+    assert sorted(line["asset"] for line in lines) == sorted([*ASSETS, *odd])
+    assert (library.parent / "out" / f"{odd[0]}.obj").is_file()
+
+
+def test_progress_on_a_terminal(library: Path) -> None:
+    pty = pytest.importorskip("pty")
+    terminal_end, process_end = pty.openpty()
+    command = [sys.executable, "-c", "from lsgp import cli, terminal; terminal.SILENT_SECONDS = 0; cli.main()"]
+    command += ["batch", "library", "--out", "out", "--jobs", "1"]
+    process = subprocess.Popen(command, cwd=library.parent, stdout=subprocess.DEVNULL, stderr=process_end)
+    os.close(process_end)
+    sent = b""
+    try:
+        while part := os.read(terminal_end, 10_000):
+            sent += part
+    except OSError:  # how Linux says that nobody is left at the other end
+        pass
+    os.close(terminal_end)
+    assert process.wait(60) == 0
+    shown = sent.decode().split("\r")
+    counts = [int(count) for line in shown for count in re.findall(r"%, (\d)/5", line)]
+    assert counts == sorted(counts) and {0, 5} <= set(counts)
+    assert any(re.search(r"1 without a result, [\d.]+/s, \d+:\d\d left", line) for line in shown)
+    assert shown[-1] == ""

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A worker that comes to grief on assets by their names; on others it does its work."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+
+from lsgp.batch.records import Record
+from lsgp.batch.tasks import Settings, Task
+from lsgp.batch.work import unwrap_asset
+from lsgp.batch.worker import serve
+
+
+def work(task: Task, settings: Settings) -> Record:
+    if "segfault" in task.asset:
+        os.kill(os.getpid(), signal.SIGSEGV)
+    if "kill" in task.asset:
+        os.kill(os.getpid(), signal.SIGKILL)
+    if "exit" in task.asset:
+        print("the disk of dreams is full", file=sys.stderr, flush=True)
+        os._exit(7)
+    if "hang" in task.asset:
+        time.sleep(600)
+    if "fault" in task.asset:
+        raise ZeroDivisionError("by nought")
+    if "chatty" in task.asset:
+        print("a line of its own", flush=True)
+        os.write(1, b"and another\n")
+    return unwrap_asset(task, settings)
+
+
+if __name__ == "__main__":
+    if "does-not-start" in sys.argv:
+        sys.exit("there is no library here")
+    serve(work)
