@@ -208,9 +208,8 @@ void Assembly::find_overlapping() {
     for (Index f = 0; f < mesh.triangle_count(); ++f) area += std::abs(doubled_area(position, first / 3 + f)) / 2;
     first += mesh.halfedge_count();
   }
-  if (result_.flipped.empty() && !has_overlap(position, twin)) return;
   double shared = 0;
-  for (const Overlap& overlap : find_overlaps(position)) {
+  for (const Overlap& overlap : result_.flipped.empty() ? find_overlaps(position, twin) : find_overlaps(position)) {
     shared += overlap.area;
     result_.overlapping.insert(result_.overlapping.end(), {triangle[overlap.first], triangle[overlap.second]});
   }

@@ -8,7 +8,7 @@ namespace lsgp {
 
 namespace {
 
-constexpr Index leaf_size = 4;
+constexpr Index leaf_size = 8;
 
 struct Place {
   std::uint64_t along;  // the curve

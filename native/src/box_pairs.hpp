@@ -16,7 +16,9 @@ struct Box {
 };
 
 inline bool meet(const Box& a, const Box& b) {
-  return a.left <= b.right && b.left <= a.right && a.bottom <= b.top && b.bottom <= a.top;
+  // Without branches, which could not be foretold.
+  return static_cast<int>(a.left <= b.right) & static_cast<int>(b.left <= a.right) &
+         static_cast<int>(a.bottom <= b.top) & static_cast<int>(b.bottom <= a.top);
 }
 
 inline Box around(const Box& a, const Box& b) {

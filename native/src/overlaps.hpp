@@ -19,9 +19,12 @@ struct Overlap {
 // that share less than rounding explains of the smaller one are neighbours and no overlap.
 std::vector<Overlap> find_overlaps(const Eigen::VectorXcd& position);
 
-// Whether a layout overlaps itself at all; no triangle may be flipped.  twin: (3m) the halfedge on the other side of
-// each where the layout runs on, none where it ends.  Looks at its border alone: an immersed surface whose border
-// neither crosses itself nor encloses another part of it lies on itself nowhere.
+// The same for a layout without flipped triangles, quicker: only where its border winds around a point twice.
+// twin: (3m) the halfedge on the other side of each where the layout runs on, none where it ends.
+std::vector<Overlap> find_overlaps(const Eigen::VectorXcd& position, const std::vector<Index>& twin);
+
+// Whether there is any such pair in a layout without flipped triangles.  Looks at its border alone: an immersed surface
+// whose border neither crosses itself nor encloses another part of it lies on itself nowhere.
 bool has_overlap(const Eigen::VectorXcd& position, const std::vector<Index>& twin);
 
 }  // namespace lsgp

@@ -97,8 +97,7 @@ bool split_map(const HalfedgeMesh& mesh, const Geometry& geometry, const std::ve
   for (const Index f : map.validity.flipped) {
     corners.segment<3>(3 * f).setConstant(std::numeric_limits<double>::quiet_NaN());
   }
-  if (!has_overlap(corners, twin)) return false;
-  const std::vector<Overlap> overlaps = find_overlaps(corners);
+  const std::vector<Overlap> overlaps = find_overlaps(corners, twin);
   if (overlaps.empty()) return false;
   Division best = divide(mesh, geometry, map, overlaps, kept, CutTaste::shortest, monitor, ends);
   for (const CutTaste taste : {CutTaste::no_scraps, CutTaste::no_small_parts}) {
