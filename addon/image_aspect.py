@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import bpy
 
+from .texture import material_of
 from .versions import has_nodes
 
 
@@ -13,8 +14,8 @@ def image_aspect(obj: bpy.types.Object) -> float:
     faces = obj.data.polygons
     # Like Blender, any face serves where none is active.
     face = faces[faces.active if 0 <= faces.active < len(faces) else 0]
-    slots = obj.material_slots
-    material = slots[min(face.material_index, len(slots) - 1)].material if len(slots) else None
+    slots = len(obj.material_slots)
+    material = material_of(obj, min(face.material_index, slots - 1)) if slots else None
     if material is None or not has_nodes(material):
         return 1.0
     image = getattr(_active_texture(material.node_tree), "image", None)

@@ -73,6 +73,12 @@ def read_region(obj: bpy.types.Object, by_uv: bool = False) -> Region | None:
         return _read_mesh(mesh, obj.mode == "EDIT", by_uv)
 
 
+def read_all(obj: bpy.types.Object) -> Region | None:
+    """All faces of a mesh in any mode; None where it has none."""
+    with _readable_mesh(obj) as mesh:
+        return _read_mesh(mesh, False, False)
+
+
 def vertex_weights(obj: bpy.types.Object, group_name: str) -> NDArray[np.float64] | None:
     """(n,) weight of each vertex in the group, 0 where it is not in it; None where there is no such group."""
     group = obj.vertex_groups.get(group_name)

@@ -15,9 +15,9 @@ class Refused(Exception):
     """An object that cannot be worked on; the message ends with what to do."""
 
 
-def counted(number: int, noun: str) -> str:
-    """Number and noun: "1 cone", "8 cones"."""
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+def counted(number: int, noun: str, several: str | None = None) -> str:
+    """Number and noun: "1 cone", "8 cones", "2 meshes"."""
+    return f"{number} {noun}" if number == 1 else f"{number} {several or noun + 's'}"
 
 
 def explain(error: lsgp.LsgpError | lsgp.Finding | Refused | MemoryError) -> str:
@@ -28,7 +28,7 @@ def explain(error: lsgp.LsgpError | lsgp.Finding | Refused | MemoryError) -> str
         return str(error)
     size = len(error.elements.indices)
     noun = {"vertices": "vertex"}.get(error.elements.kind, error.elements.kind.removesuffix("s"))
-    concerned = f", {size} {noun if size == 1 else error.elements.kind}" if size else ""
+    concerned = f", {counted(size, noun, error.elements.kind)}" if size else ""
     return f"{error.message} [{error.code}{concerned}]"
 
 

@@ -17,6 +17,7 @@ from .. import (
     native,
     packing,
     reporting,
+    reports,
     targets,
     unwrapping,
 )
@@ -73,7 +74,7 @@ class UV_OT_cone_unwrap(
         "Works on the selected faces in edit mode (in a UV editor with its own selection, on those with all UVs "
         "selected), on all faces of the selected objects in object mode; each object fills the UV square by itself"
     )
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"REGISTER", "UNDO", "PRESET"}
     activity = "Unwrapping from cones"
 
     prescription: bpy.props.EnumProperty(
@@ -219,7 +220,9 @@ class UV_OT_cone_unwrap(
             solved = layouts = []
         # Only now, with all computation behind, is anything written.
         for (obj, unwrapped), corner_uv in zip(solved, layouts, strict=True):
+            report = reports.joined(reports.find(obj.data), reports.report_on(unwrapped), unwrapped)
             mesh_write.write_uv(obj, unwrapped.region, unwrapped.result.solved, corner_uv)
+            reports.store(obj.data, report)
         done = [_summary(obj, unwrapped) for obj, unwrapped in solved]
         warnings = {obj.name: unwrapped.result.warnings for obj, unwrapped in solved}
         return reporting.conclude(self, done, warnings, failures)

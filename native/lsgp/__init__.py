@@ -6,7 +6,7 @@ Vintescu, Dupont, Lavoué, Memari, Tierny: Least Squares Affine Transitions for 
 
 from importlib.metadata import version
 
-from . import lattice
+from . import certificate, lattice
 from .api import (
     ConeGains,
     CutGraph,
@@ -72,6 +72,7 @@ __all__ = [
     "TopologyError",
     "TriangleDistortion",
     "build_ledger",
+    "certificate",
     "cone_gains",
     "correct_aspect",
     "find_cuts",

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the overlay shows of one mesh, as arrays in the mesh's own space; drawing them is another's."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import cones
+from ..identifiers import CONE_GROUP
+from .readers import reader
+
+if TYPE_CHECKING:
+    from ..reports import Report
+    from .readers import EditedMesh, StoredMesh
+
+FloatArray = NDArray[np.float32]
+
+# The lines of a cut lie this share of its mean edge length apart from it, one on each side.
+SIDE_OFFSET = 0.12
+# Radians: less curvature is none.
+FLAT = 1e-4
+
+TIP, SADDLE, FLAT_CONE, UNKNOWN = range(4)
+
+
+@dataclass(frozen=True, slots=True)
+class Cone:
+    """A marked or imposed cone.  angle: radians, None where it is left to the unwrap.  kind: TIP, SADDLE, ..."""
+
+    vertex: int
+    angle: float | None
+    kind: int
+
+
+@dataclass(frozen=True, slots=True)
+class Content:
+    """cones with their places and normals, (k, 3). cut_lines: (s, 2, 3) segments, both sides of every cut, and
+    cut_paths: (s,) the number of each one's path. cut_uv: (s, 2, 2) the same segments in the layout. flipped,
+    overlapping: (t, 3, 3) triangles.
+    """
+
+    cones: list[Cone] = field(default_factory=list)
+    cone_places: FloatArray = field(default_factory=lambda: np.empty((0, 3), np.float32))
+    cone_normals: FloatArray = field(default_factory=lambda: np.empty((0, 3), np.float32))
+    cut_lines: FloatArray = field(default_factory=lambda: np.empty((0, 2, 3), np.float32))
+    cut_paths: NDArray[np.int32] = field(default_factory=lambda: np.empty(0, np.int32))
+    cut_uv: FloatArray = field(default_factory=lambda: np.empty((0, 2, 2), np.float32))
+    flipped: FloatArray = field(default_factory=lambda: np.empty((0, 3, 3), np.float32))
+    overlapping: FloatArray = field(default_factory=lambda: np.empty((0, 3, 3), np.float32))
+
+
+def build_content(obj: bpy.types.Object, report: Report | None) -> Content:
+    """What is to be shown of the object's mesh.  report: the current one; None where there is none."""
+    mesh = reader(obj.data)
+    found = find_cones(obj, report, mesh)
+    vertices = [cone.vertex for cone in found]
+    lines, numbers, uv = _cut_sides(mesh, [] if report is None else report.paths)
+    return Content(
+        cones=found,
+        cone_places=mesh.positions(vertices),
+        cone_normals=mesh.normals(vertices),
+        cut_lines=lines,
+        cut_paths=numbers,
+        cut_uv=uv,
+        flipped=_triangles(mesh, [] if report is None else report.flipped),
+        overlapping=_triangles(mesh, [] if report is None else report.overlapping),
+    )
+
+
+def find_cones(obj: bpy.types.Object, report: Report | None, mesh: EditedMesh | StoredMesh | None = None) -> list[Cone]:
+    """The marked cones and those of the report, by vertex; the angle last imposed goes before the one typed."""
+    mesh = reader(obj.data) if mesh is None else mesh
+    marked = cones.marked_cones(obj, CONE_GROUP).tolist()
+    angles = dict(zip(marked, cones.given_angles(obj.data, marked), strict=True))
+    if report is not None:
+        angles |= dict(zip(report.cones, report.cone_angles, strict=True))
+    vertices = sorted(angles)
+    full = [math.pi if border else 2 * math.pi for border in mesh.on_border(vertices)]
+    return [Cone(v, angles[v], _kind(angles[v], turn)) for v, turn in zip(vertices, full, strict=True)]
+
+
+def _kind(angle: float | None, full: float) -> int:
+    if angle is None:
+        return UNKNOWN
+    curvature = full - angle
+    return FLAT_CONE if abs(curvature) < FLAT else TIP if curvature > 0 else SADDLE
+
+
+def _cut_sides(
+    mesh: EditedMesh | StoredMesh, paths: list[list[int]]
+) -> tuple[FloatArray, NDArray[np.int32], FloatArray]:
+    """Segments of both sides of every path, moved into the faces there; their paths; and them in the layout."""
+    lines, numbers, uvs = [], [], []
+    for number, path in enumerate(paths):
+        places = mesh.positions(path)
+        steps = np.diff(places, axis=0)
+        offset = SIDE_OFFSET * np.linalg.norm(steps, axis=1).mean()
+        for side in (1, -1):
+            pairs = [pair[::side] for pair in pairwise(path)]
+            inward = _unit(np.cross(mesh.side_normals(pairs), side * steps))
+            uv = mesh.side_uv(pairs)[:, ::side]
+            moved = places + offset * _along_path(inward, closed=path[0] == path[-1])
+            present = ~np.isnan(inward).any(axis=1)
+            lines.append(np.stack([moved[:-1], moved[1:]], axis=1)[present])
+            uvs.append(uv[present])
+            numbers.append(np.full(present.sum(), number, np.int32))
+    if not lines:
+        return np.empty((0, 2, 3), np.float32), np.empty(0, np.int32), np.empty((0, 2, 2), np.float32)
+    return np.concatenate(lines).astype(np.float32), np.concatenate(numbers), np.concatenate(uvs)
+
+
+def _along_path(inward: FloatArray, closed: bool) -> FloatArray:
+    """(k + 1, 3) at the vertices of a path what is (k, 3) at its edges: the mean of those that meet."""
+    inward = np.nan_to_num(inward)
+    before, after = np.vstack([inward[:1], inward]), np.vstack([inward, inward[-1:]])
+    if closed:
+        before[0], after[-1] = inward[-1], inward[0]
+    return np.nan_to_num(_unit(before + after))
+
+
+def _unit(vectors: FloatArray) -> FloatArray:
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+
+def _triangles(mesh: EditedMesh | StoredMesh, faces: list[int]) -> FloatArray:
+    vertices = np.array(mesh.triangles(faces), int).reshape(-1)
+    return mesh.positions(vertices.tolist()).reshape(-1, 3, 3)

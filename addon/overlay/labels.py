@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The angles beside cones, so many of them that none lies on another, and the scale of the distortion."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import blf
+import numpy as np
+from mathutils import Matrix
+from numpy.typing import NDArray
+
+from . import shaders
+from .content import Cone
+from .heat import Scale
+
+FloatArray = NDArray[np.float32]
+Box = tuple[float, float, float, float]
+
+FONT = 0
+PADDING = 3
+BAR_WIDTH, BAR_HEIGHT, BAR_MARGIN = 180, 10, 16
+LEAST_FACING = -0.2
+BEHIND_TEXT = (0.0, 0.0, 0.0, 0.55)
+
+
+def label(cone: Cone) -> str:
+    """The angle in degrees, without needless digits; "auto" where it is left to the unwrap."""
+    if cone.angle is None:
+        return "auto"
+    degrees = math.degrees(cone.angle)
+    return f"{degrees:.0f}°" if abs(degrees - round(degrees)) < 0.05 else f"{degrees:.1f}°"
+
+
+def on_screen(places: FloatArray, matrix: Matrix, width: int, height: int) -> FloatArray:
+    """(k, 3) pixels and depth of (k, 3) places under a perspective matrix; NaN where they lie behind the view."""
+    points = np.c_[places, np.ones(len(places))] @ np.array(matrix, np.float64).T
+    points[points[:, 3] <= 0] = np.nan
+    ndc = points[:, :3] / points[:, 3:]
+    return np.c_[(ndc[:, 0] + 1) * width / 2, (ndc[:, 1] + 1) * height / 2, ndc[:, 2]]
+
+
+def facing(places: FloatArray, normals: FloatArray, eye: FloatArray, is_perspective: bool) -> NDArray[np.bool_]:
+    """(k,) which surface points look at the eye, or past it but little, as tips do at the outline of a shape.
+
+    eye: its place, or in a parallel view the direction to it.
+    """
+    toward = eye - places if is_perspective else np.broadcast_to(eye, places.shape)
+    lengths = np.linalg.norm(normals, axis=1) * np.linalg.norm(toward, axis=1)
+    return (normals * toward).sum(axis=1) > LEAST_FACING * lengths
+
+
+def without_overlaps(boxes: Sequence[Box], order: Sequence[int]) -> list[int]:
+    """Which boxes to keep, first come first served, so that none of them meet.  A box: left, low, right, high."""
+    kept: list[int] = []
+    for i in order:
+        left, low, right, high = boxes[i]
+        if all(left > b[2] or right < b[0] or low > b[3] or high < b[1] for b in (boxes[k] for k in kept)):
+            kept.append(i)
+    return kept
+
+
+def draw_labels(texts: Sequence[str], places: FloatArray, offset: float, size: int, colour: Sequence[float]) -> None:
+    """Write texts to the right of (k, 3) pixels and depths, the nearest first, leaving out those that do not fit."""
+    blf.size(FONT, size)
+    boxes = []
+    for text, (x, y, _) in zip(texts, places.tolist(), strict=True):
+        width, height = blf.dimensions(FONT, text)
+        low, high = y - height / 2 - PADDING, y + height / 2 + PADDING
+        boxes.append((x + offset, low, x + offset + width + 2 * PADDING, high))
+    kept = without_overlaps(boxes, np.argsort(places[:, 2], kind="stable").tolist())
+    if not kept:
+        return
+    corners = np.concatenate([rectangle(*boxes[i]) for i in kept])
+    shaders.triangle_batch(corners, np.tile(np.float32(BEHIND_TEXT), (len(corners), 1))).draw(shaders.triangles())
+    blf.color(FONT, *colour)
+    for i in kept:
+        blf.position(FONT, boxes[i][0] + PADDING, boxes[i][1] + PADDING, 0)
+        blf.draw(FONT, texts[i])
+
+
+def rectangle(left: float, low: float, right: float, high: float) -> FloatArray:
+    """(2, 3, 3) triangles."""
+    points = np.array([(left, low, 0), (right, low, 0), (right, high, 0), (left, high, 0)], np.float32)
+    return points[[[0, 1, 2], [0, 2, 3]]]
+
+
+def draw_scale_texts(scale: Scale, left: float, low: float, pixel: float, size: int, colour: Sequence[float]) -> None:
+    """What the colours of the bar at this place mean, above and below it."""
+    blf.size(FONT, size)
+    blf.color(FONT, *colour)
+    blf.enable(FONT, blf.SHADOW)
+    blf.shadow(FONT, 5, 0.0, 0.0, 0.0, 0.9)
+    blf.shadow_offset(FONT, 0, 0)
+    width = BAR_WIDTH * pixel
+    for text, share in zip(scale.ends, (0.0, 0.5, 1.0), strict=True):
+        x = left + share * (width - blf.dimensions(FONT, text)[0])
+        blf.position(FONT, x, low - 1.2 * size, 0)
+        blf.draw(FONT, text)
+    blf.position(FONT, left, low + BAR_HEIGHT * pixel + 0.5 * size, 0)
+    blf.draw(FONT, scale.label)
+    blf.disable(FONT, blf.SHADOW)

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws the overlay in 3D views."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
+from itertools import pairwise
+
+import bpy
+import gpu
+import numpy as np
+from mathutils import Matrix
+
+from .. import distortion
+from ..identifiers import DISTORTION_ATTRIBUTES
+from ..preferences import ConeUnwrapPreferences, preferences
+from . import cache, colours, labels, shaders
+from .heat import SCALES
+from .readers import reader
+from .settings import ConeUnwrapOverlay, settings
+
+# The share by which what is drawn is brought nearer, as Blender does with its own wires; faces stay behind those.
+NEARER_PERSPECTIVE, NEARER_PARALLEL = 0.0025, 1e-5
+FACES_NEARER = 0.2
+
+
+def shown_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """Meshes in edit mode, or the selected ones, as far as they are visible; each mesh once."""
+    if context.mode == "EDIT_MESH":
+        objects = context.objects_in_mode_unique_data
+    elif context.mode == "OBJECT":
+        objects = [obj for obj in context.selected_objects if obj.type == "MESH"]
+    else:
+        objects = []
+    return [obj for obj in objects if obj.visible_in_viewport_get(context.space_data)]
+
+
+def draw_in_scene() -> None:
+    context = bpy.context
+    chosen, space = settings(context), context.space_data
+    if not (chosen.show and space.overlay.show_overlays):
+        return
+    see_through = space.shading.type == "WIREFRAME" or space.shading.show_xray
+    gpu.state.depth_test_set("NONE" if see_through else "LESS_EQUAL")
+    gpu.state.blend_set("ALPHA")
+    try:
+        for draw, share in ((_draw_faces, FACES_NEARER), (_draw_lines, 1.0)):
+            with _brought_nearer(context.region_data, share):
+                for obj in shown_objects(context):
+                    with gpu.matrix.push_pop():
+                        gpu.matrix.multiply_matrix(obj.matrix_world)
+                        draw(obj, chosen, preferences(context))
+    finally:
+        gpu.state.depth_test_set("NONE")
+        gpu.state.depth_mask_set(False)
+        gpu.state.blend_set("NONE")
+
+
+def draw_on_top() -> None:
+    context = bpy.context
+    chosen = settings(context)
+    if not (chosen.show and context.space_data.overlay.show_overlays):
+        return
+    objects = shown_objects(context)
+    gpu.state.blend_set("ALPHA")
+    if chosen.cones and chosen.angles:
+        for obj in objects:
+            _draw_angles(context, obj)
+    measure = chosen.distortion.lower()
+    if measure in SCALES and any(_heat_batch(cache.entry(obj), obj, measure) for obj in objects):
+        _draw_scale(context, measure)
+    gpu.state.blend_set("NONE")
+
+
+def _draw_faces(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: ConeUnwrapPreferences) -> None:
+    entry = cache.entry(obj)
+    measure = chosen.distortion.lower()
+    heat = _heat_batch(entry, obj, measure) if measure in SCALES else None
+    if heat is not None:
+        heat.draw(shaders.triangles())
+    for name in ("overlapping", "flipped"):
+        corners = getattr(entry.content, name)
+        if getattr(chosen, name) and len(corners):
+            colour = colours.repeated(getattr(look, name), len(corners))
+            entry.batch(name, partial(shaders.triangle_batch, corners, colour)).draw(shaders.triangles())
+
+
+def _draw_lines(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: ConeUnwrapPreferences) -> None:
+    entry = cache.entry(obj)
+    content, pixel = entry.content, bpy.context.preferences.system.pixel_size
+    if chosen.cuts and len(content.cut_lines):
+        shader = shaders.lines()
+        shader.bind()
+        shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
+        shader.uniform_float("lineWidth", look.line_width * pixel)
+        colour = colours.of_paths(content.cut_paths, look)
+        entry.batch("cuts", partial(shaders.line_batch, content.cut_lines, colour)).draw(shader)
+    if chosen.cones and content.cones:
+        shader = shaders.discs()
+        shader.bind()
+        shader.uniform_float("size", look.cone_size * pixel)
+        gpu.state.program_point_size_set(True)
+        colour = colours.of_cones(content.cones, look)
+        entry.batch("cones", partial(shaders.disc_batch, content.cone_places, colour)).draw(shader)
+        gpu.state.program_point_size_set(False)
+
+
+def _heat_batch(entry: cache.Entry, obj: bpy.types.Object, measure: str) -> gpu.types.GPUBatch | None:
+    """None where the distortion was not measured, or of another UV map."""
+
+    def build() -> gpu.types.GPUBatch | None:
+        if not distortion.is_current(obj.data):
+            return None
+        mesh = reader(obj.data)
+        values = mesh.face_values(DISTORTION_ATTRIBUTES[measure])
+        if values is None:
+            return None
+        triangles, faces = mesh.all_triangles()
+        return shaders.triangle_batch(mesh.all_positions()[triangles], SCALES[measure].colours_of(values[faces]))
+
+    return entry.batch(measure, build)
+
+
+def _draw_angles(context: bpy.types.Context, obj: bpy.types.Object) -> None:
+    content, look = cache.entry(obj).content, preferences(context)
+    if not content.cones:
+        return
+    region, view, matrix = context.region, context.region_data, obj.matrix_world
+    places = content.cone_places @ np.array(matrix.to_3x3(), np.float32).T + np.array(matrix.translation, np.float32)
+    normals = content.cone_normals @ np.array(matrix.inverted_safe().to_3x3(), np.float32)
+    camera = view.view_matrix.inverted_safe()
+    eye = np.array(camera.translation if view.is_perspective else camera.col[2].xyz, np.float32)
+    pixels = labels.on_screen(places, view.perspective_matrix, region.width, region.height)
+    seen = labels.facing(places, normals, eye, view.is_perspective) & np.isfinite(pixels).all(axis=1)
+    scale = context.preferences.system.pixel_size
+    labels.draw_labels(
+        [labels.label(cone) for cone, show in zip(content.cones, seen, strict=True) if show],
+        pixels[seen],
+        look.cone_size * scale * 0.5 + 3 * scale,
+        round(look.text_size * context.preferences.system.ui_scale),
+        look.text,
+    )
+
+
+def _draw_scale(context: bpy.types.Context, measure: str) -> None:
+    """A bar of the scale's colours at the bottom left, with what they mean."""
+    scale, look = SCALES[measure], preferences(context)
+    pixel = context.preferences.system.ui_scale
+    size = round(look.text_size * pixel)
+    left = labels.BAR_MARGIN * pixel + sum(
+        region.width for region in context.area.regions if region.type == "TOOLS" and region.alignment == "LEFT"
+    )
+    low = labels.BAR_MARGIN * pixel + 1.5 * size
+    edges = left + np.linspace(0, labels.BAR_WIDTH * pixel, 65)
+    values = scale.least * (scale.most / scale.least) ** np.linspace(0, 1, 64)
+    high = low + labels.BAR_HEIGHT * pixel
+    corners = np.concatenate([labels.rectangle(a, low, b, high) for a, b in pairwise(edges)])
+    bar = shaders.triangle_batch(corners, np.repeat(scale.colours_of(values), 2, axis=0))
+    bar.draw(shaders.triangles())
+    labels.draw_scale_texts(scale, left, low, pixel, size, look.text)
+
+
+@contextmanager
+def _brought_nearer(view: bpy.types.RegionView3D, share: float) -> Iterator[None]:
+    """Depths a little smaller than they are, so that what lies on the surface is not hidden by it."""
+    nearer = gpu.matrix.get_projection_matrix()
+    if view.is_perspective:
+        nearer[2][3] *= 1 + share * NEARER_PERSPECTIVE
+    else:
+        nearer[2][3] -= share * NEARER_PARALLEL * view.view_distance
+    with gpu.matrix.push_pop_projection():
+        gpu.matrix.load_projection_matrix(Matrix(nearer))
+        yield

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sidebar of the 3D view."""
+
+from __future__ import annotations
+
+import bpy
+
+from .. import distortion, findings, identifiers, native, reporting, reports, texture
+from ..overlay.heat import SCALES
+from ..overlay.settings import settings
+from . import tables
+from .text import draw_table, draw_wrapped
+
+
+class ConeUnwrapPanel:
+    """Mix-in: where all our panels stand."""
+
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Cone Unwrap"
+
+
+class ConeUnwrapSubPanel(ConeUnwrapPanel):
+    """Mix-in: a panel that is shown with a mesh to work on and the library to do it."""
+
+    bl_parent_id = "VIEW3D_PT_cone_unwrap"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return not native.PROBLEM and context.object is not None and context.object.type == "MESH"
+
+
+class VIEW3D_PT_cone_unwrap(ConeUnwrapPanel, bpy.types.Panel):
+    """The tools; the other panels stand in this one."""
+
+    bl_label = "Cone Unwrap"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        if native.PROBLEM:
+            draw_wrapped(layout, context, native.PROBLEM, icon="ERROR")
+            return
+        column = layout.column(align=True)
+        row = column.row(align=True)
+        row.operator(identifiers.MARK).clear = False
+        row.operator(identifiers.MARK, text="Clear Cone").clear = True
+        row = column.row(align=True)
+        row.operator(identifiers.SELECT)
+        row.operator(identifiers.PLACE)
+        column = layout.column()
+        column.scale_y = 1.4
+        # So that long runs show their progress.
+        column.operator_context = "INVOKE_DEFAULT"
+        column.operator(identifiers.UNWRAP, icon="UV")
+
+
+class VIEW3D_PT_cone_unwrap_problems(ConeUnwrapSubPanel, bpy.types.Panel):
+    bl_label = "Problems"
+    bl_order = 20
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and bool(findings.last(context.object))
+
+    def draw(self, context: bpy.types.Context) -> None:
+        for number, found in enumerate(findings.last(context.object)):
+            box = self.layout.box()
+            draw_wrapped(box, context, found.text, icon="CANCEL" if found.is_error else "ERROR")
+            if found.named.count():
+                operator = box.operator(identifiers.SELECT_REPORTED, text="Select", icon="RESTRICT_SELECT_OFF")
+                operator.finding = number
+
+
+class VIEW3D_PT_cone_unwrap_quality(ConeUnwrapSubPanel, bpy.types.Panel):
+    bl_label = "Quality"
+    bl_order = 30
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and bool(context.object.data.cone_unwrap_report)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        mesh = context.object.data
+        report = reports.current(mesh)
+        if report is None:
+            draw_wrapped(self.layout, context, "The UV map has changed since it was unwrapped from cones", icon="INFO")
+            return
+        islands, cones = reporting.counted(report.islands, "island"), reporting.counted(len(report.cones), "cone")
+        draw_wrapped(self.layout, context, f"{reporting.counted(report.faces, 'face')}, {islands}, {cones}")
+        draw_table(self.layout, tables.QUALITY_HEADER, tables.quality_rows(report))
+
+
+class VIEW3D_PT_cone_unwrap_seams(ConeUnwrapSubPanel, bpy.types.Panel):
+    bl_label = "Seam Certificate"
+    bl_order = 40
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not super().poll(context):
+            return False
+        report = reports.current(context.object.data)
+        return report is not None and report.certificate is not None
+
+    def draw(self, context: bpy.types.Context) -> None:
+        certificate = reports.current(context.object.data).certificate
+        exact = certificate["error_texels"] < 1
+        draw_wrapped(self.layout, context, tables.seam_summary(certificate), icon="CHECKMARK" if exact else "ERROR")
+        rows = tables.seam_rows(certificate)
+        if rows:
+            draw_table(self.layout, tables.SEAM_HEADER, rows)
+        rest = len(certificate["cuts"]) - len(rows)
+        if rest:
+            self.layout.label(text=f"and {reporting.counted(rest, 'more cut', 'more cuts')}, none worse")
+
+
+class VIEW3D_PT_cone_unwrap_overlay(ConeUnwrapSubPanel, bpy.types.Panel):
+    bl_label = "Overlay"
+    bl_order = 50
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        self.layout.prop(settings(context), "show", text="")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        chosen = settings(context)
+        layout = self.layout
+        layout.active = chosen.show
+        grid = layout.grid_flow(columns=2, even_columns=True, align=True)
+        for name in ("cones", "angles", "cuts", "flipped", "overlapping"):
+            part = grid.row()
+            part.active = name != "angles" or chosen.cones
+            part.prop(chosen, name, text={"flipped": "Flipped", "overlapping": "Overlapping"}.get(name))
+
+
+class VIEW3D_PT_cone_unwrap_distortion(ConeUnwrapSubPanel, bpy.types.Panel):
+    bl_label = "Distortion"
+    bl_order = 60
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout, chosen, mesh = self.layout, settings(context), context.object.data
+        row = layout.row(align=True)
+        row.operator(identifiers.MEASURE, text="Measure").clear = False
+        if not distortion.is_measured(mesh):
+            return
+        row.operator(identifiers.MEASURE, text="Clear").clear = True
+        layout.row(align=True).prop(chosen, "distortion", expand=True)
+        if not distortion.is_current(mesh):
+            draw_wrapped(layout, context, "The UV map has changed; measure it again", icon="INFO")
+        elif chosen.distortion.lower() in SCALES:
+            scale = SCALES[chosen.distortion.lower()]
+            draw_wrapped(layout, context, f"{scale.label}: {', '.join(scale.ends)}")
+
+
+class VIEW3D_PT_cone_unwrap_texture(ConeUnwrapSubPanel, bpy.types.Panel):
+    bl_label = "Texture"
+    bl_order = 70
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.operator_context = "INVOKE_DEFAULT"
+        row = layout.row(align=True)
+        row.operator(identifiers.TEXTURE_SHOW, text="Checker").pattern = "CHECKER"
+        row.operator(identifiers.TEXTURE_SHOW, text="Asymmetric").pattern = "ASYMMETRIC"
+        if texture.is_shown(context.object):
+            layout.operator(identifiers.TEXTURE_SHOW, text="Remove").clear = True
+
+
+PANELS = (
+    VIEW3D_PT_cone_unwrap,
+    VIEW3D_PT_cone_unwrap_problems,
+    VIEW3D_PT_cone_unwrap_quality,
+    VIEW3D_PT_cone_unwrap_seams,
+    VIEW3D_PT_cone_unwrap_overlay,
+    VIEW3D_PT_cone_unwrap_distortion,
+    VIEW3D_PT_cone_unwrap_texture,
+)

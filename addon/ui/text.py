@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Texts in panels as narrow as the artist has made them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import blf
+import bpy
+
+# The font and size in points of Blender's panels.
+FONT, POINTS = 0, 11
+# Pixels beside the text, at a scale of 1: the panel's margins and the scroll bar, and an icon.
+MARGIN, ICON = 52, 24
+# Of a region that is not known, at a scale of 1.
+WIDTH = 240
+
+
+def wrapped(context: bpy.types.Context, text: str, indent: int = 0) -> list[str]:
+    """The text in lines that fit into the region; indent: pixels taken by something else, at a scale of 1."""
+    scale = context.preferences.system.ui_scale
+    blf.size(FONT, POINTS * scale)
+    width = (WIDTH if context.region is None else context.region.width / scale) - MARGIN - indent
+    lines: list[str] = []
+    for word in text.split():
+        longer = f"{lines[-1]} {word}" if lines else word
+        if lines and blf.dimensions(FONT, longer)[0] <= width * scale:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return lines
+
+
+def draw_wrapped(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str = "NONE") -> None:
+    """The text as labels in a column of their own."""
+    column = layout.column(align=True)
+    column.scale_y = 0.8
+    for number, line in enumerate(wrapped(context, text, 0 if icon == "NONE" else ICON)):
+        column.label(text=line, icon="NONE" if icon == "NONE" else icon if number == 0 else "BLANK1")
+
+
+def draw_table(layout: bpy.types.UILayout, header: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> None:
+    """Rows of texts, the first column to the left and the widest, the others to the right."""
+    column = layout.column(align=True)
+    column.scale_y = 0.85
+    for row in [header, *rows]:
+        rest = column.row(align=True)
+        rest.active = row is not header
+        for place, text in enumerate(row):
+            columns_left = len(row) - place
+            # The first column as wide as the others together.
+            part = rest.split(factor=0.5 if place == 0 else 1 / columns_left) if columns_left > 1 else rest
+            cell = part.row()
+            cell.alignment = "LEFT" if place == 0 else "RIGHT"
+            cell.label(text=text)
+            rest = part

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the overlay shows, as arrays: cones by their curvature, both sides of every cut, faces with problems."""
+
+import os
+from dataclasses import replace
+from importlib import import_module
+
+import bpy
+import numpy as np
+import pytest
+from scenes import UvMap, add_ball, add_cone_cube, add_grid, add_sphere, corners, edit, mark
+
+EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
+reports = import_module(f"{EXTENSION}.reports")
+content = import_module(f"{EXTENSION}.overlay.content")
+labels = import_module(f"{EXTENSION}.overlay.labels")
+colours = import_module(f"{EXTENSION}.overlay.colours")
+cache = import_module(f"{EXTENSION}.overlay.cache")
+cones = import_module(f"{EXTENSION}.cones")
+
+
+def shown(obj):
+    return content.build_content(obj, reports.find(obj.data))
+
+
+def give_angles(obj, angles):
+    attribute = obj.data.attributes.new("uv_cone_angle", "FLOAT", "POINT")
+    for vertex, angle in angles.items():
+        attribute.data[vertex].value = angle
+
+
+def test_marked_cones_are_shown_before_anything_is_unwrapped():
+    cube = add_cone_cube()
+    first, second, third = corners(cube)[:3]
+    give_angles(cube, {first: 1.5 * np.pi, second: 2.5 * np.pi, third: 2 * np.pi})
+    found = {cone.vertex: cone for cone in shown(cube).cones}
+    assert sorted(found) == corners(cube)
+    kinds = [found[v].kind for v in corners(cube)]
+    assert kinds == [content.TIP, content.SADDLE, content.FLAT_CONE] + [content.UNKNOWN] * 5
+    assert found[corners(cube)[4]].angle is None
+    assert len(shown(cube).cut_lines) == 0
+
+
+def test_an_angle_on_a_border_is_compared_with_half_a_turn():
+    grid = add_grid()
+    corner, inside = 0, 24
+    mark(grid, [corner, inside])
+    give_angles(grid, {corner: 1.25 * np.pi, inside: 1.25 * np.pi})
+    for in_edit_mode in (False, True):
+        if in_edit_mode:
+            edit(grid)
+        assert [cone.kind for cone in shown(grid).cones] == [content.SADDLE, content.TIP]
+
+
+def test_imposed_angles_go_before_those_that_were_left_open():
+    ball = add_ball()
+    bpy.ops.uv.cone_unwrap()
+    found = shown(ball).cones
+    assert all(cone.kind == content.TIP for cone in found)
+    assert [cone.angle for cone in found] == reports.find(ball.data).cone_angles
+
+
+@pytest.mark.parametrize("build", [add_ball, add_cone_cube])
+def test_edit_mode_shows_the_same(build):
+    obj = build()
+    bpy.ops.uv.cone_unwrap()
+    before = shown(obj)
+    edit(obj)
+    after = shown(obj)
+    assert after.cones == before.cones
+    for name in ("cone_places", "cut_lines", "cut_paths", "cut_uv"):
+        np.testing.assert_allclose(getattr(after, name), getattr(before, name), atol=1e-6)
+
+
+def test_both_sides_of_every_cut_lie_beside_it_on_the_surface():
+    cube = add_cone_cube()
+    bpy.ops.uv.cone_unwrap()
+    found, report = shown(cube), reports.find(cube.data)
+    assert len(found.cut_lines) == 2 * len(UvMap(cube).split_edges())
+    assert np.bincount(found.cut_paths).tolist() == [2 * (len(path) - 1) for path in report.paths]
+    # All cuts run along edges of the cube, whose faces are squares of side 2: lines lie in these faces.
+    on_face = np.isclose(np.abs(found.cut_lines), 1.0, atol=1e-6).any(axis=2)
+    assert on_face.all()
+    side = 2 / 4
+    away = np.sort(1 - np.abs(found.cut_lines), axis=2)
+    assert away[..., 1].max() == pytest.approx(content.SIDE_OFFSET * side, abs=1e-6)
+
+
+def test_segments_in_the_layout_are_the_split_edges_there():
+    ball = add_ball()
+    bpy.ops.uv.cone_unwrap()
+    uv = UvMap(ball)
+    split = [pair for edge in uv.split_edges() for pair in uv.sides[edge]]
+    expected = {frozenset(map(tuple, uv.uv[list(pair)].round(5))) for pair in split}
+    assert {frozenset(map(tuple, segment.astype(float).round(5))) for segment in shown(ball).cut_uv} == expected
+
+
+def test_a_hidden_side_is_left_out():
+    cube = add_cone_cube()
+    bpy.ops.uv.cone_unwrap()
+    whole = len(shown(cube).cut_lines)
+    edit(cube)
+    bpy.ops.mesh.hide()
+    assert len(shown(cube).cut_lines) == 0 < whole
+
+
+def test_faces_with_problems_are_covered_by_triangles():
+    sphere = add_sphere()
+    mark(sphere, [0, 5, 40, 60])
+    bpy.ops.uv.cone_unwrap()
+    report = replace(reports.find(sphere.data), flipped=[0, 20], overlapping=list(range(len(sphere.data.polygons))))
+    areas = {}
+    for in_edit_mode in (False, True):
+        if in_edit_mode:
+            edit(sphere)
+        found = content.build_content(sphere, report)
+        for name in ("flipped", "overlapping"):
+            first, second = (getattr(found, name)[:, i] - getattr(found, name)[:, 0] for i in (1, 2))
+            areas[name, in_edit_mode] = np.linalg.norm(np.cross(first, second), axis=1).sum() / 2
+    bpy.ops.object.mode_set(mode="OBJECT")
+    faces = sphere.data.polygons
+    for in_edit_mode in (False, True):
+        assert areas["flipped", in_edit_mode] == pytest.approx(faces[0].area + faces[20].area, rel=1e-4)
+        assert areas["overlapping", in_edit_mode] == pytest.approx(sum(face.area for face in faces), rel=1e-4)
+
+
+def test_an_empty_mesh_shows_nothing():
+    mesh = bpy.data.meshes.new("Empty")
+    obj = bpy.data.objects.new("Empty", mesh)
+    bpy.context.collection.objects.link(obj)
+    found = shown(obj)
+    assert found.cones == [] and len(found.cut_lines) == len(found.flipped) == 0
+
+
+def test_content_is_kept_until_the_mesh_changes():
+    cube = add_cone_cube()
+    bpy.ops.uv.cone_unwrap()
+    bpy.context.view_layer.update()
+    kept = cache.entry(cube)
+    assert cache.entry(cube) is kept
+    cones.mark_cones(cube, "uv_cones", [9])
+    cube.data.update_tag()
+    bpy.context.view_layer.update()
+    assert cache.entry(cube) is not kept
+    assert 9 in [cone.vertex for cone in cache.entry(cube).content.cones]
+
+
+def test_selecting_builds_nothing_anew():
+    cube = add_cone_cube()
+    edit(cube)
+    bpy.context.view_layer.update()
+    kept = cache.entry(cube)
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.context.view_layer.update()
+    assert cache.entry(cube) is kept
+
+
+@pytest.mark.parametrize(
+    "degrees, text", [(270, "270°"), (90.04, "90°"), (256.13, "256.1°"), (None, "auto"), (359.98, "360°")]
+)
+def test_angles_are_written_without_needless_digits(degrees, text):
+    angle = None if degrees is None else np.radians(degrees)
+    assert labels.label(content.Cone(0, angle, content.TIP)) == text
+
+
+def test_labels_that_would_lie_on_others_are_left_out():
+    boxes = [(0, 0, 10, 10), (5, 5, 15, 15), (11, 0, 20, 4), (30, 0, 40, 10)]
+    assert labels.without_overlaps(boxes, [0, 1, 2, 3]) == [0, 2, 3]
+    assert labels.without_overlaps(boxes, [1, 0, 2, 3]) == [1, 2, 3]
+
+
+def test_cut_colours_take_turns_and_then_lighter_ones():
+    look = bpy.context.preferences.addons[EXTENSION].preferences
+    count = len(look.cut_colours())
+    found = colours.of_paths(np.array([0, 1, count, count + 1, 2 * count], np.int32), look)
+    assert found[0] == pytest.approx(look.cut_1[:], abs=1e-6)
+    np.testing.assert_array_equal(found[4], found[0])
+    assert (found[2, :3] > found[0, :3]).all()
+    assert len(np.unique(found, axis=0)) == 4
+
+
+def test_colours_in_the_preferences_are_those_that_are_drawn():
+    look = bpy.context.preferences.addons[EXTENSION].preferences
+    kinds = {content.TIP: "tip", content.SADDLE: "saddle", content.FLAT_CONE: "flat", content.UNKNOWN: "automatic"}
+    drawn = colours.of_cones([content.Cone(0, None, kind) for kind in kinds], look)
+    for row, name in zip(drawn, kinds.values(), strict=True):
+        assert row == pytest.approx(getattr(look, name)[:], abs=1e-6)
