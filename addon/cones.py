@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cones on a mesh: members of a vertex group, with an optional angle each; read, marked, cleared, selected."""
+"""Cones on a mesh: members of a vertex group; read, marked, cleared, selected. Their angles are in angles.py."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from .identifiers import CONE_ANGLE_ATTRIBUTE
 from .mesh_read import vertex_weights
 
 CONE_WEIGHT = 1.0
@@ -20,20 +19,6 @@ def marked_cones(obj: bpy.types.Object, group_name: str) -> NDArray[np.int32]:
     """Vertices with a weight above zero in the group, ascending; none where there is no such group."""
     weights = vertex_weights(obj, group_name)
     return np.empty(0, np.int32) if weights is None else np.flatnonzero(weights > 0.0).astype(np.int32)
-
-
-def given_angles(mesh: bpy.types.Mesh, vertices: Iterable[int]) -> list[float | None]:
-    """Angle in radians of each vertex from the cone angle attribute; None (automatic) where it is 0 or missing."""
-    if mesh.is_editmode:
-        bm = bmesh.from_edit_mesh(mesh)
-        bm.verts.ensure_lookup_table()
-        layer = bm.verts.layers.float.get(CONE_ANGLE_ATTRIBUTE)
-        angles = [0.0 if layer is None else bm.verts[vertex][layer] for vertex in vertices]
-    else:
-        attribute = mesh.attributes.get(CONE_ANGLE_ATTRIBUTE)
-        present = attribute is not None and attribute.domain == "POINT" and attribute.data_type == "FLOAT"
-        angles = [attribute.data[vertex].value if present else 0.0 for vertex in vertices]
-    return [angle if angle != 0.0 else None for angle in angles]
 
 
 def mark_cones(obj: bpy.types.Object, group_name: str, vertices: Iterable[int]) -> None:

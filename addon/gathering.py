@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from . import cones
+from .angles import read_angles
 from .image_aspect import image_aspect
 from .mesh_read import Region, vertex_weights
 from .reporting import Refused
@@ -38,8 +38,7 @@ class Settings:
 
 def gather(obj: bpy.types.Object, region: Region, settings: Settings) -> Task:
     """What the map of the region is computed from.  Raises Refused."""
-    marked = cones.marked_cones(obj, settings.group)
-    marked = marked[region.vertex_used[marked]]
+    marked = read_angles(obj, settings.group).on(region.vertex_used)
     weights = vertex_weights(obj, settings.weight_group) if settings.weight_group is not None else None
     if weights is not None and settings.weight_factor:
         weighted = replace(region.surface, importance=1.0 + settings.weight_factor * weights)
@@ -47,7 +46,6 @@ def gather(obj: bpy.types.Object, region: Region, settings: Settings) -> Task:
     return Task(
         region=region,
         cones=marked,
-        angles=cones.given_angles(obj.data, marked),
         options=_options_on(obj, settings.options),
         pinned=region.pinned if settings.use_pins else np.zeros_like(region.pinned),
         keep_placement=settings.keep_placement,

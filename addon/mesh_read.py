@@ -79,6 +79,28 @@ def read_all(obj: bpy.types.Object) -> Region | None:
         return _read_mesh(mesh, False, False)
 
 
+def read_triangles(obj: bpy.types.Object) -> tuple[int, NDArray[np.int32], NDArray[np.int32]]:
+    """How many vertices a mesh has, all its triangles (m, 3) and its seams (s, 2).
+
+    Unlike `read_all` it makes no copy, so that panels can call it; in edit mode that is slower.
+    """
+    mesh = obj.data
+    if obj.mode != "EDIT":
+        mesh.calc_loop_triangles()
+        edges = _read(mesh.edges, "vertices", np.int32, 2)
+        seams = edges[_read(mesh.edges, "use_seam", bool)]
+        return len(mesh.vertices), _read(mesh.loop_triangles, "vertices", np.int32, 3), seams
+    bm = bmesh.from_edit_mesh(mesh)
+    bm.verts.index_update()
+    triangles = [[loop.vert.index for loop in loops] for loops in bm.calc_loop_triangles()]
+    seams = [[vertex.index for vertex in edge.verts] for edge in bm.edges if edge.seam]
+    return (
+        len(bm.verts),
+        np.array(triangles, np.int32).reshape(-1, 3),
+        np.array(seams, np.int32).reshape(-1, 2),
+    )
+
+
 def vertex_weights(obj: bpy.types.Object, group_name: str) -> NDArray[np.float64] | None:
     """(n,) weight of each vertex in the group, 0 where it is not in it; None where there is no such group."""
     group = obj.vertex_groups.get(group_name)

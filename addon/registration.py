@@ -4,16 +4,24 @@
 import bpy
 
 from . import changes, distortion, reports, texture
+from .operators.angle_select import MESH_OT_cone_select_one
+from .operators.angle_set import MESH_OT_cone_set_angle
+from .operators.angle_snap import MESH_OT_cone_snap_angles
+from .operators.angle_spread import MESH_OT_cone_spread_rest
+from .operators.angle_suggest import MESH_OT_cone_suggest
+from .operators.angle_update import MESH_OT_cone_update_table
 from .operators.cone_mark import MESH_OT_cone_mark
 from .operators.cone_place import MESH_OT_cone_place
 from .operators.cone_select import MESH_OT_cone_select
 from .operators.cone_select_reported import MESH_OT_cone_select_reported
 from .operators.cone_unwrap import UV_OT_cone_unwrap
 from .operators.measure import UV_OT_cone_measure
+from .operators.scale_preview import MESH_OT_cone_preview
 from .operators.texture import UV_OT_cone_texture
 from .overlay import handlers
 from .preferences import ConeUnwrapPreferences
 from .ui import menus
+from .ui.angle_panel import VIEW3D_PT_cone_angles
 from .ui.panels import PANELS
 
 CLASSES = (
@@ -25,7 +33,16 @@ CLASSES = (
     UV_OT_cone_unwrap,
     UV_OT_cone_measure,
     UV_OT_cone_texture,
+    MESH_OT_cone_set_angle,
+    MESH_OT_cone_spread_rest,
+    MESH_OT_cone_snap_angles,
+    MESH_OT_cone_suggest,
+    MESH_OT_cone_select_one,
+    MESH_OT_cone_update_table,
+    MESH_OT_cone_preview,
+    menus.VIEW3D_MT_cone_angles,
     *PANELS,
+    VIEW3D_PT_cone_angles,
 )
 PARTS = (changes, reports, distortion, texture, handlers)
 

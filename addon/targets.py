@@ -24,7 +24,7 @@ class Target:
         """The object.  Raises Refused where it is gone or its mesh is another one."""
         found = next((obj for obj in bpy.data.objects if obj.session_uid == self.uid), None)
         if found is None or found.type != "MESH" or _state(found) != self.state:
-            raise Refused("the mesh has changed since the unwrap began and was left alone; unwrap it again")
+            raise Refused("the mesh has changed since this began and was left alone; run it again")
         return found
 
 

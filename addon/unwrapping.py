@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,23 +19,26 @@ from .packing import Islands
 if TYPE_CHECKING:
     import lsgp
 
+    from .angles import ConeAngles
     from .mesh_read import Region
 
     Progress = Callable[[float], bool | None]
+
+T = TypeVar("T")
+R = TypeVar("R")
 
 
 @dataclass(frozen=True, slots=True)
 class Task:
     """All that the map of one object's region is computed from.
 
-    cones: (k,) int32. angles: of each in radians, None for automatic. pinned: (m, 3) bool, the corners to hold.
-    keep_placement: of the islands in the region's old coordinates. aspect: of the image the coordinates are for; 1
-    where they are not to be corrected for one.
+    cones: those of the region and their angles. pinned: (m, 3) bool, the corners to hold. keep_placement: of the
+    islands in the region's old coordinates. aspect: of the image the coordinates are for; 1 where they are not to be
+    corrected for one.
     """
 
     region: Region
-    cones: NDArray[np.int32]
-    angles: list[float | None]
+    cones: ConeAngles
     options: lsgp.Options
     pinned: NDArray[np.bool_]
     keep_placement: bool
@@ -72,11 +75,21 @@ def unwrap_all(tasks: Sequence[Task], progress: Progress | None = None) -> list[
 
     progress: as the library's, over all tasks.
     """
+    return solve_all(tasks, _unwrap, progress)
+
+
+def solve_all(
+    tasks: Sequence[T], solve: Callable[[T, Progress | None], R], progress: Progress | None
+) -> list[R | Exception]:
+    """What solve(task, progress) returns for each task; in the place of one that cannot be solved, why.
+
+    Raises Cancelled.  progress: over all tasks, whose regions say how much work they are.
+    """
     sizes = [len(task.region.surface.triangles) for task in tasks]
-    outcomes: list[Unwrapped | Exception] = []
+    outcomes: list[R | Exception] = []
     for i, task in enumerate(tasks):
         try:
-            outcomes.append(_unwrap(task, _part_of(progress, sum(sizes[:i]) / sum(sizes), sizes[i] / sum(sizes))))
+            outcomes.append(solve(task, _part_of(progress, sum(sizes[:i]) / sum(sizes), sizes[i] / sum(sizes))))
         except native.lsgp.Cancelled:
             raise
         except (native.lsgp.LsgpError, MemoryError) as error:
@@ -94,7 +107,8 @@ def _unwrap(task: Task, progress: Progress | None) -> Unwrapped:
     # The library solves where lengths are equal both ways.
     squeeze = lsgp.correct_aspect((1.0, 1.0), task.aspect)
     pins = _pins(region, pinned, region.corner_uv / squeeze)
-    result = lsgp.parameterize(region.surface, task.cones, task.angles, task.options, pins, progress)
+    held = task.cones.held(region.surface, task.options)
+    result = lsgp.parameterize(region.surface, held.cones, held.angles, task.options, pins, progress)
     uv = result.corner_uv
     step = None if result.seamless is None else cells.step(task.options.seamless)
     if task.keep_placement and step is not None:

@@ -5,7 +5,7 @@ import bpy
 
 from .. import native
 from ..identifiers import CONE_GROUP
-from ..mesh_read import Region, read_region
+from ..mesh_read import Region, read_all, read_region
 from ..reporting import Refused
 
 # Identifier: (value for the library, label, description).
@@ -14,6 +14,12 @@ SEAMS = {
     "BOUNDARY": ("boundary", "Boundary", "Every marked seam is an open border, as in Blender's own unwrap"),
     "IGNORE": ("ignore", "Ignore", "Marked seams have no say in where the cuts run"),
 }
+BORDERS = {
+    "FREE": ("free", "Free", "Borders take the shape of least distortion; a cone with an angle there is a corner"),
+    "STRAIGHT": ("straight", "Straight", "Borders run straight from cone to cone: a cylinder becomes a strip"),
+}
+
+NO_FACES = "the mesh has no faces; add some or select another object"
 
 
 def enum_items(choices: dict[str, tuple[str | None, str, str]]) -> list[tuple[str, str, str]]:
@@ -46,6 +52,14 @@ class SeamsProperty:
     )
 
 
+class BorderProperty:
+    """Mix-in: the shape of the mesh's own borders."""
+
+    border: bpy.props.EnumProperty(
+        name="Borders", description="The shape of the mesh's own borders", items=enum_items(BORDERS)
+    )
+
+
 def poll_edit_mesh(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
     """True where a mesh is in edit mode."""
     if context.mode != "EDIT_MESH":
@@ -72,9 +86,23 @@ def require_region(obj: bpy.types.Object, by_uv: bool = False) -> Region | None:
 
     by_uv: as in `read_region`.
     """
-    if not obj.data.is_editable:
-        raise Refused("the mesh is linked from another file and cannot be changed; make it local (Object > Relations)")
+    require_editable(obj)
     region = read_region(obj, by_uv)
     if region is None and obj.mode != "EDIT":
-        raise Refused("the mesh has no faces; add some or select another object")
+        raise Refused(NO_FACES)
     return region
+
+
+def require_all(obj: bpy.types.Object) -> Region:
+    """All faces of a mesh.  Raises Refused."""
+    require_editable(obj)
+    region = read_all(obj)
+    if region is None:
+        raise Refused(NO_FACES)
+    return region
+
+
+def require_editable(obj: bpy.types.Object) -> None:
+    """Raises Refused where the mesh is another file's."""
+    if not obj.data.is_editable:
+        raise Refused("the mesh is linked from another file and cannot be changed; make it local (Object > Relations)")

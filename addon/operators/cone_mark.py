@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 
-from .. import cones, identifiers, mesh_read, reporting
+from .. import angles, cones, identifiers, mesh_read, reporting
 from .common import ConeGroupProperty, poll_edit_mesh
 
 
@@ -37,6 +37,7 @@ class MESH_OT_cone_mark(ConeGroupProperty, bpy.types.Operator):
                 affected = np.intersect1d(vertices, marked)
                 if len(affected):
                     cones.clear_cones(obj, self.vertex_group, affected)
+                    angles.forget_angles(obj, affected)
             else:
                 affected = np.setdiff1d(vertices, marked)
                 if len(affected):

@@ -22,7 +22,16 @@ from .. import (
     unwrapping,
 )
 from .background import BackgroundComputation
-from .common import SEAMS, ConeGroupProperty, SeamsProperty, enum_items, poll_computation, require_region
+from .common import (
+    BORDERS,
+    SEAMS,
+    BorderProperty,
+    ConeGroupProperty,
+    SeamsProperty,
+    enum_items,
+    poll_computation,
+    require_region,
+)
 from .low_stretch import MODES, LowStretchProperties
 from .seamless import SeamlessProperties
 
@@ -36,10 +45,6 @@ PRESCRIPTIONS = {
 UNFOLDINGS = {
     "POISSON": ("poisson", "Direct", "One linear solve; robust on every surface"),
     "SPECTRAL": ("spectral", "Spectral", "The least conformal energy by an eigenvalue solve; slower"),
-}
-BORDERS = {
-    "FREE": ("free", "Free", "Borders take the shape of least distortion; a cone with an angle there is a corner"),
-    "STRAIGHT": ("straight", "Straight", "Borders run straight from cone to cone: a cylinder becomes a strip"),
 }
 OVERLAPS = {
     "KEEP": ("keep", "Keep", "Leave islands that lie on themselves as they are; where they do is reported"),
@@ -60,6 +65,7 @@ MARGIN_METHODS = (
 class UV_OT_cone_unwrap(
     ConeGroupProperty,
     SeamsProperty,
+    BorderProperty,
     LowStretchProperties,
     SeamlessProperties,
     BackgroundComputation,
@@ -82,9 +88,6 @@ class UV_OT_cone_unwrap(
     )
     unfold: bpy.props.EnumProperty(
         name="Unfold", description="How the surface is flattened", items=enum_items(UNFOLDINGS)
-    )
-    border: bpy.props.EnumProperty(
-        name="Borders", description="The shape of the mesh's own borders", items=enum_items(BORDERS)
     )
     repair: bpy.props.BoolProperty(
         name="Repair Flips",

@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import cones
+from ..angles import read_angles
 from ..identifiers import CONE_GROUP
 from .readers import reader
 
@@ -77,8 +77,8 @@ def build_content(obj: bpy.types.Object, report: Report | None) -> Content:
 def find_cones(obj: bpy.types.Object, report: Report | None, mesh: EditedMesh | StoredMesh | None = None) -> list[Cone]:
     """The marked cones and those of the report, by vertex; the angle last imposed goes before the one typed."""
     mesh = reader(obj.data) if mesh is None else mesh
-    marked = cones.marked_cones(obj, CONE_GROUP).tolist()
-    angles = dict(zip(marked, cones.given_angles(obj.data, marked), strict=True))
+    marked = read_angles(obj, CONE_GROUP)
+    angles = dict(zip(marked.cones.tolist(), marked.angles, strict=True))
     if report is not None:
         angles |= dict(zip(report.cones, report.cone_angles, strict=True))
     vertices = sorted(angles)

@@ -6,6 +6,20 @@ import bpy
 from .. import identifiers
 
 
+class VIEW3D_MT_cone_angles(bpy.types.Menu):
+    bl_idname = "VIEW3D_MT_cone_angles"
+    bl_label = "Cone Angles"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.operator_context = "INVOKE_DEFAULT"
+        layout.operator(identifiers.SET_ANGLE)
+        layout.operator(identifiers.SPREAD_REST)
+        layout.operator(identifiers.SNAP_ANGLES)
+        layout.operator(identifiers.SUGGEST)
+        layout.operator(identifiers.PREVIEW)
+
+
 def draw_unwrap(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
     layout = self.layout
     layout.separator()
@@ -20,7 +34,9 @@ def draw_cones(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
     layout.operator(identifiers.MARK).clear = False
     layout.operator(identifiers.MARK, text="Clear Cone").clear = True
     layout.operator(identifiers.SELECT)
+    layout.operator_context = "INVOKE_DEFAULT"
     layout.operator(identifiers.PLACE)
+    layout.menu(VIEW3D_MT_cone_angles.bl_idname)
     layout.operator(identifiers.SELECT_REPORTED)
 
 

@@ -19,6 +19,8 @@ from .errors import InputError
 
 # Of a mismatch, radians: what the library itself overlooks.
 CLOSED_WITHIN = 1e-6
+# Of an angle in single precision, radians.
+_STORED_WITHIN = 5e-7
 # A cone keeps more than nothing of its angle.
 _SMALLEST_ANGLE = 0.02 * math.pi
 
@@ -115,16 +117,19 @@ def hold_complete(
     """The angles, those marked tentative, (k,) bool, only in parts whose ledger is complete with them.
 
     Angles found for one set of cones mean nothing for another: once a cone is added, taken away or given another
-    angle, the others are automatic again.  Errors as in `build_ledger`.
+    angle, the others are automatic again. What storing angles in single precision has cost is shared out among those
+    that hold.  Errors as in `build_ledger`.
     """
     held = list(angles)
     tentative = np.asarray(tentative, bool)
     if not tentative.any():
         return held
     for part in build_ledger(surface, cones, angles, options):
-        if not part.complete:
-            for place in part.cones[tentative[part.cones]]:
-                held[place] = None
+        places = part.cones[tentative[part.cones]]
+        missing = 0.0 if part.border_takes_up else part.missing
+        complete = not len(part.automatic) and abs(missing) <= CLOSED_WITHIN + _STORED_WITHIN * len(part.cones)
+        for place in places:
+            held[place] = float(angles[place]) - missing / len(places) if complete else None
     return held
 
 

@@ -156,7 +156,7 @@ def test_a_changed_mesh_is_not_written_to(change):
     target = targets.target(cube)
     assert target.find() == cube
     change(cube)
-    with pytest.raises(reporting.Refused, match="changed since the unwrap began"):
+    with pytest.raises(reporting.Refused, match="changed since this began"):
         target.find()
 
 

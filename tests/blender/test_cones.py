@@ -176,14 +176,15 @@ def test_marking_and_selecting_ask_for_edit_mode(call):
 
 @pytest.mark.parametrize("in_edit_mode", [True, False])
 @pytest.mark.parametrize("cuts", [0, 1, 3])
-def test_place_marks_as_many_cones_as_asked_and_changes_only_the_group(cuts, in_edit_mode):
+def test_place_marks_as_many_cones_as_asked_and_changes_only_the_group_and_the_angles(cuts, in_edit_mode):
     cube = add_cube(cuts=cuts)
     if in_edit_mode:
         edit(cube)
     before = snapshot(cube)
     assert bpy.ops.mesh.cone_place(automatic=False, count=8) == {"FINISHED"}
     assert len(marked(cube)) == 8
-    assert changed(before, snapshot(cube)) <= {"weights", "groups", "active group"}
+    attributes = {"attribute uv_cone_angle POINT FLOAT", "attribute uv_cone_angle_kind POINT INT"}
+    assert changed(before, snapshot(cube)) <= {"weights", "groups", "active group"} | attributes
 
 
 @pytest.mark.parametrize("cuts", [0, 3])

@@ -15,12 +15,18 @@ OPERATORS = {
     "mesh.cone_select",
     "mesh.cone_place",
     "mesh.cone_select_reported",
+    "mesh.cone_set_angle",
+    "mesh.cone_spread_rest",
+    "mesh.cone_snap_angles",
+    "mesh.cone_suggest",
+    "mesh.cone_preview",
 }
 CONE_ENTRIES = [
     ("mesh.cone_mark", False),
     ("mesh.cone_mark", True),
     ("mesh.cone_select", None),
     ("mesh.cone_place", None),
+    ("VIEW3D_MT_cone_angles", None),
     ("mesh.cone_select_reported", None),
 ]
 
@@ -38,6 +44,9 @@ class RecordingLayout:
         entry = self.Entry()
         self.drawn.append((name, entry, text))
         return entry
+
+    def menu(self, name):
+        self.drawn.append((name, self.Entry(), ""))
 
     def separator(self):
         pass
@@ -77,6 +86,13 @@ def test_operators_can_be_undone_and_repeated(name):
 )
 def test_cones_stand_beside_the_seams_and_in_the_vertex_menu(menu):
     assert our_entries(menu) == CONE_ENTRIES
+
+
+def test_the_menu_of_angles_has_their_operators():
+    stand_in = type("Menu", (), {"layout": RecordingLayout()})()
+    bpy.types.VIEW3D_MT_cone_angles.draw(stand_in, bpy.context)
+    names = [name for name, _, _ in stand_in.layout.drawn]
+    assert names == [f"mesh.cone_{verb}" for verb in ("set_angle", "spread_rest", "snap_angles", "suggest", "preview")]
 
 
 def test_unwrap_is_in_the_unwrap_menu_once():

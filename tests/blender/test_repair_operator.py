@@ -56,7 +56,7 @@ def test_an_angle_that_the_faces_around_cannot_carry_is_refused_and_shown():
 
 
 def test_an_angle_that_no_map_comes_to_is_approached_and_the_cones_shown(reports):
-    ball, cone = ball_with_angle(2.5)
+    ball, cone = ball_with_angle(2.6)
     reports()
     assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
     assert "ANGLES_ADJUSTED" in reports()

@@ -222,3 +222,17 @@ def test_a_part_by_itself_has_the_account_and_the_prescription_it_had() -> None:
     found = lsgp.prescribe_curvature(part_surface(whole, part), mesh.cones[part.cones])
     together = lsgp.prescribe_curvature(whole, mesh.cones)
     assert found.cone_angles == pytest.approx(together.cone_angles[: len(part.cones)])
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_angles_stored_in_single_precision_add_up_again(name: str) -> None:
+    mesh = CLOSED[name]
+    exact = lsgp.prescribe_curvature(surface(mesh), mesh.cones).cone_angles
+    stored = np.nextafter(exact.astype(np.float32), np.float32(10)).tolist()
+    held = hold_complete(surface(mesh), mesh.cones, stored, [True] * len(stored))
+    assert held == pytest.approx(exact.tolist(), abs=2e-6)
+    assert build_ledger(surface(mesh), mesh.cones, held)[0].missing == pytest.approx(0, abs=1e-12)
+    # More than that is not rounding.
+    assert hold_complete(surface(mesh), mesh.cones, [stored[0] + 1e-4, *stored[1:]], [True] * len(stored)) == [
+        None
+    ] * len(stored)

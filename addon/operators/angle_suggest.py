@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Suggest the Next Cone."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import bpy
+
+from .. import identifiers, native, reporting, selection
+from ..angles import ConeAngles, Kind, write_angles
+from ..cones import mark_cones
+from .angle_common import AngleOperator
+from .common import SEAMS
+
+if TYPE_CHECKING:
+    import lsgp
+
+    from ..mesh_read import Region
+
+
+class MESH_OT_cone_suggest(AngleOperator, bpy.types.Operator):
+    """Suggest the Next Cone."""
+
+    bl_idname = identifiers.SUGGEST
+    bl_label = "Suggest the Next Cone"
+    bl_description = "Mark the vertex where one more cone would lower the stretch most, and select it in edit mode"
+    bl_options = {"REGISTER", "UNDO"}
+
+    mark: bpy.props.BoolProperty(
+        name="Mark", description="Mark it as a cone; otherwise it is selected only", default=True
+    )
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(self, "mark")
+        layout.prop(self, "seams")
+        self.draw_vertex_group(layout, context)
+
+    def change(self, obj: bpy.types.Object, region: Region, cones: ConeAngles) -> tuple[str, list[lsgp.Finding]]:
+        gains = native.lsgp.cone_gains(region.surface, cones.cones, cones.fixed(), seams=SEAMS[self.seams][0])
+        if gains.best is None:
+            raise reporting.Refused("no further cone lowers the stretch; there is nothing to add")
+        if self.mark:
+            mark_cones(obj, self.vertex_group, [gains.best])
+            write_angles(obj, [gains.best], [None], [Kind.PRESCRIBED])
+        if obj.mode == "EDIT":
+            selection.set_select_mode(bpy.context, selection.VERTEX_MODE, [obj.data])
+            selection.select_elements(obj.data, extend=False, vertices=[gains.best])
+        then = f"stretch {gains.predicted_l2[gains.best]:.3f} expected"
+        if math.isfinite(gains.present_l2):
+            then += f", {gains.present_l2:.3f} without it"
+        return f"vertex {gains.best}, {then}", gains.warnings

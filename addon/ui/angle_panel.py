@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The table of cone angles in the sidebar of the 3D view."""
+
+from __future__ import annotations
+
+import bpy
+
+from .. import angle_table, identifiers
+from ..angle_table import KIND_LABELS, Row, Settings, TablePart, degrees, last_settings, verdict
+from .panels import ConeUnwrapSubPanel
+
+# More rows and parts than these make no table anybody reads.
+MOST_ROWS = 100
+MOST_PARTS = 8
+
+
+class VIEW3D_PT_cone_angles(ConeUnwrapSubPanel, bpy.types.Panel):
+    bl_label = "Cone Angles"
+    bl_order = 10
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and context.mode in {"OBJECT", "EDIT_MESH"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        settings = last_settings(context)
+        table = angle_table.current_table(context.object, settings)
+        if table is None:
+            layout.label(text="This mesh is large")
+            layout.operator(identifiers.UPDATE_TABLE, icon="FILE_REFRESH")
+            return
+        if not any(part.rows for part in table):
+            layout.label(text="No cones are marked")
+        else:
+            self._draw_parts(layout, table)
+        self._draw_fixes(layout, settings)
+
+    def _draw_parts(self, layout: bpy.types.UILayout, table: list[TablePart]) -> None:
+        shown = [part for part in table if part.rows or not part.ledger.closes]
+        rows = MOST_ROWS
+        for part in shown[:MOST_PARTS]:
+            box = layout.box().column(align=True)
+            if len(table) > 1:
+                box.label(text=f"Part of {len(part.ledger.triangles):,} triangles")
+            draw_ledger(box, part)
+            for row in part.rows[:rows]:
+                draw_row(box, row)
+            if len(part.rows) > rows:
+                box.label(text=f"and {len(part.rows) - rows} more cones")
+            rows -= min(rows, len(part.rows))
+        if len(shown) > MOST_PARTS:
+            layout.label(text=f"and {len(shown) - MOST_PARTS} more parts")
+
+    def _draw_fixes(self, layout: bpy.types.UILayout, settings: Settings) -> None:
+        column = layout.column(align=True)
+        operators = [
+            column.operator(identifiers.SPREAD_REST),
+            column.operator(identifiers.SPREAD_REST, text="Spread over Selected"),
+            column.operator(identifiers.SNAP_ANGLES),
+            column.operator(identifiers.SUGGEST),
+            layout.operator(identifiers.PREVIEW),
+        ]
+        operators[1].selected = True
+        for operator in operators:
+            operator.vertex_group = settings.group
+            operator.seams = settings.seams.upper()
+            operator.border = settings.border.upper()
+
+
+def draw_ledger(layout: bpy.types.UILayout, part: TablePart) -> None:
+    ledger = part.ledger
+    if not ledger.border_takes_up:
+        layout.label(text=f"Assigned {degrees(ledger.assigned)} of {degrees(ledger.required)}")
+        if not ledger.complete:
+            layout.label(text=f"Missing {degrees(ledger.missing)}")
+    layout.label(text=verdict(ledger), icon="CHECKMARK" if ledger.closes else "ERROR")
+
+
+def draw_row(layout: bpy.types.UILayout, row: Row) -> None:
+    line = layout.row(align=True)
+    line.operator(identifiers.SELECT_ONE, text=str(row.vertex), emboss=False).vertex = row.vertex
+    angle = line.operator(identifiers.SET_ANGLE, text="—" if row.angle is None else degrees(row.angle))
+    angle.vertex = row.vertex
+    if row.angle is not None:
+        angle.angle = row.angle
+    line.label(text=KIND_LABELS[row.kind])
+    line.label(text="" if row.curvature is None else degrees(row.curvature, signed=True))
