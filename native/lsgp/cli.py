@@ -19,7 +19,7 @@ import numpy as np
 from . import __version__
 from . import report as reports
 from .api import Surface, measure_distortion
-from .batch.command import EXIT_CODES, add_batch_options, run_batch
+from .batch.command import EXIT_CODES, add_batch_options, add_scheduler_option, run_batch
 from .certificate import certificate_table
 from .errors import Elements, Finding, InputError, LsgpError
 from .mesh_files import write_whole
@@ -91,6 +91,7 @@ def _parser() -> argparse.ArgumentParser:
         epilog=EXIT_CODES,
     )
     add_batch_options(batch)
+    add_scheduler_option(batch)
     add_unwrap_options(batch)
     batch.set_defaults(run=run_batch)
 

@@ -16,6 +16,7 @@ from ..side_files import UsageError
 from ..terminal import ProgressLine, say
 from .assets import Asset, find_assets, output_name, require_distinct_results, shard_option
 from .contact_sheet import write_contact_sheet
+from .dask_engine import run_on_cluster
 from .journal import Journal, read_records
 from .pool import PYTHON_WORKER, Pool, WorkersError
 from .progress import RunProgress, duration
@@ -66,8 +67,16 @@ def add_batch_options(batch: argparse.ArgumentParser) -> None:
     )
 
 
+def add_scheduler_option(batch: argparse.ArgumentParser) -> None:
+    batch.add_argument(
+        "--scheduler", metavar="ADDRESS", help="work on the Dask cluster with this scheduler, tcp://host:8786 for one"
+    )
+
+
 def run_batch(args: argparse.Namespace, kind: Kind = MESH_FILES) -> int:
     """Run a batch and return its exit code.  Raises OSError, UsageError, KeyboardInterrupt."""
+    if args.jobs is not None and args.scheduler is not None:
+        raise UsageError("--jobs is for this machine; how many jobs a cluster does is told to its workers")
     if args.memory_limit is not None and not sys.platform.startswith("linux"):
         raise UsageError("--memory-limit works on Linux only; leave it out")
     settings = Settings.of(args)
@@ -118,11 +127,14 @@ def _records(args: argparse.Namespace, assets: Sequence[Asset], settings: Settin
 
     if not assets:
         return
-    pool = Pool(min(args.jobs or _cores(), len(assets)), settings, task_of, kind.worker, args.timeout)
     try:
-        yield from pool.run(assets)
+        if args.scheduler is not None:
+            yield from run_on_cluster(args.scheduler, settings, task_of, assets, args.timeout)
+        else:
+            jobs = min(args.jobs or _cores(), len(assets))
+            yield from Pool(jobs, settings, task_of, kind.worker, args.timeout).run(assets)
     except WorkersError as error:
-        raise UsageError(f"no worker process can be started: {error}") from error
+        raise UsageError(str(error)) from error
 
 
 def _conclude(args: argparse.Namespace, records: Sequence[Record], worked: int, seconds: float) -> None:

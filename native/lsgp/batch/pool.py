@@ -130,7 +130,7 @@ class Pool:
             )
         except OSError as error:
             errors.close()
-            raise WorkersError(f"{self._command[0]}: {error.strerror}") from error
+            raise WorkersError(f"no worker process can be started: {self._command[0]}: {error.strerror}") from error
         worker = _Worker(process, errors, time.monotonic())
         self._workers.append(worker)
         worker.send(self._settings.to_plain())
@@ -185,7 +185,9 @@ class Pool:
         if worker.name is None:
             self._failed_starts += 1
             if self._failed_starts >= MOST_FAILED_STARTS:
-                raise WorkersError(f"{' '.join(self._command)} {_way_of_ending(code)} at its start: {printed}")
+                raise WorkersError(
+                    f"no worker process can be started: it {_way_of_ending(code)} at its start: {printed}"
+                )
         elif worker.waiting:
             asset = worker.waiting.popleft()
             figures = {"input_bytes": asset.size, "seconds": round(seconds, 6), "worker": worker.name}

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A run on the workers of a Dask cluster, which has the files under the same paths and the same lsgp.
+
+A chunk is a task of Dask's, which moves it to another worker where one is lost.  In the task it goes to a process of
+its own, as on one machine, so that no mesh can harm a worker of Dask's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+from ..side_files import UsageError
+from .assets import Asset
+from .chunks import Queue
+from .pool import Pool, WorkersError
+from .records import FAILED, Record, ending
+from .tasks import Settings, Task
+
+CHUNKS_PER_THREAD = 2
+CONNECT_SECONDS = 30
+
+
+def run_on_cluster(
+    address: str,
+    settings: Settings,
+    task_of: Callable[[Asset], Task],
+    assets: Sequence[Asset],
+    seconds: float | None,
+) -> Iterator[Record]:
+    """The record of each asset, once.  seconds: an asset may take.  Raises UsageError, WorkersError."""
+    try:
+        from distributed import Client, as_completed
+    except ImportError as error:
+        raise UsageError("--scheduler needs Dask; install it with: pip install lsgp[dask]") from error
+    try:
+        client = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise UsageError(f"no Dask scheduler answers at '{address}': {error}") from error
+    with client:
+        queue = Queue(assets, max(1, _threads(client)))
+        chunk_of = {}
+        running = as_completed(loop=client.loop)
+        while queue or chunk_of:
+            while queue and len(chunk_of) < CHUNKS_PER_THREAD * max(1, _threads(client)):
+                chunk = queue.take()
+                tasks = [(asset, task_of(asset)) for asset in chunk]
+                future = client.submit(work_on_chunk, tasks, settings, seconds, pure=False)
+                chunk_of[future] = chunk
+                running.add(future)
+            future = next(running)
+            yield from _records_of(future, chunk_of.pop(future), settings)
+
+
+def work_on_chunk(tasks: Sequence[tuple[Asset, Task]], settings: Settings, seconds: float | None) -> list[Record]:
+    """What a worker of Dask's does: the chunk in a process of its own."""
+    task_of = dict(tasks)
+    pool = Pool(1, settings, task_of.__getitem__, seconds=seconds)
+    return list(pool.run(list(task_of)))
+
+
+def _threads(client) -> int:
+    return sum(client.nthreads().values())
+
+
+def _records_of(future, chunk: Sequence[Asset], settings: Settings) -> Iterator[Record]:
+    """Raises WorkersError where the cluster cannot be used at all."""
+    from distributed import KilledWorker
+
+    if future.status == "cancelled":
+        raise WorkersError("the scheduler is gone; go on with --only-missing once it is back")
+    error = future.exception() if future.status == "error" else None
+    if isinstance(error, KilledWorker):
+        message = "Several workers were lost that had it. See what happened to them, then go on with --only-missing."
+        for asset in chunk:
+            yield ending(FAILED, "WORKERS_LOST", message, asset=asset.name, options=settings.digest())
+        return
+    if error is not None:
+        raise WorkersError(f"a worker cannot do the work: {type(error).__name__}: {error}") from error
+    for record in future.result():
+        if record["options"] != settings.digest():
+            raise WorkersError("the workers have another version of lsgp; install the same on all")
+        yield record

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A batch on a Dask cluster: a real scheduler and worker processes, one of which is killed in the middle."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from batch_meshes import off_text
+from lsgp.cli import main
+from meshes import bumpy_sphere, moebius_strip, renumber
+
+pytest.importorskip("distributed")
+
+COUNT = 30
+
+
+class Cluster:
+    """A scheduler and two workers with a thread each, processes of this machine."""
+
+    def __init__(self, folder: Path) -> None:
+        self.address_file = folder / "scheduler.json"
+        self._folder = folder
+        self._processes = [self._start("scheduler", "--port", "0", "--no-dashboard")]
+        self.workers = [self._start("worker", "--nthreads", "1", "--no-nanny", "--no-dashboard") for _ in range(2)]
+        self._processes += self.workers
+        self.address = self._address()
+
+    def _start(self, *arguments: str) -> subprocess.Popen[bytes]:
+        command = [sys.executable, "-m", "distributed.cli.dask_" + arguments[0], *arguments[1:]]
+        command += ["--scheduler-file", str(self.address_file), "--host", "127.0.0.1"]
+        with (self._folder / f"{arguments[0]}.log").open("ab") as log:
+            return subprocess.Popen(command, cwd=self._folder, stdout=log, stderr=log)
+
+    def _address(self) -> str:
+        from distributed import Client
+
+        end = time.monotonic() + 60
+        while not self.address_file.exists():
+            assert time.monotonic() < end, "the scheduler does not start"
+            time.sleep(0.1)
+        with Client(scheduler_file=str(self.address_file)) as client:
+            client.wait_for_workers(2, timeout=60)
+            return client.scheduler.address
+
+    def stop(self) -> None:
+        for process in self._processes:
+            process.kill()
+            process.wait()
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    started = Cluster(tmp_path_factory.mktemp("cluster"))
+    yield started
+    started.stop()
+
+
+@pytest.fixture
+def many(tmp_path: Path) -> Path:
+    folder = tmp_path / "many"
+    folder.mkdir()
+    for i in range(COUNT):
+        mesh = moebius_strip() if i % 10 == 9 else renumber(bumpy_sphere(3), i)[0]
+        (folder / f"{i:02}.off").write_text(off_text(mesh))
+    return folder
+
+
+def test_a_worker_killed_in_the_middle_loses_nothing(cluster: Cluster, lines_in, many: Path) -> None:
+    out = many.parent / "out"
+    journal = out / "journal.jsonl"
+    arguments = ["-m", "lsgp", "batch", "many", "--out", "out", "--scheduler", cluster.address, "--no-pictures"]
+    process = subprocess.Popen([sys.executable, *arguments], cwd=many.parent, stdout=subprocess.DEVNULL)
+    while not journal.exists() or journal.read_bytes().count(b"\n") < 3:
+        assert process.poll() is None
+        time.sleep(0.01)
+    assert journal.read_bytes().count(b"\n") < COUNT
+    os.kill(cluster.workers[0].pid, signal.SIGKILL)
+    assert process.wait(120) == 4
+    lines = lines_in(journal)
+    assert sorted(line["asset"] for line in lines) == sorted(f"{i:02}.off" for i in range(COUNT))
+    assert {line["status"] for line in lines} == {"ok", "refused"}
+    assert main(["batch", str(many), "--out", str(many.parent / "local"), "--no-pictures"]) == 4
+    alone = {path.name: path.read_bytes() for path in (many.parent / "local").glob("*.obj")}
+    assert len(alone) == COUNT - COUNT // 10
+    assert {path.name: path.read_bytes() for path in out.glob("*.obj")} == alone
+
+
+def test_wrong_usage(many: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr("lsgp.batch.dask_engine.CONNECT_SECONDS", 1)
+    arguments = ["batch", str(many), "--out", str(many.parent / "out")]
+    assert main([*arguments, "--scheduler", "tcp://127.0.0.1:1"]) == 2
+    assert "no Dask scheduler answers at 'tcp://127.0.0.1:1'" in capsys.readouterr().err
+    assert main([*arguments, "--scheduler", "tcp://127.0.0.1:1", "--jobs", "2"]) == 2
+    assert "--jobs is for this machine" in capsys.readouterr().err
