@@ -61,6 +61,9 @@ def add_batch_options(batch: argparse.ArgumentParser) -> None:
     )
     batch.add_argument("--timeout", metavar="S", type=_seconds_option, help="seconds an asset may take")
     batch.add_argument("--memory-limit", metavar="MB", type=_count_option, help="memory an asset may take (Linux)")
+    batch.add_argument(
+        "--exit-zero", action="store_true", help="exit code 0 once all assets have ended, for farms that repeat tasks"
+    )
     batch.add_argument("--reports", action="store_true", help="write the report of each result beside it")
     batch.add_argument(
         "--no-pictures", dest="pictures", action="store_false", help="draw no pictures and no contact sheet"
@@ -97,7 +100,9 @@ def run_batch(args: argparse.Namespace, kind: Kind = MESH_FILES) -> int:
     records = [ended[asset.name] for asset in assets]
     _conclude(args, records, len(missing), time.monotonic() - begin)
     results = sum(record["status"] == OK for record in records)
-    return ALL if results == len(records) else SOME if results else NONE
+    if args.exit_zero or results == len(records):
+        return ALL
+    return SOME if results else NONE
 
 
 def _ended_before(args: argparse.Namespace, assets: Sequence[Asset], settings: Settings) -> dict[str, Record]:

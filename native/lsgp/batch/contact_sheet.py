@@ -19,9 +19,9 @@ PER_PAGE = 500
 
 STYLE = """
 body { font: 13px/1.35 sans-serif; margin: 1.5em; background: #fff; color: #222 }
-main { display: grid; grid-template-columns: repeat(auto-fill, 200px); gap: 16px }
+main { display: grid; grid-template-columns: repeat(auto-fill, 168px); gap: 16px }
 figure { margin: 0; overflow-wrap: anywhere }
-img, .none { display: block; width: 192px; height: 96px; border: 1px solid #ccc }
+img, .none { display: block; width: 160px; height: 80px; border: 1px solid #ccc }
 .none { background: #f4e4e2; padding: 6px; box-sizing: border-box; overflow: hidden }
 figcaption small { color: #666 }
 """

@@ -16,12 +16,14 @@ from numpy.typing import NDArray
 
 from ..api import Result, Surface
 
-SIDE = 96
+Floats = NDArray[np.floating]
+
+SIDE = 80
 MARGIN = 4
-POINTS_PER_PIXEL = 3
-SQUARES = 24
+POINTS_PER_PIXEL = 2
+SQUARES = 18
 VIEW = np.array([[0.8, 0.0, -0.6], [-0.2572, 0.9035, -0.3429], [0.5421, 0.4286, 0.7228]])  # rows: right, up, to the eye
-GROUND = np.array([255.0, 255.0, 255.0])
+GROUND = 255
 SMALLER, EQUAL, LARGER = np.array([[40.0, 90.0, 200.0], [225.0, 225.0, 215.0], [205.0, 50.0, 30.0]])
 FLIPPED = np.array([220.0, 0.0, 220.0])
 LIGHT_SQUARE, DARK_SQUARE = np.array([[245.0, 240.0, 225.0], [70.0, 90.0, 120.0]])
@@ -30,10 +32,11 @@ LIGHT_SQUARE, DARK_SQUARE = np.array([[245.0, 240.0, 225.0], [70.0, 90.0, 120.0]
 def picture_of(surface: Surface, result: Result) -> bytes:
     """The picture as a PNG file, the same bytes for the same result."""
     solved = result.solved
-    points = surface.positions[surface.triangles[solved]]
-    uv = result.corner_uv[solved]
+    seen = (_into_unit(surface.positions) @ VIEW.T).astype(np.float32)[surface.triangles[solved]]
+    uv = _into_unit(result.corner_uv[solved]).astype(np.float32)
+    normal = np.cross(seen[:, 1] - seen[:, 0], seen[:, 2] - seen[:, 0])
     flipped = np.isin(np.flatnonzero(solved), result.flipped)
-    return png(np.concatenate([_surface_picture(points, uv), _layout_picture(points, uv, flipped)], axis=1))
+    return png(np.concatenate([_surface_picture(seen, normal, uv), _layout_picture(normal, uv, flipped)], axis=1))
 
 
 def png(pixels: NDArray[np.uint8]) -> bytes:
@@ -47,33 +50,28 @@ def png(pixels: NDArray[np.uint8]) -> bytes:
     )
 
 
-def _surface_picture(points: NDArray[np.float64], uv: NDArray[np.float64]) -> NDArray[np.uint8]:
-    """points, uv: (m, 3, 3) and (m, 3, 2), of the corners of triangles."""
-    seen = points @ VIEW.T
+def _surface_picture(seen: Floats, normal: Floats, uv: Floats) -> NDArray[np.uint8]:
+    """seen: (m, 3, 3), corners of triangles in the frame of VIEW. normal: (m, 3). uv: (m, 3, 2), of the corners."""
     flat = _into_square(seen[..., :2])
-    normal = np.cross(seen[:, 1] - seen[:, 0], seen[:, 2] - seen[:, 0])
     length = _length(normal)
-    light = 0.45 + 0.55 * np.abs(normal[:, 2]) / np.where(length > 0, length, 1.0)
+    light = 0.45 + 0.55 * np.abs(normal[:, 2]) / np.where(length > 0, length, 1)
     triangle, weights = _spread(flat)
     pixel = _pixels(flat, triangle, weights)
-    depth = _blend(seen[..., 2:], triangle, weights)[0]
-    place = np.floor(_blend(SQUARES * _into_unit(uv), triangle, weights)).sum(axis=0)
-    colour = np.where((place % 2 == 0)[:, None], LIGHT_SQUARE, DARK_SQUARE) * light[triangle, None]
+    (depth,) = _blend(seen[..., 2:], triangle, weights)
+    place = np.floor(SQUARES * _blend(uv, triangle, weights)).sum(axis=0)
     # Of the points in a pixel those near the foremost one are seen.
-    front = np.full(SIDE * SIDE, -np.inf)
+    front = np.full(SIDE * SIDE, -np.inf, np.float32)
     np.maximum.at(front, pixel, depth)
     near = 2 * np.ptp(depth) / SIDE if len(depth) else 0.0
     shown = depth >= front[pixel] - near
-    return _mixed(pixel[shown], colour[shown])
+    colour = np.where((place[shown] % 2 == 0)[:, None], LIGHT_SQUARE, DARK_SQUARE) * light[triangle[shown], None]
+    return _mixed(pixel[shown], colour)
 
 
-def _layout_picture(
-    points: NDArray[np.float64], uv: NDArray[np.float64], flipped: NDArray[np.bool_]
-) -> NDArray[np.uint8]:
+def _layout_picture(normal: Floats, uv: Floats, flipped: NDArray[np.bool_]) -> NDArray[np.uint8]:
     flat = _into_square(uv)
     triangle, weights = _spread(flat)
-    area = _length(np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]))
-    uv_area = _double_area(uv)
+    area, uv_area = _length(normal), _double_area(uv)
     with np.errstate(all="ignore"):
         larger = 0.5 * np.log2(uv_area / uv_area.sum() * area.sum() / area)
     larger = np.clip(np.nan_to_num(larger, nan=0.0), -1, 1)[:, None]
@@ -82,69 +80,76 @@ def _layout_picture(
     return _mixed(_pixels(flat, triangle, weights), colour[triangle])
 
 
-def _into_unit(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Coordinates (m, 3, d) moved and scaled, alike in all directions, into the unit cube."""
-    if not len(values):
+def _into_unit(values: Floats) -> Floats:
+    """Coordinates (..., d) moved and scaled, alike in all directions, into the unit cube."""
+    if not values.size:
         return values
     lowest, highest = _bounds(values)
     extent = (highest - lowest).max()
     return (values - lowest) / (extent if extent > 0 else 1.0)
 
 
-def _bounds(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def _bounds(values: Floats) -> Floats:
     """The lowest and the highest of each coordinate, (2, d).  By columns, which is many times as fast as by axes."""
     columns = values.reshape(-1, values.shape[-1]).T
     return np.array([[column.min() for column in columns], [column.max() for column in columns]])
 
 
-def _length(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+def _length(vectors: Floats) -> Floats:
     x, y, z = vectors.T
     return np.sqrt(x * x + y * y + z * z)
 
 
-def _double_area(flat: NDArray[np.float64]) -> NDArray[np.float64]:
+def _double_area(flat: Floats) -> Floats:
     """Twice the area of triangles (m, 3, 2)."""
     (ax, ay), (bx, by) = (flat[:, 1] - flat[:, 0]).T, (flat[:, 2] - flat[:, 0]).T
     return np.abs(ax * by - ay * bx)
 
 
-def _into_square(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def _into_square(values: Floats) -> Floats:
     """Coordinates (m, 3, 2) in pixels, in the middle of the picture."""
     unit = _into_unit(values)
     middle = _bounds(unit)[1] / 2 if len(unit) else 0.0
     return (unit - middle) * (SIDE - 2 * MARGIN) + SIDE / 2
 
 
-def _spread(flat: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+def _spread(flat: Floats) -> tuple[NDArray[np.int64], Floats]:
     """Points spread evenly over triangles (m, 3, 2): the triangle of each and its barycentric coordinates (3, p)."""
     area = 0.5 * _double_area(flat)
     # Shares of a point are carried over to the next triangles.
-    count = np.diff(np.floor(np.cumsum(area * POINTS_PER_PIXEL)), prepend=0.0).astype(np.int64)
+    count = np.diff(np.floor(np.cumsum(area * POINTS_PER_PIXEL, dtype=float)), prepend=0.0).astype(np.int64)
     triangle = np.repeat(np.arange(len(flat)), count)
     number = np.arange(len(triangle)) - np.repeat(np.cumsum(count) - count, count)
     # The sequence of Roberts fills the square evenly, for any number of points; the square is folded to a triangle.
     a, b = (0.5 + number * 0.7548776662466927) % 1, (0.5 + number * 0.5698402909980532) % 1
     outside = a + b > 1
     a, b = np.where(outside, 1 - a, a), np.where(outside, 1 - b, b)
-    return triangle, np.stack([1 - a - b, a, b])
+    return triangle, np.stack([1 - a - b, a, b]).astype(np.float32)
 
 
-def _blend(
-    values: NDArray[np.float64], triangle: NDArray[np.int64], weights: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _blend(values: Floats, triangle: NDArray[np.int64], weights: Floats) -> Floats:
     """Values (m, 3, d) at points, (d, p)."""
     return np.stack([sum(weights[i] * column[triangle, i] for i in range(3)) for column in np.moveaxis(values, 2, 0)])
 
 
-def _pixels(flat: NDArray[np.float64], triangle: NDArray[np.int64], weights: NDArray[np.float64]) -> NDArray[np.int64]:
+def _pixels(flat: Floats, triangle: NDArray[np.int64], weights: Floats) -> NDArray[np.int64]:
     column, row = _blend(flat, triangle, weights).astype(np.int64)
     return np.clip(SIDE - 1 - row, 0, SIDE - 1) * SIDE + np.clip(column, 0, SIDE - 1)
 
 
-def _mixed(pixel: NDArray[np.int64], colour: NDArray[np.float64]) -> NDArray[np.uint8]:
-    """The mean colour of the points in each pixel, paler where there are few."""
+def _mixed(pixel: NDArray[np.int64], colour: Floats) -> NDArray[np.uint8]:
+    """The mean colour of the points in each pixel; an empty pixel among full ones takes the mean of theirs."""
     count = np.bincount(pixel, minlength=SIDE * SIDE)
     total = np.stack([np.bincount(pixel, colour[:, i], SIDE * SIDE) for i in range(3)], axis=1)
-    mean = total / np.maximum(count, 1)[:, None]
-    cover = np.minimum(count / (0.5 * POINTS_PER_PIXEL), 1)[:, None]
-    return np.rint(GROUND + cover * (mean - GROUND)).astype(np.uint8).reshape(SIDE, SIDE, 3)
+    inked = (count > 0).reshape(SIDE, SIDE)
+    image = (total / np.maximum(count, 1)[:, None]).reshape(SIDE, SIDE, 3)
+    beside = _sum_of_neighbours(inked.astype(float)[..., None])
+    holes = ~inked & (beside[..., 0] >= 3)
+    image[holes] = _sum_of_neighbours(image)[holes] / beside[holes]
+    image[~(inked | holes)] = GROUND
+    return np.rint(image).astype(np.uint8)
+
+
+def _sum_of_neighbours(image: Floats) -> Floats:
+    padded = np.pad(image, ((1, 1), (1, 1), (0, 0)))
+    return padded[:-2, 1:-1] + padded[2:, 1:-1] + padded[1:-1, :-2] + padded[1:-1, 2:]

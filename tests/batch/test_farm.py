@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The templates for farms: accepted by the validator, and a dry run of the tasks they make."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+FARM = Path(__file__).resolve().parents[2] / "tools" / "farm"
+ASSETS = ["cube.off", "deep/ball two.off", "deep/ball.off", "moebius.off", "patch.off"]
+
+# What Flamenco Manager gives to job types, as far as ours uses it.
+AUTHOR = """
+const author = {
+    Task: (name, type) => ({
+        name, type, commands: [], dependencies: [],
+        addCommand(command) { this.commands.push(command); },
+        addDependency(task) { this.dependencies.push(task.name); },
+    }),
+    Command: (name, parameters) => ({ name, parameters }),
+};
+function compiled(settings) {
+    const tasks = [];
+    compileJob({ settings: JSON.parse(settings), addTask(task) { tasks.push(task); } });
+    return JSON.stringify(tasks);
+}
+"""
+
+
+@pytest.fixture
+def program(tmp_path: Path) -> Path:
+    """A program that is lsgp, at a path with a space in it."""
+    path = tmp_path / "a program"
+    path.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m lsgp "$@"\n')
+    path.chmod(0o755)
+    return path
+
+
+def require_whole(out: Path, lines_in, shards: int) -> None:
+    lines = [line for i in range(1, shards + 1) for line in lines_in(out / f"journal-{i}-of-{shards}.jsonl")]
+    assert sorted(line["asset"] for line in lines) == ASSETS
+    assert (out / "journal.jsonl").read_bytes() == b""
+    assert (out / "summary.txt").read_text().startswith("5 assets\n")
+    results = {path.relative_to(out).as_posix() for path in out.rglob("*.obj")}
+    assert results == {f"{name}.obj" for name in ASSETS if name != "moebius.off"}
+
+
+def test_flamenco_job_type(library: Path, program: Path, lines_in) -> None:
+    quickjs = pytest.importorskip("quickjs")
+    script = quickjs.Context()
+    script.eval(AUTHOR + (FARM / "cone_unwrap.js").read_text())
+    kinds = {setting["key"]: setting for setting in json.loads(script.eval("JSON.stringify(JOB_TYPE.settings)"))}
+    assert all(setting["type"] in ("string", "int32", "float", "bool") for setting in kinds.values())
+    settings = {key: setting["default"] for key, setting in kinds.items() if "default" in setting}
+    assert settings.keys() | {"source", "results"} == kinds.keys()
+    out = library.parent / "the results"
+    settings |= {"source": str(library), "results": str(out), "shards": 3, "program": str(program)}
+    settings |= {"options": "--jobs 1  --cones auto"}
+    *parts, whole = json.loads(script.get("compiled")(json.dumps(settings)))
+    assert len(parts) == 3
+    assert whole["dependencies"] == [task["name"] for task in parts]
+    for task in (*parts, whole):
+        (command,) = task["commands"]
+        assert command["name"] == "exec"
+        subprocess.run([command["parameters"]["exe"], *command["parameters"]["args"]], check=True, timeout=120)
+    require_whole(out, lines_in, 3)
+
+
+def test_openjd_job_template(library: Path, program: Path, lines_in) -> None:
+    pytest.importorskip("openjd.cli")
+    template = str(FARM / "cone_unwrap.openjd.yaml")
+    openjd = [sys.executable, "-m", "openjd"]
+    checked = subprocess.run([*openjd, "check", template], capture_output=True, text=True, timeout=60)
+    assert checked.returncode == 0, checked.stdout + checked.stderr
+    out = library.parent / "the results"
+    parameters = {
+        "Source": library,
+        "Results": out,
+        "Shards": 2,
+        "Program": program,
+        "Options": "--jobs 1 --cones auto",
+    }
+    command = [*openjd, "run", template, "--step", "Summary", "--run-dependencies"]
+    for name, value in parameters.items():
+        command += ["-p", f"{name}={value}"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=240)
+    assert done.returncode == 0, done.stdout + done.stderr
+    require_whole(out, lines_in, 2)
