@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The command line: `lsgp unwrap`, `lsgp batch` and `lsgp measure`.
+"""The command line: `lsgp unwrap`, `lsgp cones`, `lsgp batch` and `lsgp measure`.
 
 Exit code 0: a result, with warnings or not; 2: wrong usage, a file that is missing or cannot be written; 3: the input
 was refused, with a code and a sentence that says what to do; 130: interrupted, with Ctrl-C for instance.  Of a batch 0:
@@ -23,6 +23,7 @@ from .batch.command import EXIT_CODES, add_batch_options, add_scheduler_option, 
 from .certificate import certificate_table
 from .errors import Elements, Finding, InputError, LsgpError
 from .mesh_files import write_whole
+from .place_file import add_placement_options, place_file, summary
 from .polygons import Triangulation
 from .side_files import UsageError
 from .terminal import ProgressLine, say
@@ -41,7 +42,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             say(sys.stdout, f"lsgp {__version__}")
             return OK
         if args.command is None:
-            parser.error("a command is needed: unwrap, batch or measure")
+            parser.error("a command is needed: unwrap, cones, batch or measure")
     except SystemExit as end:  # argparse has said why
         return int(end.code or 0)
     try:
@@ -78,7 +79,19 @@ def _parser() -> argparse.ArgumentParser:
     unwrap.add_argument("input", metavar="IN", type=Path, help="OBJ, OFF or PLY; polygons of any size")
     unwrap.add_argument("-o", "--output", metavar="OUT.obj", type=Path, required=True)
     add_unwrap_options(unwrap)
-    unwrap.set_defaults(run=_reported, make=_unwrap)
+    unwrap.set_defaults(run=_reported, make=_unwrap, output_is="OBJ")
+
+    cones = commands.add_parser(
+        "cones",
+        allow_abbrev=False,
+        help="place cones and find their angles",
+        description="Place cones where they lower the stretch of a mesh most, and write them with their angles into a "
+        "file for lsgp unwrap --cones.",
+    )
+    cones.add_argument("input", metavar="IN", type=Path, help="OBJ, OFF or PLY; polygons of any size")
+    cones.add_argument("-o", "--output", metavar="OUT.json", type=Path, required=True)
+    add_placement_options(cones)
+    cones.set_defaults(run=_reported, make=_cones, output_is="JSON")
 
     batch = commands.add_parser(
         "batch",
@@ -103,7 +116,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     measure.add_argument("input", metavar="FILE.obj", type=Path)
     measure.set_defaults(run=_reported, make=_measure, output=None)
-    for command in (unwrap, measure):
+    for command in (unwrap, cones, measure):
         command.add_argument("--report", metavar="FILE.json", type=Path, help="write a report, also when refused")
     return parser
 
@@ -145,6 +158,14 @@ def _unwrap(args: argparse.Namespace, run: Run) -> reports.Report:
     return reports.unwrap_report(result, run.triangulation, run.stage_seconds, texture_size(args))
 
 
+def _cones(args: argparse.Namespace, run: Run) -> reports.Report:
+    with ProgressLine(sys.stderr) as progress:
+        placement = place_file(args, run, progress)
+    _warn(placement.warnings, run.triangulation)
+    say(sys.stdout, summary(args, placement))
+    return reports.placement_report(placement, run.triangulation, run.stage_seconds)
+
+
 def _measure(args: argparse.Namespace, run: Run) -> reports.Report:
     mesh, triangulation = read_file(args.input, run, with_uv=True)
     without = np.flatnonzero(np.isnan(mesh.corner_uv[triangulation.corner]).any(axis=(1, 2))).astype(np.int32)
@@ -176,8 +197,9 @@ def _require_writable(args: argparse.Namespace) -> None:
         for other, what in ((args.output, "the output"), (args.input, "the input")):
             if other is not None and os.path.realpath(other) == os.path.realpath(args.report):
                 raise UsageError(f"{what} and the report cannot be the same file")
-    if args.output is not None and args.output.suffix.lower() in (".off", ".ply"):
-        raise UsageError(f"the output is OBJ; name it .obj, not '{args.output}'")
+    others = {"OBJ": (".off", ".ply"), "JSON": (".obj", ".off", ".ply")}
+    if args.output is not None and args.output.suffix.lower() in others[args.output_is]:
+        raise UsageError(f"the output is {args.output_is}; name it .{args.output_is.lower()}, not '{args.output}'")
     for path in paths:
         target = Path(os.path.realpath(path))
         if target.is_dir():

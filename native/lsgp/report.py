@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .api import Measurement, Result
+from .api import Measurement, Placement, Result
 from .certificate import certificate
 from .errors import Elements, Finding, LsgpError
 from .polygons import Triangulation
@@ -87,6 +87,17 @@ def unwrap_report(
         "repair": asdict(result.repair),
         "overlapping": len(result.overlapping),
         "overlap_area": result.overlap_area,
+        "stage_seconds": dict(stage_seconds),
+    }
+
+
+def placement_report(placement: Placement, triangulation: Triangulation, stage_seconds: Mapping[str, float]) -> Report:
+    """The report of cones that were placed; there is no map yet."""
+    return EMPTY | {
+        "warnings": _warnings(placement.warnings, triangulation),
+        "triangles": len(triangulation.triangles),
+        "cones": placement.cones.tolist(),
+        "cone_angles": placement.cone_angles.tolist(),
         "stage_seconds": dict(stage_seconds),
     }
 

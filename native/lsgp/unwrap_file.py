@@ -17,6 +17,9 @@ from .polygons import PolygonMesh, Triangulation, triangulate
 from .side_files import cones_in, load_importance, load_json, seam_edges_in
 from .unwrap_options import cone_count, cones_file, library_options
 
+# The share of placing cones in the time of an unwrap.
+PLACING = 0.6
+
 
 @dataclass
 class Run:
@@ -44,6 +47,11 @@ def unwrap_file(args: argparse.Namespace, run: Run, progress: Progress | None = 
         corner_uv = run.triangulation.to_polygon_corners(result.corner_uv, len(mesh.corners))
         write_obj(args.output, mesh, corner_uv)
     return result
+
+
+def part_of(progress: Progress | None, begin: float, end: float) -> Progress | None:
+    """Tells progress of a part of the work, which lies between begin and end."""
+    return None if progress is None else lambda done: progress(begin + (end - begin) * done)
 
 
 def out_of_memory() -> LsgpError:
@@ -84,8 +92,17 @@ def _map(args: argparse.Namespace, options: Options, run: Run, progress: Progres
         cones, angles = cones_in(cones_json, cones_path, args.prescription)
     else:
         with run.stage("place_cones"):
-            placed = place_cones(surface, count=cone_count(args), seams=options.seams)
-            cones, angles = placed.cones, placed.cone_angles if options.prescription is None else None
+            placed = place_cones(
+                surface,
+                count=cone_count(args),
+                lattice=None if options.seamless is None else options.seamless.lattice,
+                seams=options.seams,
+                progress=part_of(progress, 0.0, PLACING),
+            )
+        # The angles are for free borders.
+        as_placed = options.prescription is None and options.border == "free"
+        cones, angles = placed.cones, placed.cone_angles if as_placed else None
+        progress = part_of(progress, PLACING, 1.0)
     result = parameterize(surface, cones, angles, options, progress=progress)
     run.stage_seconds.update(result.stage_seconds)
     return mesh, result

@@ -15,6 +15,9 @@ from .side_files import UsageError
 DEFAULT_TEXTURE_SIZE = 1024
 LARGEST_TEXTURE_SIZE = 65536
 
+SEAM_MODES = ["follow", "boundary", "ignore"]
+LATTICES = ["square", "stripe", "translation", "triangle", "hexagon"]
+
 AUTO, AUTO_COUNT = "auto", "auto:"
 
 
@@ -40,7 +43,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
     )
     unwrap.add_argument(
         "--seams",
-        choices=["follow", "boundary", "ignore"],
+        choices=SEAM_MODES,
         default="follow",
         help="cuts follow marked edges wherever they can, marked edges are open borders, or they mean nothing "
         "(default: follow)",
@@ -105,7 +108,7 @@ def _add_seamless_options(unwrap: argparse.ArgumentParser) -> None:
     scale.add_argument("--tile-size", metavar="X", type=float, help="side of a tile on the surface, in its unit")
     seamless.add_argument(
         "--lattice",
-        choices=["square", "stripe", "translation", "triangle", "hexagon"],
+        choices=LATTICES,
         help="what leaves the texture as it is: quarter turns, half turns or none of squares, third or sixth turns of "
         "triangles (default: square)",
     )
