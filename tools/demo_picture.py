@@ -14,7 +14,7 @@ import bpy
 import numpy as np
 from mathutils import Euler
 
-WIDTH, HEIGHT = 2000, 1000
+WIDTH = 2000  # pixels of the picture; half as high
 # The picture plane is x-z, 8 x 4 units, the camera looks along +y; each half is 4 x 4 units.
 MODEL_CENTRE, MODEL_TURN, MODEL_SIZE = (-1.82, -2.6, 0.07), (np.radians(2), 0.0, np.radians(22)), 1.2
 LAYOUT_CENTRE, LAYOUT_SIZE = (2.02, 0.0, 0.0), (3.72, 3.6)
@@ -30,10 +30,12 @@ CUT_COLOURS = ("#d6336c", "#2b9348", "#7b4fc9", "#e3b505", "#12a0a0", "#c23fb5",
 POSITIVE_CONE, NEGATIVE_CONE = (0.93, 0.33, 0.10), (0.10, 0.30, 0.85)
 
 
-def render_picture(model: bpy.types.Object, cut_edges: np.ndarray, cones: np.ndarray, path: Path, samples: int) -> None:
+def render_picture(
+    model: bpy.types.Object, cut_edges: np.ndarray, cones: np.ndarray, path: Path, samples: int, width: int = WIDTH
+) -> None:
     """Build the scene round a copy of `model`, which has its checker, and write it to `path`.
 
-    cut_edges: (c, 2) vertex pairs where the layout is open. cones: (k,) vertices.
+    cut_edges: (c, 2) vertex pairs where the layout is open. cones: (k,) vertices. width: pixels; it is half as high.
     """
     import lsgp  # comes with the extension
 
@@ -62,7 +64,7 @@ def render_picture(model: bpy.types.Object, cut_edges: np.ndarray, cones: np.nda
         places = np.vstack([positions[cone], board[sides.places(cone, uv)]])
         add_balls(places, cone_colour(sides.curvature(cone, uv)))
     add_studio()
-    render(path, samples)
+    render(path, samples, width, width // 2)
 
 
 def add_checker(model: bpy.types.Object) -> None:
@@ -261,7 +263,7 @@ def add_camera(lens: float, distance: float) -> None:
     bpy.context.scene.camera = added
 
 
-def render(path: Path, samples: int, width: int = WIDTH, height: int = HEIGHT) -> None:
+def render(path: Path, samples: int, width: int, height: int) -> None:
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.cycles.device, scene.cycles.samples, scene.cycles.seed = "CPU", samples, 0

@@ -5,6 +5,12 @@
 export PIP_DISABLE_PIP_VERSION_CHECK=1
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 venv=$root/build/venv
+cache=${XDG_CACHE_HOME:-$HOME/.cache}/cone-unwrap
+
+# Where ccache is installed, only what has changed since any earlier build is compiled.
+if command -v ccache >/dev/null; then
+    export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1 CCACHE_DIR=$cache/ccache
+fi
 
 say() { printf '\n== %s\n' "$*"; }
 fail() { printf '%s: %s\n' "$(basename "$0")" "$*" >&2; exit 1; }
@@ -58,18 +64,41 @@ set_up_python() {
     fi
 }
 
-# The bpy wheel (about 400 MB) in virtual environment $1; it brings Blender's own libraries, not those of the window
-# system, which it links even when headless.
+# The bpy wheel of Blender $2 (4.5, ...; about 400 MB) in virtual environment $1, with the packages that follow; it brings
+# Blender's own libraries, not those of the window system, which it links even when headless.
 set_up_bpy() {
-    set_up_python "$1" 'bpy==4.5.*' 'numpy<2' "${@:2}"
+    set_up_python "$1" "bpy==$2.*" 'numpy<2' "${@:3}"
     if ldd "$1"/lib/python3.11/site-packages/bpy/__init__*.so | grep -q 'not found'; then
         install_packages libx11-6 libxi6 libxrender1 libxfixes3 libxkbcommon0 libsm6 libice6 libgl1
     fi
 }
 
+real_blender=$root/../shared/tools/real-blender
+
+# Whether real Blenders can be installed here.
+has_real_blenders() { [ -x "$real_blender" ] && [ "$(id -u)" = 0 ]; }
+
+# The Blender of Debian's suite $1 with its window and all that building a wheel takes, in $cache/blender-$1; installed
+# once, a few minutes. Prints the folder; what the installation says goes to the standard error.
+set_up_real_blender() {
+    local folder=$cache/blender-$1
+    {
+        mkdir -p "$root/build"
+        say "setting up the Blender of Debian $1 in $folder"
+        "$real_blender" install "$1" "$folder" build gui >"$root/build/blender-$1.log" 2>&1 &&
+            BLENDER_EXE=sh "$real_blender" run "$folder" -c \
+                'set -- ccache libeigen3-dev libspectra-dev
+                dpkg -s "$@" >/dev/null 2>&1 || { apt-get update -q && apt-get install -y -q "$@"; }' \
+                >>"$root/build/blender-$1.log" 2>&1 ||
+            { tail -n 20 "$root/build/blender-$1.log"; fail "the Blender of Debian $1 could not be installed"; }
+    } >&2
+    printf '%s\n' "$folder"
+}
+
 # Builds the wheel for our own Python into folder $2 with virtual environment $1, unless one is newer than all sources.
 build_wheel() {
-    if [ -d "$2" ] && [ -z "$(find "$root"/native "$root"/CMakeLists.txt "$root"/pyproject.toml -newer "$2" -print -quit)" ]; then
+    local sources=("$root"/native "$root"/CMakeLists.txt "$root"/pyproject.toml "$root"/blender_manifest.toml)
+    if [ -d "$2" ] && [ -z "$(find "${sources[@]}" -newer "$2" -print -quit)" ]; then
         return
     fi
     say "building the lsgp wheel"

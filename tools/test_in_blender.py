@@ -85,6 +85,14 @@ def main() -> None:
     parser.add_argument("--blender", help="Blender executable")
     parser.add_argument("--chroot", type=Path, help="folder of a Blender installed by ../shared/tools/real-blender")
     parser.add_argument("--window", action="store_true", help="run the tests that need a window as well")
+    parser.add_argument(
+        "--validate",
+        metavar="ZIP",
+        type=Path,
+        action="append",
+        default=[],
+        help="let the executable check this as well",
+    )
     parser.add_argument("--wheel", type=Path, help="take this wheel instead of building one")
     parser.add_argument(
         "--out", type=Path, default=ROOT / "build" / "in_blender", help="folder for wheel, zip, profile and report"
@@ -95,6 +103,8 @@ def main() -> None:
         parser.error("give either --python or --chroot")
     if arguments.window and arguments.blender is None and arguments.chroot is None:
         parser.error("--window takes a Blender executable, by --blender or --chroot")
+    if arguments.validate and arguments.blender is None and arguments.chroot is None:
+        parser.error("--validate takes a Blender executable, by --blender or --chroot")
 
     out = arguments.out.resolve()
     shutil.rmtree(out, ignore_errors=True)
@@ -115,10 +125,13 @@ def main() -> None:
             blender = Command([arguments.blender], {})
 
     wheel = arguments.wheel or build_wheel(python, out)
-    python.run(ROOT / "tools" / "stage_extension.py", "--wheel", wheel, "--out", out)
+    # Executables here mostly come from a distribution, with a Python of its own.
+    blenders = [] if blender is None else ["--any-blender"]
+    python.run(ROOT / "tools" / "stage_extension.py", "--wheel", wheel, "--out", out, *blenders)
     package = next(out.glob("cone_unwrap-*.zip"))
     if blender is not None:
-        blender.run("--command", "extension", "validate", package, timeout=TEST_SECONDS)
+        for checked in (package, *arguments.validate):
+            blender.run("--command", "extension", "validate", checked, timeout=TEST_SECONDS)
 
     tests = ROOT / "tests" / "blender"
     # PYTHONPATH could put another build of the native module before the one in the extension.

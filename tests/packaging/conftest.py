@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import NoReturn
 
 import pytest
+from blenders import RealBlender, real_blenders
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -32,29 +33,18 @@ def leave_out(reason: str) -> NoReturn:
     pytest.skip(reason)
 
 
-@pytest.fixture(scope="session")
-def real_blender() -> list[str]:
-    """The arguments of tools/test_in_blender.py that name a Blender executable."""
-    if "BLENDER_CHROOT" in os.environ:
-        # The chroot sees the repository, but not every temporary folder.
-        return ["--chroot", os.environ["BLENDER_CHROOT"], "--out", str(ROOT / "build" / "in_real_blender")]
-    if "BLENDER" in os.environ and "BLENDER_PYTHON" in os.environ:
-        return ["--blender", os.environ["BLENDER"], "--python", os.environ["BLENDER_PYTHON"]]
-    leave_out("no Blender executable; set BLENDER and BLENDER_PYTHON, or BLENDER_CHROOT")
-
-
-@pytest.fixture(scope="session")
-def has_virtual_screen() -> bool:
-    """Whether that executable can have a window here."""
-    if "BLENDER_CHROOT" in os.environ:
-        return Path(os.environ["BLENDER_CHROOT"], "usr", "bin", "xvfb-run").exists()
-    return shutil.which("xvfb-run") is not None
+@pytest.fixture(scope="session", params=real_blenders() or [None], ids=lambda found: found.name if found else "none")
+def real_blender(request: pytest.FixtureRequest) -> RealBlender:
+    """A Blender executable; every one there is in turn."""
+    if request.param is None:
+        leave_out("no Blender executable; set BLENDER and BLENDER_PYTHON, or BLENDER_CHROOTS")
+    return request.param
 
 
 @pytest.fixture
-def virtual_screen(has_virtual_screen: bool) -> None:
+def virtual_screen(real_blender: RealBlender) -> None:
     """Leaves out what needs a window where there can be none."""
-    if not has_virtual_screen:
+    if not real_blender.has_screen:
         leave_out("no virtual screen for Blender; install xvfb-run beside it")
 
 

@@ -2,6 +2,7 @@
 """The built extension: what is in the zip, and how it behaves without its library."""
 
 import ast
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -9,6 +10,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+import stage_extension
 
 ROOT = Path(__file__).resolve().parents[2]
 STAGE = ROOT / "tools" / "stage_extension.py"
@@ -27,10 +29,80 @@ def test_zip_holds_the_addon_the_manifest_the_licence_and_one_wheel(archive, whe
     assert set(archive.namelist()) == expected
 
 
-def test_manifest_lists_the_wheel_and_keeps_everything_else(archive, wheel):
+def test_manifest_lists_the_wheel_its_platform_and_its_blenders_and_keeps_everything_else(archive, wheel):
     staged_manifest = tomllib.loads(archive.read("blender_manifest.toml").decode())
     assert staged_manifest.pop("wheels") == [f"./wheels/{wheel.name}"]
+    (platform,) = staged_manifest.pop("platforms")
+    assert platform == f"{sys.platform}-{'x64' if '64' in wheel.name else ''}"
+    assert staged_manifest.pop("blender_version_max") == "5.1.0"  # exclusive; this Python is 3.11
     assert staged_manifest == tomllib.loads((ROOT / "blender_manifest.toml").read_text())
+
+
+MANYLINUX = "manylinux_2_27_x86_64.manylinux_2_28_x86_64"
+PLATFORMS = {
+    MANYLINUX: "linux-x64",
+    "win_amd64": "windows-x64",
+    "macosx_11_0_x86_64": "macos-x64",
+    "macosx_11_0_arm64": "macos-arm64",
+}
+
+
+def renamed(wheel: Path, folder: Path, python: str, platform: str) -> Path:
+    """A copy of the wheel that says it is for another Python and platform."""
+    name = f"{'-'.join(wheel.name.split('-')[:2])}-{python}-{python}-{platform}.whl"
+    return Path(shutil.copy(wheel, folder / name))
+
+
+def stage(python: str, out: Path, *arguments: str | Path) -> subprocess.CompletedProcess:
+    """Run the staging tool with the validator of that Python's bpy."""
+    command = [python, str(STAGE), "--out", str(out), *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize(
+    "python, name, first, end",
+    [("cp311", "blender-4.2-to-5.0", "4.2.0", "5.1.0"), ("cp313", "blender-5.1-and-later", "5.1.0", None)],
+)
+def test_one_manifest_makes_a_zip_for_the_blenders_of_each_python(
+    python, name, first, end, wheel, bpy_python, tmp_path
+):
+    wheels = [renamed(wheel, tmp_path, python, platform) for platform in PLATFORMS]
+    done = stage(bpy_python, tmp_path, *(f"--wheel={path}" for path in wheels))
+    assert done.returncode == 0 and "not validated" not in done.stderr, done.stderr
+    manifest = tomllib.loads((tmp_path / "cone_unwrap" / "blender_manifest.toml").read_text())
+    assert (tmp_path / f"cone_unwrap-{manifest['version']}-{name}.zip").is_file()
+    assert manifest["wheels"] == sorted(f"./wheels/{path.name}" for path in wheels)
+    assert manifest["platforms"] == sorted(PLATFORMS.values())
+    assert (manifest["blender_version_min"], manifest.get("blender_version_max")) == (first, end)
+
+
+def test_blenders_of_distributions_are_not_narrowed_by_their_python(wheel, bpy_python, tmp_path):
+    other = renamed(wheel, tmp_path, "cp314", "linux_x86_64")
+    done = stage(bpy_python, tmp_path, f"--wheel={other}")
+    assert done.returncode != 0 and "no Blender from blender.org has the Python cp314" in done.stderr
+    assert stage(bpy_python, tmp_path, f"--wheel={other}", "--any-blender").returncode == 0
+    manifest = tomllib.loads((tmp_path / "cone_unwrap" / "blender_manifest.toml").read_text())
+    assert manifest["blender_version_min"] == "4.2.0" and "blender_version_max" not in manifest
+    assert (tmp_path / f"cone_unwrap-{manifest['version']}-cp314.zip").is_file()
+
+
+def test_wheels_of_two_pythons_do_not_share_a_zip(wheel, bpy_python, tmp_path):
+    wheels = [renamed(wheel, tmp_path, python, "linux_x86_64") for python in ("cp311", "cp313")]
+    done = stage(bpy_python, tmp_path, *(f"--wheel={path}" for path in wheels))
+    assert done.returncode != 0 and "wheels for cp311 and cp313" in done.stderr
+
+
+def test_a_wheel_for_a_platform_without_blender_is_refused(wheel, bpy_python, tmp_path):
+    other = renamed(wheel, tmp_path, "cp311", "win32")
+    done = stage(bpy_python, tmp_path, f"--wheel={other}")
+    assert done.returncode != 0 and "win32, which Blender does not have" in done.stderr
+
+
+def test_released_wheels_are_those_the_zips_are_made_of():
+    builds = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["cibuildwheel"]["build"]
+    workflow = (ROOT / ".github" / "workflows" / "wheels.yml").read_text()
+    assert {f"{tag}-*" for tag in stage_extension.OFFICIAL} == set(builds)
+    assert f"for python in {' '.join(stage_extension.OFFICIAL)};" in workflow
 
 
 def test_wheel_brings_the_native_library_and_no_numpy(archive, wheel, tmp_path):
@@ -42,9 +114,16 @@ def test_wheel_brings_the_native_library_and_no_numpy(archive, wheel, tmp_path):
     assert not any("numpy" in package for package in packages)
 
 
-def test_manifest_and_wheel_have_the_same_version(wheel):
-    manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text())
-    assert wheel.name.split("-")[1] == manifest["version"]
+def test_the_version_stands_in_the_manifest_alone(wheel):
+    version = tomllib.loads((ROOT / "blender_manifest.toml").read_text())["version"]
+    assert wheel.name.split("-")[1] == version
+    with zipfile.ZipFile(wheel) as opened:
+        (metadata,) = (name for name in opened.namelist() if name.endswith(".dist-info/METADATA"))
+        assert f"\nVersion: {version}\n" in opened.read(metadata).decode()
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert "version" not in project and project["dynamic"] == ["version"]
+    for path in [ROOT / "CMakeLists.txt", *(ROOT / "native").rglob("*.py"), *(ROOT / "addon").rglob("*.py")]:
+        assert f'"{version}"' not in path.read_text(encoding="utf-8"), path
 
 
 def test_manifest_asks_for_no_permission_and_follows_blenders_limits():

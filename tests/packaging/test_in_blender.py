@@ -2,8 +2,8 @@
 """Runs tests/blender inside Blender from an ordinary pytest run.
 
 BPY_PYTHON names a Python with bpy (default: this one, if it has bpy). BLENDER names an executable, BLENDER_PYTHON a
-Python of the same version that can build wheels; or BLENDER_CHROOT an installation of ../shared/tools/real-blender.
-What needs a window is tried where xvfb-run is installed beside that executable.
+Python of the same version that can build wheels; BLENDER_CHROOTS, separated by colons, installations of
+../shared/tools/real-blender. What needs a window is tried where xvfb-run is installed beside the executable.
 """
 
 import subprocess
@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from blenders import RealBlender
 
 ROOT = Path(__file__).resolve().parents[2]
 TOOL = ROOT / "tools" / "test_in_blender.py"
@@ -24,9 +25,11 @@ def run_tool(*arguments: str) -> str:
 
 
 @pytest.fixture(scope="module")
-def said_in_real_blender(real_blender: list[str], has_virtual_screen: bool) -> str:
-    """What the tool printed of its run in the Blender executable."""
-    return run_tool(*real_blender, *(["--window"] if has_virtual_screen else []))
+def said_in_real_blender(real_blender: RealBlender, staged: Path) -> str:
+    """What the tool printed of its run in a Blender executable, which accepted the zip for blender.org's, too."""
+    (package,) = staged.parent.glob("*.zip")
+    window = ["--window"] if real_blender.has_screen else []
+    return run_tool(*real_blender.arguments, "--validate", str(package), *window)
 
 
 def test_addon_in_bpy(bpy_python, wheel, tmp_path):

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#if defined(_WIN32)
+#if defined(LSGP_STATIC)
+#define LSGP_API
+#elif defined(_WIN32)
 #if defined(LSGP_BUILDING)
 #define LSGP_API __declspec(dllexport)
 #else

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every code block of README.md and docs/ does what it says.
+
+The blocks of a document run one after the other in one folder, which has model.obj, a bumpy ball, to begin with, and a
+folder library with a small one; Python blocks share their variables and find `positions` and `triangles` of the ball.
+Blocks for Blender's Python are run by tests/blender/test_documented_scripts.py.
+"""
+
+import contextlib
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import meshes
+import numpy as np
+import pytest
+from code_blocks import LEFT_OUT, ROOT, Block, blocks_of, documents
+
+LANGUAGES = {"sh", "python", "text", "cpp"}
+
+
+def names(paths: list[Path]) -> list[str]:
+    return [path.relative_to(ROOT).as_posix() for path in paths]
+
+
+@pytest.mark.parametrize("document", documents(), ids=names(documents()))
+def test_blocks_say_what_they_are_and_why_they_are_left_out(document):
+    for block in blocks_of(document):
+        where = f"{document}:{block.line}"
+        assert block.language in LANGUAGES, where
+        assert block.runs or len(block.text.splitlines()[0]) > len(LEFT_OUT) + 8, f"{where}: say why"
+    indented = [line for line in document.read_text(encoding="utf-8").splitlines() if line.startswith("    ")]
+    prose = [line for line in indented if not any(line in block.text for block in blocks_of(document))]
+    assert prose == [], "code is put between fences, where this test sees it"
+
+
+@pytest.mark.parametrize("document", documents(), ids=names(documents()))
+def test_blocks_run_and_print_what_is_shown(document, tmp_path):
+    ball = meshes.bumpy_sphere(3)
+    write_obj(tmp_path / "model.obj", ball)
+    (tmp_path / "library").mkdir()
+    write_obj(tmp_path / "library" / "small.obj", meshes.bumpy_sphere(1))
+    variables = {"__name__": "example", "positions": ball.positions, "triangles": ball.triangles}
+    printed = ""
+    for block in blocks_of(document):
+        if block.language == "text":
+            require_shown(block, printed, document)
+        elif not block.runs or block.in_blender or block.language == "cpp":
+            printed = ""
+        elif block.language == "sh":
+            printed = run_in_shell(block, tmp_path, document)
+        else:
+            printed = run_python(block, variables, tmp_path, document)
+
+
+def write_obj(path: Path, mesh: meshes.Mesh) -> None:
+    lines = [f"v {x} {y} {z}" for x, y, z in mesh.positions.tolist()]
+    lines += [f"f {a} {b} {c}" for a, b, c in (np.asarray(mesh.triangles) + 1).tolist()]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def run_in_shell(block: Block, folder: Path, document: Path) -> str:
+    """What the commands print to either stream; each has to succeed."""
+    programs = Path(sys.executable).parent
+    environment = {**os.environ, "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}"}
+    bash = shutil.which("bash")
+    assert bash is not None
+    done = subprocess.run(
+        [bash, "-eu", "-o", "pipefail", "-c", block.text],
+        cwd=folder,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 0, f"{document}:{block.line} ends with {done.returncode}:\n{done.stdout}"
+    return done.stdout
+
+
+def run_python(block: Block, variables: dict, folder: Path, document: Path) -> str:
+    """What the block prints, run in this process with these variables, in this folder."""
+    # Lines of a traceback are those of the document.
+    code = compile("\n" * (block.line - 1) + block.text, str(document), "exec")
+    with contextlib.chdir(folder), pytest.MonkeyPatch.context() as patch:
+        printed: list[str] = []
+        patch.setitem(variables, "print", lambda *values: printed.append(" ".join(map(str, values))))
+        exec(code, variables)
+    return "\n".join(printed)
+
+
+def require_shown(block: Block, printed: str, document: Path) -> None:
+    """The lines of the block are printed, in this order; others may stand between them."""
+    said = iter(printed.splitlines())
+    for number, line in enumerate(block.text.splitlines(), block.line):
+        assert any(same_line(line, other) for other in said), f"{document}:{number} is not printed; this is:\n{printed}"
+
+
+def same_line(shown: str, printed: str) -> bool:
+    """The same words and, up to a hundredth or a mere rounding error, the same numbers."""
+    both = shown.split(), printed.split()
+    return len(both[0]) == len(both[1]) and all(map(same_word, *both))
+
+
+def same_word(shown: str, printed: str) -> bool:
+    if shown == printed:
+        return True
+    try:
+        a, b = float(shown), float(printed)
+    except ValueError:
+        return False
+    return abs(a - b) <= 1e-2 * abs(b) or max(abs(a), abs(b)) < 1e-11

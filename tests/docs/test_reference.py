@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The reference in docs/ is complete and says what the code says."""
+
+import inspect
+import re
+
+import lsgp
+import pytest
+import reference
+from code_blocks import ROOT, documents
+from lsgp import errors
+
+
+def test_parts_that_follow_from_the_code_are_up_to_date():
+    for path, text in reference.documents().items():
+        assert path.read_text(encoding="utf-8") == text, "run: python tools/reference.py"
+
+
+def test_every_public_name_is_there_once():
+    named = [name for part in reference.parts() if part.startswith("python ") for name in part.split()[1:]]
+    assert sorted(named) == sorted(lsgp.__all__)
+
+
+def test_every_command_is_there_once():
+    assert sorted(part for part in reference.parts() if part.startswith("lsgp")) == sorted(reference.commands())
+
+
+def test_every_public_name_has_a_docstring_that_is_its_own():
+    for name in lsgp.__all__:
+        said = getattr(lsgp, name).__doc__
+        assert said and not said.startswith(f"{name}("), name
+        assert said != inspect.getdoc(errors.LsgpError) or name == "LsgpError"
+
+
+CODE_ROW = re.compile(r"^\| `([A-Z][A-Z_]+)` \|(.*)\|(.*)\|$", re.MULTILINE)
+
+
+def documented_codes() -> dict[str, tuple[str, str]]:
+    """Cause and remedy by code, of the guide's tables."""
+    text = (ROOT / "docs" / "guide" / "troubleshooting.md").read_text(encoding="utf-8")
+    rows = CODE_ROW.findall(text)
+    assert len(rows) == len({code for code, _, _ in rows}), "a code is there twice"
+    return {code: (cause.strip(), remedy.strip()) for code, cause, remedy in rows}
+
+
+def codes_of_the_library() -> set[str]:
+    """Codes of errors.hpp, and those that Python raises by itself."""
+    header = (ROOT / "native" / "include" / "lsgp" / "errors.hpp").read_text(encoding="utf-8")
+    enum = re.search(r"enum class Code \{(.*?)\};", header, re.DOTALL)[1]
+    codes = {name.upper() for name in re.findall(r"^\s+([a-z]\w*),", enum, re.MULTILINE)}
+    raised = re.compile(r'(?:Error|Finding|Refused|refuse|Cancelled)\(\s*"([A-Z][A-Z_]+)"')
+    for folder in (ROOT / "native" / "lsgp", ROOT / "addon"):
+        for path in folder.rglob("*.py"):
+            codes |= set(raised.findall(path.read_text(encoding="utf-8")))
+    return codes
+
+
+def test_the_guide_has_cause_and_remedy_of_every_code_and_of_no_other():
+    rows = documented_codes()
+    assert set(rows) == codes_of_the_library()
+    for code, (cause, remedy) in rows.items():
+        assert len(cause.split()) >= 4 and len(remedy.split()) >= 3, code
+
+
+LINK = re.compile(r"\]\((?!https?:)([^)#]*)(?:#([^)]*))?\)")
+
+
+@pytest.mark.parametrize("document", documents(), ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_links_lead_to_files_and_headings(document):
+    for target, heading in LINK.findall(document.read_text(encoding="utf-8")):
+        path = (document.parent / target).resolve() if target else document
+        assert path.exists(), f"{document}: {target}"
+        if heading:
+            titles = re.findall(r"^#+ (.+)$", path.read_text(encoding="utf-8"), re.MULTILINE)
+            assert heading in {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}, heading
