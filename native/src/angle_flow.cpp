@@ -106,7 +106,7 @@ std::vector<Index> cones_at(const Bottleneck& at, const std::vector<Index>& name
       from == From::vertices
           ? concat(around, " can carry less than ", carried * degrees, " degrees, but the angles there add up to ",
                    sum * degrees, ". Lower them or subdivide the mesh there.")
-          : concat(around, " carry ", carried * degrees, " degrees, but the angles there add up to only ",
+          : concat(around, " carry more than ", carried * degrees, " degrees, but the angles there add up to only ",
                    sum * degrees, ". Raise them or subdivide the mesh there."),
       {ElementKind::vertices, std::move(cones)});
 }

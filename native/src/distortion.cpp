@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "outline.hpp"
+
 namespace lsgp {
 
 namespace {
@@ -141,16 +143,34 @@ SeamQuality worse(const SeamQuality& a, const SeamQuality& b) {
 }
 
 Eigen::VectorXd angle_sums(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position) {
+  // Around a vertex where the layout runs on, upright triangles make whole turns: it is enough to count how often they
+  // sweep over one direction.  Elsewhere angles have to be measured.
+  std::vector<char> is_measured(mesh.vertex_count(), 0);
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(mesh.vertex_count());
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    const bool is_upright = side(position[3 * f], position[3 * f + 1], position[3 * f + 2]) > 0;
+    for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+      const Index twin = mesh.twin[h];
+      const bool runs_on = twin != none && position[h] == position[next(twin)] && position[next(h)] == position[twin];
+      if (!runs_on || !is_upright) is_measured[mesh.origin(h)] = is_measured[mesh.target(h)] = 1;
+      const double y = position[h].imag();
+      if (position[next(h)].imag() < y && position[prev(h)].imag() >= y) sums[mesh.origin(h)] += 2 * M_PI;
+    }
+  }
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (is_measured[v]) sums[v] = 0;
+  }
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    const auto is_ours = [&](Index corner) { return is_measured[mesh.origin(corner)] != 0; };
+    if (!is_ours(3 * f) && !is_ours(3 * f + 1) && !is_ours(3 * f + 2)) continue;
     double third = std::copysign(M_PI, doubled_area(position, f));
     for (const Index corner : {3 * f, 3 * f + 1}) {
       const Complex here = position[corner];
       const double angle = std::arg((position[prev(corner)] - here) * std::conj(position[next(corner)] - here));
-      sums[mesh.origin(corner)] += angle;
+      if (is_ours(corner)) sums[mesh.origin(corner)] += angle;
       third -= angle;
     }
-    sums[mesh.origin(3 * f + 2)] += third;
+    if (is_ours(3 * f + 2)) sums[mesh.origin(3 * f + 2)] += third;
   }
   return sums;
 }

@@ -85,6 +85,17 @@ Eigen::VectorXcd unfold_relatively(const CutSurface& surface, const Curvature& c
   return PoissonSystem(surface.mesh, weighted, surface.cut_mesh, connection.reduction).fit(jacobians);
 }
 
+// Where lengths differ so much that the small triangles vanish in the last digit of the large ones, no repair helps.
+void require_representable(const ComponentMap& map) {
+  constexpr double widest = 36;  // 1 / epsilon as a power of e
+  const double range = map.curvature.log_scale.maxCoeff() - map.curvature.log_scale.minCoeff();
+  if (map.validity.defects() == 0 || range < widest) return;
+  throw Error(Code::solver_failed,
+              concat("With these cones and angles lengths in the layout would differ by a factor of ", std::exp(range),
+                     ", more than numbers can hold. Add cones where the texture becomes too small, or let angles that "
+                     "were given be chosen."));
+}
+
 }  // namespace
 
 bool repairs(const Options& options) {
@@ -133,6 +144,7 @@ ComponentMap Mapping::attempt(const ComponentCones& cones, Effort effort, std::v
     target.log_scale.array() += std::log(pinned.scale);
   }
   check(map);
+  require_representable(map);
   if (!repair_) {
     repair_ = {static_cast<Index>(map.validity.flipped.size()),
                static_cast<Index>(map.validity.wrong_angle_sums.size()), 0};

@@ -99,17 +99,30 @@ def call_the_api(data: atheris.FuzzedDataProvider) -> None:
         pick(data, ["lsgp", "lsgp", "lsgp", "lscm"]),
         pick(data, ["follow", "boundary", "ignore"]),
         pick(data, ["free", "straight"]),
+        mode=pick(data, ["conformal", "low-stretch"]),
+        stretch=pick(data, [0, 0.5, 1, data.ConsumeFloat()]),
+        repair=data.ConsumeBool(),
+        overlaps=pick(data, ["keep", "split"]),
     )
-    unwrap(data, surface, cones, options)
+    pins = None
+    if data.ConsumeBool():
+        pins = lsgp.Pins(an_array(data, 1, np.array([0, 5], np.int32)), an_array(data, 2, np.eye(2)))
+    unwrap(data, surface, cones, options, pins)
 
 
-def unwrap(data: atheris.FuzzedDataProvider, surface: lsgp.Surface, cones: object, options: lsgp.Options) -> None:
+def unwrap(
+    data: atheris.FuzzedDataProvider,
+    surface: lsgp.Surface,
+    cones: object,
+    options: lsgp.Options,
+    pins: lsgp.Pins | None = None,
+) -> None:
     if cones is None:
         cones = lsgp.place_cones(surface, count=data.ConsumeIntInRange(0, 8), seams=options.seams).cones
     angles = [pick(data, [None, data.ConsumeFloat(), 1.5 * np.pi, 3.0]) for _ in range(data.ConsumeIntInRange(0, 5))]
-    result = lsgp.parameterize(surface, cones, angles or None, options)
+    result = lsgp.parameterize(surface, cones, angles or None, options, pins=pins)
     faults = undeclared_faults(surface, result, options)
-    assert not faults, f"{faults} of {surface}, cones {cones}, angles {angles}, {options}"
+    assert not faults, f"{faults} of {surface}, cones {cones}, angles {angles}, {options}, pins {pins}"
     lsgp.measure_distortion(surface, result.corner_uv, cones)
 
 

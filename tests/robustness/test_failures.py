@@ -113,6 +113,23 @@ def test_a_surface_that_cannot_be_computed_with_is_named() -> None:
     assert failed > 0
 
 
+@pytest.mark.parametrize(("length", "fits"), [(18, True), (30, False)])
+def test_lengths_that_differ_by_more_than_numbers_can_hold_are_refused(length: int, fits: bool) -> None:
+    """A closed rod with cones at one end: the other shrinks by e to the power of 2 pi lengths over its girth."""
+    mesh = meshes.subdivide(meshes.subdivide(meshes.voxels(np.ones((length, 1, 1), bool))))
+    cones = np.arange(4)
+    assert (mesh.positions[cones, 0] == mesh.positions[:, 0].min()).all()
+    if fits:
+        result = lsgp.parameterize(surface(mesh), cones)
+        assert np.ptp(result.log_scale) > 2 * np.pi * (length - 2) / 4
+        assert undeclared_faults(surface(mesh), result) == [] and len(result.flipped) == 0
+        only(result.warnings, "HIGH_DISTORTION")
+    else:
+        with pytest.raises(lsgp.SolverError, match="Add cones") as caught:
+            lsgp.parameterize(surface(mesh), cones)
+        assert caught.value.code == "SOLVER_FAILED"
+
+
 FINE = {
     "cube": meshes.cube(4),
     "sphere": meshes.bumpy_sphere(2),

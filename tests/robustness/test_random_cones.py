@@ -44,7 +44,7 @@ SELECTED = {
     "octa-flower": (2, 3),
     "fandisk": (1, 5),
     "kitten-genus1": (0, 4),
-    "camel-head-disk": (1, 3),
+    "camel-head-disk": (1, 3, 5),
     "igea-16k": (2,),
     "max-planck-25k": (3,),
     "elephant-genus3": (4,),
@@ -106,7 +106,8 @@ def attempt(name: str, seed: int, angles: str) -> tuple[str, list[str]]:
         result = lsgp.parameterize(surface, found[0], found[1] if angles == "given" else None, options)
     except lsgp.LsgpError as error:
         return error.code, []
-    faults = undeclared_faults(surface, result, options)
+    asked = dict(zip(*found, strict=True)) if angles == "given" else dict.fromkeys(found[0])
+    faults = undeclared_faults(surface, result, options, asked)
     if len(result.flipped) or len(result.wrong_angle_sums):
         return "defects", faults
     return "adjusted" if any(w.code == "ANGLES_ADJUSTED" for w in result.warnings) else "valid", faults
