@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Unwrap from Cones as it is invoked by an artist: progress, Esc, undo.  Run by run_in_window.py; no pytest."""
+"""Unwrap from Cones and Place Cones as an artist invokes them: progress, Esc, undo; the table of angles.
+
+Run by run_in_window.py; no pytest.
+"""
 
 import os
 import threading
@@ -9,32 +12,32 @@ from importlib import import_module
 
 import bpy
 import numpy as np
-from scenes import add_ball, add_cone_cube, changed, edit, plain_copy, snapshot, uv_key
+from scenes import add_ball, add_cone_cube, changed, edit, marked, plain_copy, snapshot, uv_key
 
 EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
 STEP = 0.05
 
 
 @contextmanager
-def slowed(seconds):
+def slowed(seconds, verb="parameterize"):
     """The library takes so much longer, and tells its progress meanwhile."""
     lsgp = import_module(f"{EXTENSION}.native").lsgp
-    parameterize = lsgp.parameterize
+    work = getattr(lsgp, verb)
 
-    def slowly(*arguments):
-        *_, progress = arguments
+    def slowly(*arguments, **options):
+        progress = options["progress"] if "progress" in options else arguments[-1]
         begin = time.monotonic()
         while progress is not None and (share := (time.monotonic() - begin) / seconds) < 1:
             if progress(0.9 * share) is False:
                 raise lsgp.Cancelled("CANCELLED", "Stopped.")
             time.sleep(STEP)
-        return parameterize(*arguments)
+        return work(*arguments, **options)
 
-    lsgp.parameterize = slowly
+    setattr(lsgp, verb, slowly)
     try:
         yield
     finally:
-        lsgp.parameterize = parameterize
+        setattr(lsgp, verb, work)
 
 
 def window():
@@ -45,8 +48,8 @@ def unwrap(**options):
     return bpy.ops.uv.cone_unwrap("INVOKE_DEFAULT", True, **options)
 
 
-def running():
-    return any(operator.bl_idname == "UV_OT_cone_unwrap" for operator in window().modal_operators)
+def running(idname="UV_OT_cone_unwrap"):
+    return any(operator.bl_idname == idname for operator in window().modal_operators)
 
 
 def computing():
@@ -232,3 +235,76 @@ def test_the_library_itself_tells_its_progress_and_stops():
     yield from until(lambda: not running(), 2.0)
     yield from until(lambda: not computing())
     assert stored_uv(ball) == before
+
+
+def place(**options):
+    return bpy.ops.mesh.cone_place("INVOKE_DEFAULT", True, **options)
+
+
+def placing():
+    return running("MESH_OT_cone_place")
+
+
+def test_placing_cones_is_stopped_by_esc_and_nothing_changes():
+    cube = add_cone_cube()
+    edit(cube)
+    before = snapshot(cube)
+    with slowed(10, "place_cones"):
+        assert place(automatic=False, count=10) == {"RUNNING_MODAL"}
+        yield 0.3
+        assert placing() and computing()
+        press("ESC")
+        yield from until(lambda: not placing(), 1.0)
+        yield from until(lambda: not computing(), 1.0)
+    assert changed(before, snapshot(cube)) == set()
+
+
+def test_placing_cones_for_long_is_one_step_of_undo():
+    cube = add_cone_cube()
+    edit(cube)
+    bpy.ops.ed.undo_push(message="before")
+    before = marked(bpy.data.objects["Cube"])
+    with slowed(0.5, "place_cones"):
+        assert place(automatic=False, count=10) == {"RUNNING_MODAL"}
+        yield from until(lambda: not placing())
+    after = marked(bpy.data.objects["Cube"])
+    assert set(before) < set(after) and len(after) == 10
+    bpy.ops.ed.undo()
+    yield 0.1
+    assert marked(bpy.data.objects["Cube"]) == before
+    bpy.ops.ed.redo()
+    yield 0.1
+    assert marked(bpy.data.objects["Cube"]) == after
+
+
+def test_the_table_of_angles_is_drawn_and_follows_undo():
+    panel = bpy.types.VIEW3D_PT_cone_angles
+    tables = import_module(f"{EXTENSION}.angle_table")
+    draw, outcomes = panel.draw, []
+
+    def watched(self, context):
+        try:
+            draw(self, context)
+            table = tables.current_table(context.object, tables.last_settings(context))
+            outcomes.append([row.angle for part in table for row in part.rows])
+        except Exception as error:  # Blender would only print it
+            outcomes.append(error)
+
+    panel.draw = watched
+    try:
+        edit(add_cone_cube())
+        bpy.context.space_data.show_region_ui = True
+        yield 0.3
+        sidebar = next(region for region in bpy.context.area.regions if region.type == "UI")
+        sidebar.active_panel_category = "Cone Unwrap"
+        yield 0.5
+        assert outcomes and outcomes[-1] == [None] * 8, outcomes[-1:]
+        bpy.ops.ed.undo_push(message="before")
+        bpy.ops.mesh.cone_set_angle("EXEC_DEFAULT", True, angle=np.pi)
+        yield 0.3
+        assert outcomes[-1] == [np.pi] * 8, outcomes[-1]
+        bpy.ops.ed.undo()
+        yield 0.3
+        assert outcomes[-1] == [None] * 8, outcomes[-1]
+    finally:
+        panel.draw = draw
