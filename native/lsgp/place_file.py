@@ -76,7 +76,9 @@ def summary(args: argparse.Namespace, placement: Placement) -> str:
     told += f", an L2 stretch of {placement.predicted_l2:.4f} predicted"
     if args.count is None:
         told += f", the target was {'' if placement.reached else 'not '}reached"
-    return f"{told}; {placement.factorizations} factorizations, {placement.back_substitutions} back-substitutions"
+    work = placement.factorizations
+    told += f"; {work} {'factorization' if work == 1 else 'factorizations'}"
+    return f"{told}, {placement.back_substitutions} back-substitutions"
 
 
 def _placement(args: argparse.Namespace) -> dict[str, Any]:

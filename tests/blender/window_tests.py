@@ -193,7 +193,7 @@ def test_a_mesh_that_is_changed_meanwhile_is_left_alone():
     for change in (move_vertex, add_layer, enter_edit_mode):
         cube = add_cone_cube()
         before = stored_uv(cube)
-        with slowed(1):
+        with slowed(3):
             assert unwrap() == {"RUNNING_MODAL"}
             yield 0.2
             change(cube)
