@@ -43,3 +43,6 @@ PREVIEW = "mesh.cone_preview"
 SELECT_REPORTED = "mesh.cone_select_reported"
 MEASURE = "uv.cone_measure"
 TEXTURE_SHOW = "uv.cone_texture"
+
+COMMAND = "cone_unwrap"
+"""Command of Blender's command line."""

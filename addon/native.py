@@ -7,7 +7,8 @@ not fit this Blender's Python or its file is damaged.
 
 import platform
 import sys
-from importlib import metadata
+from importlib import import_module, metadata
+from types import ModuleType
 
 
 def _require_whole_native_module() -> None:
@@ -33,3 +34,8 @@ except (ImportError, OSError) as error:
     )
 else:
     REASON = PROBLEM = ""
+
+
+def part(name: str) -> ModuleType:
+    """A module of the library that is loaded only where it is used."""
+    return import_module(f"lsgp.{name}")

@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import changes, distortion, reports, texture
+from . import changes, command, distortion, reports, texture
 from .operators.angle_select import MESH_OT_cone_select_one
 from .operators.angle_set import MESH_OT_cone_set_angle
 from .operators.angle_snap import MESH_OT_cone_snap_angles
@@ -44,7 +44,7 @@ CLASSES = (
     *PANELS,
     VIEW3D_PT_cone_angles,
 )
-PARTS = (changes, reports, distortion, texture, handlers)
+PARTS = (changes, reports, distortion, texture, handlers, command)
 
 
 def register() -> None:

@@ -22,6 +22,7 @@ from .api import Surface, measure_distortion
 from .batch.command import EXIT_CODES, add_batch_options, add_scheduler_option, run_batch
 from .certificate import certificate_table
 from .errors import Elements, Finding, InputError, LsgpError
+from .exit_codes import OK, REFUSED, ended
 from .mesh_files import write_whole
 from .place_file import add_placement_options, place_file, summary
 from .polygons import Triangulation
@@ -29,8 +30,6 @@ from .side_files import UsageError
 from .terminal import ProgressLine, say
 from .unwrap_file import Run, out_of_memory, read_file, unwrap_file
 from .unwrap_options import add_unwrap_options, texture_size
-
-OK, USAGE, REFUSED, INTERRUPTED = 0, 2, 3, 130
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -45,17 +44,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             parser.error("a command is needed: unwrap, cones, batch or measure")
     except SystemExit as end:  # argparse has said why
         return int(end.code or 0)
-    try:
-        return args.run(args)
-    except UsageError as error:
-        say(sys.stderr, f"lsgp: error: {error}")
-    except OSError as error:
-        where = "" if error.filename is None else f": '{os.fsdecode(error.filename)}'"
-        say(sys.stderr, f"lsgp: error: {error.strerror or error}{where}")
-    except KeyboardInterrupt:
-        say(sys.stderr, "lsgp: interrupted")
-        return INTERRUPTED
-    return USAGE
+    return ended(lambda: args.run(args))
 
 
 def _parser() -> argparse.ArgumentParser:

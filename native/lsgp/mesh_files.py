@@ -12,6 +12,7 @@ import os
 import secrets
 import shutil
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +25,7 @@ from .mesh_off import read_off
 from .mesh_ply import read_ply
 from .polygons import PolygonMesh
 
-# Files that are being written; they stay where a process is killed.
+# Names of files that are being written; they stay where a process is killed. A suffix may stand behind them.
 PARTIAL = ".lsgp-*.partial"
 ABANDONED_SECONDS = 3600.0
 
@@ -64,10 +65,19 @@ def write_whole(path: str | os.PathLike[str], data: bytes) -> None:
     if target.exists() and not target.is_file():
         target.write_bytes(data)  # a device or a pipe is written to, not replaced
         return
-    partial = target.with_name(PARTIAL.replace("*", secrets.token_hex(6)))
+    with whole_file(target) as partial, partial.open("xb") as file:
+        file.write(data)
+
+
+@contextlib.contextmanager
+def whole_file(target: Path, suffix: str = "") -> Iterator[Path]:
+    """The path to write to of a file that takes its place when all went well, and otherwise is gone.
+
+    suffix: of that path, for writers that tell the format by it.
+    """
+    partial = target.with_name(PARTIAL.replace("*", secrets.token_hex(6)) + suffix)
     try:
-        with partial.open("xb") as file:
-            file.write(data)
+        yield partial
         if target.exists():
             shutil.copymode(target, partial)
         os.replace(partial, target)
@@ -79,7 +89,7 @@ def write_whole(path: str | os.PathLike[str], data: bytes) -> None:
 
 def remove_old_partials(folder: Path) -> None:
     """Remove, at any depth, what processes left that were killed while they wrote, an hour ago or more."""
-    for partial in folder.rglob(PARTIAL):
+    for partial in folder.rglob(f"{PARTIAL}*"):
         with contextlib.suppress(OSError):
             if time.time() - partial.stat().st_mtime > ABANDONED_SECONDS:
                 partial.unlink()

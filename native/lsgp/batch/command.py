@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from .. import exit_codes
 from ..mesh_files import remove_old_partials, write_whole
 from ..side_files import UsageError
 from ..terminal import ProgressLine, say
@@ -23,8 +24,6 @@ from .progress import RunProgress, duration
 from .records import FAILED, OK, Record
 from .summary import summary_table
 from .tasks import Settings, Task
-
-ALL, NONE, SOME = 0, 3, 4
 
 EXIT_CODES = (
     "Exit code: 0 all assets have a result, 4 some of them, 3 none; 2 wrong usage or a folder that is missing or not "
@@ -76,6 +75,15 @@ def add_scheduler_option(batch: argparse.ArgumentParser) -> None:
     )
 
 
+def main(argv: Sequence[str], kind: Kind, parser: argparse.ArgumentParser) -> int:
+    """Run the command line of a batch program and return its exit code."""
+    try:
+        args = parser.parse_args(argv)
+    except SystemExit as end:  # argparse has said why
+        return int(end.code or 0)
+    return exit_codes.ended(lambda: run_batch(args, kind))
+
+
 def run_batch(args: argparse.Namespace, kind: Kind = MESH_FILES) -> int:
     """Run a batch and return its exit code.  Raises OSError, UsageError, KeyboardInterrupt."""
     if args.jobs is not None and args.scheduler is not None:
@@ -101,8 +109,8 @@ def run_batch(args: argparse.Namespace, kind: Kind = MESH_FILES) -> int:
     _conclude(args, records, len(missing), time.monotonic() - begin)
     results = sum(record["status"] == OK for record in records)
     if args.exit_zero or results == len(records):
-        return ALL
-    return SOME if results else NONE
+        return exit_codes.OK
+    return exit_codes.SOME if results else exit_codes.REFUSED
 
 
 def _ended_before(args: argparse.Namespace, assets: Sequence[Asset], settings: Settings) -> dict[str, Record]:

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import argparse
-import os
 from pathlib import Path
 
 from .. import report as reports
 from ..errors import LsgpError
+from ..exit_codes import describe
 from ..mesh_files import write_whole
 from ..side_files import UsageError
 from ..unwrap_file import Run, out_of_memory, unwrap_file
@@ -30,8 +30,7 @@ def unwrap_asset(task: Task, settings: Settings) -> Record:
     except UsageError as error:
         return ending(REFUSED, "WRONG_USAGE", str(error))
     except OSError as error:
-        where = "" if error.filename is None else f": '{os.fsdecode(error.filename)}'"
-        return ending(FAILED, "FILE_ERROR", f"{error.strerror or error}{where}")
+        return ending(FAILED, "FILE_ERROR", describe(error))
 
 
 def refusal(error: LsgpError, run: Run) -> Record:

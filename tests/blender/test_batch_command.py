@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Batches in Blender: .blend, glTF and FBX files in, the same with UV maps out, through the command as it is typed."""
+
+import json
+import os
+import subprocess
+from importlib import import_module
+
+import bpy
+import numpy as np
+import pytest
+from scenes import UvMap, add_ball, add_cone_cube, add_cube, add_sphere
+
+EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
+command = import_module(f"{EXTENSION}.command")
+
+FILES = ["broken.blend", "deep/ball.fbx", "empty.blend", "gone.glb", "sphere.glb", "two.blend"]
+
+
+def run(*arguments):
+    """The exit code of the command: in a Blender of its own, or through its handler where bpy is a module."""
+    arguments = [str(argument) for argument in arguments]
+    if not bpy.app.binary_path:
+        return command.run(arguments)
+    bpy.ops.wm.save_userpref()
+    typed = [bpy.app.binary_path, "--background", "--command", "cone_unwrap", *arguments]
+    return subprocess.run(typed, timeout=300).returncode
+
+
+def clear():
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+
+
+@pytest.fixture
+def library(tmp_path):
+    """A list of files of all kinds; "two.blend" is saved in edit mode and has a cube with cones and a mesh without."""
+    folder = tmp_path / "library"
+    (folder / "deep").mkdir(parents=True)
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "empty.blend"), copy=True)
+    add_sphere()
+    bpy.ops.export_scene.gltf(filepath=str(folder / "sphere.glb"), export_format="GLB")
+    clear()
+    add_ball()
+    bpy.ops.export_scene.fbx(filepath=str(folder / "deep" / "ball.fbx"))
+    clear()
+    add_cone_cube("Marked")
+    bare = add_cube("Bare")
+    bare.data.uv_layers.remove(bare.data.uv_layers[0])
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "two.blend"), copy=True)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    clear()
+    (folder / "broken.blend").write_bytes(b"this is no Blender file")
+    (folder / "list.txt").write_text("\n".join(FILES))
+    return folder
+
+
+def lines_of(out):
+    return [json.loads(line) for line in (out / "journal.jsonl").read_text().splitlines()]
+
+
+def test_files_of_all_kinds(library, tmp_path):
+    out = tmp_path / "out"
+    assert run(library / "list.txt", "--out", out, "--jobs", 1) == 4
+    lines = {line["asset"]: line for line in lines_of(out)}
+    assert sorted(lines) == FILES
+    ended = {name: (line["status"], line["code"]) for name, line in lines.items()}
+    assert ended == {
+        "broken.blend": ("refused", "MALFORMED_FILE"),
+        "deep/ball.fbx": ("ok", None),
+        "empty.blend": ("refused", "NO_MESH"),
+        "gone.glb": ("failed", "FILE_ERROR"),
+        "sphere.glb": ("ok", None),
+        "two.blend": ("ok", None),
+    }
+    assert not list(out.rglob("*.partial*"))
+    assert all((out / lines[name]["picture"]).is_file() for name, how in ended.items() if how[0] == "ok")
+    assert run(library / "list.txt", "--out", out, "--only-missing", "--jobs", 1) == 4
+    assert [line["asset"] for line in lines_of(out)[len(FILES) :]] == ["gone.glb"]
+
+    bpy.ops.wm.open_mainfile(filepath=str(out / "two.blend"))
+    marked, bare = bpy.data.objects["Marked"], bpy.data.objects["Bare"]
+    assert lines["two.blend"]["triangles"] == 2 * len(marked.data.polygons) + 2 * len(bare.data.polygons)
+    # A cube through its corners is laid out as it is; both sides of every cut are alike.
+    assert UvMap(marked).l2_stretch() == pytest.approx(1, abs=1e-4)
+    assert all(UvMap(obj).sister_difference() < 1e-5 for obj in (marked, bare))
+    assert not bare.vertex_groups
+
+    clear()
+    bpy.ops.import_scene.gltf(filepath=str(out / "sphere.glb"), merge_vertices=True)
+    (sphere,) = (obj for obj in bpy.data.objects if obj.type == "MESH")
+    assert np.ptp([loop.vector for loop in sphere.data.uv_layers.active.uv], axis=0).max() > 0.5
+
+
+def test_options_that_name_files_of_one_mesh_are_refused(library, tmp_path):
+    (library / "cones.json").write_text('{"cones": [0, 1, 2]}')
+    (library / "list.txt").write_text("two.blend\n")
+    out = tmp_path / "out"
+    assert run(library / "list.txt", "--out", out, "--cones", library / "cones.json") == 3
+    (line,) = lines_of(out)
+    assert (line["status"], line["code"]) == ("refused", "WRONG_USAGE")
+    assert "cones, seams and importance are those on the meshes" in line["message"]
+
+
+def test_wrong_usage(tmp_path):
+    assert run(tmp_path / "nowhere", "--out", tmp_path / "out") == 2
+    assert run("--no-such-option") == 2
+    assert run("--help") == 0
