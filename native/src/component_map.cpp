@@ -21,14 +21,6 @@ void check_triangles(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners, 
   map.validity.inexact_angles.clear();
 }
 
-std::vector<Index> inside_only(const HalfedgeMesh& mesh, const std::vector<Index>& vertices) {
-  std::vector<Index> out;
-  for (const Index v : vertices) {
-    if (mesh.loop_of_vertex[v] == none) out.push_back(v);
-  }
-  return out;
-}
-
 namespace {
 
 // Ranges of the automatic angles: wide ones distort least but may leave turns with neighbouring vertices; a map of
@@ -44,21 +36,25 @@ bool all_given(const ComponentCones& cones) {
 }
 
 // Tries out angles and geometries, easy repairs first; returns the map with the fewest defects.
-ComponentMap find_valid_map(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentTask& task,
-                            const Options& options, std::vector<Finding>& findings, Monitor& monitor,
-                            std::optional<RepairReport>& repair) {
+ComponentMap find_valid_map(ComponentSystem& system, const ComponentTask& task, const Options& options,
+                            std::vector<Finding>& findings, Monitor& monitor, std::optional<RepairReport>& repair) {
   constexpr double fat_margin = 0.2;
   const bool persists = repairs(options);
   const bool is_free = persists && task.cones.symmetry == 0 &&
                        (options.prescription == PrescriptionRule::least_distortion ||
                         (options.prescription == PrescriptionRule::manual && !all_given(task.cones)));
   std::optional<ComponentMap> best;
+  const HalfedgeMesh& mesh = system.mesh();
   std::optional<Geometry> fat;
+  std::optional<ComponentSystem> fat_system;
   for (const Effort effort : {Effort::local, Effort::global}) {
     // What is easy is tried on the surface itself first; what is hard is easier on fat triangles.
     for (const bool is_fat : {effort == Effort::global, effort == Effort::local}) {
-      if (is_fat && !fat) fat = mollified(mesh, geometry, fat_margin);
-      Mapping mapping(mesh, is_fat ? *fat : geometry, task, options, monitor, repair);
+      if (is_fat && !fat) {
+        fat = mollified(mesh, system.geometry(), fat_margin);
+        fat_system.emplace(mesh, *fat, task.cones, options.factorization);
+      }
+      Mapping mapping(is_fat ? *fat_system : system, task, options, monitor, repair);
       for (std::size_t i = 0; i < (is_free ? std::size(angle_ranges) : 1); ++i) {
         ComponentCones cones = task.cones;
         if (is_free) cones.range = angle_ranges[i];
@@ -71,15 +67,14 @@ ComponentMap find_valid_map(const HalfedgeMesh& mesh, const Geometry& geometry, 
           continue;
         }
         if (!best || map.validity.defects() < best->validity.defects()) {
-          if (is_fat && map.validity.defects() == 0)
-            Mapping(mesh, geometry, task, options, monitor, repair).smooth(map);
+          if (is_fat && map.validity.defects() == 0) Mapping(system, task, options, monitor, repair).smooth(map);
           best = std::move(map);
           findings = std::move(found);
         }
         if (best->validity.defects() == 0) return std::move(*best);
         // A valid map would have been proof that its angles are possible.
         if (effort == Effort::local && !is_fat && options.prescription == PrescriptionRule::manual) {
-          require_possible(mesh, geometry, task.cones);
+          require_possible(mesh, system.geometry(), task.cones);
         }
         if (!persists) return std::move(*best);
       }
@@ -90,12 +85,12 @@ ComponentMap find_valid_map(const HalfedgeMesh& mesh, const Geometry& geometry, 
 
 }  // namespace
 
-ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentTask& task,
-                           const Options& options, std::vector<Finding>& findings, Monitor& monitor) {
+ComponentMap map_component(ComponentSystem& system, const ComponentTask& task, const Options& options,
+                           std::vector<Finding>& findings, Monitor& monitor) {
   std::optional<RepairReport> repair;
   std::vector<Finding> found;
-  ComponentMap map = find_valid_map(mesh, geometry, task, options, found, monitor, repair);
-  Mapping mapping(mesh, geometry, task, options, monitor, repair);
+  ComponentMap map = find_valid_map(system, task, options, found, monitor, repair);
+  Mapping mapping(system, task, options, monitor, repair);
   if (map.validity.defects() > 0 && repairs(options) && (any_given(task.cones) || task.cones.symmetry > 0)) {
     mapping.approach_angles(map, found);
   }

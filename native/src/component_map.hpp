@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "component_system.hpp"
 #include "components.hpp"
 #include "cut_graph.hpp"
 #include "cut_mesh.hpp"
@@ -34,14 +35,12 @@ struct ComponentMap {
 };
 
 // findings are added to.  Throws what the stages throw, in the component's own numbering.
-ComponentMap map_component(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentTask& task,
-                           const Options& options, std::vector<Finding>& findings, Monitor& monitor);
+// system: of the task's cones.
+ComponentMap map_component(ComponentSystem& system, const ComponentTask& task, const Options& options,
+                           std::vector<Finding>& findings, Monitor& monitor);
 
 // Measure positions u + iv at the component's corners, (3m), against what the map imposed.
 void check_seams(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners, ComponentMap& map);
 void check_triangles(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners, ComponentMap& map);
-
-// Those of the vertices that lie on no border.
-std::vector<Index> inside_only(const HalfedgeMesh& mesh, const std::vector<Index>& vertices);
 
 }  // namespace lsgp

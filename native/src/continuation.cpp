@@ -61,8 +61,8 @@ Continuation follow(const CutSurface& surface, const Path& path, const std::vect
     before_step();
     const double share = std::min(1.0, out.reached + step);
     Waypoint next = path(share);
-    Eigen::VectorXcd moved = PoissonSystem(surface.mesh, surface.geometry, surface.cut_mesh, next.connection.reduction)
-                                 .fit(carry_over(surface, out.at, next, out.position));
+    Eigen::VectorXcd moved =
+        PoissonSystem(surface, next.connection.reduction).fit(carry_over(surface, out.at, next, out.position));
     if (!is_valid(surface, next.curvature, moved)) {
       moved = untangle(surface, next.connection, next.curvature, fixed, effort, Kind::framed_foldover_free, before_step,
                        moved);

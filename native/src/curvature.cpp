@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "angle_flow.hpp"
+#include "component_system.hpp"
 #include "cut_mesh.hpp"
 #include "energies/quadratic_forms.hpp"
 #include "quantize_curvature.hpp"
@@ -143,11 +144,6 @@ Eigen::VectorXd least_distortion(const HalfedgeMesh& mesh, const ComponentCones&
     start = shift_into(bounds, start, required);
   }
   return scale.least_distortion_curvature(bounds.low, bounds.high, std::move(start));
-}
-
-BorderConditions border_conditions(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones) {
-  return cones.border == BorderMode::straight && !mesh.closed() ? straight_border(mesh, geometry, cones.vertices)
-                                                                : free_border(mesh, cones.vertices);
 }
 
 bool possible(const HalfedgeMesh& mesh, Index vertex, double curvature) {
@@ -369,6 +365,11 @@ int valence(const HalfedgeMesh& mesh, Index vertex) {
   return triangles;
 }
 
+BorderConditions border_conditions(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones) {
+  return cones.border == BorderMode::straight && !mesh.closed() ? straight_border(mesh, geometry, cones.vertices)
+                                                                : free_border(mesh, cones.vertices);
+}
+
 void require_possible(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones) {
   if (cones.symmetry > 0) return;  // rounded angles are the tool's own choice
   const BorderConditions border = border_conditions(mesh, geometry, cones);
@@ -389,14 +390,15 @@ void require_possible(const HalfedgeMesh& mesh, const Geometry& geometry, const 
   if (!given.empty()) require_possible_angles(mesh, angle, is_free, given);
 }
 
-Curvature prescribe(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
-                    PrescriptionRule rule, std::vector<Finding>& findings) {
+Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, PrescriptionRule rule,
+                    std::vector<Finding>& findings, const FactorHook& hook) {
+  const HalfedgeMesh& mesh = system.mesh();
+  const Geometry& geometry = system.geometry();
   ComponentCones asked = cones;
   if (rule != PrescriptionRule::manual) std::fill(asked.angles.begin(), asked.angles.end(), std::nullopt);
-  const BorderConditions border = border_conditions(mesh, geometry, asked);
+  const BorderConditions& border = system.border();
   require_feasible(mesh, asked, border);
-  LogScale scale(mesh, geometry, border);
-  scale.add_cones(asked.vertices);
+  const LogScale& scale = system.log_scale(hook);
 
   Eigen::VectorXd curvature(asked.vertices.size());
   std::optional<Eigen::VectorXd> straight;

@@ -3,14 +3,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "border.hpp"
 #include "geometry.hpp"
+#include "laplace_solver.hpp"
 #include "lsgp/errors.hpp"
 #include "lsgp/options.hpp"
-#include "solvers/cholesky.hpp"
 #include "topology.hpp"
 
 namespace lsgp {
@@ -20,7 +21,9 @@ namespace lsgp {
 // nothing held, y is known up to a constant and Gauss-Bonnet has to hold.
 class LogScale {
  public:
-  LogScale(const HalfedgeMesh& mesh, const Geometry& geometry, const BorderConditions& border);
+  // factor: where given, one that is there already.
+  LogScale(const HalfedgeMesh& mesh, const Geometry& geometry, const BorderConditions& border,
+           const CutFactor* factor = nullptr);
 
   void add_cones(const std::vector<Index>& vertices);  // none twice, none held
   Index cone_count() const { return static_cast<Index>(cones_.size()); }
@@ -57,13 +60,10 @@ class LogScale {
   Variance variance() const;
 
  private:
-  Eigen::MatrixXd solve_columns(const Eigen::MatrixXd& right_sides) const;  // (n, k)
-
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
   BorderConditions border_;
-  std::vector<Index> row_of_vertex_;
-  std::optional<Cholesky<double>> factor_;
+  std::unique_ptr<LaplaceSolver> laplace_;
   Eigen::VectorXd weight_;         // (n) share of the area
   Eigen::VectorXd without_cones_;  // (n) y_0
   std::vector<Index> cones_;
@@ -100,9 +100,14 @@ struct Curvature {
   std::vector<char> needs_no_cut;
 };
 
-// Throws TOO_FEW_CONES, CONE_ANGLE_RANGE, GAUSS_BONNET, LOOP_TURNING with the component's own vertex numbers.
-Curvature prescribe(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
-                    PrescriptionRule rule, std::vector<Finding>& findings);
+class ComponentSystem;
+
+BorderConditions border_conditions(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones);
+
+// cones: those of the system.  Throws TOO_FEW_CONES, CONE_ANGLE_RANGE, GAUSS_BONNET, LOOP_TURNING with the component's
+// own vertex numbers.
+Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, PrescriptionRule rule,
+                    std::vector<Finding>& findings, const FactorHook& hook = {});
 
 // Throws ANGLES_IMPOSSIBLE for given angles that no map has, whatever the automatic ones are.
 void require_possible(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones);

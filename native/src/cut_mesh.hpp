@@ -16,12 +16,15 @@ struct CutMesh {
   Index copy_count() const { return static_cast<Index>(source.size()); }
 };
 
+class CutFactor;
+
 // A surface and how it is opened.
 struct CutSurface {
   const HalfedgeMesh& mesh;
   const Geometry& geometry;
   const CutGraph& cut_graph;
   const CutMesh& cut_mesh;
+  const CutFactor* factor = nullptr;  // of this geometry, where there is one
 };
 
 // Values of copies, (copies), at the corners, (3m).

@@ -25,42 +25,27 @@ double log_mean_exp(const Eigen::VectorXd& weight, const Eigen::VectorXd& x, Eig
 
 }  // namespace
 
-LogScale::LogScale(const HalfedgeMesh& mesh, const Geometry& geometry, const BorderConditions& border)
-    : mesh_(mesh), geometry_(geometry), border_(border) {
-  std::vector<char> held = border.held;
-  if (border.balanced) held[0] = 1;  // fixes the constant; the flow there is 0 when the curvatures balance
-  Laplacian laplacian = assemble_laplacian(mesh, geometry, held);
-  row_of_vertex_ = std::move(laplacian.row_of_vertex);
-  factor_.emplace(laplacian.lower);
-  weight_ = geometry.vertex_area / geometry.total_area;
-  without_cones_ = solve(border.curvature - geometry.angle_defect);
-  green_.resize(mesh.vertex_count(), 0);
-}
+LogScale::LogScale(const HalfedgeMesh& mesh, const Geometry& geometry, const BorderConditions& border,
+                   const CutFactor* factor)
+    : mesh_(mesh),
+      geometry_(geometry),
+      border_(border),
+      laplace_(factor != nullptr ? laplace_on_cut(*factor, mesh.vertex_count(), border.held)
+                                 : sparse_laplace(mesh, geometry, border.held)),
+      weight_(geometry.vertex_area / geometry.total_area),
+      without_cones_(solve(border.curvature - geometry.angle_defect)),
+      green_(mesh.vertex_count(), 0) {}
 
-Eigen::MatrixXd LogScale::solve_columns(const Eigen::MatrixXd& right_sides) const {
-  const Eigen::Index count = right_sides.cols();
-  Eigen::Index rows = 0;
-  for (const Index row : row_of_vertex_) rows += row != none;
-  Eigen::MatrixXd gathered(rows, count);
-  for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-    if (row_of_vertex_[v] != none) gathered.row(row_of_vertex_[v]) = right_sides.row(v);
-  }
-  const Eigen::MatrixXd solved = factor_->solve(gathered);
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(right_sides.rows(), count);
-  for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-    if (row_of_vertex_[v] != none) out.row(v) = solved.row(row_of_vertex_[v]);
-  }
-  return out;
-}
-
-Eigen::VectorXd LogScale::solve(const Eigen::VectorXd& right_side) const { return solve_columns(right_side); }
+Eigen::VectorXd LogScale::solve(const Eigen::VectorXd& right_side) const { return laplace_->solve(right_side); }
 
 void LogScale::add_cones(const std::vector<Index>& vertices) {
-  Eigen::MatrixXd impulses = Eigen::MatrixXd::Zero(mesh_.vertex_count(), vertices.size());
-  for (std::size_t i = 0; i < vertices.size(); ++i) impulses(vertices[i], i) = 1;
-  const Eigen::Index before = green_.cols();
-  green_.conservativeResize(Eigen::NoChange, before + impulses.cols());
-  green_.rightCols(impulses.cols()) = solve_columns(impulses);
+  Eigen::MatrixXd added = laplace_->solve_impulses(vertices);
+  if (cones_.empty()) {
+    green_ = std::move(added);
+  } else {
+    green_.conservativeResize(Eigen::NoChange, green_.cols() + added.cols());
+    green_.rightCols(added.cols()) = added;
+  }
   cones_.insert(cones_.end(), vertices.begin(), vertices.end());
 }
 

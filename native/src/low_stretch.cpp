@@ -34,7 +34,7 @@ Eigen::VectorXd importance_of_triangles(const HalfedgeMesh& mesh, const Geometry
 
 Eigen::VectorXd scale_at_rest(const CutSurface& surface, const Curvature& curvature, double stretch,
                               const Eigen::VectorXcd& position) {
-  const auto& [mesh, geometry, cut_graph, cut_mesh] = surface;
+  const auto& [mesh, geometry, cut_graph, cut_mesh, factor] = surface;
   const Eigen::VectorXd rest = (1 - stretch) * curvature.log_scale;
   const Jacobians jacobians = measure_jacobians(mesh, geometry, cut_mesh, position);
   double area = 0, rest_area = 0;
@@ -50,14 +50,14 @@ Eigen::VectorXd scale_at_rest(const CutSurface& surface, const Curvature& curvat
 Eigen::VectorXcd lower_stretch(const CutSurface& surface, const Connection& connection, const Curvature& curvature,
                                double stretch, const std::vector<char>& fixed, const Eigen::VectorXd& importance,
                                const StepHook& before_step, const Eigen::VectorXcd& position) {
-  const auto& [mesh, geometry, cut_graph, cut_mesh] = surface;
+  const auto& [mesh, geometry, cut_graph, cut_mesh, factor] = surface;
   const Eigen::VectorXd rest = scale_at_rest(surface, curvature, stretch, position);
   Eigen::VectorXcd best = position;
   // One linear step takes a map without fixed vertices almost there: frames stay, lengths are those wanted.
   if (std::find(fixed.begin(), fixed.end(), 1) == fixed.end()) {
     before_step();
-    Eigen::VectorXcd fitted = PoissonSystem(mesh, geometry, cut_mesh, connection.reduction)
-                                  .fit(prescribed_jacobians(mesh, rest, connection.frames));
+    Eigen::VectorXcd fitted =
+        PoissonSystem(surface, connection.reduction).fit(prescribed_jacobians(mesh, rest, connection.frames));
     if (fitted.allFinite() &&
         check_map(mesh, at_corners(cut_mesh, fitted), curvature.at_vertex, curvature.is_free).defects() == 0) {
       best = std::move(fitted);

@@ -58,18 +58,18 @@ void turn_cornerless_borders(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, 
   }
 }
 
-Eigen::VectorXcd unfold_along_borders(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                                      const ComponentCones& cones, const Connection& connection,
-                                      const std::vector<Index>& edges) {
+Eigen::VectorXcd unfold_along_borders(const CutSurface& surface, const ComponentMap& map, const ComponentCones& cones,
+                                      const Connection& connection, const std::vector<Index>& edges) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   const Eigen::VectorXd& log_scale = map.curvature.log_scale;
   Eigen::VectorXd directions = metric_directions(mesh, geometry, log_scale, connection.frames, edges);
   if (cones.border == BorderMode::straight) {
-    const Eigen::VectorXcd natural = PoissonSystem(mesh, geometry, map.cut_mesh, connection.reduction)
-                                         .fit(prescribed_jacobians(mesh, log_scale, connection.frames));
+    const Eigen::VectorXcd natural =
+        PoissonSystem(surface, connection.reduction).fit(prescribed_jacobians(mesh, log_scale, connection.frames));
     turn_cornerless_borders(mesh, map.cut_mesh, cones.vertices, natural, edges, directions);
   }
-  return unfold_aligned(mesh, geometry, map.cut_mesh, connection.reduction, log_scale, connection.frames, edges,
-                        directions);
+  return unfold_aligned(surface, connection.reduction, log_scale, connection.frames, edges, directions);
 }
 
 // The fit to the prescribed Jacobians with every triangle's error relative to its scale: where scales differ much, the
@@ -82,7 +82,8 @@ Eigen::VectorXcd unfold_relatively(const CutSurface& surface, const Curvature& c
   weight = weight.cwiseMin(widest_range * weight.minCoeff());
   const Geometry weighted = with_weights(surface.geometry, weight);
   jacobians.f_z = jacobians.f_z.cwiseProduct(weight);
-  return PoissonSystem(surface.mesh, weighted, surface.cut_mesh, connection.reduction).fit(jacobians);
+  const CutSurface weighted_surface{surface.mesh, weighted, surface.cut_graph, surface.cut_mesh};
+  return PoissonSystem(weighted_surface, connection.reduction).fit(jacobians);
 }
 
 // Where lengths differ so much that the small triangles vanish in the last digit of the large ones, no repair helps.
@@ -107,7 +108,8 @@ ComponentMap Mapping::attempt(const ComponentCones& cones, Effort effort, std::v
   {
     const Monitor::Stage stage(monitor_, "prescribe");
     monitor_.advance(0);
-    map.curvature = prescribe(mesh_, geometry_, cones, options_.prescription, findings);
+    map.curvature = prescribe(system_, cones, options_.prescription, findings,
+                              [this](double done) { monitor_.advance(0.2 * done); });
   }
   {
     const Monitor::Stage stage(monitor_, "cut");
@@ -131,9 +133,9 @@ ComponentMap Mapping::attempt(const ComponentCones& cones, Effort effort, std::v
   if (spectral) {
     map.position = unfold_spectral(mesh_, geometry_, map.cut_mesh, connection.reduction);
   } else if (!aligned.empty()) {
-    map.position = unfold_along_borders(mesh_, geometry_, map, cones, connection, aligned);
+    map.position = unfold_along_borders(surface, map, cones, connection, aligned);
   } else {
-    map.position = PoissonSystem(mesh_, geometry_, map.cut_mesh, connection.reduction)
+    map.position = PoissonSystem(surface, connection.reduction)
                        .fit(prescribed_jacobians(mesh_, map.curvature.log_scale, connection.frames));
   }
   Curvature target = map.curvature;
@@ -171,7 +173,8 @@ void Mapping::approach_angles(ComponentMap& map, std::vector<Finding>& findings)
   plain.prescription = PrescriptionRule::least_distortion;
   plain.mode = Mode::conformal;
   std::vector<Finding> unsaid;
-  const ComponentMap start = map_component(mesh_, geometry_, automatic, plain, unsaid, monitor_);
+  ComponentSystem system(mesh_, geometry_, automatic.cones, options_.factorization);
+  const ComponentMap start = map_component(system, automatic, plain, unsaid, monitor_);
   repair_->iterations += start.repair.iterations;
   if (start.validity.defects() > 0 || start.cut_graph.is_cut != map.cut_graph.is_cut) return;
   const CutSurface surface = open(map);
@@ -219,7 +222,9 @@ void Mapping::cut(ComponentMap& map, std::vector<Finding>& findings) const {
                                " came out flat when angles were rounded: ordinary vertices now, which need no cut."),
                         {ElementKind::vertices, map.flat_cones}});
   }
-  map.cut_graph = connect_cones(mesh_, geometry_, map.cones, map.curvature.needs_no_cut);
+  const std::vector<char>& uncut = map.curvature.needs_no_cut;
+  const bool cuts_all = map.flat_cones.empty() && std::find(uncut.begin(), uncut.end(), 1) == uncut.end();
+  map.cut_graph = cuts_all ? system_.all_cuts() : connect_cones(mesh_, geometry_, map.cones, uncut);
   map.cut_mesh = cut_open(mesh_, map.cut_graph);
   map.pins = pins_of_copies(map.cut_mesh, task_.pinned_corners);
 }
@@ -292,7 +297,7 @@ void Mapping::twist_gradually(const ConnectionChoice& connections, const std::ve
   const CutSurface surface = open(map);
   const Connection natural = connections.at(0, map.curvature);
   ComponentMap moved = map;
-  moved.position = PoissonSystem(mesh_, geometry_, map.cut_mesh, natural.reduction)
+  moved.position = PoissonSystem(surface, natural.reduction)
                        .fit(prescribed_jacobians(mesh_, map.curvature.log_scale, natural.frames));
   moved.position = untangle(surface, natural, map.curvature, fixed, Effort::local, Kind::framed_foldover_free,
                             counter(), moved.position);
@@ -317,7 +322,9 @@ void Mapping::report_adjusted(const ComponentMap& map, const Continuation& end, 
        {ElementKind::vertices, map.cones}});
 }
 
-CutSurface Mapping::open(const ComponentMap& map) const { return {mesh_, geometry_, map.cut_graph, map.cut_mesh}; }
+CutSurface Mapping::open(const ComponentMap& map) const {
+  return {mesh_, geometry_, map.cut_graph, map.cut_mesh, system_.factor({})};
+}
 
 std::vector<Index> Mapping::aligned_edges() const {
   return task_.cones.border == BorderMode::straight ? straight_edges(mesh_, task_.cones.vertices)

@@ -17,9 +17,15 @@ bool repairs(const Options& options);
 class Mapping {
  public:
   // repair: counts what the first attempt leaves to repair, and the steps of all.
-  Mapping(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentTask& task, const Options& options,
-          Monitor& monitor, std::optional<RepairReport>& repair)
-      : mesh_(mesh), geometry_(geometry), task_(task), options_(options), monitor_(monitor), repair_(repair) {}
+  Mapping(ComponentSystem& system, const ComponentTask& task, const Options& options, Monitor& monitor,
+          std::optional<RepairReport>& repair)
+      : system_(system),
+        mesh_(system.mesh()),
+        geometry_(system.geometry()),
+        task_(task),
+        options_(options),
+        monitor_(monitor),
+        repair_(repair) {}
 
   // The map with these cones, repaired as far as the effort goes.
   ComponentMap attempt(const ComponentCones& cones, Effort effort, std::vector<Finding>& findings);
@@ -54,6 +60,7 @@ class Mapping {
   // Counts the steps of Newton's method.  Nobody knows how many there will be.
   StepHook counter();
 
+  ComponentSystem& system_;
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
   const ComponentTask& task_;

@@ -62,7 +62,8 @@ Result parameterize(const Surface& surface, const Cones& cones, const Options& o
       const Monitor::Stage stage(monitor, "geometry");
       geometries[i] = require_geometry(component, result.warnings);
     }
-    maps[i] = map_component(component.mesh, *geometries[i], task, options, findings, monitor);
+    ComponentSystem system(component.mesh, *geometries[i], task.cones, options.factorization);
+    maps[i] = map_component(system, task, options, findings, monitor);
     result.repair.flipped_before += maps[i]->repair.flipped_before;
     result.repair.wrong_angle_sums_before += maps[i]->repair.wrong_angle_sums_before;
     result.repair.iterations += maps[i]->repair.iterations;
@@ -124,7 +125,8 @@ Prescription prescribe_curvature(const Surface& surface, const Cones& cones, con
     const ComponentTask& task = work.tasks[i];
     const Geometry geometry = require_geometry(component, out.warnings);
     std::vector<Finding> findings;
-    const Curvature curvature = prescribe(component.mesh, geometry, task.cones, options.prescription, findings);
+    ComponentSystem system(component.mesh, geometry, task.cones, Factorization::sparse);
+    const Curvature curvature = prescribe(system, task.cones, options.prescription, findings);
     if (options.prescription == PrescriptionRule::manual) require_possible(component.mesh, geometry, task.cones);
     report_border_cones(component, task.border_cones, out.warnings);
     move_findings(component, findings, out.warnings);

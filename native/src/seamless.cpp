@@ -144,7 +144,8 @@ class GridSearch {
     manual.prescription = PrescriptionRule::manual;
     try {
       std::vector<Finding> unsaid;
-      ComponentMap map = map_component(mesh, *part.geometry, merged, manual, unsaid, monitor_);
+      ComponentSystem system(mesh, *part.geometry, merged.cones, options.factorization);
+      ComponentMap map = map_component(system, merged, manual, unsaid, monitor_);
       if (map.validity.defects() > 0) return false;
       *part.map = std::move(map);
     } catch (const Error& error) {

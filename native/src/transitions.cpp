@@ -173,9 +173,14 @@ class Elimination {
     return out;
   }
 
-  // The unknown that holds the layout in place: any whose value changes when the layout is shifted.
+  // The unknown that holds the layout in place: any whose value changes when the layout is shifted, but for vertices
+  // off cuts and borders, which are to be eliminated first.
   Index find_ground() const {
-    const auto shift = [&](Index id) { return id < n_ ? 1.0 : std::abs(1.0 - turn_[id - n_]); };
+    const std::vector<char> on_cut = on_cuts(mesh_, cut_graph_);
+    const auto shift = [&](Index id) {
+      if (id >= n_) return std::abs(1.0 - turn_[id - n_]);
+      return on_cut[id] || mesh_.loop_of_vertex[id] != none ? 1.0 : 0.0;
+    };
     Index ground = none;
     for (Index id = 0; id < static_cast<Index>(solved_.size()); ++id) {
       if (!is_solved_[id] && (ground == none || shift(id) > shift(ground))) ground = id;

@@ -20,22 +20,6 @@ double connection_step(const HalfedgeMesh& mesh, const Geometry& geometry, const
          cotangent_weight(mesh, geometry, h) * scale_change;
 }
 
-// What target Jacobians (T, S) pull at the copies with: min sum A (|f_z - T|^2 + |f_zbar - S|^2) is
-// z^H L z / 2 - 2 Re(...), and the right side at a corner is 2 A (conj(g) T + conj(h) S) with g = -i conj(e) / (4 A),
-// h = i e / (4 A), e the edge opposite the corner.
-Eigen::VectorXcd pull_of(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                         const Jacobians& jacobians) {
-  Eigen::VectorXcd pull = Eigen::VectorXcd::Zero(cut_mesh.copy_count());
-  for (Index f = 0; f < mesh.triangle_count(); ++f) {
-    for (Index corner = 3 * f; corner < 3 * f + 3; ++corner) {
-      const Complex edge = edge_vector(geometry, next(corner));
-      pull[cut_mesh.copy_of_corner[corner]] +=
-          Complex(0, 0.5) * (edge * jacobians.f_z[f] - std::conj(edge) * jacobians.f_zbar[f]);
-    }
-  }
-  return pull;
-}
-
 // The copies along the open border that contains the border copy with the lowest number.
 std::vector<Index> open_border(const HalfedgeMesh& mesh, const CutMesh& cut_mesh) {
   std::vector<Index> next_copy(cut_mesh.copy_count(), none);
@@ -158,18 +142,6 @@ Jacobians measure_jacobians(const HalfedgeMesh& mesh, const Geometry& geometry, 
   return out;
 }
 
-PoissonSystem::PoissonSystem(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                             const Reduction& reduction)
-    : mesh_(mesh),
-      geometry_(geometry),
-      cut_mesh_(cut_mesh),
-      reduction_(reduction),
-      factor_(assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction)) {}
-
-Eigen::VectorXcd PoissonSystem::fit(const Jacobians& jacobians) const {
-  return expand(reduction_, factor_.solve(gather(reduction_, pull_of(mesh_, geometry_, cut_mesh_, jacobians))));
-}
-
 Eigen::VectorXd metric_directions(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& log_scale,
                                   const Eigen::VectorXd& frames, const std::vector<Index>& edges) {
   Eigen::VectorXd out(edges.size());
@@ -181,13 +153,12 @@ Eigen::VectorXd metric_directions(const HalfedgeMesh& mesh, const Geometry& geom
   return out;
 }
 
-Eigen::VectorXcd unfold_aligned(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                                const Reduction& reduction, const Eigen::VectorXd& log_scale,
+Eigen::VectorXcd unfold_aligned(const CutSurface& surface, const Reduction& reduction, const Eigen::VectorXd& log_scale,
                                 const Eigen::VectorXd& frames, const std::vector<Index>& edges,
                                 const Eigen::VectorXd& directions) {
+  const auto& [mesh, geometry, cut_graph, cut_mesh, factor] = surface;
   const Eigen::SparseMatrix<Complex> form = assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction);
-  const Eigen::VectorXcd pull =
-      gather(reduction, pull_of(mesh, geometry, cut_mesh, prescribed_jacobians(mesh, log_scale, frames)));
+  const Eigen::VectorXcd pull = gather(reduction, pull_of(surface, prescribed_jacobians(mesh, log_scale, frames)));
   // Unknown k becomes its real part, 2k, and its imaginary part, 2k + 1.
   const int size = 2 * reduction.unknown_count;
   LowerAssembly<double> assembly(size, 4 * static_cast<std::size_t>(form.nonZeros()));

@@ -7,6 +7,7 @@
 
 #include "cut_mesh.hpp"
 #include "geometry.hpp"
+#include "poisson_system.hpp"
 #include "solvers/cholesky.hpp"
 #include "transitions.hpp"
 
@@ -47,11 +48,7 @@ class FrameTwist {
   std::optional<Cholesky<double>> factor_;
 };
 
-// The Jacobian of a map in every triangle's own frame.
-struct Jacobians {
-  Eigen::VectorXcd f_z, f_zbar;  // (m)
-};
-// Those of the flat metric: e^{y + i phi}, and no shear.
+// The Jacobians of the flat metric: e^{y + i phi}, and no shear.
 Jacobians prescribed_jacobians(const HalfedgeMesh& mesh, const Eigen::VectorXd& log_scale,
                                const Eigen::VectorXd& frames);
 Jacobians measure_jacobians(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
@@ -59,29 +56,13 @@ Jacobians measure_jacobians(const HalfedgeMesh& mesh, const Geometry& geometry, 
 
 // Each returns the positions u + iv of all copies.
 
-// Least squares fit of the map to given Jacobians, usually the prescribed ones: one solve with the Dirichlet matrix.
-class PoissonSystem {
- public:
-  PoissonSystem(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                const Reduction& reduction);
-  Eigen::VectorXcd fit(const Jacobians& jacobians) const;
-
- private:
-  const HalfedgeMesh& mesh_;
-  const Geometry& geometry_;
-  const CutMesh& cut_mesh_;
-  const Reduction& reduction_;
-  Cholesky<Complex> factor_;
-};
-
 // The direction the metric gives to border edges (halfedges with the surface on their left), radians.
 Eigen::VectorXd metric_directions(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& log_scale,
                                   const Eigen::VectorXd& frames, const std::vector<Index>& edges);
 
 // The same fit with border edges exactly aligned: each of `edges` has the direction given, radians.  A real problem of
 // twice the size.
-Eigen::VectorXcd unfold_aligned(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                                const Reduction& reduction, const Eigen::VectorXd& log_scale,
+Eigen::VectorXcd unfold_aligned(const CutSurface& surface, const Reduction& reduction, const Eigen::VectorXd& log_scale,
                                 const Eigen::VectorXd& frames, const std::vector<Index>& edges,
                                 const Eigen::VectorXd& directions);
 

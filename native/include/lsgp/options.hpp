@@ -79,6 +79,13 @@ struct Seamless {
   double cell = 1;  // its side in texture coordinates, a power of two: 1 is a whole tile
 };
 
+// How the linear systems of prescription and unfolding are solved; the maps are the same but for rounding.
+enum class Factorization {
+  automatic,  // the cheaper one
+  cut,        // one factorization up to the cut, then dense: fast where cuts are short
+  sparse,     // one for each
+};
+
 struct Options {
   PrescriptionRule prescription = PrescriptionRule::least_distortion;
   UnfoldMethod unfold = UnfoldMethod::poisson;
@@ -92,6 +99,7 @@ struct Options {
   double stretch = 1;  // with low_stretch: from 0, the conformal map, to 1, that of least stretch
   bool repair = true;  // of flipped triangles and angles off by a turn
   Overlaps overlaps = Overlaps::keep;
+  Factorization factorization = Factorization::automatic;
 };
 
 }  // namespace lsgp

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "energies/quadratic_forms.hpp"
 
+#include <algorithm>
+#include <numeric>
+
 #include "solvers/sparse_assembly.hpp"
 
 namespace lsgp {
@@ -26,6 +29,68 @@ void for_each_entry(Form form, const HalfedgeMesh& mesh, const Geometry& geometr
     }
   }
   for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) visit(copy, copy, Complex(diagonal[copy], 0.0));
+}
+
+// The cotangent Laplacian, lower triangle, without lists of entries: a column is a handful of numbers.
+// row_of_corner(corner): none where held; corners of both sides of an edge have the same rows unless it is open.
+template <typename RowOfCorner>
+Eigen::SparseMatrix<double> assemble_cotangents(const HalfedgeMesh& mesh, const Geometry& geometry, Index rows,
+                                                RowOfCorner row_of_corner) {
+  const auto for_each_edge = [&](auto visit) {
+    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+      const Index from = row_of_corner(h), to = row_of_corner(next(h)), twin = mesh.twin[h];
+      double weight = geometry.half_cotangent[h];
+      if (twin != none && row_of_corner(next(twin)) == from && row_of_corner(twin) == to) {
+        if (twin < h) continue;
+        weight += geometry.half_cotangent[twin];
+      }
+      visit(from, to, weight);
+    }
+  };
+  std::vector<int> begin(rows + 1, 1);  // one for the diagonal
+  begin[0] = 0;
+  for_each_edge([&](Index from, Index to, double) {
+    if (from != none && to != none) ++begin[std::min(from, to) + 1];
+  });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  Eigen::SparseMatrix<double> lower(rows, rows);
+  lower.resizeNonZeros(begin[rows]);
+  int* inner = lower.innerIndexPtr();
+  double* value = lower.valuePtr();
+  for (Index row = 0; row < rows; ++row) {
+    inner[begin[row]] = row;
+    value[begin[row]] = 0;
+  }
+  std::vector<int> end(begin.begin(), begin.end() - 1);
+  for (int& at : end) ++at;
+  for_each_edge([&](Index from, Index to, double weight) {
+    if (from != none) value[begin[from]] += weight;
+    if (to != none) value[begin[to]] += weight;
+    if (from == none || to == none) return;
+    const Index column = std::min(from, to), row = std::max(from, to);
+    int at = end[column];
+    while (inner[at - 1] > row) --at;
+    if (inner[at - 1] == row) {  // edges side by side between the same vertices
+      value[at - 1] -= weight;
+      return;
+    }
+    std::copy_backward(inner + at, inner + end[column], inner + end[column] + 1);
+    std::copy_backward(value + at, value + end[column], value + end[column] + 1);
+    ++end[column];
+    inner[at] = row;
+    value[at] = -weight;
+  });
+  int filled = 0;
+  for (Index column = 0; column < rows; ++column) {
+    lower.outerIndexPtr()[column] = filled;
+    for (int at = begin[column]; at < end[column]; ++at, ++filled) {
+      inner[filled] = inner[at];
+      value[filled] = value[at];
+    }
+  }
+  lower.outerIndexPtr()[rows] = filled;
+  lower.resizeNonZeros(filled);
+  return lower;
 }
 
 }  // namespace
@@ -57,29 +122,21 @@ Geometry with_weights(const Geometry& geometry, const Eigen::VectorXd& weight) {
 }
 
 Laplacian assemble_laplacian(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<char>& held) {
-  const Index n = mesh.vertex_count();
   Laplacian laplacian;
-  laplacian.row_of_vertex.assign(n, none);
+  laplacian.row_of_vertex.assign(mesh.vertex_count(), none);
   Index rows = 0;
-  for (Index v = 0; v < n; ++v) {
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (!held[v]) laplacian.row_of_vertex[v] = rows++;
   }
-  LowerAssembly<double> assembly(rows, 4 * static_cast<std::size_t>(n));
-  std::vector<double> diagonal(n, 0.0);
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    const Index from = mesh.origin(h), to = mesh.target(h), twin = mesh.twin[h];
-    diagonal[from] += geometry.half_cotangent[h];
-    diagonal[to] += geometry.half_cotangent[h];
-    const Index row = laplacian.row_of_vertex[from], column = laplacian.row_of_vertex[to];
-    if ((twin == none || h < twin) && row != none && column != none) {
-      assembly.add(row, column, -cotangent_weight(mesh, geometry, h));
-    }
-  }
-  for (Index v = 0; v < n; ++v) {
-    if (!held[v]) assembly.add(laplacian.row_of_vertex[v], laplacian.row_of_vertex[v], diagonal[v]);
-  }
-  laplacian.lower = assembly.build();
+  laplacian.lower = assemble_cotangents(mesh, geometry, rows,
+                                        [&](Index corner) { return laplacian.row_of_vertex[mesh.origin(corner)]; });
   return laplacian;
+}
+
+Eigen::SparseMatrix<double> assemble_dirichlet(const HalfedgeMesh& mesh, const Geometry& geometry,
+                                               const CutMesh& cut_mesh, const std::vector<Index>& row_of_copy) {
+  return assemble_cotangents(mesh, geometry, cut_mesh.copy_count(),
+                             [&](Index corner) { return row_of_copy[cut_mesh.copy_of_corner[corner]]; });
 }
 
 Eigen::VectorXd apply_laplacian(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& values) {

@@ -30,6 +30,10 @@ struct Laplacian {
 };
 Laplacian assemble_laplacian(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<char>& held);
 
+// The Dirichlet form of the copies by themselves, each in the row given; lower triangle.
+Eigen::SparseMatrix<double> assemble_dirichlet(const HalfedgeMesh& mesh, const Geometry& geometry,
+                                               const CutMesh& cut_mesh, const std::vector<Index>& row_of_copy);
+
 // L y at every vertex, (n).
 Eigen::VectorXd apply_laplacian(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& values);
 

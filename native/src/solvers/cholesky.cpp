@@ -14,13 +14,13 @@ namespace {
 
 constexpr int solve_width = 8;  // right sides at a time
 
-[[noreturn]] void throw_unsolvable() {
+}  // namespace
+
+void throw_unsolvable() {
   throw Error(Code::solver_failed,
               "A linear system could not be factored: the surface has triangles too thin or too large to compute with. "
               "Clean the mesh (merge by distance, dissolve degenerate faces) and try again.");
 }
-
-}  // namespace
 
 template <typename Scalar>
 struct Cholesky<Scalar>::Factor {
@@ -212,6 +212,11 @@ template <typename Scalar>
 Cholesky<Scalar>::~Cholesky() = default;
 template <typename Scalar>
 Cholesky<Scalar>::Cholesky(Cholesky&&) noexcept = default;
+
+template <typename Scalar>
+Eigen::Index Cholesky<Scalar>::size() const {
+  return factor_->size();
+}
 
 template <typename Scalar>
 typename Cholesky<Scalar>::Vector Cholesky<Scalar>::solve(const Vector& right_side) const {

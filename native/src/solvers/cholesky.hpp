@@ -13,6 +13,8 @@ namespace lsgp {
 // Called now and then while a matrix is factored, with the share that is done; may throw.
 using FactorHook = std::function<void(double)>;
 
+[[noreturn]] void throw_unsolvable();  // SOLVER_FAILED
+
 template <typename Scalar>
 class Cholesky {
  public:
@@ -27,6 +29,8 @@ class Cholesky {
   void refactor(const Eigen::SparseMatrix<Scalar>& lower, const FactorHook& hook = {});
   ~Cholesky();
   Cholesky(Cholesky&&) noexcept;
+
+  Eigen::Index size() const;
 
   // One right side a column; nothing may be retained.
   Vector solve(const Vector& right_side) const;

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "component_system.hpp"
+
+namespace lsgp {
+
+std::vector<Index> inside_only(const HalfedgeMesh& mesh, const std::vector<Index>& vertices) {
+  std::vector<Index> out;
+  for (const Index v : vertices) {
+    if (mesh.loop_of_vertex[v] == none) out.push_back(v);
+  }
+  return out;
+}
+
+ComponentSystem::ComponentSystem(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
+                                 Factorization factorization)
+    : mesh_(mesh),
+      geometry_(geometry),
+      cones_(cones.vertices),
+      factorization_(factorization),
+      border_(border_conditions(mesh, geometry, cones)) {}
+
+const CutGraph& ComponentSystem::all_cuts() {
+  if (!all_cuts_) all_cuts_ = connect_cones(mesh_, geometry_, inside_only(mesh_, cones_), {});
+  return *all_cuts_;
+}
+
+const CutFactor* ComponentSystem::factor(const FactorHook& hook) {
+  if (factorization_ == Factorization::sparse) return nullptr;
+  if (!factor_) {
+    if (factorization_ == Factorization::automatic && !CutFactor::pays(mesh_, all_cuts())) return nullptr;
+    factor_.emplace(mesh_, geometry_, all_cuts(), hook);
+  }
+  return &*factor_;
+}
+
+const LogScale& ComponentSystem::log_scale(const FactorHook& hook) {
+  if (!log_scale_) {
+    const CutFactor* shared = factor(hook);
+    log_scale_.emplace(mesh_, geometry_, border_, shared);
+    log_scale_->add_cones(cones_);
+  }
+  return *log_scale_;
+}
+
+}  // namespace lsgp

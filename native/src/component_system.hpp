@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The linear systems of one component: factored when first asked for, kept while its cones stay where they are.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "curvature.hpp"
+#include "cut_factor.hpp"
+#include "lsgp/options.hpp"
+
+namespace lsgp {
+
+class ComponentSystem {
+ public:
+  // cones: their angles do not matter here.
+  ComponentSystem(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
+                  Factorization factorization);
+
+  const HalfedgeMesh& mesh() const { return mesh_; }
+  const Geometry& geometry() const { return geometry_; }
+  const BorderConditions& border() const { return border_; }
+
+  // Cuts through all cones that lie inside and to all borders.
+  const CutGraph& all_cuts();
+  // What is shared by prescription and unfolding, or null where they are better solved one by one.
+  const CutFactor* factor(const FactorHook& hook);
+  // That of the component's metric, all cones added.
+  const LogScale& log_scale(const FactorHook& hook);
+
+ private:
+  const HalfedgeMesh& mesh_;
+  const Geometry& geometry_;
+  const std::vector<Index> cones_;
+  const Factorization factorization_;
+  const BorderConditions border_;
+  std::optional<CutGraph> all_cuts_;
+  std::optional<CutFactor> factor_;
+  std::optional<LogScale> log_scale_;
+};
+
+// Those of the vertices that lie on no border.
+std::vector<Index> inside_only(const HalfedgeMesh& mesh, const std::vector<Index>& vertices);
+
+}  // namespace lsgp

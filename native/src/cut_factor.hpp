@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The Dirichlet form of the opened surface, factored once for all that is asked of it.
+//
+// The form is real and the same for u and v.  Cone angles, transitions across cuts and conditions along borders touch
+// the copies on cuts and borders alone: with all others eliminated, prescription and unfolding are dense problems of
+// their number.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "cut_mesh.hpp"
+#include "geometry.hpp"
+#include "solvers/cholesky.hpp"
+#include "topology.hpp"
+
+namespace lsgp {
+
+class CutFactor {
+ public:
+  CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, CutGraph cut_graph, const FactorHook& hook = {});
+
+  // Whether cuts and borders are short enough for the dense problems to be worth while.
+  static bool pays(const HalfedgeMesh& mesh, const CutGraph& cut_graph);
+
+  const CutGraph& cut_graph() const { return cut_graph_; }
+  const CutMesh& cut_mesh() const { return cut_mesh_; }
+  // Whether a surface opened along other cuts can be solved with this factor: its cuts are among these.
+  bool covers(const CutGraph& cut_graph) const;
+
+  // Copies that are not eliminated: those on cuts and borders.  In values of copies by rows they come last.
+  const std::vector<Index>& retained() const { return retained_; }
+  Index eliminated_count() const { return cut_mesh_.copy_count() - retained_count(); }
+  Index retained_count() const { return static_cast<Index>(retained_.size()); }
+  Index row_of_copy(Index copy) const { return row_of_copy_[copy]; }
+
+  // The discrete Dirichlet-to-Neumann operator of the retained copies; lower triangle.
+  const Eigen::MatrixXd& schur() const { return factor_->schur(); }
+  // Right sides, one a row and column, up to those of the retained copies' own problem; and from its solution, put in
+  // their place, to that of all copies.
+  void eliminate(Eigen::MatrixXd& right_sides) const { factor_->eliminate(right_sides); }
+  void substitute(Eigen::MatrixXd& half_solved) const { factor_->substitute(half_solved); }
+
+ private:
+  CutGraph cut_graph_;
+  CutMesh cut_mesh_;
+  std::vector<Index> retained_, row_of_copy_;
+  std::optional<Cholesky<double>> factor_;
+};
+
+}  // namespace lsgp

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cholesky factorization of dense real symmetric and complex Hermitian positive definite matrices.
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+
+namespace lsgp {
+
+template <typename Scalar>
+class DenseCholesky {
+ public:
+  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+
+  // lower: its lower triangle is read.  Throws SOLVER_FAILED where it is not positive definite.
+  explicit DenseCholesky(Matrix lower);
+
+  void solve_in_place(Eigen::Ref<Matrix> right_sides) const;
+
+ private:
+  Matrix factor_;
+};
+
+extern template class DenseCholesky<double>;
+extern template class DenseCholesky<std::complex<double>>;
+
+}  // namespace lsgp
