@@ -222,11 +222,14 @@ lsgp::Options to_options(const py::dict& values) {
   for (const auto& [vertex, turning] : values["loop_turning"].cast<py::dict>()) {
     options.loop_turning.emplace_back(vertex.cast<Index>(), turning.cast<double>());
   }
-  using lsgp::Mode, lsgp::Overlaps;
+  using lsgp::Factorization, lsgp::Mode, lsgp::Overlaps;
   options.mode = choose<Mode>(text("mode"), {{"conformal", Mode::conformal}, {"low-stretch", Mode::low_stretch}});
   options.stretch = values["stretch"].cast<double>();
   options.repair = values["repair"].cast<bool>();
   options.overlaps = choose<Overlaps>(text("overlaps"), {{"keep", Overlaps::keep}, {"split", Overlaps::split}});
+  options.factorization = choose<Factorization>(text("factorization"), {{"automatic", Factorization::automatic},
+                                                                        {"cut", Factorization::cut},
+                                                                        {"sparse", Factorization::sparse}});
   if (!values["seamless"].is_none()) options.seamless = to_seamless(values["seamless"].cast<py::dict>());
   return options;
 }

@@ -26,6 +26,7 @@ Lattice = Literal["square", "stripe", "translation", "triangle", "hexagon"]
 CoarseGrid = Literal["refine", "merge", "relax"]
 Mode = Literal["conformal", "low-stretch"]
 Overlaps = Literal["keep", "split"]
+Factorization = Literal["automatic", "cut", "sparse"]
 
 Progress = Callable[[float], bool | None]
 
@@ -93,6 +94,7 @@ _CHOICES = {
     "border": BorderMode,
     "mode": Mode,
     "overlaps": Overlaps,
+    "factorization": Factorization,
 }
 
 
@@ -153,6 +155,8 @@ class Options:
     repair: turn flipped triangles over and put angles right that are off by a turn.
     overlaps: "keep" islands that lie on themselves, or "split" them along further cuts until none does; transitions
         stay exact.
+    factorization: how linear systems are solved, the maps being the same but for rounding: "cut" factors once and
+        leaves dense problems of the size of the cut, "sparse" factors for every step, "automatic" takes the cheaper.
     """
 
     prescription: PrescriptionRule | None = None
@@ -166,6 +170,7 @@ class Options:
     stretch: float = 1.0
     repair: bool = True
     overlaps: Overlaps = "keep"
+    factorization: Factorization = "automatic"
 
     def __post_init__(self) -> None:
         for name, choices in _CHOICES.items():
