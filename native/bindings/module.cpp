@@ -227,9 +227,9 @@ lsgp::Options to_options(const py::dict& values) {
   options.stretch = values["stretch"].cast<double>();
   options.repair = values["repair"].cast<bool>();
   options.overlaps = choose<Overlaps>(text("overlaps"), {{"keep", Overlaps::keep}, {"split", Overlaps::split}});
-  options.factorization = choose<Factorization>(text("factorization"), {{"automatic", Factorization::automatic},
-                                                                        {"cut", Factorization::cut},
-                                                                        {"sparse", Factorization::sparse}});
+  options.factorization = choose<Factorization>(
+      text("factorization"),
+      {{"automatic", Factorization::automatic}, {"cut", Factorization::cut}, {"sparse", Factorization::sparse}});
   if (!values["seamless"].is_none()) options.seamless = to_seamless(values["seamless"].cast<py::dict>());
   return options;
 }
@@ -243,24 +243,13 @@ lsgp::Progress to_progress(const py::object& callback) {
   };
 }
 
-py::dict parameterize(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
-                      const IndexArray& seams, const IndexArray& cones, const FloatArray& angles,
-                      const BoolArray& has_angle, const py::dict& option_values, const IndexArray& pinned_corners,
-                      const FloatArray& pinned_uv, const FloatArray& importance, const py::object& progress) {
-  lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
-  if (importance.ndim() != 1) throw py::value_error("array of the wrong shape");
-  surface.importance = Eigen::Map<const Eigen::VectorXd>(importance.data(), importance.size());
-  const lsgp::Cones wanted = to_cones(cones, angles, has_angle);
-  const lsgp::Options options = to_options(option_values);
-  const lsgp::Pins pins{to_vector(pinned_corners), to_matrix<lsgp::CornerUv>(pinned_uv)};
-  const lsgp::Progress tell = to_progress(progress);
-  const lsgp::Result result = without_gil([&] { return lsgp::parameterize(surface, wanted, options, pins, tell); });
+py::dict to_dict(const lsgp::Result& result) {
   py::array_t<bool> solved(static_cast<py::ssize_t>(result.island.size()));
   for (std::size_t f = 0; f < result.island.size(); ++f) solved.mutable_at(f) = result.island[f] >= 0;
   py::dict seconds;
   for (const auto& [stage, spent] : result.stage_seconds) seconds[stage.c_str()] = spent;
   py::dict out;
-  out["corner_uv"] = to_array(result.corner_uv.data(), {triangles.shape(0), 3, 2});
+  out["corner_uv"] = to_array(result.corner_uv.data(), {static_cast<py::ssize_t>(result.island.size()), 3, 2});
   out["solved"] = solved;
   out["island"] = to_array(result.island);
   out["cut_edges"] = to_array(result.cut_edges);
@@ -278,7 +267,50 @@ py::dict parameterize(const FloatArray& positions, const IndexArray& triangles, 
   out["seamless"] = result.seamless ? py::object(to_dict(*result.seamless)) : py::none();
   out["warnings"] = to_findings(result.warnings);
   out["stage_seconds"] = seconds;
+  out["factorizations"] = result.linear_algebra.factorizations;
+  out["back_substitutions"] = result.linear_algebra.back_substitutions;
   return out;
+}
+
+lsgp::Surface to_surface(const FloatArray& positions, const IndexArray& triangles,
+                         const std::optional<IndexArray>& edges, const IndexArray& seams,
+                         const FloatArray& importance) {
+  lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
+  if (importance.ndim() != 1) throw py::value_error("array of the wrong shape");
+  surface.importance = Eigen::Map<const Eigen::VectorXd>(importance.data(), importance.size());
+  return surface;
+}
+
+// What the verb and the method of the solver take after the surface.
+struct Call {
+  lsgp::Cones cones;
+  lsgp::Options options;
+  lsgp::Pins pins;
+  lsgp::Progress progress;
+
+  Call(const IndexArray& cones, const FloatArray& angles, const BoolArray& has_angle, const py::dict& option_values,
+       const IndexArray& pinned_corners, const FloatArray& pinned_uv, const py::object& progress)
+      : cones(to_cones(cones, angles, has_angle)),
+        options(to_options(option_values)),
+        pins{to_vector(pinned_corners), to_matrix<lsgp::CornerUv>(pinned_uv)},
+        progress(to_progress(progress)) {}
+};
+
+py::dict parameterize(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
+                      const IndexArray& seams, const FloatArray& importance, const IndexArray& cones,
+                      const FloatArray& angles, const BoolArray& has_angle, const py::dict& option_values,
+                      const IndexArray& pinned_corners, const FloatArray& pinned_uv, const py::object& progress) {
+  const lsgp::Surface surface = to_surface(positions, triangles, edges, seams, importance);
+  const Call call(cones, angles, has_angle, option_values, pinned_corners, pinned_uv, progress);
+  return to_dict(
+      without_gil([&] { return lsgp::parameterize(surface, call.cones, call.options, call.pins, call.progress); }));
+}
+
+py::dict parameterize_again(lsgp::Solver& solver, const IndexArray& cones, const FloatArray& angles,
+                            const BoolArray& has_angle, const py::dict& option_values, const IndexArray& pinned_corners,
+                            const FloatArray& pinned_uv, const py::object& progress) {
+  const Call call(cones, angles, has_angle, option_values, pinned_corners, pinned_uv, progress);
+  return to_dict(without_gil([&] { return solver.parameterize(call.cones, call.options, call.pins, call.progress); }));
 }
 
 py::dict find_cuts(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
@@ -393,6 +425,12 @@ PYBIND11_MODULE(_lsgp, module) {
     }
   });
   module.def("parameterize", &parameterize);
+  py::class_<lsgp::Solver>(module, "Solver")
+      .def(py::init([](const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
+                       const IndexArray& seams, const FloatArray& importance) {
+        return lsgp::Solver(to_surface(positions, triangles, edges, seams, importance));
+      }))
+      .def("parameterize", &parameterize_again);
   module.def("find_cuts", &find_cuts);
   module.def("prescribe_curvature", &prescribe_curvature);
   module.def("place_cones", &place_cones);

@@ -16,15 +16,36 @@ def parameterize(
     triangles: _Indices,
     edges: _Indices | None,
     seams: _Indices,
+    importance: _Floats,
     cones: _Indices,
     angles: _Floats,
     has_angle: _Flags,
     options: dict[str, Any],
     pinned_corners: _Indices,
     pinned_uv: _Floats,
-    importance: _Floats,
     progress: Callable[[float], bool | None] | None,
 ) -> dict[str, Any]: ...
+
+class Solver:
+    def __init__(
+        self,
+        positions: _Floats,
+        triangles: _Indices,
+        edges: _Indices | None,
+        seams: _Indices,
+        importance: _Floats,
+    ) -> None: ...
+    def parameterize(
+        self,
+        cones: _Indices,
+        angles: _Floats,
+        has_angle: _Flags,
+        options: dict[str, Any],
+        pinned_corners: _Indices,
+        pinned_uv: _Floats,
+        progress: Callable[[float], bool | None] | None,
+    ) -> dict[str, Any]: ...
+
 def find_cuts(
     positions: _Floats,
     triangles: _Indices,

@@ -296,6 +296,7 @@ class Result:
         unit square: one cell has the side `cell`.
     warnings: findings that leave the result usable.
     stage_seconds: wall-clock seconds of each stage.
+    factorizations, back_substitutions: the linear algebra it took, of sparse matrices.
     """
 
     corner_uv: FloatArray
@@ -316,6 +317,8 @@ class Result:
     seamless: SeamlessReport | None
     warnings: list[Finding]
     stage_seconds: dict[str, float]
+    factorizations: int
+    back_substitutions: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -414,15 +417,49 @@ def parameterize(
         it raises itself is raised here.
     Raises InputError, TopologyError, CurvatureError, SolverError, Cancelled.
     """
-    pins = Pins(np.empty(0, np.int32), np.empty((0, 2))) if pins is None else pins
-    out = _lsgp.parameterize(
-        *_surface_arrays(surface),
-        *_cone_arrays(cones, angles, options),
-        pins.corners,
-        pins.uv,
-        np.empty(0) if surface.importance is None else surface.importance,
-        progress,
+    return _to_result(
+        _lsgp.parameterize(
+            *_surface_arrays(surface), _importance(surface), *_call(cones, angles, options, pins), progress
+        )
     )
+
+
+class Solver:
+    """Parameterizes one surface again and again, as for a cone that is dragged or an angle that is tried out.
+
+    Every call returns what `lsgp.parameterize` does and keeps what the next one may use: the surface's topology and
+    geometry, and, as long as a component's cones stay where they are, its factored linear systems. Angles and all
+    options but `seams`, `border` and `factorization` may then change without a new factorization.
+    Not for several threads at once.
+    """
+
+    def __init__(self, surface: Surface) -> None:
+        self._solver = _lsgp.Solver(*_surface_arrays(surface), _importance(surface))
+
+    def parameterize(
+        self,
+        cones: ArrayLike,
+        angles: Sequence[float | None] | None = None,
+        options: Options = Options(),
+        pins: Pins | None = None,
+        progress: Progress | None = None,
+    ) -> Result:
+        """Arguments, result and errors as of `lsgp.parameterize`."""
+        return _to_result(self._solver.parameterize(*_call(cones, angles, options, pins), progress))
+
+
+def _importance(surface: Surface) -> FloatArray:
+    return np.empty(0) if surface.importance is None else surface.importance
+
+
+def _call(
+    cones: ArrayLike, angles: Sequence[float | None] | None, options: Options, pins: Pins | None
+) -> tuple[Any, ...]:
+    corners, uv = (np.empty(0, np.int32), np.empty((0, 2))) if pins is None else (pins.corners, pins.uv)
+    return *_cone_arrays(cones, angles, options), corners, uv
+
+
+def _to_result(out: dict[str, Any]) -> Result:
     out["repair"] = RepairReport(**out["repair"])
     out["distortion"] = Distortion(**out["distortion"])
     out["seams"] = SeamQuality(**out["seams"])

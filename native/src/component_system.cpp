@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "component_system.hpp"
 
+#include <utility>
+
 namespace lsgp {
 
 std::vector<Index> inside_only(const HalfedgeMesh& mesh, const std::vector<Index>& vertices) {
@@ -35,9 +37,9 @@ const CutFactor* ComponentSystem::factor(const FactorHook& hook) {
 
 const LogScale& ComponentSystem::log_scale(const FactorHook& hook) {
   if (!log_scale_) {
-    const CutFactor* shared = factor(hook);
-    log_scale_.emplace(mesh_, geometry_, border_, shared);
-    log_scale_->add_cones(cones_);
+    LogScale scale(mesh_, geometry_, border_, factor(hook));
+    scale.add_cones(cones_);
+    log_scale_.emplace(std::move(scale));
   }
   return *log_scale_;
 }

@@ -103,24 +103,33 @@ double unit_scale(const Surface& surface) {
   return largest > 0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
 }
 
+// The components of the surface, unless they are those already.
+void split(const Surface& surface, SeamMode seams, OpenSeams open, Work& work) {
+  if (!work.topology.components.empty() && work.seams == seams && work.open_seams == open) return;
+  Surface used = surface;
+  work.unit_scale = unit_scale(surface);
+  used.positions *= work.unit_scale;
+  if (seams == SeamMode::ignore) used.seams.resize(0, 2);
+  work.found.clear();
+  work.topology = build_topology(used, open, work.found);
+  work.seams = seams;
+  work.open_seams = std::move(open);
+}
+
 bool has_seam(const HalfedgeMesh& mesh) { return std::find(mesh.seam.begin(), mesh.seam.end(), 1) != mesh.seam.end(); }
 
 }  // namespace
 
 Work prepare(const Surface& surface, const Cones& cones, const Options& options, std::vector<Finding>& findings,
-             const Pins& pins) {
-  require_valid(surface);
+             const Pins& pins, Work earlier) {
+  if (earlier.topology.components.empty()) require_valid(surface);
   require_valid(surface, cones);
   require_valid(surface, pins);
   require_valid(options);
-  Surface used = surface;
-  const double scale = unit_scale(surface);
-  used.positions *= scale;
-  if (options.seams == SeamMode::ignore) used.seams.resize(0, 2);
+  Work work = std::move(earlier);
   OpenSeams open;
   if (options.seams == SeamMode::boundary) open.assign(surface.triangles.rows(), 1);
-  std::vector<Finding> repairs;
-  Work work{build_topology(used, open, repairs), {}, scale};
+  split(surface, options.seams, std::move(open), work);
   work.tasks = hand_out(surface, work.topology.components, cones, options);
 
   std::vector<Index> opened;
@@ -134,8 +143,7 @@ Work prepare(const Surface& surface, const Cones& cones, const Options& options,
   if (!opened.empty()) {
     open.assign(surface.triangles.rows(), 0);
     for (const Index f : opened) open[f] = 1;
-    repairs.clear();
-    work.topology = build_topology(used, open, repairs);
+    split(surface, options.seams, std::move(open), work);
     work.tasks = hand_out(surface, work.topology.components, cones, options);
     findings.push_back({Code::seams_opened,
                         "A closed part has seams but no cones: it was opened along its seams like an ordinary unwrap. "
@@ -145,7 +153,7 @@ Work prepare(const Surface& surface, const Cones& cones, const Options& options,
   hand_out_pins(surface, pins, work);
   hand_out_importance(surface.importance, work);
   hand_out_turning(work.topology.components, options, surface.positions.rows(), work.tasks);
-  findings.insert(findings.end(), std::make_move_iterator(repairs.begin()), std::make_move_iterator(repairs.end()));
+  findings.insert(findings.end(), work.found.begin(), work.found.end());
   return work;
 }
 
@@ -183,6 +191,23 @@ Elements in_source(const Component& component, Elements elements) {
     elements.indices.erase(std::unique(elements.indices.begin(), elements.indices.end()), elements.indices.end());
   }
   return elements;
+}
+
+void report_border_cones(const Component& component, const std::vector<Index>& border_cones,
+                         std::vector<Finding>& findings) {
+  if (border_cones.empty()) return;
+  findings.push_back(
+      {Code::cone_on_boundary,
+       concat(count(border_cones.size(), "cone lies", "cones lie"),
+              " on an open border, where angles are free anyway; nothing was prescribed there. Give it an "
+              "angle to make it a corner."),
+       in_source(component, {ElementKind::vertices, border_cones})});
+}
+
+void move_findings(const Component& component, std::vector<Finding>& from, std::vector<Finding>& to) {
+  for (Finding& finding : from) {
+    to.push_back({finding.code, std::move(finding.message), in_source(component, std::move(finding.elements))});
+  }
 }
 
 }  // namespace lsgp

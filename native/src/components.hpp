@@ -24,19 +24,32 @@ struct Work {
   Topology topology;
   std::vector<ComponentTask> tasks;  // (components)
   double unit_scale = 1;             // of the components' positions to the caller's
+
+  // What the topology was built for, and what building it found.
+  SeamMode seams = SeamMode::follow;
+  OpenSeams open_seams;
+  std::vector<Finding> found;
 };
 
 // Validates the call, splits the surface as the seam mode says and hands out what is asked.  A closed
 // component without cones but with seams is opened along these, as an artist who marked seams means it.
+// earlier: of the same surface, or empty; its topology is taken where it would come out the same.
 // Throws what require_valid and build_topology throw, and LOOP_TURNING.
 Work prepare(const Surface& surface, const Cones& cones, const Options& options, std::vector<Finding>& findings,
-             const Pins& pins = {});
+             const Pins& pins = {}, Work earlier = {});
 
 // Throws NOT_ORIENTABLE, DEGENERATE_MESH, SCALE_RANGE.
 Geometry require_geometry(const Component& component, std::vector<Finding>& findings);
 
 // Renames a component's vertices, triangles or edges into the caller's.
 Elements in_source(const Component& component, Elements elements);
+
+// Names cones on a free border, which prescribe nothing.
+void report_border_cones(const Component& component, const std::vector<Index>& border_cones,
+                         std::vector<Finding>& findings);
+
+// Hands findings on in the caller's numbering.
+void move_findings(const Component& component, std::vector<Finding>& from, std::vector<Finding>& to);
 
 // Runs solve(component index) for every component.  One that throws is reported as COMPONENT_SKIPPED, unless all do:
 // then the first error is thrown in the caller's numbering.

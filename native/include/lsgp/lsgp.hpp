@@ -11,6 +11,7 @@
 #include "lsgp/placement.hpp"
 #include "lsgp/progress.hpp"
 #include "lsgp/result.hpp"
+#include "lsgp/solver.hpp"
 #include "lsgp/surface.hpp"
 
 namespace lsgp {

@@ -62,6 +62,12 @@ struct RepairReport {
   int iterations = 0;                                     // of Newton's method, low stretch included
 };
 
+// The linear algebra that a call took.
+struct LinearAlgebra {
+  int factorizations = 0;      // of sparse matrices
+  int back_substitutions = 0;  // with their factors, one a right side
+};
+
 struct CutPaths {
   VertexPairs edges;                      // (c, 2)
   std::vector<std::vector<Index>> paths;  // vertices from node to node
@@ -93,6 +99,7 @@ struct Result {
   std::optional<SeamlessReport> seamless;
   std::vector<Finding> warnings;
   StageSeconds stage_seconds;
+  LinearAlgebra linear_algebra;
 };
 
 struct Measurement {

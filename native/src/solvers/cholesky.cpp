@@ -16,6 +16,11 @@ constexpr int solve_width = 8;  // right sides at a time
 
 }  // namespace
 
+LinearAlgebra& linear_algebra_of_this_thread() {
+  thread_local LinearAlgebra counts;
+  return counts;
+}
+
 void throw_unsolvable() {
   throw Error(Code::solver_failed,
               "A linear system could not be factored: the surface has triangles too thin or too large to compute with. "
@@ -84,6 +89,7 @@ void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lowe
   constexpr double operations_between_calls = 5e7;
   const FrontKernels<Scalar>& kernels = front_kernels<Scalar>();
   const int fronts = plan.front_count();
+  ++linear_algebra_of_this_thread().factorizations;
   start_schur(lower);
   panels.assign(plan.panel_begin.back(), Scalar(0));
   std::vector<Scalar> stack(plan.stack_size), outer;
@@ -226,6 +232,7 @@ typename Cholesky<Scalar>::Vector Cholesky<Scalar>::solve(const Vector& right_si
 template <typename Scalar>
 typename Cholesky<Scalar>::Matrix Cholesky<Scalar>::solve(const Matrix& right_sides) const {
   Matrix x = right_sides;
+  linear_algebra_of_this_thread().back_substitutions += static_cast<int>(x.cols());
   factor_->for_each_block(x, [&](int width, Scalar* block) {
     factor_->eliminate(width, block);
     factor_->substitute(width, block);
@@ -245,6 +252,7 @@ void Cholesky<Scalar>::eliminate(Matrix& right_sides) const {
 
 template <typename Scalar>
 void Cholesky<Scalar>::substitute(Matrix& half_solved) const {
+  linear_algebra_of_this_thread().back_substitutions += static_cast<int>(half_solved.cols());
   factor_->for_each_block(half_solved, [&](int width, Scalar* block) { factor_->substitute(width, block); });
 }
 

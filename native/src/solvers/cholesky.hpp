@@ -8,10 +8,15 @@
 #include <functional>
 #include <memory>
 
+#include "lsgp/result.hpp"
+
 namespace lsgp {
 
 // Called now and then while a matrix is factored, with the share that is done; may throw.
 using FactorHook = std::function<void(double)>;
+
+// Counts go up from call to call.
+LinearAlgebra& linear_algebra_of_this_thread();
 
 [[noreturn]] void throw_unsolvable();  // SOLVER_FAILED
 
