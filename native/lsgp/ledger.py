@@ -94,8 +94,13 @@ def build_ledger(
     if len(given) != len(vertices):
         raise InputError("ANGLE_COUNT", f"There are {len(vertices)} cones but {len(given)} angles. Give one for each.")
 
-    triangles, kept = _without_doubles(surface.triangles)
+    triangles, kept = surface.triangles, np.arange(len(surface.triangles))
     edges = _Edges(triangles, surface)
+    doubles = edges.doubles()
+    if len(doubles):
+        kept = np.delete(kept, doubles)
+        triangles = triangles[kept]
+        edges = _Edges(triangles, surface)
     borders = edges.seam if options.seams == "boundary" else np.zeros_like(edges.seam)
     parts = _Parts(triangles, edges, ~borders)
     if options.seams == "follow" and edges.seam.any():
@@ -159,12 +164,23 @@ class _Edges:
         self.end_corners = ends
         count = len(surface.positions)
         keys = vertices.min(axis=1).astype(np.int64) * count + vertices.max(axis=1)
-        order = np.argsort(keys, kind="stable")
+        order = np.argsort(keys)
         starts = np.flatnonzero(np.diff(keys[order], prepend=-1))
-        of_two = starts[np.diff(starts, append=len(keys)) == 2]
+        sizes = np.diff(starts, append=len(keys))
+        of_two = starts[sizes == 2]
         self.pairs = np.stack([order[of_two], order[of_two + 1]], axis=1)
+        self._crowded = order[np.repeat(sizes > 2, sizes)]
+        self._triangles = triangles
         seams = np.sort(surface.seams.astype(np.int64), axis=1)
         self.seam = np.isin(keys[self.pairs[:, 0]], seams[:, 0] * count + seams[:, 1])
+
+    def doubles(self) -> NDArray[np.int64]:
+        """Triangles with the same vertices as an earlier one, ascending."""
+        # They share their edges, with each other alone or in a crowd.
+        opposite = self._triangles.ravel()[3 * (self.pairs // 3) + (self.pairs + 2) % 3]
+        suspects = np.unique(np.append(self.pairs[opposite[:, 0] == opposite[:, 1]], self._crowded) // 3)
+        _, first = np.unique(np.sort(self._triangles[suspects], axis=1), axis=0, return_index=True)
+        return np.delete(suspects, first)
 
 
 class _Parts:
@@ -239,16 +255,6 @@ class _Parts:
             )
             for i in range(count)
         ]
-
-
-def _without_doubles(triangles: IndexArray) -> tuple[IndexArray, NDArray[np.int64]]:
-    """Triangles but those with the same vertices as an earlier one, and which they are."""
-    sides = np.sort(triangles, axis=1)
-    order = np.lexsort(sides.T)
-    again = (np.diff(sides[order], axis=0) == 0).all(axis=1)
-    double = np.zeros(len(triangles), bool)
-    double[order[1:][again]] = True
-    return triangles[~double], np.flatnonzero(~double)
 
 
 def _labels(count: int, pairs: NDArray[np.int64]) -> NDArray[np.int64]:
