@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 KIND_LABELS = {None: "Automatic", Kind.FOUND: "Automatic", Kind.PRESCRIBED: "Prescribed", Kind.SNAPPED: "Snapped"}
 
 # Faces of a mesh whose table is built whenever it is needed; larger ones wait until they are asked to.
-LARGEST_UNASKED = 50_000
+LARGEST_UNASKED = 10_000
 
 
 @dataclass(frozen=True, slots=True)
