@@ -67,6 +67,8 @@ def _is_obvious(action: argparse.Action) -> bool:
 
 def _usage(action: argparse.Action) -> str:
     value = action.metavar or ("{" + ",".join(map(str, action.choices)) + "}" if action.choices else "")
+    if isinstance(value, tuple):
+        value = " ".join(value)
     if action.nargs == 0:
         value = ""
     many = " ..." if action.nargs in ("+", "*") else ""
