@@ -249,6 +249,7 @@ def test_extension_registers_with_its_library_and_computes(copy_of_staged, wheel
     with zipfile.ZipFile(wheel) as opened:
         opened.extractall(library)
     said = register_staged(bpy_python, copy_of_staged.parent, library)
-    assert said["STATE"] == [f"Computing library loaded from {library / 'lsgp' / '__init__.py'}"]
+    version = tomllib.loads((ROOT / "blender_manifest.toml").read_text())["version"]
+    assert said["STATE"] == [f"Computing library {version} loaded from {library / 'lsgp' / '__init__.py'}"]
     assert "mark cones" in said["CALL"][0].lower()
     assert said["CALL"][1] == "{'FINISHED'}"
