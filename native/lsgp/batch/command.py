@@ -94,7 +94,8 @@ def run_batch(args: argparse.Namespace, kind: Kind = MESH_FILES) -> int:
     assets = find_assets(args.source, args.out, kind.suffixes, args.shard)
     require_distinct_results(assets, (kind.output_name(asset.name) for asset in assets))
     args.out.mkdir(parents=True, exist_ok=True)
-    remove_old_partials(args.out)
+    if args.shard is None:
+        remove_old_partials(args.out)
     begin = time.monotonic()
     with Journal(args.out, args.shard, keep=args.only_missing) as journal:
         ended = _ended_before(args, assets, settings) if args.only_missing else {}
@@ -122,7 +123,7 @@ def _ended_before(args: argparse.Namespace, assets: Sequence[Asset], settings: S
         for name, record in records.items()
         if name in names and record["status"] != FAILED and (record["status"] != OK or _is_there(args.out, record))
     }
-    if any(record["options"] != settings.digest() for record in stay.values()):
+    if {record["options"] for record in stay.values()} - {settings.digest()}:
         raise UsageError(
             f"'{args.out}' has results of other options or another version; name another folder, or leave out "
             "--only-missing to make all of them anew"

@@ -41,6 +41,7 @@ def serve(work: Callable[[Task, Settings], Record]) -> None:
     name = f"{socket.gethostname()}:{os.getpid()}"
     if settings.memory_limit is not None:
         _limit_memory(settings.memory_limit)
+    digest = settings.digest()
     _send(answers, {"ready": name})
     while True:
         task = Task(**json.loads(lines.get()))
@@ -58,7 +59,7 @@ def serve(work: Callable[[Task, Settings], Record]) -> None:
             "cpu_seconds": round(time.process_time() - cpu, 6),
             "peak_memory_mb": _peak_memory_mb(),
             "worker": name,
-            "options": settings.digest(),
+            "options": digest,
         }
         _send(answers, record | figures)
 
