@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Install a built extension into a throw-away profile and run window_tests.py in this Blender's window.
+"""Install a built extension into a throw-away profile and run the window_*.py beside this in this Blender's window.
 
     export BLENDER_USER_RESOURCES=EMPTY_FOLDER
-    blender --enable-event-simulate --python-exit-code 1 --python run_in_window.py -- ZIP REPORT.xml
+    blender --enable-event-simulate --python-exit-code 1 --python run_in_window.py -- ZIP REPORT.xml [PART OF A NAME]
 
-A test is a generator: it yields how many seconds Blender is to go on by itself, handling events and drawing. Exit code
-0 only when all passed; REPORT.xml is a junit report. ``tools/test_in_blender.py --window`` does all of this.
+A test is a generator: it yields how many seconds Blender is to go on by itself, handling events and drawing. Only
+those with the part in their file's name and theirs are run where one is given. Exit code 0 only when all passed;
+REPORT.xml is a junit report. ``tools/test_in_blender.py --window`` does all of this.
 """
 
 import os
@@ -14,6 +15,7 @@ import time
 import traceback
 from collections.abc import Generator, Iterator
 from contextlib import AbstractContextManager
+from importlib import import_module
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -71,13 +73,17 @@ def end(code: int) -> None:
 
 def main() -> None:
     os.environ["CONE_UNWRAP_EXTENSION"] = EXTENSION
-    package, report = sys.argv[sys.argv.index("--") + 1 :]
+    package, report, *only = sys.argv[sys.argv.index("--") + 1 :]
     bpy.context.preferences.view.show_splash = False
     install(Path(package))
     require_bundled_library()
-    import window_tests
-
-    tests = {name: test() for name, test in vars(window_tests).items() if name.startswith("test_")}
+    tests = {}
+    for path in sorted(Path(__file__).parent.glob("window_*.py")):
+        functions = vars(import_module(path.stem))
+        wanted = [
+            name for name in functions if name.startswith("test_") and (not only or only[0] in f"{path.stem}.{name}")
+        ]
+        tests |= {name: functions[name]() for name in wanted}
     running = run(tests, Path(report))
     bpy.app.timers.register(lambda: next(running), first_interval=1.0, persistent=True)
 

@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is drawn over meshes, looked at in the pixels of a real window.  Run by run_in_window.py; no pytest."""
+
+import os
+from dataclasses import replace
+from importlib import import_module
+
+import bpy
+import gpu
+import numpy as np
+from scenes import add_ball, add_cone_cube, edit
+
+EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
+reports = import_module(f"{EXTENSION}.reports")
+cache = import_module(f"{EXTENSION}.overlay.cache")
+SPACES = {"VIEW_3D": bpy.types.SpaceView3D, "IMAGE_EDITOR": bpy.types.SpaceImageEditor}
+
+
+def area(kind="VIEW_3D"):
+    return next(area for area in bpy.context.window_manager.windows[0].screen.areas if area.type == kind)
+
+
+def region(kind, within):
+    return next(region for region in area(within).regions if region.type == kind)
+
+
+def pixels(kind="WINDOW", within="VIEW_3D"):
+    """(h, w, 3) colours of a region from 0 to 1, once it has been drawn."""
+    seen = []
+
+    def read():
+        _, _, width, height = gpu.state.viewport_get()
+        buffer = gpu.state.active_framebuffer_get().read_color(0, 0, width, height, 3, 0, "FLOAT")
+        seen.append(np.array(buffer.to_list()).reshape(height, width, 3))
+
+    handler = SPACES[within].draw_handler_add(read, (), kind, "POST_PIXEL")
+    try:
+        for _ in range(50):
+            region(kind, within).tag_redraw()
+            yield 0.05
+            if len(seen) > 1:
+                break
+    finally:
+        SPACES[within].draw_handler_remove(handler, kind)
+    assert seen, "nothing was drawn"
+    return seen[-1]
+
+
+def count(picture, colour, off=0.03):
+    """How many pixels have this colour."""
+    return int((np.abs(picture - np.array(colour[:3])) < off).all(axis=2).sum())
+
+
+def look():
+    return bpy.context.preferences.addons[EXTENSION].preferences
+
+
+def chosen():
+    return bpy.context.window_manager.cone_unwrap_overlay
+
+
+def unwrapped(build, **options):
+    obj = build()
+    bpy.ops.uv.cone_unwrap(**options)
+    area().spaces.active.shading.color_type = "SINGLE"
+    bpy.ops.view3d.view_axis(type="FRONT")
+    bpy.ops.view3d.view_all()
+    return obj
+
+
+def cut_pixels(picture):
+    return [count(picture, colour) for colour in look().cut_colours()]
+
+
+def test_cuts_and_cones_are_drawn_in_the_colours_of_the_preferences():
+    cube = unwrapped(add_cone_cube, seamless=True)
+    for in_edit_mode in (False, True):
+        if in_edit_mode:
+            edit(cube, select="DESELECT")
+        picture = yield from pixels()
+        # From the front four cones and the cuts between them are seen.
+        assert sum(number > 100 for number in cut_pixels(picture)) >= 2, cut_pixels(picture)
+        assert count(picture, look().tip) > 100
+        for name in ("cuts", "cones"):
+            setattr(chosen(), name, False)
+        picture = yield from pixels()
+        assert max(cut_pixels(picture)) < 20 and count(picture, look().tip) < 20
+        for name in ("cuts", "cones"):
+            setattr(chosen(), name, True)
+    look().tip = (0.0, 1.0, 1.0, 1.0)
+    picture = yield from pixels()
+    assert count(picture, (0.0, 1.0, 1.0)) > 100
+    look().property_unset("tip")
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_nothing_is_drawn_with_overlays_off_or_without_a_selection():
+    unwrapped(add_cone_cube)
+    space = area().spaces.active
+    assert count((yield from pixels()), look().tip) > 100
+    space.overlay.show_overlays = False
+    assert count((yield from pixels()), look().tip) < 20
+    space.overlay.show_overlays = True
+    chosen().show = False
+    assert count((yield from pixels()), look().tip) < 20
+    chosen().show = True
+    bpy.ops.object.select_all(action="DESELECT")
+    assert count((yield from pixels()), look().tip) < 20
+
+
+def test_cones_behind_the_mesh_are_hidden_but_in_x_ray():
+    cube = unwrapped(add_cone_cube)
+    bpy.ops.view3d.view_axis(type="RIGHT")
+    front = count((yield from pixels()), look().tip)
+    cube.data.materials.clear()
+    area().spaces.active.shading.show_xray = True
+    area().spaces.active.region_3d.view_rotation.rotate(bpy.context.object.matrix_world.to_quaternion())
+    bpy.ops.view3d.view_orbit(angle=0.4, type="ORBITLEFT")
+    x_ray = count((yield from pixels()), look().tip)
+    area().spaces.active.shading.show_xray = False
+    assert front > 100 and x_ray > 1.3 * front, (front, x_ray)
+
+
+def test_flipped_and_overlapping_faces_are_drawn():
+    cube = unwrapped(add_cone_cube)
+    plain = yield from pixels()
+    front = [face.index for face in cube.data.polygons if face.normal.y < -0.9]
+    report = reports.find(cube.data)
+    seen = {}
+    for name in ("flipped", "overlapping"):
+        reports.store(cube.data, replace(report, **{name: front}))
+        seen[name] = yield from pixels()
+        setattr(chosen(), name, False)
+        without = yield from pixels()
+        setattr(chosen(), name, True)
+        assert np.abs(without - plain).max(axis=2).mean() < 0.01
+    for picture, name in ((seen[name], name) for name in seen):
+        tinted = np.abs(picture - plain).max(axis=2) > 0.1
+        assert tinted.mean() > 0.05, name
+        # Towards the colour of the preferences.
+        toward = np.linalg.norm(picture[tinted] - np.array(getattr(look(), name)[:3]), axis=1)
+        assert (toward < np.linalg.norm(plain[tinted] - np.array(getattr(look(), name)[:3]), axis=1)).mean() > 0.95
+
+
+def test_distortion_is_drawn_in_its_colours_with_a_scale():
+    unwrapped(add_ball)
+    plain = yield from pixels()
+    bpy.ops.uv.cone_measure()
+    pictures = {}
+    for measure in ("CONFORMAL", "AREA", "STRETCH"):
+        chosen().distortion = measure
+        pictures[measure] = yield from pixels()
+        assert (np.abs(pictures[measure] - plain).max(axis=2) > 0.1).mean() > 0.05
+    assert (np.abs(pictures["CONFORMAL"] - pictures["AREA"]).max(axis=2) > 0.05).mean() > 0.03
+    bpy.ops.uv.cone_measure(clear=True)
+    again = yield from pixels()
+    assert (np.abs(again - plain).max(axis=2) > 0.05).mean() < 0.01
+    chosen().distortion = "NONE"
+
+
+def test_drawing_again_builds_nothing_again_and_an_unwrap_does():
+    cube = unwrapped(add_cone_cube)
+    yield from pixels()
+    entry = cache.entry(cube)
+    batches = dict(entry.drawn)
+    assert {"cuts", "cones"} <= batches.keys()
+    bpy.ops.view3d.view_orbit(angle=0.5, type="ORBITLEFT")
+    yield from pixels()
+    assert cache.entry(cube) is entry
+    assert all(entry.drawn[key] is batch for key, batch in batches.items())
+    bpy.ops.uv.cone_unwrap(seamless=True)
+    yield from pixels()
+    assert cache.entry(cube) is not entry
+
+
+def test_the_overlay_follows_undo():
+    cube = add_cone_cube()
+    name = cube.name
+    edit(cube)
+    bpy.ops.ed.undo_push(message="before")
+    bpy.ops.uv.cone_unwrap("EXEC_DEFAULT", True)
+    yield from pixels()
+    assert len(cache.entry(bpy.data.objects[name]).content.cut_lines)
+    bpy.ops.ed.undo()
+    yield from pixels()
+    assert not len(cache.entry(bpy.data.objects[name]).content.cut_lines)
+    bpy.ops.ed.redo()
+    yield from pixels()
+    assert len(cache.entry(bpy.data.objects[name]).content.cut_lines)
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_the_uv_editor_shows_the_cuts_in_the_same_colours():
+    cube = unwrapped(add_cone_cube)
+    edit(cube)
+    bpy.context.tool_settings.use_uv_select_sync = False
+    other = area("DOPESHEET_EDITOR") if any(a.type == "DOPESHEET_EDITOR" for a in bpy.context.screen.areas) else None
+    place = other or area("PROPERTIES")
+    before = place.ui_type
+    in_view = yield from pixels()
+    place.ui_type = "UV"
+    yield 0.3
+    with bpy.context.temp_override(area=place, region=region("WINDOW", "IMAGE_EDITOR")):
+        bpy.ops.image.view_all(fit_view=True)
+    in_layout = yield from pixels(within="IMAGE_EDITOR")
+    shown = [number > 10 for number in cut_pixels(in_layout)]
+    # All cuts are in the layout, some of them in front.
+    assert sum(shown) == len(reports.find(cube.data).paths), cut_pixels(in_layout)
+    assert all(shown[i] for i, number in enumerate(cut_pixels(in_view)) if number > 100)
+    place.ui_type = before
+    bpy.ops.object.mode_set(mode="OBJECT")
