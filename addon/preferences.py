@@ -45,9 +45,17 @@ def _from_hex(colour: str) -> tuple[float, ...]:
 class ConeUnwrapPreferences(bpy.types.AddonPreferences):
     bl_idname = __package__
 
-    tip: _colour("Tips", "Cones of less than a full turn, as on tips and corners", (1.0, 0.50, 0.10, 1.0))
-    saddle: _colour("Saddles", "Cones of more than a full turn, as between fingers", (0.20, 0.55, 1.0, 1.0))
-    flat: _colour("Flat", "Cones of exactly a full turn, which are none", (0.75, 0.75, 0.75, 1.0))
+    tip: _colour(
+        "Tips",
+        "Cones of less than a full turn, as on tips and corners",
+        (1.0, 0.50, 0.10, 1.0),
+    )
+    saddle: _colour(
+        "Saddles",
+        "Cones of more than a full turn, as between fingers",
+        (0.20, 0.55, 1.0, 1.0),
+    )
+    flat: _colour("Flat", "Cones of a full turn, which are none; others fade to this", (0.75, 0.75, 0.75, 1.0))
     automatic: _colour("Automatic", "Cones whose angle is left to the unwrap", (1.0, 1.0, 1.0, 1.0))
     flipped: _colour("Flipped", "Faces that lie upside down in the UV map", (1.0, 0.05, 0.05, 0.6))
     overlapping: _colour("Overlapping", "Faces that lie on others in the UV map", (0.85, 0.10, 0.95, 0.35))

@@ -41,6 +41,7 @@ CLASSES = (
     MESH_OT_cone_update_table,
     MESH_OT_cone_preview,
     menus.VIEW3D_MT_cone_angles,
+    menus.VIEW3D_MT_cone_seeing,
     *PANELS,
     VIEW3D_PT_cone_angles,
 )

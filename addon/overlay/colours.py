@@ -9,12 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from .content import FLAT_CONE, SADDLE, TIP, UNKNOWN, Cone
+from .content import Cone
 
 if TYPE_CHECKING:
     from ..preferences import ConeUnwrapPreferences
 
 FloatArray = NDArray[np.float32]
+
+# Radians of curvature.
+FULL = np.pi / 2
 
 
 def repeated(colour: Sequence[float], count: int) -> FloatArray:
@@ -23,9 +26,15 @@ def repeated(colour: Sequence[float], count: int) -> FloatArray:
 
 
 def of_cones(cones: Sequence[Cone], look: ConeUnwrapPreferences) -> FloatArray:
-    """(k, 4) by the sign of their curvature."""
-    by_kind = {TIP: look.tip, SADDLE: look.saddle, FLAT_CONE: look.flat, UNKNOWN: look.automatic}
-    return np.array([by_kind[cone.kind][:] for cone in cones], np.float32).reshape(-1, 4)
+    """(k, 4) by their curvature: between the colours of flat and of tips or saddles, whose it is from FULL on."""
+    return np.array([_of_cone(cone.curvature, look) for cone in cones], np.float32).reshape(-1, 4)
+
+
+def _of_cone(curvature: float | None, look: ConeUnwrapPreferences) -> FloatArray:
+    if curvature is None:
+        return np.array(look.automatic, np.float32)
+    share = min(abs(curvature) / FULL, 1.0)
+    return share * np.array(look.tip if curvature > 0 else look.saddle) + (1 - share) * np.array(look.flat)
 
 
 def of_paths(numbers: NDArray[np.int32], look: ConeUnwrapPreferences) -> FloatArray:

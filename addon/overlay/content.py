@@ -24,19 +24,19 @@ FloatArray = NDArray[np.float32]
 
 # The lines of a cut lie this share of its mean edge length apart from it, one on each side.
 SIDE_OFFSET = 0.12
-# Radians: less curvature is none.
-FLAT = 1e-4
-
-TIP, SADDLE, FLAT_CONE, UNKNOWN = range(4)
 
 
 @dataclass(frozen=True, slots=True)
 class Cone:
-    """A marked or imposed cone.  angle: radians, None where it is left to the unwrap.  kind: TIP, SADDLE, ..."""
+    """A marked or imposed cone.
+
+    angle: radians, None where it is left to the unwrap. curvature: what it lacks of a full turn, of half a turn on a
+    border; None with the angle.
+    """
 
     vertex: int
     angle: float | None
-    kind: int
+    curvature: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,14 +83,10 @@ def find_cones(obj: bpy.types.Object, report: Report | None, mesh: EditedMesh | 
         angles |= dict(zip(report.cones, report.cone_angles, strict=True))
     vertices = sorted(angles)
     full = [math.pi if border else 2 * math.pi for border in mesh.on_border(vertices)]
-    return [Cone(v, angles[v], _kind(angles[v], turn)) for v, turn in zip(vertices, full, strict=True)]
-
-
-def _kind(angle: float | None, full: float) -> int:
-    if angle is None:
-        return UNKNOWN
-    curvature = full - angle
-    return FLAT_CONE if abs(curvature) < FLAT else TIP if curvature > 0 else SADDLE
+    return [
+        Cone(v, angles[v], None if angles[v] is None else turn - angles[v])
+        for v, turn in zip(vertices, full, strict=True)
+    ]
 
 
 def _cut_sides(

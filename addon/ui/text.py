@@ -12,15 +12,16 @@ import bpy
 FONT, POINTS = 0, 11
 # Pixels beside the text, at a scale of 1: the panel's margins and the scroll bar, and an icon.
 MARGIN, ICON = 52, 24
-# Of a region that is not known, at a scale of 1.
-WIDTH = 240
+# Of a region that is not known, and the least one, at a scale of 1.
+WIDTH, LEAST = 240, 160
 
 
 def wrapped(context: bpy.types.Context, text: str, indent: int = 0) -> list[str]:
     """The text in lines that fit into the region; indent: pixels taken by something else, at a scale of 1."""
-    scale = context.preferences.system.ui_scale
+    # Without a window it is 0.
+    scale = context.preferences.system.ui_scale or 1.0
     blf.size(FONT, POINTS * scale)
-    width = (WIDTH if context.region is None else context.region.width / scale) - MARGIN - indent
+    width = max(WIDTH if context.region is None else context.region.width / scale, LEAST) - MARGIN - indent
     lines: list[str] = []
     for word in text.split():
         longer = f"{lines[-1]} {word}" if lines else word

@@ -20,6 +20,8 @@ OPERATORS = {
     "mesh.cone_snap_angles",
     "mesh.cone_suggest",
     "mesh.cone_preview",
+    "uv.cone_measure",
+    "uv.cone_texture",
 }
 CONE_ENTRIES = [
     ("mesh.cone_mark", False),
@@ -85,7 +87,13 @@ def test_operators_can_be_undone_and_repeated(name):
     "menu", ["IMAGE_MT_uvs", "VIEW3D_MT_uv_map", "VIEW3D_MT_edit_mesh_edges", "VIEW3D_MT_edit_mesh_vertices"]
 )
 def test_cones_stand_beside_the_seams_and_in_the_vertex_menu(menu):
-    assert our_entries(menu) == CONE_ENTRIES
+    seeing = [("VIEW3D_MT_cone_seeing", None)] if menu in {"IMAGE_MT_uvs", "VIEW3D_MT_uv_map"} else []
+    assert our_entries(menu) == CONE_ENTRIES + seeing
+
+
+def test_object_mode_has_what_works_in_it():
+    names = ["uv.cone_unwrap", "mesh.cone_place", "VIEW3D_MT_cone_seeing"]
+    assert our_entries("VIEW3D_MT_object") == [(name, None) for name in names]
 
 
 def test_the_menu_of_angles_has_their_operators():

@@ -35,9 +35,9 @@ def test_marked_cones_are_shown_before_anything_is_unwrapped():
     give_angles(cube, {first: 1.5 * np.pi, second: 2.5 * np.pi, third: 2 * np.pi})
     found = {cone.vertex: cone for cone in shown(cube).cones}
     assert sorted(found) == corners(cube)
-    kinds = [found[v].kind for v in corners(cube)]
-    assert kinds == [content.TIP, content.SADDLE, content.FLAT_CONE] + [content.UNKNOWN] * 5
-    assert found[corners(cube)[4]].angle is None
+    curvatures = [found[v].curvature for v in corners(cube)]
+    assert curvatures[:3] == pytest.approx([np.pi / 2, -np.pi / 2, 0], abs=1e-6)
+    assert curvatures[3:] == [None] * 5 == [found[v].angle for v in corners(cube)[3:]]
     assert len(shown(cube).cut_lines) == 0
 
 
@@ -49,14 +49,15 @@ def test_an_angle_on_a_border_is_compared_with_half_a_turn():
     for in_edit_mode in (False, True):
         if in_edit_mode:
             edit(grid)
-        assert [cone.kind for cone in shown(grid).cones] == [content.SADDLE, content.TIP]
+        found = [cone.curvature for cone in shown(grid).cones]
+        assert found == pytest.approx([-np.pi / 4, 3 * np.pi / 4], abs=1e-6)
 
 
 def test_imposed_angles_go_before_those_that_were_left_open():
     ball = add_ball()
     bpy.ops.uv.cone_unwrap()
     found = shown(ball).cones
-    assert all(cone.kind == content.TIP for cone in found)
+    assert sum(cone.curvature for cone in found) == pytest.approx(4 * np.pi)
     assert [cone.angle for cone in found] == reports.find(ball.data).cone_angles
 
 
@@ -160,7 +161,7 @@ def test_selecting_builds_nothing_anew():
 )
 def test_angles_are_written_without_needless_digits(degrees, text):
     angle = None if degrees is None else np.radians(degrees)
-    assert labels.label(content.Cone(0, angle, content.TIP)) == text
+    assert labels.label(content.Cone(0, angle, None)) == text
 
 
 def test_labels_that_would_lie_on_others_are_left_out():
@@ -181,7 +182,9 @@ def test_cut_colours_take_turns_and_then_lighter_ones():
 
 def test_colours_in_the_preferences_are_those_that_are_drawn():
     look = bpy.context.preferences.addons[EXTENSION].preferences
-    kinds = {content.TIP: "tip", content.SADDLE: "saddle", content.FLAT_CONE: "flat", content.UNKNOWN: "automatic"}
-    drawn = colours.of_cones([content.Cone(0, None, kind) for kind in kinds], look)
-    for row, name in zip(drawn, kinds.values(), strict=True):
+    half = np.pi / 4
+    drawn = colours.of_cones([content.Cone(0, None, c) for c in (4.0, -4.0, 0.0, None, half, -half)], look)
+    for row, name in zip(drawn, ("tip", "saddle", "flat", "automatic"), strict=False):
         assert row == pytest.approx(getattr(look, name)[:], abs=1e-6)
+    np.testing.assert_allclose(drawn[4], (drawn[0] + drawn[2]) / 2, atol=1e-6)
+    np.testing.assert_allclose(drawn[5], (drawn[1] + drawn[2]) / 2, atol=1e-6)

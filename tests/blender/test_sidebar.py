@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sidebar: its tables, which panels are shown when, and buttons that select what a message is about."""
+
+import os
+from importlib import import_module
+
+import bmesh
+import bpy
+import pytest
+from scenes import add_ball, add_cone_cube, add_object, add_ramp, corners, edit, selected
+
+EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
+reports_of = import_module(f"{EXTENSION}.reports")
+tables = import_module(f"{EXTENSION}.ui.tables")
+panels = import_module(f"{EXTENSION}.ui.panels")
+text = import_module(f"{EXTENSION}.ui.text")
+findings = import_module(f"{EXTENSION}.findings")
+
+
+class RecordingLayout:
+    """Stands for a panel's layout and keeps its texts and buttons."""
+
+    def __init__(self, texts, buttons):
+        self.texts, self.buttons = texts, buttons
+
+    def _part(self, **_options):
+        return RecordingLayout(self.texts, self.buttons)
+
+    row = column = box = split = grid_flow = _part
+
+    def label(self, text="", icon="NONE"):
+        self.texts.append(text)
+
+    def operator(self, name, text="", icon="NONE"):
+        button = type("Button", (), {})()
+        self.buttons.append((name, button))
+        return button
+
+    def prop(self, _owner, name, text="", expand=False):
+        self.texts.append(name)
+
+
+def drawn(panel):
+    """(texts, buttons) of a panel; None where it is not shown."""
+    if not is_shown(panel):
+        return None
+    stand_in = type("Panel", (), {})()
+    texts, buttons = [], []
+    stand_in.layout = RecordingLayout(texts, buttons)
+    panel.draw(stand_in, bpy.context)
+    return texts, buttons
+
+
+def is_shown(panel):
+    return not hasattr(panel, "poll") or panel.poll(bpy.context)
+
+
+def shown():
+    return {panel.bl_label for panel in panels.PANELS if is_shown(panel)}
+
+
+ALWAYS = {"Cone Unwrap", "Overlay", "Distortion", "Texture"}
+
+
+def test_panels_come_with_what_they_tell():
+    assert shown() == {"Cone Unwrap"}
+    add_cone_cube()
+    assert shown() == ALWAYS
+    bpy.ops.uv.cone_unwrap()
+    assert shown() == ALWAYS | {"Quality"}
+    bpy.ops.uv.cone_unwrap(seamless=True)
+    reports_of.changes.mark_changed(bpy.context.object.data)
+    assert shown() == ALWAYS | {"Quality", "Seam Certificate"}
+
+
+def test_the_table_has_the_figures_of_the_library():
+    add_ball()
+    bpy.ops.uv.cone_unwrap()
+    report = reports_of.find(bpy.context.object.data)
+    rows = {label: value for label, value, _ in tables.quality_rows(report)}
+    assert float(rows["Angles"]) == pytest.approx(report.distortion["quasi_conformal"], abs=5e-4)
+    assert float(rows["Stretch"]) == pytest.approx(report.distortion["l2_stretch"], abs=5e-4)
+    assert rows["Flipped Faces"] == rows["Overlapping Faces"] == "0"
+    assert float(rows["Sides of Cuts"]) < 1e-9
+    texts, _ = drawn(panels.VIEW3D_PT_cone_unwrap_quality)
+    assert " ".join(texts).startswith("96 faces, 1 island, 8 cones")
+
+
+def test_a_changed_map_is_said_to_be_so():
+    cube = add_cone_cube()
+    bpy.ops.uv.cone_unwrap()
+    cube.data.uv_layers.active.uv[0].vector.x += 0.5
+    reports_of.changes.mark_changed(cube.data)
+    texts, _ = drawn(panels.VIEW3D_PT_cone_unwrap_quality)
+    assert "The UV map has changed" in " ".join(texts)
+
+
+def test_the_certificate_lists_cuts_by_turn_and_whole_tiles():
+    add_cone_cube()
+    bpy.ops.uv.cone_unwrap(seamless=True)
+    certificate = reports_of.find(bpy.context.object.data).certificate
+    assert tables.seam_summary(certificate) == "All 7 cuts match exactly"
+    rows = tables.seam_rows(certificate)
+    assert len(rows) == 7
+    assert {turn for turn, _, _ in rows} <= {"0°", "90°", "180°", "270°"}
+    assert all(float(part).is_integer() for _, shift, _ in rows for part in shift.split(", "))
+    off = certificate | {"error": 1e-3, "error_texels": 1.024}
+    assert tables.seam_summary(off) == "All 7 cuts match up to 1e+0 texels of 1024 x 1024"
+    assert tables.seam_summary(certificate | {"cuts": []}) == "No cuts, so no seam"
+
+
+def test_a_message_has_a_button_that_selects_what_it_is_about():
+    ramp = add_ramp()
+    bpy.ops.uv.cone_unwrap()
+    overlapping = reports_of.find(ramp.data).overlapping
+    texts, buttons = drawn(panels.VIEW3D_PT_cone_unwrap_problems)
+    assert "OVERLAPPING_TRIANGLES" in " ".join(texts)
+    edit(ramp, select="DESELECT")
+    name, button = buttons[0]
+    assert name == "mesh.cone_select_reported"
+    assert bpy.ops.mesh.cone_select_reported(finding=button.finding) == {"FINISHED"}
+    assert [face.index for face in bmesh.from_edit_mesh(ramp.data).faces if face.select] == overlapping
+
+
+def test_an_error_has_one_too_and_of_several_messages_one_is_selected():
+    cube = add_cone_cube()
+    broken = corners(cube)[3]
+    cube.data.vertices[broken].co.x = float("nan")
+    with pytest.raises(RuntimeError):
+        bpy.ops.uv.cone_unwrap()
+    texts, buttons = drawn(panels.VIEW3D_PT_cone_unwrap_problems)
+    assert "NON_FINITE_POSITION" in " ".join(texts) and len(buttons) == 1
+    first = findings.last(cube)[0]
+    other = findings.Reported("Another", False, findings.Named(first.named.vertices - 1, *_none()), first.mesh_size)
+    findings._last[cube.data.session_uid].append(other)
+    edit(cube, select="DESELECT")
+    for number, vertices in ((0, [broken]), (1, [broken - 1]), (-1, [broken - 1, broken])):
+        bpy.ops.mesh.cone_select_reported(finding=number)
+        assert selected(cube) == vertices
+
+
+def _none():
+    empty = findings._nothing()
+    return empty.edges, empty.faces
+
+
+def test_messages_without_elements_have_no_button(reports):
+    def build(bm):
+        bm.verts.new((0, 0, 0))
+
+    add_object("Point", build)
+    with pytest.raises(RuntimeError, match="no faces"):
+        bpy.ops.uv.cone_unwrap()
+    texts, buttons = drawn(panels.VIEW3D_PT_cone_unwrap_problems)
+    assert "the mesh has no faces" in " ".join(texts) and buttons == []
+
+
+@pytest.mark.parametrize(
+    "said", ["one", "a few words that fit", "averyveryveryveryveryverylongword and some more " * 8]
+)
+def test_wrapped_text_is_the_text(said):
+    lines = text.wrapped(bpy.context, said)
+    assert " ".join(lines) == said.strip()
+    assert len(lines) < len(said.split()) or len(said.split()) == 1
+    assert all(len(line) <= 60 for line in lines)
+
+
+def test_every_panel_draws():
+    add_cone_cube()
+    bpy.ops.uv.cone_unwrap(seamless=True)
+    bpy.ops.uv.cone_measure()
+    bpy.ops.uv.cone_texture()
+    reports_of.changes.mark_changed(bpy.context.object.data)
+    seen = {panel.bl_label: drawn(panel) for panel in panels.PANELS}
+    assert seen.pop("Problems") is None
+    assert all(texts or buttons for texts, buttons in seen.values())
+    assert [name for name, button in seen["Texture"][1] if getattr(button, "clear", False)] == ["uv.cone_texture"]
