@@ -7,11 +7,6 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 venv=$root/build/venv
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/cone-unwrap
 
-# Where ccache is installed, only what has changed since any earlier build is compiled.
-if command -v ccache >/dev/null; then
-    export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1 CCACHE_DIR=$cache/ccache
-fi
-
 say() { printf '\n== %s\n' "$*"; }
 fail() { printf '%s: %s\n' "$(basename "$0")" "$*" >&2; exit 1; }
 
@@ -38,7 +33,8 @@ find_python() {
     done
 }
 
-# A compiler, headers and a Python; sets `python`.
+# A compiler, headers and a Python; sets `python`. Where ccache is installed, what an earlier build has compiled is not
+# compiled again.
 set_up_system() {
     local missing=()
     command -v c++ >/dev/null || missing+=(g++)
@@ -50,6 +46,9 @@ set_up_system() {
     "$python" -c 'import os, sysconfig; os.stat(os.path.join(sysconfig.get_path("include"), "Python.h"))' 2>/dev/null ||
         missing+=(python3.11-dev)
     [ ${#missing[@]} = 0 ] || install_packages "${missing[@]}"
+    if command -v ccache >/dev/null; then
+        export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1 CCACHE_DIR=$cache/ccache
+    fi
 }
 
 # Makes a virtual environment, once: $1 its folder, then what to install there.
