@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import struct
 import zlib
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -120,11 +121,18 @@ def _spread(flat: Floats) -> tuple[NDArray[np.int64], Floats]:
     count = np.diff(np.floor(np.cumsum(area * POINTS_PER_PIXEL, dtype=float)), prepend=0.0).astype(np.int64)
     triangle = np.repeat(np.arange(len(flat)), count)
     number = np.arange(len(triangle)) - np.repeat(np.cumsum(count) - count, count)
-    # The sequence of Roberts fills the square evenly, for any number of points; the square is folded to a triangle.
+    return triangle, _spread_points()[:, number]
+
+
+@cache
+def _spread_points() -> Floats:
+    """Barycentric coordinates (3, p) of as many points as a triangle can have, the first of which are spread evenly as
+    well: the sequence of Roberts in a square that is folded to a triangle."""
+    number = np.arange(POINTS_PER_PIXEL * SIDE * SIDE + 1)
     a, b = (0.5 + number * 0.7548776662466927) % 1, (0.5 + number * 0.5698402909980532) % 1
     outside = a + b > 1
     a, b = np.where(outside, 1 - a, a), np.where(outside, 1 - b, b)
-    return triangle, np.stack([1 - a - b, a, b]).astype(np.float32)
+    return np.stack([1 - a - b, a, b]).astype(np.float32)
 
 
 def _blend(values: Floats, triangle: NDArray[np.int64], weights: Floats) -> Floats:
