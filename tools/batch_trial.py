@@ -228,7 +228,7 @@ def large(folder: Path) -> None:
     """Memory and time of larger meshes, each in a process of its own."""
     library, out = folder / "large", folder / "runs" / "large"
     library.mkdir(exist_ok=True)
-    for levels in (5, 6, 7, 8):
+    for levels in (4, 5, 6, 7):
         mesh = meshes.renumber(meshes.bumpy_sphere(levels), levels)[0]
         path = library / f"{len(mesh.triangles)}.off"
         if not path.exists():
