@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import bpy
 
 from .. import angle_table, identifiers
@@ -44,6 +46,8 @@ class VIEW3D_PT_cone_angles(ConeUnwrapSubPanel, bpy.types.Panel):
             if len(table) > 1:
                 box.label(text=f"Part of {len(part.ledger.triangles):,} triangles")
             draw_ledger(box, part)
+            if part.rows:
+                draw_head(box)
             for row in part.rows[:rows]:
                 draw_row(box, row)
             if len(part.rows) > rows:
@@ -77,12 +81,26 @@ def draw_ledger(layout: bpy.types.UILayout, part: TablePart) -> None:
     layout.label(text=verdict(ledger), icon="CHECKMARK" if ledger.closes else "ERROR")
 
 
+def columns(layout: bpy.types.UILayout) -> Iterator[bpy.types.UILayout]:
+    """The four cells of a line of the table, from left to right."""
+    rest = layout
+    for factor in (0.18, 0.33, 0.54):
+        rest = rest.split(factor=factor, align=True)
+        yield rest.column(align=True)
+    yield rest.column(align=True)
+
+
+def draw_head(layout: bpy.types.UILayout) -> None:
+    for cell, title in zip(columns(layout), ("Vertex", "Angle", "Kind", "Curvature"), strict=True):
+        cell.label(text=title)
+
+
 def draw_row(layout: bpy.types.UILayout, row: Row) -> None:
-    line = layout.row(align=True)
-    line.operator(identifiers.SELECT_ONE, text=str(row.vertex), emboss=False).vertex = row.vertex
-    angle = line.operator(identifiers.SET_ANGLE, text="—" if row.angle is None else degrees(row.angle))
-    angle.vertex = row.vertex
+    vertex, angle, kind, curvature = columns(layout)
+    vertex.operator(identifiers.SELECT_ONE, text=str(row.vertex), emboss=False).vertex = row.vertex
+    typed = angle.operator(identifiers.SET_ANGLE, text="—" if row.angle is None else degrees(row.angle))
+    typed.vertex = row.vertex
     if row.angle is not None:
-        angle.angle = row.angle
-    line.label(text=KIND_LABELS[row.kind])
-    line.label(text="" if row.curvature is None else degrees(row.curvature, signed=True))
+        typed.angle = row.angle
+    kind.label(text=KIND_LABELS[row.kind])
+    curvature.label(text="" if row.curvature is None else degrees(row.curvature, signed=True))

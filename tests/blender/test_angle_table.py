@@ -243,7 +243,7 @@ class Drawn:
     def _part(self, **_options):
         return Drawn(self.lines)
 
-    row = column = box = _part
+    row = column = box = split = _part
 
     def label(self, text="", icon="NONE"):
         self.lines.append(text)
@@ -263,6 +263,7 @@ def test_the_panel_draws_the_table_and_the_fixes():
     panel.draw(bpy.context)
     lines = panel.layout.lines
     assert lines[:3] == ["Assigned 180.0° of 720.0°", "Missing 540.0°", "Left to 7 automatic cones"]
+    assert lines[3:7] == ["Vertex", "Angle", "Kind", "Curvature"]
     at = lines.index(str(first))
     assert lines[at : at + 4] == [str(first), "180.0°", "Snapped", "+180.0°"]
     assert [line for line in lines if line.startswith("mesh.")] == [
