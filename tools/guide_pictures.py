@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The pictures of the guide: paper with darts, cubes, and heads unwrapped in several ways. Runs inside Blender.
 
-Run by tools/demo --guide, like demo_scene.py; leaves guide-NAME-NUMBER.png, to be put side by side by demo_sheet.py.
+Run by tools/demo --guide, like demo_scene.py; leaves guide-NAME-NUMBER.png, to be put together by guide_sheet.py.
 """
 
 from __future__ import annotations
@@ -66,11 +66,12 @@ def empty_scene() -> None:
 
 def add_suzanne() -> bpy.types.Object:
     """The head alone, without its loose eyes."""
-    head = demo_scene.add_suzanne(subdivisions=2)
+    demo_scene.add_suzanne(subdivisions=2)
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.ops.mesh.separate(type="LOOSE")
     bpy.ops.object.mode_set(mode="OBJECT")
-    for eye in [obj for obj in bpy.data.objects if obj is not head]:
+    *eyes, head = sorted(bpy.data.objects, key=lambda obj: len(obj.data.vertices))
+    for eye in eyes:
         bpy.data.objects.remove(eye)
     return head
 
@@ -90,7 +91,7 @@ def subdivided_cube() -> bpy.types.Object:
 
 
 def add_rounded_cube() -> bpy.types.Object:
-    """A cube with a nose on one side and all edges rounded."""
+    """A cube that is swollen on one side, all edges rounded."""
     cube = subdivided_cube()
     for vertex in cube.data.vertices:
         x, y, z = vertex.co
