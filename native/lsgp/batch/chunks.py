@@ -16,12 +16,13 @@ ROUNDS = 8
 
 
 class Queue:
-    """Assets to be worked on; largest first."""
+    """Assets to be worked on; largest first.  most_assets: in a chunk."""
 
-    def __init__(self, assets: Iterable[Asset], workers: int) -> None:
+    def __init__(self, assets: Iterable[Asset], workers: int, most_assets: int = MOST_ASSETS) -> None:
         self._assets = deque(sorted(assets, key=lambda asset: (-asset.size, asset.name)))
         self._left = sum(map(_weight, self._assets))
         self._workers = workers
+        self._most_assets = most_assets
 
     def __bool__(self) -> bool:
         return bool(self._assets)
@@ -31,7 +32,7 @@ class Queue:
         most = self._left / (ROUNDS * self._workers)
         chunk = [self._assets.popleft()]
         weight = _weight(chunk[0])
-        while self._assets and len(chunk) < MOST_ASSETS and weight + _weight(self._assets[0]) <= most:
+        while self._assets and len(chunk) < self._most_assets and weight + _weight(self._assets[0]) <= most:
             chunk.append(self._assets.popleft())
             weight += _weight(chunk[-1])
         self._left -= weight

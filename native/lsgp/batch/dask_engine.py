@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from ..side_files import UsageError
 from .assets import Asset
 from .chunks import Queue
-from .pool import Pool, WorkersError
+from .pool import ASSETS_PER_WORKER, Pool, WorkersError
 from .records import FAILED, Record, ending
 from .tasks import Settings, Task
 
@@ -37,7 +37,7 @@ def run_on_cluster(
     except (OSError, ValueError) as error:
         raise UsageError(f"no Dask scheduler answers at '{address}': {error}") from error
     with client:
-        queue = Queue(assets, max(1, _threads(client)))
+        queue = Queue(assets, max(1, _threads(client)), ASSETS_PER_WORKER)
         chunk_of = {}
         running = as_completed(loop=client.loop)
         while queue or chunk_of:
