@@ -92,6 +92,11 @@ def _python(name: str) -> str:
         lines += [_signature(f"lsgp.{name}", obj), "", *_docstring(obj)]
     elif is_dataclass(obj):
         lines += [*_docstring(obj), *_fields(obj)]
+    elif not issubclass(obj, Exception):
+        lines += [_signature(f"lsgp.{name}", obj), "", *_docstring(obj)]
+        for inner_name, inner in vars(obj).items():
+            if inspect.isfunction(inner) and not inner_name.startswith("_"):
+                lines += [_signature(f"lsgp.{name}.{inner_name}", inner), "", *_docstring(inner)]
     else:
         bases = ", ".join(f"`{base.__name__}`" for base in obj.__bases__)
         lines += [f"An exception, also {bases}.", "", *_docstring(obj)]
@@ -105,7 +110,8 @@ def _signature(name: str, function: Any) -> str:
         default = "" if parameter.default is parameter.empty else f" = {_value(parameter.default)}"
         kind = "" if parameter.annotation is parameter.empty else f": {parameter.annotation}"
         shown.append(f"{parameter.name}{kind}{default}")
-    return f"`{name}({', '.join(shown)}) -> {signature.return_annotation}`"
+    result = "" if signature.return_annotation is signature.empty else f" -> {signature.return_annotation}"
+    return f"`{name}({', '.join(shown)}){result}`"
 
 
 def _value(default: Any) -> str:
