@@ -56,8 +56,8 @@ Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, 
     // The triangle in its own plane: corners 0, length, x + i height.
     const double x = first.dot(second) / length, height = doubled / length;
     const Complex along = (z[1] - z[0]) / length, across = (z[2] - z[0] - along * x) / height;
-    const double conformal = std::abs(along - Complex(0, 1) * across) / 2,
-                 mirrored = std::abs(along + Complex(0, 1) * across) / 2;
+    const double conformal = std::sqrt(std::norm(along - Complex(0, 1) * across)) / 2,
+                 mirrored = std::sqrt(std::norm(along + Complex(0, 1) * across)) / 2;
     // By the area, not as a difference, which would lose the digits of thin images.
     const double uv_doubled = std::abs(std::imag(std::conj(z[1] - z[0]) * (z[2] - z[0])));
     const double largest = conformal + mirrored, smallest = uv_doubled / doubled / largest;

@@ -41,6 +41,14 @@ void mollify(Geometry& geometry, double margin) {
   for (Index f = 0; f < geometry.area.size(); ++f) measure_from_lengths(geometry, f);
 }
 
+void place_apexes(Geometry& geometry) {
+  geometry.apex.resize(geometry.area.size());
+  for (Index f = 0; f < geometry.area.size(); ++f) {
+    const double height = 2 * geometry.area[f] / geometry.length[3 * f];
+    geometry.apex[f] = {2 * height * geometry.half_cotangent[3 * f + 1], height};
+  }
+}
+
 void add_up_vertices(const HalfedgeMesh& mesh, Geometry& geometry) {
   geometry.vertex_area = Eigen::VectorXd::Zero(mesh.vertex_count());
   geometry.angle_defect.resize(mesh.vertex_count());
@@ -82,12 +90,14 @@ Geometry build_geometry(const HalfedgeMesh& mesh) {
     }
   }
   if (!geometry.degenerate.empty()) mollify(geometry, least_margin);
+  place_apexes(geometry);
   add_up_vertices(mesh, geometry);
   return geometry;
 }
 
 Geometry mollified(const HalfedgeMesh& mesh, Geometry geometry, double margin) {
   mollify(geometry, margin);
+  place_apexes(geometry);
   add_up_vertices(mesh, geometry);
   return geometry;
 }

@@ -14,6 +14,7 @@ struct Geometry {
   Eigen::VectorXd angle;           // (3m) at corners, radians
   Eigen::VectorXd half_cotangent;  // (3m) half the cotangent of the angle opposite a halfedge
   Eigen::VectorXd area;            // (m) of triangles
+  Eigen::VectorXcd apex;           // (m) the last corner from the first one, along the first halfedge and across it
   Eigen::VectorXd vertex_area;     // (n) a third of the triangles around
   Eigen::VectorXd angle_defect;    // (n) 2 pi minus the angle sum, pi minus it on a boundary
   double total_area = 0;
@@ -29,12 +30,11 @@ Geometry mollified(const HalfedgeMesh& mesh, Geometry geometry, double margin);
 
 // The edge vector of halfedge h in its triangle's own frame, in which the triangle's first halfedge is real.
 inline Complex edge_vector(const Geometry& geometry, Index h) {
-  const Index first = h - h % 3;
-  const double length = geometry.length[h];
+  const Index f = h / 3;
   switch (h % 3) {
-    case 0: return {length, 0};
-    case 1: return std::polar(length, M_PI - geometry.angle[first + 1]);
-    default: return std::polar(length, M_PI + geometry.angle[first]);
+    case 0: return {geometry.length[h], 0};
+    case 1: return geometry.apex[f] - geometry.length[3 * f];
+    default: return -geometry.apex[f];
   }
 }
 

@@ -2,6 +2,7 @@
 #include "layout.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -14,9 +15,31 @@ constexpr double margin = 0.01;  // between islands, of the unit square's side b
 
 double cross(Complex a, Complex b) { return std::imag(std::conj(a) * b); }
 
+// The points without those inside the polygon of the extreme ones (Akl and Toussaint 1978), hardly any of a layout's.
+std::vector<Complex> outer_points(const Eigen::VectorXcd& position) {
+  std::array<Complex, 8> extreme;  // counter-clockwise, in eight directions
+  extreme.fill(position[0]);
+  for (const Complex z : position) {
+    for (std::size_t i = 0; i < extreme.size(); ++i) {
+      constexpr int x[]{1, 1, 0, -1, -1, -1, 0, 1}, y[]{0, 1, 1, 1, 0, -1, -1, -1};
+      if (x[i] * (z.real() - extreme[i].real()) + y[i] * (z.imag() - extreme[i].imag()) > 0) extreme[i] = z;
+    }
+  }
+  std::vector<Complex> outer;
+  for (const Complex z : position) {
+    bool inside = true;
+    for (std::size_t i = 0; i < extreme.size() && inside; ++i) {
+      const Complex side = extreme[(i + 1) % extreme.size()] - extreme[i];
+      inside = side == 0.0 || cross(side, z - extreme[i]) > 0;
+    }
+    if (!inside) outer.push_back(z);
+  }
+  return outer;
+}
+
 // Counter-clockwise convex hull (Andrew's monotone chain).
 std::vector<Complex> convex_hull(const Eigen::VectorXcd& position) {
-  std::vector<Complex> points(position.data(), position.data() + position.size());
+  std::vector<Complex> points = outer_points(position);
   std::sort(points.begin(), points.end(),
             [](Complex a, Complex b) { return a.real() != b.real() ? a.real() < b.real() : a.imag() < b.imag(); });
   std::vector<Complex> hull;

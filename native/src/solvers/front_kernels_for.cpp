@@ -15,10 +15,6 @@ template <typename Scalar>
 using Dense = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 template <typename Scalar>
 using Block = Eigen::Map<Dense<Scalar>, 0, Eigen::OuterStride<>>;
-template <typename Scalar>
-using Column = Eigen::Map<Eigen::Matrix<Scalar, Eigen::Dynamic, 1>>;
-template <typename Scalar>
-using ConstColumn = Eigen::Map<const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>>;
 
 // Up to here plain loops are faster than kernels that pack their operands.
 constexpr int narrow_columns = 8;
@@ -113,53 +109,86 @@ bool eliminate(const Front<Scalar>& front, Scalar* outer) {
   return true;
 }
 
-template <typename Scalar, int width>
-void substitute_forward_rows(const Front<Scalar>& front, Scalar* __restrict own, Scalar* __restrict others) {
-  const int rows = front.columns + front.below;
-  for (int i = 0; i < front.below * width; ++i) others[i] = 0;
-  for (int j = 0; j < front.columns; ++j) {
-    const Scalar* __restrict column = front.panel + static_cast<long>(j) * rows;
-    const double inverse = 1 / real_part(column[j]);
-    Scalar x[width];
-    for (int w = 0; w < width; ++w) x[w] = own[j * width + w] *= inverse;
-    for (int i = j + 1; i < front.columns; ++i) {
-      for (int w = 0; w < width; ++w) own[i * width + w] -= column[i] * x[w];
+// Columns are taken several at a time, so that what they act on is read and written once for all of them.
+constexpr int columns_at_once = 4;
+
+template <typename Scalar, int width, int group>
+void forward_group(const Front<Scalar>& front, int first, Scalar* __restrict own, Scalar* __restrict others) {
+  const long rows = front.columns + front.below;
+  const Scalar* __restrict column[group];
+  Scalar x[group][width];
+  for (int g = 0; g < group; ++g) {
+    const int j = first + g;
+    column[g] = front.panel + j * rows;
+    const double inverse = 1 / real_part(column[g][j]);
+    for (int w = 0; w < width; ++w) {
+      Scalar value = own[j * width + w];
+      for (int k = 0; k < g; ++k) value -= column[k][j] * x[k][w];
+      own[j * width + w] = x[g][w] = value * inverse;
     }
-    const Scalar* __restrict below = column + front.columns;
-    for (int i = 0; i < front.below; ++i) {
-      for (int w = 0; w < width; ++w) others[i * width + w] += below[i] * x[w];
+  }
+  for (int i = first + group; i < front.columns; ++i) {
+    for (int g = 0; g < group; ++g) {
+      for (int w = 0; w < width; ++w) own[i * width + w] -= column[g][i] * x[g][w];
+    }
+  }
+  for (int g = 0; g < group; ++g) column[g] += front.columns;
+  for (int i = 0; i < front.below; ++i) {
+    Scalar sum[width];
+    for (int w = 0; w < width; ++w) sum[w] = others[i * width + w];
+    for (int g = 0; g < group; ++g) {
+      for (int w = 0; w < width; ++w) sum[w] += column[g][i] * x[g][w];
+    }
+    for (int w = 0; w < width; ++w) others[i * width + w] = sum[w];
+  }
+}
+
+template <typename Scalar, int width>
+void substitute_forward_rows(const Front<Scalar>& front, Scalar* own, Scalar* others) {
+  for (int i = 0; i < front.below * width; ++i) others[i] = 0;
+  int j = 0;
+  for (; j + columns_at_once <= front.columns; j += columns_at_once) {
+    forward_group<Scalar, width, columns_at_once>(front, j, own, others);
+  }
+  for (; j < front.columns; ++j) forward_group<Scalar, width, 1>(front, j, own, others);
+}
+
+template <typename Scalar, int width, int group>
+void backward_group(const Front<Scalar>& front, int first, Scalar* __restrict own, const Scalar* __restrict others) {
+  const long rows = front.columns + front.below;
+  const Scalar* __restrict column[group];
+  Scalar x[group][width];
+  for (int g = 0; g < group; ++g) {
+    column[g] = front.panel + (first + g) * rows;
+    for (int w = 0; w < width; ++w) x[g][w] = own[(first + g) * width + w];
+  }
+  for (int i = first + group; i < front.columns; ++i) {
+    for (int g = 0; g < group; ++g) {
+      const Scalar factor = conjugate(column[g][i]);
+      for (int w = 0; w < width; ++w) x[g][w] -= factor * own[i * width + w];
+    }
+  }
+  for (int i = 0; i < front.below; ++i) {
+    for (int g = 0; g < group; ++g) {
+      const Scalar factor = conjugate(column[g][front.columns + i]);
+      for (int w = 0; w < width; ++w) x[g][w] -= factor * others[i * width + w];
+    }
+  }
+  for (int g = group; g-- > 0;) {
+    const double inverse = 1 / real_part(column[g][first + g]);
+    for (int w = 0; w < width; ++w) {
+      for (int k = g + 1; k < group; ++k) x[g][w] -= conjugate(column[g][first + k]) * x[k][w];
+      own[(first + g) * width + w] = x[g][w] *= inverse;
     }
   }
 }
 
 template <typename Scalar, int width>
-void substitute_backward_rows(const Front<Scalar>& front, Scalar* __restrict own, const Scalar* __restrict others) {
-  const int rows = front.columns + front.below;
-  for (int j = front.columns; j-- > 0;) {
-    const Scalar* __restrict column = front.panel + static_cast<long>(j) * rows;
-    const double inverse = 1 / real_part(column[j]);
-    if constexpr (width == 1) {
-      const int inner = front.columns - j - 1;
-      Scalar sum = own[j];
-      if (front.below > 0) {
-        sum -= ConstColumn<Scalar>(column + front.columns, front.below).dot(ConstColumn<Scalar>(others, front.below));
-      }
-      if (inner > 0) sum -= ConstColumn<Scalar>(column + j + 1, inner).dot(ConstColumn<Scalar>(own + j + 1, inner));
-      own[j] = sum * inverse;
-    } else {
-      Scalar x[width];
-      for (int w = 0; w < width; ++w) x[w] = own[j * width + w];
-      for (int i = j + 1; i < front.columns; ++i) {
-        const Scalar factor = conjugate(column[i]);
-        for (int w = 0; w < width; ++w) x[w] -= factor * own[i * width + w];
-      }
-      const Scalar* __restrict below = column + front.columns;
-      for (int i = 0; i < front.below; ++i) {
-        const Scalar factor = conjugate(below[i]);
-        for (int w = 0; w < width; ++w) x[w] -= factor * others[i * width + w];
-      }
-      for (int w = 0; w < width; ++w) own[j * width + w] = x[w] * inverse;
-    }
+void substitute_backward_rows(const Front<Scalar>& front, Scalar* own, const Scalar* others) {
+  int j = front.columns;
+  for (; j % columns_at_once != 0; --j) backward_group<Scalar, width, 1>(front, j - 1, own, others);
+  for (; j > 0; j -= columns_at_once) {
+    backward_group<Scalar, width, columns_at_once>(front, j - columns_at_once, own, others);
   }
 }
 
