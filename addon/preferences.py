@@ -42,7 +42,22 @@ def _from_hex(colour: str) -> tuple[float, ...]:
     return (*(int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)), 1.0)
 
 
-class ConeUnwrapPreferences(bpy.types.AddonPreferences):
+# A property for each colour. Since Python 3.14 the body of a class cannot add to its annotations.
+_CutColours = type(
+    "_CutColours",
+    (),
+    {
+        "__annotations__": {
+            f"cut_{number}": _colour(
+                f"Cut {number}", "Both sides of cuts; the colours are taken in turn", _from_hex(colour)
+            )
+            for number, colour in enumerate(CUT_COLOURS, 1)
+        }
+    },
+)
+
+
+class ConeUnwrapPreferences(_CutColours, bpy.types.AddonPreferences):
     bl_idname = __package__
 
     tip: _colour(
@@ -69,12 +84,6 @@ class ConeUnwrapPreferences(bpy.types.AddonPreferences):
     text_size: bpy.props.IntProperty(
         name="Text Size", description="Size of the angles beside cones", default=12, min=6, max=40, update=_redraw
     )
-    __annotations__ |= {
-        f"cut_{number}": _colour(
-            f"Cut {number}", "Both sides of cuts; the colours are taken in turn", _from_hex(colour)
-        )
-        for number, colour in enumerate(CUT_COLOURS, 1)
-    }
 
     def cut_colours(self) -> list[bpy.types.bpy_prop_array]:
         """The colours that cuts have in turn."""
