@@ -41,14 +41,13 @@ class Cone:
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """cones with their places and normals, (k, 3). cut_lines: (s, 2, 3) segments, both sides of every cut, and
+    """cones with their places, (k, 3). cut_lines: (s, 2, 3) segments, both sides of every cut, and
     cut_paths: (s,) the number of each one's path. cut_uv: (s, 2, 2) the same segments in the layout. flipped,
     overlapping: (t, 3, 3) triangles.
     """
 
     cones: list[Cone] = field(default_factory=list)
     cone_places: FloatArray = field(default_factory=lambda: np.empty((0, 3), np.float32))
-    cone_normals: FloatArray = field(default_factory=lambda: np.empty((0, 3), np.float32))
     cut_lines: FloatArray = field(default_factory=lambda: np.empty((0, 2, 3), np.float32))
     cut_paths: NDArray[np.int32] = field(default_factory=lambda: np.empty(0, np.int32))
     cut_uv: FloatArray = field(default_factory=lambda: np.empty((0, 2, 2), np.float32))
@@ -65,7 +64,6 @@ def build_content(obj: bpy.types.Object, report: Report | None) -> Content:
     return Content(
         cones=found,
         cone_places=mesh.positions(vertices),
-        cone_normals=mesh.normals(vertices),
         cut_lines=lines,
         cut_paths=numbers,
         cut_uv=uv,

@@ -7,6 +7,7 @@ import math
 from collections.abc import Sequence
 
 import blf
+import gpu
 import numpy as np
 from mathutils import Matrix
 from numpy.typing import NDArray
@@ -20,9 +21,10 @@ Box = tuple[float, float, float, float]
 
 FONT = 0
 PADDING = 3
+# Pixels: what is seen of a cone is more than its middle.
+NEAR = 2
 BAR_WIDTH, BAR_HEIGHT, BAR_MARGIN = 180, 10, 16
-LEAST_FACING = -0.2
-BEHIND_TEXT = (0.0, 0.0, 0.0, 0.55)
+BEHIND_TEXT = (0.0, 0.0, 0.0, 0.7)
 
 
 def label(cone: Cone) -> str:
@@ -41,14 +43,26 @@ def on_screen(places: FloatArray, matrix: Matrix, width: int, height: int) -> Fl
     return np.c_[(ndc[:, 0] + 1) * width / 2, (ndc[:, 1] + 1) * height / 2, ndc[:, 2]]
 
 
-def facing(places: FloatArray, normals: FloatArray, eye: FloatArray, is_perspective: bool) -> NDArray[np.bool_]:
-    """(k,) which surface points look at the eye, or past it but little, as tips do at the outline of a shape.
+def depths(pixels: FloatArray, width: int, height: int) -> FloatArray:
+    """(k,) how deep, from -1 to 1, the deepest is that is drawn near these pixels; 1 off the region.
 
-    eye: its place, or in a parallel view the direction to it.
+    Reads the active framebuffer.
     """
-    toward = eye - places if is_perspective else np.broadcast_to(eye, places.shape)
-    lengths = np.linalg.norm(normals, axis=1) * np.linalg.norm(toward, axis=1)
-    return (normals * toward).sum(axis=1) > LEAST_FACING * lengths
+    found = np.ones(len(pixels), np.float32)
+    with np.errstate(invalid="ignore"):
+        inside = ((pixels[:, :2] >= NEAR) & (pixels[:, :2] < (width - NEAR, height - NEAR))).all(axis=1)
+    if not inside.any():
+        return found
+    x, y = pixels[inside, :2].astype(int).T
+    left, low = int(x.min()) - NEAR, int(y.min()) - NEAR
+    columns, rows = int(x.max()) - left + NEAR + 1, int(y.max()) - low + NEAR + 1
+    buffer = gpu.state.active_framebuffer_get().read_depth(left, low, columns, rows)
+    # Up to Blender 4.3 at least, numpy is told wrong strides of a buffer with two dimensions.
+    buffer.dimensions = rows * columns
+    drawn = np.asarray(buffer, np.float32).reshape(rows, columns)
+    around = range(-NEAR, NEAR + 1)
+    found[inside] = 2 * np.max([drawn[y - low + dy, x - left + dx] for dx in around for dy in around], axis=0) - 1
+    return found
 
 
 def without_overlaps(boxes: Sequence[Box], order: Sequence[int]) -> list[int]:

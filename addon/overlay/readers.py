@@ -28,10 +28,6 @@ class EditedMesh:
         """(k, 3) places of vertices."""
         return _rows([self._bm.verts[v].co[:] for v in vertices], 3)
 
-    def normals(self, vertices: Sequence[int]) -> FloatArray:
-        """(k, 3) normals of vertices."""
-        return _rows([self._bm.verts[v].normal[:] for v in vertices], 3)
-
     def on_border(self, vertices: Sequence[int]) -> list[bool]:
         """Which vertices have an edge with one face."""
         return [self._bm.verts[v].is_boundary for v in vertices]
@@ -105,9 +101,6 @@ class StoredMesh:
 
     def positions(self, vertices: Sequence[int]) -> FloatArray:
         return self._places[np.asarray(vertices, int)]
-
-    def normals(self, vertices: Sequence[int]) -> FloatArray:
-        return _rows([self._mesh.vertices[v].normal[:] for v in vertices], 3)
 
     def on_border(self, vertices: Sequence[int]) -> list[bool]:
         ends = np.stack([self._corners, self._corners[self._following]], axis=1)

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
 from itertools import pairwise
@@ -12,11 +12,13 @@ import bpy
 import gpu
 import numpy as np
 from mathutils import Matrix
+from numpy.typing import NDArray
 
 from .. import distortion
 from ..identifiers import DISTORTION_ATTRIBUTES
 from ..preferences import ConeUnwrapPreferences, preferences
 from . import cache, colours, labels, shaders
+from .content import Content
 from .heat import SCALES
 from .readers import reader
 from .settings import ConeUnwrapOverlay, settings
@@ -24,6 +26,10 @@ from .settings import ConeUnwrapOverlay, settings
 # The share by which what is drawn is brought nearer, as Blender does with its own wires; faces stay behind those.
 NEARER_PERSPECTIVE, NEARER_PARALLEL = 0.0025, 1e-5
 FACES_NEARER = 0.2
+
+# By session_uid of the mesh, of the view that is drawn: where its cones are on the region, (k, 3) pixels and depth, and
+# (k,) which of them nothing hides.
+_seen: dict[int, tuple[NDArray[np.float32], NDArray[np.bool_]]] = {}
 
 
 def shown_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -46,6 +52,9 @@ def draw_in_scene() -> None:
     gpu.state.depth_test_set("NONE" if see_through else "LESS_EQUAL")
     gpu.state.blend_set("ALPHA")
     try:
+        _seen.clear()
+        if chosen.cones and chosen.angles:
+            _find_seen(context, see_through)
         for draw, share in ((_draw_faces, FACES_NEARER), (_draw_lines, 1.0)):
             with _brought_nearer(context.region_data, share):
                 for obj in shown_objects(context):
@@ -83,8 +92,7 @@ def _draw_faces(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: ConeUnwr
     for name in ("overlapping", "flipped"):
         corners = getattr(entry.content, name)
         if getattr(chosen, name) and len(corners):
-            colour = colours.repeated(getattr(look, name), len(corners))
-            entry.batch(name, partial(shaders.triangle_batch, corners, colour)).draw(shaders.triangles())
+            entry.batch(name, partial(_face_batch, corners, getattr(look, name))).draw(shaders.triangles())
 
 
 def _draw_lines(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: ConeUnwrapPreferences) -> None:
@@ -95,16 +103,26 @@ def _draw_lines(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: ConeUnwr
         shader.bind()
         shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
         shader.uniform_float("lineWidth", look.line_width * pixel)
-        colour = colours.of_paths(content.cut_paths, look)
-        entry.batch("cuts", partial(shaders.line_batch, content.cut_lines, colour)).draw(shader)
+        entry.batch("cuts", partial(_cut_batch, content, look)).draw(shader)
     if chosen.cones and content.cones:
         shader = shaders.discs()
         shader.bind()
         shader.uniform_float("size", look.cone_size * pixel)
         gpu.state.program_point_size_set(True)
-        colour = colours.of_cones(content.cones, look)
-        entry.batch("cones", partial(shaders.disc_batch, content.cone_places, colour)).draw(shader)
+        entry.batch("cones", partial(_cone_batch, content, look)).draw(shader)
         gpu.state.program_point_size_set(False)
+
+
+def _face_batch(corners: NDArray[np.float32], colour: Sequence[float]) -> gpu.types.GPUBatch:
+    return shaders.triangle_batch(corners, colours.repeated(colour, len(corners)))
+
+
+def _cut_batch(content: Content, look: ConeUnwrapPreferences) -> gpu.types.GPUBatch:
+    return shaders.line_batch(content.cut_lines, colours.of_paths(content.cut_paths, look))
+
+
+def _cone_batch(content: Content, look: ConeUnwrapPreferences) -> gpu.types.GPUBatch:
+    return shaders.disc_batch(content.cone_places, colours.of_cones(content.cones, look))
 
 
 def _heat_batch(entry: cache.Entry, obj: bpy.types.Object, measure: str) -> gpu.types.GPUBatch | None:
@@ -123,23 +141,30 @@ def _heat_batch(entry: cache.Entry, obj: bpy.types.Object, measure: str) -> gpu.
     return entry.batch(measure, build)
 
 
+def _find_seen(context: bpy.types.Context, see_through: bool) -> None:
+    """Where on the region the cones of each mesh are, and which of them nothing hides."""
+    region, view = context.region, context.region_data
+    found = [(obj, cache.entry(obj).content) for obj in shown_objects(context)]
+    found = [(obj, content.cone_places) for obj, content in found if content.cones]
+    matrix = _nearer(view, 1.0) @ view.view_matrix
+    for obj, places in found:
+        part = labels.on_screen(places, matrix @ obj.matrix_world, region.width, region.height)
+        shown = np.isfinite(part).all(axis=1)
+        if not see_through:
+            shown &= part[:, 2] <= labels.depths(part, region.width, region.height)
+        _seen[obj.data.session_uid] = part, shown
+
+
 def _draw_angles(context: bpy.types.Context, obj: bpy.types.Object) -> None:
-    content, look = cache.entry(obj).content, preferences(context)
-    if not content.cones:
+    pixels, seen = _seen.get(obj.data.session_uid, (None, None))
+    if pixels is None:
         return
-    region, view, matrix = context.region, context.region_data, obj.matrix_world
-    places = content.cone_places @ np.array(matrix.to_3x3(), np.float32).T + np.array(matrix.translation, np.float32)
-    normals = content.cone_normals @ np.array(matrix.inverted_safe().to_3x3(), np.float32)
-    camera = view.view_matrix.inverted_safe()
-    eye = np.array(camera.translation if view.is_perspective else camera.col[2].xyz, np.float32)
-    pixels = labels.on_screen(places, view.perspective_matrix, region.width, region.height)
-    seen = labels.facing(places, normals, eye, view.is_perspective) & np.isfinite(pixels).all(axis=1)
-    scale = context.preferences.system.pixel_size
+    content, look, system = cache.entry(obj).content, preferences(context), context.preferences.system
     labels.draw_labels(
         [labels.label(cone) for cone, show in zip(content.cones, seen, strict=True) if show],
         pixels[seen],
-        look.cone_size * scale * 0.5 + 3 * scale,
-        round(look.text_size * context.preferences.system.ui_scale),
+        (0.5 * look.cone_size + 3) * system.pixel_size,
+        round(look.text_size * system.ui_scale),
         look.text,
     )
 
@@ -164,12 +189,16 @@ def _draw_scale(context: bpy.types.Context, measure: str) -> None:
 
 @contextmanager
 def _brought_nearer(view: bpy.types.RegionView3D, share: float) -> Iterator[None]:
-    """Depths a little smaller than they are, so that what lies on the surface is not hidden by it."""
-    nearer = gpu.matrix.get_projection_matrix()
-    if view.is_perspective:
-        nearer[2][3] *= 1 + share * NEARER_PERSPECTIVE
-    else:
-        nearer[2][3] -= share * NEARER_PARALLEL * view.view_distance
     with gpu.matrix.push_pop_projection():
-        gpu.matrix.load_projection_matrix(Matrix(nearer))
+        gpu.matrix.load_projection_matrix(_nearer(view, share))
         yield
+
+
+def _nearer(view: bpy.types.RegionView3D, share: float) -> Matrix:
+    """The view's projection, with depths a little smaller, so that what lies on the surface is not hidden by it."""
+    projection = view.window_matrix.copy()
+    if view.is_perspective:
+        projection[2][3] *= 1 + share * NEARER_PERSPECTIVE
+    else:
+        projection[2][3] -= share * NEARER_PARALLEL * view.view_distance
+    return projection

@@ -56,7 +56,7 @@ class VIEW3D_PT_cone_unwrap(ConeUnwrapPanel, bpy.types.Panel):
 
 class VIEW3D_PT_cone_unwrap_problems(ConeUnwrapSubPanel, bpy.types.Panel):
     bl_label = "Problems"
-    bl_order = 20
+    bl_order = 5
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

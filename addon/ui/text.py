@@ -10,8 +10,8 @@ import bpy
 
 # The font and size in points of Blender's panels.
 FONT, POINTS = 0, 11
-# Pixels beside the text, at a scale of 1: the panel's margins and the scroll bar, and an icon.
-MARGIN, ICON = 52, 24
+# Pixels beside the text, at a scale of 1: the margins of panel and box, the tabs, and an icon.
+MARGIN, ICON = 60, 40
 # Of a region that is not known, and the least one, at a scale of 1.
 WIDTH, LEAST = 240, 160
 

@@ -13,6 +13,7 @@ from scenes import add_ball, add_cone_cube, edit
 EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
 reports = import_module(f"{EXTENSION}.reports")
 cache = import_module(f"{EXTENSION}.overlay.cache")
+view3d = import_module(f"{EXTENSION}.overlay.view3d")
 SPACES = {"VIEW_3D": bpy.types.SpaceView3D, "IMAGE_EDITOR": bpy.types.SpaceImageEditor}
 
 
@@ -119,6 +120,23 @@ def test_cones_behind_the_mesh_are_hidden_but_in_x_ray():
     x_ray = count((yield from pixels()), look().tip)
     area().spaces.active.shading.show_xray = False
     assert front > 100 and x_ray > 1.3 * front, (front, x_ray)
+
+
+def test_angles_are_written_at_cones_that_nothing_hides():
+    ball = unwrapped(add_ball)
+    bpy.ops.view3d.view_orbit(angle=0.4, type="ORBITLEFT")
+    bpy.ops.view3d.view_orbit(angle=0.3, type="ORBITUP")
+    yield from pixels()
+    toward = np.array(area().spaces.active.region_3d.view_rotation.to_matrix().col[2])
+    cones = [cone.vertex for cone in cache.entry(ball).content.cones]
+    facing = np.array([np.array(ball.data.vertices[v].normal) @ toward for v in cones])
+    _, seen = view3d._seen[ball.data.session_uid]
+    assert seen[facing > 0.3].all() and not seen[facing < -0.3].any()
+    assert (facing > 0.3).sum() >= 3 and (facing < -0.3).sum() >= 3
+    area().spaces.active.shading.show_xray = True
+    yield from pixels()
+    assert view3d._seen[ball.data.session_uid][1].all()
+    area().spaces.active.shading.show_xray = False
 
 
 def test_flipped_and_overlapping_faces_are_drawn():
