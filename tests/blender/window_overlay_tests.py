@@ -132,7 +132,7 @@ def test_angles_are_written_at_cones_that_nothing_hides():
     facing = np.array([np.array(ball.data.vertices[v].normal) @ toward for v in cones])
     _, seen = view3d._seen[ball.data.session_uid]
     assert seen[facing > 0.3].all() and not seen[facing < -0.3].any()
-    assert (facing > 0.3).sum() >= 3 and (facing < -0.3).sum() >= 3
+    assert (facing > 0.3).sum() >= 2 and (facing < -0.3).sum() >= 2
     area().spaces.active.shading.show_xray = True
     yield from pixels()
     assert view3d._seen[ball.data.session_uid][1].all()
