@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's Minimum Stretch on arrays, for `benchmark.py`; needs a Python with bpy.
+"""One of Blender's unwraps on one surface, for `benchmark.py`; needs a Python with bpy.
 
-    python tools/benchmark_in_blender.py SURFACE.npz MAP.npz REPETITIONS
+    python tools/benchmark_in_blender.py SURFACE.npz ANGLE_BASED|CONFORMAL|MINIMUM_STRETCH [MAP.npz]
 
-SURFACE.npz: positions (n, 3), triangles (m, 3), seams (s, 2). MAP.npz: corner_uv (m, 3, 2) and seconds, the CPU seconds
-of all threads that each repetition of `uv.unwrap` took.
+SURFACE.npz: positions (n, 3), triangles (m, 3), seams (s, 2). For every line "run" on the standard input it calls
+`uv.unwrap` once and writes "RESULT {"seconds": S}", the CPU seconds of all threads. MAP.npz receives corner_uv
+(m, 3, 2).
 """
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 import time
@@ -39,23 +41,32 @@ def add_mesh(positions: np.ndarray, triangles: np.ndarray, seams: np.ndarray) ->
     return surface
 
 
-def unwrap() -> float:
+def unwrap(method: str) -> float:
+    chosen = {"iterations": ITERATIONS} if method == "MINIMUM_STRETCH" else {}
     before = time.process_time()
-    bpy.ops.uv.unwrap(method="MINIMUM_STRETCH", iterations=ITERATIONS)
+    bpy.ops.uv.unwrap(method=method, **chosen)
     return time.process_time() - before
 
 
-def main(source: str, target: str, repetitions: str) -> None:
+def read_map(surface: bpy.types.Object) -> np.ndarray:
+    bpy.ops.object.mode_set(mode="OBJECT")
+    corner_uv = np.empty(2 * len(surface.data.loops), np.float32)
+    surface.data.uv_layers.active.uv.foreach_get("vector", corner_uv)
+    bpy.ops.object.mode_set(mode="EDIT")
+    return corner_uv.reshape(-1, 3, 2).astype(np.float64)
+
+
+def main(source: str, method: str, target: str | None = None) -> None:
     arrays = np.load(source)
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     add_mesh(np.eye(3), np.array([[0, 1, 2]]), np.empty((0, 2), int))
-    unwrap()  # the first one of a process takes longer
+    unwrap(method)  # the first one of a process takes longer
     surface = add_mesh(arrays["positions"], arrays["triangles"], arrays["seams"])
-    seconds = [unwrap() for _ in range(int(repetitions))]
-    bpy.ops.object.mode_set(mode="OBJECT")
-    uv = np.empty(6 * len(arrays["triangles"]), np.float32)
-    surface.data.uv_layers.active.uv.foreach_get("vector", uv)
-    np.savez(target, corner_uv=uv.reshape(-1, 3, 2).astype(np.float64), seconds=seconds)
+    for _ in sys.stdin:
+        seconds = unwrap(method)
+        if target is not None:
+            np.savez(target, corner_uv=read_map(surface))
+        print("RESULT " + json.dumps({"seconds": seconds}), flush=True)
 
 
 if __name__ == "__main__":
