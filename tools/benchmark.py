@@ -2,8 +2,8 @@
 """Time of `lsgp.parameterize` as Markdown tables.
 
 speed: the whole map on growing meshes beside libigl's LSCM on the same cut, Blender's methods with that cut marked as
-seams, and one factorization of the bare Laplacian, with memory and growth. rounding: what seamless layouts add. shares:
-checks and repair. stretch: low stretch beside Blender's Minimum Stretch.
+seams, and one factorization of the bare Laplacian; edits through `lsgp.Solver`, memory and growth. rounding: what
+seamless layouts add. shares: checks and repair. stretch: low stretch beside Blender's Minimum Stretch.
 
 All get arrays and give texture coordinates. lsgp also finds the cut, prescribes the cone angles and measures the map.
 Times are CPU seconds of all threads together, one thread being asked for; medians over repetitions in which the methods
@@ -87,6 +87,7 @@ processes of their own that take turns; figures are CPU seconds of all threads, 
 each other, not beside those of another machine.
 
 - **lsgp**: cones given, angles of least distortion, the Poisson map, its check and the search for overlaps, no repair.
+- **angle edited**, **cone moved**: the same again through `lsgp.Solver`, which keeps what does not change.
 - **LSCM**: libigl's, on the surface cut open along lsgp's cut, without continuity across it.
 - **Blender**: with that cut marked as seams; Minimum Stretch with 10 iterations.
 - **Laplacian**: analysis, factorization and one solve of the bare real cotangent Laplacian with one vertex held, the

@@ -13,12 +13,14 @@ from pathlib import Path
 
 import numpy as np
 from benchmark_cases import Case, cut_open
-from benchmark_workers import Worker, blender_worker, laplacian_worker, python_worker, read_cut
+from benchmark_workers import Worker, blender_worker, laplacian_worker, lsgp_worker, python_worker, read_cut
 
 # Blender's methods, and up to how many triangles they are worth waiting for.
 BLENDER = {"ANGLE_BASED": 60_000, "CONFORMAL": 250_000, "MINIMUM_STRETCH": 60_000}
 NAMES = {
     "lsgp": "lsgp",
+    "edit": "lsgp, angle edited",
+    "move": "lsgp, cone moved",
     "eigen": "Laplacian, Eigen",
     "cholmod": "Laplacian, CHOLMOD",
     "lscm": "libigl LSCM",
@@ -57,9 +59,7 @@ def measure(case: Case, repetitions: int, laplacian: Path | None, blender: str |
     runs: dict[str, list[dict[str, object]]] = {}
     with tempfile.TemporaryDirectory() as name, ExitStack() as stack:
         folder = Path(name)
-        workers = {
-            "lsgp": python_worker("lsgp", folder, positions=case.positions, triangles=case.triangles, cones=case.cones)
-        }
+        workers = {"lsgp": lsgp_worker("lsgp", case, folder)}
         stack.callback(workers["lsgp"].close)
         first = workers["lsgp"].run()
         if first is None:
@@ -89,6 +89,7 @@ def _other_workers(
         yield from ((library, laplacian_worker(laplacian, case, library, folder)) for library in FLOORS)
     if case.is_random:
         return
+    yield from ((change, lsgp_worker(change, case, folder)) for change in ("edit", "move"))
     positions, triangles = cut_open(case, cut)
     yield "lscm", python_worker("lscm", folder, positions=positions, triangles=triangles)
     if blender is not None:

@@ -58,14 +58,19 @@ class Worker:
 
 
 def python_worker(method: str, folder: Path, **arrays: np.ndarray) -> Worker:
-    """method: "lsgp" of positions, triangles and cones, its cut to be read with `read_cut`; or "lscm" of a disk."""
+    """method: "lsgp", "edit" or "move" of positions, triangles and cones; "lscm" of a disk."""
     source = folder / f"{method}.npz"
     np.savez(source, **arrays)
     script = str(TOOLS / "benchmark_worker.py")
     return Worker([sys.executable, script, str(source), method, str(folder / "cut.npy")])
 
 
+def lsgp_worker(method: str, case: Case, folder: Path) -> Worker:
+    return python_worker(method, folder, positions=case.positions, triangles=case.triangles, cones=case.cones)
+
+
 def read_cut(folder: Path) -> np.ndarray:
+    """Of the worker of lsgp."""
     return np.load(folder / "cut.npy")
 
 
