@@ -23,7 +23,7 @@ from collections.abc import Iterable
 
 from benchmark_cases import MESHES, ROOT, SHARED, dense_cases, growing_cases, small_cases
 from benchmark_options import measure_low_stretch, measure_rounding, measure_shares
-from benchmark_speed import measure, plot, ratio_rows, stage_rows, time_rows
+from benchmark_speed import Measured, measure, plot, ratio_rows, stage_rows, time_rows
 from benchmark_workers import ONE_THREAD, build_laplacian_program, find_blender
 
 TABLES = ("speed", "rounding", "shares", "stretch")
@@ -49,10 +49,7 @@ def main() -> None:
         )
     repetitions = arguments.repetitions
     if "speed" in arguments.tables:
-        text = speed_text(arguments.largest, repetitions, blender, arguments.write)
-        print(text)
-        if arguments.write:
-            PAGE.write_text(text, encoding="utf-8")
+        print(measure_speed(arguments.largest, repetitions, blender, arguments.write))
     small = small_cases(arguments.meshes)
     if "rounding" in arguments.tables:
         print("\nRounding angles and translations, repair included, as a multiple of the whole unwrap without it:\n")
@@ -70,16 +67,22 @@ def main() -> None:
         print(as_table(measure_low_stretch(case, min(3, repetitions), blender) for case in dense_cases()))
 
 
-def speed_text(largest: int, repetitions: int, blender: str | None, draws: bool) -> str:
+def measure_speed(largest: int, repetitions: int, blender: str | None, writes: bool) -> str:
+    """The page, written after every surface, so that a long run can be ended early."""
     laplacian = build_laplacian_program()
     if laplacian is None:
         print("The Laplacian is left out: CMake, a C++ compiler or Eigen is missing.", file=sys.stderr)
-    rows = []
+    rows: list[Measured] = []
     for case in growing_cases(largest):
         rows.append(measure(case, repetitions, laplacian, blender))
         print(f"{case.name}, {len(case.cones)} cones: {rows[-1].seconds}", file=sys.stderr)
-    if draws:
-        plot(rows, PLOT)
+        if writes:
+            plot(rows, PLOT)
+            PAGE.write_text(speed_page(rows), encoding="utf-8")
+    return speed_page(rows)
+
+
+def speed_page(rows: list[Measured]) -> str:
     return f"""# Speed
 
 Written by `python tools/benchmark.py --tables speed --write`. All methods get arrays and give texture coordinates, in
