@@ -187,7 +187,7 @@ def plot(rows: list[Measured], target: Path) -> None:
     matplotlib.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "benchmark"})
     from matplotlib import pyplot
 
-    figure, axes = pyplot.subplots(figsize=(7.5, 5), layout="constrained")
+    figure, axes = pyplot.subplots(figsize=(9, 5), layout="constrained")
     for method, name in NAMES.items():
         points = sorted(
             (row.triangles, row.seconds[method]) for row in rows if not row.case.is_random and method in row.seconds
@@ -205,6 +205,6 @@ def plot(rows: list[Measured], target: Path) -> None:
             axes.loglog(*zip(*points, strict=True), "s:", lw=1.2, label=f"lsgp, {count} random cones")
     axes.set(xlabel="triangles", ylabel="CPU seconds")
     axes.grid(True, which="both", alpha=0.25)
-    axes.legend()
+    figure.legend(loc="outside right center")
     figure.savefig(target, metadata={"Date": None})
     pyplot.close(figure)
