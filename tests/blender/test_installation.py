@@ -83,6 +83,10 @@ def test_operators_can_be_undone_and_repeated(name):
     assert rna.description and not rna.description.endswith(".")
 
 
+def test_settings_of_the_unwrap_can_be_kept_as_presets():
+    assert "PRESET" in bpy.types.UV_OT_cone_unwrap.bl_options
+
+
 @pytest.mark.parametrize(
     "menu", ["IMAGE_MT_uvs", "VIEW3D_MT_uv_map", "VIEW3D_MT_edit_mesh_edges", "VIEW3D_MT_edit_mesh_vertices"]
 )
