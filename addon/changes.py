@@ -13,6 +13,8 @@ from . import redraw
 # By session_uid, which stays the same through undo; and the times that anything may have changed.
 _changes: Counter[int] = Counter()
 _all_changed = 0
+# Meshes whose changes are not told for now.
+_held: set[int] = set()
 
 
 def version(mesh: bpy.types.Mesh) -> tuple[int, int]:
@@ -26,13 +28,25 @@ def mark_changed(mesh: bpy.types.Mesh) -> None:
     redraw.views()
 
 
+def hold(mesh: bpy.types.Mesh) -> None:
+    """Take the mesh for unchanged until it is released, so that nothing is derived from it while it is dragged."""
+    _held.add(mesh.session_uid)
+
+
+def release(uid: int) -> None:
+    """Tell changes of the mesh with this session_uid again; it has changed."""
+    _held.discard(uid)
+    _changes[uid] += 1
+    redraw.views()
+
+
 @persistent
 def _note_updates(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     for update in depsgraph.updates:
         if update.is_updated_geometry:
             block = update.id.original
             mesh = block.data if isinstance(block, bpy.types.Object) else block
-            if isinstance(mesh, bpy.types.Mesh):
+            if isinstance(mesh, bpy.types.Mesh) and mesh.session_uid not in _held:
                 _changes[mesh.session_uid] += 1
 
 
@@ -41,6 +55,7 @@ def _note_everything(*_arguments: object) -> None:
     global _all_changed
     _all_changed += 1
     _changes.clear()
+    _held.clear()
 
 
 HANDLERS = (

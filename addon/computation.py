@@ -28,8 +28,8 @@ class Computation(Generic[T]):
         """Ask it to end; it does so the next time it tells how much is done.  Its outcome is of no more use."""
         self._stopped = True
 
-    def finished(self, seconds: float = 0.0) -> bool:
-        """Whether it has ended, waiting for that at most so long."""
+    def finished(self, seconds: float | None = 0.0) -> bool:
+        """Whether it has ended, waiting for that at most so long, or with None as long as it takes."""
         self._thread.join(seconds)
         return not self._thread.is_alive()
 

@@ -58,3 +58,45 @@ def _write_edit_mesh(
         for position, loop in enumerate(bm.faces[face].loops, start):
             loop[layer].uv = values[position]
     bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
+
+
+class EditedUv:
+    """The active UV layer of a mesh in edit mode, to be written again and again and put back as it was.
+
+    A mesh without UV layer gets one, until it is put back. As long as this is used nothing else may add or remove
+    layers of loops, which moves what is held here.
+    """
+
+    def __init__(self, mesh: bpy.types.Mesh) -> None:
+        self._mesh = mesh
+        self._created = mesh.uv_layers.active is None
+        if self._created:
+            mesh.uv_layers.new(name=NEW_UV_LAYER)
+        self._name = mesh.uv_layers.active.name
+        self._bm = bmesh.from_edit_mesh(mesh)
+        layer = self._bm.loops.layers.uv[self._name]
+        # Looking them up takes several times as long as writing them.
+        self._loops = [loop[layer] for face in self._bm.faces for loop in face.loops]
+        self._before = np.array([loop.uv[:] for loop in self._loops], np.float32).reshape(-1, 2)
+        self._now = self._before.copy()
+
+    def write(self, region: Region, solved: NDArray[np.bool_], corner_uv: NDArray[np.float64]) -> None:
+        """As `write_uv`; what was written for other triangles stays."""
+        uv = self._now.copy()
+        uv[region.triangle_loops[solved].ravel()] = corner_uv[solved].reshape(-1, 2)
+        self._put(uv)
+
+    def put_back(self) -> None:
+        """Nothing of the layer has changed then."""
+        if not self._bm.is_valid:
+            return
+        self._put(self._before)
+        if self._created:
+            self._mesh.uv_layers.remove(self._mesh.uv_layers[self._name])
+
+    def _put(self, uv: NDArray[np.float32]) -> None:
+        changed = np.flatnonzero((uv != self._now).any(axis=1))
+        for loop, value in zip(changed.tolist(), uv[changed].tolist(), strict=True):
+            self._loops[loop].uv = value
+        self._now = uv
+        bmesh.update_edit_mesh(self._mesh, loop_triangles=False, destructive=False)

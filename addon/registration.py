@@ -10,6 +10,7 @@ from .operators.angle_snap import MESH_OT_cone_snap_angles
 from .operators.angle_spread import MESH_OT_cone_spread_rest
 from .operators.angle_suggest import MESH_OT_cone_suggest
 from .operators.angle_update import MESH_OT_cone_update_table
+from .operators.cone_edit import MESH_OT_cone_edit
 from .operators.cone_mark import MESH_OT_cone_mark
 from .operators.cone_place import MESH_OT_cone_place
 from .operators.cone_select import MESH_OT_cone_select
@@ -27,6 +28,7 @@ from .ui.panels import PANELS
 CLASSES = (
     ConeUnwrapPreferences,
     MESH_OT_cone_mark,
+    MESH_OT_cone_edit,
     MESH_OT_cone_select,
     MESH_OT_cone_place,
     MESH_OT_cone_select_reported,

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
@@ -75,7 +76,7 @@ def unwrap_all(tasks: Sequence[Task], progress: Progress | None = None) -> list[
 
     progress: as the library's, over all tasks.
     """
-    return solve_all(tasks, _unwrap, progress)
+    return solve_all(tasks, unwrap, progress)
 
 
 def solve_all(
@@ -101,14 +102,16 @@ def _part_of(progress: Progress | None, begin: float, share: float) -> Progress 
     return None if progress is None else lambda done: progress(begin + share * done)
 
 
-def _unwrap(task: Task, progress: Progress | None) -> Unwrapped:
+def unwrap(task: Task, progress: Progress | None, solver: lsgp.Solver | None = None) -> Unwrapped:
+    """The map of one task.  Raises LsgpError.  solver: one of the region's surface that keeps what it may use again."""
     lsgp = native.lsgp
     region, pinned = task.region, task.pinned
     # The library solves where lengths are equal both ways.
     squeeze = lsgp.correct_aspect((1.0, 1.0), task.aspect)
     pins = _pins(region, pinned, region.corner_uv / squeeze)
     held = task.cones.held(region.surface, task.options)
-    result = lsgp.parameterize(region.surface, held.cones, held.angles, task.options, pins, progress)
+    parameterize = partial(lsgp.parameterize, region.surface) if solver is None else solver.parameterize
+    result = parameterize(held.cones, held.angles, task.options, pins, progress)
     uv = result.corner_uv
     step = None if result.seamless is None else cells.step(task.options.seamless)
     if task.keep_placement and step is not None:

@@ -185,7 +185,7 @@ class UV_OT_cone_unwrap(
         self, context: bpy.types.Context
     ) -> tuple[list[tuple[bpy.types.Object, unwrapping.Task]], dict[str, Exception]]:
         """What is to be solved, and by object name what went wrong with the others."""
-        settings = self._settings()
+        settings = chosen_settings(self)
         by_uv = mesh_read.selects_by_uv(context)
         gathered = []
         failures = {}
@@ -230,28 +230,6 @@ class UV_OT_cone_unwrap(
         warnings = {obj.name: unwrapped.result.warnings for obj, unwrapped in solved}
         return reporting.conclude(self, done, warnings, failures)
 
-    def _settings(self) -> gathering.Settings:
-        options = native.lsgp.Options(
-            prescription=PRESCRIPTIONS[self.prescription][0],
-            unfold=UNFOLDINGS[self.unfold][0],
-            seams=SEAMS[self.seams][0],
-            border=BORDERS[self.border][0],
-            seamless=self.seamless_options(),
-            mode=MODES[self.mode][0],
-            stretch=self.stretch,
-            repair=self.repair,
-            overlaps=OVERLAPS[self.overlaps][0],
-        )
-        return gathering.Settings(
-            options=options,
-            group=self.vertex_group,
-            weight_group=self.weight_group if self.use_weights else None,
-            weight_factor=self.weight_factor,
-            use_pins=self.use_pins,
-            keep_placement=self.keep_placement and not self.pack,
-            correct_aspect=self.correct_aspect and not self.seamless,
-        )
-
     def _uses_packer(self) -> bool:
         """Whether Blender's packer is used: on all islands together as asked, or on those of each object once split."""
         return not self.seamless and (self.pack or (self.overlaps == "SPLIT" and not self.keep_placement))
@@ -269,6 +247,30 @@ class UV_OT_cone_unwrap(
                 layouts.append(unwrapped.corner_uv.copy())
                 layouts[-1][unwrapped.result.solved] = uv
         return layouts
+
+
+def chosen_settings(chosen: bpy.types.OperatorProperties) -> gathering.Settings:
+    """What the operator is to do, or was the last time.  Raises InputError."""
+    options = native.lsgp.Options(
+        prescription=PRESCRIPTIONS[chosen.prescription][0],
+        unfold=UNFOLDINGS[chosen.unfold][0],
+        seams=SEAMS[chosen.seams][0],
+        border=BORDERS[chosen.border][0],
+        seamless=SeamlessProperties.seamless_options(chosen),
+        mode=MODES[chosen.mode][0],
+        stretch=chosen.stretch,
+        repair=chosen.repair,
+        overlaps=OVERLAPS[chosen.overlaps][0],
+    )
+    return gathering.Settings(
+        options=options,
+        group=chosen.vertex_group,
+        weight_group=chosen.weight_group if chosen.use_weights else None,
+        weight_factor=chosen.weight_factor,
+        use_pins=chosen.use_pins,
+        keep_placement=chosen.keep_placement and not chosen.pack,
+        correct_aspect=chosen.correct_aspect and not chosen.seamless,
+    )
 
 
 def _summary(obj: bpy.types.Object, unwrapped: unwrapping.Unwrapped) -> str:

@@ -9,7 +9,8 @@ from typing import Any
 
 import bpy
 
-from .. import changes, reports
+from .. import changes, redraw, reports
+from ..identifiers import DISTORTION_ATTRIBUTES
 from .content import Content, build_content
 
 
@@ -41,6 +42,14 @@ def entry(obj: bpy.types.Object) -> Entry:
         kept = Entry(version, obj.mode, build_content(obj, reports.current(mesh)))
         _entries[mesh.session_uid] = kept
     return kept
+
+
+def show(obj: bpy.types.Object, content: Content) -> None:
+    """Show this of the object's mesh, and no distortion, until the mesh is seen to change."""
+    mesh = obj.data
+    hidden = dict.fromkeys(DISTORTION_ATTRIBUTES)
+    _entries[mesh.session_uid] = Entry(changes.version(mesh), obj.mode, content, hidden)
+    redraw.views()
 
 
 def clear() -> None:

@@ -17,6 +17,7 @@ from ..identifiers import CONE_GROUP
 from .readers import reader
 
 if TYPE_CHECKING:
+    from ..angles import ConeAngles
     from ..reports import Report
     from .readers import EditedMesh, StoredMesh
 
@@ -55,10 +56,13 @@ class Content:
     overlapping: FloatArray = field(default_factory=lambda: np.empty((0, 3, 3), np.float32))
 
 
-def build_content(obj: bpy.types.Object, report: Report | None) -> Content:
-    """What is to be shown of the object's mesh.  report: the current one; None where there is none."""
+def build_content(obj: bpy.types.Object, report: Report | None, marked: ConeAngles | None = None) -> Content:
+    """What is to be shown of the object's mesh.  report: the current one; None where there is none.
+
+    marked: cones and angles that are not stored yet; None: those stored.
+    """
     mesh = reader(obj.data)
-    found = find_cones(obj, report, mesh)
+    found = find_cones(obj, report, mesh, marked)
     vertices = [cone.vertex for cone in found]
     lines, numbers, uv = _cut_sides(mesh, [] if report is None else report.paths)
     return Content(
@@ -72,10 +76,15 @@ def build_content(obj: bpy.types.Object, report: Report | None) -> Content:
     )
 
 
-def find_cones(obj: bpy.types.Object, report: Report | None, mesh: EditedMesh | StoredMesh | None = None) -> list[Cone]:
+def find_cones(
+    obj: bpy.types.Object,
+    report: Report | None,
+    mesh: EditedMesh | StoredMesh | None = None,
+    marked: ConeAngles | None = None,
+) -> list[Cone]:
     """The marked cones and those of the report, by vertex; the angle last imposed goes before the one typed."""
     mesh = reader(obj.data) if mesh is None else mesh
-    marked = read_angles(obj, CONE_GROUP)
+    marked = read_angles(obj, CONE_GROUP) if marked is None else marked
     angles = dict(zip(marked.cones.tolist(), marked.angles, strict=True))
     if report is not None:
         angles |= dict(zip(report.cones, report.cone_angles, strict=True))

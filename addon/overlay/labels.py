@@ -9,7 +9,6 @@ from collections.abc import Sequence
 import blf
 import gpu
 import numpy as np
-from mathutils import Matrix
 from numpy.typing import NDArray
 
 from . import shaders
@@ -33,14 +32,6 @@ def label(cone: Cone) -> str:
         return "auto"
     degrees = math.degrees(cone.angle)
     return f"{degrees:.0f}°" if abs(degrees - round(degrees)) < 0.05 else f"{degrees:.1f}°"
-
-
-def on_screen(places: FloatArray, matrix: Matrix, width: int, height: int) -> FloatArray:
-    """(k, 3) pixels and depth of (k, 3) places under a perspective matrix; NaN where they lie behind the view."""
-    points = np.c_[places, np.ones(len(places))] @ np.array(matrix, np.float64).T
-    points[points[:, 3] <= 0] = np.nan
-    ndc = points[:, :3] / points[:, 3:]
-    return np.c_[(ndc[:, 0] + 1) * width / 2, (ndc[:, 1] + 1) * height / 2, ndc[:, 2]]
 
 
 def depths(pixels: FloatArray, width: int, height: int) -> FloatArray:

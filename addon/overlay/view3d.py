@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from .. import distortion
 from ..identifiers import DISTORTION_ATTRIBUTES
 from ..preferences import ConeUnwrapPreferences, preferences
+from ..screen import Screen
 from . import cache, colours, labels, shaders
 from .content import Content
 from .heat import SCALES
@@ -148,7 +149,7 @@ def _find_seen(context: bpy.types.Context, see_through: bool) -> None:
     found = [(obj, content.cone_places) for obj, content in found if content.cones]
     matrix = _nearer(view, 1.0) @ view.view_matrix
     for obj, places in found:
-        part = labels.on_screen(places, matrix @ obj.matrix_world, region.width, region.height)
+        part = Screen(np.array(matrix @ obj.matrix_world, np.float64), region.width, region.height).pixels(places)
         shown = np.isfinite(part).all(axis=1)
         if not see_through:
             shown &= part[:, 2] <= labels.depths(part, region.width, region.height)

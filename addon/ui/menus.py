@@ -61,6 +61,7 @@ def draw_cones(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
     layout.operator(identifiers.MARK, text="Clear Cone").clear = True
     layout.operator(identifiers.SELECT)
     layout.operator_context = "INVOKE_DEFAULT"
+    layout.operator(identifiers.EDIT)
     layout.operator(identifiers.PLACE)
     layout.menu(VIEW3D_MT_cone_angles.bl_idname)
     layout.operator(identifiers.SELECT_REPORTED)

@@ -47,9 +47,11 @@ class VIEW3D_PT_cone_unwrap(ConeUnwrapPanel, bpy.types.Panel):
         row = column.row(align=True)
         row.operator(identifiers.SELECT)
         row.operator(identifiers.PLACE)
+        # It lives on events; long runs show their progress with them.
+        column.operator_context = "INVOKE_DEFAULT"
+        column.operator(identifiers.EDIT, icon="EMPTY_SINGLE_ARROW")
         column = layout.column()
         column.scale_y = 1.4
-        # So that long runs show their progress.
         column.operator_context = "INVOKE_DEFAULT"
         column.operator(identifiers.UNWRAP, icon="UV")
 
