@@ -11,10 +11,9 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
-from typing import NoReturn
 
 import pytest
-from blenders import RealBlender, real_blenders
+from blenders import RealBlender, leave_out, real_blenders
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -26,26 +25,12 @@ def python_with_bpy() -> str | None:
     return sys.executable if importlib.util.find_spec("bpy") else None
 
 
-def leave_out(reason: str) -> NoReturn:
-    """Skip what needs a Blender that is not there; an error where CONE_UNWRAP_REQUIRE_BLENDER says it has to be."""
-    if os.environ.get("CONE_UNWRAP_REQUIRE_BLENDER") == "1":
-        pytest.fail(reason)
-    pytest.skip(reason)
-
-
 @pytest.fixture(scope="session", params=real_blenders() or [None], ids=lambda found: found.name if found else "none")
 def real_blender(request: pytest.FixtureRequest) -> RealBlender:
     """A Blender executable; every one there is in turn."""
     if request.param is None:
         leave_out("no Blender executable; set BLENDER and BLENDER_PYTHON, or BLENDER_CHROOTS")
     return request.param
-
-
-@pytest.fixture
-def virtual_screen(real_blender: RealBlender) -> None:
-    """Leaves out what needs a window where there can be none."""
-    if not real_blender.has_screen:
-        leave_out("no virtual screen for Blender; install xvfb-run beside it")
 
 
 @pytest.fixture(scope="session")
