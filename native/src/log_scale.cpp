@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "curvature.hpp"
 #include "energies/quadratic_forms.hpp"
 #include "solvers/box_qp.hpp"
+#include "solvers/dense_kernels.hpp"
 
 namespace lsgp {
 
@@ -21,6 +23,19 @@ double log_mean_exp(const Eigen::VectorXd& weight, const Eigen::VectorXd& x, Eig
   const double mean = terms.sum();
   if (shares) *shares = terms / mean;
   return largest + std::log(mean);
+}
+
+// columns^T diag(weight) columns, lower triangle; some rows at a time, which stay in the cache.
+Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& columns, const Eigen::VectorXd& weight) {
+  constexpr Eigen::Index rows_at_once = 512;
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns.cols(), columns.cols()), scaled;
+  for (Eigen::Index begin = 0; begin < columns.rows(); begin += rows_at_once) {
+    const Eigen::Index count = std::min(rows_at_once, columns.rows() - begin);
+    scaled.noalias() = weight.segment(begin, count).cwiseSqrt().asDiagonal() * columns.middleRows(begin, count);
+    dense_kernels<double>().add_gram(scaled.data(), static_cast<int>(count), static_cast<int>(columns.cols()),
+                                     sum.data());
+  }
+  return sum;
 }
 
 }  // namespace
@@ -85,9 +100,7 @@ Eigen::VectorXd LogScale::least_distortion_curvature(const Eigen::VectorXd& low,
   for (int step = 0; step < most_newton_steps; ++step) {
     const Eigen::VectorXd mean_growth = green_.transpose() * growth, mean_shrinkage = green_.transpose() * shrinkage;
     const Eigen::VectorXd gradient = 2 * (mean_growth - mean_shrinkage);
-    const Eigen::MatrixXd scaled = (growth + shrinkage).cwiseSqrt().asDiagonal() * green_;
-    Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(kappa.size(), kappa.size());
-    hessian.selfadjointView<Eigen::Lower>().rankUpdate(scaled.transpose(), 4);
+    Eigen::MatrixXd hessian = 4 * weighted_gram(green_, growth + shrinkage);
     hessian.selfadjointView<Eigen::Lower>().rankUpdate(mean_growth, -4);
     hessian.selfadjointView<Eigen::Lower>().rankUpdate(mean_shrinkage, -4);
     hessian.triangularView<Eigen::StrictlyUpper>() = hessian.transpose();
@@ -116,9 +129,7 @@ double LogScale::predicted_l2(const Eigen::VectorXd& log_scale) const {
 
 LogScale::Variance LogScale::variance() const {
   const Eigen::VectorXd mean = green_.transpose() * weight_;
-  const Eigen::MatrixXd weighted = weight_.cwiseSqrt().asDiagonal() * green_;
-  Variance out{Eigen::MatrixXd::Zero(mean.size(), mean.size()), {}};
-  out.hessian.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
+  Variance out{weighted_gram(green_, weight_), {}};
   out.hessian.triangularView<Eigen::StrictlyUpper>() = out.hessian.transpose();
   out.hessian -= mean * mean.transpose();
   out.gradient = green_.transpose() * weight_.cwiseProduct(without_cones_) - weight_.dot(without_cones_) * mean;

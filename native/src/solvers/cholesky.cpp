@@ -6,7 +6,7 @@
 
 #include "lsgp/errors.hpp"
 #include "solvers/elimination.hpp"
-#include "solvers/front_kernels.hpp"
+#include "solvers/dense_kernels.hpp"
 
 namespace lsgp {
 
@@ -87,7 +87,7 @@ void Cholesky<Scalar>::Factor::add_entries(const Eigen::SparseMatrix<Scalar>& lo
 template <typename Scalar>
 void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lower, const FactorHook& hook) {
   constexpr double operations_between_calls = 5e7;
-  const FrontKernels<Scalar>& kernels = front_kernels<Scalar>();
+  const DenseKernels<Scalar>& kernels = dense_kernels<Scalar>();
   const int fronts = plan.front_count();
   ++linear_algebra_of_this_thread().factorizations;
   start_schur(lower);
@@ -146,7 +146,7 @@ void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lowe
 
 template <typename Scalar>
 void Cholesky<Scalar>::Factor::eliminate(int width, Scalar* x) const {
-  const FrontKernels<Scalar>& kernels = front_kernels<Scalar>();
+  const DenseKernels<Scalar>& kernels = dense_kernels<Scalar>();
   std::vector<Scalar> others;
   for (int i = 0; i < plan.front_count(); ++i) {
     const Front<Scalar> front = this->front(i);
@@ -163,7 +163,7 @@ void Cholesky<Scalar>::Factor::eliminate(int width, Scalar* x) const {
 
 template <typename Scalar>
 void Cholesky<Scalar>::Factor::substitute(int width, Scalar* x) const {
-  const FrontKernels<Scalar>& kernels = front_kernels<Scalar>();
+  const DenseKernels<Scalar>& kernels = dense_kernels<Scalar>();
   std::vector<Scalar> others;
   for (int i = plan.front_count(); i-- > 0;) {
     const Front<Scalar> front = this->front(i);

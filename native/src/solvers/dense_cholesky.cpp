@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "solvers/cholesky.hpp"
-#include "solvers/front_kernels.hpp"
+#include "solvers/dense_kernels.hpp"
 
 namespace lsgp {
 
@@ -20,7 +20,7 @@ Front<Scalar> whole(const Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>&
 
 template <typename Scalar>
 DenseCholesky<Scalar>::DenseCholesky(Matrix lower) : factor_(std::move(lower)) {
-  if (factor_.size() > 0 && !front_kernels<Scalar>().eliminate(whole(factor_), nullptr)) throw_unsolvable();
+  if (factor_.size() > 0 && !dense_kernels<Scalar>().eliminate(whole(factor_), nullptr)) throw_unsolvable();
 }
 
 template <typename Scalar>
@@ -32,8 +32,8 @@ void DenseCholesky<Scalar>::solve_in_place(Eigen::Ref<Matrix> right_sides) const
     const Eigen::Index used = std::min<Eigen::Index>(width, right_sides.cols() - begin);
     block.setZero();
     block.leftCols(used) = right_sides.middleCols(begin, used);
-    front_kernels<Scalar>().substitute_forward(whole(factor_), width, block.data(), nullptr);
-    front_kernels<Scalar>().substitute_backward(whole(factor_), width, block.data(), nullptr);
+    dense_kernels<Scalar>().substitute_forward(whole(factor_), width, block.data(), nullptr);
+    dense_kernels<Scalar>().substitute_backward(whole(factor_), width, block.data(), nullptr);
     right_sides.middleCols(begin, used) = block.leftCols(used);
   }
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <complex>
 
-#include "solvers/front_kernels.hpp"
+#include "solvers/dense_kernels.hpp"
 
 namespace lsgp::LSGP_INSTRUCTIONS {
 
@@ -211,11 +211,18 @@ void substitute_backward(const Front<Scalar>& front, int width, Scalar* own, con
 }
 
 template <typename Scalar>
-constexpr FrontKernels<Scalar> table{&eliminate<Scalar>, &substitute_forward<Scalar>, &substitute_backward<Scalar>};
+void add_gram(const Scalar* matrix, int rows, int count, Scalar* sum) {
+  const Eigen::Map<const Dense<Scalar>> a(matrix, rows, count);
+  Eigen::Map<Dense<Scalar>>(sum, count, count).template selfadjointView<Eigen::Lower>().rankUpdate(a.adjoint());
+}
+
+template <typename Scalar>
+constexpr DenseKernels<Scalar> table{&eliminate<Scalar>, &substitute_forward<Scalar>, &substitute_backward<Scalar>,
+                                     &add_gram<Scalar>};
 
 }  // namespace
 
-extern const FrontKernels<double> real_kernels = table<double>;
-extern const FrontKernels<std::complex<double>> complex_kernels = table<std::complex<double>>;
+extern const DenseKernels<double> real_kernels = table<double>;
+extern const DenseKernels<std::complex<double>> complex_kernels = table<std::complex<double>>;
 
 }  // namespace lsgp::LSGP_INSTRUCTIONS

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The dense work of a sparse Cholesky factorization, compiled for several instruction sets; the best one that the
+// The dense work of factorizations and prescription, compiled for several instruction sets; the best one that the
 // machine has is taken at run time.
 #pragma once
 
@@ -17,7 +17,7 @@ struct Front {
 
 // Vectors are rows of `width` numbers: one of each right side.
 template <typename Scalar>
-struct FrontKernels {
+struct DenseKernels {
   // Factors the panel, subtracts its outer product from the update and writes that of the retained rows, lower
   // triangle, to `outer` (retained, retained).  False where a pivot is not positive.
   bool (*eliminate)(const Front<Scalar>& front, Scalar* outer);
@@ -25,9 +25,11 @@ struct FrontKernels {
   void (*substitute_forward)(const Front<Scalar>& front, int width, Scalar* own, Scalar* others);
   // own = L^-H (own - panel below^H * others).
   void (*substitute_backward)(const Front<Scalar>& front, int width, Scalar* own, const Scalar* others);
+  // sum += A^H A, lower triangle, (count, count).  A: (rows, count), column-major.
+  void (*add_gram)(const Scalar* matrix, int rows, int count, Scalar* sum);
 };
 
 template <typename Scalar>
-const FrontKernels<Scalar>& front_kernels();
+const DenseKernels<Scalar>& dense_kernels();
 
 }  // namespace lsgp
