@@ -1,144 +1,162 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cones at the extrema of the log scale factor, one after the other (Ben-Chen, Gotsman, Bunin 2008).
-#include <algorithm>
+// The verbs of cone placement; every component is worked on for itself.
 #include <cmath>
 #include <limits>
 
+#include "component_placement.hpp"
 #include "components.hpp"
 #include "lsgp/lsgp.hpp"
+#include "monitor.hpp"
+#include "text.hpp"
+#include "validation.hpp"
 
 namespace lsgp {
 
 namespace {
 
-constexpr double wanted_l2 = 1.1;    // of the harmonic angles; least distortion then reaches about 1.05
-constexpr int most_automatic = 60;   // cones of one component
-constexpr int fewest_on_sphere = 4;  // a closed surface of genus 0 needs 3; 4 keep their angles moderate
-
-class GreedyPlacement {
+// A surface split into components, each with what cones may be placed on.
+class PlacementWork {
  public:
-  GreedyPlacement(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& existing)
-      : mesh_(mesh),
-        geometry_(geometry),
-        scale_(mesh, geometry, free_border(mesh, {})),
-        blocked_(mesh.vertex_count(), 0) {
-    scale_.add_cones(existing);
-    block();
+  PlacementWork(const Surface& surface, const Cones& existing, SeamMode seams, std::vector<Finding>& findings,
+                const Progress& progress)
+      : triangles_(surface.triangles.rows()), findings_(findings), monitor_(progress, seconds_) {
+    Options options;
+    options.prescription = PrescriptionRule::manual;  // given angles stay
+    options.seams = seams;
+    work_ = prepare(surface, existing, options, findings);
+    copies_.assign(surface.positions.rows(), 0);
+    for (const Component& component : work_.topology.components) {
+      for (const Index v : component.source_vertex) ++copies_[v];
+    }
   }
 
-  std::vector<Index> place(int count) {
-    while (!enough(count)) {
-      const Index v = largest_scale();
-      if (v != none) {
-        scale_.add_cones({v});
-      } else if (free_rings_ > 0 && (count >= 0 || too_few())) {
-        --free_rings_;  // a coarse mesh: cones have to come closer to each other
-      } else {
-        break;
-      }
-      block();
-    }
-    return scale_.cones();
+  double unit_scale() const { return work_.unit_scale; }
+  const std::vector<Component>& components() const { return work_.topology.components; }
+  Monitor& monitor() { return monitor_; }
+
+  // Calls visit(component, geometry, existing cones, allowed vertices, findings) for every component.
+  template <typename Visit>
+  void for_each(Visit visit) {
+    Index triangles_before = 0;
+    for_each_component(components(), findings_, [&](std::size_t i) {
+      const Component& component = components()[i];
+      const double begin = static_cast<double>(triangles_before) / static_cast<double>(triangles_);
+      triangles_before += component.mesh.triangle_count();
+      const Monitor::Part part(monitor_, begin,
+                               static_cast<double>(triangles_before) / static_cast<double>(triangles_));
+      monitor_.advance(0);
+      const Geometry geometry = require_geometry(component, findings_);
+      // A vertex where parts meet cannot have an angle on each.
+      std::vector<char> allowed;
+      for (const Index v : component.source_vertex) allowed.push_back(copies_[v] == 1);
+      std::vector<Finding> found;
+      visit(component, geometry, work_.tasks[i].cones, allowed, found);
+      report_border_cones(component, work_.tasks[i].border_cones, findings_);
+      move_findings(component, found, findings_);
+    });
+    monitor_.advance(1);
   }
 
  private:
-  bool enough(int count) const {
-    const int cones = scale_.cone_count();
-    if (count >= 0) return cones >= count;
-    if (too_few()) return false;
-    return cones >= most_automatic || scale_.predicted_l2(harmonic_scale()) <= wanted_l2;
-  }
-
-  bool too_few() const { return mesh_.closed() && mesh_.euler != 0 && scale_.cone_count() < fewest_on_sphere; }
-
-  // y = 0 at the cones; before the first cone of a closed surface, the metric of constant curvature.
-  Eigen::VectorXd harmonic_scale() const {
-    if (scale_.cone_count() > 0 || !mesh_.closed()) return scale_.evaluate(scale_.harmonic_curvature());
-    const double density = 2 * M_PI * mesh_.euler / geometry_.total_area;
-    Eigen::VectorXd y = scale_.solve(density * geometry_.vertex_area - geometry_.angle_defect);
-    y.array() -= geometry_.vertex_area.dot(y) / geometry_.total_area;
-    return y;
-  }
-
-  Index largest_scale() const {
-    Eigen::VectorXd y = harmonic_scale();
-    if (scale_.cone_count() > 0)
-      y.array() -= y[scale_.cones().front()];
-    else if (!mesh_.closed())
-      y.array() -= y[mesh_.boundary_loops.front().front()];
-    Index best = none;
-    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-      if (!blocked_[v] && (best == none || std::abs(y[v]) > std::abs(y[best]))) best = v;
-    }
-    return best;
-  }
-
-  // Cones side by side cancel each other: the rings around each stay free of others.  None lies on a border.
-  void block() {
-    std::fill(blocked_.begin(), blocked_.end(), 0);
-    for (const Index v : scale_.cones()) blocked_[v] = 1;
-    for (int ring = 0; ring < free_rings_; ++ring) {
-      const std::vector<char> inner = blocked_;
-      for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-        if (inner[v]) mesh_.for_each_outgoing(v, [&](Index h) { blocked_[mesh_.target(h)] = 1; });
-      }
-    }
-    for (const auto& loop : mesh_.boundary_loops) {
-      for (const Index v : loop) blocked_[v] = 1;
-    }
-  }
-
-  const HalfedgeMesh& mesh_;
-  const Geometry& geometry_;
-  LogScale scale_;
-  std::vector<char> blocked_;
-  int free_rings_ = 2;
+  Eigen::Index triangles_;
+  std::vector<Finding>& findings_;
+  StageSeconds seconds_;
+  Monitor monitor_;
+  Work work_;
+  std::vector<Index> copies_;  // (n) components' vertices that are one of the caller's
 };
+
+std::vector<Index> mirror_images(const Component& component, const Geometry& geometry, const PlacementOptions& options,
+                                 double unit_scale, std::vector<Finding>& findings) {
+  if (!options.symmetric) return {};
+  std::optional<MirrorPlane> plane = options.mirror;
+  if (plane) plane->point *= unit_scale;
+  std::vector<Index> images = find_mirror_images(component.mesh, geometry, plane);
+  if (images.empty()) {
+    std::vector<Index> all(component.source_triangle.size());
+    for (std::size_t f = 0; f < all.size(); ++f) all[f] = static_cast<Index>(f);
+    findings.push_back({Code::not_symmetric,
+                        concat("A part of the surface is not its own mirror image in ",
+                               options.mirror ? "the given plane" : "any plane that was tried",
+                               "; its cones were placed without regard to symmetry. Symmetrize the mesh, or give its "
+                               "mirror plane."),
+                        {ElementKind::triangles, std::move(all)}});
+  }
+  return images;
+}
 
 }  // namespace
 
-Placement place_cones(const Surface& surface, const Cones& existing, const PlacementOptions& placement,
-                      const Progress&) {
+Placement place_cones(const Surface& surface, const Cones& existing, const PlacementOptions& options,
+                      const Progress& progress) {
+  require_valid(options);
   Placement out;
-  Options options;
-  options.prescription = PrescriptionRule::manual;
-  options.seams = placement.seams;
-  if (placement.lattice) {
-    options.seamless.emplace();
-    options.seamless->lattice = *placement.lattice;
-  }
-  const Work work = prepare(surface, existing, options, out.warnings);
-  const std::vector<Component>& components = work.topology.components;
-  Cones all = existing;
-  for_each_component(components, out.warnings, [&](std::size_t i) {
-    const Component& component = components[i];
-    const Geometry geometry = require_geometry(component, out.warnings);
-    const std::vector<Index>& kept = work.tasks[i].cones.vertices;
-    const std::vector<Index> placed =
-        GreedyPlacement(component.mesh, geometry, kept).place(placement.count.value_or(-1));
-    for (std::size_t k = kept.size(); k < placed.size(); ++k) {
-      all.vertices.push_back(component.source_vertex[placed[k]]);
-      all.angles.push_back(std::nullopt);
+  PlacementWork work(surface, existing, options.seams, out.warnings, progress);
+  out.log_scale = Eigen::VectorXd::Zero(surface.positions.rows());
+  std::vector<std::optional<double>> angle(surface.positions.rows());
+  std::vector<Index> placed;
+  double stretched_area = 0, total_area = 0;
+  work.for_each([&](const Component& component, const Geometry& geometry, const ComponentCones& cones,
+                    const std::vector<char>& allowed, std::vector<Finding>& findings) {
+    const std::vector<Index> mirrored = mirror_images(component, geometry, options, work.unit_scale(), findings);
+    const PlacedCones found =
+        place_component({component.mesh, geometry, cones, allowed, mirrored}, options, findings, work.monitor());
+    for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
+      out.log_scale[component.source_vertex[v]] = found.curvature.log_scale[v];
     }
+    for (std::size_t i = 0; i < found.cones.vertices.size(); ++i) {
+      placed.push_back(component.source_vertex[found.cones.vertices[i]]);
+      angle[placed.back()] = found.cones.angles[i];
+    }
+    // Islands get the same area in 2D as in 3D, so their squared stretches add up by area.
+    stretched_area += found.curvature.predicted_l2 * found.curvature.predicted_l2 * geometry.total_area;
+    total_area += geometry.total_area;
+    out.reached &= found.reached;
+    out.factorizations += found.factorizations;
+    out.back_substitutions += found.back_substitutions;
   });
-  const Prescription prescription = prescribe_curvature(surface, all, options);
-  out.cones = prescription.cones;
-  out.cone_angles = prescription.cone_angles;
-  out.log_scale = prescription.log_scale;
-  out.predicted_l2 = prescription.predicted_l2;
+  out.predicted_l2 = std::sqrt(stretched_area / total_area);
+  std::vector<Index> all = existing.vertices;
+  all.insert(all.end(), placed.begin(), placed.end());
+  for (const Index v : all) {
+    if (!angle[v]) continue;
+    out.cones.push_back(v);
+    out.cone_angles.push_back(*angle[v]);
+    angle[v].reset();  // listed
+  }
   return out;
 }
 
 ConeGains cone_gains(const Surface& surface, const Cones& existing, SeamMode seams, const Progress& progress) {
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
   ConeGains out;
+  PlacementWork work(surface, existing, seams, out.warnings, progress);
   out.predicted_l2 = Eigen::VectorXd::Constant(surface.positions.rows(), std::numeric_limits<double>::quiet_NaN());
-  PlacementOptions options;
-  options.seams = seams;
-  options.count = static_cast<int>(existing.vertices.size()) + 1;
-  const Placement placed = place_cones(surface, existing, options, progress);
-  if (placed.cones.size() <= existing.vertices.size()) return out;
-  out.best = placed.cones.back();
-  out.predicted_l2[out.best] = placed.predicted_l2;
+  double stretched_area = 0, total_area = 0, most = 0, most_without = 0;
+  work.for_each([&](const Component& component, const Geometry& geometry, const ComponentCones& cones,
+                    const std::vector<char>& allowed, std::vector<Finding>&) {
+    const ComponentGains gains = component_gains({component.mesh, geometry, cones, allowed, {}}, work.monitor());
+    Index best = none;
+    for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
+      const double with_cone = gains.predicted_l2[v];
+      if (std::isnan(with_cone)) continue;
+      out.predicted_l2[component.source_vertex[v]] = with_cone;
+      if (best == none || with_cone < gains.predicted_l2[best]) best = v;
+    }
+    stretched_area += gains.present_l2 * gains.present_l2 * geometry.total_area;
+    total_area += geometry.total_area;
+    if (best == none) return;
+    // A component that has to have a cone comes first, the largest before others.
+    const bool needed = gains.present_l2 == unlimited;
+    const double saved = geometry.total_area *
+                         (gains.present_l2 * gains.present_l2 - gains.predicted_l2[best] * gains.predicted_l2[best]);
+    const double gained = needed ? geometry.total_area : saved;
+    double& record = needed ? most_without : most;
+    if (!(gained > record) || (!needed && most_without > 0)) return;
+    record = gained;
+    out.best = component.source_vertex[best];
+  });
+  out.present_l2 = std::sqrt(stretched_area / total_area);
   return out;
 }
 

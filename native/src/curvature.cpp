@@ -11,6 +11,7 @@
 #include "cut_mesh.hpp"
 #include "energies/quadratic_forms.hpp"
 #include "quantize_curvature.hpp"
+#include "solvers/box_qp.hpp"
 #include "straightness.hpp"
 #include "text.hpp"
 
@@ -52,20 +53,6 @@ Bounds widest_bounds(const HalfedgeMesh& mesh, const ComponentCones& cones) {
   return bounds_from_angles(mesh, cones, impossible_angle, unlimited, impossible_share_of_valence);
 }
 
-// The point between the bounds with the given sum that is nearest to the wanted one, by bisection on a common shift.
-Eigen::VectorXd shift_into(const Bounds& bounds, const Eigen::VectorXd& wanted, double sum) {
-  const auto at = [&](double shift) {
-    return Eigen::VectorXd((wanted.array() + shift).matrix().cwiseMax(bounds.low).cwiseMin(bounds.high));
-  };
-  double below = (bounds.low - wanted).minCoeff() - 1, above = (bounds.high - wanted).maxCoeff() + 1;
-  for (int i = 0; i < 200 && below < above; ++i) {
-    const double middle = below + (above - below) / 2;
-    if (middle <= below || middle >= above) break;
-    (at(middle).sum() < sum ? below : above) = middle;
-  }
-  return at(above);
-}
-
 bool all_fixed(const ComponentCones& cones) {
   return std::all_of(cones.angles.begin(), cones.angles.end(), [](const auto& angle) { return angle.has_value(); });
 }
@@ -76,55 +63,6 @@ bool all_fixed(const ComponentCones& cones) {
                      sum / M_PI, " pi in sum (", sum, "), but this surface requires ", required / M_PI, " pi (",
                      required, "). ", remedy),
               {ElementKind::vertices, cones.vertices});
-}
-
-// Refuses what no choice of the automatic angles can mend.
-void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, const BorderConditions& border) {
-  std::vector<Index> overloaded;
-  for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
-    const int triangles = valence(mesh, cones.vertices[i]);
-    if (cones.angles[i] && *cones.angles[i] >= M_PI * triangles) overloaded.push_back(cones.vertices[i]);
-  }
-  if (!overloaded.empty()) {
-    throw Error(Code::cone_angle_range,
-                concat(count(overloaded.size(), "cone has", "cones have"),
-                       " an angle that the triangles around it cannot carry, less than 180 degrees each. Lower the "
-                       "angle or subdivide the mesh there."),
-                {ElementKind::vertices, overloaded});
-  }
-  if (!border.balanced) return;
-  const double required = 2 * M_PI * mesh.euler - border.curvature.sum();
-  if (cones.vertices.empty()) {
-    if (std::abs(required) < renormalized_mismatch) return;
-    if (!mesh.closed()) {
-      throw Error(Code::too_few_cones, concat("A straight border has to turn by ", required / M_PI,
-                                              " pi in all, at marked corners. Mark the "
-                                              "border's corners as cones, or leave the border free."));
-    }
-    throw Error(Code::too_few_cones,
-                concat("A closed surface without cones cannot be unfolded: its curvature of ", required / M_PI,
-                       " pi has to go somewhere. Mark cones at tips and corners, or place them automatically."));
-  }
-  const Bounds widest = widest_bounds(mesh, cones);
-  if (all_fixed(cones)) {
-    const double sum = widest.low.sum();
-    if (std::abs(sum - required) > renormalized_mismatch) {
-      throw_gauss_bonnet(cones, sum, required, "Change an angle, or leave one automatic to take up the rest.");
-    }
-    return;
-  }
-  if (widest.low.sum() <= required && required <= widest.high.sum()) return;
-  const bool some_fixed =
-      std::any_of(cones.angles.begin(), cones.angles.end(), [](const auto& a) { return a.has_value(); });
-  if (some_fixed) {
-    throw_gauss_bonnet(cones, required < widest.low.sum() ? widest.low.sum() : widest.high.sum(), required,
-                       "The automatic cones cannot take up the rest: change the given angles or add cones.");
-  }
-  throw Error(
-      Code::too_few_cones,
-      concat(count(cones.vertices.size(), "cone cannot", "cones cannot"), " take up the surface's curvature of ",
-             required / M_PI, " pi, less than 2 pi each. Mark more cones, or place them automatically."),
-      {ElementKind::vertices, cones.vertices});
 }
 
 Eigen::VectorXd least_distortion(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale) {
@@ -141,7 +79,7 @@ Eigen::VectorXd least_distortion(const HalfedgeMesh& mesh, const ComponentCones&
     const double required = scale.required_sum();
     if (bounds.low.sum() > required) bounds.low = widest.low;
     if (bounds.high.sum() < required) bounds.high = widest.high;
-    start = shift_into(bounds, start, required);
+    start = nearest_with_sum(bounds.low, bounds.high, start, required);
   }
   return scale.least_distortion_curvature(bounds.low, bounds.high, std::move(start));
 }
@@ -370,6 +308,54 @@ BorderConditions border_conditions(const HalfedgeMesh& mesh, const Geometry& geo
                                                                 : free_border(mesh, cones.vertices);
 }
 
+void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, const BorderConditions& border) {
+  std::vector<Index> overloaded;
+  for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
+    const int triangles = valence(mesh, cones.vertices[i]);
+    if (cones.angles[i] && *cones.angles[i] >= M_PI * triangles) overloaded.push_back(cones.vertices[i]);
+  }
+  if (!overloaded.empty()) {
+    throw Error(Code::cone_angle_range,
+                concat(count(overloaded.size(), "cone has", "cones have"),
+                       " an angle that the triangles around it cannot carry, less than 180 degrees each. Lower the "
+                       "angle or subdivide the mesh there."),
+                {ElementKind::vertices, overloaded});
+  }
+  if (!border.balanced) return;
+  const double required = 2 * M_PI * mesh.euler - border.curvature.sum();
+  if (cones.vertices.empty()) {
+    if (std::abs(required) < renormalized_mismatch) return;
+    if (!mesh.closed()) {
+      throw Error(Code::too_few_cones, concat("A straight border has to turn by ", required / M_PI,
+                                              " pi in all, at marked corners. Mark the "
+                                              "border's corners as cones, or leave the border free."));
+    }
+    throw Error(Code::too_few_cones,
+                concat("A closed surface without cones cannot be unfolded: its curvature of ", required / M_PI,
+                       " pi has to go somewhere. Mark cones at tips and corners, or place them automatically."));
+  }
+  const Bounds widest = widest_bounds(mesh, cones);
+  if (all_fixed(cones)) {
+    const double sum = widest.low.sum();
+    if (std::abs(sum - required) > renormalized_mismatch) {
+      throw_gauss_bonnet(cones, sum, required, "Change an angle, or leave one automatic to take up the rest.");
+    }
+    return;
+  }
+  if (widest.low.sum() <= required && required <= widest.high.sum()) return;
+  const bool some_fixed =
+      std::any_of(cones.angles.begin(), cones.angles.end(), [](const auto& a) { return a.has_value(); });
+  if (some_fixed) {
+    throw_gauss_bonnet(cones, required < widest.low.sum() ? widest.low.sum() : widest.high.sum(), required,
+                       "The automatic cones cannot take up the rest: change the given angles or add cones.");
+  }
+  throw Error(
+      Code::too_few_cones,
+      concat(count(cones.vertices.size(), "cone cannot", "cones cannot"), " take up the surface's curvature of ",
+             required / M_PI, " pi, less than 2 pi each. Mark more cones, or place them automatically."),
+      {ElementKind::vertices, cones.vertices});
+}
+
 void require_possible(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones) {
   if (cones.symmetry > 0) return;  // rounded angles are the tool's own choice
   const BorderConditions border = border_conditions(mesh, geometry, cones);
@@ -420,7 +406,12 @@ Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, Prescr
   } else if (border.balanced && curvature.size() > 0) {
     curvature.array() += (scale.required_sum() - curvature.sum()) / static_cast<double>(curvature.size());
   }
+  return impose(mesh, geometry, asked, border, scale, curvature, findings);
+}
 
+Curvature impose(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& asked,
+                 const BorderConditions& border, const LogScale& scale, const Eigen::VectorXd& curvature,
+                 std::vector<Finding>& findings) {
   Curvature out;
   out.log_scale = scale.evaluate_held(curvature);
   prescribe_turning(mesh, geometry, asked, border, scale, out);

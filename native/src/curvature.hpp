@@ -26,6 +26,7 @@ class LogScale {
            const CutFactor* factor = nullptr);
 
   void add_cones(const std::vector<Index>& vertices);  // none twice, none held
+  void remove_cones();                                 // all of them
   Index cone_count() const { return static_cast<Index>(cones_.size()); }
   const std::vector<Index>& cones() const { return cones_; }
   bool balanced() const { return border_.balanced; }
@@ -41,6 +42,7 @@ class LogScale {
 
   // Solves L y = right side, (n), where y is not held; the sum of the right side is 0 when balanced.
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;
+  Eigen::MatrixXd solve_columns(const Eigen::MatrixXd& right_sides) const;  // (n, k)
 
   // The cone curvatures for which y is 0 (balanced: constant) at all cones (Ben-Chen et al. 2008).
   Eigen::VectorXd harmonic_curvature() const;
@@ -50,7 +52,10 @@ class LogScale {
   Eigen::VectorXd least_distortion_curvature(const Eigen::VectorXd& low, const Eigen::VectorXd& high,
                                              Eigen::VectorXd start) const;
 
+  // The L2 stretch of the map, (area-weighted mean e^{2y} mean e^{-2y})^{1/2}: with y at the middles of edges, which
+  // tells it best, and lumped at the vertices, which is quicker and what the prescription minimises.
   double predicted_l2(const Eigen::VectorXd& log_scale) const;
+  double lumped_l2(const Eigen::VectorXd& log_scale) const;
 
   // The area-weighted variance of y: constant + 2 gradient . kappa + kappa . hessian kappa.
   struct Variance {
@@ -108,6 +113,14 @@ BorderConditions border_conditions(const HalfedgeMesh& mesh, const Geometry& geo
 // own vertex numbers.
 Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, PrescriptionRule rule,
                     std::vector<Finding>& findings, const FactorHook& hook = {});
+
+// The same with the cones' curvatures given; scale has these cones added, in the same order.  Throws LOOP_TURNING.
+Curvature impose(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& asked,
+                 const BorderConditions& border, const LogScale& scale, const Eigen::VectorXd& curvature,
+                 std::vector<Finding>& findings);
+
+// Refuses what no choice of the automatic angles can mend.  Throws TOO_FEW_CONES, CONE_ANGLE_RANGE, GAUSS_BONNET.
+void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, const BorderConditions& border);
 
 // Throws ANGLES_IMPOSSIBLE for given angles that no map has, whatever the automatic ones are.
 void require_possible(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones);

@@ -53,6 +53,10 @@ LogScale::LogScale(const HalfedgeMesh& mesh, const Geometry& geometry, const Bor
 
 Eigen::VectorXd LogScale::solve(const Eigen::VectorXd& right_side) const { return laplace_->solve(right_side); }
 
+Eigen::MatrixXd LogScale::solve_columns(const Eigen::MatrixXd& right_sides) const {
+  return laplace_->solve(right_sides);
+}
+
 void LogScale::add_cones(const std::vector<Index>& vertices) {
   Eigen::MatrixXd added = laplace_->solve_impulses(vertices);
   if (cones_.empty()) {
@@ -62,6 +66,11 @@ void LogScale::add_cones(const std::vector<Index>& vertices) {
     green_.rightCols(added.cols()) = added;
   }
   cones_.insert(cones_.end(), vertices.begin(), vertices.end());
+}
+
+void LogScale::remove_cones() {
+  cones_.clear();
+  green_.resize(mesh_.vertex_count(), 0);
 }
 
 Eigen::VectorXd LogScale::evaluate(const Eigen::VectorXd& cone_curvature) const {
@@ -124,6 +133,17 @@ Eigen::VectorXd LogScale::least_distortion_curvature(const Eigen::VectorXd& low,
 }
 
 double LogScale::predicted_l2(const Eigen::VectorXd& log_scale) const {
+  const double middle = (log_scale.maxCoeff() + log_scale.minCoeff()) / 2;  // keeps the exponentials in range
+  double growth = 0, shrinkage = 0;
+  for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
+    const double scale = std::exp(log_scale[mesh_.origin(h)] + log_scale[mesh_.target(h)] - 2 * middle);
+    growth += geometry_.area[h / 3] * scale;
+    shrinkage += geometry_.area[h / 3] / scale;
+  }
+  return std::sqrt(growth) * std::sqrt(shrinkage) / (3 * geometry_.total_area);
+}
+
+double LogScale::lumped_l2(const Eigen::VectorXd& log_scale) const {
   return std::exp((log_mean_exp(weight_, 2 * log_scale) + log_mean_exp(weight_, -2 * log_scale)) / 2);
 }
 

@@ -13,6 +13,12 @@ void Monitor::advance(double done) {
   if (!progress_(told_)) throw Error(Code::cancelled, "Stopped as asked; nothing was changed.");
 }
 
+void Monitor::tick() {
+  constexpr double share = 0.01;
+  const double left = std::max(0.0, high_ - std::max(told_, low_));
+  advance((std::max(told_, low_) + share * left - low_) / std::max(high_ - low_, 1e-300));
+}
+
 Monitor::Part::Part(Monitor& monitor, double begin, double end)
     : monitor_(monitor), low_(monitor.low_), high_(monitor.high_) {
   monitor.low_ = low_ + begin * (high_ - low_);

@@ -18,6 +18,9 @@ class Monitor {
   // done: of the innermost part under way, 0 to 1.  Throws CANCELLED.
   void advance(double done);
 
+  // Where nobody knows how much there is to do: a small share of what is left of the part.
+  void tick();
+
   // While it lives, what is done is told as what lies between two shares of the part around it.
   class Part {
    public:

@@ -160,7 +160,7 @@ class Exchange {
       if (swap.second != none) at -= swap.step * unit * scale.effect(swap.second);
       return at;
     };
-    double least = scale.predicted_l2(y);
+    double least = scale.lumped_l2(y);
     int trials = 0;
     struct Trial {
       double stretch;
@@ -171,7 +171,7 @@ class Exchange {
       std::vector<Trial> tried;
       for (const Swap& swap : turns.swaps(keep_sum, {}, count)) {
         Eigen::VectorXd there = moved(at, swap);
-        tried.push_back({scale.predicted_l2(there), swap});
+        tried.push_back({scale.lumped_l2(there), swap});
         ++trials;
         if (!(tried.back().stretch < least * (1 - 1e-9))) continue;
         least = tried.back().stretch;
@@ -314,7 +314,7 @@ Eigen::VectorXd quantize_curvature(const HalfedgeMesh& mesh, const ComponentCone
     if (balanced) exchange.reach(sum);
     exchange.leave_impossible(balanced);
     exchange.search(balanced);
-    const double stretch = scale.predicted_l2(scale.evaluate(exchange.curvature()));
+    const double stretch = scale.lumped_l2(scale.evaluate(exchange.curvature()));
     if (best && !(stretch < least)) return;
     least = stretch;
     best = std::move(exchange);

@@ -193,6 +193,23 @@ void require_valid(const Surface& surface, const Cones& cones) {
          "Give an angle above 0 degrees.");
 }
 
+void require_valid(const PlacementOptions& options) {
+  if (options.count && *options.count < 0) {
+    throw Error(Code::wrong_parameter, concat("The number of cones is ", *options.count, ". Give 0 or more."));
+  }
+  if (!(options.target > 1) || !std::isfinite(options.target)) {
+    throw Error(Code::wrong_parameter,
+                concat("The L2 stretch to reach is ", options.target, ". Give a number above 1, which is none."));
+  }
+  if (!options.mirror) return;
+  const bool finite = options.mirror->point.allFinite() && options.mirror->normal.allFinite();
+  if (!finite || !(options.mirror->normal.norm() > 0)) {
+    throw Error(Code::wrong_parameter,
+                "The mirror plane has no usable point and normal. Give finite numbers, and a "
+                "normal that is not zero.");
+  }
+}
+
 void require_valid(const Surface& surface, const Pins& pins) {
   const Index corner_count = static_cast<Index>(3 * surface.triangles.rows());
   if (pins.positions.rows() != static_cast<Eigen::Index>(pins.corners.size())) {

@@ -4,6 +4,7 @@
 
 #include "lsgp/errors.hpp"
 #include "lsgp/options.hpp"
+#include "lsgp/placement.hpp"
 #include "lsgp/surface.hpp"
 
 namespace lsgp {
@@ -21,6 +22,9 @@ void require_valid(const Surface& surface, const Cones& cones);
 
 // Throws WRONG_PARAMETER.
 void require_valid(const Options& options);
+
+// Throws WRONG_PARAMETER.
+void require_valid(const PlacementOptions& options);
 
 // Throws PIN_INDEX, PIN_NON_FINITE.
 void require_valid(const Surface& surface, const Pins& pins);

@@ -91,4 +91,18 @@ Eigen::VectorXd minimize_in_box(const Eigen::MatrixXd& hessian, const Eigen::Vec
   return d;
 }
 
+Eigen::VectorXd nearest_with_sum(const Eigen::VectorXd& low, const Eigen::VectorXd& high, const Eigen::VectorXd& wanted,
+                                 double sum) {
+  const auto at = [&](double shift) {
+    return Eigen::VectorXd((wanted.array() + shift).matrix().cwiseMax(low).cwiseMin(high));
+  };
+  double below = (low - wanted).minCoeff() - 1, above = (high - wanted).maxCoeff() + 1;
+  for (int i = 0; i < 200 && below < above; ++i) {
+    const double middle = below + (above - below) / 2;
+    if (middle <= below || middle >= above) break;
+    (at(middle).sum() < sum ? below : above) = middle;
+  }
+  return at(above);
+}
+
 }  // namespace lsgp

@@ -12,4 +12,9 @@ namespace lsgp {
 Eigen::VectorXd minimize_in_box(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
                                 const Eigen::VectorXd& low, const Eigen::VectorXd& high, bool keep_sum);
 
+// The point low <= x <= high with the given sum that differs from the wanted one by a common shift, as far as the
+// bounds let it; the nearest one where no point has that sum.
+Eigen::VectorXd nearest_with_sum(const Eigen::VectorXd& low, const Eigen::VectorXd& high, const Eigen::VectorXd& wanted,
+                                 double sum);
+
 }  // namespace lsgp

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cone_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace lsgp {
+
+namespace {
+
+constexpr int free_rings = 2;              // around each cone: cones side by side cancel each other
+constexpr int tries = 2;                   // of new sites for a cone that is exchanged
+constexpr double worthwhile = 0.998;       // of the variance: less is not worth an exchange
+constexpr double sharp_defect = M_PI / 6;  // of an angle
+constexpr double sharp_share = 0.5;        // of the largest gain that a sharp corner has to have to be preferred
+constexpr double sharp_price = 1.25;       // the factor of variance that it may cost
+
+}  // namespace
+
+ConeSearch::ConeSearch(const HalfedgeMesh& mesh, const PlacementProblem& problem, int kept, bool sharp,
+                       Monitor& monitor)
+    : mesh_(mesh), problem_(problem), kept_(kept), prefers_sharp_(sharp), monitor_(monitor) {}
+
+bool ConeSearch::is_sharp(int site) const { return std::abs(problem_.limits.defect(site)) >= sharp_defect; }
+
+std::vector<char> ConeSearch::open_sites(const std::vector<int>& used) const {
+  const std::vector<Site>& sites = problem_.kernel.sites();
+  std::vector<char> open(sites.size());
+  for (int rings = free_rings; rings >= 0; --rings) {
+    std::vector<char> near(mesh_.vertex_count(), 0);
+    for (const int site : used) {
+      for (const Index v : {sites[site].vertex, sites[site].mirrored}) {
+        if (v != none) mark_rings(mesh_, v, rings, near);
+      }
+    }
+    bool room = false;
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+      open[i] = !near[sites[i].vertex] && (sites[i].mirrored == none || !near[sites[i].mirrored]);
+      room |= open[i] != 0;
+    }
+    if (room) break;
+  }
+  return open;
+}
+
+std::optional<int> ConeSearch::best_site(const Eigen::VectorXd& gains, const std::vector<char>& open) const {
+  std::optional<int> best, sharp;
+  const std::vector<Site>& sites = problem_.kernel.sites();
+  const auto gain = [&](int i) { return gains[i] / sites[i].cones(); };
+  for (int i = 0; i < gains.size(); ++i) {
+    if (!open[i]) continue;
+    if (!best || gain(i) > gain(*best)) best = i;
+    if (prefers_sharp_ && is_sharp(i) && (!sharp || gain(i) > gain(*sharp))) sharp = i;
+  }
+  if (sharp && gain(*sharp) >= sharp_share * gain(*best)) return sharp;
+  return best;
+}
+
+void ConeSearch::grow(ConeSet& set, int cones) const {
+  while (set.cone_count() < cones) {
+    std::vector<char> open = open_sites(set.sites());
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      open[i] = open[i] && problem_.kernel.sites()[i].cones() <= cones - set.cone_count();
+    }
+    const std::optional<int> best = best_site(set.gains(), open);
+    if (!best) break;
+    set.add(*best);
+    monitor_.tick();
+  }
+}
+
+std::vector<int> ConeSearch::by_loss(const ConeSet& set) const {
+  std::vector<int> places(set.sites().size() - kept_);
+  std::iota(places.begin(), places.end(), kept_);
+  const Eigen::VectorXd losses = set.losses();
+  std::stable_sort(places.begin(), places.end(), [&](int a, int b) { return losses[a] < losses[b]; });
+  return places;
+}
+
+void ConeSearch::exchange(ConeSet& set, int sweeps) const {
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    bool moved = false;
+    std::vector<int> sites;
+    for (const int place : by_loss(set)) sites.push_back(set.sites()[place]);
+    for (const int site : sites) {
+      moved |= exchange_one(set, site);
+      monitor_.tick();
+    }
+    if (!moved) return;
+  }
+}
+
+bool ConeSearch::exchange_one(ConeSet& set, int site) const {
+  const std::vector<Site>& sites = problem_.kernel.sites();
+  const int place = static_cast<int>(std::find(set.sites().begin(), set.sites().end(), site) - set.sites().begin());
+  ConeSet rest = set;
+  rest.remove(place);
+  const Eigen::VectorXd gains = rest.gains();
+  std::vector<char> open = open_sites(rest.sites());
+  for (std::size_t i = 0; i < open.size(); ++i) open[i] = open[i] && sites[i].cones() == sites[site].cones();
+  for (int i = 0; i < tries; ++i) {
+    const std::optional<int> best = best_site(gains, open);
+    if (!best || *best == site) return false;
+    const bool sharper = prefers_sharp_ && is_sharp(*best) && !is_sharp(site);
+    const double most = set.variance() * (sharper ? sharp_price : worthwhile);
+    if (rest.variance() - gains[*best] >= most) return false;
+    ConeSet moved = rest;
+    moved.add(*best);
+    if (moved.variance() < most) {
+      set = std::move(moved);
+      return true;
+    }
+    open[*best] = 0;
+  }
+  return false;
+}
+
+void ConeSearch::drop(ConeSet& set) const { set.remove(by_loss(set).front()); }
+
+}  // namespace lsgp

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Places for cones whose curvature is settled, as that of a seamless layout is.
+#pragma once
+
+#include <vector>
+
+#include "cone_search.hpp"
+
+namespace lsgp {
+
+// Moves cone after cone to the site where its curvature makes the variance of the log scale least; the first `kept`
+// stay.  curvature: of the sites, both of two cones together.  Returns whether any was moved.
+bool relocate(const PlacementProblem& problem, const ConeSearch& search, int kept, const Eigen::VectorXd& curvature,
+              std::vector<int>& sites);
+
+}  // namespace lsgp

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The area-weighted variance of the log scale as a quadratic form in the curvatures at the sites where cones may go:
+// J(x) = J_0 + 2 h . x + x . H x, for all sites at once and on one factorization.
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <vector>
+
+#include "cone_sites.hpp"
+#include "curvature.hpp"
+#include "monitor.hpp"
+
+namespace lsgp {
+
+class VarianceKernel {
+ public:
+  // probes: random curvatures from which the diagonal of H is estimated (Nystrom), to about 1 % with 48 of them.
+  VarianceKernel(const Geometry& geometry, const LogScale& scale, const BorderConditions& border,
+                 std::vector<Site> sites, int probes, Monitor& monitor);
+
+  const std::vector<Site>& sites() const { return sites_; }
+  int site_count() const { return static_cast<int>(sites_.size()); }
+  double without_cones() const { return without_cones_; }        // J_0
+  const Eigen::VectorXd& gradient() const { return gradient_; }  // (sites) h
+  const Eigen::VectorXd& diagonal() const { return diagonal_; }  // (sites) of H, estimated until its column is known
+  double diagonal_error() const { return diagonal_error_; }      // how far off it may be
+  const Eigen::VectorXd& column(int site);                       // (sites) of H, exact
+  bool knows(int site) const { return columns_.count(site) > 0; }
+  // The log scale, (n) of mean 0, with curvatures at some sites.
+  Eigen::VectorXd log_scale(const std::vector<int>& sites, const Eigen::VectorXd& curvature);
+  int back_substitutions() const { return back_substitutions_; }
+
+ private:
+  Eigen::MatrixXd impulses(const std::vector<int>& sites) const;
+  // The log scale, of mean 0, that curvatures (n, k) cause, and the transpose of this.
+  Eigen::MatrixXd caused_by(Eigen::MatrixXd curvature);
+  Eigen::MatrixXd transposed(Eigen::MatrixXd values);
+  Eigen::MatrixXd at_sites(const Eigen::MatrixXd& values) const;  // (sites, k)
+  void estimate_diagonal(int probes, Monitor& monitor);
+
+  const LogScale& scale_;
+  Eigen::VectorXd elsewhere_;  // (n) curvature imposed without cones less the angle defects
+  Eigen::VectorXd weight_;     // (n) share of the area
+  std::vector<Site> sites_;
+  double without_cones_ = 0;
+  Eigen::VectorXd gradient_, diagonal_;
+  double diagonal_error_ = 0;
+  std::map<int, Eigen::VectorXd> columns_;
+  int back_substitutions_ = 0;
+};
+
+}  // namespace lsgp

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Automatic cones on real meshes: as few as promised, as little stretch as predicted, nothing else to be set."""
+
+from __future__ import annotations
+
+import lsgp
+import numpy as np
+import pytest
+from map_checks import surface
+from meshes import Mesh
+from placement_checks import place
+from shared_meshes import shared_mesh
+
+FEWEST = {
+    "fandisk": 8,
+    "octa-flower": 6,
+    "igea-16k": 8,
+    "max-planck-25k": 9,
+    "bird": 15,
+    "hand-5k": 28,
+    "kitten-genus1": 14,
+    "camel-head-disk": 12,
+    "julius": 4,
+}
+AT_COUNT = {
+    "fandisk": (25, 1.008),
+    "igea-16k": (14, 1.014),
+    "max-planck-25k": (14, 1.025),
+    "bird": (25, 1.008),
+    "hand-5k": (25, 1.10),
+}
+CLOSED = [
+    "cube-768",
+    "octa-flower",
+    "igea-16k",
+    "max-planck-25k",
+    "fandisk",
+    "bird",
+    "hand-5k",
+    "kitten-genus1",
+    "eight-genus2",
+    "elephant-genus3",
+]
+
+
+def unwrapped(mesh: Mesh, placed: lsgp.Placement, **options: object) -> lsgp.Result:
+    result = lsgp.parameterize(surface(mesh), placed.cones, placed.cone_angles, lsgp.Options(**options))
+    assert result.flipped.size == 0 and result.wrong_angle_sums.size == 0
+    return result
+
+
+@pytest.mark.many_solves
+@pytest.mark.parametrize("name", FEWEST)
+def test_few_cones_reach_the_target_and_the_map_keeps_it(name: str) -> None:
+    mesh = shared_mesh(name)
+    placed = place(mesh)
+    assert placed.reached and placed.predicted_l2 <= 1.05
+    assert len(placed.cones) <= FEWEST[name]
+    assert unwrapped(mesh, placed).distortion.l2_stretch == pytest.approx(placed.predicted_l2, rel=0.03)
+    assert placed.factorizations == 1
+
+
+@pytest.mark.many_solves
+@pytest.mark.parametrize("name", AT_COUNT)
+def test_stretch_at_a_count(name: str) -> None:
+    mesh = shared_mesh(name)
+    count, most = AT_COUNT[name]
+    placed = place(mesh, count=count)
+    assert len(placed.cones) == count and placed.back_substitutions <= 500
+    assert unwrapped(mesh, placed).distortion.l2_stretch <= most
+
+
+@pytest.mark.many_solves
+@pytest.mark.parametrize("name", CLOSED)
+def test_as_good_as_other_cones_of_the_same_number(name: str) -> None:
+    mesh = shared_mesh(name)
+    other = lsgp.parameterize(surface(mesh), mesh.cones).distortion.l2_stretch
+    assert unwrapped(mesh, place(mesh, count=len(mesh.cones))).distortion.l2_stretch <= other + 1e-3
+
+
+@pytest.mark.many_solves
+def test_rounded_angles_and_places_are_chosen_together() -> None:
+    mesh = shared_mesh("fandisk")
+    placed = place(mesh, count=25, lattice="square")
+    turns = placed.cone_angles / (np.pi / 2)
+    assert turns == pytest.approx(turns.round(), abs=1e-9)
+    assert placed.predicted_l2 <= 1.03
+    result = unwrapped(mesh, placed, seamless=lsgp.Seamless("square", tiles=64))
+    assert result.distortion.l2_stretch <= 1.03 and result.seamless.error == 0
+    assert result.cone_angles == pytest.approx(placed.cone_angles, abs=1e-9)
+
+
+@pytest.mark.many_solves
+@pytest.mark.parametrize("name", ["suzanne-messy", "camel-head-disk", "teapot-messy", "julius", "rabbit"])
+def test_an_artist_gets_a_usable_map_without_any_choice(name: str) -> None:
+    """From the file to the map: automatic cones, default options."""
+    mesh = shared_mesh(name)
+    result = unwrapped(mesh, place(mesh))
+    assert result.solved.all() and result.distortion.l2_stretch <= 1.15
