@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Time of placing 25 cones, as a multiple of libigl's LSCM on the same mesh: a Markdown table.
 
-LSCM gets the surface as it is and two pins. Times are CPU seconds of all threads together, the least of some repetitions
+LSCM gets the surface as it is and two pins. Times are CPU seconds of all threads together, the least of repetitions
 that take turns. Needs numpy and libigl beside lsgp; denser surfaces are subdivided ones.
 
     python tools/placement_benchmark.py [--repetitions 3] [mesh ...]

@@ -22,6 +22,7 @@ constexpr int most_relocations = 3;
 // Of a given number of cones.  Beyond the second, maps begin to miss their prediction; beyond the fourth, many do.
 constexpr double reaches[] = {usual_reach, wider_reach, 1.0, 1.15, 1.6};
 constexpr double trusted_reach = 1.15;
+constexpr double low_l2 = 1.03;             // an L2 stretch that stronger cones need not lower
 constexpr double worth_strong_cones = 0.9;  // of the stretch above 1 that weaker ones leave
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
@@ -136,7 +137,7 @@ ConeChoice Placing::place_count(int count, const PlacementOptions& options) {
     search_.exchange(set, effort_.sweeps);
     ConeChoice choice = options.lattice ? rounded(set, *options.lattice) : choice_of(set);
     if (!best || choice.predicted_l2 - 1 < worth_strong_cones * (best->predicted_l2 - 1)) best = std::move(choice);
-    if (best->predicted_l2 <= options.target || options.lattice || !search_.can_drop(set)) break;
+    if (best->predicted_l2 <= low_l2 || options.lattice || !search_.can_drop(set)) break;
   }
   if (best->predicted_l2 <= hopeless_l2 || best->predicted_l2 == unlimited || options.lattice) return *best;
   ConeChoice other = place_harmonically(static_cast<int>(best->vertices.size()));

@@ -84,20 +84,23 @@ void ConeSearch::exchange(ConeSet& set, int sweeps) const {
     bool moved = false;
     std::vector<int> sites;
     for (const int place : by_loss(set)) sites.push_back(set.sites()[place]);
+    ConeSet::Explained explained = set.explain();
     for (const int site : sites) {
-      moved |= exchange_one(set, site);
       monitor_.tick();
+      if (!exchange_one(set, explained, site)) continue;
+      moved = true;
+      explained = set.explain();
     }
     if (!moved) return;
   }
 }
 
-bool ConeSearch::exchange_one(ConeSet& set, int site) const {
+bool ConeSearch::exchange_one(ConeSet& set, const ConeSet::Explained& explained, int site) const {
   const std::vector<Site>& sites = problem_.kernel.sites();
   const int place = static_cast<int>(std::find(set.sites().begin(), set.sites().end(), site) - set.sites().begin());
   ConeSet rest = set;
   rest.remove(place);
-  const Eigen::VectorXd gains = rest.gains();
+  const Eigen::VectorXd gains = rest.gains(explained.without(place));
   std::vector<char> open = open_sites(rest.sites());
   for (std::size_t i = 0; i < open.size(); ++i) open[i] = open[i] && sites[i].cones() == sites[site].cones();
   for (int i = 0; i < tries; ++i) {

@@ -30,7 +30,7 @@ class ConeSearch {
 
  private:
   std::optional<int> best_site(const Eigen::VectorXd& gains, const std::vector<char>& open) const;
-  bool exchange_one(ConeSet& set, int site) const;
+  bool exchange_one(ConeSet& set, const ConeSet::Explained& explained, int site) const;
   std::vector<int> by_loss(const ConeSet& set) const;  // places that may change
   bool is_sharp(int site) const;
 

@@ -119,31 +119,41 @@ Eigen::VectorXd ConeSet::first_gains() const {
   return -2 * sum * kernel.gradient() - sum * sum * kernel.diagonal();
 }
 
-Eigen::VectorXd ConeSet::gains() const {
+ConeSet::Explained ConeSet::explain() const {
+  Explained out{Eigen::VectorXd::Zero(columns_.rows()), free_places(), {}, {}};
+  const int count = static_cast<int>(out.free.size());
+  if (count == 0) return out;
+  Eigen::MatrixXd coupling(columns_.rows(), count + problem_->balanced);
+  for (int i = 0; i < count; ++i) coupling.col(i) = columns_.col(out.free[i]);
+  if (problem_->balanced) coupling.col(count).setOnes();
+  const Eigen::MatrixXd inverse = inverse_over(out.free);
+  out.responses = coupling * inverse;
+  out.by_all = coupling.cwiseProduct(out.responses).rowwise().sum();
+  out.inverse = inverse.diagonal();
+  return out;
+}
+
+Eigen::VectorXd ConeSet::Explained::without(int place) const {
+  const auto found = std::find(free.begin(), free.end(), place);
+  if (found == free.end()) return by_all;
+  const Eigen::Index i = found - free.begin();
+  return by_all - responses.col(i).cwiseAbs2() / inverse[i];
+}
+
+Eigen::VectorXd ConeSet::gains(const Eigen::VectorXd& explained) const {
   if (sites_.empty() && problem_->balanced) return first_gains();
   const VarianceKernel& kernel = problem_->kernel;
-  const std::vector<int> free = free_places();
-  const int count = static_cast<int>(free.size());
   Eigen::VectorXd slope = -kernel.gradient() - columns_ * curvature_;
   if (problem_->balanced) {
+    const std::vector<int> free = free_places();
     double multiplier = 0;
-    for (const int i : free) multiplier += slope[sites_[i]] / count;
+    for (const int i : free) multiplier += slope[sites_[i]] / static_cast<double>(free.size());
     slope.array() -= multiplier;
-  }
-  Eigen::VectorXd curving = kernel.diagonal();
-  if (count > 0) {
-    Eigen::MatrixXd coupling(columns_.rows(), count + problem_->balanced);
-    for (int i = 0; i < count; ++i) coupling.col(i) = columns_.col(free[i]);
-    if (problem_->balanced) coupling.col(count).setOnes();
-    const Eigen::MatrixXd inverse = inverse_over(free);
-    for (Eigen::Index j = 0; j < coupling.cols(); ++j) {
-      curving -= coupling.col(j).cwiseProduct(coupling * inverse.col(j));
-    }
   }
   const double least = std::max(kernel.diagonal_error() / 2, 1e-12 * kernel.diagonal().mean());
   Eigen::VectorXd gains(kernel.site_count());
   for (int i = 0; i < kernel.site_count(); ++i) {
-    const double d = std::max(curving[i], least);
+    const double d = std::max(kernel.diagonal()[i] - explained[i], least);
     const double t = std::clamp(slope[i] / d, problem_->limits.low(i, reach_), problem_->limits.high(i, reach_));
     gains[i] = 2 * t * slope[i] - t * t * d;
   }

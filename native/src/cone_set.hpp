@@ -39,7 +39,21 @@ class ConeSet {
 
   // By how much the variance would fall with a cone at each site, (sites): exact, but for the estimate of the
   // diagonal, where no further curvature comes to its bound (orthogonal matching pursuit).
-  Eigen::VectorXd gains() const;
+  Eigen::VectorXd gains() const { return gains(explain().by_all); }
+  // The same with what the cones explain of the diagonal of H, (sites), known already.
+  Eigen::VectorXd gains(const Eigen::VectorXd& explained) const;
+
+  // What all cones explain of the diagonal of H: a curvature added anywhere is taken up in part by theirs.
+  struct Explained {
+    Eigen::VectorXd by_all;     // (sites)
+    std::vector<int> free;      // places whose curvatures are at no bound
+    Eigen::MatrixXd responses;  // (sites, free) what these do, negative
+    Eigen::VectorXd inverse;    // (free) diagonal of the inverse that this comes from
+    // What the others would explain without one.
+    Eigen::VectorXd without(int place) const;
+  };
+  Explained explain() const;
+
   // By how much it would rise, to first order, without each of the cones, (k).
   Eigen::VectorXd losses() const;
 

@@ -28,8 +28,8 @@ def test_gains_are_those_of_a_dense_model(name: str) -> None:
     assert np.flatnonzero(np.isfinite(gains.predicted_l2)).tolist() == allowed.tolist()
     exact = np.array([present - model.least(np.append(cones, v))[0] for v in allowed])
     read = np.log(gains.present_l2 / gains.predicted_l2[allowed]) / 2
-    assert read == pytest.approx(exact, abs=0.05 * exact.max())
-    assert exact[allowed == gains.best] >= 0.95 * exact.max()
+    assert read == pytest.approx(exact, abs=0.1 * exact.max())
+    assert exact[allowed == gains.best] >= 0.9 * exact.max()
 
 
 @pytest.mark.parametrize("name", MESHES)
