@@ -16,7 +16,9 @@ from pathlib import Path
 import igl
 import lsgp
 import numpy as np
-from benchmark import SHARED, bumpy_sphere, cpu_seconds, print_table, read_case
+from benchmark import as_table
+from benchmark_cases import SHARED, bumpy_sphere, read_case
+from benchmark_options import cpu_seconds
 
 CONES = 25
 MOST = 6  # times LSCM
@@ -30,17 +32,15 @@ def main() -> None:
     parser.add_argument("--repetitions", type=int, default=3)
     arguments = parser.parse_args()
     os.environ["IGL_NUM_THREADS"] = "1"  # read at libigl's first parallel loop
-    if SHARED.is_dir():
-        surfaces = [(name, *read_case(name)[:2]) for name in arguments.meshes or [MESH]]
-    else:
-        surfaces = [("bumpy sphere 5", *bumpy_sphere(5)[:2])]
+    cases = [read_case(name) for name in arguments.meshes or [MESH]] if SHARED.is_dir() else [bumpy_sphere(5)]
     rows = []
-    for name, positions, triangles in surfaces:
+    for case in cases:
+        positions, triangles = case.positions, case.triangles.astype(np.int64)
         for _ in range(SUBDIVISIONS + 1):
-            rows.append(measure_placement(name, positions, triangles, arguments.repetitions))
+            rows.append(measure_placement(case.name, positions, triangles, arguments.repetitions))
             positions, triangles = igl.upsample(positions, triangles)
     print(f"Placing {CONES} cones is to cost at most {MOST} times LSCM:\n")
-    print_table(rows)
+    print(as_table(rows))
 
 
 def measure_placement(
@@ -52,7 +52,7 @@ def measure_placement(
     placing, mapping = [], []
     for _ in range(repetitions):
         placing.append(cpu_seconds(lambda: lsgp.place_cones(surface, count=cones)))
-        mapping.append(cpu_seconds(lambda: igl.lscm(positions, triangles.astype(np.int64), pins, ends)))
+        mapping.append(cpu_seconds(lambda: igl.lscm(positions, triangles, pins, ends)))
     placed = lsgp.place_cones(surface, count=cones)
     return {
         "mesh": name,
