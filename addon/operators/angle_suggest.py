@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
     from ..mesh_read import Region
 
+# Of the stretch; less is not worth a cone.
+LEAST_GAIN = 1e-3
+
 
 class MESH_OT_cone_suggest(AngleOperator, bpy.types.Operator):
     """Suggest the Next Cone."""
@@ -40,9 +43,9 @@ class MESH_OT_cone_suggest(AngleOperator, bpy.types.Operator):
         self.draw_vertex_group(layout, context)
 
     def change(self, obj: bpy.types.Object, region: Region, cones: ConeAngles) -> tuple[str, list[lsgp.Finding]]:
-        gains = native.lsgp.cone_gains(region.surface, cones.cones, cones.fixed(), seams=SEAMS[self.seams][0])
-        if gains.best is None:
-            raise reporting.Refused("no further cone lowers the stretch; there is nothing to add")
+        gains = self._gains(region.surface, cones)
+        if gains.best is None or gains.present_l2 - gains.predicted_l2[gains.best] < LEAST_GAIN:
+            raise reporting.Refused("no further cone lowers the stretch by a thousandth; there is nothing to add")
         if self.mark:
             mark_cones(obj, self.vertex_group, [gains.best])
             write_angles(obj, [gains.best], [None], [Kind.PRESCRIBED])
@@ -53,3 +56,14 @@ class MESH_OT_cone_suggest(AngleOperator, bpy.types.Operator):
         if math.isfinite(gains.present_l2):
             then += f", {gains.present_l2:.3f} without it"
         return f"vertex {gains.best}, {then}", gains.warnings
+
+    def _gains(self, surface: lsgp.Surface, cones: ConeAngles) -> lsgp.ConeGains:
+        """What one more cone would do to the part where it does most."""
+        lsgp, fixed, seams = native.lsgp, cones.fixed(), SEAMS[self.seams][0]
+        gains = lsgp.cone_gains(surface, cones.cones, fixed, seams=seams)
+        parts = lsgp.build_ledger(surface, cones.cones, fixed, self.library_options())
+        if gains.best is None or len(parts) == 1:
+            return gains
+        part = next(part for part in parts if (surface.triangles[part.triangles] == gains.best).any())
+        own = part.cones
+        return lsgp.cone_gains(lsgp.part_surface(surface, part), cones.cones[own], [fixed[i] for i in own], seams=seams)

@@ -458,6 +458,21 @@ def test_the_next_cone_is_where_the_library_says(reports, in_edit_mode):
     assert wanted in marked(cube)
     if in_edit_mode:
         assert selected(cube) == [wanted]
+    # On a cube nothing is left to gain.
+    with pytest.raises(RuntimeError, match="no further cone lowers the stretch"):
+        bpy.ops.mesh.cone_suggest()
+
+
+def test_what_a_suggestion_gains_is_told_of_its_part(reports):
+    cube, ball = add_cube(), add_cone_cube("Ball", cuts=4)
+    mark(cube, corners(cube)[:7])
+    ball.location.x = 5
+    bpy.context.view_layer.objects.active = cube
+    bpy.ops.mesh.cone_preview()
+    alone = reports().split("Cube: stretch ")[1].split(" ")[0]
+    bpy.ops.object.join()
+    assert bpy.ops.mesh.cone_suggest() == {"FINISHED"}
+    assert f"vertex {corners(cube)[7]}, stretch 1.000 expected, {alone} without it" in reports()
 
 
 def test_a_suggestion_need_not_be_marked():
@@ -528,6 +543,30 @@ def test_placing_for_a_seamless_layout_gives_quarter_turns():
     assert bpy.ops.uv.cone_unwrap(seamless=True) == {"FINISHED"}
 
 
+def test_placing_within_a_stretch_that_is_told(reports):
+    ball = add_ball(cuts=5)
+    ball.vertex_groups.clear()
+    bpy.ops.mesh.cone_place(target=1.2)
+    few = len(marked(ball))
+    assert "expected (1 is none)" in reports()
+    ball.vertex_groups.clear()
+    bpy.ops.mesh.cone_place(target=1.005)
+    assert few < len(marked(ball))
+
+
+def test_symmetric_cones_have_their_mirror_images():
+    ball = add_cube(cuts=5)
+    for vertex in ball.data.vertices:
+        x, y, z = vertex.co.normalized()
+        vertex.co = vertex.co.normalized() * (1.0 + 0.2 * np.cos(3 * x) * np.sin(2 * y + 1) * np.cos(z - 0.4))
+    bpy.ops.mesh.cone_place(automatic=False, count=9, symmetric=True, mirror="X")
+    found = stored(ball)
+    places = {tuple(np.round(ball.data.vertices[v].co, 5) + 0.0): angle for v, (angle, _) in found.items()}
+    assert len(places) >= 8
+    for (x, y, z), angle in places.items():
+        assert places[(-x + 0.0, y, z)] == pytest.approx(angle, abs=1e-5)
+
+
 # --- the preview ----------------------------------------------------------------------------------------------------
 
 
@@ -553,6 +592,16 @@ def test_the_preview_is_the_scale_of_the_map_to_come(reports, in_edit_mode):
     predicted = scale[vertices].mean(axis=1)
     assert np.corrcoef(measured, predicted)[0, 1] > 0.95
     assert bpy.ops.mesh.cone_preview() == {"FINISHED"}
+
+
+def test_the_gain_of_one_more_cone_is_largest_where_it_is_suggested():
+    cube = add_cube()
+    mark(cube, corners(cube)[:7])
+    assert bpy.ops.mesh.cone_preview(gains=True) == {"FINISHED"}
+    gain = np.array([value.value for value in cube.data.attributes["uv_cone_gain"].data])
+    assert np.isfinite(gain).all() and gain.min() >= 0
+    assert gain.argmax() == corners(cube)[7]
+    assert not gain[corners(cube)[:7]].any()
 
 
 def test_the_preview_of_an_impossible_set_is_refused_and_writes_nothing():
