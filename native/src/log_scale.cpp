@@ -28,10 +28,11 @@ double log_mean_exp(const Eigen::VectorXd& weight, const Eigen::VectorXd& x, Eig
 // columns^T diag(weight) columns, lower triangle; some rows at a time, which stay in the cache.
 Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& columns, const Eigen::VectorXd& weight) {
   constexpr Eigen::Index rows_at_once = 512;
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns.cols(), columns.cols()), scaled;
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
   for (Eigen::Index begin = 0; begin < columns.rows(); begin += rows_at_once) {
     const Eigen::Index count = std::min(rows_at_once, columns.rows() - begin);
-    scaled.noalias() = weight.segment(begin, count).cwiseSqrt().asDiagonal() * columns.middleRows(begin, count);
+    const Eigen::MatrixXd scaled =
+        weight.segment(begin, count).cwiseSqrt().asDiagonal() * columns.middleRows(begin, count);
     dense_kernels<double>().add_gram(scaled.data(), static_cast<int>(count), static_cast<int>(columns.cols()),
                                      sum.data());
   }

@@ -89,7 +89,7 @@ class Ordering {
       }
     }
     pattern.outerIndexPtr()[eliminated_] = filled;
-    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order(eliminated_);
+    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
     if (eliminated_ > 0) Eigen::internal::minimum_degree_ordering(pattern, order);
     out_.eliminated = eliminated_;
     out_.row_at.resize(size_);
