@@ -46,8 +46,9 @@ void ConeSet::remove(int place) {
 void ConeSet::fit() {
   const int count = static_cast<int>(sites_.size());
   const double sum = problem_->required_sum;
-  low_.resize(count);
-  high_.resize(count);
+  // Moved in: resizing frees what is there before it asks for more.
+  low_ = Eigen::VectorXd(count);
+  high_ = Eigen::VectorXd(count);
   const auto widen = [&](double reach) {
     used_reach_ = reach;
     for (int i = 0; i < count; ++i) {
