@@ -83,7 +83,7 @@ ComponentSystem& Pipeline::system_of(std::size_t i, const Options& options) {
 Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
                      const Progress& progress) {
   Result result;
-  const LinearAlgebra before = linear_algebra_of_this_thread();
+  const LinearAlgebraCounter counter;
   Monitor monitor(progress, result.stage_seconds);
   {
     const Monitor::Stage stage(monitor, "topology");
@@ -134,9 +134,7 @@ Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& 
   }
   assembly.finish(cones, work_.topology.duplicates);
   monitor.advance(1);
-  const LinearAlgebra after = linear_algebra_of_this_thread();
-  result.linear_algebra = {after.factorizations - before.factorizations,
-                           after.back_substitutions - before.back_substitutions};
+  result.linear_algebra = counter.counted();
   return result;
 }
 

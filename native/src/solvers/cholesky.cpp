@@ -2,11 +2,12 @@
 #include "solvers/cholesky.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "lsgp/errors.hpp"
-#include "solvers/elimination.hpp"
 #include "solvers/dense_kernels.hpp"
+#include "solvers/elimination.hpp"
 
 namespace lsgp {
 
@@ -16,10 +17,18 @@ constexpr int solve_width = 8;  // right sides at a time
 
 }  // namespace
 
-LinearAlgebra& linear_algebra_of_this_thread() {
-  thread_local LinearAlgebra counts;
-  return counts;
+namespace {
+
+LinearAlgebra& count_of_this_thread() {
+  thread_local LinearAlgebra count;
+  return count;
 }
+
+}  // namespace
+
+LinearAlgebraCounter::LinearAlgebraCounter() : around_(std::exchange(count_of_this_thread(), {})) {}
+LinearAlgebraCounter::~LinearAlgebraCounter() { count_of_this_thread() = around_; }
+LinearAlgebra LinearAlgebraCounter::counted() const { return count_of_this_thread(); }
 
 void throw_unsolvable() {
   throw Error(Code::solver_failed,
@@ -89,7 +98,7 @@ void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lowe
   constexpr double operations_between_calls = 5e7;
   const DenseKernels<Scalar>& kernels = dense_kernels<Scalar>();
   const int fronts = plan.front_count();
-  ++linear_algebra_of_this_thread().factorizations;
+  ++count_of_this_thread().factorizations;
   start_schur(lower);
   panels.assign(plan.panel_begin.back(), Scalar(0));
   std::vector<Scalar> stack(plan.stack_size), outer;
@@ -232,7 +241,7 @@ typename Cholesky<Scalar>::Vector Cholesky<Scalar>::solve(const Vector& right_si
 template <typename Scalar>
 typename Cholesky<Scalar>::Matrix Cholesky<Scalar>::solve(const Matrix& right_sides) const {
   Matrix x = right_sides;
-  linear_algebra_of_this_thread().back_substitutions += static_cast<int>(x.cols());
+  count_of_this_thread().back_substitutions += static_cast<int>(x.cols());
   factor_->for_each_block(x, [&](int width, Scalar* block) {
     factor_->eliminate(width, block);
     factor_->substitute(width, block);
@@ -252,7 +261,7 @@ void Cholesky<Scalar>::eliminate(Matrix& right_sides) const {
 
 template <typename Scalar>
 void Cholesky<Scalar>::substitute(Matrix& half_solved) const {
-  linear_algebra_of_this_thread().back_substitutions += static_cast<int>(half_solved.cols());
+  count_of_this_thread().back_substitutions += static_cast<int>(half_solved.cols());
   factor_->for_each_block(half_solved, [&](int width, Scalar* block) { factor_->substitute(width, block); });
 }
 

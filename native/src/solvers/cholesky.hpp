@@ -15,8 +15,18 @@ namespace lsgp {
 // Called now and then while a matrix is factored, with the share that is done; may throw.
 using FactorHook = std::function<void(double)>;
 
-// Counts go up from call to call.
-LinearAlgebra& linear_algebra_of_this_thread();
+// Counts what this thread does with sparse matrices while it lives, but for what another counter inside it counts.
+class LinearAlgebraCounter {
+ public:
+  LinearAlgebraCounter();
+  ~LinearAlgebraCounter();
+  LinearAlgebraCounter(const LinearAlgebraCounter&) = delete;
+  LinearAlgebraCounter& operator=(const LinearAlgebraCounter&) = delete;
+  LinearAlgebra counted() const;
+
+ private:
+  LinearAlgebra around_;
+};
 
 [[noreturn]] void throw_unsolvable();  // SOLVER_FAILED
 
