@@ -27,6 +27,7 @@ CONE_ENTRIES = [
     ("mesh.cone_mark", False),
     ("mesh.cone_mark", True),
     ("mesh.cone_select", None),
+    ("mesh.cone_edit", None),
     ("mesh.cone_place", None),
     ("VIEW3D_MT_cone_angles", None),
     ("mesh.cone_select_reported", None),
