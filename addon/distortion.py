@@ -13,7 +13,7 @@ from .identifiers import DISTORTION_ATTRIBUTES
 from .mesh_read import Region
 from .probe import probe
 
-# Digests of UV maps measured in this session; undo in edit mode brings back attributes, but no properties of the mesh.
+# Digests of UV maps measured since Blender started; undo in edit mode brings back attributes, but no mesh properties.
 _measured: set[str] = set()
 
 

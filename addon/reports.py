@@ -48,7 +48,7 @@ class Report:
     certificate: dict[str, Any] | None
 
 
-# Those of this session, by digest; undo in edit mode brings back UVs, but no properties of the mesh.
+# Those made since Blender started, by digest; undo in edit mode brings back UVs, but no properties of the mesh.
 _known: OrderedDict[str, Report] = OrderedDict()
 KNOWN = 64
 

@@ -374,8 +374,8 @@ py::dict place_cones(const FloatArray& positions, const IndexArray& triangles, c
   out["predicted_l2"] = result.predicted_l2;
   out["reached"] = result.reached;
   out["warnings"] = to_findings(result.warnings);
-  out["factorizations"] = result.factorizations;
-  out["back_substitutions"] = result.back_substitutions;
+  out["factorizations"] = result.linear_algebra.factorizations;
+  out["back_substitutions"] = result.linear_algebra.back_substitutions;
   return out;
 }
 

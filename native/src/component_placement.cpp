@@ -79,7 +79,6 @@ class Placing {
   SiteLimits limits_;
   PlacementProblem problem_;
   ConeSearch search_;
-  int other_back_substitutions_ = 1;  // the kernel counts its own
 };
 
 VarianceKernel Placing::make_kernel() {
@@ -268,7 +267,6 @@ ComponentCones Placing::with_given_angles(const std::vector<Index>& vertices, in
 void Placing::use_cones(const std::vector<Index>& vertices) {
   scale_.remove_cones();
   scale_.add_cones(vertices);
-  other_back_substitutions_ += static_cast<int>(vertices.size());
 }
 
 std::vector<Index> Placing::vertices_of(const std::vector<int>& sites) const {
@@ -309,8 +307,6 @@ PlacedCones Placing::place(const PlacementOptions& options, std::vector<Finding>
                 " asked for. Mark cones at thin tips, clean up spikes and thin triangles, or ask for less."),
          {ElementKind::vertices, choice.vertices}});
   }
-  out.factorizations = 1;
-  out.back_substitutions = kernel_.back_substitutions() + other_back_substitutions_;
   return out;
 }
 

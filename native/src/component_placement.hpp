@@ -23,7 +23,6 @@ struct PlacedCones {
   ComponentCones cones;  // existing ones first, all with angles
   Curvature curvature;
   bool reached = true;
-  int factorizations = 0, back_substitutions = 0;
 };
 
 // What cones may be placed on, and how.

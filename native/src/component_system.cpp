@@ -27,11 +27,11 @@ const CutGraph& ComponentSystem::all_cuts() {
 }
 
 const CutFactor* ComponentSystem::factor(const FactorHook& hook) {
-  if (factorization_ == Factorization::sparse) return nullptr;
-  if (!factor_) {
-    if (factorization_ == Factorization::automatic && !CutFactor::pays(mesh_, all_cuts())) return nullptr;
-    factor_.emplace(mesh_, geometry_, all_cuts(), hook);
+  if (factorization_ == Factorization::automatic) {
+    factorization_ = CutFactor::pays(mesh_, all_cuts()) ? Factorization::cut : Factorization::sparse;
   }
+  if (factorization_ == Factorization::sparse) return nullptr;
+  if (!factor_) factor_.emplace(mesh_, geometry_, all_cuts(), hook);
   return &*factor_;
 }
 

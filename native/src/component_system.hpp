@@ -32,7 +32,7 @@ class ComponentSystem {
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
   const std::vector<Index> cones_;
-  const Factorization factorization_;
+  Factorization factorization_;  // automatic until the cuts are known
   const BorderConditions border_;
   std::optional<CutGraph> all_cuts_;
   std::optional<CutFactor> factor_;

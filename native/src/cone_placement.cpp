@@ -7,6 +7,7 @@
 #include "components.hpp"
 #include "lsgp/lsgp.hpp"
 #include "monitor.hpp"
+#include "solvers/cholesky.hpp"
 #include "text.hpp"
 #include "validation.hpp"
 
@@ -91,6 +92,7 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
                       const Progress& progress) {
   require_valid(options);
   Placement out;
+  const LinearAlgebraCounter counter;
   PlacementWork work(surface, existing, options.seams, out.warnings, progress);
   out.log_scale = Eigen::VectorXd::Zero(surface.positions.rows());
   std::vector<std::optional<double>> angle(surface.positions.rows());
@@ -112,9 +114,8 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
     stretched_area += found.curvature.predicted_l2 * found.curvature.predicted_l2 * geometry.total_area;
     total_area += geometry.total_area;
     out.reached &= found.reached;
-    out.factorizations += found.factorizations;
-    out.back_substitutions += found.back_substitutions;
   });
+  out.linear_algebra = counter.counted();
   out.predicted_l2 = std::sqrt(stretched_area / total_area);
   std::vector<Index> all = existing.vertices;
   all.insert(all.end(), placed.begin(), placed.end());

@@ -9,11 +9,20 @@
 
 namespace lsgp {
 
+Eigen::MatrixXd LaplaceSolver::solve_impulses(const std::vector<Index>& vertices) const {
+  Eigen::MatrixXd impulses = Eigen::MatrixXd::Zero(vertex_count_, static_cast<Eigen::Index>(vertices.size()));
+  for (std::size_t i = 0; i < vertices.size(); ++i) impulses(vertices[i], static_cast<Eigen::Index>(i)) = 1;
+  return solve(impulses);
+}
+
 namespace {
 
 class SparseLaplace final : public LaplaceSolver {
  public:
-  SparseLaplace(const Laplacian& laplacian) : row_of_vertex_(laplacian.row_of_vertex), factor_(laplacian.lower) {}
+  explicit SparseLaplace(const Laplacian& laplacian)
+      : LaplaceSolver(static_cast<Index>(laplacian.row_of_vertex.size())),
+        row_of_vertex_(laplacian.row_of_vertex),
+        factor_(laplacian.lower) {}
 
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right_sides) const override {
     Eigen::MatrixXd x(factor_.size(), right_sides.cols());
@@ -29,12 +38,6 @@ class SparseLaplace final : public LaplaceSolver {
     return out;
   }
 
-  Eigen::MatrixXd solve_impulses(const std::vector<Index>& vertices) const override {
-    Eigen::MatrixXd impulses = Eigen::MatrixXd::Zero(row_of_vertex_.size(), vertices.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) impulses(vertices[i], i) = 1;
-    return solve(impulses);
-  }
-
  private:
   std::vector<Index> row_of_vertex_;
   Cholesky<double> factor_;
@@ -43,7 +46,7 @@ class SparseLaplace final : public LaplaceSolver {
 class LaplaceOnCut final : public LaplaceSolver {
  public:
   LaplaceOnCut(const CutFactor& factor, Index vertex_count, const std::vector<char>& held)
-      : factor_(factor), glued_(vertex_count, none), first_copy_(vertex_count, none) {
+      : LaplaceSolver(vertex_count), factor_(factor), glued_(vertex_count, none), first_copy_(vertex_count, none) {
     const CutMesh& cut_mesh = factor.cut_mesh();
     for (Index copy = cut_mesh.copy_count(); copy-- > 0;) first_copy_[cut_mesh.source[copy]] = copy;
     for (const Index copy : factor.retained()) {
@@ -75,12 +78,8 @@ class LaplaceOnCut final : public LaplaceSolver {
     const bool all_retained = std::all_of(vertices.begin(), vertices.end(), [&](Index v) {
       return factor_.row_of_copy(first_copy_[v]) >= factor_.eliminated_count();
     });
+    if (!all_retained) return LaplaceSolver::solve_impulses(vertices);
     const Eigen::Index count = static_cast<Eigen::Index>(vertices.size());
-    if (!all_retained) {
-      Eigen::MatrixXd impulses = Eigen::MatrixXd::Zero(first_copy_.size(), count);
-      for (Eigen::Index i = 0; i < count; ++i) impulses(vertices[i], i) = 1;
-      return solve(impulses);
-    }
     Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(glued_count_, count);
     for (Eigen::Index i = 0; i < count; ++i) {
       if (glued_[vertices[i]] != none) pull(glued_[vertices[i]], i) = 1;

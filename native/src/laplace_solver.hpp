@@ -12,11 +12,15 @@ namespace lsgp {
 
 class LaplaceSolver {
  public:
+  explicit LaplaceSolver(Index vertex_count) : vertex_count_(vertex_count) {}
   virtual ~LaplaceSolver() = default;
   // right_sides: (n, k), one a column.  0 where y is held.
   virtual Eigen::MatrixXd solve(const Eigen::MatrixXd& right_sides) const = 0;
   // The same for impulses of 1 at vertices, (n, vertices).
-  virtual Eigen::MatrixXd solve_impulses(const std::vector<Index>& vertices) const = 0;
+  virtual Eigen::MatrixXd solve_impulses(const std::vector<Index>& vertices) const;
+
+ protected:
+  const Index vertex_count_;
 };
 
 // held: (n) where y is 0.  Where nothing is held, y is known up to a constant and the right sides add up to 0.

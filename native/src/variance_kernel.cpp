@@ -49,8 +49,7 @@ Eigen::MatrixXd VarianceKernel::impulses(const std::vector<int>& sites) const {
   return out;
 }
 
-Eigen::MatrixXd VarianceKernel::caused_by(Eigen::MatrixXd curvature) {
-  back_substitutions_ += static_cast<int>(curvature.cols());
+Eigen::MatrixXd VarianceKernel::caused_by(Eigen::MatrixXd curvature) const {
   // Where Gauss-Bonnet has to hold, curvature is taken away evenly over the area.
   if (scale_.balanced()) curvature -= weight_ * curvature.colwise().sum().eval();
   Eigen::MatrixXd y = scale_.solve_columns(curvature);
@@ -58,8 +57,7 @@ Eigen::MatrixXd VarianceKernel::caused_by(Eigen::MatrixXd curvature) {
   return y;
 }
 
-Eigen::MatrixXd VarianceKernel::transposed(Eigen::MatrixXd values) {
-  back_substitutions_ += static_cast<int>(values.cols());
+Eigen::MatrixXd VarianceKernel::transposed(Eigen::MatrixXd values) const {
   values -= weight_ * values.colwise().sum().eval();
   Eigen::MatrixXd out = scale_.solve_columns(values);
   if (scale_.balanced()) out.rowwise() -= (weight_.transpose() * out).eval();
@@ -84,7 +82,7 @@ const Eigen::VectorXd& VarianceKernel::column(int site) {
   return columns_.emplace(site, column).first->second;
 }
 
-Eigen::VectorXd VarianceKernel::log_scale(const std::vector<int>& sites, const Eigen::VectorXd& curvature) {
+Eigen::VectorXd VarianceKernel::log_scale(const std::vector<int>& sites, const Eigen::VectorXd& curvature) const {
   return caused_by(elsewhere_ + impulses(sites) * curvature);
 }
 

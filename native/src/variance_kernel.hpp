@@ -28,14 +28,13 @@ class VarianceKernel {
   const Eigen::VectorXd& column(int site);                       // (sites) of H, exact
   bool knows(int site) const { return columns_.count(site) > 0; }
   // The log scale, (n) of mean 0, with curvatures at some sites.
-  Eigen::VectorXd log_scale(const std::vector<int>& sites, const Eigen::VectorXd& curvature);
-  int back_substitutions() const { return back_substitutions_; }
+  Eigen::VectorXd log_scale(const std::vector<int>& sites, const Eigen::VectorXd& curvature) const;
 
  private:
   Eigen::MatrixXd impulses(const std::vector<int>& sites) const;
   // The log scale, of mean 0, that curvatures (n, k) cause, and the transpose of this.
-  Eigen::MatrixXd caused_by(Eigen::MatrixXd curvature);
-  Eigen::MatrixXd transposed(Eigen::MatrixXd values);
+  Eigen::MatrixXd caused_by(Eigen::MatrixXd curvature) const;
+  Eigen::MatrixXd transposed(Eigen::MatrixXd values) const;
   Eigen::MatrixXd at_sites(const Eigen::MatrixXd& values) const;  // (sites, k)
   void estimate_diagonal(int probes, Monitor& monitor);
 
@@ -47,7 +46,6 @@ class VarianceKernel {
   Eigen::VectorXd gradient_, diagonal_;
   double diagonal_error_ = 0;
   std::map<int, Eigen::VectorXd> columns_;
-  int back_substitutions_ = 0;
 };
 
 }  // namespace lsgp

@@ -8,6 +8,7 @@
 
 #include "lsgp/errors.hpp"
 #include "lsgp/options.hpp"
+#include "lsgp/result.hpp"
 #include "lsgp/surface.hpp"
 
 namespace lsgp {
@@ -33,7 +34,7 @@ struct Placement {
   double predicted_l2 = 1;          // over the whole surface
   bool reached = true;              // the target, on every component
   std::vector<Finding> warnings;
-  int factorizations = 0, back_substitutions = 0;
+  LinearAlgebra linear_algebra;
 };
 
 // What one more cone would do, its angle and the automatic ones chosen anew.
