@@ -42,15 +42,15 @@ def fit_placement(corner_uv: FloatArray, old_uv: FloatArray, island: IndexArray)
     broken = np.zeros(count, bool)
     broken[island[(island >= 0) & ~finite]] = True
     taken = np.flatnonzero((island >= 0) & ~np.append(broken, True)[island])
-    of_corner = np.repeat(island[taken], 3)
+    of_triangle = island[taken]
     new, old = _as_complex(corner_uv[taken]), _as_complex(old_uv[taken])
 
-    corners = np.maximum(np.bincount(of_corner, minlength=count), 1)
-    new_middle, old_middle = _sums(of_corner, new, count) / corners, _sums(of_corner, old, count) / corners
-    new, old = new - new_middle[of_corner], old - old_middle[of_corner]
-    new_size = np.sqrt(_sums(of_corner, abs(new) ** 2, count).real / corners)
-    old_size = np.sqrt(_sums(of_corner, abs(old) ** 2, count).real / corners)
-    along = _sums(of_corner, new.conj() * old, count) / corners
+    corners = np.maximum(3 * np.bincount(of_triangle, minlength=count), 1)
+    new_middle, old_middle = _sums(of_triangle, new, count) / corners, _sums(of_triangle, old, count) / corners
+    new, old = new - new_middle[of_triangle, None], old - old_middle[of_triangle, None]
+    new_size = np.sqrt(_sums(of_triangle, new.conj() * new, count).real / corners)
+    old_size = np.sqrt(_sums(of_triangle, old.conj() * old, count).real / corners)
+    along = _sums(of_triangle, new.conj() * old, count) / corners
 
     movable = (old_size > _POINT * abs(old_middle)) & (new_size > 0)
     sizes = np.where(movable, new_size * old_size, 1.0)
@@ -58,8 +58,9 @@ def fit_placement(corner_uv: FloatArray, old_uv: FloatArray, island: IndexArray)
     turn = np.where(turned, along, 1.0) / np.where(turned, abs(along), 1.0)
     factor = np.where(movable, turn * old_size / np.where(movable, new_size, 1.0), 1.0)
     target = np.where(movable, old_middle, new_middle)
-    moved = factor[of_corner] * new + target[of_corner]
-    out[taken] = np.where(movable[of_corner, None], _as_pairs(moved), corner_uv[taken].reshape(-1, 2)).reshape(-1, 3, 2)
+    moved = factor[of_triangle, None] * new + target[of_triangle, None]
+    moves = movable[of_triangle]
+    out[taken[moves]] = moved[moves].view(np.float64).reshape(-1, 3, 2)
     return out
 
 
@@ -75,16 +76,12 @@ def correct_aspect(corner_uv: ArrayLike, aspect: float) -> FloatArray:
 
 
 def _as_complex(corner_uv: FloatArray) -> np.ndarray:
-    flat = corner_uv.reshape(-1, 2)
-    return flat[:, 0] + 1j * flat[:, 1]
+    """(m, 3) of (m, 3, 2)."""
+    return np.ascontiguousarray(corner_uv).view(np.complex128)[..., 0]
 
 
-def _as_pairs(values: np.ndarray) -> FloatArray:
-    return np.stack([values.real, values.imag], axis=-1)
-
-
-def _sums(of_corner: IndexArray, values: np.ndarray, count: int) -> np.ndarray:
-    """Sum of complex values for each island."""
-    values = np.asarray(values, np.complex128)
-    real = np.bincount(of_corner, values.real, minlength=count)
-    return real + 1j * np.bincount(of_corner, values.imag, minlength=count)
+def _sums(of_triangle: IndexArray, values: np.ndarray, count: int) -> np.ndarray:
+    """Sum of the (m, 3) complex values of each island's triangles."""
+    values = values[:, 0] + values[:, 1] + values[:, 2]
+    real = np.bincount(of_triangle, values.real, minlength=count)
+    return real + 1j * np.bincount(of_triangle, values.imag, minlength=count)
