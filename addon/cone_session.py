@@ -17,15 +17,17 @@ import numpy as np
 from mathutils.bvhtree import BVHTree
 from numpy.typing import NDArray
 
-from . import angles, cones, gathering, mesh_write, native, reports
+from . import angles, cones, gathering, mesh_read, mesh_write, native, reports
 from .angles import ConeAngles, Kind
-from .overlay.readers import EditedMesh
+from .overlay.content import build_content
+from .overlay.readers import FrozenMesh
 from .unwrapping import Task, Unwrapped, unwrap
 
 if TYPE_CHECKING:
     import lsgp
 
     from .mesh_read import Region
+    from .overlay.content import Content
     from .screen import Screen
     from .unwrapping import Progress
 
@@ -66,14 +68,15 @@ class ConeSession:
         self._touched: set[int] = set()
         self._scope: tuple[NDArray[np.int64], Region, lsgp.Solver] | None = None
         self._shown: Unwrapped | None = None
-        self._earlier = reports.find(obj.data)
+        self._earlier = self._report = reports.find(obj.data)
         # Where islands are to stay; those of a map that is none from cones have no place yet.
         known = self._whole.pinned if self._earlier is None else np.ones_like(self._whole.pinned)
         self._places = np.where(known[:, :, None], region.corner_uv, np.nan)
+        with mesh_read.readable_mesh(obj) as mesh:
+            self._mesh = FrozenMesh(mesh)
         self._uv = mesh_write.EditedUv(obj.data)
-        mesh = EditedMesh(obj.data)
-        self._points = mesh.all_positions()
-        self._triangles, _ = mesh.all_triangles()
+        self._points = self._mesh.all_positions()
+        self._triangles, _ = self._mesh.all_triangles()
         self._tree = BVHTree.FromPolygons(self._points.tolist(), self._triangles.tolist(), all_triangles=True)
         self._size = float(np.linalg.norm(np.ptp(self._points, axis=0)))
 
@@ -181,13 +184,19 @@ class ConeSession:
         places = self._places[step.triangles]
         self._places[step.triangles] = np.where(np.isnan(places), unwrapped.corner_uv, places)
         self._uv.write(unwrapped.region, unwrapped.result.solved, unwrapped.corner_uv)
+        self._mesh.uv = self._uv.now
         self._shown = unwrapped
+        self._report = reports.joined(self._earlier, reports.report_on(unwrapped), unwrapped)
+
+    def content(self) -> Content:
+        """What the overlay is to show of all this."""
+        return build_content(self._obj, self.report(), self._mesh, self.marked())
 
     def report(self) -> reports.Report | None:
         """On the map as it is shown, without the cones that are none any more."""
-        if self._shown is None:
-            return self._earlier
-        report = reports.joined(self._earlier, reports.report_on(self._shown), self._shown)
+        report = self._report
+        if report is None:
+            return None
         kept = [i for i, cone in enumerate(report.cones) if cone in self._cones]
         return replace(report, cones=[report.cones[i] for i in kept], cone_angles=[report.cone_angles[i] for i in kept])
 

@@ -69,13 +69,13 @@ def read_region(obj: bpy.types.Object, by_uv: bool = False) -> Region | None:
 
     by_uv: of those only the faces of which all UVs are selected in the UV editor.
     """
-    with _readable_mesh(obj) as mesh:
+    with readable_mesh(obj) as mesh:
         return _read_mesh(mesh, obj.mode == "EDIT", by_uv)
 
 
 def read_all(obj: bpy.types.Object) -> Region | None:
     """All faces of a mesh in any mode; None where it has none."""
-    with _readable_mesh(obj) as mesh:
+    with readable_mesh(obj) as mesh:
         return _read_mesh(mesh, False, False)
 
 
@@ -164,7 +164,7 @@ def _read_mesh(mesh: bpy.types.Mesh, only_selected: bool, by_uv: bool) -> Region
 
 
 @contextmanager
-def _readable_mesh(obj: bpy.types.Object) -> Iterator[bpy.types.Mesh]:
+def readable_mesh(obj: bpy.types.Object) -> Iterator[bpy.types.Mesh]:
     """The mesh as it is now. In edit mode that is a copy, because Blender hides the attributes of an edited mesh."""
     if obj.mode != "EDIT":
         yield obj.data

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from collections import deque
+from itertools import compress
+
 import bmesh
 import bpy
 import numpy as np
@@ -80,6 +83,11 @@ class EditedUv:
         self._before = np.array([loop.uv[:] for loop in self._loops], np.float32).reshape(-1, 2)
         self._now = self._before.copy()
 
+    @property
+    def now(self) -> NDArray[np.float32]:
+        """(l, 2), as it was written last."""
+        return self._now
+
     def write(self, region: Region, solved: NDArray[np.bool_], corner_uv: NDArray[np.float64]) -> None:
         """As `write_uv`; what was written for other triangles stays."""
         uv = self._now.copy()
@@ -95,8 +103,9 @@ class EditedUv:
             self._mesh.uv_layers.remove(self._mesh.uv_layers[self._name])
 
     def _put(self, uv: NDArray[np.float32]) -> None:
-        changed = np.flatnonzero((uv != self._now).any(axis=1))
-        for loop, value in zip(changed.tolist(), uv[changed].tolist(), strict=True):
-            self._loops[loop].uv = value
+        changed = (uv != self._now).any(axis=1)
+        loops, values = compress(self._loops, changed.tolist()), zip(*uv[changed].T.tolist(), strict=True)
+        # Half the time of a loop that assigns.
+        deque(map(bmesh.types.BMLoopUV.uv.__set__, loops, values), maxlen=0)
         self._now = uv
         bmesh.update_edit_mesh(self._mesh, loop_triangles=False, destructive=False)

@@ -82,16 +82,16 @@ def joined(earlier: Report | None, report: Report, unwrapped: Unwrapped) -> Repo
     if earlier is None:
         return report
     region = unwrapped.region
-    again = set(np.flatnonzero(region.vertex_used).tolist())
-    faces = set(np.unique(region.triangle_faces).tolist())
-    kept = [i for i, cone in enumerate(earlier.cones) if cone not in again]
+    again, faces = region.vertex_used, np.zeros(len(region.face_loop_start), bool)
+    faces[region.triangle_faces] = True
+    kept = [i for i, cone in enumerate(earlier.cones) if not again[cone]]
     return replace(
         report,
-        paths=[path for path in earlier.paths if not again.issuperset(path)] + report.paths,
+        paths=[path for path in earlier.paths if not again[path].all()] + report.paths,
         cones=[earlier.cones[i] for i in kept] + report.cones,
         cone_angles=[earlier.cone_angles[i] for i in kept] + report.cone_angles,
-        flipped=sorted(set(earlier.flipped) - faces) + report.flipped,
-        overlapping=sorted(set(earlier.overlapping) - faces) + report.overlapping,
+        flipped=[face for face in earlier.flipped if not faces[face]] + report.flipped,
+        overlapping=[face for face in earlier.overlapping if not faces[face]] + report.overlapping,
     )
 
 

@@ -13,7 +13,6 @@ from ..angle_table import degrees
 from ..computation import Computation
 from ..cone_session import ConeSession, Step
 from ..overlay import cache
-from ..overlay.content import build_content
 from ..screen import Screen
 from ..typed_number import TypedNumber
 from .common import poll_computation, poll_edit_mesh, require_all
@@ -186,11 +185,12 @@ class MESH_OT_cone_edit(bpy.types.Operator):
 
     def _follow(self) -> None:
         """Move the dragged cone to where the cursor is now, and have the map follow the newest state."""
+        moved = False
         if self._dragging and self._moved:
             vertex = self._vertex_under_cursor()
-            if vertex is not None and self._session.move(vertex):
-                self._outdated = True
+            moved = vertex is not None and self._session.move(vertex)
         self._moved = False
+        self._outdated = self._outdated or moved
         if self._computation is None and self._outdated:
             self._outdated = False
             self._step = self._session.draft()
@@ -198,6 +198,9 @@ class MESH_OT_cone_edit(bpy.types.Operator):
             self._take(SOON)
         elif self._computation is not None:
             self._take()
+        if moved and self._computation is not None:
+            # The map is late; the cone at least is where the cursor is.
+            self._draw()
 
     def _take(self, seconds: float = 0.0) -> None:
         """Show the outcome of the computation if it ends within so long."""
@@ -212,9 +215,7 @@ class MESH_OT_cone_edit(bpy.types.Operator):
         self._draw()
 
     def _draw(self) -> None:
-        session = self._session
-        content = build_content(self._obj, session.report(), session.marked())
-        cache.show(self._obj, content)
+        cache.show(self._obj, self._session.content())
         self._area.header_text_set(self._header())
 
     def _header(self) -> str:

@@ -56,12 +56,18 @@ class Content:
     overlapping: FloatArray = field(default_factory=lambda: np.empty((0, 3, 3), np.float32))
 
 
-def build_content(obj: bpy.types.Object, report: Report | None, marked: ConeAngles | None = None) -> Content:
+def build_content(
+    obj: bpy.types.Object,
+    report: Report | None,
+    mesh: EditedMesh | StoredMesh | None = None,
+    marked: ConeAngles | None = None,
+) -> Content:
     """What is to be shown of the object's mesh.  report: the current one; None where there is none.
 
-    marked: cones and angles that are not stored yet; None: those stored.
+    mesh: what reads it; None: one for the mode it is in. marked: cones and angles that are not stored yet; None: those
+    stored.
     """
-    mesh = reader(obj.data)
+    mesh = reader(obj.data) if mesh is None else mesh
     found = find_cones(obj, report, mesh, marked)
     vertices = [cone.vertex for cone in found]
     lines, numbers, uv = _cut_sides(mesh, [] if report is None else report.paths)

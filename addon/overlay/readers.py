@@ -82,53 +82,56 @@ class EditedMesh:
 
 
 class StoredMesh:
-    """A mesh out of edit mode; methods as those of an edited one."""
+    """A mesh out of edit mode, read once; methods as those of an edited one.
+
+    uv: (l, 2) of the active layer, or what is set in its place; None without one.
+    """
 
     def __init__(self, mesh: bpy.types.Mesh) -> None:
         self._mesh = mesh
-        start = _read(mesh.polygons, "loop_start", np.int32)
-        total = _read(mesh.polygons, "loop_total", np.int32)
+        self._start = _read(mesh.polygons, "loop_start", np.int32)
+        self._total = _read(mesh.polygons, "loop_total", np.int32)
         self._corners = _read(mesh.loops, "vertex_index", np.int32)
         following = np.arange(1, len(self._corners) + 1)
-        following[start + total - 1] = start
+        following[self._start + self._total - 1] = self._start
         self._following = following
-        self._face = np.repeat(np.arange(len(start)), total)
-        # A directed edge as one number, in ascending order.
-        self._keys = self._key(self._corners, self._corners[following])
-        self._order = np.argsort(self._keys, kind="stable")
-        self._keys = self._keys[self._order]
+        self._face = np.repeat(np.arange(len(self._start)), self._total)
         self._places = _read(mesh.vertices, "co", np.float32, 3)
+        # A directed edge as one number, in ascending order.
+        keys = self._key(self._corners, self._corners[following])
+        self._order = np.argsort(keys, kind="stable")
+        self._keys = keys[self._order]
+        self._normals = _read(mesh.polygons, "normal", np.float32, 3)
+        self._border = np.zeros(len(self._places), bool)
+        faces_at = np.bincount(_read(mesh.loops, "edge_index", np.int32), minlength=len(mesh.edges))
+        self._border[_read(mesh.edges, "vertices", np.int32, 2)[faces_at == 1]] = True
+        self.uv = _read(mesh.uv_layers.active.uv, "vector", np.float32, 2) if mesh.uv_layers else None
 
     def positions(self, vertices: Sequence[int]) -> FloatArray:
         return self._places[np.asarray(vertices, int)]
 
     def on_border(self, vertices: Sequence[int]) -> list[bool]:
-        ends = np.stack([self._corners, self._corners[self._following]], axis=1)
-        ends = ends[np.isin(ends, vertices).any(axis=1)]
-        open_edges = ends[self._loops(ends[:, ::-1]) < 0]
-        return np.isin(vertices, open_edges).tolist()
+        return self._border[np.asarray(vertices, int)].tolist()
 
     def side_normals(self, pairs: Sequence[tuple[int, int]]) -> FloatArray:
         loops = self._loops(pairs)
-        faces = self._mesh.polygons
-        found = _rows([faces[face].normal[:] for face in self._face[loops].tolist()], 3)
+        found = self._normals[self._face[loops]]
         found[loops < 0] = np.nan
         return found
 
     def side_uv(self, pairs: Sequence[tuple[int, int]]) -> FloatArray:
         loops = self._loops(pairs)
-        if not self._mesh.uv_layers:
+        if self.uv is None:
             return np.full((len(pairs), 2, 2), np.nan, np.float32)
-        uv = _read(self._mesh.uv_layers.active.uv, "vector", np.float32, 2)
-        found = uv[np.stack([loops, self._following[loops]], axis=1)]
+        found = self.uv[np.stack([loops, self._following[loops]], axis=1)]
         found[loops < 0] = np.nan
         return found
 
     def triangles(self, faces: Sequence[int]) -> list[tuple[int, int, int]]:
         found = []
         for face in faces:
-            vertices = list(self._mesh.polygons[face].vertices)
-            found += _triangulated(vertices, [self._mesh.vertices[v].co for v in vertices])
+            vertices = self._corners[self._start[face] :][: self._total[face]]
+            found += _triangulated(vertices.tolist(), self._places[vertices].tolist())
         return found
 
     def all_triangles(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
@@ -146,7 +149,7 @@ class StoredMesh:
         return _read(attribute.data, "value", np.float32)
 
     def _key(self, first: NDArray, second: NDArray) -> NDArray[np.int64]:
-        return first.astype(np.int64) * len(self._mesh.vertices) + second
+        return first.astype(np.int64) * len(self._places) + second
 
     def _loops(self, pairs: Sequence[tuple[int, int]] | NDArray) -> NDArray[np.int64]:
         """(k,) the loop that runs along each directed edge, -1 where there is none."""
@@ -156,6 +159,27 @@ class StoredMesh:
         wanted = self._key(pairs[:, 0], pairs[:, 1])
         place = np.minimum(np.searchsorted(self._keys, wanted), len(self._keys) - 1)
         return np.where(self._keys[place] == wanted, self._order[place], -1)
+
+
+class FrozenMesh(StoredMesh):
+    """An edited mesh for as long as only its UVs change; those are to be set as ``uv``.
+
+    copy: of the mesh, out of edit mode; not used any more once it is read. Hidden faces are left out, as in edit mode.
+    """
+
+    def __init__(self, copy: bpy.types.Mesh) -> None:
+        super().__init__(copy)
+        self._hidden = _read(copy.polygons, "hide", bool)
+        vertices, faces = super().all_triangles()
+        shown = ~self._hidden[faces]
+        self._shown = vertices[shown], faces[shown]
+
+    def all_triangles(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        return self._shown
+
+    def _loops(self, pairs: Sequence[tuple[int, int]] | NDArray) -> NDArray[np.int64]:
+        loops = super()._loops(pairs)
+        return np.where(self._hidden[self._face[loops]], -1, loops)
 
 
 def reader(mesh: bpy.types.Mesh) -> EditedMesh | StoredMesh:

@@ -3,6 +3,7 @@
 
 import math
 import os
+from dataclasses import replace
 from importlib import import_module
 
 import bpy
@@ -23,15 +24,25 @@ from scenes import (
     mark,
     marked,
     plain_copy,
+    select_elements,
     selected,
     snapshot,
     uv_key,
 )
 
 EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
-cone_session, gathering, mesh_read, native, reports, screens, typed_number = (
+cone_session, content, gathering, mesh_read, native, reports, screens, typed_number = (
     import_module(f"{EXTENSION}.{name}")
-    for name in ("cone_session", "gathering", "mesh_read", "native", "reports", "screen", "typed_number")
+    for name in (
+        "cone_session",
+        "overlay.content",
+        "gathering",
+        "mesh_read",
+        "native",
+        "reports",
+        "screen",
+        "typed_number",
+    )
 )
 SIZE = 400
 
@@ -312,3 +323,26 @@ def test_numbers_are_typed_key_by_key():
     assert not typed.press("X", "x")
     typed.clear()
     assert typed.value is None
+
+
+@pytest.mark.parametrize("build", [add_ball, add_grid])
+def test_a_session_shows_what_the_overlay_shows_of_the_same_map(build):
+    obj = build()
+    mark(obj, marked(obj) or [0, 24])
+    bpy.ops.uv.cone_unwrap()
+    edit(obj, select="DESELECT")
+    hidden = [face.index for face in obj.data.polygons][::5]
+    select_elements(obj, "faces", hidden)
+    bpy.ops.mesh.hide()
+    session = begin(obj)
+    for _ in range(2):
+        report = session.report()
+        report = replace(report, flipped=[1, 2], overlapping=[3]) if report else None
+        expected = content.build_content(obj, report, marked=session.marked())
+        found = content.build_content(obj, report, session._mesh, session.marked())
+        assert found.cones == expected.cones
+        for name in ("cone_places", "cut_lines", "cut_paths", "cut_uv", "flipped", "overlapping"):
+            np.testing.assert_allclose(getattr(found, name), getattr(expected, name), atol=1e-6)
+        session.add(vertex_near(obj, 0.4, 0.3, 0.5))
+        follow(session)
+    assert len(found.cut_lines) and len(found.cut_lines) == len(session.content().cut_lines)
