@@ -4,12 +4,15 @@
 The checker shows where texels are large, small, turned or torn; the colours of the layout say the same as a figure: red
 where the layout is larger than the surface, blue where it is smaller, by up to twice in length, magenta where it is
 flipped.  Drawn by points spread over the triangles: that is quick, and exact enough for a picture of this size.
+
+Arrays are by columns, (coordinate, corner, triangle) or (coordinate, point), which is several times as fast as by rows.
 """
 
 from __future__ import annotations
 
 import struct
 import zlib
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -23,19 +26,21 @@ SIDE = 80
 MARGIN = 4
 POINTS_PER_PIXEL = 2
 SQUARES = 18
+SLACK = 2.0  # pixels of depth in which points are seen beside each other
 VIEW = np.array([[0.8, 0.0, -0.6], [-0.2572, 0.9035, -0.3429], [0.5421, 0.4286, 0.7228]])  # rows: right, up, to the eye
 GROUND = 255
-SMALLER, EQUAL, LARGER = np.array([[40.0, 90.0, 200.0], [225.0, 225.0, 215.0], [205.0, 50.0, 30.0]])
-FLIPPED = np.array([220.0, 0.0, 220.0])
-LIGHT_SQUARE, DARK_SQUARE = np.array([[245.0, 240.0, 225.0], [70.0, 90.0, 120.0]])
+LEVELS = 31  # of each colour above none; more are hardly seen, but make files half as large again
+SMALLER, EQUAL, LARGER = np.array([[40, 90, 200], [225, 225, 215], [205, 50, 30]], np.float32)
+FLIPPED = np.array([220, 0, 220], np.float32)
+LIGHT_SQUARE, DARK_SQUARE = np.array([[245, 240, 225], [70, 90, 120]], np.float32)
 
 
 def picture_of(surface: Surface, result: Result) -> bytes:
     """The picture as a PNG file, the same bytes for the same result."""
     solved = result.solved
-    seen = (_into_unit(surface.positions) @ VIEW.T).astype(np.float32)[surface.triangles[solved]]
-    uv = _into_unit(result.corner_uv[solved]).astype(np.float32)
-    normal = np.cross(seen[:, 1] - seen[:, 0], seen[:, 2] - seen[:, 0])
+    seen = _into_square(np.take(VIEW @ surface.positions.T, surface.triangles[solved].T, axis=1))
+    uv = _into_square(result.corner_uv[solved].T)
+    normal = _cross(seen[:, 1] - seen[:, 0], seen[:, 2] - seen[:, 0])
     flipped = np.isin(np.flatnonzero(solved), result.flipped)
     return png(np.concatenate([_surface_picture(seen, normal, uv), _layout_picture(normal, uv, flipped)], axis=1))
 
@@ -52,80 +57,72 @@ def png(pixels: NDArray[np.uint8]) -> bytes:
 
 
 def _surface_picture(seen: Floats, normal: Floats, uv: Floats) -> NDArray[np.uint8]:
-    """seen: (m, 3, 3), corners of triangles in the frame of VIEW. normal: (m, 3). uv: (m, 3, 2), of the corners."""
-    flat = _into_square(seen[..., :2])
+    """seen: (3, 3, m), in the frame of VIEW. normal: (3, m). uv: (2, 3, m)."""
+    points = Points.spread(seen[:2], np.abs(normal[2]))
+    (depth,) = points.values(seen[2:])
+    points = points.where(depth >= _front(points.pixel, depth)[points.pixel] - SLACK)
+    column, row = (points.values(uv) * (SQUARES / (SIDE - 2 * MARGIN))).astype(np.int32)
     length = _length(normal)
-    light = 0.45 + 0.55 * np.abs(normal[:, 2]) / np.where(length > 0, length, 1)
-    triangle, weights = _spread(flat)
-    pixel = _pixels(flat, triangle, weights)
-    (depth,) = _blend(seen[..., 2:], triangle, weights)
-    place = np.floor(SQUARES * _blend(uv, triangle, weights)).sum(axis=0)
-    # Of the points in a pixel those near the foremost one are seen.
+    light = 0.45 + 0.55 * np.abs(normal[2]) / np.where(length > 0, length, 1)
+    squares = np.where((column + row) % 2 == 0, LIGHT_SQUARE[:, None], DARK_SQUARE[:, None])
+    return _mixed(points.pixel, squares * light[points.triangle])
+
+
+def _front(pixel: NDArray[np.intp], depth: Floats) -> Floats:
+    """The depth of what is seen in each pixel.  Infinite, so that nothing is seen, where all points lie behind those of
+    the pixels around: the surface goes on there, and no point happened to fall on it."""
     front = np.full(SIDE * SIDE, -np.inf, np.float32)
     np.maximum.at(front, pixel, depth)
-    near = 2 * np.ptp(depth) / SIDE if len(depth) else 0.0
-    shown = depth >= front[pixel] - near
-    colour = np.where((place[shown] % 2 == 0)[:, None], LIGHT_SQUARE, DARK_SQUARE) * light[triangle[shown], None]
-    return _mixed(pixel[shown], colour)
+    nearer = _around(front, np.arange(SIDE * SIDE)) > front + 2 * SLACK
+    front[np.count_nonzero(nearer, axis=0) >= 3] = np.inf
+    return front
 
 
 def _layout_picture(normal: Floats, uv: Floats, flipped: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    flat = _into_square(uv)
-    triangle, weights = _spread(flat)
-    area, uv_area = _length(normal), _double_area(uv)
+    area, (uv_area,) = _length(normal), np.abs(_cross(uv[:, 1] - uv[:, 0], uv[:, 2] - uv[:, 0]))
+    points = Points.spread(uv, uv_area)
     with np.errstate(all="ignore"):
         larger = 0.5 * np.log2(uv_area / uv_area.sum() * area.sum() / area)
-    larger = np.clip(np.nan_to_num(larger, nan=0.0), -1, 1)[:, None]
-    colour = EQUAL + np.maximum(larger, 0) * (LARGER - EQUAL) + np.maximum(-larger, 0) * (SMALLER - EQUAL)
-    colour[flipped] = FLIPPED
-    return _mixed(_pixels(flat, triangle, weights), colour[triangle])
+    larger = np.clip(np.nan_to_num(larger, nan=0.0), -1, 1)[points.triangle]
+    most = np.where(larger > 0, (LARGER - EQUAL)[:, None], (SMALLER - EQUAL)[:, None])
+    colour = EQUAL[:, None] + np.abs(larger) * most
+    return _mixed(points.pixel, np.where(flipped[points.triangle], FLIPPED[:, None], colour))
 
 
-def _into_unit(values: Floats) -> Floats:
-    """Coordinates (..., d) moved and scaled, alike in all directions, into the unit cube."""
-    if not values.size:
-        return values
-    lowest, highest = _bounds(values)
-    extent = (highest - lowest).max()
-    return (values - lowest) / (extent if extent > 0 else 1.0)
+@dataclass(frozen=True)
+class Points:
+    """Points spread over triangles. triangle: (p,), of each. weights: (3, p), barycentric. pixel: (p,), where it is."""
+
+    triangle: NDArray[np.intp]
+    weights: Floats
+    pixel: NDArray[np.intp]
+
+    @classmethod
+    def spread(cls, flat: Floats, double_area: Floats) -> Points:
+        """Evenly over triangles (2, 3, m) in the square of the picture."""
+        # Shares of a point are carried over to the next triangles.
+        ends = np.cumsum(0.5 * POINTS_PER_PIXEL * double_area, dtype=float).astype(np.intp)
+        count = np.diff(ends, prepend=0)
+        triangle = np.repeat(np.arange(len(count)), count)
+        number = np.arange(len(triangle)) - (ends - count)[triangle]
+        weights = np.take(_even_weights(), number, axis=1, mode="clip")
+        column, row = _blend(flat, triangle, weights).astype(np.intp)
+        return cls(triangle, weights, (SIDE - 1 - row) * SIDE + column)
+
+    def where(self, keep: NDArray[np.bool_]) -> Points:
+        return Points(self.triangle[keep], np.compress(keep, self.weights, axis=1), self.pixel[keep])
+
+    def values(self, at_corners: Floats) -> Floats:
+        """Values (d, 3, m) of corners at the points, (d, p)."""
+        return _blend(at_corners, self.triangle, self.weights)
 
 
-def _bounds(values: Floats) -> Floats:
-    """The lowest and the highest of each coordinate, (2, d).  By columns, which is many times as fast as by axes."""
-    columns = values.reshape(-1, values.shape[-1]).T
-    return np.array([[column.min() for column in columns], [column.max() for column in columns]])
-
-
-def _length(vectors: Floats) -> Floats:
-    x, y, z = vectors.T
-    return np.sqrt(x * x + y * y + z * z)
-
-
-def _double_area(flat: Floats) -> Floats:
-    """Twice the area of triangles (m, 3, 2)."""
-    (ax, ay), (bx, by) = (flat[:, 1] - flat[:, 0]).T, (flat[:, 2] - flat[:, 0]).T
-    return np.abs(ax * by - ay * bx)
-
-
-def _into_square(values: Floats) -> Floats:
-    """Coordinates (m, 3, 2) in pixels, in the middle of the picture."""
-    unit = _into_unit(values)
-    middle = _bounds(unit)[1] / 2 if len(unit) else 0.0
-    return (unit - middle) * (SIDE - 2 * MARGIN) + SIDE / 2
-
-
-def _spread(flat: Floats) -> tuple[NDArray[np.int64], Floats]:
-    """Points spread evenly over triangles (m, 3, 2): the triangle of each and its barycentric coordinates (3, p)."""
-    area = 0.5 * _double_area(flat)
-    # Shares of a point are carried over to the next triangles.
-    count = np.diff(np.floor(np.cumsum(area * POINTS_PER_PIXEL, dtype=float)), prepend=0.0).astype(np.int64)
-    triangle = np.repeat(np.arange(len(flat)), count)
-    number = np.arange(len(triangle)) - np.repeat(np.cumsum(count) - count, count)
-    return triangle, _spread_points()[:, number]
+def _blend(at_corners: Floats, triangle: NDArray[np.intp], weights: Floats) -> Floats:
+    return np.einsum("dcp,cp->dp", np.take(at_corners, triangle, axis=2, mode="clip"), weights)
 
 
 @cache
-def _spread_points() -> Floats:
+def _even_weights() -> Floats:
     """Barycentric coordinates (3, p) of as many points as a triangle can have, the first of which are spread evenly as
     well: the sequence of Roberts in a square that is folded to a triangle."""
     number = np.arange(POINTS_PER_PIXEL * SIDE * SIDE + 1)
@@ -135,29 +132,41 @@ def _spread_points() -> Floats:
     return np.stack([1 - a - b, a, b]).astype(np.float32)
 
 
-def _blend(values: Floats, triangle: NDArray[np.int64], weights: Floats) -> Floats:
-    """Values (m, 3, d) at points, (d, p)."""
-    return np.stack([sum(weights[i] * column[triangle, i] for i in range(3)) for column in np.moveaxis(values, 2, 0)])
+def _into_square(values: Floats) -> Floats:
+    """Coordinates (2 or 3, 3, m) in pixels, the first two in the middle of the picture, its margins free."""
+    columns = values.reshape(len(values), -1)
+    if not columns.size:
+        return values
+    lowest, highest = columns.min(axis=1), columns.max(axis=1)
+    extent = (highest - lowest)[:2].max()
+    pixel = (extent if extent > 0 else 1.0) / (SIDE - 2 * MARGIN)
+    columns = (columns - 0.5 * (lowest + highest)[:, None]) / pixel + SIDE / 2
+    return columns.astype(np.float32).reshape(values.shape)
 
 
-def _pixels(flat: Floats, triangle: NDArray[np.int64], weights: Floats) -> NDArray[np.int64]:
-    column, row = _blend(flat, triangle, weights).astype(np.int64)
-    return np.clip(SIDE - 1 - row, 0, SIDE - 1) * SIDE + np.clip(column, 0, SIDE - 1)
+def _cross(a: Floats, b: Floats) -> Floats:
+    """The cross product of vectors (3, m), or the one coordinate it has, (1, m), of vectors (2, m)."""
+    z = a[0] * b[1] - a[1] * b[0]
+    return np.stack([z] if len(a) == 2 else [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], z])
 
 
-def _mixed(pixel: NDArray[np.int64], colour: Floats) -> NDArray[np.uint8]:
-    """The mean colour of the points in each pixel; an empty pixel among full ones takes the mean of theirs."""
-    count = np.bincount(pixel, minlength=SIDE * SIDE)
-    total = np.stack([np.bincount(pixel, colour[:, i], SIDE * SIDE) for i in range(3)], axis=1)
-    inked = (count > 0).reshape(SIDE, SIDE)
-    image = (total / np.maximum(count, 1)[:, None]).reshape(SIDE, SIDE, 3)
-    beside = _sum_of_neighbours(inked.astype(float)[..., None])
-    holes = ~inked & (beside[..., 0] >= 3)
-    image[holes] = _sum_of_neighbours(image)[holes] / beside[holes]
-    image[~(inked | holes)] = GROUND
-    return np.rint(image).astype(np.uint8)
+def _length(vectors: Floats) -> Floats:
+    x, y, z = vectors
+    return np.sqrt(x * x + y * y + z * z)
 
 
-def _sum_of_neighbours(image: Floats) -> Floats:
-    padded = np.pad(image, ((1, 1), (1, 1), (0, 0)))
-    return padded[:-2, 1:-1] + padded[2:, 1:-1] + padded[1:-1, :-2] + padded[1:-1, 2:]
+def _mixed(pixel: NDArray[np.intp], colour: Floats) -> NDArray[np.uint8]:
+    """The mean colour (3, p) of the points in each pixel; an empty pixel among full ones takes the mean of theirs."""
+    sums = np.stack([np.bincount(pixel, weights, SIDE * SIDE) for weights in (None, *colour)])
+    empty = np.flatnonzero(sums[0] == 0)
+    holes = empty[np.count_nonzero(_around(sums[0], empty), axis=0) >= 3]
+    sums[:, holes] = _around(sums, holes).sum(axis=1)
+    count, image = sums[0], sums[1:]
+    image = np.where(count > 0, image / np.maximum(count, 1), GROUND)
+    image = np.rint(image * (LEVELS / 255)) * (255 / LEVELS)
+    return image.astype(np.uint8).T.reshape(SIDE, SIDE, 3)
+
+
+def _around(image: Floats, pixel: NDArray[np.intp]) -> Floats:
+    """What an image (..., SIDE * SIDE) has in the four pixels beside each of some: (..., 4, k)."""
+    return np.take(image, pixel + np.array([[-SIDE], [-1], [1], [SIDE]]), axis=-1, mode="wrap")  # margins are empty
