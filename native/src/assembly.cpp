@@ -36,30 +36,15 @@ void Assembly::add(std::size_t component_index, const ComponentCones& cones, con
   if (options_.overlaps == Overlaps::split && !result_.seamless && map.pins.size() < 2) {
     split_map(component.mesh, geometry, open_seams(component.mesh), component.mesh.seam, monitor_, map);
   }
-  const Index islands = add_islands(component, geometry, map);
-  solved_.push_back({&component, std::move(map), islands});
+  Solved solved;
+  solved.component = &component;
+  solved.map = std::move(map);
+  add_islands(geometry, solved);
+  solved_.push_back(std::move(solved));
 }
 
 void Assembly::finish(const Cones& cones, const std::vector<std::pair<Index, Index>>& duplicates) {
-  arrange(islands_);
-  for (const Island& island : islands_) {
-    if (island.position.allFinite()) continue;
-    throw Error(
-        Code::solver_failed,
-        "The layout's sizes differ by more than numbers can hold. Add cones where the surface is stretched most, or "
-        "unwrap its parts one by one.");
-  }
-  std::vector<Index> triangles;
-  for (std::size_t i = 0; i < islands_.size(); ++i) {
-    for (std::size_t k = 0; k < corners_[i].size(); ++k) {
-      const Complex z = islands_[i].position[static_cast<Eigen::Index>(k)];
-      result_.corner_uv.row(corners_[i][k]) << z.real(), z.imag();
-    }
-  }
-  for (std::size_t i = 0; i < pinned_.size(); ++i) result_.corner_uv.row(pinned_[i].first) = pinned_[i].second;
-  for (Index f = 0; f < surface_.triangles.rows(); ++f) {
-    if (result_.island[f] != none) triangles.push_back(f);
-  }
+  place(arrange(islands_));
   {
     const Monitor::Stage stage(monitor_, "check");
     for (Solved& solved : solved_) {
@@ -71,9 +56,13 @@ void Assembly::finish(const Cones& cones, const std::vector<std::pair<Index, Ind
     const Monitor::Stage stage(monitor_, "overlaps");
     find_overlapping();
   }
+  std::vector<Index> triangles;
+  for (Index f = 0; f < surface_.triangles.rows(); ++f) {
+    if (result_.island[f] != none) triangles.push_back(f);
+  }
+  result_.distortion = measure_triangles(surface_, result_.corner_uv, triangles);
   for (const auto& [f, original] : duplicates) share_map(f, original);
   name_unmapped(duplicates);
-  result_.distortion = measure_triangles(surface_, result_.corner_uv, triangles);
   result_.cut_edges = Eigen::Map<VertexPairs>(cut_edges_.data(), static_cast<Eigen::Index>(cut_edges_.size() / 2), 2);
   for (const Index v : cones.vertices) {
     if (std::isnan(cone_angle_[v])) continue;
@@ -83,16 +72,36 @@ void Assembly::finish(const Cones& cones, const std::vector<std::pair<Index, Ind
   report_defects();
 }
 
+void Assembly::place(const std::vector<Similarity>& placement) {
+  Eigen::Index corner_count = 0;
+  for (Solved& solved : solved_) {
+    solved.first_corner = corner_count;
+    corner_count += solved.component->mesh.halfedge_count();
+  }
+  layout_.resize(corner_count);
+  for (const Solved& solved : solved_) {
+    const Component& component = *solved.component;
+    for (Index corner = 0; corner < component.mesh.halfedge_count(); ++corner) {
+      Complex z = solved.map.position[solved.map.cut_mesh.copy_of_corner[corner]];
+      if (!solved.is_in_place) z = placement[solved.first_island + solved.part[corner / 3]](solved.scale * z);
+      layout_[solved.first_corner + corner] = z;
+      result_.corner_uv.row(component.source_corner(corner)) << z.real(), z.imag();
+    }
+  }
+  if (layout_.allFinite()) return;
+  throw Error(Code::solver_failed,
+              "The layout's sizes differ by more than numbers can hold. Add cones where the surface is stretched most, "
+              "or unwrap its parts one by one.");
+}
+
 void Assembly::check_in_layout(Solved& solved) const {
   const HalfedgeMesh& mesh = solved.component->mesh;
-  Eigen::VectorXcd corners(mesh.halfedge_count());
-  for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
-    const Index source = solved.component->source_corner(corner);
-    corners[corner] = {result_.corner_uv(source, 0), result_.corner_uv(source, 1)};
-  }
-  check_triangles(mesh, corners, solved.map);
+  check_triangles(mesh, corners(solved), solved.map);
   // Islands of one map were moved one by one; their common cuts are checked as they were before.
-  check_seams(mesh, solved.islands == 1 ? corners : at_corners(solved.map.cut_mesh, solved.map.position), solved.map);
+  if (solved.part_count == 1)
+    check_seams(mesh, corners(solved), solved.map);
+  else
+    check_seams(mesh, at_corners(solved.map.cut_mesh, solved.map.position), solved.map);
 }
 
 void Assembly::collect_checks(const Component& component, const ComponentMap& map) {
@@ -121,45 +130,45 @@ std::vector<char> Assembly::open_seams(const HalfedgeMesh& mesh) const {
   return result_.seamless ? std::vector<char>(mesh.halfedge_count(), 0) : mesh.seam;
 }
 
-Index Assembly::add_islands(const Component& component, const Geometry& geometry, const ComponentMap& map) {
+void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
+  const Component& component = *solved.component;
+  const ComponentMap& map = solved.map;
   const HalfedgeMesh& mesh = component.mesh;
   std::vector<char> open = open_seams(mesh);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) open[h] = open[h] || map.cut_graph.is_cut[h];
-  std::vector<Index> part;
-  const Index part_count = label_parts(mesh, open, part);
+  solved.part_count = label_parts(mesh, open, solved.part);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     const Index twin = mesh.twin[h];
-    if (twin < h || !(map.cut_graph.is_cut[h] || part[h / 3] != part[twin / 3])) continue;
+    if (twin < h || !(map.cut_graph.is_cut[h] || solved.part[h / 3] != solved.part[twin / 3])) continue;
     cut_edges_.push_back(component.source_vertex[mesh.origin(h)]);
     cut_edges_.push_back(component.source_vertex[mesh.target(h)]);
   }
-  const Index first = island_count_;
-  island_count_ += part_count;
-  for (Index f = 0; f < mesh.triangle_count(); ++f) result_.island[component.source_triangle[f]] = first + part[f];
-  const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
-  if (map.pins.size() > 1 || result_.seamless) {  // in its place already
-    for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
-      pinned_.emplace_back(component.source_corner(corner),
-                           Eigen::RowVector2d(corners[corner].real(), corners[corner].imag()));
-    }
-    return part_count;
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    result_.island[component.source_triangle[f]] = island_count_ + solved.part[f];
   }
-  const double scale = map.uv_area > 0 ? std::sqrt(geometry.total_area / map.uv_area) : 1.0;
-  std::vector<std::vector<Index>> of_part(part_count);
-  for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) of_part[part[corner / 3]].push_back(corner);
-  for (const std::vector<Index>& own : of_part) {
+  island_count_ += solved.part_count;
+  solved.is_in_place = map.pins.size() > 1 || result_.seamless;
+  if (solved.is_in_place) return;
+  solved.scale = map.uv_area > 0 ? std::sqrt(geometry.total_area / map.uv_area) : 1.0;
+  solved.first_island = islands_.size();
+  std::vector<std::vector<Index>> copies(solved.part_count);  // of every island
+  std::vector<Index> listed_in(map.cut_mesh.copy_count(), none);
+  for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
+    const Index copy = map.cut_mesh.copy_of_corner[corner], part = solved.part[corner / 3];
+    if (listed_in[copy] == part) continue;
+    listed_in[copy] = part;
+    copies[part].push_back(copy);
+  }
+  for (const std::vector<Index>& own : copies) {
     Island island{Eigen::VectorXcd(own.size()), std::nullopt, static_cast<Index>(solved_.size())};
-    corners_.emplace_back();
     for (std::size_t k = 0; k < own.size(); ++k) {
-      island.position[static_cast<Eigen::Index>(k)] = scale * corners[own[k]];
-      corners_.back().push_back(component.source_corner(own[k]));
-      if (!map.pins.empty() && map.cut_mesh.copy_of_corner[own[k]] == map.pins.front().copy) {
+      island.position[static_cast<Eigen::Index>(k)] = solved.scale * map.position[own[k]];
+      if (!map.pins.empty() && own[k] == map.pins.front().copy) {
         island.pin = {static_cast<Eigen::Index>(k), map.pins.front().position};
       }
     }
     islands_.push_back(std::move(island));
   }
-  return part_count;
 }
 
 void Assembly::name_unmapped(const std::vector<std::pair<Index, Index>>& duplicates) {
@@ -187,29 +196,24 @@ void Assembly::share_map(Index triangle, Index original) {
 
 // Triangles that lie on others, over all islands.
 void Assembly::find_overlapping() {
-  Index corner_count = 0;
-  for (const Solved& solved : solved_) corner_count += solved.component->mesh.halfedge_count();
-  Eigen::VectorXcd position(corner_count);
-  std::vector<Index> twin(corner_count), triangle(corner_count / 3);
-  Index first = 0;
+  std::vector<Index> twin(layout_.size()), triangle(layout_.size() / 3);
   double area = 0;
   for (const Solved& solved : solved_) {
-    const Component& component = *solved.component;
-    const HalfedgeMesh& mesh = component.mesh;
+    const HalfedgeMesh& mesh = solved.component->mesh;
+    const Index first = static_cast<Index>(solved.first_corner);
     for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-      const Index source = component.source_corner(h), other = mesh.twin[h];
-      position[first + h] = {result_.corner_uv(source, 0), result_.corner_uv(source, 1)};
-      triangle[(first + h) / 3] = component.source_triangle[h / 3];
+      const Index other = mesh.twin[h];
       const bool runs_on =
-          other != none && !solved.map.cut_graph.is_cut[h] &&
-          result_.island[triangle[(first + h) / 3]] == result_.island[component.source_triangle[other / 3]];
+          other != none && !solved.map.cut_graph.is_cut[h] && solved.part[h / 3] == solved.part[other / 3];
       twin[first + h] = runs_on ? first + other : none;
     }
-    for (Index f = 0; f < mesh.triangle_count(); ++f) area += std::abs(doubled_area(position, first / 3 + f)) / 2;
-    first += mesh.halfedge_count();
+    for (Index f = 0; f < mesh.triangle_count(); ++f) {
+      triangle[first / 3 + f] = solved.component->source_triangle[f];
+      area += std::abs(doubled_area(layout_, first / 3 + f)) / 2;
+    }
   }
   double shared = 0;
-  for (const Overlap& overlap : result_.flipped.empty() ? find_overlaps(position, twin) : find_overlaps(position)) {
+  for (const Overlap& overlap : result_.flipped.empty() ? find_overlaps(layout_, twin) : find_overlaps(layout_)) {
     shared += overlap.area;
     result_.overlapping.insert(result_.overlapping.end(), {triangle[overlap.first], triangle[overlap.second]});
   }

@@ -25,9 +25,19 @@ class Assembly {
   struct Solved {
     const Component* component;
     ComponentMap map;
-    Index islands;
+    std::vector<Index> part;  // (m) the island of every triangle, counted from the component's first
+    Index part_count = 1;
+    double scale = 1;               // of the map to the texel density of all
+    std::size_t first_island = 0;   // of those to be arranged
+    bool is_in_place = false;       // nothing of it is to be arranged
+    Eigen::Index first_corner = 0;  // in the layout
   };
 
+  // Writes where every corner comes to lie, in the result and in `layout_`.
+  void place(const std::vector<Similarity>& placement);
+  CornerPositions corners(const Solved& solved) const {
+    return layout_.segment(solved.first_corner, solved.component->mesh.halfedge_count());
+  }
   // Checks the coordinates that are returned: a component much smaller than the others has lost digits to its place.
   void check_in_layout(Solved& solved) const;
   void collect_checks(const Component& component, const ComponentMap& map);
@@ -36,8 +46,8 @@ class Assembly {
   std::vector<char> open_seams(const HalfedgeMesh& mesh) const;
 
   // A component is one island, or several where its cuts and seams together close off parts: those keep their size and
-  // are placed one by one, related across the seam by how they were moved.  Returns how many.
-  Index add_islands(const Component& component, const Geometry& geometry, const ComponentMap& map);
+  // are placed one by one, related across the seam by how they were moved.
+  void add_islands(const Geometry& geometry, Solved& solved);
 
   // Triangles that lie on one of a skipped component were skipped with it.
   void name_unmapped(const std::vector<std::pair<Index, Index>>& duplicates);
@@ -56,9 +66,8 @@ class Assembly {
   std::vector<Index> cut_edges_, inexact_seams_;  // vertex pairs
   std::vector<Index> inexact_angles_;
   std::vector<Solved> solved_;
-  std::vector<Island> islands_;                               // those to be arranged
-  std::vector<std::vector<Index>> corners_;                   // the caller's, of each of them
-  std::vector<std::pair<Index, Eigen::RowVector2d>> pinned_;  // corners that are in their place
+  std::vector<Island> islands_;  // those to be arranged
+  Eigen::VectorXcd layout_;      // u + iv at the corners of all solved components, one after the other
   Index island_count_ = 0;
 };
 

@@ -9,12 +9,12 @@
 
 namespace lsgp {
 
-void check_seams(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners, ComponentMap& map) {
+void check_seams(const HalfedgeMesh& mesh, const CornerPositions& corners, ComponentMap& map) {
   map.seams = measure_seams(mesh, map.cut_graph, corners, map.rotation ? &*map.rotation : nullptr,
                             map.rotation ? &map.inexact_seams : nullptr);
 }
 
-void check_triangles(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners, ComponentMap& map) {
+void check_triangles(const HalfedgeMesh& mesh, const CornerPositions& corners, ComponentMap& map) {
   map.validity = check_map(mesh, corners, map.curvature.at_vertex, map.curvature.is_free);
   if (map.rotation) return;
   map.validity.wrong_angle_sums.clear();  // without transitions all angles are free

@@ -40,7 +40,7 @@ ComponentMap map_component(ComponentSystem& system, const ComponentTask& task, c
                            std::vector<Finding>& findings, Monitor& monitor);
 
 // Measure positions u + iv at the component's corners, (3m), against what the map imposed.
-void check_seams(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners, ComponentMap& map);
-void check_triangles(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners, ComponentMap& map);
+void check_seams(const HalfedgeMesh& mesh, const CornerPositions& corners, ComponentMap& map);
+void check_triangles(const HalfedgeMesh& mesh, const CornerPositions& corners, ComponentMap& map);
 
 }  // namespace lsgp

@@ -36,11 +36,7 @@ const CutFactor* ComponentSystem::factor(const FactorHook& hook) {
 }
 
 const LogScale& ComponentSystem::log_scale(const FactorHook& hook) {
-  if (!log_scale_) {
-    LogScale scale(mesh_, geometry_, border_, factor(hook));
-    scale.add_cones(cones_);
-    log_scale_.emplace(std::move(scale));
-  }
+  if (!log_scale_) log_scale_.emplace(mesh_, geometry_, border_, cones_, factor(hook));
   return *log_scale_;
 }
 

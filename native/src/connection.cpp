@@ -83,7 +83,8 @@ struct MetricConnection {
 
   // The better a root, the farther its curvature is from whole turns.
   MetricConnection(const CutSurface& surface, const Curvature& curvature)
-      : nodes(build_node_graph(surface.mesh, surface.cut_graph, (curvature.at_vertex / 2).array().sin().abs())),
+      : nodes(build_node_graph(surface.mesh, surface.cut_graph,
+                               [&](Index v) { return std::abs(std::sin(curvature.at_vertex[v] / 2)); })),
         node_curvature(curvature_of_nodes(surface.mesh, nodes, curvature.at_vertex)),
         frames(integrate_frames(surface.mesh, surface.geometry, surface.cut_graph, curvature.log_scale)),
         natural(read_rotations(surface.mesh, surface.geometry, surface.cut_graph, curvature.log_scale, frames)) {}

@@ -18,12 +18,12 @@ namespace lsgp {
 
 // The log scale y of the metric with given curvatures: L y = kappa - K where y is not held at 0, so y is affine in the
 // cone curvatures, y = y_0 + sum of kappa_c G_c.  One factorization; one more back-substitution for every cone.  With
-// nothing held, y is known up to a constant and Gauss-Bonnet has to hold.
+// nothing held, y is known up to a constant, Gauss-Bonnet has to hold, and y is held at one vertex, a cone if any.
 class LogScale {
  public:
-  // factor: where given, one that is there already.
+  // cones: inside, none twice.  factor: where given, one that is there already and has them on its cuts.
   LogScale(const HalfedgeMesh& mesh, const Geometry& geometry, const BorderConditions& border,
-           const CutFactor* factor = nullptr);
+           const std::vector<Index>& cones = {}, const CutFactor* factor = nullptr);
 
   void add_cones(const std::vector<Index>& vertices);  // none twice, none held
   void remove_cones();                                 // all of them
@@ -68,11 +68,11 @@ class LogScale {
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
   BorderConditions border_;
+  std::vector<Index> cones_;
   std::unique_ptr<LaplaceSolver> laplace_;
   Eigen::VectorXd weight_;         // (n) share of the area
   Eigen::VectorXd without_cones_;  // (n) y_0
-  std::vector<Index> cones_;
-  Eigen::MatrixXd green_;  // (n, k) G_c
+  Eigen::MatrixXd green_;          // (n, k) G_c
 };
 
 // Bounds of the angles of automatic cones, radians; widened where Gauss-Bonnet wants more.

@@ -36,6 +36,7 @@ CutFactor::CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, CutGrap
   }
   for (const Index copy : retained_) row_of_copy_[copy] = row++;
   factor_.emplace(assemble_dirichlet(mesh, geometry, cut_mesh_, row_of_copy_), retained_count(), hook);
+  for (Index& own : row_of_copy_) own = factor_->place(own);
 }
 
 bool CutFactor::covers(const CutGraph& cut_graph) const {

@@ -29,18 +29,19 @@ class CutFactor {
   // Whether a surface opened along other cuts can be solved with this factor: its cuts are among these.
   bool covers(const CutGraph& cut_graph) const;
 
-  // Copies that are not eliminated: those on cuts and borders.  In values of copies by rows they come last.
+  // Copies that are not eliminated: those on cuts and borders.
   const std::vector<Index>& retained() const { return retained_; }
   Index eliminated_count() const { return cut_mesh_.copy_count() - retained_count(); }
   Index retained_count() const { return static_cast<Index>(retained_.size()); }
-  Index row_of_copy(Index copy) const { return row_of_copy_[copy]; }
 
-  // The discrete Dirichlet-to-Neumann operator of the retained copies; lower triangle.
+  // The discrete Dirichlet-to-Neumann operator of the retained copies.
   const Eigen::MatrixXd& schur() const { return factor_->schur(); }
-  // Right sides, one a row and column, up to those of the retained copies' own problem; and from its solution, put in
-  // their place, to that of all copies.
-  void eliminate(Eigen::MatrixXd& right_sides) const { factor_->eliminate(right_sides); }
-  void substitute(Eigen::MatrixXd& half_solved) const { factor_->substitute(half_solved); }
+
+  // A solve in two halves, as of Cholesky.  Values come by rows, those of retained copies last.
+  using Rows = Cholesky<double>::Rows;
+  Index row_of_copy(Index copy) const { return row_of_copy_[copy]; }
+  void eliminate(Rows& right_sides) const { factor_->eliminate(right_sides); }
+  void substitute(Rows& half_solved, Eigen::Index sides) const { factor_->substitute(half_solved, sides); }
 
  private:
   CutGraph cut_graph_;

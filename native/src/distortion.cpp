@@ -28,10 +28,13 @@ double percentile(std::vector<double>& values, double share) {
   return low + (rank - static_cast<double>(below)) * (high - low);
 }
 
-double layout_size(const Eigen::VectorXcd& position) {
-  const double width = position.real().maxCoeff() - position.real().minCoeff();
-  const double height = position.imag().maxCoeff() - position.imag().minCoeff();
-  return std::max(std::hypot(width, height), std::numeric_limits<double>::min());
+double layout_size(const CornerPositions& position) {
+  Complex low = position[0], high = low;
+  for (const Complex z : position) {
+    low = {std::min(low.real(), z.real()), std::min(low.imag(), z.imag())};
+    high = {std::max(high.real(), z.real()), std::max(high.imag(), z.imag())};
+  }
+  return std::max(std::abs(high - low), std::numeric_limits<double>::min());
 }
 
 }  // namespace
@@ -88,7 +91,7 @@ Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, 
   return out;
 }
 
-SeamQuality measure_seams(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const Eigen::VectorXcd& position,
+SeamQuality measure_seams(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CornerPositions& position,
                           const Eigen::VectorXd* rotation, std::vector<Index>* inexact) {
   SeamQuality out;
   if (inexact) inexact->clear();
@@ -142,20 +145,27 @@ SeamQuality worse(const SeamQuality& a, const SeamQuality& b) {
           std::max(a.translation_residual, b.translation_residual)};
 }
 
-Eigen::VectorXd angle_sums(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position) {
+Eigen::VectorXd angle_sums(const HalfedgeMesh& mesh, const CornerPositions& position) {
   // Around a vertex where the layout runs on, upright triangles make whole turns: it is enough to count how often they
   // sweep over one direction.  Elsewhere angles have to be measured.
-  std::vector<char> is_measured(mesh.vertex_count(), 0);
+  std::vector<char> is_parted(mesh.vertex_count(), 0), is_measured(mesh.vertex_count(), 0);
+  for (const auto& loop : mesh.boundary_loops) {
+    for (const Index v : loop) is_measured[v] = 1;
+  }
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(mesh.vertex_count());
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
-    const bool is_upright = side(position[3 * f], position[3 * f + 1], position[3 * f + 2]) > 0;
-    for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-      const Index twin = mesh.twin[h];
-      const bool runs_on = twin != none && position[h] == position[next(twin)] && position[next(h)] == position[twin];
-      if (!runs_on || !is_upright) is_measured[mesh.origin(h)] = is_measured[mesh.target(h)] = 1;
-      const double y = position[h].imag();
-      if (position[next(h)].imag() < y && position[prev(h)].imag() >= y) sums[mesh.origin(h)] += 2 * M_PI;
+    const Complex z[]{position[3 * f], position[3 * f + 1], position[3 * f + 2]};
+    const bool is_upright = side(z[0], z[1], z[2]) > 0;
+    for (int c = 0; c < 3; ++c) {
+      const Index v = mesh.triangles(f, c);
+      is_parted[v] |= z[c] != position[mesh.outgoing[v]];
+      is_measured[v] |= !is_upright;
+      if (z[(c + 1) % 3].imag() < z[c].imag() && z[(c + 2) % 3].imag() >= z[c].imag()) sums[v] += 2 * M_PI;
     }
+  }
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {  // the layout ends at edges of parted vertices
+    const Index a = mesh.triangles(f, 0), b = mesh.triangles(f, 1), c = mesh.triangles(f, 2);
+    if (is_parted[a] | is_parted[b] | is_parted[c]) is_measured[a] = is_measured[b] = is_measured[c] = 1;
   }
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (is_measured[v]) sums[v] = 0;
@@ -175,7 +185,7 @@ Eigen::VectorXd angle_sums(const HalfedgeMesh& mesh, const Eigen::VectorXcd& pos
   return sums;
 }
 
-Validity check_map(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position, const Eigen::VectorXd& curvature,
+Validity check_map(const HalfedgeMesh& mesh, const CornerPositions& position, const Eigen::VectorXd& curvature,
                    const std::vector<char>& is_free) {
   Validity out;
   for (Index f = 0; f < mesh.triangle_count(); ++f) {

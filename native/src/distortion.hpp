@@ -11,20 +11,22 @@
 
 namespace lsgp {
 
+using CornerPositions = Eigen::Ref<const Eigen::VectorXcd>;  // (3m) u + iv
+
 // triangles: those to measure, others are left out; triangles without 3D area are skipped.  corner_uv: (3m, 2).
 Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, const std::vector<Index>& triangles);
 
-// position: (3m) u + iv at the component's corners.  rotation: (cuts) imposed, radians; none: every cut's own best.
+// position: at the component's corners.  rotation: (cuts) imposed, radians; none: every cut's own best.
 // inexact: where given, receives the cut halfedges whose two sides differ in length or direction by more than rounding
 // explains on edges of ordinary length.
-SeamQuality measure_seams(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const Eigen::VectorXcd& position,
+SeamQuality measure_seams(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CornerPositions& position,
                           const Eigen::VectorXd* rotation, std::vector<Index>* inexact = nullptr);
 
 // The worse of two in every figure.
 SeamQuality worse(const SeamQuality& a, const SeamQuality& b);
 
 // Twice the signed UV area of a triangle.
-inline double doubled_area(const Eigen::VectorXcd& position, Index triangle) {
+inline double doubled_area(const CornerPositions& position, Index triangle) {
   const Complex a = position[3 * triangle];
   return std::imag(std::conj(position[3 * triangle + 1] - a) * (position[3 * triangle + 2] - a));
 }
@@ -41,10 +43,10 @@ struct Validity {
 };
 // curvature: (n) imposed.  is_free: (n) border vertices that need not have it; their loop's sum has to be right to a
 // turn, or the vertex that is off most is named.
-Validity check_map(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position, const Eigen::VectorXd& curvature,
+Validity check_map(const HalfedgeMesh& mesh, const CornerPositions& position, const Eigen::VectorXd& curvature,
                    const std::vector<char>& is_free);
 
 // Sum of the signed UV angles at every vertex, (n).
-Eigen::VectorXd angle_sums(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position);
+Eigen::VectorXd angle_sums(const HalfedgeMesh& mesh, const CornerPositions& position);
 
 }  // namespace lsgp

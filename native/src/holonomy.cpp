@@ -3,7 +3,8 @@
 
 namespace lsgp {
 
-NodeGraph build_node_graph(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const Eigen::VectorXd& root_rank) {
+NodeGraph build_node_graph(const HalfedgeMesh& mesh, const CutGraph& cut_graph,
+                           const std::function<double(Index)>& root_rank) {
   NodeGraph nodes;
   std::vector<Index> node_of_vertex(mesh.vertex_count(), none), node_of_loop(mesh.boundary_loops.size(), none);
   const auto node_at = [&](Index v) {
@@ -30,7 +31,7 @@ NodeGraph build_node_graph(const HalfedgeMesh& mesh, const CutGraph& cut_graph, 
     cuts_at[nodes.tail[p]].push_back(static_cast<Index>(p));
     cuts_at[nodes.head[p]].push_back(static_cast<Index>(p));
   }
-  const auto rank = [&](Index node) { return nodes.vertex[node] == none ? 2.0 : root_rank[nodes.vertex[node]]; };
+  const auto rank = [&](Index node) { return nodes.vertex[node] == none ? 2.0 : root_rank(nodes.vertex[node]); };
   Index root = 0;
   for (Index i = 1; i < node_count; ++i) {
     if (rank(i) > rank(root)) root = i;

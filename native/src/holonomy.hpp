@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "cut_graph.hpp"
@@ -20,8 +21,9 @@ struct NodeGraph {
   std::vector<char> in_tree;      // (cuts) the others close a loop about a handle
 };
 
-// root_rank: (n) at most 1; the higher, the better a root a vertex makes.  Boundary loops are taken before any vertex.
-NodeGraph build_node_graph(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const Eigen::VectorXd& root_rank);
+// root_rank(v): at most 1; the higher, the better a root a vertex makes.  Boundary loops are taken before any vertex.
+NodeGraph build_node_graph(const HalfedgeMesh& mesh, const CutGraph& cut_graph,
+                           const std::function<double(Index)>& root_rank);
 
 // The rotation angle r of every cut, z_right = e^{ir} z_left + t, radians.  At every node
 //   sum over cuts leaving it of r - sum over cuts arriving of r = -curvature   (mod 2 pi),

@@ -12,22 +12,21 @@ namespace lsgp {
 
 class LaplaceSolver {
  public:
-  explicit LaplaceSolver(Index vertex_count) : vertex_count_(vertex_count) {}
   virtual ~LaplaceSolver() = default;
   // right_sides: (n, k), one a column.  0 where y is held.
   virtual Eigen::MatrixXd solve(const Eigen::MatrixXd& right_sides) const = 0;
-  // The same for impulses of 1 at vertices, (n, vertices).
-  virtual Eigen::MatrixXd solve_impulses(const std::vector<Index>& vertices) const;
-
- protected:
-  const Index vertex_count_;
+  // The same for one right side, (n, 1), and for impulses of 1 at vertices, (n, vertices).
+  struct Response {
+    Eigen::VectorXd to_right_side;
+    Eigen::MatrixXd to_impulses;
+  };
+  virtual Response solve(const Eigen::VectorXd& right_side, const std::vector<Index>& impulses) const;
 };
 
-// held: (n) where y is 0.  Where nothing is held, y is known up to a constant and the right sides add up to 0.
+// held: (n) where y is 0, somewhere at least.
 std::unique_ptr<LaplaceSolver> sparse_laplace(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                              std::vector<char> held);
-// The same on a factor that is there already; held vertices lie on cuts or borders.
-std::unique_ptr<LaplaceSolver> laplace_on_cut(const CutFactor& factor, Index vertex_count,
                                               const std::vector<char>& held);
+// The same on a factor that is there already; held vertices lie on cuts or borders.
+std::unique_ptr<LaplaceSolver> laplace_on_cut(const CutFactor& factor, const std::vector<char>& held);
 
 }  // namespace lsgp

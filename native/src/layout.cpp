@@ -12,6 +12,7 @@ namespace lsgp {
 namespace {
 
 constexpr double margin = 0.01;  // between islands, of the unit square's side before scaling
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double cross(Complex a, Complex b) { return std::imag(std::conj(a) * b); }
 
@@ -54,19 +55,13 @@ std::vector<Complex> convex_hull(const Eigen::VectorXcd& position) {
   };
   add_chain(points.begin(), points.end());
   add_chain(points.rbegin(), points.rend());
+  if (hull.empty()) hull.push_back(points.front());
   return hull;
 }
 
 struct Box {
   double width, height;
 };
-
-// Moves the island so that its bounding box begins at the origin.
-Box settle(Eigen::VectorXcd& position) {
-  const double left = position.real().minCoeff(), bottom = position.imag().minCoeff();
-  position.array() -= Complex(left, bottom);
-  return {position.real().maxCoeff(), position.imag().maxCoeff()};
-}
 
 // Puts boxes on shelves about as wide as all together are high; returns where each begins.
 struct Shelves {
@@ -99,12 +94,10 @@ Shelves shelve(const std::vector<Box>& boxes, double gap) {
   return out;
 }
 
-}  // namespace
-
-Complex upright(const Eigen::VectorXcd& position) {
-  const std::vector<Complex> hull = convex_hull(position);
+// The unit vector along the longer side of the smallest box around a convex polygon.
+Complex longer_side(const std::vector<Complex>& hull) {
   Complex best(1, 0);
-  double smallest = std::numeric_limits<double>::infinity();
+  double smallest = infinity;
   for (std::size_t i = 0; i < hull.size(); ++i) {
     const Complex edge = hull[(i + 1) % hull.size()] - hull[i];
     if (!(std::abs(edge) > 0)) continue;
@@ -124,35 +117,48 @@ Complex upright(const Eigen::VectorXcd& position) {
   return best;
 }
 
-void arrange(std::vector<Island>& islands) {
-  if (islands.empty()) return;
+}  // namespace
+
+Complex upright(const Eigen::VectorXcd& position) { return longer_side(convex_hull(position)); }
+
+std::vector<Similarity> arrange(const std::vector<Island>& islands) {
+  std::vector<Similarity> out(islands.size());
   std::vector<Box> boxes;
   double total = 0;
-  for (Island& island : islands) {
-    island.position *= std::conj(upright(island.position));
-    boxes.push_back(settle(island.position));
+  for (std::size_t i = 0; i < islands.size(); ++i) {
+    const std::vector<Complex> hull = convex_hull(islands[i].position);
+    out[i].turn = std::conj(longer_side(hull));
+    double left = infinity, right = -infinity, bottom = infinity, top = -infinity;
+    for (const Complex point : hull) {
+      const Complex turned = point * out[i].turn;
+      left = std::min(left, turned.real());
+      right = std::max(right, turned.real());
+      bottom = std::min(bottom, turned.imag());
+      top = std::max(top, turned.imag());
+    }
+    out[i].shift = -Complex(left, bottom);
+    boxes.push_back({right - left, top - bottom});
     total += boxes.back().width * boxes.back().height;
   }
   const Shelves shelves = shelve(boxes, islands.size() > 1 ? margin * std::sqrt(total) : 0.0);
   for (std::size_t i = 0; i < islands.size(); ++i) {
-    Island& island = islands[i];
-    island.position.array() += shelves.place[i];
-    if (shelves.size > 0) island.position /= shelves.size;
+    out[i].shift += shelves.place[i];
+    if (shelves.size > 0) out[i].divisor = shelves.size;
   }
   for (std::size_t i = 0; i < islands.size(); ++i) {
     if (!islands[i].pin) continue;
     const auto [point, place] = *islands[i].pin;
-    const Complex move = place - islands[i].position[point];
-    for (Island& island : islands) {
-      if (island.component == islands[i].component) island.position.array() += move;
+    const Complex move = place - out[i](islands[i].position[point]);
+    for (std::size_t k = 0; k < islands.size(); ++k) {
+      if (islands[k].component == islands[i].component) out[k].move += move;
     }
   }
+  return out;
 }
 
 void arrange_on_lattice(const std::vector<DividedLayout>& layouts, const PointLattice& lattice, int step) {
   // Rows of the lattice that have points straight above each other.
   const double width = step, height = step * (lattice.square() ? 1 : 2 * lattice.generator().imag());
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   struct Span {
     double left = infinity, right = -infinity, bottom = infinity, top = -infinity;  // in steps
   };

@@ -19,9 +19,17 @@ struct Island {
   Index component = 0;
 };
 
+// How an island is moved as a whole.
+struct Similarity {
+  Complex turn = 1, shift = 0;
+  double divisor = 1;
+  Complex move = 0;
+  Complex operator()(Complex z) const { return (z * turn + shift) / divisor + move; }
+};
+
 // Turns every island so that its bounding box is smallest, puts the islands on shelves without overlap and scales all
 // of them alike into the unit square; then moves those with a pin to it, and the others of their component along.
-void arrange(std::vector<Island>& islands);
+std::vector<Similarity> arrange(const std::vector<Island>& islands);
 
 // The unit vector along the longer side of the smallest box around the points.
 Complex upright(const Eigen::VectorXcd& position);

@@ -39,18 +39,28 @@ Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& columns, const Eigen::Vecto
   return sum;
 }
 
+// The vertex that fixes the constant: a cone, whose Green's function is 0 then, or another one on the cuts.
+Index ground(const std::vector<Index>& cones, const CutFactor* factor) {
+  if (!cones.empty()) return cones.back();
+  return factor != nullptr ? factor->cut_mesh().source[factor->retained().front()] : 0;
+}
+
 }  // namespace
 
 LogScale::LogScale(const HalfedgeMesh& mesh, const Geometry& geometry, const BorderConditions& border,
-                   const CutFactor* factor)
+                   const std::vector<Index>& cones, const CutFactor* factor)
     : mesh_(mesh),
       geometry_(geometry),
       border_(border),
-      laplace_(factor != nullptr ? laplace_on_cut(*factor, mesh.vertex_count(), border.held)
-                                 : sparse_laplace(mesh, geometry, border.held)),
-      weight_(geometry.vertex_area / geometry.total_area),
-      without_cones_(solve(border.curvature - geometry.angle_defect)),
-      green_(mesh.vertex_count(), 0) {}
+      cones_(cones),
+      weight_(geometry.vertex_area / geometry.total_area) {
+  std::vector<char> held = border.held;
+  if (border.balanced) held[ground(cones, factor)] = 1;
+  laplace_ = factor != nullptr ? laplace_on_cut(*factor, held) : sparse_laplace(mesh, geometry, held);
+  LaplaceSolver::Response response = laplace_->solve(border.curvature - geometry.angle_defect, cones);
+  without_cones_ = std::move(response.to_right_side);
+  green_ = std::move(response.to_impulses);
+}
 
 Eigen::VectorXd LogScale::solve(const Eigen::VectorXd& right_side) const { return laplace_->solve(right_side); }
 
@@ -59,13 +69,11 @@ Eigen::MatrixXd LogScale::solve_columns(const Eigen::MatrixXd& right_sides) cons
 }
 
 void LogScale::add_cones(const std::vector<Index>& vertices) {
-  Eigen::MatrixXd added = laplace_->solve_impulses(vertices);
-  if (cones_.empty()) {
-    green_ = std::move(added);
-  } else {
-    green_.conservativeResize(Eigen::NoChange, green_.cols() + added.cols());
-    green_.rightCols(added.cols()) = added;
-  }
+  Eigen::MatrixXd impulses = Eigen::MatrixXd::Zero(mesh_.vertex_count(), static_cast<Eigen::Index>(vertices.size()));
+  for (std::size_t i = 0; i < vertices.size(); ++i) impulses(vertices[i], static_cast<Eigen::Index>(i)) = 1;
+  const Eigen::MatrixXd added = laplace_->solve(impulses);
+  green_.conservativeResize(Eigen::NoChange, green_.cols() + added.cols());
+  green_.rightCols(added.cols()) = added;
   cones_.insert(cones_.end(), vertices.begin(), vertices.end());
 }
 

@@ -66,9 +66,10 @@ class PoissonSystem::OnCut final : public Solver {
     const CutSurface opened{surface_.mesh, surface_.geometry, factor_.cut_graph(), factor_.cut_mesh()};
     const Eigen::VectorXcd pull = pull_of(opened, jacobians);
     const Index copies = factor_.cut_mesh().copy_count(), first = factor_.eliminated_count();
-    Eigen::MatrixXd x(copies, 2);
+    CutFactor::Rows x(copies, 2);
     for (Index copy = 0; copy < copies; ++copy) {
-      x.row(factor_.row_of_copy(copy)) << pull[copy].real(), pull[copy].imag();
+      x(factor_.row_of_copy(copy), 0) = pull[copy].real();
+      x(factor_.row_of_copy(copy), 1) = pull[copy].imag();
     }
     factor_.eliminate(x);
     Eigen::MatrixXcd unknowns = Eigen::VectorXcd::Zero(unknown_count_);
@@ -79,7 +80,7 @@ class PoissonSystem::OnCut final : public Solver {
     Eigen::VectorXcd retained = Eigen::VectorXcd::Zero(factor_.retained_count());
     for_each_term([&](Index i, const Term& term) { retained[i] += term.coefficient * unknowns(term.unknown); });
     x.bottomRows(retained.size()) << retained.real(), retained.imag();
-    factor_.substitute(x);
+    factor_.substitute(x, 2);
     Eigen::VectorXcd position(copy_count_);
     for (Index copy = 0; copy < copies; ++copy) {
       const Index row = factor_.row_of_copy(copy);
@@ -104,17 +105,28 @@ class PoissonSystem::OnCut final : public Solver {
     }
   }
 
-  // B^H S B, S the Schur complement.
+  // B^H S B, S the Schur complement; lower triangle.
   Eigen::MatrixXcd reduced_schur() const {
-    const Eigen::MatrixXd schur = factor_.schur().selfadjointView<Eigen::Lower>();
-    Eigen::MatrixXcd half = Eigen::MatrixXcd::Zero(schur.rows(), unknown_count_);
-    for_each_term([&](Index i, const Term& term) { half.col(term.unknown) += term.coefficient * schur.col(i); });
-    // Rows of the product are columns of its transpose, which lie together.
-    half.transposeInPlace();
+    struct Use {
+      Index copy;
+      Complex coefficient;
+    };
+    std::vector<std::vector<Use>> uses(unknown_count_);
+    for_each_term([&](Index i, const Term& term) { uses[term.unknown].push_back({i, term.coefficient}); });
     Eigen::MatrixXcd out = Eigen::MatrixXcd::Zero(unknown_count_, unknown_count_);
-    for_each_term(
-        [&](Index i, const Term& term) { out.col(term.unknown) += std::conj(term.coefficient) * half.col(i); });
-    out.transposeInPlace();
+    Eigen::VectorXd real(factor_.retained_count()), imaginary(factor_.retained_count());
+    for (Index unknown = 0; unknown < unknown_count_; ++unknown) {
+      real.setZero();
+      imaginary.setZero();
+      for (const Use& use : uses[unknown]) {
+        real += use.coefficient.real() * factor_.schur().col(use.copy);
+        if (use.coefficient.imag() != 0) imaginary += use.coefficient.imag() * factor_.schur().col(use.copy);
+      }
+      for_each_term([&](Index i, const Term& term) {
+        if (term.unknown >= unknown)
+          out(term.unknown, unknown) += std::conj(term.coefficient) * Complex(real[i], imaginary[i]);
+      });
+    }
     return out;
   }
 

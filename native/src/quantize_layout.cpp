@@ -77,13 +77,9 @@ Eigen::VectorXd distance_to(const HalfedgeMesh& mesh, const Geometry& geometry, 
 }
 
 // Roots from which all cones come out on the lattice: the nearer 1 - e^{i curvature} is to a unit the better.
-Eigen::VectorXd rank_roots(const Eigen::VectorXd& curvature) {
-  Eigen::VectorXd rank(curvature.size());
-  for (Eigen::Index v = 0; v < rank.size(); ++v) {
-    const double gap = std::abs(1.0 - std::polar(1.0, curvature[v]));
-    rank[v] = gap < 1e-6 ? 0 : 1 / (1 + gap);
-  }
-  return rank;
+double rank_of_root(double curvature) {
+  const double gap = std::abs(1.0 - std::polar(1.0, curvature));
+  return gap < 1e-6 ? 0 : 1 / (1 + gap);
 }
 
 // Dirichlet weights of triangles, (m), that grow towards the cones like the inverse square of their distance.  A
@@ -129,9 +125,9 @@ LayoutQuantizer::LayoutQuantizer(const HalfedgeMesh& mesh, const Geometry& geome
       rotation_(*map.rotation),
       relaxed_(!relaxed.empty()) {
   // With relaxed cones the root leaves the lattice too: best it is one of a pair that is too close.
-  Eigen::VectorXd rank = rank_roots(map.curvature.at_vertex);
-  if (!relaxed.empty()) rank[relaxed.front()] = 1;
-  const NodeGraph nodes = build_node_graph(mesh, map.cut_graph, rank);
+  const NodeGraph nodes = build_node_graph(mesh, map.cut_graph, [&](Index v) {
+    return !relaxed.empty() && v == relaxed.front() ? 1 : rank_of_root(map.curvature.at_vertex[v]);
+  });
   reduction_ = impose_on_lattice(mesh, map.cut_graph, map.cut_mesh, nodes,
                                  curvature_of_nodes(mesh, nodes, map.curvature.at_vertex),
                                  turns_of_cuts(rotation_, lattice.symmetry()), lattice, parity, relaxed);

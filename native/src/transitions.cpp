@@ -35,8 +35,7 @@ class Elimination {
         cut_mesh_(cut_mesh),
         nodes_(nodes),
         n_(mesh.vertex_count()),
-        solved_(n_ + cut_graph.cuts.size()),
-        is_solved_(solved_.size(), 0),
+        is_solved_(n_ + cut_graph.cuts.size(), 0),
         turn_(std::move(turn)),
         eliminate_(eliminate) {
     for (std::size_t i = nodes_.order.size(); i-- > 0;) {
@@ -66,7 +65,7 @@ class Elimination {
     LatticeReduction out;
     out.origin = ground;
     out.cones = ids;
-    for (Index id = n_; id < static_cast<Index>(solved_.size()); ++id) {
+    for (Index id = n_; id < id_count(); ++id) {
       if (is_solved_[id]) continue;
       ids.push_back(id);
       out.cuts.push_back(id - n_);
@@ -76,7 +75,7 @@ class Elimination {
     const std::vector<Index> unknown = number(ground, out.reduction);
     express_all_copies(unknown, out.reduction);
     const Eigen::Index count = static_cast<Eigen::Index>(ids.size());
-    std::vector<Index> column(solved_.size(), none);
+    std::vector<Index> column(id_count(), none);
     for (Eigen::Index k = 0; k < count; ++k) {
       out.integers.push_back(unknown[ids[k]]);
       column[ids[k]] = static_cast<Index>(k);
@@ -102,6 +101,7 @@ class Elimination {
   }
 
  private:
+  Index id_count() const { return static_cast<Index>(is_solved_.size()); }
   Index translation_id(Index cut) const { return n_ + cut; }
 
   // What the crossing of an outgoing cut halfedge, counter-clockwise, does to an expression.
@@ -169,7 +169,7 @@ class Elimination {
   Expression resolve(Index id) const {
     if (!is_solved_[id]) return {{id, 1.0}};
     Expression out;
-    for (const auto& [other, coefficient] : solved_[id]) add_scaled(out, coefficient, resolve(other));
+    for (const auto& [other, coefficient] : solved_.at(id)) add_scaled(out, coefficient, resolve(other));
     return out;
   }
 
@@ -182,7 +182,7 @@ class Elimination {
       return on_cut[id] || mesh_.loop_of_vertex[id] != none ? 1.0 : 0.0;
     };
     Index ground = none;
-    for (Index id = 0; id < static_cast<Index>(solved_.size()); ++id) {
+    for (Index id = 0; id < id_count(); ++id) {
       if (!is_solved_[id] && (ground == none || shift(id) > shift(ground))) ground = id;
     }
     return ground;
@@ -190,31 +190,38 @@ class Elimination {
 
   // Numbers what is not solved for but the ground, (ids).
   std::vector<Index> number(Index ground, Reduction& reduction) {
-    std::vector<Index> unknown(solved_.size(), none);
-    for (std::size_t id = 0; id < solved_.size(); ++id) {
-      if (!is_solved_[id] && static_cast<Index>(id) != ground) unknown[id] = reduction.unknown_count++;
-      // One pass makes later look-ups short: expressions stop at unsolved ones.
-      if (is_solved_[id]) solved_[id] = resolve(static_cast<Index>(id));
+    std::vector<Index> unknown(id_count(), none);
+    for (Index id = 0; id < id_count(); ++id) {
+      if (!is_solved_[id] && id != ground) unknown[id] = reduction.unknown_count++;
     }
+    // One pass makes later look-ups short: expressions stop at unsolved ones.
+    for (auto& [id, expression] : solved_) expression = resolve(id);
     return unknown;
   }
 
   void express_all_copies(const std::vector<Index>& unknown, Reduction& reduction) const {
-    std::vector<Expression> of_copy(cut_mesh_.copy_count());
+    std::map<Index, Expression> of_copy;  // those on cuts
     const std::vector<char> on_cut = on_cuts(mesh_, cut_graph_);
     for (Index v = 0; v < n_; ++v) {
       if (!on_cut[v]) continue;
       for (auto& [copy, expression] : express_copies(v)) {
-        for (const auto& [id, coefficient] : expression) add_scaled(of_copy[copy], coefficient, resolve(id));
+        Expression& resolved = of_copy[copy];
+        for (const auto& [id, coefficient] : expression) add_scaled(resolved, coefficient, resolve(id));
       }
     }
-    reduction.begin.assign(1, 0);
-    for (Index copy = 0; copy < cut_mesh_.copy_count(); ++copy) {
+    const Index copy_count = cut_mesh_.copy_count();
+    reduction.begin.reserve(copy_count + 1);
+    reduction.terms.reserve(copy_count + 4 * of_copy.size());
+    reduction.begin.push_back(0);
+    for (Index copy = 0; copy < copy_count; ++copy) {
       const auto push = [&](Index id, Complex coefficient) {
         if (unknown[id] != none) reduction.terms.push_back({unknown[id], coefficient});
       };
-      if (!on_cut[cut_mesh_.source[copy]]) push(copy, 1.0);
-      for (const auto& [id, coefficient] : of_copy[copy]) push(id, coefficient);
+      if (on_cut[cut_mesh_.source[copy]]) {
+        for (const auto& [id, coefficient] : of_copy[copy]) push(id, coefficient);
+      } else {
+        push(copy, 1.0);
+      }
       reduction.begin.push_back(static_cast<Index>(reduction.terms.size()));
     }
   }
@@ -264,9 +271,9 @@ class Elimination {
   const CutMesh& cut_mesh_;
   const NodeGraph& nodes_;
   const Index n_;
-  std::vector<Expression> solved_;  // by id: vertices, then cuts
-  std::vector<char> is_solved_;
-  std::vector<Complex> turn_;  // (cuts) e^{i rotation}
+  std::map<Index, Expression> solved_;  // by id: vertices, then cuts
+  std::vector<char> is_solved_;         // (ids)
+  std::vector<Complex> turn_;           // (cuts) e^{i rotation}
   const Eliminate eliminate_;
 };
 

@@ -13,12 +13,6 @@ namespace lsgp {
 
 namespace {
 
-constexpr int solve_width = 8;  // right sides at a time
-
-}  // namespace
-
-namespace {
-
 LinearAlgebra& count_of_this_thread() {
   thread_local LinearAlgebra count;
   return count;
@@ -40,7 +34,7 @@ template <typename Scalar>
 struct Cholesky<Scalar>::Factor {
   Adjacency adjacency;
   Elimination plan;
-  std::vector<Scalar> panels;
+  Vector panels;
   Matrix schur;
 
   int size() const { return static_cast<int>(plan.position.size()); }
@@ -52,16 +46,12 @@ struct Cholesky<Scalar>::Factor {
   }
 
   void factorize(const Eigen::SparseMatrix<Scalar>& lower, const FactorHook& hook);
-  void add_entries(const Eigen::SparseMatrix<Scalar>& lower, int front, const std::vector<int>& local);
+  void fill(const Eigen::SparseMatrix<Scalar>& lower, int front, const std::vector<int>& local);
   void start_schur(const Eigen::SparseMatrix<Scalar>& lower);
 
   // x: (size, width) by rows, in the order of elimination.
   void eliminate(int width, Scalar* x) const;
   void substitute(int width, Scalar* x) const;
-
-  // Calls work(width, x) for the columns of `sides`, some at a time, in the order of elimination.
-  template <typename Work>
-  void for_each_block(Matrix& sides, Work work) const;
 };
 
 template <typename Scalar>
@@ -74,12 +64,13 @@ void Cholesky<Scalar>::Factor::start_schur(const Eigen::SparseMatrix<Scalar>& lo
   }
 }
 
-// The matrix's own entries in a front's columns.  local: the place in the panel of every row of the front.
+// The matrix's own entries in a front's columns, and zeros.  local: the place in the panel of every row of the front.
 template <typename Scalar>
-void Cholesky<Scalar>::Factor::add_entries(const Eigen::SparseMatrix<Scalar>& lower, int front,
-                                           const std::vector<int>& local) {
+void Cholesky<Scalar>::Factor::fill(const Eigen::SparseMatrix<Scalar>& lower, int front,
+                                    const std::vector<int>& local) {
   const int first = plan.first[front], columns = plan.columns(front), rows = columns + plan.below(front);
   Scalar* panel = panels.data() + plan.panel_begin[front];
+  std::fill_n(panel, static_cast<std::size_t>(rows) * columns, Scalar(0));
   for (int c = 0; c < columns; ++c) {
     const int row = plan.row_at[first + c];
     Scalar* column = panel + static_cast<std::size_t>(c) * rows;
@@ -100,8 +91,9 @@ void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lowe
   const int fronts = plan.front_count();
   ++count_of_this_thread().factorizations;
   start_schur(lower);
-  panels.assign(plan.panel_begin.back(), Scalar(0));
-  std::vector<Scalar> stack(plan.stack_size), outer;
+  panels.resize(static_cast<Eigen::Index>(plan.panel_begin.back()));
+  Vector stack(static_cast<Eigen::Index>(plan.stack_size));
+  std::vector<Scalar> outer;
   std::vector<std::size_t> update_end;  // of the updates on the stack
   std::vector<int> local(size()), waiting;
   double operations = 0, called_at = 0;
@@ -111,7 +103,7 @@ void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lowe
     const int* below = this->rows(i);
     for (int c = 0; c < front.columns; ++c) local[first + c] = c;
     for (int r = 0; r < front.below; ++r) local[below[r]] = front.columns + r;
-    add_entries(lower, i, local);
+    fill(lower, i, local);
     const std::size_t top = update_end.empty() ? 0 : update_end.back();
     const std::size_t update_size = static_cast<std::size_t>(front.below) * free;
     front.update = stack.data() + top;
@@ -151,6 +143,9 @@ void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lowe
       hook(operations / plan.operations);
     }
   }
+  for (Eigen::Index column = 1; column < schur.cols(); ++column) {
+    schur.col(column).head(column) = schur.row(column).head(column).adjoint();
+  }
 }
 
 template <typename Scalar>
@@ -187,29 +182,6 @@ void Cholesky<Scalar>::Factor::substitute(int width, Scalar* x) const {
 }
 
 template <typename Scalar>
-template <typename Work>
-void Cholesky<Scalar>::Factor::for_each_block(Matrix& sides, Work work) const {
-  const Eigen::Index count = sides.cols();
-  std::vector<Scalar> x;
-  for (Eigen::Index begin = 0; begin < count;) {
-    const Eigen::Index left = count - begin;
-    const int width = left > 2 ? solve_width : static_cast<int>(left);
-    const Eigen::Index used = std::min<Eigen::Index>(left, width);
-    x.assign(static_cast<std::size_t>(size()) * width, Scalar(0));
-    for (Eigen::Index w = 0; w < used; ++w) {
-      const Scalar* column = sides.col(begin + w).data();
-      for (int at = 0; at < size(); ++at) x[static_cast<std::size_t>(at) * width + w] = column[plan.row_at[at]];
-    }
-    work(width, x.data());
-    for (Eigen::Index w = 0; w < used; ++w) {
-      Scalar* column = sides.col(begin + w).data();
-      for (int at = 0; at < size(); ++at) column[plan.row_at[at]] = x[static_cast<std::size_t>(at) * width + w];
-    }
-    begin += used;
-  }
-}
-
-template <typename Scalar>
 Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retained, const FactorHook& hook)
     : factor_(std::make_unique<Factor>()) {
   const int size = static_cast<int>(lower.rows());
@@ -240,13 +212,22 @@ typename Cholesky<Scalar>::Vector Cholesky<Scalar>::solve(const Vector& right_si
 
 template <typename Scalar>
 typename Cholesky<Scalar>::Matrix Cholesky<Scalar>::solve(const Matrix& right_sides) const {
-  Matrix x = right_sides;
-  count_of_this_thread().back_substitutions += static_cast<int>(x.cols());
-  factor_->for_each_block(x, [&](int width, Scalar* block) {
-    factor_->eliminate(width, block);
-    factor_->substitute(width, block);
-  });
-  return x;
+  Matrix out(right_sides.rows(), right_sides.cols());
+  Rows x;
+  for (Eigen::Index begin = 0, used; begin < out.cols(); begin += used) {
+    const Eigen::Index width = width_for(out.cols() - begin);
+    used = std::min(out.cols() - begin, width);
+    x = Rows::Zero(size(), width);
+    for (Eigen::Index row = 0; row < out.rows(); ++row) {
+      x.row(factor_->plan.position[row]).head(used) = right_sides.row(row).segment(begin, used);
+    }
+    eliminate(x);
+    substitute(x, used);
+    for (Eigen::Index row = 0; row < out.rows(); ++row) {
+      out.row(row).segment(begin, used) = x.row(factor_->plan.position[row]).head(used);
+    }
+  }
+  return out;
 }
 
 template <typename Scalar>
@@ -255,14 +236,19 @@ const typename Cholesky<Scalar>::Matrix& Cholesky<Scalar>::schur() const {
 }
 
 template <typename Scalar>
-void Cholesky<Scalar>::eliminate(Matrix& right_sides) const {
-  factor_->for_each_block(right_sides, [&](int width, Scalar* block) { factor_->eliminate(width, block); });
+int Cholesky<Scalar>::place(int row) const {
+  return factor_->plan.position[row];
 }
 
 template <typename Scalar>
-void Cholesky<Scalar>::substitute(Matrix& half_solved) const {
-  count_of_this_thread().back_substitutions += static_cast<int>(half_solved.cols());
-  factor_->for_each_block(half_solved, [&](int width, Scalar* block) { factor_->substitute(width, block); });
+void Cholesky<Scalar>::eliminate(Rows& right_sides) const {
+  factor_->eliminate(static_cast<int>(right_sides.cols()), right_sides.data());
+}
+
+template <typename Scalar>
+void Cholesky<Scalar>::substitute(Rows& half_solved, Eigen::Index sides) const {
+  count_of_this_thread().back_substitutions += static_cast<int>(sides);
+  factor_->substitute(static_cast<int>(half_solved.cols()), half_solved.data());
 }
 
 template class Cholesky<double>;

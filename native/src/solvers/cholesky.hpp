@@ -51,12 +51,19 @@ class Cholesky {
   Vector solve(const Vector& right_side) const;
   Matrix solve(const Matrix& right_sides) const;
 
-  // The Schur complement of the retained rows, (retained, retained), its lower triangle.
+  // The Schur complement of the retained rows, (retained, retained).
   const Matrix& schur() const;
-  // A solve in two halves: eliminate leaves in `right_sides` what half a solve makes of them, its last rows being the
-  // right side of the retained rows' own system; substitute takes their solution in its place and leaves the rest's.
-  void eliminate(Matrix& right_sides) const;
-  void substitute(Matrix& half_solved) const;
+
+  // A solve in two halves.  Values come in the order of elimination, those of retained rows last: one, two or
+  // `solve_width` right sides beside each other, the last ones of which may be there to make up the number.
+  using Rows = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  static constexpr int solve_width = 8;
+  static Eigen::Index width_for(Eigen::Index sides) { return sides > 2 ? solve_width : sides; }
+  int place(int row) const;  // of a row in that order
+  // Leaves what half a solve makes of right sides, the last rows being those of the retained rows' own system.
+  void eliminate(Rows& right_sides) const;
+  // Takes the solution of that system in their place and leaves the rest's.  sides: how many count.
+  void substitute(Rows& half_solved, Eigen::Index sides) const;
 
  private:
   struct Factor;
