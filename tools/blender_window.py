@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What programs that work in Blender's window share: its areas, and going on by steps between which Blender draws."""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+from collections.abc import Iterator
+
+import bpy
+
+WAIT = 0.6  # seconds for Blender to draw
+
+
+def window() -> bpy.types.Window:
+    return bpy.context.window_manager.windows[0]
+
+
+def areas(kind: str) -> list[bpy.types.Area]:
+    return [area for area in window().screen.areas if area.type == kind]
+
+
+def region_of(area: bpy.types.Area) -> bpy.types.Region:
+    return next(region for region in area.regions if region.type == "WINDOW")
+
+
+def inside(area: bpy.types.Area):
+    """The context of an area, which Blender's timers do not have."""
+    return bpy.context.temp_override(window=window(), area=area, region=region_of(area))
+
+
+def arrange(uv_share: float) -> Iterator[float]:
+    """A UV editor on the left, as wide as this share, a 3D view beside it; yields seconds to wait."""
+    for area in areas("TIMELINE") + areas("DOPESHEET_EDITOR"):
+        with inside(area):
+            bpy.ops.screen.area_close()
+    yield WAIT
+    with inside(areas("VIEW_3D")[0]):
+        bpy.ops.screen.area_split(direction="VERTICAL", factor=uv_share)
+    yield WAIT
+    editor = min(areas("VIEW_3D"), key=lambda area: area.x)
+    editor.ui_type = "UV"
+    bpy.context.tool_settings.use_uv_select_sync = False
+    yield WAIT
+
+
+def run(steps: Iterator[float]) -> None:
+    """Go on by these steps, which yield seconds to wait, and end Blender after the last."""
+
+    def step() -> float:
+        status = 0
+        try:
+            return next(steps)
+        except StopIteration:
+            pass
+        except Exception:
+            traceback.print_exc()
+            status = 1
+        sys.stdout.flush()
+        os._exit(status)
+
+    bpy.app.timers.register(step, first_interval=2 * WAIT, persistent=True)
