@@ -6,7 +6,8 @@
 
 A test is a generator: it yields how many seconds Blender is to go on by itself, handling events and drawing. Only
 those with the part in their file's name and theirs are run where one is given. Exit code 0 only when all passed;
-REPORT.xml is a junit report. ``tools/test_in_blender.py --window`` does all of this.
+REPORT.xml is a junit report. Beside it, in the folder pictures, is the screen as each test left it, where ImageMagick's
+import is installed. ``tools/test_in_blender.py --window`` does all of this.
 """
 
 import os
@@ -23,26 +24,28 @@ import bpy
 
 sys.path.append(str(Path(__file__).parent))
 from run_in_blender import EXTENSION, install, require_bundled_library
+from windows import PICTURES, area, region, take_picture, window
 
 TEST_SECONDS = 60
 
 
 def in_view() -> AbstractContextManager:
     """The context of the 3D view, which Blender's timers do not have."""
-    window = bpy.context.window_manager.windows[0]
-    area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
-    region = next(region for region in area.regions if region.type == "WINDOW")
-    return bpy.context.temp_override(window=window, area=area, region=region)
+    return bpy.context.temp_override(window=window(), area=area(), region=region())
 
 
-def run(tests: dict[str, Generator[float]], report: Path) -> Iterator[float]:
-    """Run the tests one after the other, write the report and end Blender; yields seconds to wait."""
+def run(tests: dict[str, Generator[float]], report: Path, empty: bool = True) -> Iterator[float]:
+    """Run the tests one after the other, write the report and end Blender; yields seconds to wait.
+
+    empty: each begins with nothing, instead of with Blender's scene of the start.
+    """
+    os.environ[PICTURES] = str(report.parent / "pictures")
     suite = ElementTree.Element("testsuite", name="window", errors="0", skipped="0")
     failures = 0
     for name, test in tests.items():
         case = ElementTree.SubElement(suite, "testcase", name=name)
         begin = time.monotonic()
-        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        bpy.ops.wm.read_homefile(use_empty=empty, use_factory_startup=True)
         yield 0.2
         try:
             while True:
@@ -58,6 +61,7 @@ def run(tests: dict[str, Generator[float]], report: Path) -> Iterator[float]:
             ElementTree.SubElement(case, "failure").text = traceback.format_exc()
             print(f"{name} FAILED\n{traceback.format_exc()}")
         finally:
+            take_picture(name)
             test.close()
     suite.set("tests", str(len(tests)))
     suite.set("failures", str(failures))

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is drawn over meshes, looked at in the pixels of a real window.  Run by run_in_window.py; no pytest."""
 
-import os
 from dataclasses import replace
 from importlib import import_module
 
@@ -9,20 +8,12 @@ import bpy
 import gpu
 import numpy as np
 from scenes import add_ball, add_cone_cube, edit
+from windows import EXTENSION, area, region
 
-EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
 reports = import_module(f"{EXTENSION}.reports")
 cache = import_module(f"{EXTENSION}.overlay.cache")
 view3d = import_module(f"{EXTENSION}.overlay.view3d")
 SPACES = {"VIEW_3D": bpy.types.SpaceView3D, "IMAGE_EDITOR": bpy.types.SpaceImageEditor}
-
-
-def area(kind="VIEW_3D"):
-    return next(area for area in bpy.context.window_manager.windows[0].screen.areas if area.type == kind)
-
-
-def region(kind, within):
-    return next(region for region in area(within).regions if region.type == kind)
 
 
 def pixels(kind="WINDOW", within="VIEW_3D"):

@@ -4,7 +4,6 @@
 Run by run_in_window.py; no pytest.
 """
 
-import os
 import threading
 import time
 from contextlib import contextmanager
@@ -13,9 +12,7 @@ from importlib import import_module
 import bpy
 import numpy as np
 from scenes import add_ball, add_cone_cube, changed, edit, marked, plain_copy, snapshot, uv_key
-
-EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
-STEP = 0.05
+from windows import EXTENSION, STEP, press, region, running, until
 
 
 @contextmanager
@@ -40,36 +37,20 @@ def slowed(seconds, verb="parameterize"):
         setattr(lsgp, verb, work)
 
 
-def window():
-    return bpy.context.window_manager.windows[0]
-
-
 def unwrap(**options):
     return bpy.ops.uv.cone_unwrap("INVOKE_DEFAULT", True, **options)
 
 
-def running(idname="UV_OT_cone_unwrap"):
-    return any(operator.bl_idname == idname for operator in window().modal_operators)
+def unwrapping():
+    return running("UV_OT_cone_unwrap")
 
 
 def computing():
     return [thread for thread in threading.enumerate() if thread.name == "Cone Unwrap"]
 
 
-def press(key):
-    for value in ("PRESS", "RELEASE"):
-        window().event_simulate(type=key, value=value)
-
-
-def until(condition, seconds=20.0):
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, f"waited {seconds} seconds in vain"
-        yield STEP
-
-
 def wait_for_end():
-    yield from until(lambda: not running())
+    yield from until(lambda: not unwrapping())
 
 
 def stored_uv(obj):
@@ -88,9 +69,9 @@ def stopped_by(key, in_edit_mode):
     with slowed(10):
         assert unwrap(pack=True) == {"RUNNING_MODAL"}
         yield 0.3
-        assert running() and computing()
-        press(key)
-        yield from until(lambda: not running(), 1.0)
+        assert unwrapping() and computing()
+        yield from press(key)
+        yield from until(lambda: not unwrapping(), 1.0)
         assert changed(before, snapshot(cube)) == set()
         yield from until(lambda: not computing(), 1.0)
     yield 0.2
@@ -118,12 +99,12 @@ def test_blender_goes_on_in_a_long_run_and_the_map_is_that_of_a_direct_one():
     with slowed(3):
         assert unwrap() == {"RUNNING_MODAL"}
         ticks = 0
-        while running():
+        while unwrapping():
             ticks += 1
             if ticks == 1:
                 # Eaten: neither leaves edit mode nor deletes.
-                press("TAB")
-                press("X")
+                yield from press("TAB")
+                yield from press("X")
             yield STEP
         assert ticks >= 3, ticks
     assert stored_uv(cube) == direct
@@ -135,7 +116,7 @@ def test_a_short_run_is_over_at_once():
     cube = add_cone_cube()
     before = stored_uv(cube)
     assert unwrap() == {"FINISHED"}
-    assert not running() and stored_uv(cube) != before
+    assert not unwrapping() and stored_uv(cube) != before
     yield 0
 
 
@@ -196,7 +177,7 @@ def test_a_mesh_that_is_changed_meanwhile_is_left_alone():
         with slowed(5):
             assert unwrap() == {"RUNNING_MODAL"}
             yield 0.2
-            assert running()
+            assert unwrapping()
             change(cube)
             changed_by_us = snapshot(cube)
             yield from wait_for_end()
@@ -223,15 +204,15 @@ def test_opening_a_file_stops_the_computation():
         assert unwrap() == {"RUNNING_MODAL"}
         yield 0.2
         bpy.app.timers.register(lambda: bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True) and None)
-        yield from until(lambda: not running() and not computing(), 8.0)
+        yield from until(lambda: not unwrapping() and not computing(), 8.0)
 
 
 def test_the_library_itself_tells_its_progress_and_stops():
     ball = add_ball(cuts=100)
     before = stored_uv(ball)
     assert unwrap() == {"RUNNING_MODAL"}
-    press("ESC")
-    yield from until(lambda: not running(), 2.0)
+    yield from press("ESC")
+    yield from until(lambda: not unwrapping(), 2.0)
     yield from until(lambda: not computing())
     assert stored_uv(ball) == before
 
@@ -252,7 +233,7 @@ def test_placing_cones_is_stopped_by_esc_and_nothing_changes():
         assert place(automatic=False, count=10) == {"RUNNING_MODAL"}
         yield 0.3
         assert placing() and computing()
-        press("ESC")
+        yield from press("ESC")
         yield from until(lambda: not placing(), 1.0)
         yield from until(lambda: not computing(), 1.0)
     assert changed(before, snapshot(cube)) == set()
@@ -294,8 +275,7 @@ def test_the_table_of_angles_is_drawn_and_follows_undo():
         edit(add_cone_cube())
         bpy.context.space_data.show_region_ui = True
         yield 0.3
-        sidebar = next(region for region in bpy.context.area.regions if region.type == "UI")
-        sidebar.active_panel_category = "Cone Unwrap"
+        region("UI").active_panel_category = "Cone Unwrap"
         yield 0.5
         assert outcomes and outcomes[-1] == [None] * 8, outcomes[-1:]
         bpy.ops.ed.undo_push(message="before")
