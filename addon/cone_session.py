@@ -190,7 +190,7 @@ class ConeSession:
 
     def content(self) -> Content:
         """What the overlay is to show of all this."""
-        return build_content(self._obj, self.report(), self._mesh, self.marked())
+        return replace(build_content(self._obj, self.report(), self._mesh, self.marked()), active=self.active)
 
     def report(self) -> reports.Report | None:
         """On the map as it is shown, without the cones that are none any more."""

@@ -7,8 +7,10 @@
 
 Builds the wheel with that Python (or takes --wheel), stages and zips the extension, installs the zip into a throw-away
 profile, runs tests/blender there and prints the counts. With --window, what needs events is tried as well, in a window
-on a virtual screen; that takes an executable and xvfb-run. Exit code 0 only when tests passed, none failed and none was
-skipped. Arguments after "--" go to pytest.
+on a virtual screen, and then the first session of a new user, from an empty profile; that takes an executable and
+xvfb-run. Where ImageMagick is installed there, the folders pictures and newcomer/pictures of --out have the screen
+at the end of every such test and at every step of the session. Exit code 0 only when tests passed, none failed and none
+was skipped. Arguments after "--" go to pytest.
 """
 
 from __future__ import annotations
@@ -146,11 +148,17 @@ def main() -> None:
             python.run(*options, timeout=TEST_SECONDS, **isolation)
         require_all(report, "tests")
         if arguments.window:
+            start = ["--factory-startup", "--enable-event-simulate", "--python-exit-code", "1", "--python"]
             report = out / "window_report.xml"
             options = [tests / "run_in_window.py", "--", package, report]
-            start = ["--factory-startup", "--enable-event-simulate", "--python-exit-code", "1", "--python"]
             in_window(blender).run(*start, *options, timeout=TEST_SECONDS, **isolation)
             require_all(report, "tests in a window")
+            newcomer = out / "newcomer"
+            isolation["BLENDER_USER_RESOURCES"] = str(newcomer / "profile")
+            (newcomer / "profile").mkdir(parents=True)
+            options = [tests / "run_as_newcomer.py", "--", package, newcomer / "report.xml"]
+            in_window(blender).run(*start, *options, timeout=TEST_SECONDS, **isolation)
+            require_all(newcomer / "report.xml", "first session of a new user")
     except (subprocess.CalledProcessError, subprocess.TimeoutExpired) as error:
         raise SystemExit(f"test_in_blender: {error}") from None
 

@@ -44,7 +44,7 @@ class Cone:
 class Content:
     """cones with their places, (k, 3). cut_lines: (s, 2, 3) segments, both sides of every cut, and
     cut_paths: (s,) the number of each one's path. cut_uv: (s, 2, 2) the same segments in the layout. flipped,
-    overlapping: (t, 3, 3) triangles.
+    overlapping: (t, 3, 3) triangles. active: the vertex of the cone that is edited, None for none.
     """
 
     cones: list[Cone] = field(default_factory=list)
@@ -54,6 +54,7 @@ class Content:
     cut_uv: FloatArray = field(default_factory=lambda: np.empty((0, 2, 2), np.float32))
     flipped: FloatArray = field(default_factory=lambda: np.empty((0, 3, 3), np.float32))
     overlapping: FloatArray = field(default_factory=lambda: np.empty((0, 3, 3), np.float32))
+    active: int | None = None
 
 
 def build_content(

@@ -27,6 +27,8 @@ from .settings import ConeUnwrapOverlay, settings
 # The share by which what is drawn is brought nearer, as Blender does with its own wires; faces stay behind those.
 NEARER_PERSPECTIVE, NEARER_PARALLEL = 0.0025, 1e-5
 FACES_NEARER = 0.2
+# How much larger than the others the cone is that is edited.
+ACTIVE_SIZE = 1.5
 
 # By session_uid of the mesh, of the view that is drawn: where its cones are on the region, (k, 3) pixels and depth, and
 # (k,) which of them nothing hides.
@@ -54,9 +56,9 @@ def draw_in_scene() -> None:
     gpu.state.blend_set("ALPHA")
     try:
         _seen.clear()
-        if chosen.cones and chosen.angles:
+        if chosen.cones:
             _find_seen(context, see_through)
-        for draw, share in ((_draw_faces, FACES_NEARER), (_draw_lines, 1.0)):
+        for draw, share in ((_draw_faces, FACES_NEARER), (_draw_cuts, 1.0), (_draw_cones, 1.0)):
             with _brought_nearer(context.region_data, share):
                 for obj in shown_objects(context):
                     with gpu.matrix.push_pop():
@@ -96,7 +98,7 @@ def _draw_faces(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: ConeUnwr
             entry.batch(name, partial(_face_batch, corners, getattr(look, name))).draw(shaders.triangles())
 
 
-def _draw_lines(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: ConeUnwrapPreferences) -> None:
+def _draw_cuts(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: ConeUnwrapPreferences) -> None:
     entry = cache.entry(obj)
     content, pixel = entry.content, bpy.context.preferences.system.pixel_size
     if chosen.cuts and len(content.cut_lines):
@@ -105,13 +107,28 @@ def _draw_lines(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: ConeUnwr
         shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
         shader.uniform_float("lineWidth", look.line_width * pixel)
         entry.batch("cuts", partial(_cut_batch, content, look)).draw(shader)
-    if chosen.cones and content.cones:
-        shader = shaders.discs()
-        shader.bind()
-        shader.uniform_float("size", look.cone_size * pixel)
-        gpu.state.program_point_size_set(True)
-        entry.batch("cones", partial(_cone_batch, content, look)).draw(shader)
-        gpu.state.program_point_size_set(False)
+
+
+def _draw_cones(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: ConeUnwrapPreferences) -> None:
+    """Whole discs or none: the surface would cut through those that face the eye from a slope."""
+    entry = cache.entry(obj)
+    content, pixel = entry.content, bpy.context.preferences.system.pixel_size
+    _, seen = _seen.get(obj.data.session_uid, (None, None))
+    if not chosen.cones or seen is None:
+        return
+    tints = entry.batch("tints", partial(colours.of_cones, content.cones, look))
+    active = np.array([cone.vertex == content.active for cone in content.cones])
+    depth = gpu.state.depth_test_get()
+    gpu.state.depth_test_set("NONE")
+    gpu.state.program_point_size_set(True)
+    shader = shaders.discs()
+    for rows, size in ((seen & ~active, 1.0), (seen & active, ACTIVE_SIZE)):
+        if rows.any():
+            shader.bind()
+            shader.uniform_float("size", size * look.cone_size * pixel)
+            shaders.disc_batch(content.cone_places[rows], tints[rows]).draw(shader)
+    gpu.state.program_point_size_set(False)
+    gpu.state.depth_test_set(depth)
 
 
 def _face_batch(corners: NDArray[np.float32], colour: Sequence[float]) -> gpu.types.GPUBatch:
@@ -120,10 +137,6 @@ def _face_batch(corners: NDArray[np.float32], colour: Sequence[float]) -> gpu.ty
 
 def _cut_batch(content: Content, look: ConeUnwrapPreferences) -> gpu.types.GPUBatch:
     return shaders.line_batch(content.cut_lines, colours.of_paths(content.cut_paths, look))
-
-
-def _cone_batch(content: Content, look: ConeUnwrapPreferences) -> gpu.types.GPUBatch:
-    return shaders.disc_batch(content.cone_places, colours.of_cones(content.cones, look))
 
 
 def _heat_batch(entry: cache.Entry, obj: bpy.types.Object, measure: str) -> gpu.types.GPUBatch | None:

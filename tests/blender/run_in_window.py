@@ -34,10 +34,12 @@ def in_view() -> AbstractContextManager:
     return bpy.context.temp_override(window=window(), area=area(), region=region())
 
 
-def run(tests: dict[str, Generator[float]], report: Path, empty: bool = True) -> Iterator[float]:
+def run(
+    tests: dict[str, Generator[float]], report: Path, empty: bool = True, seconds: float = TEST_SECONDS
+) -> Iterator[float]:
     """Run the tests one after the other, write the report and end Blender; yields seconds to wait.
 
-    empty: each begins with nothing, instead of with Blender's scene of the start.
+    empty: each begins with nothing, instead of with Blender's scene of the start. seconds: that each may take.
     """
     os.environ[PICTURES] = str(report.parent / "pictures")
     suite = ElementTree.Element("testsuite", name="window", errors="0", skipped="0")
@@ -51,8 +53,8 @@ def run(tests: dict[str, Generator[float]], report: Path, empty: bool = True) ->
             while True:
                 with in_view():
                     wait = next(test)
-                if time.monotonic() - begin > TEST_SECONDS:
-                    raise TimeoutError(f"{name} takes more than {TEST_SECONDS} seconds")
+                if time.monotonic() - begin > seconds:
+                    raise TimeoutError(f"{name} takes more than {seconds} seconds")
                 yield wait
         except StopIteration:
             print(f"{name} passed")
@@ -61,6 +63,7 @@ def run(tests: dict[str, Generator[float]], report: Path, empty: bool = True) ->
             ElementTree.SubElement(case, "failure").text = traceback.format_exc()
             print(f"{name} FAILED\n{traceback.format_exc()}")
         finally:
+            case.set("time", f"{time.monotonic() - begin:.1f}")
             take_picture(name)
             test.close()
     suite.set("tests", str(len(tests)))

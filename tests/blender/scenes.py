@@ -339,6 +339,10 @@ class UvMap:
         area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
         return float(np.sqrt(np.average(squared, weights=area) * np.abs(np.linalg.det(flat)).sum() / 2 / area.sum()))
 
+    def flipped(self) -> set[int]:
+        """The faces with a triangle that lies upside down or has no area."""
+        return set(self.face_of_triangle[self._areas() <= 0].tolist())
+
     def overlapping(self) -> set[int]:
         """The faces that lie on others, by more than rounding: no side of either triangle parts the two."""
         z = self._turned_triangles()
@@ -382,8 +386,12 @@ class UvMap:
     def _turned_triangles(self) -> np.ndarray:
         """(t, 3) complex corners, counter-clockwise."""
         z = self.uv[self.triangles] @ (1, 1j)
-        clockwise = ((z[:, 1] - z[:, 0]).conj() * (z[:, 2] - z[:, 0])).imag < 0
-        return np.where(clockwise[:, None], z[:, ::-1], z)
+        return np.where(self._areas()[:, None] < 0, z[:, ::-1], z)
+
+    def _areas(self) -> np.ndarray:
+        """(t,), negative where a triangle lies upside down."""
+        z = self.uv[self.triangles] @ (1, 1j)
+        return ((z[:, 1] - z[:, 0]).conj() * (z[:, 2] - z[:, 0])).imag / 2
 
     def angle_sum(self, vertex: int) -> float:
         """Sum of the UV angles at a vertex, over all its triangles."""
