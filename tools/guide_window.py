@@ -1,19 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The picture of the guide that shows Blender's window: a head with its overlay, its UV map and the sidebar.
+"""The picture of the guide that shows Blender's window: a rounded cube with its overlay, its UV map and the sidebar.
 
-    blender --factory-startup --window-geometry 0 0 1500 860 --python tools/guide_window.py -- --extension ZIP --out OUT
+    export LIBGL_ALWAYS_SOFTWARE=1
+    xvfb-run --auto-servernum "--server-args=-screen 0 1500x860x24" blender --factory-startup \
+        --window-geometry 0 0 1500 860 --python tools/guide_window.py -- --extension ZIP --out OUT
 
-BLENDER_USER_RESOURCES must name a throw-away profile. Leaves OUT/guide-window.png; without a screen run it under
-xvfb-run with LIBGL_ALWAYS_SOFTWARE=1.
+BLENDER_USER_RESOURCES must name a throw-away profile, and ImageMagick has to be installed. Leaves OUT/guide-window.png.
 """
 
 from __future__ import annotations
 
+import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import bpy
+from mathutils import Vector
 
 sys.path.insert(0, str(Path(__file__).parent))
 import demo_scene
@@ -22,13 +25,23 @@ from blender_window import WAIT, areas, arrange, inside, run
 
 def show(out: Path) -> Iterator[float]:
     """Unwrap, arrange the window, write the picture; yields seconds to wait."""
-    with inside(areas("VIEW_3D")[0]):
-        head = demo_scene.add_suzanne(subdivisions=1)
-        demo_scene.run_in_edit_mode(head, bpy.ops.mesh.cone_place, automatic=False, count=8)
-        demo_scene.run_in_edit_mode(head, bpy.ops.uv.cone_unwrap)
-        bpy.ops.object.mode_set(mode="EDIT")
-    yield from arrange(0.42)
+    for area in areas("PROPERTIES") + areas("OUTLINER"):
+        with inside(area):
+            bpy.ops.screen.area_close()
+    yield WAIT
+    yield from arrange(0.38)
     view, editor = areas("VIEW_3D")[0], areas("IMAGE_EDITOR")[0]
+    with inside(view):
+        bpy.ops.mesh.primitive_cube_add()
+        cube = bpy.context.object
+        corners = range(len(cube.data.vertices))
+        demo_scene.run_in_edit_mode(cube, bpy.ops.mesh.subdivide, number_cuts=7)
+        demo_scene.run_in_edit_mode(cube, bpy.ops.transform.tosphere, value=0.4)
+        cube.vertex_groups.new(name=demo_scene.CONE_GROUP).add(corners, 1.0, "REPLACE")
+        demo_scene.run_in_edit_mode(cube, bpy.ops.uv.cone_unwrap)
+        bpy.ops.object.mode_set(mode="EDIT")
+        # So that the UV editor shows what is not selected.
+        bpy.context.tool_settings.use_uv_select_sync = True
     for space in view.spaces:
         space.show_region_ui, space.show_region_toolbar, space.overlay.show_floor = True, False, False
     yield WAIT
@@ -39,14 +52,21 @@ def show(out: Path) -> Iterator[float]:
         bpy.ops.mesh.select_all(action="DESELECT")
         bpy.ops.view3d.view_axis(type="FRONT")
         bpy.ops.view3d.view_orbit(angle=0.5, type="ORBITRIGHT")
+        bpy.ops.view3d.view_orbit(angle=0.4, type="ORBITUP")
         bpy.ops.view3d.view_all()
     for space in editor.spaces:
         space.show_region_toolbar = False
     with inside(editor):
         bpy.ops.image.view_all(fit_view=True)
+    yield WAIT
+    # Out from under the sidebar.
+    seen = view.spaces.active.region_3d
+    seen.view_distance *= 1.45
+    seen.view_location = seen.view_rotation @ Vector((0.75, 0, 0))
     yield 2 * WAIT
-    with inside(view):
-        bpy.ops.screen.screenshot(filepath=str(out / "guide-window.png"))
+    # Blender's own screenshot is black on a virtual screen. A palette makes a third of the file.
+    palette = ["+dither", "-colors", "255"]
+    subprocess.run(["import", "-window", "root", *palette, f"PNG8:{out / 'guide-window.png'}"], check=True)
 
 
 def main() -> None:

@@ -84,7 +84,7 @@ def draw_ledger(layout: bpy.types.UILayout, part: TablePart) -> None:
 def columns(layout: bpy.types.UILayout) -> Iterator[bpy.types.UILayout]:
     """The four cells of a line of the table, from left to right."""
     rest = layout
-    for factor in (0.18, 0.33, 0.54):
+    for factor in (0.17, 0.27, 0.5):
         rest = rest.split(factor=factor, align=True)
         yield rest.column(align=True)
     yield rest.column(align=True)
