@@ -18,11 +18,23 @@ if TYPE_CHECKING:
 
 
 class AngleOperator(ConeGroupProperty, SeamsProperty, BorderProperty):
-    """Mix-in: runs ``change`` on every target object, and reports."""
+    """Mix-in: runs ``change`` on every target object, and reports.
+
+    shown: the properties that can be adjusted, in order, before the cone group.
+    """
+
+    shown: tuple[str, ...] = ()
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         return poll_computation(cls, context)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        for name in self.shown:
+            layout.prop(self, name)
+        self.draw_vertex_group(layout, context)
 
     def library_options(self, **more: Any) -> lsgp.Options:
         return native.lsgp.Options(seams=SEAMS[self.seams][0], border=BORDERS[self.border][0], **more)

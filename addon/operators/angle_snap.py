@@ -30,18 +30,11 @@ class MESH_OT_cone_snap_angles(AngleOperator, bpy.types.Operator):
         "distort least; angles that are such turns already stay"
     )
     bl_options = {"REGISTER", "UNDO"}
+    shown = ("lattice", "seams", "border")
 
     lattice: bpy.props.EnumProperty(
         name="Pattern", description="Which turns leave the texture as it is", items=enum_items(LATTICES)
     )
-
-    def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        layout.prop(self, "lattice")
-        layout.prop(self, "seams")
-        layout.prop(self, "border")
-        self.draw_vertex_group(layout, context)
 
     def change(self, obj: bpy.types.Object, region: Region, cones: ConeAngles) -> tuple[str, list[lsgp.Finding]]:
         self.require_cones(cones)

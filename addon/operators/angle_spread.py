@@ -29,20 +29,13 @@ class MESH_OT_cone_spread_rest(AngleOperator, bpy.types.Operator):
         "where it distorts least; their angles are then in the table"
     )
     bl_options = {"REGISTER", "UNDO"}
+    shown = ("selected", "seams", "border")
 
     selected: bpy.props.BoolProperty(
         name="Over Selected",
         description="Over the selected cones, whose angles are given up, instead of the automatic ones",
         default=False,
     )
-
-    def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        layout.prop(self, "selected")
-        layout.prop(self, "seams")
-        layout.prop(self, "border")
-        self.draw_vertex_group(layout, context)
 
     def change(self, obj: bpy.types.Object, region: Region, cones: ConeAngles) -> tuple[str, list[lsgp.Finding]]:
         self.require_cones(cones)

@@ -30,17 +30,11 @@ class MESH_OT_cone_suggest(AngleOperator, bpy.types.Operator):
     bl_label = "Suggest the Next Cone"
     bl_description = "Mark the vertex where one more cone would lower the stretch most, and select it in edit mode"
     bl_options = {"REGISTER", "UNDO"}
+    shown = ("mark", "seams")
 
     mark: bpy.props.BoolProperty(
         name="Mark", description="Mark it as a cone; otherwise it is selected only", default=True
     )
-
-    def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        layout.prop(self, "mark")
-        layout.prop(self, "seams")
-        self.draw_vertex_group(layout, context)
 
     def change(self, obj: bpy.types.Object, region: Region, cones: ConeAngles) -> tuple[str, list[lsgp.Finding]]:
         gains = self._gains(region.surface, cones)

@@ -31,6 +31,7 @@ class MESH_OT_cone_preview(AngleOperator, bpy.types.Operator):
         f'"{identifiers.LOG_SCALE_ATTRIBUTE}", and tell the stretch to expect, without unwrapping'
     )
     bl_options = {"REGISTER", "UNDO"}
+    shown = ("gains", "seams", "border")
 
     gains: bpy.props.BoolProperty(
         name="Gain of One More Cone",
@@ -38,14 +39,6 @@ class MESH_OT_cone_preview(AngleOperator, bpy.types.Operator):
         f'attribute "{identifiers.GAIN_ATTRIBUTE}"',
         default=False,
     )
-
-    def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        layout.prop(self, "gains")
-        layout.prop(self, "seams")
-        layout.prop(self, "border")
-        self.draw_vertex_group(layout, context)
 
     def change(self, obj: bpy.types.Object, region: Region, cones: ConeAngles) -> tuple[str, list[lsgp.Finding]]:
         options = self.library_options()

@@ -9,6 +9,8 @@ import bpy
 
 from .. import angle_table, identifiers
 from ..angle_table import KIND_LABELS, Row, Settings, TablePart, degrees, last_settings, verdict
+from ..overlay import cache
+from ..overlay.content import Cone
 from .panels import ConeUnwrapSubPanel
 
 # More rows and parts than these make no table anybody reads.
@@ -35,10 +37,10 @@ class VIEW3D_PT_cone_angles(ConeUnwrapSubPanel, bpy.types.Panel):
         if not any(part.rows for part in table):
             layout.label(text="No cones are marked")
         else:
-            self._draw_parts(layout, table)
+            self._draw_parts(layout, table, {cone.vertex: cone for cone in cache.entry(context.object).content.cones})
         self._draw_fixes(layout, settings)
 
-    def _draw_parts(self, layout: bpy.types.UILayout, table: list[TablePart]) -> None:
+    def _draw_parts(self, layout: bpy.types.UILayout, table: list[TablePart], imposed: dict[int, Cone]) -> None:
         shown = [part for part in table if part.rows or not part.ledger.closes]
         rows = MOST_ROWS
         for part in shown[:MOST_PARTS]:
@@ -49,7 +51,7 @@ class VIEW3D_PT_cone_angles(ConeUnwrapSubPanel, bpy.types.Panel):
             if part.rows:
                 draw_head(box)
             for row in part.rows[:rows]:
-                draw_row(box, row)
+                draw_row(box, row, imposed.get(row.vertex))
             if len(part.rows) > rows:
                 box.label(text=f"and {len(part.rows) - rows} more cones")
             rows -= min(rows, len(part.rows))
@@ -95,12 +97,14 @@ def draw_head(layout: bpy.types.UILayout) -> None:
         cell.label(text=title)
 
 
-def draw_row(layout: bpy.types.UILayout, row: Row) -> None:
+def draw_row(layout: bpy.types.UILayout, row: Row, imposed: Cone | None) -> None:
+    """imposed: the cone as the overlay shows it, with the angle of the last unwrap where it is automatic."""
+    known = row if row.angle is not None or imposed is None else imposed
     vertex, angle, kind, curvature = columns(layout)
     vertex.operator(identifiers.SELECT_ONE, text=str(row.vertex), emboss=False).vertex = row.vertex
-    typed = angle.operator(identifiers.SET_ANGLE, text="—" if row.angle is None else degrees(row.angle))
+    typed = angle.operator(identifiers.SET_ANGLE, text="—" if known.angle is None else degrees(known.angle))
     typed.vertex = row.vertex
-    if row.angle is not None:
-        typed.angle = row.angle
+    if known.angle is not None:
+        typed.angle = known.angle
     kind.label(text=KIND_LABELS[row.kind])
-    curvature.label(text="" if row.curvature is None else degrees(row.curvature, signed=True))
+    curvature.label(text="" if known.curvature is None else degrees(known.curvature, signed=True))

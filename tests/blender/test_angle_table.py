@@ -253,15 +253,29 @@ class Drawn:
         return type("Properties", (), {})()
 
 
+def drawn_lines():
+    panel = type("Panel", (), {k: v for k, v in vars(angle_panel.VIEW3D_PT_cone_angles).items() if callable(v)})()
+    panel.layout = Drawn([])
+    panel.draw(bpy.context)
+    return panel.layout.lines
+
+
+def test_automatic_cones_have_the_angle_of_the_last_unwrap():
+    first = corners(add_cone_cube())[0]
+    before = drawn_lines()
+    at = before.index(str(first))
+    assert before[at : at + 4] == [str(first), "—", "Automatic", ""]
+    bpy.ops.uv.cone_unwrap()
+    bpy.context.view_layer.update()
+    assert drawn_lines()[at : at + 4] == [str(first), "270.0°", "Automatic", "+90.0°"]
+
+
 def test_the_panel_draws_the_table_and_the_fixes():
     cube = add_cone_cube()
     first = corners(cube)[0]
     angles.write_angles(cube, [first], [pi], [Kind.SNAPPED])
     bpy.context.view_layer.update()
-    panel = type("Panel", (), {k: v for k, v in vars(angle_panel.VIEW3D_PT_cone_angles).items() if callable(v)})()
-    panel.layout = Drawn([])
-    panel.draw(bpy.context)
-    lines = panel.layout.lines
+    lines = drawn_lines()
     assert lines[:3] == ["Assigned 180.0° of 720.0°", "Missing 540.0°", "Left to 7 automatic cones"]
     assert lines[3:7] == ["Vertex", "Angle", "Kind", "Curvature"]
     at = lines.index(str(first))
