@@ -79,7 +79,10 @@ def _unwrap(task: Task, settings: Settings) -> Record:
         _save(str(partial))
     record = _record([unwrapped for _, unwrapped in solved], failures) | {"output": task.output}
     if settings.pictures:
-        record["picture"] = _draw(task, [unwrapped for _, unwrapped in solved])
+        largest = max((unwrapped for _, unwrapped in solved), key=lambda found: len(found.region.surface.triangles))
+        pictures = native.part("batch.pictures")
+        pictures.write_picture(Path(task.out, task.picture), largest.region.surface, largest.result)
+        record["picture"] = task.picture
     return record
 
 
@@ -222,13 +225,3 @@ def _record(solved: Sequence[unwrapping.Unwrapped], failures: dict[str, Exceptio
 
 def _fields(figures: Any) -> dict[str, float]:
     return {name: getattr(figures, name) for name in figures.__dataclass_fields__}
-
-
-def _draw(task: Task, solved: Sequence[unwrapping.Unwrapped]) -> str:
-    """Write the picture of the largest mesh, and return its name."""
-    largest = max(solved, key=lambda unwrapped: len(unwrapped.region.surface.triangles))
-    path = Path(task.out, task.picture)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    picture = native.part("batch.pictures").picture_of(largest.region.surface, largest.result)
-    native.part("mesh_files").write_whole(path, picture)
-    return task.picture

@@ -16,9 +16,10 @@ import pytest
 from batch_meshes import off_text
 from lsgp.batch import command
 from lsgp.batch.assets import Asset, find_assets
-from lsgp.batch.pool import PYTHON_WORKER, Pool, WorkersError
+from lsgp.batch.pool import PYTHON_WORKER, Pool
 from lsgp.batch.records import Record
 from lsgp.batch.tasks import Settings, Task
+from lsgp.batch.worker_process import WorkersError
 from lsgp.cli import main
 from lsgp.unwrap_options import add_unwrap_options
 from meshes import grid, icosphere
@@ -62,7 +63,7 @@ def test_a_crash_costs_one_asset_and_is_named(tmp_path: Path) -> None:
     assert {ended[name] for name in ("segfault", "kill", "exit")} == {("failed", "CRASHED")}
     said = {record["asset"]: record["message"] for record in records if record["status"] == "failed"}
     assert "SIGSEGV" in said["segfault.off"]
-    assert "SIGKILL" in said["kill.off"] and "Memory may have run out" in said["kill.off"]
+    assert "SIGKILL" in said["kill.off"] and "memory may have run out" in said["kill.off"]
     assert "exit code 7" in said["exit.off"] and "the disk of dreams is full" in said["exit.off"]
     assert "ZeroDivisionError: by nought" in said["fault.off"]
 

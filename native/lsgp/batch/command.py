@@ -19,11 +19,12 @@ from .assets import Asset, find_assets, output_name, require_distinct_results, s
 from .contact_sheet import write_contact_sheet
 from .dask_engine import run_on_cluster
 from .journal import Journal, read_records
-from .pool import PYTHON_WORKER, Pool, WorkersError
+from .pool import PYTHON_WORKER, Pool
 from .progress import RunProgress, duration
 from .records import FAILED, OK, Record
 from .summary import summary_table
 from .tasks import Settings, Task
+from .worker_process import WorkersError
 
 EXIT_CODES = (
     "Exit code: 0 all assets have a result, 4 some of them, 3 none; 2 wrong usage or a folder that is missing or not "

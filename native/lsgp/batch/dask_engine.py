@@ -12,9 +12,10 @@ from collections.abc import Callable, Iterator, Sequence
 from ..side_files import UsageError
 from .assets import Asset
 from .chunks import Queue
-from .pool import ASSETS_PER_WORKER, Pool, WorkersError
+from .pool import ASSETS_PER_WORKER, Pool
 from .records import FAILED, Record, ending
 from .tasks import Settings, Task
+from .worker_process import WorkersError
 
 CHUNKS_PER_THREAD = 2
 CONNECT_SECONDS = 30

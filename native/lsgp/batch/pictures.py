@@ -14,11 +14,13 @@ import struct
 import zlib
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..api import Result, Surface
+from ..mesh_files import write_whole
 
 Floats = NDArray[np.floating]
 
@@ -43,6 +45,12 @@ def picture_of(surface: Surface, result: Result) -> bytes:
     normal = _cross(seen[:, 1] - seen[:, 0], seen[:, 2] - seen[:, 0])
     flipped = np.isin(np.flatnonzero(solved), result.flipped)
     return png(np.concatenate([_surface_picture(seen, normal, uv), _layout_picture(normal, uv, flipped)], axis=1))
+
+
+def write_picture(path: Path, surface: Surface, result: Result) -> None:
+    """Write the picture into a folder that is made where it is missing.  Raises OSError."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_whole(path, picture_of(surface, result))
 
 
 def png(pixels: NDArray[np.uint8]) -> bytes:

@@ -7,7 +7,7 @@ import argparse
 import hashlib
 import json
 import os
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -67,9 +67,6 @@ class Settings:
         """By which results that were made with other options, or by another version, are told from these."""
         content = json.dumps([__version__, self.options], sort_keys=True)
         return hashlib.blake2b(content.encode(), digest_size=6).hexdigest()
-
-    def to_plain(self) -> dict[str, Any]:
-        return asdict(self)
 
 
 def _whole_path(name: str, text: str | None) -> str | None:

@@ -13,7 +13,7 @@ from ..mesh_files import write_whole
 from ..side_files import UsageError
 from ..unwrap_file import Run, out_of_memory, unwrap_file
 from ..unwrap_options import texture_size
-from .pictures import picture_of
+from .pictures import write_picture
 from .records import FAILED, REFUSED, Record, ending, record_of
 from .tasks import Settings, Task
 
@@ -51,8 +51,6 @@ def _unwrap(task: Task, settings: Settings, run: Run) -> Record:
         write_whole(output.with_name(f"{output.name}.report.json"), reports.to_json(report))
     record = record_of(report) | {"output": task.output}
     if settings.pictures:
-        picture = Path(task.out, task.picture)
-        picture.parent.mkdir(parents=True, exist_ok=True)
-        write_whole(picture, picture_of(run.surface, result))
+        write_picture(Path(task.out, task.picture), run.surface, result)
         record["picture"] = task.picture
     return record
