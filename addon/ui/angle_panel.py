@@ -98,11 +98,12 @@ def draw_head(layout: bpy.types.UILayout) -> None:
 
 
 def draw_row(layout: bpy.types.UILayout, row: Row, imposed: Cone | None) -> None:
-    """imposed: the cone as the overlay shows it, with the angle of the last unwrap where it is automatic."""
+    """imposed: the cone as the overlay shows it; its angle, of the last unwrap, stands in where the next finds one."""
     known = row if row.angle is not None or imposed is None else imposed
+    text = "—" if known.angle is None else ("~" if row.angle is None else "") + degrees(known.angle)
     vertex, angle, kind, curvature = columns(layout)
     vertex.operator(identifiers.SELECT_ONE, text=str(row.vertex), emboss=False).vertex = row.vertex
-    typed = angle.operator(identifiers.SET_ANGLE, text="—" if known.angle is None else degrees(known.angle))
+    typed = angle.operator(identifiers.SET_ANGLE, text=text)
     typed.vertex = row.vertex
     if known.angle is not None:
         typed.angle = known.angle
