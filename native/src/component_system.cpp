@@ -26,17 +26,17 @@ const CutGraph& ComponentSystem::all_cuts() {
   return *all_cuts_;
 }
 
-const CutFactor* ComponentSystem::factor(const FactorHook& hook) {
+const CutFactor* ComponentSystem::factor() {
   if (factorization_ == Factorization::automatic) {
     factorization_ = CutFactor::pays(mesh_, all_cuts()) ? Factorization::cut : Factorization::sparse;
   }
   if (factorization_ == Factorization::sparse) return nullptr;
-  if (!factor_) factor_.emplace(mesh_, geometry_, all_cuts(), hook);
+  if (!factor_) factor_.emplace(mesh_, geometry_, all_cuts());
   return &*factor_;
 }
 
-const LogScale& ComponentSystem::log_scale(const FactorHook& hook) {
-  if (!log_scale_) log_scale_.emplace(mesh_, geometry_, border_, cones_, factor(hook));
+const LogScale& ComponentSystem::log_scale() {
+  if (!log_scale_) log_scale_.emplace(mesh_, geometry_, border_, cones_, factor());
   return *log_scale_;
 }
 

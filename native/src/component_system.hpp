@@ -24,9 +24,9 @@ class ComponentSystem {
   // Cuts through all cones that lie inside and to all borders.
   const CutGraph& all_cuts();
   // What is shared by prescription and unfolding, or null where they are better solved one by one.
-  const CutFactor* factor(const FactorHook& hook);
+  const CutFactor* factor();
   // That of the component's metric, all cones added.
-  const LogScale& log_scale(const FactorHook& hook);
+  const LogScale& log_scale();
 
  private:
   const HalfedgeMesh& mesh_;

@@ -83,8 +83,9 @@ void ConeSet::fit() {
   }
   hessian = ((hessian + hessian.transpose()) / 2).eval();
   hessian.diagonal().array() += ridge * hessian.diagonal().mean();
-  curvature_ += minimize_in_box(hessian, gradient + hessian * curvature_, low_ - curvature_, high_ - curvature_,
-                                problem_->balanced);
+  BoxProgram program(problem_->balanced);
+  program.set_hessian(hessian);
+  curvature_ += program.minimize(gradient + hessian * curvature_, low_ - curvature_, high_ - curvature_);
   variance_ += 2 * gradient.dot(curvature_) + curvature_.dot(hessian * curvature_);
 }
 

@@ -377,14 +377,14 @@ void require_possible(const HalfedgeMesh& mesh, const Geometry& geometry, const 
 }
 
 Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, PrescriptionRule rule,
-                    std::vector<Finding>& findings, const FactorHook& hook) {
+                    std::vector<Finding>& findings) {
   const HalfedgeMesh& mesh = system.mesh();
   const Geometry& geometry = system.geometry();
   ComponentCones asked = cones;
   if (rule != PrescriptionRule::manual) std::fill(asked.angles.begin(), asked.angles.end(), std::nullopt);
   const BorderConditions& border = system.border();
   require_feasible(mesh, asked, border);
-  const LogScale& scale = system.log_scale(hook);
+  const LogScale& scale = system.log_scale();
 
   Eigen::VectorXd curvature(asked.vertices.size());
   std::optional<Eigen::VectorXd> straight;

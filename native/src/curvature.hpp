@@ -65,6 +65,9 @@ class LogScale {
   Variance variance() const;
 
  private:
+  // shares: (n, 2) as of e^{2y} and e^{-2y}; means: theirs of the Green's functions, (k, 2).
+  Eigen::MatrixXd least_distortion_hessian(const Eigen::MatrixXd& shares, const Eigen::MatrixXd& means) const;
+
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
   BorderConditions border_;
@@ -112,7 +115,7 @@ BorderConditions border_conditions(const HalfedgeMesh& mesh, const Geometry& geo
 // cones: those of the system.  Throws TOO_FEW_CONES, CONE_ANGLE_RANGE, GAUSS_BONNET, LOOP_TURNING with the component's
 // own vertex numbers.
 Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, PrescriptionRule rule,
-                    std::vector<Finding>& findings, const FactorHook& hook = {});
+                    std::vector<Finding>& findings);
 
 // The same with the cones' curvatures given; scale has these cones added, in the same order.  Throws LOOP_TURNING.
 Curvature impose(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& asked,

@@ -21,7 +21,7 @@ bool CutFactor::pays(const HalfedgeMesh& mesh, const CutGraph& cut_graph) {
   return copies <= worth_while * std::sqrt(static_cast<double>(mesh.vertex_count()));
 }
 
-CutFactor::CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, CutGraph cut_graph, const FactorHook& hook)
+CutFactor::CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, CutGraph cut_graph)
     : cut_graph_(std::move(cut_graph)), cut_mesh_(cut_open(mesh, cut_graph_)) {
   const std::vector<char> on_cut = on_cuts(mesh, cut_graph_);
   const Index copies = cut_mesh_.copy_count();
@@ -35,7 +35,7 @@ CutFactor::CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, CutGrap
       row_of_copy_[copy] = row++;
   }
   for (const Index copy : retained_) row_of_copy_[copy] = row++;
-  factor_.emplace(assemble_dirichlet(mesh, geometry, cut_mesh_, row_of_copy_), retained_count(), hook);
+  factor_.emplace(assemble_dirichlet(mesh, geometry, cut_mesh_, row_of_copy_), retained_count());
   for (Index& own : row_of_copy_) own = factor_->place(own);
 }
 

@@ -19,7 +19,7 @@ namespace lsgp {
 
 class CutFactor {
  public:
-  CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, CutGraph cut_graph, const FactorHook& hook = {});
+  CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, CutGraph cut_graph);
 
   // Whether cuts and borders are short enough for the dense problems to be worth while.
   static bool pays(const HalfedgeMesh& mesh, const CutGraph& cut_graph);

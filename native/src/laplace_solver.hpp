@@ -14,13 +14,34 @@ class LaplaceSolver {
  public:
   virtual ~LaplaceSolver() = default;
   // right_sides: (n, k), one a column.  0 where y is held.
-  virtual Eigen::MatrixXd solve(const Eigen::MatrixXd& right_sides) const = 0;
-  // The same for one right side, (n, 1), and for impulses of 1 at vertices, (n, vertices).
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& right_sides) const;
+  // The same for one right side, (n), and for impulses of 1 at vertices, (n, vertices).
   struct Response {
     Eigen::VectorXd to_right_side;
     Eigen::MatrixXd to_impulses;
   };
-  virtual Response solve(const Eigen::VectorXd& right_side, const std::vector<Index>& impulses) const;
+  Response solve(const Eigen::VectorXd& right_side, const std::vector<Index>& impulses) const;
+
+ protected:
+  using Rows = Cholesky<double>::Rows;
+
+  LaplaceSolver(Index row_count, std::vector<Index> row_of_vertex)
+      : row_count_(row_count), row_of_vertex_(std::move(row_of_vertex)) {}
+
+  // A solve in two halves, as of Cholesky.
+  virtual void eliminate(Rows& right_sides) const = 0;
+  virtual void substitute(Rows& half_solved, Eigen::Index sides) const = 0;
+
+ private:
+  template <typename Visit>
+  void for_each_row(Visit visit) const {
+    for (std::size_t v = 0; v < row_of_vertex_.size(); ++v) {
+      if (row_of_vertex_[v] != none) visit(static_cast<Index>(v), row_of_vertex_[v]);
+    }
+  }
+
+  const Index row_count_;
+  const std::vector<Index> row_of_vertex_;  // (n) none where y is 0
 };
 
 // held: (n) where y is 0, somewhere at least.

@@ -2,10 +2,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "curvature.hpp"
 #include "energies/quadratic_forms.hpp"
 #include "solvers/box_qp.hpp"
+#include "solvers/checkpoint.hpp"
 #include "solvers/dense_kernels.hpp"
 
 namespace lsgp {
@@ -13,16 +15,25 @@ namespace lsgp {
 namespace {
 
 constexpr int most_newton_steps = 60;
-constexpr double newton_decrement = 1e-15;  // of the objective, a logarithm of order 1
-constexpr double ridge = 1e-13;             // relative: cones so close that their Green's functions nearly agree
+constexpr double newton_decrement = 1e-20;  // of the objective, a logarithm of order 1
+constexpr double too_small_to_see = 1e-11;  // decreases that rounding of the objective would hide
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double ridge = 1e-13;  // relative: cones so close that their Green's functions nearly agree
 
 // log of the weighted mean of e^x, and the weights w e^x / mean that its derivative needs.
-double log_mean_exp(const Eigen::VectorXd& weight, const Eigen::VectorXd& x, Eigen::VectorXd* shares = nullptr) {
+template <typename Values>
+double log_mean_exp(const Eigen::VectorXd& weight, const Values& x, Eigen::Ref<Eigen::VectorXd> shares) {
   const double largest = x.maxCoeff();
-  Eigen::VectorXd terms = weight.array() * (x.array() - largest).exp();
-  const double mean = terms.sum();
-  if (shares) *shares = terms / mean;
+  shares = weight.array() * (x.array() - largest).exp();
+  const double mean = shares.sum();
+  shares /= mean;
   return largest + std::log(mean);
+}
+
+template <typename Values>
+double log_mean_exp(const Eigen::VectorXd& weight, const Values& x) {
+  const double largest = x.maxCoeff();
+  return largest + std::log(weight.dot((x.array() - largest).exp().matrix()));
 }
 
 // columns^T diag(weight) columns, lower triangle; some rows at a time, which stay in the cache.
@@ -35,6 +46,7 @@ Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& columns, const Eigen::Vecto
         weight.segment(begin, count).cwiseSqrt().asDiagonal() * columns.middleRows(begin, count);
     dense_kernels<double>().add_gram(scaled.data(), static_cast<int>(count), static_cast<int>(columns.cols()),
                                      sum.data());
+    checkpoint(static_cast<double>(count * columns.cols() * columns.cols()));
   }
   return sum;
 }
@@ -109,36 +121,62 @@ Eigen::VectorXd LogScale::harmonic_curvature() const {
   return system.partialPivLu().solve(right).head(k);
 }
 
+// With many cones a Hessian costs as much as dozens of gradients: it is kept while the steps left with it are fewer.
 Eigen::VectorXd LogScale::least_distortion_curvature(const Eigen::VectorXd& low, const Eigen::VectorXd& high,
                                                      Eigen::VectorXd start) const {
   Eigen::VectorXd kappa = std::move(start);
   Eigen::VectorXd y = without_cones_ + green_ * kappa;
-  Eigen::VectorXd growth, shrinkage;  // area shares weighted by e^{2y} and by e^{-2y}
-  double value = log_mean_exp(weight_, 2 * y, &growth) + log_mean_exp(weight_, -2 * y, &shrinkage);
+  Eigen::MatrixXd shares(y.size(), 2);  // of the area, weighted by e^{2y} and by e^{-2y}
+  const auto objective = [&](const Eigen::VectorXd& at) {
+    return log_mean_exp(weight_, 2 * at, shares.col(0)) + log_mean_exp(weight_, -2 * at, shares.col(1));
+  };
+  const double gradients_of_hessian = 2 + cone_count() / 20.0;
+  const auto steps_left = [](double decrease, double before) {
+    return decrease < before ? std::log(newton_decrement / decrease) / std::log(decrease / before) : infinity;
+  };
+  BoxProgram program(border_.balanced);
+  double value = objective(y), before = infinity;
+  bool is_fresh = false;
   for (int step = 0; step < most_newton_steps; ++step) {
-    const Eigen::VectorXd mean_growth = green_.transpose() * growth, mean_shrinkage = green_.transpose() * shrinkage;
-    const Eigen::VectorXd gradient = 2 * (mean_growth - mean_shrinkage);
-    Eigen::MatrixXd hessian = 4 * weighted_gram(green_, growth + shrinkage);
-    hessian.selfadjointView<Eigen::Lower>().rankUpdate(mean_growth, -4);
-    hessian.selfadjointView<Eigen::Lower>().rankUpdate(mean_shrinkage, -4);
-    hessian.triangularView<Eigen::StrictlyUpper>() = hessian.transpose();
-    hessian.diagonal().array() += ridge * hessian.diagonal().mean();
-    const Eigen::VectorXd direction = minimize_in_box(hessian, gradient, low - kappa, high - kappa, border_.balanced);
-    const double decrease = -gradient.dot(direction);
+    const Eigen::MatrixXd means = green_.transpose() * shares;
+    const Eigen::VectorXd gradient = 2 * (means.col(0) - means.col(1));
+    Eigen::VectorXd direction;
+    double decrease = 0;
+    const auto minimize = [&] {
+      if (is_fresh) program.set_hessian(least_distortion_hessian(shares, means));
+      direction = program.minimize(gradient, low - kappa, high - kappa);
+      decrease = -gradient.dot(direction);
+    };
+    is_fresh = step == 0;
+    minimize();
+    if (!is_fresh && decrease > newton_decrement && steps_left(decrease, before) > gradients_of_hessian) {
+      is_fresh = true;
+      minimize();
+    }
     if (!(decrease > newton_decrement)) break;
+    const bool is_visible = decrease > too_small_to_see;
+    if (!is_visible && is_fresh && !(decrease < before)) break;
     const Eigen::VectorXd change = green_ * direction;
     double length = 1, tried = value;
     for (; length > 1e-6; length /= 2) {
-      const Eigen::VectorXd moved = y + length * change;
-      tried = log_mean_exp(weight_, 2 * moved, &growth) + log_mean_exp(weight_, -2 * moved, &shrinkage);
-      if (tried <= value - 1e-4 * length * decrease) break;
+      tried = objective(y + length * change);
+      if (!is_visible || tried <= value - 1e-4 * length * decrease) break;
     }
-    if (!(tried < value)) break;
+    if (is_visible && !(tried < value)) break;
     kappa += length * direction;
     y += length * change;
     value = tried;
+    before = decrease;
   }
   return kappa;
+}
+
+Eigen::MatrixXd LogScale::least_distortion_hessian(const Eigen::MatrixXd& shares, const Eigen::MatrixXd& means) const {
+  Eigen::MatrixXd hessian = 4 * weighted_gram(green_, shares.rowwise().sum());
+  hessian.selfadjointView<Eigen::Lower>().rankUpdate(means, -4);
+  hessian.triangularView<Eigen::StrictlyUpper>() = hessian.transpose();
+  hessian.diagonal().array() += ridge * hessian.diagonal().mean();
+  return hessian;
 }
 
 double LogScale::predicted_l2(const Eigen::VectorXd& log_scale) const {

@@ -107,9 +107,9 @@ ComponentMap Mapping::attempt(const ComponentCones& cones, Effort effort, std::v
   ComponentMap map;
   {
     const Monitor::Stage stage(monitor_, "prescribe");
+    const Monitor::Part part(monitor_, 0, 0.2);
     monitor_.advance(0);
-    map.curvature = prescribe(system_, cones, options_.prescription, findings,
-                              [this](double done) { monitor_.advance(0.2 * done); });
+    map.curvature = prescribe(system_, cones, options_.prescription, findings);
   }
   {
     const Monitor::Stage stage(monitor_, "cut");
@@ -323,7 +323,7 @@ void Mapping::report_adjusted(const ComponentMap& map, const Continuation& end, 
 }
 
 CutSurface Mapping::open(const ComponentMap& map) const {
-  return {mesh_, geometry_, map.cut_graph, map.cut_mesh, system_.factor({})};
+  return {mesh_, geometry_, map.cut_graph, map.cut_mesh, system_.factor()};
 }
 
 std::vector<Index> Mapping::aligned_edges() const {

@@ -6,19 +6,22 @@
 
 #include "lsgp/progress.hpp"
 #include "lsgp/result.hpp"
+#include "solvers/checkpoint.hpp"
 
 namespace lsgp {
 
 class Monitor {
  public:
-  Monitor(const Progress& progress, StageSeconds& seconds) : progress_(progress), seconds_(seconds) {}
+  Monitor(const Progress& progress, StageSeconds& seconds)
+      : progress_(progress), seconds_(seconds), visitor_([this] { tick(); }) {}
   Monitor(const Monitor&) = delete;
   Monitor& operator=(const Monitor&) = delete;
 
   // done: of the innermost part under way, 0 to 1.  Throws CANCELLED.
   void advance(double done);
 
-  // Where nobody knows how much there is to do: a small share of what is left of the part.
+  // Where nobody knows how much there is to do: a small share of what is left of the part.  Long work does it by
+  // itself, at its checkpoints.
   void tick();
 
   // While it lives, what is done is told as what lies between two shares of the part around it.
@@ -57,6 +60,7 @@ class Monitor {
   StageSeconds& seconds_;
   double low_ = 0, high_ = 1, told_ = 0;
   Stage* innermost_ = nullptr;
+  const CheckpointVisitor visitor_;
 };
 
 }  // namespace lsgp

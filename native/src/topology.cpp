@@ -16,25 +16,26 @@ class EdgeTable {
   // Leaves out the triangles marked to skip; their halfedges have no edge.
   EdgeTable(const Surface& surface, const std::vector<char>& skip) {
     const Triangles& triangles = surface.triangles;
-    const Index halfedge_count = static_cast<Index>(3 * triangles.rows());
-    const Index* corner_vertex = triangles.data();
+    const auto for_each_halfedge = [&](auto visit) {
+      for (Index f = 0; f < triangles.rows(); ++f) {
+        if (skip[f]) continue;
+        const Index a = triangles(f, 0), b = triangles(f, 1), c = triangles(f, 2);
+        visit(3 * f, a, b);
+        visit(3 * f + 1, b, c);
+        visit(3 * f + 2, c, a);
+      }
+    };
     bucket_.assign(surface.positions.rows() + 1, 0);
-    const auto low = [&](Index h) { return std::min(corner_vertex[h], corner_vertex[next(h)]); };
-    const auto high = [&](Index h) { return std::max(corner_vertex[h], corner_vertex[next(h)]); };
-    Index used = 0;
-    for (Index h = 0; h < halfedge_count; ++h) {
-      if (skip[h / 3]) continue;
-      ++bucket_[low(h) + 1];
-      ++used;
-    }
+    for_each_halfedge([&](Index, Index tail, Index head) { ++bucket_[std::min(tail, head) + 1]; });
     std::partial_sum(bucket_.begin(), bucket_.end(), bucket_.begin());
+    const Index used = bucket_.back();
     entries_.resize(used);
     std::vector<Index> cursor(bucket_.begin(), bucket_.end() - 1);
-    for (Index h = 0; h < halfedge_count; ++h) {
-      if (!skip[h / 3]) entries_[cursor[low(h)]++] = {high(h), h};
-    }
+    for_each_halfedge([&](Index h, Index tail, Index head) {
+      entries_[cursor[std::min(tail, head)]++] = {std::max(tail, head), h};
+    });
     edge_of_entry_.resize(used);
-    edge_of_halfedge_.assign(halfedge_count, none);
+    edge_of_halfedge_.assign(3 * triangles.rows(), none);
     for (std::size_t v = 0; v + 1 < bucket_.size(); ++v) {
       std::sort(entries_.begin() + bucket_[v], entries_.begin() + bucket_[v + 1]);
       for (Index i = bucket_[v]; i < bucket_[v + 1]; ++i) {
@@ -92,6 +93,14 @@ std::vector<char> mark_edges(const EdgeTable& edges, const VertexPairs& pairs, C
 std::vector<std::pair<Index, Index>> find_duplicates(const Surface& surface, const EdgeTable& edges) {
   const Index* corner_vertex = surface.triangles.data();
   std::vector<std::pair<Index, Index>> duplicates;
+  // Most surfaces have no edge of more than two triangles and none of two with the same third vertex.
+  bool is_plain = true;
+  for (Index edge = 0; edge < edges.count() && is_plain; ++edge) {
+    const Index count = edges.halfedge_count(edge);
+    is_plain = count == 1 || (count == 2 && corner_vertex[prev(edges.halfedge(edge, 0))] !=
+                                                corner_vertex[prev(edges.halfedge(edge, 1))]);
+  }
+  if (is_plain) return duplicates;
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
     // On the edge of fewest triangles, since a crowd may share the others.
     Index own = 3 * f;
@@ -116,25 +125,30 @@ struct Orientation {
   std::vector<char> orientable;  // per component
 };
 
-// Edges across which the surface goes on: those of two triangles that are no open seam.
-std::vector<char> find_joined(const EdgeTable& edges, const std::vector<char>& seam, const OpenSeams& open_seams) {
-  std::vector<char> joined(edges.count());
+// The other halfedge of every edge across which the surface goes on, those of two triangles that are no open seam;
+// none at others, (3m).
+std::vector<Index> join_halfedges(const EdgeTable& edges, const std::vector<char>& seam, const OpenSeams& open_seams,
+                                  Index halfedge_count) {
+  std::vector<Index> twin(halfedge_count, none);
   for (Index edge = 0; edge < edges.count(); ++edge) {
-    joined[edge] = edges.halfedge_count(edge) == 2;
-    if (!joined[edge] || !seam[edge] || open_seams.empty()) continue;
-    joined[edge] = !open_seams[edges.halfedge(edge, 0) / 3] && !open_seams[edges.halfedge(edge, 1) / 3];
+    if (edges.halfedge_count(edge) != 2) continue;
+    const Index a = edges.halfedge(edge, 0), b = edges.halfedge(edge, 1);
+    if (seam[edge] && !open_seams.empty() && (open_seams[a / 3] || open_seams[b / 3])) continue;
+    twin[a] = b;
+    twin[b] = a;
   }
-  return joined;
+  return twin;
 }
 
-// Labels components by breadth-first search over joined edges and turns every triangle like its component's majority.
-Orientation orient(const Surface& surface, const EdgeTable& edges, const std::vector<char>& joined) {
+// Labels components by breadth-first search over joined halfedges and turns every triangle like its component's
+// majority.
+Orientation orient(const Surface& surface, const std::vector<char>& skip, const std::vector<Index>& twin) {
   const Index triangle_count = static_cast<Index>(surface.triangles.rows());
   const Index* corner_vertex = surface.triangles.data();
   Orientation out{std::vector<Index>(triangle_count, none), std::vector<char>(triangle_count, 0), {}};
   std::vector<Index> queue;
   for (Index seed = 0; seed < triangle_count; ++seed) {
-    if (out.component[seed] != none || edges.edge_of(3 * seed) == none) continue;
+    if (out.component[seed] != none || skip[seed]) continue;
     const Index label = static_cast<Index>(out.orientable.size());
     out.orientable.push_back(1);
     out.component[seed] = label;
@@ -143,9 +157,8 @@ Orientation orient(const Surface& surface, const EdgeTable& edges, const std::ve
     for (std::size_t i = 0; i < queue.size(); ++i) {
       const Index f = queue[i];
       for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-        const Index edge = edges.edge_of(h);
-        if (!joined[edge]) continue;
-        const Index other = edges.halfedge(edge, edges.halfedge(edge, 0) == h ? 1 : 0), g = other / 3;
+        const Index other = twin[h], g = other / 3;
+        if (other == none) continue;
         const char wanted = out.reversed[f] ^ (corner_vertex[h] == corner_vertex[other]);
         if (out.component[g] == none) {
           out.component[g] = label;
@@ -184,18 +197,19 @@ void number_vertices(const Surface& surface, Component& component) {
   std::vector<Index> vertex(halfedge_count, none);
   for (Index corner = 0; corner < halfedge_count; ++corner) {
     if (vertex[corner] != none) continue;
-    Index first = corner;  // turn clockwise to the boundary, if there is one
-    while (mesh.twin[first] != none && next(mesh.twin[first]) != corner) first = next(mesh.twin[first]);
-    if (mesh.twin[first] != none) first = corner;
     const Index v = static_cast<Index>(mesh.outgoing.size());
-    mesh.outgoing.push_back(first);
-    const Index source = component.source_corner(corner);
-    component.source_vertex.push_back(surface.triangles(source / 3, source % 3));
-    Index h = first;
+    Index first = corner, h = corner;
     do {
       vertex[h] = v;
       h = mesh.rotate(h);
-    } while (h != none && h != first);
+    } while (h != none && h != corner);
+    while (h == none && mesh.twin[first] != none) {  // a boundary: back to where the fan begins
+      first = next(mesh.twin[first]);
+      vertex[first] = v;
+    }
+    mesh.outgoing.push_back(first);
+    const Index source = component.source_corner(corner);
+    component.source_vertex.push_back(surface.triangles(source / 3, source % 3));
   }
   std::copy(vertex.begin(), vertex.end(), mesh.triangles.data());
   mesh.positions.resize(mesh.vertex_count(), 3);
@@ -212,7 +226,7 @@ void measure_topology(HalfedgeMesh& mesh) {
   mesh.genus = (2 - static_cast<int>(mesh.boundary_loops.size()) - mesh.euler) / 2;
 }
 
-void report_repairs(const Surface& surface, const EdgeTable& edges, const std::vector<char>& joined,
+void report_repairs(const Surface& surface, const EdgeTable& edges, const std::vector<Index>& twin,
                     const Orientation& orientation, const std::vector<Component>& components,
                     std::vector<Finding>& findings) {
   std::vector<Index> crowded;
@@ -234,8 +248,8 @@ void report_repairs(const Surface& surface, const EdgeTable& edges, const std::v
   }
   std::vector<char> open(fans.size(), 0);
   for (Index edge = 0; edge < edges.count(); ++edge) {
-    if (joined[edge] || edges.halfedge_count(edge) < 2) continue;  // opened on purpose: fans part there
     const Index h = edges.halfedge(edge, 0);
+    if (twin[h] != none || edges.halfedge_count(edge) < 2) continue;  // opened on purpose: fans part there
     open[surface.triangles.data()[h]] = open[surface.triangles.data()[next(h)]] = 1;
   }
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
@@ -317,8 +331,9 @@ Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std
                     : std::vector<char>(edges.count(), 1);
   const std::vector<char> seam = mark_edges(edges, surface.seams, Code::seam_not_an_edge,
                                             "are marked as a seam but name no edge. Mark edges of this mesh.");
-  const std::vector<char> joined = find_joined(edges, seam, open_seams);
-  const Orientation orientation = orient(surface, edges, joined);
+  const std::vector<Index> twin =
+      join_halfedges(edges, seam, open_seams, static_cast<Index>(3 * surface.triangles.rows()));
+  const Orientation orientation = orient(surface, skip, twin);
 
   std::vector<Component>& components = topology.components;
   components.resize(orientation.orientable.size());
@@ -341,7 +356,7 @@ Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std
     if (!component.orientable) continue;
     HalfedgeMesh& mesh = component.mesh;
     mesh.triangles.resize(component.source_triangle.size(), 3);
-    mesh.twin.assign(mesh.halfedge_count(), none);
+    mesh.twin.resize(mesh.halfedge_count());
     mesh.cuttable.resize(mesh.halfedge_count());
     mesh.seam.resize(mesh.halfedge_count());
     for (const Index f : component.source_triangle) {
@@ -349,15 +364,13 @@ Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std
         const Index edge = edges.edge_of(h), local = local_halfedge(h);
         mesh.cuttable[local] = cuttable[edge];
         mesh.seam[local] = seam[edge];
-        if (joined[edge]) {
-          mesh.twin[local] = local_halfedge(edges.halfedge(edge, edges.halfedge(edge, 0) == h ? 1 : 0));
-        }
+        mesh.twin[local] = twin[h] == none ? none : local_halfedge(twin[h]);
       }
     }
     number_vertices(surface, component);
     measure_topology(mesh);
   }
-  report_repairs(surface, edges, joined, orientation, components, findings);
+  report_repairs(surface, edges, twin, orientation, components, findings);
   return topology;
 }
 

@@ -1,59 +1,68 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solvers/box_qp.hpp"
 
-#include <Eigen/LU>
-#include <vector>
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace lsgp {
 
-namespace {
+void BoxProgram::set_hessian(Eigen::MatrixXd hessian) {
+  hessian_ = std::move(hessian);
+  free_.clear();
+}
 
-struct Step {
-  Eigen::VectorXd direction;  // (k) zero at the bounded variables
-  double multiplier = 0;      // of the sum
-};
-
-// The step to the minimum over the free variables, the others held.
-Step step_to_minimum(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& slope, const std::vector<int>& free,
-                     bool keep_sum) {
-  const int count = static_cast<int>(free.size()), size = count + (keep_sum ? 1 : 0);
-  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(size, size);
-  Eigen::VectorXd right(size);
-  right.setZero();
-  // The sum's row is scaled like the Hessian so that the elimination's pivots compare.
-  const double scale = hessian.diagonal().mean();
-  for (int i = 0; i < count; ++i) {
-    for (int j = 0; j < count; ++j) system(i, j) = hessian(free[i], free[j]);
-    if (keep_sum) system(i, count) = system(count, i) = scale;
-    right[i] = -slope[free[i]];
+std::vector<int> BoxProgram::free_variables() const {
+  std::vector<int> free;
+  for (std::size_t i = 0; i < side_.size(); ++i) {
+    if (side_[i] == Side::free) free.push_back(static_cast<int>(i));
   }
-  const Eigen::VectorXd solution = system.partialPivLu().solve(right);
-  Step step{Eigen::VectorXd::Zero(slope.size()), keep_sum ? solution[count] * scale : 0.0};
-  for (int i = 0; i < count; ++i) step.direction[free[i]] = solution[i];
+  return free;
+}
+
+void BoxProgram::factorize(std::vector<int> free) {
+  if (free == free_) return;
+  const int count = static_cast<int>(free.size()), size = count + (keep_sum_ ? 1 : 0);
+  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(size, size);
+  // The sum's row is scaled like the Hessian so that the elimination's pivots compare.
+  const double scale = hessian_.diagonal().mean();
+  for (int j = 0; j < count; ++j) {
+    for (int i = 0; i < count; ++i) system(i, j) = hessian_(free[i], free[j]);
+    if (keep_sum_) system(j, count) = system(count, j) = scale;
+  }
+  factor_ = Eigen::PartialPivLU<Eigen::MatrixXd>(std::move(system));
+  free_ = std::move(free);
+}
+
+BoxProgram::Step BoxProgram::step_to_minimum(const Eigen::VectorXd& slope) {
+  factorize(free_variables());
+  const int count = static_cast<int>(free_.size());
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(factor_.rows());
+  for (int i = 0; i < count; ++i) right[i] = -slope[free_[i]];
+  const Eigen::VectorXd solution = factor_.solve(right);
+  Step step{Eigen::VectorXd::Zero(slope.size()), keep_sum_ ? solution[count] * hessian_.diagonal().mean() : 0.0};
+  for (int i = 0; i < count; ++i) step.direction[free_[i]] = solution[i];
   return step;
 }
 
-}  // namespace
-
-Eigen::VectorXd minimize_in_box(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
-                                const Eigen::VectorXd& low, const Eigen::VectorXd& high, bool keep_sum) {
+Eigen::VectorXd BoxProgram::minimize(const Eigen::VectorXd& gradient, const Eigen::VectorXd& low,
+                                     const Eigen::VectorXd& high) {
+  constexpr double at_bound = 1e-12;
   const int size = static_cast<int>(gradient.size());
-  enum class Side : char { free, low, high };
-  std::vector<Side> side(size, Side::free);
+  side_.resize(size, Side::free);
   for (int i = 0; i < size; ++i) {
-    if (low[i] >= high[i]) side[i] = Side::low;  // a fixed variable is never released
+    const bool is_there = side_[i] == Side::low ? low[i] >= -at_bound : side_[i] == Side::high && high[i] <= at_bound;
+    if (!is_there) side_[i] = Side::free;
+    if (low[i] >= high[i]) side_[i] = Side::low;  // a fixed variable is never released
   }
   Eigen::VectorXd d = Eigen::VectorXd::Zero(size);
   const int most_changes = 50 * (size + 1);
   for (int change = 0; change < most_changes; ++change) {
-    std::vector<int> free;
-    for (int i = 0; i < size; ++i) {
-      if (side[i] == Side::free) free.push_back(i);
-    }
-    const Eigen::VectorXd slope = gradient + hessian * d;
+    const std::vector<int> free = free_variables();
+    const Eigen::VectorXd slope = gradient + hessian_ * d;
     double multiplier = 0;
-    if (free.size() > (keep_sum ? 1u : 0u)) {
-      const Step step = step_to_minimum(hessian, slope, free, keep_sum);
+    if (free.size() > (keep_sum_ ? 1u : 0u)) {
+      const Step step = step_to_minimum(slope);
       double length = 1;
       int blocking = -1;
       for (const int i : free) {
@@ -65,28 +74,28 @@ Eigen::VectorXd minimize_in_box(const Eigen::MatrixXd& hessian, const Eigen::Vec
       }
       d += length * step.direction;
       if (blocking >= 0) {
-        side[blocking] = step.direction[blocking] < 0 ? Side::low : Side::high;
-        d[blocking] = side[blocking] == Side::low ? low[blocking] : high[blocking];
+        side_[blocking] = step.direction[blocking] < 0 ? Side::low : Side::high;
+        d[blocking] = side_[blocking] == Side::low ? low[blocking] : high[blocking];
         continue;
       }
       multiplier = step.multiplier;
-    } else if (keep_sum && !free.empty()) {
+    } else if (keep_sum_ && !free.empty()) {
       multiplier = -slope[free[0]];
     }
     // At the minimum over the free variables: release the bound that pulls inwards most.
-    const Eigen::VectorXd reduced = (gradient + hessian * d).array() + multiplier;
+    const Eigen::VectorXd reduced = (gradient + hessian_ * d).array() + multiplier;
     int released = -1;
     double pull = 1e-12 * (1 + gradient.cwiseAbs().maxCoeff());
     for (int i = 0; i < size; ++i) {
-      if (side[i] == Side::free || low[i] >= high[i]) continue;
-      const double inwards = side[i] == Side::low ? -reduced[i] : reduced[i];
+      if (side_[i] == Side::free || low[i] >= high[i]) continue;
+      const double inwards = side_[i] == Side::low ? -reduced[i] : reduced[i];
       if (inwards > pull) {
         pull = inwards;
         released = i;
       }
     }
     if (released < 0) break;
-    side[released] = Side::free;
+    side_[released] = Side::free;
   }
   return d;
 }

@@ -3,14 +3,40 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>
+#include <vector>
 
 namespace lsgp {
 
 // Minimises  gradient . d + d . hessian d / 2  over  low <= d <= high  and, with keep_sum, sum d = 0.
-// hessian: (k, k) symmetric positive definite, full; d = 0 must lie within the bounds.
-// A primal active-set method: every iterate is feasible and the objective never rises.
-Eigen::VectorXd minimize_in_box(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
-                                const Eigen::VectorXd& low, const Eigen::VectorXd& high, bool keep_sum);
+// A primal active-set method: every iterate is feasible and the objective never rises.  Which variables are at their
+// bounds is remembered from one program to the next, and a factorization is kept while that does not change.
+class BoxProgram {
+ public:
+  explicit BoxProgram(bool keep_sum) : keep_sum_(keep_sum) {}
+  // hessian: (k, k) symmetric positive definite, full.
+  void set_hessian(Eigen::MatrixXd hessian);
+  // d = 0 must lie within the bounds.
+  Eigen::VectorXd minimize(const Eigen::VectorXd& gradient, const Eigen::VectorXd& low, const Eigen::VectorXd& high);
+
+ private:
+  enum class Side : char { free, low, high };
+  struct Step {
+    Eigen::VectorXd direction;  // (k) zero at the bounded variables
+    double multiplier = 0;      // of the sum
+  };
+
+  // The step to the minimum over the free variables, the others held.
+  Step step_to_minimum(const Eigen::VectorXd& slope);
+  std::vector<int> free_variables() const;
+  void factorize(std::vector<int> free);
+
+  const bool keep_sum_;
+  Eigen::MatrixXd hessian_;
+  std::vector<Side> side_;  // (k)
+  std::vector<int> free_;   // those that are factored
+  Eigen::PartialPivLU<Eigen::MatrixXd> factor_;
+};
 
 // The point low <= x <= high with the given sum that differs from the wanted one by a common shift, as far as the
 // bounds let it; the nearest one where no point has that sum.

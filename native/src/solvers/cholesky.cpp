@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lsgp/errors.hpp"
+#include "solvers/checkpoint.hpp"
 #include "solvers/dense_kernels.hpp"
 #include "solvers/elimination.hpp"
 
@@ -45,7 +46,7 @@ struct Cholesky<Scalar>::Factor {
             plan.retained_rows[i], nullptr};
   }
 
-  void factorize(const Eigen::SparseMatrix<Scalar>& lower, const FactorHook& hook);
+  void factorize(const Eigen::SparseMatrix<Scalar>& lower);
   void fill(const Eigen::SparseMatrix<Scalar>& lower, int front, const std::vector<int>& local);
   void start_schur(const Eigen::SparseMatrix<Scalar>& lower);
 
@@ -85,8 +86,7 @@ void Cholesky<Scalar>::Factor::fill(const Eigen::SparseMatrix<Scalar>& lower, in
 }
 
 template <typename Scalar>
-void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lower, const FactorHook& hook) {
-  constexpr double operations_between_calls = 5e7;
+void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lower) {
   const DenseKernels<Scalar>& kernels = dense_kernels<Scalar>();
   const int fronts = plan.front_count();
   ++count_of_this_thread().factorizations;
@@ -96,7 +96,6 @@ void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lowe
   std::vector<Scalar> outer;
   std::vector<std::size_t> update_end;  // of the updates on the stack
   std::vector<int> local(size()), waiting;
-  double operations = 0, called_at = 0;
   for (int i = 0; i < fronts; ++i) {
     Front<Scalar> front = this->front(i);
     const int first = plan.first[i], rows = front.columns + front.below, free = front.below - front.retained;
@@ -137,11 +136,7 @@ void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lowe
       update_end.push_back(base + update_size);
       waiting.push_back(i);
     }
-    operations += static_cast<double>(front.columns) * rows * rows;
-    if (hook && operations - called_at > operations_between_calls) {
-      called_at = operations;
-      hook(operations / plan.operations);
-    }
+    checkpoint(static_cast<double>(front.columns) * rows * rows);
   }
   for (Eigen::Index column = 1; column < schur.cols(); ++column) {
     schur.col(column).head(column) = schur.row(column).head(column).adjoint();
@@ -154,8 +149,11 @@ void Cholesky<Scalar>::Factor::eliminate(int width, Scalar* x) const {
   std::vector<Scalar> others;
   for (int i = 0; i < plan.front_count(); ++i) {
     const Front<Scalar> front = this->front(i);
+    Scalar* own = x + static_cast<std::size_t>(plan.first[i]) * width;
+    // Impulses reach the fronts above them alone.
+    if (std::all_of(own, own + front.columns * width, [](const Scalar& value) { return value == Scalar(0); })) continue;
     others.resize(std::max(others.size(), static_cast<std::size_t>(front.below) * width));
-    kernels.substitute_forward(front, width, x + static_cast<std::size_t>(plan.first[i]) * width, others.data());
+    kernels.substitute_forward(front, width, own, others.data());
     const int* below = rows(i);
     for (int r = 0; r < front.below; ++r) {
       Scalar* to = x + static_cast<std::size_t>(below[r]) * width;
@@ -182,17 +180,17 @@ void Cholesky<Scalar>::Factor::substitute(int width, Scalar* x) const {
 }
 
 template <typename Scalar>
-Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retained, const FactorHook& hook)
+Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retained)
     : factor_(std::make_unique<Factor>()) {
   const int size = static_cast<int>(lower.rows());
   factor_->adjacency = adjacency_of_lower(size, lower.outerIndexPtr(), lower.innerIndexPtr());
   factor_->plan = order_elimination(factor_->adjacency, retained);
-  refactor(lower, hook);
+  refactor(lower);
 }
 
 template <typename Scalar>
-void Cholesky<Scalar>::refactor(const Eigen::SparseMatrix<Scalar>& lower, const FactorHook& hook) {
-  factor_->factorize(lower, hook);
+void Cholesky<Scalar>::refactor(const Eigen::SparseMatrix<Scalar>& lower) {
+  factor_->factorize(lower);
 }
 
 template <typename Scalar>
@@ -248,6 +246,7 @@ void Cholesky<Scalar>::eliminate(Rows& right_sides) const {
 template <typename Scalar>
 void Cholesky<Scalar>::substitute(Rows& half_solved, Eigen::Index sides) const {
   count_of_this_thread().back_substitutions += static_cast<int>(sides);
+  checkpoint(2.0 * static_cast<double>(factor_->panels.size() * half_solved.cols()));
   factor_->substitute(static_cast<int>(half_solved.cols()), half_solved.data());
 }
 

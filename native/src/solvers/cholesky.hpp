@@ -5,15 +5,11 @@
 
 #include <Eigen/SparseCore>
 #include <complex>
-#include <functional>
 #include <memory>
 
 #include "lsgp/result.hpp"
 
 namespace lsgp {
-
-// Called now and then while a matrix is factored, with the share that is done; may throw.
-using FactorHook = std::function<void(double)>;
 
 // Counts what this thread does with sparse matrices while it lives, but for what another counter inside it counts.
 class LinearAlgebraCounter {
@@ -39,9 +35,9 @@ class Cholesky {
   // lower: the lower triangle with its diagonal.  retained: that many of the last rows are not eliminated; what the
   // elimination of the others makes of them is their Schur complement.
   // Throws SOLVER_FAILED where the eliminated part is not positive definite.
-  explicit Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retained = 0, const FactorHook& hook = {});
+  explicit Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retained = 0);
   // Factors another matrix whose entries are in the same places; a part of the work is saved.
-  void refactor(const Eigen::SparseMatrix<Scalar>& lower, const FactorHook& hook = {});
+  void refactor(const Eigen::SparseMatrix<Scalar>& lower);
   ~Cholesky();
   Cholesky(Cholesky&&) noexcept;
 

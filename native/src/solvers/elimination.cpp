@@ -242,7 +242,6 @@ class Ordering {
       out_.stack_size = std::max(out_.stack_size, in_use + update);
       in_use += update - held[front];
       if (out_.parent[front] != -1) held[out_.parent[front]] += update;
-      out_.operations += static_cast<double>(columns) * (columns + below) * (columns + below);
     }
   }
 
