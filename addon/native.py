@@ -10,19 +10,21 @@ import sys
 from importlib import import_module, metadata
 from types import ModuleType
 
+NATIVE_FILES = (".so", ".dylib", ".pyd")
 
-def _require_whole_native_module() -> None:
-    """Raise ImportError where the native module is shorter or longer than its wheel says.
+
+def _require_whole_native_files() -> None:
+    """Raise ImportError where a native file is missing, or shorter or longer than its wheel says.
 
     The operating system crashes Blender, instead of failing, when it loads a library of which a part is missing.
     """
     for file in metadata.files("lsgp") or ():
-        if file.name.startswith("_lsgp.") and file.size not in (None, file.locate().stat().st_size):
+        if file.suffix in NATIVE_FILES and file.size not in (None, file.locate().stat().st_size):
             raise ImportError(f"{file} is damaged: {file.locate().stat().st_size} of {file.size} bytes")
 
 
 try:
-    _require_whole_native_module()
+    _require_whole_native_files()
     import lsgp
 except (ImportError, OSError) as error:
     lsgp = None

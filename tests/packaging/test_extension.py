@@ -109,8 +109,9 @@ def test_wheel_brings_the_native_library_and_no_numpy(archive, wheel, tmp_path):
     archive.extract(f"wheels/{wheel.name}", tmp_path)
     with zipfile.ZipFile(tmp_path / "wheels" / wheel.name) as opened:
         packages = {name.split("/")[0] for name in opened.namelist()}
-        native = [name for name in opened.namelist() if name.startswith("lsgp/_lsgp.") and not name.endswith(".pyi")]
-    assert len(native) == 1
+        native = [name for name in opened.namelist() if name.endswith((".so", ".dylib", ".pyd"))]
+    module, library = sorted(native)
+    assert module.startswith("lsgp/_lsgp.") and library.startswith("lsgp/liblsgp.")
     assert not any("numpy" in package for package in packages)
 
 
@@ -212,28 +213,28 @@ def register_staged(python: str, *folders: Path) -> dict[str, list[str]]:
     return lines
 
 
-def damaged_library(wheel: Path, folder: Path, keep: float) -> None:
-    """Unpack the wheel and keep only this share of its native module; 0 removes the file."""
+def damaged_library(wheel: Path, folder: Path, name: str, keep: float) -> None:
+    """Unpack the wheel and keep only this share of its module "_lsgp" or its library "liblsgp"; 0 removes the file."""
     with zipfile.ZipFile(wheel) as opened:
         opened.extractall(folder)
-    (native,) = (path for path in (folder / "lsgp").glob("_lsgp.*") if path.suffix != ".pyi")
+    (native,) = (path for path in (folder / "lsgp").glob(f"{name}.*") if path.suffix != ".pyi")
     content = native.read_bytes()
     native.unlink()
     if keep:
         native.write_bytes(content[: int(keep * len(content))])
 
 
-@pytest.mark.parametrize("damage", ["no wheel", "no native module", "truncated native module"])
+@pytest.mark.parametrize("damage", [None, ("_lsgp", 0.0), ("_lsgp", 0.5), ("liblsgp", 0.0), ("liblsgp", 0.5)], ids=str)
 def test_extension_registers_without_its_library_and_says_so_in_one_sentence(
     damage, copy_of_staged, wheel, bpy_python, tmp_path
 ):
     library = tmp_path / "library"
     library.mkdir()
-    if damage == "no wheel":
+    if damage is None:
         # Hides an lsgp that this Python may have installed.
         (library / "lsgp.py").write_text("raise ModuleNotFoundError(\"No module named 'lsgp'\")\n")
     else:
-        damaged_library(wheel, library, keep=0.0 if damage == "no native module" else 0.5)
+        damaged_library(wheel, library, *damage)
     said = register_staged(bpy_python, copy_of_staged.parent, library)
     (sentence,) = said["STATE"]
     assert sentence.startswith("Cone Unwrap cannot load its computing library; install the extension built for Python")
