@@ -25,7 +25,7 @@ from xml.etree import ElementTree
 
 ROOT = Path(__file__).resolve().parents[1]
 REAL_BLENDER = ROOT.parent / "shared" / "tools" / "real-blender"
-TEST_SECONDS = 600
+TEST_SECONDS = 900
 
 
 @dataclass(frozen=True)

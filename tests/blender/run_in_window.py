@@ -26,7 +26,7 @@ sys.path.append(str(Path(__file__).parent))
 from run_in_blender import EXTENSION, install, require_bundled_library
 from windows import PICTURES, area, region, take_picture, window
 
-TEST_SECONDS = 60
+TEST_SECONDS = 150
 
 
 def in_view() -> AbstractContextManager:

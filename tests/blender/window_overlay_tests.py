@@ -8,7 +8,7 @@ import bpy
 import gpu
 import numpy as np
 from scenes import add_ball, add_cone_cube, edit
-from windows import EXTENSION, area, region
+from windows import EXTENSION, area, region, take_picture
 
 reports = import_module(f"{EXTENSION}.reports")
 cache = import_module(f"{EXTENSION}.overlay.cache")
@@ -139,6 +139,7 @@ def test_flipped_and_overlapping_faces_are_drawn():
     for name in ("flipped", "overlapping"):
         reports.store(cube.data, replace(report, **{name: front}))
         seen[name] = yield from pixels()
+        take_picture(f"{name}_faces")
         setattr(chosen(), name, False)
         without = yield from pixels()
         setattr(chosen(), name, True)
@@ -159,6 +160,7 @@ def test_distortion_is_drawn_in_its_colours_with_a_scale():
     for measure in ("CONFORMAL", "AREA", "STRETCH"):
         chosen().distortion = measure
         pictures[measure] = yield from pixels()
+        take_picture(f"distortion_{measure.lower()}")
         assert (np.abs(pictures[measure] - plain).max(axis=2) > 0.1).mean() > 0.05
     assert (np.abs(pictures["CONFORMAL"] - pictures["AREA"]).max(axis=2) > 0.05).mean() > 0.03
     bpy.ops.uv.cone_measure(clear=True)
