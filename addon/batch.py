@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from . import gathering, mesh_write, native, reporting, unwrapping
+from . import gathering, mesh_write, native, reporting, unwrapping, welding
 from .angles import ConeAngles, Kind
 from .identifiers import CONE_GROUP
 from .operators.common import require_region
@@ -115,8 +115,9 @@ def _read_blend(path: str) -> None:
 
 def _read_gltf(path: str) -> None:
     _empty()
-    # Files for display split vertices where normals or UVs do; a surface is not open there.
-    bpy.ops.import_scene.gltf(filepath=path, merge_vertices=True)
+    bpy.ops.import_scene.gltf(filepath=path)
+    for mesh in bpy.data.meshes:
+        welding.weld(mesh)
 
 
 def _read_fbx(path: str) -> None:

@@ -86,10 +86,15 @@ def test_files_of_all_kinds(library, tmp_path):
     assert all(UvMap(obj).sister_difference() < 1e-5 for obj in (marked, bare))
     assert not bare.vertex_groups
 
+    # Its facets, which glTF has apart, are one surface, and look as before.
+    assert lines["sphere.glb"]["islands"] == 1
     clear()
-    bpy.ops.import_scene.gltf(filepath=str(out / "sphere.glb"), merge_vertices=True)
-    (sphere,) = (obj for obj in bpy.data.objects if obj.type == "MESH")
-    assert np.ptp([loop.vector for loop in sphere.data.uv_layers.active.uv], axis=0).max() > 0.5
+    bpy.ops.import_scene.gltf(filepath=str(out / "sphere.glb"))
+    (sphere,) = (obj.data for obj in bpy.data.objects if obj.type == "MESH")
+    assert np.ptp([loop.vector for loop in sphere.uv_layers.active.uv], axis=0).max() > 0.5
+    assert len(sphere.polygons) == lines["sphere.glb"]["triangles"]
+    for face in sphere.polygons:
+        assert all(sphere.corner_normals[loop].vector.dot(face.normal) > 0.999 for loop in face.loop_indices)
 
 
 def test_options_that_name_files_of_one_mesh_are_refused(library, tmp_path):
