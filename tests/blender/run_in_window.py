@@ -82,6 +82,8 @@ def main() -> None:
     os.environ["CONE_UNWRAP_EXTENSION"] = EXTENSION
     package, report, *only = sys.argv[sys.argv.index("--") + 1 :]
     bpy.context.preferences.view.show_splash = False
+    # It would draw everything eight times.
+    bpy.context.preferences.system.viewport_aa = "OFF"
     install(Path(package))
     require_bundled_library()
     tests = {}
