@@ -2,7 +2,6 @@
 #include "cut_factor.hpp"
 
 #include <cmath>
-#include <utility>
 
 #include "energies/quadratic_forms.hpp"
 
@@ -21,8 +20,8 @@ bool CutFactor::pays(const HalfedgeMesh& mesh, const CutGraph& cut_graph) {
   return copies <= worth_while * std::sqrt(static_cast<double>(mesh.vertex_count()));
 }
 
-CutFactor::CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, CutGraph cut_graph)
-    : cut_graph_(std::move(cut_graph)), cut_mesh_(cut_open(mesh, cut_graph_)) {
+CutFactor::CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph)
+    : cut_graph_(cut_graph), cut_mesh_(cut_open(mesh, cut_graph_)) {
   const std::vector<char> on_cut = on_cuts(mesh, cut_graph_);
   const Index copies = cut_mesh_.copy_count();
   row_of_copy_.resize(copies);

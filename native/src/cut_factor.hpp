@@ -19,7 +19,8 @@ namespace lsgp {
 
 class CutFactor {
  public:
-  CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, CutGraph cut_graph);
+  // cut_graph: has to outlive it.
+  CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph);
 
   // Whether cuts and borders are short enough for the dense problems to be worth while.
   static bool pays(const HalfedgeMesh& mesh, const CutGraph& cut_graph);
@@ -44,7 +45,7 @@ class CutFactor {
   void substitute(Rows& half_solved, Eigen::Index sides) const { factor_->substitute(half_solved, sides); }
 
  private:
-  CutGraph cut_graph_;
+  const CutGraph& cut_graph_;
   CutMesh cut_mesh_;
   std::vector<Index> retained_, row_of_copy_;
   std::optional<Cholesky<double>> factor_;

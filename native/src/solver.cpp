@@ -23,6 +23,8 @@ bool same_cones(const ComponentCones& a, const ComponentCones& b) {
 
 class Pipeline {
  public:
+  // keeps_systems: from one run to the next, rather than until each component is mapped.
+  explicit Pipeline(bool keeps_systems) : keeps_systems_(keeps_systems) {}
   Result run(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
              const Progress& progress);
 
@@ -41,6 +43,7 @@ class Pipeline {
   const Geometry& geometry_of(std::size_t i, std::vector<Finding>& findings);
   ComponentSystem& system_of(std::size_t i, const Options& options);
 
+  const bool keeps_systems_;
   Work work_;
   std::vector<std::unique_ptr<Kept>> kept_;  // (components) systems refer to the geometry beside them
 };
@@ -109,6 +112,7 @@ Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& 
       geometry_of(i, result.warnings);
     }
     maps[i] = map_component(system_of(i, options), task, options, findings, monitor);
+    if (!keeps_systems_) kept_[i]->system.reset();
     result.repair.flipped_before += maps[i]->repair.flipped_before;
     result.repair.wrong_angle_sums_before += maps[i]->repair.wrong_angle_sums_before;
     result.repair.iterations += maps[i]->repair.iterations;
@@ -141,7 +145,7 @@ Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& 
 }  // namespace
 
 struct Solver::Kept {
-  Pipeline pipeline;
+  Pipeline pipeline{true};
 };
 
 Solver::Solver(Surface surface) : surface_(std::move(surface)), kept_(std::make_unique<Kept>()) {}
@@ -154,7 +158,7 @@ Result Solver::parameterize(const Cones& cones, const Options& options, const Pi
 
 Result parameterize(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
                     const Progress& progress) {
-  return Pipeline().run(surface, cones, options, pins, progress);
+  return Pipeline(false).run(surface, cones, options, pins, progress);
 }
 
 }  // namespace lsgp

@@ -9,6 +9,7 @@
 #include "solvers/checkpoint.hpp"
 #include "solvers/dense_kernels.hpp"
 #include "solvers/elimination.hpp"
+#include "solvers/huge_pages.hpp"
 
 namespace lsgp {
 
@@ -92,7 +93,9 @@ void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lowe
   ++count_of_this_thread().factorizations;
   start_schur(lower);
   panels.resize(static_cast<Eigen::Index>(plan.panel_begin.back()));
+  prefer_huge_pages(panels.data(), panels.size() * sizeof(Scalar));
   Vector stack(static_cast<Eigen::Index>(plan.stack_size));
+  prefer_huge_pages(stack.data(), stack.size() * sizeof(Scalar));
   std::vector<Scalar> outer;
   std::vector<std::size_t> update_end;  // of the updates on the stack
   std::vector<int> local(size()), waiting;
