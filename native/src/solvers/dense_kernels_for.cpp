@@ -109,87 +109,102 @@ bool eliminate(const Front<Scalar>& front, Scalar* outer) {
   return true;
 }
 
-// Columns are taken several at a time, so that what they act on is read and written once for all of them.
-constexpr int columns_at_once = 4;
+// One number of each right side.
+template <typename Scalar, int width>
+using Sides = Eigen::Array<Scalar, width, 1>;
+template <typename Scalar, int width>
+inline Eigen::Map<Sides<Scalar, width>> sides(Scalar* first, int row) {
+  return Eigen::Map<Sides<Scalar, width>>(first + static_cast<long>(row) * width);
+}
+template <typename Scalar, int width>
+inline Eigen::Map<const Sides<Scalar, width>> sides(const Scalar* first, int row) {
+  return Eigen::Map<const Sides<Scalar, width>>(first + static_cast<long>(row) * width);
+}
 
-template <typename Scalar, int width, int group>
-void forward_group(const Front<Scalar>& front, int first, Scalar* __restrict own, Scalar* __restrict others) {
+// Columns are taken four at a time, so that what they act on is read and written once for all of them; in variables of
+// their own, so that they stay in registers.
+template <typename Scalar, int width>
+void forward_four(const Front<Scalar>& front, int j, Scalar* own, Scalar* others) {
   const long rows = front.columns + front.below;
-  const Scalar* __restrict column[group];
-  Scalar x[group][width];
-  for (int g = 0; g < group; ++g) {
-    const int j = first + g;
-    column[g] = front.panel + j * rows;
-    const double inverse = 1 / real_part(column[g][j]);
-    for (int w = 0; w < width; ++w) {
-      Scalar value = own[j * width + w];
-      for (int k = 0; k < g; ++k) value -= column[k][j] * x[k][w];
-      own[j * width + w] = x[g][w] = value * inverse;
-    }
+  const Scalar *a = front.panel + j * rows, *b = a + rows, *c = b + rows, *d = c + rows;
+  using Values = Sides<Scalar, width>;
+  const Values x = sides<Scalar, width>(own, j) * (1 / real_part(a[j]));
+  const Values y = (sides<Scalar, width>(own, j + 1) - a[j + 1] * x) * (1 / real_part(b[j + 1]));
+  const Values z = (sides<Scalar, width>(own, j + 2) - a[j + 2] * x - b[j + 2] * y) * (1 / real_part(c[j + 2]));
+  const Values w =
+      (sides<Scalar, width>(own, j + 3) - a[j + 3] * x - b[j + 3] * y - c[j + 3] * z) * (1 / real_part(d[j + 3]));
+  sides<Scalar, width>(own, j) = x;
+  sides<Scalar, width>(own, j + 1) = y;
+  sides<Scalar, width>(own, j + 2) = z;
+  sides<Scalar, width>(own, j + 3) = w;
+  for (int i = j + 4; i < front.columns; ++i) {
+    sides<Scalar, width>(own, i) -= a[i] * x + b[i] * y + c[i] * z + d[i] * w;
   }
-  for (int i = first + group; i < front.columns; ++i) {
-    for (int g = 0; g < group; ++g) {
-      for (int w = 0; w < width; ++w) own[i * width + w] -= column[g][i] * x[g][w];
-    }
-  }
-  for (int g = 0; g < group; ++g) column[g] += front.columns;
+  a += front.columns;
+  b += front.columns;
+  c += front.columns;
+  d += front.columns;
   for (int i = 0; i < front.below; ++i) {
-    Scalar sum[width];
-    for (int w = 0; w < width; ++w) sum[w] = others[i * width + w];
-    for (int g = 0; g < group; ++g) {
-      for (int w = 0; w < width; ++w) sum[w] += column[g][i] * x[g][w];
-    }
-    for (int w = 0; w < width; ++w) others[i * width + w] = sum[w];
+    sides<Scalar, width>(others, i) += a[i] * x + b[i] * y + c[i] * z + d[i] * w;
   }
+}
+
+template <typename Scalar, int width>
+void forward_one(const Front<Scalar>& front, int j, Scalar* own, Scalar* others) {
+  const Scalar* a = front.panel + static_cast<long>(j) * (front.columns + front.below);
+  const Sides<Scalar, width> x = sides<Scalar, width>(own, j) * (1 / real_part(a[j]));
+  sides<Scalar, width>(own, j) = x;
+  for (int i = j + 1; i < front.columns; ++i) sides<Scalar, width>(own, i) -= a[i] * x;
+  for (int i = 0; i < front.below; ++i) sides<Scalar, width>(others, i) += a[front.columns + i] * x;
 }
 
 template <typename Scalar, int width>
 void substitute_forward_rows(const Front<Scalar>& front, Scalar* own, Scalar* others) {
   for (int i = 0; i < front.below * width; ++i) others[i] = 0;
   int j = 0;
-  for (; j + columns_at_once <= front.columns; j += columns_at_once) {
-    forward_group<Scalar, width, columns_at_once>(front, j, own, others);
-  }
-  for (; j < front.columns; ++j) forward_group<Scalar, width, 1>(front, j, own, others);
+  for (; j + 4 <= front.columns; j += 4) forward_four<Scalar, width>(front, j, own, others);
+  for (; j < front.columns; ++j) forward_one<Scalar, width>(front, j, own, others);
 }
 
-template <typename Scalar, int width, int group>
-void backward_group(const Front<Scalar>& front, int first, Scalar* __restrict own, const Scalar* __restrict others) {
+template <typename Scalar, int width>
+void backward_four(const Front<Scalar>& front, int j, Scalar* own, const Scalar* others) {
   const long rows = front.columns + front.below;
-  const Scalar* __restrict column[group];
-  Scalar x[group][width];
-  for (int g = 0; g < group; ++g) {
-    column[g] = front.panel + (first + g) * rows;
-    for (int w = 0; w < width; ++w) x[g][w] = own[(first + g) * width + w];
-  }
-  for (int i = first + group; i < front.columns; ++i) {
-    for (int g = 0; g < group; ++g) {
-      const Scalar factor = conjugate(column[g][i]);
-      for (int w = 0; w < width; ++w) x[g][w] -= factor * own[i * width + w];
-    }
-  }
-  for (int i = 0; i < front.below; ++i) {
-    for (int g = 0; g < group; ++g) {
-      const Scalar factor = conjugate(column[g][front.columns + i]);
-      for (int w = 0; w < width; ++w) x[g][w] -= factor * others[i * width + w];
-    }
-  }
-  for (int g = group; g-- > 0;) {
-    const double inverse = 1 / real_part(column[g][first + g]);
-    for (int w = 0; w < width; ++w) {
-      for (int k = g + 1; k < group; ++k) x[g][w] -= conjugate(column[g][first + k]) * x[k][w];
-      own[(first + g) * width + w] = x[g][w] *= inverse;
-    }
-  }
+  const Scalar *a = front.panel + j * rows, *b = a + rows, *c = b + rows, *d = c + rows;
+  using Values = Sides<Scalar, width>;
+  Values x = sides<Scalar, width>(own, j), y = sides<Scalar, width>(own, j + 1), z = sides<Scalar, width>(own, j + 2),
+         w = sides<Scalar, width>(own, j + 3);
+  const auto subtract = [&](long row, const Values& known) {
+    x -= conjugate(a[row]) * known;
+    y -= conjugate(b[row]) * known;
+    z -= conjugate(c[row]) * known;
+    w -= conjugate(d[row]) * known;
+  };
+  for (int i = j + 4; i < front.columns; ++i) subtract(i, sides<Scalar, width>(own, i));
+  for (int i = 0; i < front.below; ++i) subtract(front.columns + i, sides<Scalar, width>(others, i));
+  w *= 1 / real_part(d[j + 3]);
+  z = (z - conjugate(c[j + 3]) * w) * (1 / real_part(c[j + 2]));
+  y = (y - conjugate(b[j + 3]) * w - conjugate(b[j + 2]) * z) * (1 / real_part(b[j + 1]));
+  x = (x - conjugate(a[j + 3]) * w - conjugate(a[j + 2]) * z - conjugate(a[j + 1]) * y) * (1 / real_part(a[j]));
+  sides<Scalar, width>(own, j) = x;
+  sides<Scalar, width>(own, j + 1) = y;
+  sides<Scalar, width>(own, j + 2) = z;
+  sides<Scalar, width>(own, j + 3) = w;
+}
+
+template <typename Scalar, int width>
+void backward_one(const Front<Scalar>& front, int j, Scalar* own, const Scalar* others) {
+  const Scalar* a = front.panel + static_cast<long>(j) * (front.columns + front.below);
+  Sides<Scalar, width> x = sides<Scalar, width>(own, j);
+  for (int i = j + 1; i < front.columns; ++i) x -= conjugate(a[i]) * sides<Scalar, width>(own, i);
+  for (int i = 0; i < front.below; ++i) x -= conjugate(a[front.columns + i]) * sides<Scalar, width>(others, i);
+  sides<Scalar, width>(own, j) = x * (1 / real_part(a[j]));
 }
 
 template <typename Scalar, int width>
 void substitute_backward_rows(const Front<Scalar>& front, Scalar* own, const Scalar* others) {
   int j = front.columns;
-  for (; j % columns_at_once != 0; --j) backward_group<Scalar, width, 1>(front, j - 1, own, others);
-  for (; j > 0; j -= columns_at_once) {
-    backward_group<Scalar, width, columns_at_once>(front, j - columns_at_once, own, others);
-  }
+  for (; j % 4 != 0; --j) backward_one<Scalar, width>(front, j - 1, own, others);
+  for (; j > 0; j -= 4) backward_four<Scalar, width>(front, j - 4, own, others);
 }
 
 template <typename Scalar>
