@@ -17,8 +17,8 @@ template <typename Scalar>
 using Block = Eigen::Map<Dense<Scalar>, 0, Eigen::OuterStride<>>;
 
 // Up to here plain loops are faster than kernels that pack their operands.
-constexpr int narrow_columns = 8;
-constexpr int short_below = 24;
+constexpr int narrow_columns = 16;
+constexpr int short_below = 48;
 
 inline double conjugate(double x) { return x; }
 inline std::complex<double> conjugate(const std::complex<double>& x) { return {x.real(), -x.imag()}; }
