@@ -65,9 +65,6 @@ class LogScale {
   Variance variance() const;
 
  private:
-  // shares: (n, 2) as of e^{2y} and e^{-2y}; means: theirs of the Green's functions, (k, 2).
-  Eigen::MatrixXd least_distortion_hessian(const Eigen::MatrixXd& shares, const Eigen::MatrixXd& means) const;
-
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
   BorderConditions border_;

@@ -20,20 +20,13 @@ constexpr double too_small_to_see = 1e-11;  // decreases that rounding of the ob
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double ridge = 1e-13;  // relative: cones so close that their Green's functions nearly agree
 
-// log of the weighted mean of e^x, and the weights w e^x / mean that its derivative needs.
-template <typename Values>
-double log_mean_exp(const Eigen::VectorXd& weight, const Values& x, Eigen::Ref<Eigen::VectorXd> shares) {
+// log of the weighted mean of e^x, and the shares w e^x / mean that its derivative needs.
+double log_mean_exp(const Eigen::VectorXd& weight, const Eigen::VectorXd& x, Eigen::Ref<Eigen::VectorXd> shares) {
   const double largest = x.maxCoeff();
   shares = weight.array() * (x.array() - largest).exp();
   const double mean = shares.sum();
   shares /= mean;
   return largest + std::log(mean);
-}
-
-template <typename Values>
-double log_mean_exp(const Eigen::VectorXd& weight, const Values& x) {
-  const double largest = x.maxCoeff();
-  return largest + std::log(weight.dot((x.array() - largest).exp().matrix()));
 }
 
 // columns^T diag(weight) columns, lower triangle; some rows at a time, which stay in the cache.
@@ -49,6 +42,40 @@ Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& columns, const Eigen::Vecto
     checkpoint(static_cast<double>(count * columns.cols() * columns.cols()));
   }
   return sum;
+}
+
+// What the prescription minimises, log mean e^{2y} + log mean e^{-2y}, as a function of the cone curvatures.
+class Stretch {
+ public:
+  Stretch(const Eigen::VectorXd& weight, const Eigen::MatrixXd& green)
+      : weight_(weight), green_(green), shares_(weight.size(), 2) {}
+
+  // All that follows is of this log scale.
+  double evaluate(const Eigen::VectorXd& y) {
+    return log_mean_exp(weight_, 2 * y, shares_.col(0)) + log_mean_exp(weight_, -2 * y, shares_.col(1));
+  }
+  Eigen::VectorXd gradient() {
+    means_ = green_.transpose() * shares_;
+    return 2 * (means_.col(0) - means_.col(1));
+  }
+  Eigen::MatrixXd hessian() const {  // after the gradient
+    Eigen::MatrixXd out = 4 * weighted_gram(green_, shares_.rowwise().sum());
+    out.selfadjointView<Eigen::Lower>().rankUpdate(means_, -4);
+    out.triangularView<Eigen::StrictlyUpper>() = out.transpose();
+    out.diagonal().array() += ridge * out.diagonal().mean();
+    return out;
+  }
+
+ private:
+  const Eigen::VectorXd& weight_;
+  const Eigen::MatrixXd& green_;
+  Eigen::MatrixXd shares_;  // (n, 2) of the area, weighted by e^{2y} and by e^{-2y}
+  Eigen::MatrixXd means_;   // (k, 2) of the Green's functions
+};
+
+// How many more steps that decrease the objective by so much, the one before by that, it takes to the minimum.
+double steps_left(double decrease, double before) {
+  return decrease < before ? std::log(newton_decrement / decrease) / std::log(decrease / before) : infinity;
 }
 
 // The vertex that fixes the constant: a cone, whose Green's function is 0 then, or another one on the cuts.
@@ -124,42 +151,33 @@ Eigen::VectorXd LogScale::harmonic_curvature() const {
 // With many cones a Hessian costs as much as dozens of gradients: it is kept while the steps left with it are fewer.
 Eigen::VectorXd LogScale::least_distortion_curvature(const Eigen::VectorXd& low, const Eigen::VectorXd& high,
                                                      Eigen::VectorXd start) const {
+  const double gradients_of_hessian = 2 + cone_count() / 20.0;
   Eigen::VectorXd kappa = std::move(start);
   Eigen::VectorXd y = without_cones_ + green_ * kappa;
-  Eigen::MatrixXd shares(y.size(), 2);  // of the area, weighted by e^{2y} and by e^{-2y}
-  const auto objective = [&](const Eigen::VectorXd& at) {
-    return log_mean_exp(weight_, 2 * at, shares.col(0)) + log_mean_exp(weight_, -2 * at, shares.col(1));
-  };
-  const double gradients_of_hessian = 2 + cone_count() / 20.0;
-  const auto steps_left = [](double decrease, double before) {
-    return decrease < before ? std::log(newton_decrement / decrease) / std::log(decrease / before) : infinity;
-  };
+  Stretch stretch(weight_, green_);
   BoxProgram program(border_.balanced);
-  double value = objective(y), before = infinity;
-  bool is_fresh = false;
+  double value = stretch.evaluate(y), before = infinity;
   for (int step = 0; step < most_newton_steps; ++step) {
-    const Eigen::MatrixXd means = green_.transpose() * shares;
-    const Eigen::VectorXd gradient = 2 * (means.col(0) - means.col(1));
+    const Eigen::VectorXd gradient = stretch.gradient();
     Eigen::VectorXd direction;
-    double decrease = 0;
+    double decrease = infinity;
     const auto minimize = [&] {
-      if (is_fresh) program.set_hessian(least_distortion_hessian(shares, means));
       direction = program.minimize(gradient, low - kappa, high - kappa);
       decrease = -gradient.dot(direction);
     };
-    is_fresh = step == 0;
-    minimize();
-    if (!is_fresh && decrease > newton_decrement && steps_left(decrease, before) > gradients_of_hessian) {
-      is_fresh = true;
+    if (step > 0) minimize();
+    const bool is_fresh =
+        step == 0 || (decrease > newton_decrement && steps_left(decrease, before) > gradients_of_hessian);
+    if (is_fresh) {
+      program.set_hessian(stretch.hessian());
       minimize();
     }
-    if (!(decrease > newton_decrement)) break;
     const bool is_visible = decrease > too_small_to_see;
-    if (!is_visible && is_fresh && !(decrease < before)) break;
+    if (!(decrease > newton_decrement) || (is_fresh && !is_visible && !(decrease < before))) break;
     const Eigen::VectorXd change = green_ * direction;
     double length = 1, tried = value;
     for (; length > 1e-6; length /= 2) {
-      tried = objective(y + length * change);
+      tried = stretch.evaluate(y + length * change);
       if (!is_visible || tried <= value - 1e-4 * length * decrease) break;
     }
     if (is_visible && !(tried < value)) break;
@@ -169,14 +187,6 @@ Eigen::VectorXd LogScale::least_distortion_curvature(const Eigen::VectorXd& low,
     before = decrease;
   }
   return kappa;
-}
-
-Eigen::MatrixXd LogScale::least_distortion_hessian(const Eigen::MatrixXd& shares, const Eigen::MatrixXd& means) const {
-  Eigen::MatrixXd hessian = 4 * weighted_gram(green_, shares.rowwise().sum());
-  hessian.selfadjointView<Eigen::Lower>().rankUpdate(means, -4);
-  hessian.triangularView<Eigen::StrictlyUpper>() = hessian.transpose();
-  hessian.diagonal().array() += ridge * hessian.diagonal().mean();
-  return hessian;
 }
 
 double LogScale::predicted_l2(const Eigen::VectorXd& log_scale) const {
@@ -191,7 +201,8 @@ double LogScale::predicted_l2(const Eigen::VectorXd& log_scale) const {
 }
 
 double LogScale::lumped_l2(const Eigen::VectorXd& log_scale) const {
-  return std::exp((log_mean_exp(weight_, 2 * log_scale) + log_mean_exp(weight_, -2 * log_scale)) / 2);
+  Eigen::VectorXd shares(log_scale.size());
+  return std::exp((log_mean_exp(weight_, 2 * log_scale, shares) + log_mean_exp(weight_, -2 * log_scale, shares)) / 2);
 }
 
 LogScale::Variance LogScale::variance() const {
