@@ -30,16 +30,16 @@ void BoxProgram::factorize(std::vector<int> free) {
     for (int i = 0; i < count; ++i) system(i, j) = hessian_(free[i], free[j]);
     if (keep_sum_) system(j, count) = system(count, j) = scale;
   }
-  factor_ = Eigen::PartialPivLU<Eigen::MatrixXd>(std::move(system));
+  factor_.emplace(std::move(system));
   free_ = std::move(free);
 }
 
 BoxProgram::Step BoxProgram::step_to_minimum(const Eigen::VectorXd& slope) {
   factorize(free_variables());
   const int count = static_cast<int>(free_.size());
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(factor_.rows());
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(factor_->rows());
   for (int i = 0; i < count; ++i) right[i] = -slope[free_[i]];
-  const Eigen::VectorXd solution = factor_.solve(right);
+  const Eigen::VectorXd solution = factor_->solve(right);
   Step step{Eigen::VectorXd::Zero(slope.size()), keep_sum_ ? solution[count] * hessian_.diagonal().mean() : 0.0};
   for (int i = 0; i < count; ++i) step.direction[free_[i]] = solution[i];
   return step;

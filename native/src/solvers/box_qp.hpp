@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/LU>
+#include <optional>
 #include <vector>
 
 namespace lsgp {
@@ -35,7 +36,7 @@ class BoxProgram {
   Eigen::MatrixXd hessian_;
   std::vector<Side> side_;  // (k)
   std::vector<int> free_;   // those that are factored
-  Eigen::PartialPivLU<Eigen::MatrixXd> factor_;
+  std::optional<Eigen::PartialPivLU<Eigen::MatrixXd>> factor_;
 };
 
 // The point low <= x <= high with the given sum that differs from the wanted one by a common shift, as far as the

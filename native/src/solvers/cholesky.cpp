@@ -214,11 +214,10 @@ typename Cholesky<Scalar>::Vector Cholesky<Scalar>::solve(const Vector& right_si
 template <typename Scalar>
 typename Cholesky<Scalar>::Matrix Cholesky<Scalar>::solve(const Matrix& right_sides) const {
   Matrix out(right_sides.rows(), right_sides.cols());
-  Rows x;
   for (Eigen::Index begin = 0, used; begin < out.cols(); begin += used) {
     const Eigen::Index width = width_for(out.cols() - begin);
     used = std::min(out.cols() - begin, width);
-    x = Rows::Zero(size(), width);
+    Rows x = Rows::Zero(size(), width);
     for (Eigen::Index row = 0; row < out.rows(); ++row) {
       x.row(factor_->plan.position[row]).head(used) = right_sides.row(row).segment(begin, used);
     }
