@@ -2,16 +2,17 @@
 """A trial of `lsgp batch` on 500 meshes: 460 made and decimated from the shared ones, 40 malformed from ../shared/bad.
 
 Every asset has to end with a result or a named refusal, results have to have the bytes of single runs, a run that is
-killed in the middle has to go on without doing any twice.  Then it prints what the batch costs beside the work itself:
+killed in the middle has to go on without doing any twice.  Then it prints what the batch costs beside the work itself,
+as the product of three shares:
 
-- work: CPU seconds of `lsgp unwrap` on all meshes, one after the other in one process that has started already;
-- CPU: what the batch and its workers take altogether, so that work / CPU says what is lost to starting, pictures,
-  records and to getting in each other's way;
+- work: CPU seconds of reading, unwrapping and writing all meshes, of those of what a worker does on them, which makes
+  records and draws pictures besides; in one process, in turn on each mesh;
+- assets: what workers did on assets, of all CPU seconds of the batch, which starts them and writes the journal;
 - busy: the share of the time of the run for which its workers are at work on an asset, so that what is missing is time
   in which they wait for a chunk, start, or have run out of assets.
 
-CPU share times busy share is the throughput as a share of that of ideally scaled work. Both shares are right on a
-machine that does other things too, which a wall clock alone is not.
+The product is the throughput as a share of that of ideally scaled work.  Each share compares what happens at the same
+time, so that it is right on a machine that does other things too, which a wall clock alone is not.
 
     python tools/batch_trial.py [--folder build/batch_trial] [--jobs 2] [--large]
 
@@ -42,11 +43,18 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as in workers
 import igl  # noqa: E402 - the lines above come first
 import meshes  # noqa: E402
 import numpy as np  # noqa: E402
+from lsgp.batch.assets import Asset  # noqa: E402
+from lsgp.batch.tasks import Settings, Task  # noqa: E402
+from lsgp.batch.work import unwrap_asset  # noqa: E402
 from lsgp.cli import main as lsgp  # noqa: E402
+from lsgp.errors import LsgpError  # noqa: E402
 from lsgp.mesh_files import read_mesh  # noqa: E402
 from lsgp.polygons import triangulate  # noqa: E402
+from lsgp.unwrap_file import Run, unwrap_file  # noqa: E402
+from lsgp.unwrap_options import add_unwrap_options  # noqa: E402
 
 COUNT, MALFORMED = 500, 40
+WORK, WITHOUT, WITH = "the work itself", "without pictures", "with pictures"
 DECIMATED = (
     *("bird", "camel-head-disk", "cube-768", "eight-genus2", "elephant-genus3", "fandisk", "hand-5k", "igea-16k"),
     *("julius", "kitten-genus1", "max-planck-25k", "octa-flower", "rabbit"),
@@ -71,15 +79,15 @@ def main() -> None:
     shutil.rmtree(folder / "runs", ignore_errors=True)
     (folder / "runs").mkdir()
 
-    work, singles = single_runs(library, names, folder / "runs" / "single.obj")
-    print(
-        f"{COUNT} meshes: {len(singles)} results, {COUNT - len(singles)} refused; work {work:.1f} s of CPU", flush=True
-    )
-    for label, options in (("without pictures", ["--no-pictures"]), ("with pictures", [])):
+    costs, singles = single_runs(library, names, folder / "runs" / "single")
+    print(f"{COUNT} meshes: {len(singles)} results, {COUNT - len(singles)} refused; CPU seconds:")
+    for label, seconds in costs.items():
+        print(f"  {seconds:.1f} {label}")
+    for label, options in ((WITHOUT, ["--no-pictures"]), (WITH, [])):
         out = folder / "runs" / label.replace(" ", "-")
         measured = run_batch(library, out, arguments.jobs, *options)
         require_whole(out, names, singles)
-        print(f"{label}: {measured.told(work)}", flush=True)
+        print(f"{label}: {measured.told(costs[WORK] / costs[label])}", flush=True)
     killed(library, folder / "runs" / "killed", arguments.jobs, names, singles)
     if arguments.large:
         large(folder)
@@ -150,30 +158,44 @@ def write_off(path: Path, positions: list, faces: list) -> None:
 
 @dataclass
 class Measured:
-    """seconds: of the run by the clock. cpu: of it and its workers. at_work: of workers on assets, by the clock."""
+    """seconds: of the run by the clock. cpu: of it and its workers. assets_cpu: of workers on assets. assets_seconds:
+    the same by the clock."""
 
     jobs: int
     seconds: float
     cpu: float
-    at_work: float
+    assets_cpu: float
+    assets_seconds: float
 
     def told(self, work: float) -> str:
-        efficiency, busy = work / self.cpu, self.at_work / (self.jobs * self.seconds)
+        assets, busy = self.assets_cpu / self.cpu, self.assets_seconds / (self.jobs * self.seconds)
         return (
-            f"{self.seconds:.1f} s by the clock, {self.cpu:.1f} s of CPU, {efficiency:.1%} of it work; workers busy "
-            f"{busy:.1%}; {efficiency * busy:.1%} of ideal throughput; "
+            f"{self.seconds:.1f} s by the clock, {self.cpu:.1f} s of CPU; work {work:.1%}, assets {assets:.1%}, busy "
+            f"{busy:.1%}: {work * assets * busy:.1%} of ideal throughput; "
             f"{3600 * COUNT / self.cpu:,.0f} assets a core-hour"
         )
 
 
-def single_runs(library: Path, names: list[str], output: Path) -> tuple[float, dict[str, bytes]]:
-    """CPU seconds of all single runs, and by name the bytes of those that have a result."""
-    seconds, results = 0.0, {}
-    for name in names:
-        begin = time.process_time()
+def single_runs(library: Path, names: list[str], out: Path) -> tuple[dict[str, float], dict[str, bytes]]:
+    """CPU seconds of each way to do all meshes, and by name the bytes of single runs that have a result."""
+    parser = argparse.ArgumentParser()
+    add_unwrap_options(parser)
+    options = vars(parser.parse_args([]))
+    settings = {label: Settings(options, pictures=label == WITH) for label in (WITHOUT, WITH)}
+    seconds, results = dict.fromkeys((WORK, WITHOUT, WITH), 0.0), {}
+    output = out / "single.obj"
+    out.mkdir()
+    for number, name in enumerate(names):
+        for label in np.roll(list(seconds), number):  # none is always the first on a mesh, which is slower
+            begin = time.process_time()
+            if label == WORK:
+                with contextlib.suppress(LsgpError):
+                    unwrap_file(argparse.Namespace(input=library / name, output=output, **options), Run())
+            else:
+                unwrap_asset(Task.of(Asset(name, library / name, 0), out, f"{name}.obj"), settings[label])
+            seconds[label] += time.process_time() - begin
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
             code = lsgp(["unwrap", str(library / name), "-o", str(output)])
-        seconds += time.process_time() - begin
         assert code in (0, 3)
         if code == 0:
             results[name] = output.read_bytes()
@@ -186,7 +208,9 @@ def run_batch(library: Path, out: Path, jobs: int, *options: str) -> Measured:
     assert done.returncode == 4
     seconds, after = time.perf_counter() - begin, resource.getrusage(resource.RUSAGE_CHILDREN)
     cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return Measured(jobs, seconds, cpu, sum(line["seconds"] for line in lines_of(out)))
+    lines = lines_of(out)
+    assets_cpu, assets_seconds = (sum(line[key] for line in lines) for key in ("cpu_seconds", "seconds"))
+    return Measured(jobs, seconds, cpu, assets_cpu, assets_seconds)
 
 
 def batch_command(library: Path, out: Path, jobs: int, *options: str) -> list[str]:
