@@ -28,6 +28,7 @@ NAMES = {
     "ANGLE_BASED": "Blender Angle Based",
     "MINIMUM_STRETCH": "Blender Minimum Stretch",
 }
+OWN = ("lsgp", "edit", "move")
 FLOORS = ("eigen", "cholmod")
 FROM_TRIANGLES = 12_000  # the growth is that from there on: below, what does not grow counts
 UNWARMED_TRIANGLES = 500_000
@@ -35,12 +36,12 @@ UNWARMED_TRIANGLES = 500_000
 
 @dataclass
 class Measured:
-    """seconds, peak_mb: by method, medians. stages: shares of lsgp's time. defects: of lsgp's map."""
+    """seconds, peak_mb: by method, medians. stages: by own method, shares of its time. defects: of lsgp's map."""
 
     case: Case
     seconds: dict[str, float] = field(default_factory=dict)
     peak_mb: dict[str, float] = field(default_factory=dict)
-    stages: dict[str, float] = field(default_factory=dict)
+    stages: dict[str, dict[str, float]] = field(default_factory=dict)
     defects: int = 0
 
     @property
@@ -104,9 +105,13 @@ def _medians(case: Case, runs: dict[str, list[dict[str, object]]]) -> Measured:
         out.seconds[method] = statistics.median(run["seconds"] for run in found)
         if found[-1].get("peak_mb") is not None:
             out.peak_mb[method] = found[-1]["peak_mb"]
-    own = runs.get("lsgp", [])
-    for stage in own[-1]["stages"] if own else ():
-        out.stages[stage] = statistics.median(run["stages"][stage] / sum(run["stages"].values()) for run in own)
+    for method in OWN:
+        if own := runs.get(method):
+            out.stages[method] = {
+                stage: statistics.median(run["stages"][stage] / sum(run["stages"].values()) for run in own)
+                for stage in own[-1]["stages"]
+            }
+    own = runs.get("lsgp")
     out.defects = own[-1]["flips"] + own[-1]["turns"] if own else 0
     return out
 
@@ -152,8 +157,10 @@ def ratio_rows(rows: list[Measured]) -> list[dict[str, object]]:
 def stage_rows(rows: list[Measured]) -> list[dict[str, object]]:
     return [
         _heading(row)
-        | {f"{stage} ms": f"{1e3 * share * row.seconds['lsgp']:.1f}" for stage, share in row.stages.items()}
+        | {"": NAMES[method]}
+        | {f"{stage} ms": f"{1e3 * share * row.seconds[method]:.1f}" for stage, share in stages.items()}
         for row in rows
+        for method, stages in row.stages.items()
     ]
 
 
