@@ -62,8 +62,9 @@ bool factor_narrow(Scalar* panel, int rows, int columns) {
 template <typename Scalar>
 bool factor_wide(Scalar* panel, int rows, int columns) {
   Block<Scalar> square(panel, columns, columns, Eigen::OuterStride<>(rows));
-  Eigen::LLT<Eigen::Ref<Dense<Scalar>>> factor(square);
-  if (factor.info() != Eigen::Success || !(square.diagonal().real().array() > 0).all()) return false;
+  // What Eigen::LLT calls, without the norm it adds up besides.
+  Eigen::internal::llt_inplace<Scalar, Eigen::Lower>::blocked(square);
+  if (!(square.diagonal().real().array() > 0).all()) return false;
   Block<Scalar> below(panel + columns, rows - columns, columns, Eigen::OuterStride<>(rows));
   square.template triangularView<Eigen::Lower>().adjoint().template solveInPlace<Eigen::OnTheRight>(below);
   return true;
