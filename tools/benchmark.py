@@ -106,7 +106,10 @@ Ratios, the most memory the processes took, Python and libraries included, and w
 
 {as_table(ratio_rows(rows))}
 
-lsgp stage by stage, its CPU time divided as the wall-clock time of its stages:
+lsgp stage by stage, its CPU time divided as the wall-clock time of its stages. The factorization counts as
+prescription, which needs it first. Where an angle is edited there is none, and what is left are passes over the whole
+surface, each linear: the frames and the solve for the two coordinates (unfold), and what is measured of the map that is
+returned (check, layout, overlaps).
 
 {as_table(stage_rows(rows))}
 """
