@@ -34,7 +34,7 @@ def hold(mesh: bpy.types.Mesh) -> None:
 
 
 def release(uid: int) -> None:
-    """Tell changes of the mesh with this session_uid again; it has changed."""
+    """Tell changes of a mesh that was held, by its identifier, again; it has changed."""
     _held.discard(uid)
     _changes[uid] += 1
     redraw.views()

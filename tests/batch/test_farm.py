@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-FARM = Path(__file__).resolve().parents[2] / "tools" / "farm"
+FARM = Path(__file__).resolve().parents[2] / "tools" / "job_templates"
 ASSETS = ["cube.off", "deep/ball two.off", "deep/ball.off", "moebius.off", "patch.off"]
 
 # What Flamenco Manager gives to job types, as far as ours uses it.
