@@ -20,7 +20,7 @@ std::vector<int> BoxProgram::free_variables() const {
   return free;
 }
 
-void BoxProgram::factorize(std::vector<int> free) {
+void BoxProgram::factorize(const std::vector<int>& free) {
   if (free == free_) return;
   const int count = static_cast<int>(free.size()), size = count + (keep_sum_ ? 1 : 0);
   Eigen::MatrixXd system = Eigen::MatrixXd::Zero(size, size);
@@ -31,17 +31,17 @@ void BoxProgram::factorize(std::vector<int> free) {
     if (keep_sum_) system(j, count) = system(count, j) = scale;
   }
   factor_.emplace(std::move(system));
-  free_ = std::move(free);
+  free_ = free;
 }
 
-BoxProgram::Step BoxProgram::step_to_minimum(const Eigen::VectorXd& slope) {
-  factorize(free_variables());
-  const int count = static_cast<int>(free_.size());
+BoxProgram::Step BoxProgram::step_to_minimum(const Eigen::VectorXd& slope, const std::vector<int>& free) {
+  factorize(free);
+  const int count = static_cast<int>(free.size());
   Eigen::VectorXd right = Eigen::VectorXd::Zero(factor_->rows());
-  for (int i = 0; i < count; ++i) right[i] = -slope[free_[i]];
+  for (int i = 0; i < count; ++i) right[i] = -slope[free[i]];
   const Eigen::VectorXd solution = factor_->solve(right);
   Step step{Eigen::VectorXd::Zero(slope.size()), keep_sum_ ? solution[count] * hessian_.diagonal().mean() : 0.0};
-  for (int i = 0; i < count; ++i) step.direction[free_[i]] = solution[i];
+  for (int i = 0; i < count; ++i) step.direction[free[i]] = solution[i];
   return step;
 }
 
@@ -62,7 +62,7 @@ Eigen::VectorXd BoxProgram::minimize(const Eigen::VectorXd& gradient, const Eige
     const Eigen::VectorXd slope = gradient + hessian_ * d;
     double multiplier = 0;
     if (free.size() > (keep_sum_ ? 1u : 0u)) {
-      const Step step = step_to_minimum(slope);
+      const Step step = step_to_minimum(slope, free);
       double length = 1;
       int blocking = -1;
       for (const int i : free) {

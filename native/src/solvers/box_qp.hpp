@@ -28,9 +28,9 @@ class BoxProgram {
   };
 
   // The step to the minimum over the free variables, the others held.
-  Step step_to_minimum(const Eigen::VectorXd& slope);
+  Step step_to_minimum(const Eigen::VectorXd& slope, const std::vector<int>& free);
   std::vector<int> free_variables() const;
-  void factorize(std::vector<int> free);
+  void factorize(const std::vector<int>& free);
 
   const bool keep_sum_;
   Eigen::MatrixXd hessian_;
