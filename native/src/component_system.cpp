@@ -27,10 +27,8 @@ const CutGraph& ComponentSystem::all_cuts() {
 }
 
 const CutFactor* ComponentSystem::factor() {
-  if (factorization_ == Factorization::automatic) {
-    factorization_ = CutFactor::pays(mesh_, all_cuts()) ? Factorization::cut : Factorization::sparse;
-  }
-  if (factorization_ == Factorization::sparse) return nullptr;
+  if (!is_on_cut_) is_on_cut_ = CutFactor::is_chosen(factorization_, mesh_, all_cuts());
+  if (!*is_on_cut_) return nullptr;
   if (!factor_) factor_.emplace(mesh_, geometry_, all_cuts());
   return &*factor_;
 }

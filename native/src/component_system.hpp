@@ -32,9 +32,10 @@ class ComponentSystem {
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
   const std::vector<Index> cones_;
-  Factorization factorization_;  // automatic until the cuts are known
+  const Factorization factorization_;
   const BorderConditions border_;
   std::optional<CutGraph> all_cuts_;
+  std::optional<bool> is_on_cut_;  // known once the cuts are
   std::optional<CutFactor> factor_;
   std::optional<LogScale> log_scale_;
 };

@@ -105,8 +105,9 @@ Eigen::VectorXd harmonic(const HalfedgeMesh& mesh, const ComponentCones& cones, 
 }
 
 // The paper's rule; the angles that junctions of the cut read are handed on to the cones in equal parts.
-std::optional<Eigen::VectorXd> straightness(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                            const ComponentCones& cones, std::vector<Finding>& findings) {
+std::optional<Eigen::VectorXd> straightness(ComponentSystem& system, const ComponentCones& cones,
+                                            std::vector<Finding>& findings) {
+  const HalfedgeMesh& mesh = system.mesh();
   if (!mesh.closed()) {
     // With a free border the straightened layout is an arbitrary one of many, and so are its angles.
     findings.push_back(
@@ -116,9 +117,9 @@ std::optional<Eigen::VectorXd> straightness(const HalfedgeMesh& mesh, const Geom
          {ElementKind::vertices, cones.vertices}});
     return std::nullopt;
   }
-  const CutGraph cut_graph = connect_cones(mesh, geometry, cones.vertices, {});
-  const CutMesh cut_mesh = cut_open(mesh, cut_graph);
-  const StraightenedLayout layout = straighten(mesh, geometry, cut_graph, cut_mesh);
+  const CutMesh cut_mesh = cut_open(mesh, system.all_cuts());
+  const StraightenedLayout layout =
+      straighten({mesh, system.geometry(), system.all_cuts(), cut_mesh, system.factor()});
   const Index k = static_cast<Index>(cones.vertices.size());
   Eigen::VectorXd curvature(k);
   for (Index i = 0; i < k; ++i) curvature[i] = layout.curvature[cones.vertices[i]];
@@ -139,7 +140,7 @@ std::optional<Eigen::VectorXd> straightness(const HalfedgeMesh& mesh, const Geom
     return std::nullopt;
   }
   std::vector<Index> junction_vertices;
-  for (const Cut& cut : cut_graph.cuts) {
+  for (const Cut& cut : system.all_cuts().cuts) {
     for (const Index v : {cut.tail, cut.head}) {
       const bool is_cone = std::find(cones.vertices.begin(), cones.vertices.end(), v) != cones.vertices.end();
       const bool listed = std::find(junction_vertices.begin(), junction_vertices.end(), v) != junction_vertices.end();
@@ -396,7 +397,7 @@ Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, Prescr
     }
   } else if (rule == PrescriptionRule::harmonic) {
     curvature = harmonic(mesh, asked, scale);
-  } else if (rule == PrescriptionRule::straightness && (straight = straightness(mesh, geometry, asked, findings))) {
+  } else if (rule == PrescriptionRule::straightness && (straight = straightness(system, asked, findings))) {
     curvature = *straight;
   } else {
     curvature = least_distortion(mesh, asked, scale);

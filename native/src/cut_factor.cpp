@@ -14,7 +14,8 @@ constexpr double worth_while = 9;
 
 }  // namespace
 
-bool CutFactor::pays(const HalfedgeMesh& mesh, const CutGraph& cut_graph) {
+bool CutFactor::is_chosen(Factorization asked, const HalfedgeMesh& mesh, const CutGraph& cut_graph) {
+  if (asked != Factorization::automatic) return asked == Factorization::cut;
   double copies = 0;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) copies += cut_graph.is_cut[h] || mesh.twin[h] == none;
   return copies <= worth_while * std::sqrt(static_cast<double>(mesh.vertex_count()));

@@ -12,6 +12,7 @@
 
 #include "cut_mesh.hpp"
 #include "geometry.hpp"
+#include "lsgp/options.hpp"
 #include "solvers/cholesky.hpp"
 #include "topology.hpp"
 
@@ -22,8 +23,9 @@ class CutFactor {
   // cut_graph: has to outlive it.
   CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph);
 
-  // Whether cuts and borders are short enough for the dense problems to be worth while.
-  static bool pays(const HalfedgeMesh& mesh, const CutGraph& cut_graph);
+  // Whether systems are to be solved with such a factor: as asked, or else where cuts and borders are short enough for
+  // the dense problems to be worth while.
+  static bool is_chosen(Factorization asked, const HalfedgeMesh& mesh, const CutGraph& cut_graph);
 
   const CutGraph& cut_graph() const { return cut_graph_; }
   const CutMesh& cut_mesh() const { return cut_mesh_; }

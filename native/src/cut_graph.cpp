@@ -206,8 +206,10 @@ std::vector<Index> count_cuts(const HalfedgeMesh& mesh, const std::vector<char>&
   return degree;
 }
 
-// Removes ends that cut nothing: a source that is no cone can leave one.
-void prune_dead_ends(const HalfedgeMesh& mesh, const std::vector<char>& is_cone, std::vector<char>& is_cut) {
+// Without ends that cut nothing: a source that is no cone can leave one.
+CutGraph prune(const HalfedgeMesh& mesh, const std::vector<Index>& interior_cones, std::vector<char> is_cut) {
+  std::vector<char> is_cone(mesh.vertex_count(), 0);
+  for (const Index v : interior_cones) is_cone[v] = 1;
   std::vector<Index> degree = count_cuts(mesh, is_cut);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     for (Index at = v; degree[at] == 1 && !is_cone[at] && mesh.loop_of_vertex[at] == none;) {
@@ -221,6 +223,7 @@ void prune_dead_ends(const HalfedgeMesh& mesh, const std::vector<char>& is_cone,
       --degree[at];
     }
   }
+  return trace_cuts(mesh, is_cone, std::move(is_cut));
 }
 
 }  // namespace
@@ -255,10 +258,11 @@ CutGraph connect_cones(const HalfedgeMesh& mesh, const Geometry& geometry, const
   if (mesh.genus > 0) {
     for (const Index h : find_handle_edges(mesh, geometry, forest, tree)) mark_through(mesh, forest, h, is_cut);
   }
-  std::vector<char> is_cone(mesh.vertex_count(), 0);
-  for (const Index v : interior_cones) is_cone[v] = 1;
-  prune_dead_ends(mesh, is_cone, is_cut);
-  return trace_cuts(mesh, is_cone, std::move(is_cut));
+  return prune(mesh, interior_cones, std::move(is_cut));
+}
+
+CutGraph keep_cones(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const std::vector<Index>& interior_cones) {
+  return prune(mesh, interior_cones, cut_graph.is_cut);
 }
 
 CutGraph trace_cuts(const HalfedgeMesh& mesh, const std::vector<char>& is_node, std::vector<char> is_cut) {

@@ -31,6 +31,9 @@ struct CutGraph {
 CutGraph connect_cones(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& interior_cones,
                        const std::vector<char>& uncut);
 
+// The cut graph that is left where some cones inside are none any more: only those given still have to be reached.
+CutGraph keep_cones(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const std::vector<Index>& interior_cones);
+
 // Which vertices lie on a cut, (n).
 std::vector<char> on_cuts(const HalfedgeMesh& mesh, const CutGraph& cut_graph);
 

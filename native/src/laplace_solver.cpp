@@ -124,7 +124,7 @@ class LaplaceOnCut final : public LaplaceSolver {
     for (std::size_t i = 0; i < place_.size(); ++i) {
       if (place_[i] != none) glued.row(place_[i]) += retained.row(static_cast<Eigen::Index>(i));
     }
-    dense_->solve_in_place(glued);
+    glued = dense_->solve(glued);
     for (std::size_t i = 0; i < place_.size(); ++i) {
       auto row = retained.row(static_cast<Eigen::Index>(i));
       if (place_[i] == none)

@@ -131,7 +131,7 @@ ComponentMap Mapping::attempt(const ComponentCones& cones, Effort effort, std::v
   const std::vector<Index> aligned = aligned_edges();
   const bool spectral = usable_unfold(mesh_, cones, options_.unfold, findings) == UnfoldMethod::spectral;
   if (spectral) {
-    map.position = unfold_spectral(mesh_, geometry_, map.cut_mesh, connection.reduction);
+    map.position = unfold_spectral(surface, connection.reduction);
   } else if (!aligned.empty()) {
     map.position = unfold_along_borders(surface, map, cones, connection, aligned);
   } else {
@@ -223,8 +223,13 @@ void Mapping::cut(ComponentMap& map, std::vector<Finding>& findings) const {
                         {ElementKind::vertices, map.flat_cones}});
   }
   const std::vector<char>& uncut = map.curvature.needs_no_cut;
-  const bool cuts_all = map.flat_cones.empty() && std::find(uncut.begin(), uncut.end(), 1) == uncut.end();
-  map.cut_graph = cuts_all ? system_.all_cuts() : connect_cones(mesh_, geometry_, map.cones, uncut);
+  if (std::find(uncut.begin(), uncut.end(), 1) != uncut.end()) {
+    map.cut_graph = connect_cones(mesh_, geometry_, map.cones, uncut);
+  } else if (map.flat_cones.empty()) {
+    map.cut_graph = system_.all_cuts();
+  } else {
+    map.cut_graph = keep_cones(mesh_, system_.all_cuts(), map.cones);
+  }
   map.cut_mesh = cut_open(mesh_, map.cut_graph);
   map.pins = pins_of_copies(map.cut_mesh, task_.pinned_corners);
 }

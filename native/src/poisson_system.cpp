@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "poisson_system.hpp"
 
-#include "cut_factor.hpp"
+#include "condensation.hpp"
 #include "energies/quadratic_forms.hpp"
 #include "solvers/dense_cholesky.hpp"
 
@@ -44,100 +44,25 @@ class PoissonSystem::Sparse final : public Solver {
   Cholesky<Complex> factor_;
 };
 
-// Transitions touch the retained copies alone: the unknowns behind them are those of a dense problem.
 class PoissonSystem::OnCut final : public Solver {
  public:
   OnCut(const CutSurface& surface, const Reduction& reduction)
-      : surface_(surface), factor_(*surface.factor), copy_count_(surface.cut_mesh.copy_count()) {
-    match_copies();
-    std::vector<Index> place(reduction.unknown_count, none);
-    begin_.push_back(0);
-    for (const Index copy : factor_.retained()) {
-      reduction.for_each_term(own_copy_[copy], [&](const Term& term) {
-        if (place[term.unknown] == none) place[term.unknown] = unknown_count_++;
-        terms_.push_back({place[term.unknown], term.coefficient});
-      });
-      begin_.push_back(static_cast<Index>(terms_.size()));
-    }
-    dense_.emplace(reduced_schur());
-  }
+      : surface_(surface),
+        condensation_(surface.mesh, surface.cut_mesh, *surface.factor, reduction),
+        dense_(condensation_.dirichlet_form()) {}
 
   Eigen::VectorXcd fit(const Jacobians& jacobians) const override {
-    const CutSurface opened{surface_.mesh, surface_.geometry, factor_.cut_graph(), factor_.cut_mesh()};
-    const Eigen::VectorXcd pull = pull_of(opened, jacobians);
-    const Index copies = factor_.cut_mesh().copy_count(), first = factor_.eliminated_count();
-    CutFactor::Rows x(copies, 2);
-    for (Index copy = 0; copy < copies; ++copy) {
-      x(factor_.row_of_copy(copy), 0) = pull[copy].real();
-      x(factor_.row_of_copy(copy), 1) = pull[copy].imag();
-    }
-    factor_.eliminate(x);
-    Eigen::MatrixXcd unknowns = Eigen::VectorXcd::Zero(unknown_count_);
-    for_each_term([&](Index i, const Term& term) {
-      unknowns(term.unknown) += std::conj(term.coefficient) * Complex(x(first + i, 0), x(first + i, 1));
-    });
-    dense_->solve_in_place(unknowns);
-    Eigen::VectorXcd retained = Eigen::VectorXcd::Zero(factor_.retained_count());
-    for_each_term([&](Index i, const Term& term) { retained[i] += term.coefficient * unknowns(term.unknown); });
-    x.bottomRows(retained.size()) << retained.real(), retained.imag();
-    factor_.substitute(x, 2);
-    Eigen::VectorXcd position(copy_count_);
-    for (Index copy = 0; copy < copies; ++copy) {
-      const Index row = factor_.row_of_copy(copy);
-      position[own_copy_[copy]] = {x(row, 0), x(row, 1)};
-    }
-    return position;
+    const CutFactor& factor = *surface_.factor;
+    const CutSurface opened{surface_.mesh, surface_.geometry, factor.cut_graph(), factor.cut_mesh()};
+    CutFactor::Rows half_solved = condensation_.eliminate(pull_of(opened, jacobians));
+    const Eigen::VectorXcd unknowns = dense_.solve(condensation_.right_side(half_solved));
+    return condensation_.substitute(std::move(half_solved), unknowns);
   }
 
  private:
-  // The factor's copies as copies of this surface, which may be opened along fewer cuts.
-  void match_copies() {
-    own_copy_.resize(factor_.cut_mesh().copy_count());
-    for (Index corner = 0; corner < surface_.mesh.halfedge_count(); ++corner) {
-      own_copy_[factor_.cut_mesh().copy_of_corner[corner]] = surface_.cut_mesh.copy_of_corner[corner];
-    }
-  }
-
-  template <typename Visit>
-  void for_each_term(Visit visit) const {
-    for (Index i = 0; i < factor_.retained_count(); ++i) {
-      for (Index k = begin_[i]; k < begin_[i + 1]; ++k) visit(i, terms_[k]);
-    }
-  }
-
-  // B^H S B, S the Schur complement; lower triangle.
-  Eigen::MatrixXcd reduced_schur() const {
-    struct Use {
-      Index copy;
-      Complex coefficient;
-    };
-    std::vector<std::vector<Use>> uses(unknown_count_);
-    for_each_term([&](Index i, const Term& term) { uses[term.unknown].push_back({i, term.coefficient}); });
-    Eigen::MatrixXcd out = Eigen::MatrixXcd::Zero(unknown_count_, unknown_count_);
-    Eigen::VectorXd real(factor_.retained_count()), imaginary(factor_.retained_count());
-    for (Index unknown = 0; unknown < unknown_count_; ++unknown) {
-      real.setZero();
-      imaginary.setZero();
-      for (const Use& use : uses[unknown]) {
-        real += use.coefficient.real() * factor_.schur().col(use.copy);
-        if (use.coefficient.imag() != 0) imaginary += use.coefficient.imag() * factor_.schur().col(use.copy);
-      }
-      for_each_term([&](Index i, const Term& term) {
-        if (term.unknown >= unknown)
-          out(term.unknown, unknown) += std::conj(term.coefficient) * Complex(real[i], imaginary[i]);
-      });
-    }
-    return out;
-  }
-
   const CutSurface surface_;
-  const CutFactor& factor_;
-  const Index copy_count_;
-  std::vector<Index> own_copy_;  // (the factor's copies)
-  std::vector<Index> begin_;     // (retained + 1)
-  std::vector<Term> terms_;      // of retained copies, unknowns numbered anew
-  Index unknown_count_ = 0;
-  std::optional<DenseCholesky<Complex>> dense_;
+  const Condensation condensation_;
+  const DenseCholesky<Complex> dense_;
 };
 
 PoissonSystem::PoissonSystem(const CutSurface& surface, const Reduction& reduction) {

@@ -13,12 +13,12 @@
 
 #include "cone_triangulation.hpp"
 #include "connection.hpp"
+#include "cut_factor.hpp"
 #include "energies/quadratic_forms.hpp"
 #include "layout.hpp"
 #include "low_stretch.hpp"
 #include "quantize_curvature.hpp"
 #include "relaxation.hpp"
-#include "solvers/sparse_assembly.hpp"
 #include "unfold.hpp"
 #include "untangle.hpp"
 
@@ -114,7 +114,7 @@ double symmetric_dirichlet_energy(const Geometry& geometry, const Jacobians& jac
 
 LayoutQuantizer::LayoutQuantizer(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
                                  const PointLattice& lattice, bool parity, const std::vector<Index>& relaxed,
-                                 StepHook before_step)
+                                 Factorization factorization, StepHook before_step)
     : mesh_(mesh),
       geometry_(geometry),
       cut_graph_(map.cut_graph),
@@ -135,49 +135,11 @@ LayoutQuantizer::LayoutQuantizer(const HalfedgeMesh& mesh, const Geometry& geome
   set_start(map);
   integers_ = integers_of(start_);
 
-  // The Dirichlet form by blocks: what moves freely, and the integers.
-  const auto form =
-      assemble_form(Form::dirichlet, mesh, with_weights(geometry, stiffness_around(mesh, geometry, map.cones)),
-                    map.cut_mesh, reduction_.reduction);
-  const Index unknowns = reduction_.reduction.unknown_count, count = static_cast<Index>(reduction_.integers.size());
-  std::vector<Index> column_of_unknown(unknowns, none);
-  for (Index k = 0; k < count; ++k) column_of_unknown[reduction_.integers[k]] = k;
-  row_of_unknown_.assign(unknowns, none);
-  Index rows = 0;
-  for (Index i = 0; i < unknowns; ++i) {
-    if (column_of_unknown[i] == none) row_of_unknown_[i] = rows++;
-  }
-  LowerAssembly<Complex> free(rows, static_cast<std::size_t>(form.nonZeros()));
-  std::vector<Eigen::Triplet<Complex>> coupling;
-  Eigen::MatrixXcd schur = Eigen::MatrixXcd::Zero(count, count);
-  for (int j = 0; j < form.outerSize(); ++j) {
-    for (Eigen::SparseMatrix<Complex>::InnerIterator it(form, j); it; ++it) {
-      const Index i = static_cast<Index>(it.row());
-      const Index row_i = row_of_unknown_[i], row_j = row_of_unknown_[j];
-      const Index column_i = column_of_unknown[i], column_j = column_of_unknown[j];
-      if (row_i != none && row_j != none) {
-        free.add(row_i, row_j, it.value());
-      } else if (row_i != none) {
-        coupling.emplace_back(row_i, column_j, it.value());
-      } else if (row_j != none) {
-        coupling.emplace_back(row_j, column_i, std::conj(it.value()));
-      } else {
-        schur(column_i, column_j) += it.value();
-        if (i != j) schur(column_j, column_i) += std::conj(it.value());
-      }
-    }
-  }
-  factor_.emplace(free.build());
-  coupling_.resize(rows, count);
-  coupling_.setFromTriplets(coupling.begin(), coupling.end());
-  constexpr Index block = 16;  // right sides at a time
-  for (Index first = 0; first < count; first += block) {
-    const Index width = std::min(block, count - first);
-    const Eigen::MatrixXcd columns = coupling_.middleCols(first, width);
-    schur.middleCols(first, width) -= coupling_.adjoint() * factor_->solve(columns);
-  }
-  schur_ = (schur + schur.adjoint()) / 2;
-  const Eigen::MatrixXcd restricted = reduction_.basis.adjoint() * schur_ * reduction_.basis;
+  const Geometry stiffened = with_weights(geometry, stiffness_around(mesh, geometry, map.cones));
+  const CutSurface stiff_surface{mesh, stiffened, map.cut_graph, map.cut_mesh};
+  const bool on_cut = CutFactor::is_chosen(factorization, mesh, map.cut_graph);
+  response_ = on_cut ? response_on_cut(stiff_surface, reduction_) : sparse_response(stiff_surface, reduction_);
+  const Eigen::MatrixXcd restricted = reduction_.basis.adjoint() * response_->schur() * reduction_.basis;
   search_.emplace((restricted + restricted.adjoint()) / 2, moving_triangles(map, relaxed), lattice);
 }
 
@@ -270,7 +232,7 @@ std::vector<LayoutQuantizer::Target> LayoutQuantizer::find_targets(double densit
   if (integers_.size() == 0) return {{density, integers_, 0}};
   std::vector<Target> out;
   const Eigen::VectorXcd wanted = reduction_.basis.partialPivLu().solve(integers_);
-  const Eigen::VectorXcd pull = schur_ * integers_;
+  const Eigen::VectorXcd pull = response_->schur() * integers_;
   struct Candidate {
     Complex motion;
     LatticeSearch::Choice choice;
@@ -298,18 +260,6 @@ std::vector<LayoutQuantizer::Target> LayoutQuantizer::find_targets(double densit
   }
   std::stable_sort(out.begin(), out.end(), [](const Target& a, const Target& b) { return a.cost < b.cost; });
   return out;
-}
-
-Eigen::VectorXcd LayoutQuantizer::displacement(const Eigen::VectorXcd& change) const {
-  const Eigen::VectorXcd moved = factor_->solve(Eigen::VectorXcd(coupling_ * change));
-  Eigen::VectorXcd unknowns(row_of_unknown_.size());
-  for (std::size_t i = 0; i < row_of_unknown_.size(); ++i) {
-    if (row_of_unknown_[i] != none) unknowns[static_cast<Eigen::Index>(i)] = -moved[row_of_unknown_[i]];
-  }
-  for (std::size_t k = 0; k < reduction_.integers.size(); ++k) {
-    unknowns[reduction_.integers[k]] = change[static_cast<Eigen::Index>(k)];
-  }
-  return expand(reduction_.reduction, unknowns);
 }
 
 Validity LayoutQuantizer::check(const Eigen::VectorXcd& position) const {
@@ -352,7 +302,7 @@ std::vector<Index> LayoutQuantizer::find_stretched(double scale, const Jacobians
 bool LayoutQuantizer::move(double scale, double most_energy, const Eigen::VectorXcd& change,
                            Eigen::VectorXcd& position) const {
   const Eigen::VectorXcd before = position;
-  position += displacement(change);
+  position += response_->displacement(change);
   const Validity validity = check(position);
   if (std::isfinite(most_energy)) {
     // What smoothing will not mend tells early that a grid is too coarse.

@@ -3,14 +3,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "component_map.hpp"
+#include "lattice_response.hpp"
 #include "lattice_search.hpp"
 #include "point_lattice.hpp"
 #include "relaxation.hpp"
-#include "solvers/cholesky.hpp"
 #include "unfold.hpp"
 
 namespace lsgp {
@@ -33,7 +34,8 @@ class LayoutQuantizer {
   // map: without flips and with the right angles, its rotations multiples of the lattice's turn.
   // relaxed: cones that need not lie on the lattice.  Throws SEAMLESS_IMPOSSIBLE.
   LayoutQuantizer(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                  const PointLattice& lattice, bool parity, const std::vector<Index>& relaxed, StepHook before_step);
+                  const PointLattice& lattice, bool parity, const std::vector<Index>& relaxed, Factorization factorization,
+                  StepHook before_step);
 
   // The layout's longer side, where it has the surface's area.
   double extent() const { return extent_; }
@@ -65,7 +67,6 @@ class LayoutQuantizer {
   std::vector<MovingTriangle> moving_triangles(const ComponentMap& map, const std::vector<Index>& relaxed);
   Eigen::VectorXcd integers_of(const Eigen::VectorXcd& position) const;
   std::vector<Target> find_targets(double density, int searched_angles) const;
-  Eigen::VectorXcd displacement(const Eigen::VectorXcd& change) const;
   Validity check(const Eigen::VectorXcd& position) const;
   bool repair(double scale, const Eigen::VectorXcd& before, Eigen::VectorXcd& position) const;
   void smooth(double scale, std::vector<char> marked, int steps, Eigen::VectorXcd& position) const;
@@ -85,13 +86,10 @@ class LayoutQuantizer {
   Eigen::VectorXcd start_;  // (copies) with the surface's area, the origin cone at 0
   Eigen::VectorXd rest_;    // (n) log of its scale
   Eigen::VectorXcd motion_of_copies_;
-  Eigen::MatrixXcd schur_;  // (d, d) of the stiffened Dirichlet form on the integers
   double extent_ = 0, energy_ = 1;
   LatticeReduction reduction_;
   Eigen::VectorXcd integers_;  // (d) at the start
-  std::vector<Index> row_of_unknown_;
-  std::optional<Cholesky<Complex>> factor_;  // of the Dirichlet form with the integers held
-  Eigen::SparseMatrix<Complex> coupling_;    // (rows, d) of the form
+  std::unique_ptr<LatticeResponse> response_;  // of the Dirichlet form, stiffened around cones
   std::vector<ConePair> cone_pairs_;
   std::optional<LatticeSearch> search_;
 };

@@ -33,8 +33,8 @@ struct Grid {
 
 class GridSearch {
  public:
-  GridSearch(const Seamless& seamless, const PointLattice& lattice, std::vector<SeamlessPart>& parts, Monitor& monitor)
-      : seamless_(seamless),
+  GridSearch(const Options& options, const PointLattice& lattice, std::vector<SeamlessPart>& parts, Monitor& monitor)
+      : options_(options),
         lattice_(lattice),
         parts_(parts),
         monitor_(monitor),
@@ -120,7 +120,8 @@ class GridSearch {
   void prepare(std::size_t part) {
     const SeamlessPart& of = parts_[part];
     quantizers_[part] = std::make_unique<LayoutQuantizer>(of.component->mesh, *of.geometry, *of.map, lattice_,
-                                                          seamless_.parity, relaxed_[part], step_);
+                                                          options_.seamless->parity, relaxed_[part],
+                                                          options_.factorization, step_);
   }
 
   // One of the cones takes up the curvature of both: the one whose own is nearer to that.
@@ -157,7 +158,7 @@ class GridSearch {
     return true;
   }
 
-  const Seamless& seamless_;
+  const Options& options_;
   const PointLattice& lattice_;
   std::vector<SeamlessPart>& parts_;
   Monitor& monitor_;
@@ -397,7 +398,7 @@ SeamlessReport make_seamless(const Options& options, double unit_scale, std::vec
                              std::vector<Finding>& findings, Monitor& monitor) {
   const Seamless& seamless = *options.seamless;
   const PointLattice lattice(symmetry(seamless.lattice));
-  GridSearch search(seamless, lattice, parts, monitor);
+  GridSearch search(options, lattice, parts, monitor);
   Grid grid = find_grid(options, unit_scale, search, findings);
   if (options.mode == Mode::low_stretch && options.stretch > 0) search.lower_stretch(options.stretch, grid);
   // With parity cones are at the centres of cells: around a corner of cells an odd number of them may meet.

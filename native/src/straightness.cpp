@@ -4,9 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "energies/quadratic_forms.hpp"
-#include "solvers/eigenproblem.hpp"
 #include "text.hpp"
+#include "unfold.hpp"
 
 namespace lsgp {
 
@@ -123,13 +122,9 @@ StraightSides straighten_sides(const HalfedgeMesh& mesh, const Geometry& geometr
     }
   }
   std::vector<Index> unknown(cut_mesh.copy_count(), none);
-  bool grounded = false;
+  const Index origin = out.segments.front().from;
   for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
-    if (place[copy].from != none) continue;
-    if (!grounded)
-      grounded = true;  // the first copy stays at the origin
-    else
-      unknown[copy] = out.reduction.unknown_count++;
+    if (place[copy].from == none && copy != origin) unknown[copy] = out.reduction.unknown_count++;
   }
   out.reduction.begin.assign(1, 0);
   for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
@@ -167,14 +162,10 @@ double read_angle(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const Cut
 
 }  // namespace
 
-StraightenedLayout straighten(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
-                              const CutMesh& cut_mesh) {
+StraightenedLayout straighten(const CutSurface& surface) {
+  const auto& [mesh, geometry, cut_graph, cut_mesh, factor] = surface;
   StraightSides sides = straighten_sides(mesh, geometry, cut_graph, cut_mesh);
-  const auto conformal = assemble_form(Form::conformal, mesh, geometry, cut_mesh, sides.reduction);
-  const auto dirichlet = assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, sides.reduction);
-  const Eigen::VectorXcd unknowns =
-      smallest_eigenvector(conformal, dirichlet, unbiased_start(sides.reduction.unknown_count));
-  StraightBoundary boundary(std::move(sides.segments), expand(sides.reduction, unknowns));
+  StraightBoundary boundary(std::move(sides.segments), unfold_spectral(surface, sides.reduction));
 
   StraightenedLayout layout;
   layout.crossings = boundary.count_crossings();

@@ -20,7 +20,6 @@ struct StraightenedLayout {
 // Lays the opened surface, closed before, out with every side of every cut straight and least conformal distortion,
 // resolves crossing cuts by swapping the positions of their ends (the paper's Figure 6), and reads each node's angle
 // between its cuts.
-StraightenedLayout straighten(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
-                              const CutMesh& cut_mesh);
+StraightenedLayout straighten(const CutSurface& surface);
 
 }  // namespace lsgp

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "condensation.hpp"
 #include "energies/quadratic_forms.hpp"
 #include "solvers/eigenproblem.hpp"
 #include "solvers/saddle_point.hpp"
@@ -199,11 +200,15 @@ Eigen::VectorXcd unfold_aligned(const CutSurface& surface, const Reduction& redu
   return expand(reduction, unknowns);
 }
 
-Eigen::VectorXcd unfold_spectral(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                                 const Reduction& reduction) {
+// Off the cuts both forms are the same, so that the eigenvectors are harmonic there.
+Eigen::VectorXcd unfold_spectral(const CutSurface& surface, const Reduction& reduction) {
+  const auto& [mesh, geometry, cut_graph, cut_mesh, factor] = surface;
+  if (factor != nullptr && factor->covers(cut_graph)) {
+    const Condensation condensation(mesh, cut_mesh, *factor, reduction);
+    return condensation.extend(smallest_eigenvector(condensation.conformal_form(), condensation.dirichlet_form()));
+  }
   return expand(reduction, smallest_eigenvector(assemble_form(Form::conformal, mesh, geometry, cut_mesh, reduction),
-                                                assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction),
-                                                unbiased_start(reduction.unknown_count)));
+                                                assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction)));
 }
 
 Eigen::VectorXcd unfold_lscm(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh) {

@@ -67,9 +67,8 @@ Eigen::VectorXcd unfold_aligned(const CutSurface& surface, const Reduction& redu
                                 const Eigen::VectorXd& directions);
 
 // The map of least conformal energy at a given Dirichlet energy (Mullen et al. 2008, with a norm that transitions
-// leave invariant).
-Eigen::VectorXcd unfold_spectral(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                                 const Reduction& reduction);
+// leave invariant).  Solved on the cut where the surface comes with a factor that covers its cuts, sparse otherwise.
+Eigen::VectorXcd unfold_spectral(const CutSurface& surface, const Reduction& reduction);
 
 // Least squares conformal map of the opened surface with two pinned copies, no transitions (Levy et al. 2002).
 // The pins are the first copy on the open border with the lowest number and the one half the border's edges away.

@@ -21,15 +21,23 @@ def assert_same(one: lsgp.Result, other: lsgp.Result, tolerance: float = 0) -> N
     assert [w.code for w in one.warnings] == [w.code for w in other.warnings]
 
 
-@pytest.mark.parametrize("unfold", ["poisson", "spectral"])
+WAYS = {
+    "poisson": {},
+    "spectral": {"unfold": "spectral"},
+    "straightness": {"prescription": "straightness"},
+    "seamless": {"seamless": lsgp.Seamless(tiles=16)},
+}
+
+
+@pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("make", SHAPES)
-def test_both_factorizations_give_the_same_map(make: object, unfold: str) -> None:
+def test_both_factorizations_give_the_same_map(make: object, way: str) -> None:
     mesh = make()
     maps = [
         lsgp.parameterize(
-            surface_of(mesh), mesh.cones, options=lsgp.Options(repair=False, unfold=unfold, factorization=way)
+            surface_of(mesh), mesh.cones, options=lsgp.Options(repair=False, factorization=factorization, **WAYS[way])
         )
-        for way in ("cut", "sparse")
+        for factorization in ("cut", "sparse")
     ]
     edges = [np.linalg.norm(np.roll(result.corner_uv, -1, axis=1) - result.corner_uv, axis=2) for result in maps]
     assert np.abs(edges[0] - edges[1]).max() < 1e-9
@@ -43,8 +51,21 @@ def test_whole_map_takes_one_factorization(make: object) -> None:
     assert one.factorizations == 1
     # The surface's own metric, one a cone but that which fixes the constant, and the two coordinates.
     assert one.back_substitutions == 1 + (len(mesh.cones) - 1) + 2
+    spectral = lsgp.Options(repair=False, unfold="spectral")
+    same = lsgp.parameterize(surface_of(mesh), mesh.cones, options=spectral)
+    assert (same.factorizations, same.back_substitutions) == (1, one.back_substitutions)
     two = lsgp.parameterize(surface_of(mesh), mesh.cones, options=lsgp.Options(repair=False, factorization="sparse"))
     assert two.factorizations == 2
+
+
+def test_integers_take_one_factorization_and_two_back_substitutions() -> None:
+    mesh = meshes.cube()
+    plain, seamless = (
+        lsgp.parameterize(surface_of(mesh), mesh.cones, options=lsgp.Options(repair=False, seamless=seamless))
+        for seamless in (None, lsgp.Seamless(tiles=16))
+    )
+    assert seamless.factorizations == plain.factorizations + 1
+    assert seamless.back_substitutions == plain.back_substitutions + 2
 
 
 def test_changed_angles_take_no_factorization() -> None:

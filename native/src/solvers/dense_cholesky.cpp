@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solvers/dense_cholesky.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "solvers/cholesky.hpp"
@@ -24,18 +25,18 @@ DenseCholesky<Scalar>::DenseCholesky(Matrix lower) : factor_(std::move(lower)) {
 }
 
 template <typename Scalar>
-void DenseCholesky<Scalar>::solve_in_place(Eigen::Ref<Matrix> right_sides) const {
-  if (factor_.size() == 0) return;
-  constexpr int width = 8;
-  Eigen::Matrix<Scalar, Eigen::Dynamic, width, Eigen::RowMajor> block(factor_.rows(), width);
-  for (Eigen::Index begin = 0; begin < right_sides.cols(); begin += width) {
-    const Eigen::Index used = std::min<Eigen::Index>(width, right_sides.cols() - begin);
-    block.setZero();
+typename DenseCholesky<Scalar>::Matrix DenseCholesky<Scalar>::solve(const Eigen::Ref<const Matrix>& right_sides) const {
+  Matrix out(right_sides.rows(), right_sides.cols());
+  for (Eigen::Index begin = 0, used; begin < out.cols(); begin += used) {
+    const int width = static_cast<int>(Cholesky<Scalar>::width_for(out.cols() - begin));
+    used = std::min<Eigen::Index>(out.cols() - begin, width);
+    typename Cholesky<Scalar>::Rows block = Cholesky<Scalar>::Rows::Zero(out.rows(), width);
     block.leftCols(used) = right_sides.middleCols(begin, used);
     dense_kernels<Scalar>().substitute_forward(whole(factor_), width, block.data(), nullptr);
     dense_kernels<Scalar>().substitute_backward(whole(factor_), width, block.data(), nullptr);
-    right_sides.middleCols(begin, used) = block.leftCols(used);
+    out.middleCols(begin, used) = block.leftCols(used);
   }
+  return out;
 }
 
 template class DenseCholesky<double>;

@@ -15,7 +15,8 @@ class DenseCholesky {
   // lower: its lower triangle is read.  Throws SOLVER_FAILED where it is not positive definite.
   explicit DenseCholesky(Matrix lower);
 
-  void solve_in_place(Eigen::Ref<Matrix> right_sides) const;
+  // One right side a column.
+  Matrix solve(const Eigen::Ref<const Matrix>& right_sides) const;
 
  private:
   Matrix factor_;

@@ -9,6 +9,7 @@
 
 #include "lsgp/errors.hpp"
 #include "solvers/cholesky.hpp"
+#include "solvers/dense_cholesky.hpp"
 
 namespace lsgp {
 
@@ -37,11 +38,12 @@ void to_real(const Eigen::VectorXcd& z, double* y) {
   Eigen::Map<Eigen::VectorXd>(y + z.size(), z.size()) = z.imag();
 }
 
+template <typename Factor>
 class ShiftedInverse {
  public:
   using Scalar = double;
-  ShiftedInverse(const ComplexSparse& form, const ComplexSparse& norm)
-      : size_(form.rows()), factor_(regularized(form, norm)) {}
+  template <typename Matrix>
+  ShiftedInverse(const Matrix& form, const Matrix& norm) : size_(form.rows()), factor_(form + shift * norm) {}
   Eigen::Index rows() const { return 2 * size_; }
   Eigen::Index cols() const { return 2 * size_; }
   void set_shift(double) {}  // fixed when the factor was made
@@ -49,27 +51,25 @@ class ShiftedInverse {
 
  private:
   Eigen::Index size_;
-  Cholesky<Complex> factor_;
+  Factor factor_;
 };
 
+template <typename Matrix>
 class NormProduct {
  public:
   using Scalar = double;
-  explicit NormProduct(const ComplexSparse& norm) : norm_(norm) {}
+  explicit NormProduct(const Matrix& norm) : norm_(norm) {}
   Eigen::Index rows() const { return 2 * norm_.rows(); }
   Eigen::Index cols() const { return 2 * norm_.rows(); }
   void perform_op(const double* x, double* y) const {
-    to_real(norm_.selfadjointView<Eigen::Lower>() * to_complex(x, norm_.rows()), y);
+    to_real(norm_.template selfadjointView<Eigen::Lower>() * to_complex(x, norm_.rows()), y);
   }
 
  private:
-  const ComplexSparse& norm_;
+  const Matrix& norm_;
 };
 
-}  // namespace
-
-ComplexSparse regularized(const ComplexSparse& form, const ComplexSparse& norm) { return form + shift * norm; }
-
+// A start vector without any symmetry, the same on every machine.
 Eigen::VectorXcd unbiased_start(Eigen::Index size) {
   Eigen::VectorXcd start(size);
   std::uint64_t state = 0x9e3779b97f4a7c15u;
@@ -86,17 +86,19 @@ Eigen::VectorXcd unbiased_start(Eigen::Index size) {
   return start;
 }
 
-Eigen::VectorXcd smallest_eigenvector(const ComplexSparse& form, const ComplexSparse& norm,
-                                      const Eigen::VectorXcd& start) {
+template <typename Factor, typename Matrix>
+Eigen::VectorXcd find_smallest(const Matrix& form, const Matrix& norm) {
   const Eigen::Index n = form.rows();
   if (n == 1) return Eigen::VectorXcd::Ones(1);
-  ShiftedInverse inverse(form, norm);
-  NormProduct product(norm);
+  using Inverse = ShiftedInverse<Factor>;
+  using Product = NormProduct<Matrix>;
+  Inverse inverse(form, norm);
+  Product product(norm);
   const Eigen::Index dimension = std::min<Eigen::Index>(krylov_dimension, 2 * n);
-  Spectra::SymGEigsShiftSolver<ShiftedInverse, NormProduct, Spectra::GEigsMode::ShiftInvert> solver(inverse, product, 1,
-                                                                                                    dimension, -shift);
+  Spectra::SymGEigsShiftSolver<Inverse, Product, Spectra::GEigsMode::ShiftInvert> solver(inverse, product, 1, dimension,
+                                                                                         -shift);
   Eigen::VectorXd real_start(2 * n);
-  to_real(start, real_start.data());
+  to_real(unbiased_start(n), real_start.data());
   bool converged = false;
   try {
     solver.init(real_start.data());
@@ -119,6 +121,18 @@ Eigen::VectorXcd smallest_eigenvector(const ComplexSparse& form, const ComplexSp
     vector /= vector.norm();
   }
   return to_complex(vector.data(), n);
+}
+
+}  // namespace
+
+ComplexSparse regularized(const ComplexSparse& form, const ComplexSparse& norm) { return form + shift * norm; }
+
+Eigen::VectorXcd smallest_eigenvector(const ComplexSparse& form, const ComplexSparse& norm) {
+  return find_smallest<Cholesky<Complex>>(form, norm);
+}
+
+Eigen::VectorXcd smallest_eigenvector(const Eigen::MatrixXcd& form, const Eigen::MatrixXcd& norm) {
+  return find_smallest<DenseCholesky<Complex>>(form, norm);
 }
 
 }  // namespace lsgp

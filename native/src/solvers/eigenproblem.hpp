@@ -9,13 +9,10 @@ namespace lsgp {
 
 // The eigenvector of  form x = lambda norm x  with the smallest lambda.
 // form: Hermitian positive semidefinite; norm: Hermitian positive definite; both lower triangles, (n, n).
-// start: where the iteration begins.  Throws SOLVER_FAILED where it does not converge.
+// Throws SOLVER_FAILED where the iteration does not converge.
 Eigen::VectorXcd smallest_eigenvector(const Eigen::SparseMatrix<std::complex<double>>& form,
-                                      const Eigen::SparseMatrix<std::complex<double>>& norm,
-                                      const Eigen::VectorXcd& start);
-
-// A start vector without any symmetry, the same on every machine.
-Eigen::VectorXcd unbiased_start(Eigen::Index size);
+                                      const Eigen::SparseMatrix<std::complex<double>>& norm);
+Eigen::VectorXcd smallest_eigenvector(const Eigen::MatrixXcd& form, const Eigen::MatrixXcd& norm);
 
 // form + share * norm, share just large enough to factor a form that is singular because its map is exact.
 Eigen::SparseMatrix<std::complex<double>> regularized(const Eigen::SparseMatrix<std::complex<double>>& form,

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How a layout gives way to its integers: the displacement of least Dirichlet energy, and what it costs.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "cut_mesh.hpp"
+#include "transitions.hpp"
+
+namespace lsgp {
+
+class LatticeResponse {
+ public:
+  virtual ~LatticeResponse() = default;
+  // The Schur complement of the Dirichlet form on the integers, (d, d), Hermitian: change^H schur change is the energy.
+  const Eigen::MatrixXcd& schur() const { return schur_; }
+  // The displacement of all copies, (copies), where the integers change by that much, (d).
+  virtual Eigen::VectorXcd displacement(const Eigen::VectorXcd& change) const = 0;
+
+ protected:
+  Eigen::MatrixXcd schur_;
+};
+
+// One complex factorization and a back-substitution for every integer.  lattice has to outlive the response.
+std::unique_ptr<LatticeResponse> sparse_response(const CutSurface& surface, const LatticeReduction& lattice);
+// One real factorization up to the cuts, and dense problems.  The surface's mesh has to outlive it, too.
+std::unique_ptr<LatticeResponse> response_on_cut(const CutSurface& surface, const LatticeReduction& lattice);
+
+}  // namespace lsgp
