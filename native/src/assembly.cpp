@@ -81,9 +81,15 @@ void Assembly::place(const std::vector<Similarity>& placement) {
   layout_.resize(corner_count);
   for (const Solved& solved : solved_) {
     const Component& component = *solved.component;
+    const auto move = [&](Index part, Complex z) {
+      return solved.is_in_place ? z : placement[solved.first_island + part](solved.scale * z);
+    };
+    const bool is_whole = solved.part_count == 1;  // its copies are moved just once each
+    Eigen::VectorXcd moved = solved.map.position;
+    if (is_whole) moved = moved.unaryExpr([&](Complex z) { return move(0, z); });
     for (Index corner = 0; corner < component.mesh.halfedge_count(); ++corner) {
-      Complex z = solved.map.position[solved.map.cut_mesh.copy_of_corner[corner]];
-      if (!solved.is_in_place) z = placement[solved.first_island + solved.part[corner / 3]](solved.scale * z);
+      Complex z = moved[solved.map.cut_mesh.copy_of_corner[corner]];
+      if (!is_whole) z = move(solved.part[corner / 3], z);
       layout_[solved.first_corner + corner] = z;
       result_.corner_uv.row(component.source_corner(corner)) << z.real(), z.imag();
     }
@@ -139,7 +145,7 @@ void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
   solved.part_count = label_parts(mesh, open, solved.part);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     const Index twin = mesh.twin[h];
-    if (twin < h || !(map.cut_graph.is_cut[h] || solved.part[h / 3] != solved.part[twin / 3])) continue;
+    if (!open[h] || twin < h || !(map.cut_graph.is_cut[h] || solved.part[h / 3] != solved.part[twin / 3])) continue;
     cut_edges_.push_back(component.source_vertex[mesh.origin(h)]);
     cut_edges_.push_back(component.source_vertex[mesh.target(h)]);
   }

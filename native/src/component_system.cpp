@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "component_system.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace lsgp {
@@ -31,6 +32,16 @@ const CutFactor* ComponentSystem::factor() {
   if (!*is_on_cut_) return nullptr;
   if (!factor_) factor_.emplace(mesh_, geometry_, all_cuts());
   return &*factor_;
+}
+
+CutSurface ComponentSystem::open(const CutGraph& cut_graph, const CutMesh& cut_mesh) {
+  CutSurface out{mesh_, geometry_, cut_graph, cut_mesh};
+  const std::vector<char>&cut = cut_graph.is_cut, &cut_here = all_cuts().is_cut;
+  if (!std::equal(cut.begin(), cut.end(), cut_here.begin(), [](char a, char b) { return a <= b; })) return out;
+  if (!frame_tree_) frame_tree_.emplace(mesh_, geometry_, all_cuts());
+  out.factor = factor();
+  out.frame_tree = &*frame_tree_;
+  return out;
 }
 
 const LogScale& ComponentSystem::log_scale() {

@@ -8,6 +8,7 @@
 #include "curvature.hpp"
 #include "cut_factor.hpp"
 #include "lsgp/options.hpp"
+#include "unfold.hpp"
 
 namespace lsgp {
 
@@ -25,6 +26,8 @@ class ComponentSystem {
   const CutGraph& all_cuts();
   // What is shared by prescription and unfolding, or null where they are better solved one by one.
   const CutFactor* factor();
+  // The surface opened along these cuts, with what serves it here: all of it where the cuts are among `all_cuts`.
+  CutSurface open(const CutGraph& cut_graph, const CutMesh& cut_mesh);
   // That of the component's metric, all cones added.
   const LogScale& log_scale();
 
@@ -38,6 +41,7 @@ class ComponentSystem {
   std::optional<bool> is_on_cut_;  // known once the cuts are
   std::optional<CutFactor> factor_;
   std::optional<LogScale> log_scale_;
+  std::optional<FrameTree> frame_tree_;
 };
 
 // Those of the vertices that lie on no border.

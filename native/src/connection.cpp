@@ -74,6 +74,11 @@ Eigen::VectorXd choose_turning(const FrameTwist& twist, const NodeGraph& nodes, 
   return unit * (round_by_energy(twist.energy(loops), exact) - exact);
 }
 
+Eigen::VectorXd integrate(const CutSurface& surface, const Eigen::VectorXd& log_scale) {
+  if (surface.frame_tree != nullptr) return surface.frame_tree->integrate(log_scale);
+  return FrameTree(surface.mesh, surface.geometry, surface.cut_graph).integrate(log_scale);
+}
+
 // How the metric turns by itself.
 struct MetricConnection {
   NodeGraph nodes;
@@ -86,7 +91,7 @@ struct MetricConnection {
       : nodes(build_node_graph(surface.mesh, surface.cut_graph,
                                [&](Index v) { return std::abs(std::sin(curvature.at_vertex[v] / 2)); })),
         node_curvature(curvature_of_nodes(surface.mesh, nodes, curvature.at_vertex)),
-        frames(integrate_frames(surface.mesh, surface.geometry, surface.cut_graph, curvature.log_scale)),
+        frames(integrate(surface, curvature.log_scale)),
         natural(read_rotations(surface.mesh, surface.geometry, surface.cut_graph, curvature.log_scale, frames)) {}
 };
 

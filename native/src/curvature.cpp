@@ -118,8 +118,7 @@ std::optional<Eigen::VectorXd> straightness(ComponentSystem& system, const Compo
     return std::nullopt;
   }
   const CutMesh cut_mesh = cut_open(mesh, system.all_cuts());
-  const StraightenedLayout layout =
-      straighten({mesh, system.geometry(), system.all_cuts(), cut_mesh, system.factor()});
+  const StraightenedLayout layout = straighten(system.open(system.all_cuts(), cut_mesh));
   const Index k = static_cast<Index>(cones.vertices.size());
   Eigen::VectorXd curvature(k);
   for (Index i = 0; i < k; ++i) curvature[i] = layout.curvature[cones.vertices[i]];

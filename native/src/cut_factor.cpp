@@ -39,11 +39,4 @@ CutFactor::CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, const C
   for (Index& own : row_of_copy_) own = factor_->place(own);
 }
 
-bool CutFactor::covers(const CutGraph& cut_graph) const {
-  for (std::size_t h = 0; h < cut_graph_.is_cut.size(); ++h) {
-    if (cut_graph.is_cut[h] && !cut_graph_.is_cut[h]) return false;
-  }
-  return true;
-}
-
 }  // namespace lsgp

@@ -29,8 +29,6 @@ class CutFactor {
 
   const CutGraph& cut_graph() const { return cut_graph_; }
   const CutMesh& cut_mesh() const { return cut_mesh_; }
-  // Whether a surface opened along other cuts can be solved with this factor: its cuts are among these.
-  bool covers(const CutGraph& cut_graph) const;
 
   // Copies that are not eliminated: those on cuts and borders.
   const std::vector<Index>& retained() const { return retained_; }

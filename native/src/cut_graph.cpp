@@ -4,35 +4,16 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
-#include <numeric>
 #include <queue>
 
 #include "text.hpp"
+#include "union_find.hpp"
 
 namespace lsgp {
 
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-class UnionFind {
- public:
-  explicit UnionFind(Index size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
-  Index find(Index i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  bool unite(Index a, Index b) {
-    a = find(a);
-    b = find(b);
-    if (a == b) return false;
-    parent_[std::max(a, b)] = std::min(a, b);
-    return true;
-  }
-
- private:
-  std::vector<Index> parent_;
-};
 
 // A cut edge runs inside the surface, along an edge of the mesh proper.
 bool may_cut(const HalfedgeMesh& mesh, Index h) { return mesh.twin[h] != none && mesh.cuttable[h]; }

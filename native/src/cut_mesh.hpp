@@ -17,14 +17,17 @@ struct CutMesh {
 };
 
 class CutFactor;
+class FrameTree;
 
-// A surface and how it is opened.
+// A surface and how it is opened.  What has been computed for a cut graph with these cuts, and maybe others, serves
+// here too.
 struct CutSurface {
   const HalfedgeMesh& mesh;
   const Geometry& geometry;
   const CutGraph& cut_graph;
   const CutMesh& cut_mesh;
   const CutFactor* factor = nullptr;  // of this geometry, where there is one
+  const FrameTree* frame_tree = nullptr;
 };
 
 // Values of copies, (copies), at the corners, (3m).

@@ -40,12 +40,10 @@ double layout_size(const CornerPositions& position) {
 }  // namespace
 
 Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, const std::vector<Index>& triangles) {
-  struct Sample {
-    double area, uv_area, ratio, inverse_square;  // sigma_1 / sigma_2, (1 / sigma_1^2 + 1 / sigma_2^2) / 2
-  };
-  std::vector<Sample> samples;
-  samples.reserve(triangles.size());
-  double area = 0, uv_area = 0;
+  Distortion out;
+  std::vector<double> ratios;  // of the areas on the surface to those in the plane
+  ratios.reserve(triangles.size());
+  double area = 0, uv_area = 0, stretch = 0;
   for (const Index f : triangles) {
     Eigen::Vector3d p[3];
     Complex z[3];
@@ -54,40 +52,38 @@ Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, 
       z[c] = {corner_uv(3 * f + c, 0), corner_uv(3 * f + c, 1)};
     }
     const Eigen::Vector3d first = p[1] - p[0], second = p[2] - p[0];
-    const double length = first.norm(), doubled = first.cross(second).norm();
+    const double square = first.squaredNorm(), doubled = first.cross(second).norm();
     if (!(doubled > 0)) continue;
-    // The triangle in its own plane: corners 0, length, x + i height.
-    const double x = first.dot(second) / length, height = doubled / length;
-    const Complex along = (z[1] - z[0]) / length, across = (z[2] - z[0] - along * x) / height;
-    const double conformal = std::sqrt(std::norm(along - Complex(0, 1) * across)) / 2,
-                 mirrored = std::sqrt(std::norm(along + Complex(0, 1) * across)) / 2;
-    // By the area, not as a difference, which would lose the digits of thin images.
+    // The derivatives along the first edge and across it, times the edge's length and the doubled area.
+    const Complex along = (z[1] - z[0]) * doubled, across = (z[2] - z[0]) * square - (z[1] - z[0]) * first.dot(second);
+    const double both = std::sqrt(std::norm(along - Complex(0, 1) * across)) +
+                        std::sqrt(std::norm(along + Complex(0, 1) * across));
+    const double largest_square = both * both / (4 * square * doubled * doubled);  // singular value
+    // The product of both by the area, not as a difference, which would lose the digits of thin images.
     const double uv_doubled = std::abs(std::imag(std::conj(z[1] - z[0]) * (z[2] - z[0])));
-    const double largest = conformal + mirrored, smallest = uv_doubled / doubled / largest;
-    samples.push_back(
-        {doubled / 2, uv_doubled / 2, largest / smallest, (1 / (largest * largest) + 1 / (smallest * smallest)) / 2});
-    area += samples.back().area;
-    uv_area += samples.back().uv_area;
+    const double shrinkage = doubled / uv_doubled, ratio = largest_square * shrinkage;
+    area += doubled / 2;
+    uv_area += uv_doubled / 2;
+    out.quasi_conformal += ratio;
+    out.quasi_conformal_area_weighted += ratio * doubled / 2;
+    stretch += (1 / largest_square + ratio * shrinkage) * doubled / 4;
+    ratios.push_back(shrinkage);
   }
-  Distortion out;
-  if (samples.empty()) return out;
-  std::vector<double> ratios;
-  ratios.reserve(samples.size());
+  if (ratios.empty()) return out;
   if (!(uv_area > 0)) {  // everything on one line or point
     constexpr double infinite = std::numeric_limits<double>::infinity();
     return {infinite, infinite, infinite, infinite, infinite, infinite};
   }
-  double stretch = 0;
-  for (const Sample& sample : samples) {
-    out.quasi_conformal += sample.ratio / static_cast<double>(samples.size());
-    out.quasi_conformal_area_weighted += sample.ratio * sample.area / area;
-    stretch += sample.inverse_square * sample.area / area;
-    ratios.push_back((sample.area / area) / (sample.uv_area / uv_area));
-    out.area += ratios.back() / static_cast<double>(samples.size());
+  const double count = static_cast<double>(ratios.size());
+  out.quasi_conformal /= count;
+  out.quasi_conformal_area_weighted /= area;
+  for (double& ratio : ratios) {
+    ratio *= uv_area / area;
+    out.area += ratio / count;
   }
   out.area_p10 = percentile(ratios, 0.1);
   out.area_p90 = percentile(ratios, 0.9);
-  out.l2_stretch = std::sqrt(stretch * uv_area / area);
+  out.l2_stretch = std::sqrt(stretch / area * (uv_area / area));
   return out;
 }
 
@@ -153,12 +149,13 @@ Eigen::VectorXd angle_sums(const HalfedgeMesh& mesh, const CornerPositions& posi
     for (const Index v : loop) is_measured[v] = 1;
   }
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(mesh.vertex_count());
+  const Eigen::VectorXcd at_vertex = position(mesh.outgoing);  // in one of its corners
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
     const Complex z[]{position[3 * f], position[3 * f + 1], position[3 * f + 2]};
     const bool is_upright = side(z[0], z[1], z[2]) > 0;
     for (int c = 0; c < 3; ++c) {
       const Index v = mesh.triangles(f, c);
-      is_parted[v] |= z[c] != position[mesh.outgoing[v]];
+      is_parted[v] |= z[c] != at_vertex[v];
       is_measured[v] |= !is_upright;
       if (z[(c + 1) % 3].imag() < z[c].imag() && z[(c + 2) % 3].imag() >= z[c].imag()) sums[v] += 2 * M_PI;
     }

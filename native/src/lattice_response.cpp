@@ -20,7 +20,7 @@ Eigen::MatrixXcd hermitian_part(const Eigen::MatrixXcd& matrix) { return (matrix
 class SparseResponse final : public LatticeResponse {
  public:
   SparseResponse(const CutSurface& surface, const LatticeReduction& lattice) : lattice_(lattice) {
-    const auto& [mesh, geometry, cut_graph, cut_mesh, factor] = surface;
+    const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
     const auto form = assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, lattice.reduction);
     const Index unknowns = lattice.reduction.unknown_count, count = static_cast<Index>(lattice.integers.size());
     std::vector<Index> column_of_unknown(unknowns, none);

@@ -191,9 +191,10 @@ Eigen::VectorXd LogScale::least_distortion_curvature(const Eigen::VectorXd& low,
 
 double LogScale::predicted_l2(const Eigen::VectorXd& log_scale) const {
   const double middle = (log_scale.maxCoeff() + log_scale.minCoeff()) / 2;  // keeps the exponentials in range
+  const Eigen::VectorXd factor = (log_scale.array() - middle).exp();
   double growth = 0, shrinkage = 0;
   for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
-    const double scale = std::exp(log_scale[mesh_.origin(h)] + log_scale[mesh_.target(h)] - 2 * middle);
+    const double scale = factor[mesh_.origin(h)] * factor[mesh_.target(h)];
     growth += geometry_.area[h / 3] * scale;
     shrinkage += geometry_.area[h / 3] / scale;
   }

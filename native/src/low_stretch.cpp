@@ -34,7 +34,7 @@ Eigen::VectorXd importance_of_triangles(const HalfedgeMesh& mesh, const Geometry
 
 Eigen::VectorXd scale_at_rest(const CutSurface& surface, const Curvature& curvature, double stretch,
                               const Eigen::VectorXcd& position) {
-  const auto& [mesh, geometry, cut_graph, cut_mesh, factor] = surface;
+  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
   const Eigen::VectorXd rest = (1 - stretch) * curvature.log_scale;
   const Jacobians jacobians = measure_jacobians(mesh, geometry, cut_mesh, position);
   double area = 0, rest_area = 0;
@@ -50,7 +50,7 @@ Eigen::VectorXd scale_at_rest(const CutSurface& surface, const Curvature& curvat
 Eigen::VectorXcd lower_stretch(const CutSurface& surface, const Connection& connection, const Curvature& curvature,
                                double stretch, const std::vector<char>& fixed, const Eigen::VectorXd& importance,
                                const StepHook& before_step, const Eigen::VectorXcd& position) {
-  const auto& [mesh, geometry, cut_graph, cut_mesh, factor] = surface;
+  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
   const Eigen::VectorXd rest = scale_at_rest(surface, curvature, stretch, position);
   Eigen::VectorXcd best = position;
   // One linear step takes a map without fixed vertices almost there: frames stay, lengths are those wanted.

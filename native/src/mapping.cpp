@@ -327,9 +327,7 @@ void Mapping::report_adjusted(const ComponentMap& map, const Continuation& end, 
        {ElementKind::vertices, map.cones}});
 }
 
-CutSurface Mapping::open(const ComponentMap& map) const {
-  return {mesh_, geometry_, map.cut_graph, map.cut_mesh, system_.factor()};
-}
+CutSurface Mapping::open(const ComponentMap& map) const { return system_.open(map.cut_graph, map.cut_mesh); }
 
 std::vector<Index> Mapping::aligned_edges() const {
   return task_.cones.border == BorderMode::straight ? straight_edges(mesh_, task_.cones.vertices)

@@ -66,7 +66,7 @@ class PoissonSystem::OnCut final : public Solver {
 };
 
 PoissonSystem::PoissonSystem(const CutSurface& surface, const Reduction& reduction) {
-  if (surface.factor != nullptr && surface.factor->covers(surface.cut_graph))
+  if (surface.factor != nullptr)
     solver_ = std::make_unique<OnCut>(surface, reduction);
   else
     solver_ = std::make_unique<Sparse>(surface, reduction);

@@ -20,7 +20,7 @@ Eigen::VectorXcd pull_of(const CutSurface& surface, const Jacobians& jacobians);
 
 class PoissonSystem {
  public:
-  // Solved on the cut where the surface comes with a factor that covers its cuts, sparse otherwise.
+  // Solved on the cut where the surface comes with a factor, sparse otherwise.
   PoissonSystem(const CutSurface& surface, const Reduction& reduction);
   ~PoissonSystem();
 

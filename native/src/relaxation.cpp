@@ -91,7 +91,7 @@ Relaxation::Relaxation(const CutSurface& surface, const Eigen::VectorXd& log_sca
       before_step_(std::move(before_step)),
       position_(position),
       hessian_(2 * displacement_.unknown_count) {
-  const auto& [mesh, geometry, cut_graph, cut_mesh, factor] = surface;
+  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
   shapes_.reserve(freedom.triangles.size());
   for (const Index f : freedom.triangles) {
     const double scale = std::exp(

@@ -163,7 +163,7 @@ double read_angle(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const Cut
 }  // namespace
 
 StraightenedLayout straighten(const CutSurface& surface) {
-  const auto& [mesh, geometry, cut_graph, cut_mesh, factor] = surface;
+  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
   StraightSides sides = straighten_sides(mesh, geometry, cut_graph, cut_mesh);
   StraightBoundary boundary(std::move(sides.segments), unfold_spectral(surface, sides.reduction));
 

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "text.hpp"
+#include "union_find.hpp"
 
 namespace lsgp {
 
@@ -288,22 +289,15 @@ void report_repairs(const Surface& surface, const EdgeTable& edges, const std::v
 }  // namespace
 
 Index label_parts(const HalfedgeMesh& mesh, const std::vector<char>& open, std::vector<Index>& part) {
-  part.assign(mesh.triangle_count(), none);
+  UnionFind parts(mesh.triangle_count());
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (!open[h] && h < mesh.twin[h]) parts.unite(h / 3, mesh.twin[h] / 3);
+  }
+  part.resize(mesh.triangle_count());
   Index count = 0;
-  std::vector<Index> queue;
-  for (Index seed = 0; seed < mesh.triangle_count(); ++seed) {
-    if (part[seed] != none) continue;
-    part[seed] = count;
-    queue.assign(1, seed);
-    for (std::size_t i = 0; i < queue.size(); ++i) {
-      for (Index h = 3 * queue[i]; h < 3 * queue[i] + 3; ++h) {
-        const Index twin = mesh.twin[h];
-        if (twin == none || open[h] || part[twin / 3] != none) continue;
-        part[twin / 3] = count;
-        queue.push_back(twin / 3);
-      }
-    }
-    ++count;
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    const Index lowest = parts.find(f);
+    part[f] = lowest == f ? count++ : part[lowest];
   }
   return count;
 }

@@ -13,12 +13,9 @@ namespace lsgp {
 
 namespace {
 
-// What is added to a frame's angle on crossing halfedge h from its triangle to the one on its right.
-double connection_step(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& log_scale, Index h) {
-  const Index twin = mesh.twin[h];
-  const double scale_change = log_scale[mesh.target(h)] - log_scale[mesh.origin(h)];
-  return edge_direction(geometry, h) - (edge_direction(geometry, twin) + M_PI) -
-         cotangent_weight(mesh, geometry, h) * scale_change;
+// The edge's direction in the frame on its left, less that in the frame on its right, radians.
+double turn_across(const HalfedgeMesh& mesh, const Geometry& geometry, Index h) {
+  return edge_direction(geometry, h) - (edge_direction(geometry, mesh.twin[h]) + M_PI);
 }
 
 // The copies along the open border that contains the border copy with the lowest number.
@@ -37,21 +34,29 @@ std::vector<Index> open_border(const HalfedgeMesh& mesh, const CutMesh& cut_mesh
 
 }  // namespace
 
-Eigen::VectorXd integrate_frames(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
-                                 const Eigen::VectorXd& log_scale) {
-  Eigen::VectorXd frames = Eigen::VectorXd::Zero(mesh.triangle_count());
-  std::vector<char> reached(mesh.triangle_count(), 0);
-  std::vector<Index> queue{0};
-  reached[0] = 1;
-  for (std::size_t i = 0; i < queue.size(); ++i) {
-    const Index f = queue[i];
+FrameTree::FrameTree(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph)
+    : triangle_count_(mesh.triangle_count()) {
+  steps_.reserve(triangle_count_);
+  std::vector<char> reached(triangle_count_, 0);
+  const auto leave = [&](Index f) {
     for (Index h = 3 * f; h < 3 * f + 3; ++h) {
       const Index twin = mesh.twin[h];
       if (twin == none || cut_graph.is_cut[h] || reached[twin / 3]) continue;
       reached[twin / 3] = 1;
-      frames[twin / 3] = frames[f] + connection_step(mesh, geometry, log_scale, h);
-      queue.push_back(twin / 3);
+      steps_.push_back({f, twin / 3, mesh.origin(h), mesh.target(h), turn_across(mesh, geometry, h),
+                        cotangent_weight(mesh, geometry, h)});
     }
+  };
+  reached[0] = 1;
+  leave(0);
+  for (std::size_t i = 0; i < steps_.size(); ++i) leave(steps_[i].to);
+}
+
+Eigen::VectorXd FrameTree::integrate(const Eigen::VectorXd& log_scale) const {
+  Eigen::VectorXd frames = Eigen::VectorXd::Zero(triangle_count_);
+  for (const Step& step : steps_) {
+    const double scale_change = log_scale[step.head] - log_scale[step.tail];
+    frames[step.to] = frames[step.from] + step.turn - step.weight * scale_change;
   }
   return frames;
 }
@@ -61,7 +66,9 @@ Eigen::VectorXd read_rotations(const HalfedgeMesh& mesh, const Geometry& geometr
   Eigen::VectorXd rotation(cut_graph.cuts.size());
   for (Eigen::Index p = 0; p < rotation.size(); ++p) {
     const Index h = cut_graph.cuts[p].halfedges.front();
-    rotation[p] = frames[mesh.twin[h] / 3] - frames[h / 3] - connection_step(mesh, geometry, log_scale, h);
+    const double scale_change = log_scale[mesh.target(h)] - log_scale[mesh.origin(h)];
+    const double step = turn_across(mesh, geometry, h) - cotangent_weight(mesh, geometry, h) * scale_change;
+    rotation[p] = frames[mesh.twin[h] / 3] - frames[h / 3] - step;
   }
   return rotation;
 }
@@ -122,10 +129,10 @@ Eigen::MatrixXd FrameTwist::energy(const Eigen::MatrixXd& changes) const {
 Jacobians prescribed_jacobians(const HalfedgeMesh& mesh, const Eigen::VectorXd& log_scale,
                                const Eigen::VectorXd& frames) {
   Jacobians out{Eigen::VectorXcd(frames.size()), Eigen::VectorXcd::Zero(frames.size())};
+  const Eigen::VectorXd share = (log_scale / 3).array().exp();  // of a corner in its triangle's scale
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
-    double scale = 0;
-    for (int c = 0; c < 3; ++c) scale += log_scale[mesh.triangles(f, c)] / 3;
-    out.f_z[f] = std::polar(std::exp(scale), frames[f]);
+    const double scale = share[mesh.triangles(f, 0)] * share[mesh.triangles(f, 1)] * share[mesh.triangles(f, 2)];
+    out.f_z[f] = std::polar(scale, frames[f]);
   }
   return out;
 }
@@ -157,7 +164,7 @@ Eigen::VectorXd metric_directions(const HalfedgeMesh& mesh, const Geometry& geom
 Eigen::VectorXcd unfold_aligned(const CutSurface& surface, const Reduction& reduction, const Eigen::VectorXd& log_scale,
                                 const Eigen::VectorXd& frames, const std::vector<Index>& edges,
                                 const Eigen::VectorXd& directions) {
-  const auto& [mesh, geometry, cut_graph, cut_mesh, factor] = surface;
+  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
   const Eigen::SparseMatrix<Complex> form = assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction);
   const Eigen::VectorXcd pull = gather(reduction, pull_of(surface, prescribed_jacobians(mesh, log_scale, frames)));
   // Unknown k becomes its real part, 2k, and its imaginary part, 2k + 1.
@@ -202,13 +209,14 @@ Eigen::VectorXcd unfold_aligned(const CutSurface& surface, const Reduction& redu
 
 // Off the cuts both forms are the same, so that the eigenvectors are harmonic there.
 Eigen::VectorXcd unfold_spectral(const CutSurface& surface, const Reduction& reduction) {
-  const auto& [mesh, geometry, cut_graph, cut_mesh, factor] = surface;
-  if (factor != nullptr && factor->covers(cut_graph)) {
-    const Condensation condensation(mesh, cut_mesh, *factor, reduction);
+  if (surface.factor != nullptr) {
+    const Condensation condensation(surface.mesh, surface.cut_mesh, *surface.factor, reduction);
     return condensation.extend(smallest_eigenvector(condensation.conformal_form(), condensation.dirichlet_form()));
   }
-  return expand(reduction, smallest_eigenvector(assemble_form(Form::conformal, mesh, geometry, cut_mesh, reduction),
-                                                assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction)));
+  const auto form = [&](Form kind) {
+    return assemble_form(kind, surface.mesh, surface.geometry, surface.cut_mesh, reduction);
+  };
+  return expand(reduction, smallest_eigenvector(form(Form::conformal), form(Form::dirichlet)));
 }
 
 Eigen::VectorXcd unfold_lscm(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh) {

@@ -16,9 +16,24 @@ namespace lsgp {
 // How far the flat metric e^{2y} turns every triangle's frame: the connection
 //   phi_g = phi_f + theta_f - theta_g - w (y_j - y_i)
 // across the edge from i to j with f on its left and g on its right (theta: its direction in each frame), integrated
-// over the triangles without crossing a cut.  Radians, (m).
-Eigen::VectorXd integrate_frames(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
-                                 const Eigen::VectorXd& log_scale);
+// along a spanning tree of the triangles that crosses no cut.
+class FrameTree {
+ public:
+  FrameTree(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph);
+
+  // Radians, (m).
+  Eigen::VectorXd integrate(const Eigen::VectorXd& log_scale) const;
+
+ private:
+  struct Step {
+    Index from, to;    // triangles
+    Index tail, head;  // of the edge between them, `from` on its left
+    double turn;       // theta_from - theta_to
+    double weight;
+  };
+  const Index triangle_count_;
+  std::vector<Step> steps_;  // outwards from the first triangle
+};
 
 // The rotation of every cut that those frames imply, radians modulo 2 pi: curvature fixes it but for the loops about
 // handles, where this is the rotation with least distortion.
@@ -67,7 +82,7 @@ Eigen::VectorXcd unfold_aligned(const CutSurface& surface, const Reduction& redu
                                 const Eigen::VectorXd& directions);
 
 // The map of least conformal energy at a given Dirichlet energy (Mullen et al. 2008, with a norm that transitions
-// leave invariant).  Solved on the cut where the surface comes with a factor that covers its cuts, sparse otherwise.
+// leave invariant).  Solved on the cut where the surface comes with a factor, sparse otherwise.
 Eigen::VectorXcd unfold_spectral(const CutSurface& surface, const Reduction& reduction);
 
 // Least squares conformal map of the opened surface with two pinned copies, no transitions (Levy et al. 2002).

@@ -48,7 +48,7 @@ std::vector<Index> defective_triangles(const HalfedgeMesh& mesh, const Validity&
 Eigen::VectorXcd untangle(const CutSurface& surface, const Connection& connection, const Curvature& curvature,
                           const std::vector<char>& fixed, Effort effort, Kind first, const StepHook& before_step,
                           const Eigen::VectorXcd& position) {
-  const auto& [mesh, geometry, cut_graph, cut_mesh, factor] = surface;
+  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
   const Eigen::VectorXcd motion = motion_of_copies(mesh, cut_graph, cut_mesh, connection.rotation);
   const auto check = [&, &mesh = mesh, &cut_mesh = cut_mesh](const Eigen::VectorXcd& tried) {
     return check_map(mesh, at_corners(cut_mesh, tried), curvature.at_vertex, curvature.is_free);
