@@ -32,6 +32,7 @@ const char* name(Code code) {
     case Code::seamless_impossible: return "SEAMLESS_IMPOSSIBLE";
     case Code::solver_failed: return "SOLVER_FAILED";
     case Code::grid_too_coarse: return "GRID_TOO_COARSE";
+    case Code::out_of_memory: return "OUT_OF_MEMORY";
     case Code::cancelled: return "CANCELLED";
     case Code::component_skipped: return "COMPONENT_SKIPPED";
     case Code::isolated_vertices: return "ISOLATED_VERTICES";
@@ -81,7 +82,8 @@ ErrorKind error_kind(Code code) {
     case Code::angles_impossible:
     case Code::seamless_impossible: return ErrorKind::curvature;
     case Code::solver_failed:
-    case Code::grid_too_coarse: return ErrorKind::solver;
+    case Code::grid_too_coarse:
+    case Code::out_of_memory: return ErrorKind::solver;
     case Code::cancelled: return ErrorKind::cancelled;
     default: return ErrorKind::input;
   }

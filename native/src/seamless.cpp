@@ -150,7 +150,7 @@ class GridSearch {
       if (map.validity.defects() > 0) return false;
       *part.map = std::move(map);
     } catch (const Error& error) {
-      if (error.code() == Code::cancelled) throw;
+      if (error.code() == Code::cancelled || error.code() == Code::out_of_memory) throw;
       return false;  // this pair cannot be merged, another may
     }
     *part.task = std::move(merged);

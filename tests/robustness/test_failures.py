@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from functools import cache
@@ -30,11 +31,12 @@ from lsgp.cli import main
 def size(key):
     return next(1024 * int(line.split()[1]) for line in open("/proc/self/status") if line.startswith(key))
 
-mesh = meshes.bumpy_sphere(5)
+mesh = meshes.bumpy_sphere(7 if sys.argv[1] == "fine" else 5)
 surface = lsgp.Surface(mesh.positions, mesh.triangles)
 overlapping, flipped = np.array([[1, 1, 1, 5, 4, 4], [3, 4, 1, 2, 1, 5]]) * np.pi / 2
 calls = {
     "poisson": lambda: lsgp.parameterize(surface, mesh.cones),
+    "fine": lambda: lsgp.parameterize(surface, mesh.cones),
     "spectral": lambda: lsgp.parameterize(surface, mesh.cones, None, lsgp.Options(unfold="spectral")),
     "straightness": lambda: lsgp.parameterize(surface, mesh.cones, None, lsgp.Options("straightness")),
     "low stretch": lambda: lsgp.parameterize(surface, mesh.cones, None, lsgp.Options(mode="low-stretch")),
@@ -55,6 +57,8 @@ def run():
         ended = ended if isinstance(ended, int) else "result"
     except MemoryError:
         ended = "MemoryError"
+    except lsgp.SolverError as error:
+        ended = [error.code, error.message]
 
 limit = int(sys.argv[2])
 # Linux ends a process whose stack cannot grow; that of a thread has its full size from the start.
@@ -218,12 +222,23 @@ class TestMemory:
     )
     def test_too_little_of_it_is_an_error_and_no_crash(self, call: str, percent: int) -> None:
         found = run_child(call, peak(call) * percent // 100)
-        assert found["ended"] in ("MemoryError", "result")
+        refused = found["ended"] == "MemoryError" or found["ended"][0] == "OUT_OF_MEMORY"
+        assert refused or found["ended"] == "result"
         if percent <= 50:
-            assert found["ended"] == "MemoryError"
+            assert refused
 
     def test_enough_of_it_is_a_result(self) -> None:
         assert run_child("poisson", 2 * peak("poisson"))["ended"] == "result"
+
+    def test_it_is_estimated_before_it_is_taken(self) -> None:
+        whole = peak("fine")
+        assert run_child("fine", whole * 5 // 4)["ended"] == "result"
+        found = run_child("fine", whole // 2)
+        code, message = found["ended"]
+        needed, left = (1e6 * int(number) for number in re.findall(r"(\d+) MB", message))
+        assert code == "OUT_OF_MEMORY" and needed > left
+        # The factor was asked for while the surface was all there was.
+        assert found["grown"] <= 0.5 * whole and 0.4 * whole <= needed <= whole
 
     @pytest.mark.parametrize("percent", [25, 50, 75])
     def test_the_command_line_refuses_and_writes_nothing(self, tmp_path: Path, percent: int) -> None:

@@ -51,6 +51,7 @@ enum class Code {
   // SolverError
   solver_failed,
   grid_too_coarse,
+  out_of_memory,
   // Cancelled
   cancelled,
   // warnings

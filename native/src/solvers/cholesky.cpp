@@ -9,7 +9,7 @@
 #include "solvers/checkpoint.hpp"
 #include "solvers/dense_kernels.hpp"
 #include "solvers/elimination.hpp"
-#include "solvers/huge_pages.hpp"
+#include "solvers/memory.hpp"
 
 namespace lsgp {
 
@@ -91,6 +91,9 @@ void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lowe
   const DenseKernels<Scalar>& kernels = dense_kernels<Scalar>();
   const int fronts = plan.front_count();
   ++count_of_this_thread().factorizations;
+  // The dense problems that are made of the Schur complement take up to five times as much as itself.
+  const std::size_t dense = 6 * static_cast<std::size_t>(retained()) * retained();
+  if (panels.size() == 0) require_memory((plan.panel_begin.back() + plan.stack_size + dense) * sizeof(Scalar));
   start_schur(lower);
   panels.resize(static_cast<Eigen::Index>(plan.panel_begin.back()));
   prefer_huge_pages(panels.data(), panels.size() * sizeof(Scalar));
