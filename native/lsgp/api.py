@@ -429,7 +429,8 @@ class Solver:
 
     Every call returns what `lsgp.parameterize` does and keeps what the next one may use: the surface's topology and
     geometry, and, as long as a component's cones stay where they are, its factored linear systems. Angles and all
-    options but `seams`, `border` and `factorization` may then change without a new factorization.
+    options but `seams`, `border` and `factorization`, those of seamless layouts among them, may then change without a
+    new factorization.
     Not for several threads at once.
     """
 

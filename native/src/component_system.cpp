@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "stiffness.hpp"
+
 namespace lsgp {
 
 std::vector<Index> inside_only(const HalfedgeMesh& mesh, const std::vector<Index>& vertices) {
@@ -27,21 +29,44 @@ const CutGraph& ComponentSystem::all_cuts() {
   return *all_cuts_;
 }
 
-const CutFactor* ComponentSystem::factor() {
+bool ComponentSystem::is_on_cut() {
   if (!is_on_cut_) is_on_cut_ = CutFactor::is_chosen(factorization_, mesh_, all_cuts());
-  if (!*is_on_cut_) return nullptr;
+  return *is_on_cut_;
+}
+
+bool ComponentSystem::covers(const CutGraph& cut_graph) {
+  const std::vector<char>&cut = cut_graph.is_cut, &cut_here = all_cuts().is_cut;
+  return std::equal(cut.begin(), cut.end(), cut_here.begin(), [](char a, char b) { return a <= b; });
+}
+
+const CutFactor* ComponentSystem::factor() {
+  if (!is_on_cut()) return nullptr;
   if (!factor_) factor_.emplace(mesh_, geometry_, all_cuts());
   return &*factor_;
 }
 
 CutSurface ComponentSystem::open(const CutGraph& cut_graph, const CutMesh& cut_mesh) {
   CutSurface out{mesh_, geometry_, cut_graph, cut_mesh};
-  const std::vector<char>&cut = cut_graph.is_cut, &cut_here = all_cuts().is_cut;
-  if (!std::equal(cut.begin(), cut.end(), cut_here.begin(), [](char a, char b) { return a <= b; })) return out;
+  if (!covers(cut_graph)) return out;
   if (!frame_tree_) frame_tree_.emplace(mesh_, geometry_, all_cuts());
   out.factor = factor();
   out.frame_tree = &*frame_tree_;
   return out;
+}
+
+const CutFactor* ComponentSystem::stiff_factor(const std::vector<Index>& cones, const CutGraph& cut_graph) {
+  if (!is_on_cut() || !covers(cut_graph)) return nullptr;
+  if (!stiff_factor_ || stiff_factor_->cones != cones) {
+    stiff_factor_.reset();
+    stiff_factor_.emplace(StiffFactor{cones, CutFactor(mesh_, stiffen_around(mesh_, geometry_, cones), all_cuts())});
+  }
+  return &stiff_factor_->factor;
+}
+
+void ComponentSystem::release() {
+  factor_.reset();
+  log_scale_.reset();
+  stiff_factor_.reset();
 }
 
 const LogScale& ComponentSystem::log_scale() {

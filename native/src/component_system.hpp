@@ -30,8 +30,22 @@ class ComponentSystem {
   CutSurface open(const CutGraph& cut_graph, const CutMesh& cut_mesh);
   // That of the component's metric, all cones added.
   const LogScale& log_scale();
+  // A factor of the form that is stiffened around these cones, or null where other cuts are opened than `all_cuts`, or
+  // where it is better solved another way.  Stays until it is asked for other cones.
+  const CutFactor* stiff_factor(const std::vector<Index>& cones, const CutGraph& cut_graph);
+
+  // Frees the factors, the largest of what is kept.
+  void release();
 
  private:
+  struct StiffFactor {
+    std::vector<Index> cones;
+    CutFactor factor;
+  };
+
+  bool covers(const CutGraph& cut_graph);
+  bool is_on_cut();
+
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
   const std::vector<Index> cones_;
@@ -42,6 +56,7 @@ class ComponentSystem {
   std::optional<CutFactor> factor_;
   std::optional<LogScale> log_scale_;
   std::optional<FrameTree> frame_tree_;
+  std::optional<StiffFactor> stiff_factor_;
 };
 
 // Those of the vertices that lie on no border.

@@ -84,9 +84,9 @@ class SparseResponse final : public LatticeResponse {
 // All integers are unknowns of copies on the cuts: positions of cones, or translations across cuts.
 class ResponseOnCut final : public LatticeResponse {
  public:
-  ResponseOnCut(const CutSurface& surface, const LatticeReduction& lattice)
-      : factor_(surface.mesh, surface.geometry, surface.cut_graph),
-        condensation_(surface.mesh, surface.cut_mesh, factor_, lattice.reduction) {
+  ResponseOnCut(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const CutFactor& factor,
+                const LatticeReduction& lattice)
+      : condensation_(mesh, cut_mesh, factor, lattice.reduction) {
     std::vector<char> is_integer(condensation_.unknown_count(), 0);
     for (const Index unknown : lattice.integers) {
       integers_.push_back(condensation_.number_of(unknown));
@@ -110,7 +110,6 @@ class ResponseOnCut final : public LatticeResponse {
   }
 
  private:
-  const CutFactor factor_;
   const Condensation condensation_;
   std::vector<Index> integers_, free_;  // by their condensed numbers
   Eigen::MatrixXcd following_;          // (free, d) what the free unknowns do when the integers move
@@ -122,8 +121,9 @@ std::unique_ptr<LatticeResponse> sparse_response(const CutSurface& surface, cons
   return std::make_unique<SparseResponse>(surface, lattice);
 }
 
-std::unique_ptr<LatticeResponse> response_on_cut(const CutSurface& surface, const LatticeReduction& lattice) {
-  return std::make_unique<ResponseOnCut>(surface, lattice);
+std::unique_ptr<LatticeResponse> response_on_cut(const HalfedgeMesh& mesh, const CutMesh& cut_mesh,
+                                                 const CutFactor& factor, const LatticeReduction& lattice) {
+  return std::make_unique<ResponseOnCut>(mesh, cut_mesh, factor, lattice);
 }
 
 }  // namespace lsgp

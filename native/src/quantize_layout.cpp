@@ -13,12 +13,11 @@
 
 #include "cone_triangulation.hpp"
 #include "connection.hpp"
-#include "cut_factor.hpp"
-#include "energies/quadratic_forms.hpp"
 #include "layout.hpp"
 #include "low_stretch.hpp"
 #include "quantize_curvature.hpp"
 #include "relaxation.hpp"
+#include "stiffness.hpp"
 #include "unfold.hpp"
 #include "untangle.hpp"
 
@@ -53,51 +52,10 @@ std::vector<int> turns_of_cuts(const Eigen::VectorXd& rotation, int symmetry) {
   return out;
 }
 
-// Lengths of shortest paths along edges to the nearest of some vertices, (n).
-Eigen::VectorXd distance_to(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& sources) {
-  Eigen::VectorXd out = Eigen::VectorXd::Constant(mesh.vertex_count(), std::numeric_limits<double>::infinity());
-  using Entry = std::pair<double, Index>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  const auto reach = [&](Index v, double distance) {
-    if (distance >= out[v]) return;
-    out[v] = distance;
-    queue.emplace(distance, v);
-  };
-  for (const Index v : sources) reach(v, 0);
-  while (!queue.empty()) {
-    const auto [distance, v] = queue.top();
-    queue.pop();
-    if (distance > out[v]) continue;
-    mesh.for_each_outgoing(v, [&](Index h) {
-      reach(mesh.target(h), distance + geometry.length[h]);
-      reach(mesh.origin(prev(h)), distance + geometry.length[prev(h)]);
-    });
-  }
-  return out;
-}
-
 // Roots from which all cones come out on the lattice: the nearer 1 - e^{i curvature} is to a unit the better.
 double rank_of_root(double curvature) {
   const double gap = std::abs(1.0 - std::polar(1.0, curvature));
   return gap < 1e-6 ? 0 : 1 / (1 + gap);
-}
-
-// Dirichlet weights of triangles, (m), that grow towards the cones like the inverse square of their distance.  A
-// harmonic displacement has a pole where a single vertex is moved; with these weights all that surrounds a cone moves
-// with it, and the displacement fades over its whole neighbourhood.
-Eigen::VectorXd stiffness_around(const HalfedgeMesh& mesh, const Geometry& geometry, const std::vector<Index>& cones) {
-  constexpr double stiffest = 1e4;
-  Eigen::VectorXd weight = Eigen::VectorXd::Ones(mesh.triangle_count());
-  if (cones.empty()) return weight;
-  const double radius = std::sqrt(geometry.total_area / (M_PI * static_cast<double>(cones.size())));
-  const Eigen::VectorXd distance = distance_to(mesh, geometry, cones);
-  for (Index f = 0; f < mesh.triangle_count(); ++f) {
-    double mean = 0;
-    for (int c = 0; c < 3; ++c) mean += distance[mesh.triangles(f, c)] / 3;
-    const double share = radius / std::max(mean, std::numeric_limits<double>::min());
-    weight[f] = std::clamp(share * share, 1.0, stiffest);
-  }
-  return weight;
 }
 
 }  // namespace
@@ -112,11 +70,10 @@ double symmetric_dirichlet_energy(const Geometry& geometry, const Jacobians& jac
   return std::sqrt(grown * shrunk) / geometry.area.sum();
 }
 
-LayoutQuantizer::LayoutQuantizer(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                                 const PointLattice& lattice, bool parity, const std::vector<Index>& relaxed,
-                                 Factorization factorization, StepHook before_step)
-    : mesh_(mesh),
-      geometry_(geometry),
+LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, const ComponentMap& map, const PointLattice& lattice,
+                                 bool parity, const std::vector<Index>& relaxed, StepHook before_step)
+    : mesh_(system.mesh()),
+      geometry_(system.geometry()),
       cut_graph_(map.cut_graph),
       cut_mesh_(map.cut_mesh),
       curvature_(map.curvature),
@@ -125,20 +82,22 @@ LayoutQuantizer::LayoutQuantizer(const HalfedgeMesh& mesh, const Geometry& geome
       rotation_(*map.rotation),
       relaxed_(!relaxed.empty()) {
   // With relaxed cones the root leaves the lattice too: best it is one of a pair that is too close.
-  const NodeGraph nodes = build_node_graph(mesh, map.cut_graph, [&](Index v) {
+  const NodeGraph nodes = build_node_graph(mesh_, map.cut_graph, [&](Index v) {
     return !relaxed.empty() && v == relaxed.front() ? 1 : rank_of_root(map.curvature.at_vertex[v]);
   });
-  reduction_ = impose_on_lattice(mesh, map.cut_graph, map.cut_mesh, nodes,
-                                 curvature_of_nodes(mesh, nodes, map.curvature.at_vertex),
+  reduction_ = impose_on_lattice(mesh_, map.cut_graph, map.cut_mesh, nodes,
+                                 curvature_of_nodes(mesh_, nodes, map.curvature.at_vertex),
                                  turns_of_cuts(rotation_, lattice.symmetry()), lattice, parity, relaxed);
-  motion_of_copies_ = motion_of_copies(mesh, map.cut_graph, map.cut_mesh, rotation_);
+  motion_of_copies_ = motion_of_copies(mesh_, map.cut_graph, map.cut_mesh, rotation_);
   set_start(map);
   integers_ = integers_of(start_);
 
-  const Geometry stiffened = with_weights(geometry, stiffness_around(mesh, geometry, map.cones));
-  const CutSurface stiff_surface{mesh, stiffened, map.cut_graph, map.cut_mesh};
-  const bool on_cut = CutFactor::is_chosen(factorization, mesh, map.cut_graph);
-  response_ = on_cut ? response_on_cut(stiff_surface, reduction_) : sparse_response(stiff_surface, reduction_);
+  if (const CutFactor* factor = system.stiff_factor(map.cones, map.cut_graph)) {
+    response_ = response_on_cut(mesh_, cut_mesh_, *factor, reduction_);
+  } else {
+    const Geometry stiffened = stiffen_around(mesh_, geometry_, map.cones);
+    response_ = sparse_response({mesh_, stiffened, cut_graph_, cut_mesh_}, reduction_);
+  }
   const Eigen::MatrixXcd restricted = reduction_.basis.adjoint() * response_->schur() * reduction_.basis;
   search_.emplace((restricted + restricted.adjoint()) / 2, moving_triangles(map, relaxed), lattice);
 }

@@ -31,11 +31,11 @@ struct ConePair {
 // The layouts of one map on grids of any size.  What does not depend on the size is computed once.
 class LayoutQuantizer {
  public:
+  // system: of the map's cones, and others that are flat.  Both have to outlive it.
   // map: without flips and with the right angles, its rotations multiples of the lattice's turn.
   // relaxed: cones that need not lie on the lattice.  Throws SEAMLESS_IMPOSSIBLE.
-  LayoutQuantizer(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                  const PointLattice& lattice, bool parity, const std::vector<Index>& relaxed, Factorization factorization,
-                  StepHook before_step);
+  LayoutQuantizer(ComponentSystem& system, const ComponentMap& map, const PointLattice& lattice, bool parity,
+                  const std::vector<Index>& relaxed, StepHook before_step);
 
   // The layout's longer side, where it has the surface's area.
   double extent() const { return extent_; }

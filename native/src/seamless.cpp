@@ -33,12 +33,13 @@ struct Grid {
 
 class GridSearch {
  public:
-  GridSearch(const Options& options, const PointLattice& lattice, std::vector<SeamlessPart>& parts, Monitor& monitor)
-      : options_(options),
+  GridSearch(bool parity, const PointLattice& lattice, std::vector<SeamlessPart>& parts, Monitor& monitor)
+      : parity_(parity),
         lattice_(lattice),
         parts_(parts),
         monitor_(monitor),
         quantizers_(parts.size()),
+        merged_systems_(parts.size()),
         relaxed_(parts.size()) {
     for (std::size_t i = 0; i < parts.size(); ++i) prepare(i);
   }
@@ -119,9 +120,8 @@ class GridSearch {
 
   void prepare(std::size_t part) {
     const SeamlessPart& of = parts_[part];
-    quantizers_[part] = std::make_unique<LayoutQuantizer>(of.component->mesh, *of.geometry, *of.map, lattice_,
-                                                          options_.seamless->parity, relaxed_[part],
-                                                          options_.factorization, step_);
+    quantizers_[part] =
+        std::make_unique<LayoutQuantizer>(*of.system, *of.map, lattice_, parity_, relaxed_[part], step_);
   }
 
   // One of the cones takes up the curvature of both: the one whose own is nearer to that.
@@ -145,10 +145,12 @@ class GridSearch {
     manual.prescription = PrescriptionRule::manual;
     try {
       std::vector<Finding> unsaid;
-      ComponentSystem system(mesh, *part.geometry, merged.cones, options.factorization);
-      ComponentMap map = map_component(system, merged, manual, unsaid, monitor_);
+      auto system = std::make_unique<ComponentSystem>(mesh, *part.geometry, merged.cones, options.factorization);
+      ComponentMap map = map_component(*system, merged, manual, unsaid, monitor_);
       if (map.validity.defects() > 0) return false;
       *part.map = std::move(map);
+      part.system = system.get();
+      merged_systems_[failed_] = std::move(system);
     } catch (const Error& error) {
       if (error.code() == Code::cancelled || error.code() == Code::out_of_memory) throw;
       return false;  // this pair cannot be merged, another may
@@ -158,12 +160,13 @@ class GridSearch {
     return true;
   }
 
-  const Options& options_;
+  const bool parity_;
   const PointLattice& lattice_;
   std::vector<SeamlessPart>& parts_;
   Monitor& monitor_;
   std::vector<std::unique_ptr<LayoutQuantizer>> quantizers_;
-  std::vector<std::vector<Index>> relaxed_;  // by part
+  std::vector<std::unique_ptr<ComponentSystem>> merged_systems_;  // by part, of cones that were merged
+  std::vector<std::vector<Index>> relaxed_;                       // by part
   std::vector<Index> merged_;                // the caller's vertices
   std::size_t failed_ = 0;
   // Nobody knows how many steps there will be.
@@ -398,7 +401,7 @@ SeamlessReport make_seamless(const Options& options, double unit_scale, std::vec
                              std::vector<Finding>& findings, Monitor& monitor) {
   const Seamless& seamless = *options.seamless;
   const PointLattice lattice(symmetry(seamless.lattice));
-  GridSearch search(options, lattice, parts, monitor);
+  GridSearch search(seamless.parity, lattice, parts, monitor);
   Grid grid = find_grid(options, unit_scale, search, findings);
   if (options.mode == Mode::low_stretch && options.stretch > 0) search.lower_stretch(options.stretch, grid);
   // With parity cones are at the centres of cells: around a corner of cells an odd number of them may meet.

@@ -18,6 +18,7 @@ struct SeamlessPart {
   const Geometry* geometry;
   ComponentTask* task;
   ComponentMap* map;
+  ComponentSystem* system;  // of the map
 };
 
 // Throws WRONG_PARAMETER.

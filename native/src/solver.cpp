@@ -112,7 +112,7 @@ Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& 
       geometry_of(i, result.warnings);
     }
     maps[i] = map_component(system_of(i, options), task, options, findings, monitor);
-    if (!keeps_systems_) kept_[i]->system.reset();
+    if (!keeps_systems_) kept_[i]->system->release();
     result.repair.flipped_before += maps[i]->repair.flipped_before;
     result.repair.wrong_angle_sums_before += maps[i]->repair.wrong_angle_sums_before;
     result.repair.iterations += maps[i]->repair.iterations;
@@ -127,7 +127,7 @@ Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& 
     monitor.advance(0);
     std::vector<SeamlessPart> parts;
     for (std::size_t i = 0; i < components.size(); ++i) {
-      if (maps[i]) parts.push_back({&components[i], &kept_[i]->geometry, &tasks[i], &*maps[i]});
+      if (maps[i]) parts.push_back({&components[i], &kept_[i]->geometry, &tasks[i], &*maps[i], &*kept_[i]->system});
     }
     result.seamless = make_seamless(options, work_.unit_scale, parts, result.warnings, monitor);
   }

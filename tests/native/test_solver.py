@@ -82,6 +82,25 @@ def test_changed_angles_take_no_factorization() -> None:
     assert_same(solver.parameterize(mesh.cones, options=RAW), first)
 
 
+@pytest.mark.parametrize("make", [meshes.cube, meshes.bumpy_sphere, meshes.torus])
+def test_changed_seamless_options_take_no_factorization(make: object) -> None:
+    mesh = make()
+    solver = lsgp.Solver(surface_of(mesh))
+
+    def seamless(**changed: object) -> tuple[lsgp.Result, lsgp.Result]:
+        options = lsgp.Options(repair=False, seamless=lsgp.Seamless(**changed))
+        return solver.parameterize(mesh.cones, options=options), lsgp.parameterize(
+            surface_of(mesh), mesh.cones, options=options
+        )
+
+    assert_same(*seamless(tiles=16))
+    for changed in ({"tiles": 32}, {"tiles": 24, "parity": True}, {"tiles": 16, "cell": 0.25}):
+        again, fresh = seamless(**changed)
+        assert_same(again, fresh)
+        # On a torus the twist about the handles is chosen anew.
+        assert again.factorizations == (1 if make is meshes.torus else 0)
+
+
 def test_moved_cone_is_that_of_a_fresh_start() -> None:
     mesh = meshes.bumpy_sphere()
     solver = lsgp.Solver(surface_of(mesh))
