@@ -226,7 +226,7 @@ class IntrinsicTriangulation {
     const Complex left = std::conj(at(h) - at(prev(h))) * (at(next(h)) - at(prev(h)));
     const Complex right = std::conj(at(t) - at(prev(t))) * (at(next(t)) - at(prev(t)));
     const Complex both = left * right;  // its argument is the sum of the angles opposite the edge
-    return std::imag(both) >= -delaunay_tie * std::abs(both);
+    return std::imag(both) >= -delaunay_tie * (std::abs(std::real(both)) + std::abs(std::imag(both)));
   }
 
   void restore_delaunay() {

@@ -20,13 +20,17 @@ constexpr double too_small_to_see = 1e-11;  // decreases that rounding of the ob
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double ridge = 1e-13;  // relative: cones so close that their Green's functions nearly agree
 
-// log of the weighted mean of e^x, and the shares w e^x / mean that its derivative needs.
-double log_mean_exp(const Eigen::VectorXd& weight, const Eigen::VectorXd& x, Eigen::Ref<Eigen::VectorXd> shares) {
-  const double largest = x.maxCoeff();
-  shares = weight.array() * (x.array() - largest).exp();
-  const double mean = shares.sum();
-  shares /= mean;
-  return largest + std::log(mean);
+// log mean e^{2y} + log mean e^{-2y}, weighted, and each vertex' share in the two means, (n, 2).
+double log_stretch(const Eigen::VectorXd& weight, const Eigen::VectorXd& y, Eigen::MatrixXd& shares) {
+  constexpr double most = 700;                              // that e^x can be taken of
+  const double middle = (y.maxCoeff() + y.minCoeff()) / 2;  // cancels
+  const Eigen::ArrayXd growth = (2 * (y.array() - middle)).min(most).max(-most).exp();
+  shares.resize(y.size(), 2);
+  shares.col(0) = weight.array() * growth;
+  shares.col(1) = weight.array() / growth;
+  const Eigen::RowVector2d mean = shares.colwise().sum();
+  shares.array().rowwise() /= mean.array();
+  return mean.array().log().sum();
 }
 
 // columns^T diag(weight) columns, lower triangle; some rows at a time, which stay in the cache.
@@ -48,11 +52,11 @@ Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& columns, const Eigen::Vecto
 class Stretch {
  public:
   Stretch(const Eigen::VectorXd& weight, const Eigen::MatrixXd& green)
-      : weight_(weight), green_(green), shares_(weight.size(), 2) {}
+      : weight_(weight), green_(green) {}
 
   // All that follows is of this log scale.
   double evaluate(const Eigen::VectorXd& y) {
-    return log_mean_exp(weight_, 2 * y, shares_.col(0)) + log_mean_exp(weight_, -2 * y, shares_.col(1));
+    return log_stretch(weight_, y, shares_);
   }
   Eigen::VectorXd gradient() {
     means_ = green_.transpose() * shares_;
@@ -202,8 +206,8 @@ double LogScale::predicted_l2(const Eigen::VectorXd& log_scale) const {
 }
 
 double LogScale::lumped_l2(const Eigen::VectorXd& log_scale) const {
-  Eigen::VectorXd shares(log_scale.size());
-  return std::exp((log_mean_exp(weight_, 2 * log_scale, shares) + log_mean_exp(weight_, -2 * log_scale, shares)) / 2);
+  Eigen::MatrixXd shares;
+  return std::exp(log_stretch(weight_, log_scale, shares) / 2);
 }
 
 LogScale::Variance LogScale::variance() const {
