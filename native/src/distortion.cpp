@@ -54,13 +54,13 @@ Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, 
     const Eigen::Vector3d first = p[1] - p[0], second = p[2] - p[0];
     const double square = first.squaredNorm(), doubled = first.cross(second).norm();
     if (!(doubled > 0)) continue;
-    // The derivatives along the first edge and across it, times the edge's length and the doubled area.
-    const Complex along = (z[1] - z[0]) * doubled, across = (z[2] - z[0]) * square - (z[1] - z[0]) * first.dot(second);
+    // The derivatives along the first edge and across it, times the edge's length.
+    const Complex along = z[1] - z[0], across = ((z[2] - z[0]) * square - along * first.dot(second)) / doubled;
     const double both = std::sqrt(std::norm(along - Complex(0, 1) * across)) +
                         std::sqrt(std::norm(along + Complex(0, 1) * across));
-    const double largest_square = both * both / (4 * square * doubled * doubled);  // singular value
+    const double largest_square = both * both / (4 * square);  // of the singular values
     // The product of both by the area, not as a difference, which would lose the digits of thin images.
-    const double uv_doubled = std::abs(std::imag(std::conj(z[1] - z[0]) * (z[2] - z[0])));
+    const double uv_doubled = std::abs(std::imag(std::conj(along) * (z[2] - z[0])));
     const double shrinkage = doubled / uv_doubled, ratio = largest_square * shrinkage;
     area += doubled / 2;
     uv_area += uv_doubled / 2;
