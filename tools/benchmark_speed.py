@@ -56,7 +56,7 @@ class Measured:
 def measure(case: Case, repetitions: int, laplacian: Path | None, blender: str | None) -> Measured:
     """All methods in turn, each in a process of its own, after one unmeasured run each."""
     triangles = len(case.triangles)
-    repetitions = max(1, min(repetitions, repetitions * 60_000 // triangles))
+    repetitions = max(1, min(4 * repetitions, repetitions * 60_000 // triangles))
     runs: dict[str, list[dict[str, object]]] = {}
     with tempfile.TemporaryDirectory() as name, ExitStack() as stack:
         folder = Path(name)
