@@ -66,6 +66,7 @@ const CutFactor* ComponentSystem::stiff_factor(const std::vector<Index>& cones, 
 void ComponentSystem::release() {
   factor_.reset();
   log_scale_.reset();
+  frame_tree_.reset();
   stiff_factor_.reset();
 }
 

@@ -34,7 +34,7 @@ class ComponentSystem {
   // where it is better solved another way.  Stays until it is asked for other cones.
   const CutFactor* stiff_factor(const std::vector<Index>& cones, const CutGraph& cut_graph);
 
-  // Frees the factors, the largest of what is kept.
+  // Frees what is large and can be made again.
   void release();
 
  private:

@@ -46,7 +46,7 @@ class Condensation {
   const HalfedgeMesh& mesh_;
   const CutFactor& factor_;
   const Index copy_count_;
-  std::vector<Index> own_copy_;   // (the factor's copies) as copies of the cut mesh, which may be opened along fewer cuts
+  std::vector<Index> own_copy_;   // (the factor's copies) as copies of the cut mesh, with fewer cuts
   std::vector<Index> number_of_;  // (unknowns of the reduction)
   std::vector<Index> begin_;      // (retained + 1)
   std::vector<Term> terms_;       // of retained copies, in condensed unknowns

@@ -56,8 +56,8 @@ Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, 
     if (!(doubled > 0)) continue;
     // The derivatives along the first edge and across it, times the edge's length.
     const Complex along = z[1] - z[0], across = ((z[2] - z[0]) * square - along * first.dot(second)) / doubled;
-    const double both = std::sqrt(std::norm(along - Complex(0, 1) * across)) +
-                        std::sqrt(std::norm(along + Complex(0, 1) * across));
+    const double both =
+        std::sqrt(std::norm(along - Complex(0, 1) * across)) + std::sqrt(std::norm(along + Complex(0, 1) * across));
     const double largest_square = both * both / (4 * square);  // of the singular values
     // The product of both by the area, not as a difference, which would lose the digits of thin images.
     const double uv_doubled = std::abs(std::imag(std::conj(along) * (z[2] - z[0])));

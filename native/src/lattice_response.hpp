@@ -24,8 +24,8 @@ class LatticeResponse {
 
 // One complex factorization and a back-substitution for every integer.  lattice has to outlive the response.
 std::unique_ptr<LatticeResponse> sparse_response(const CutSurface& surface, const LatticeReduction& lattice);
-// On a factor that is there already, of cuts that those of the cut mesh are among: dense problems alone.  All but the cut
-// mesh have to outlive the response.
+// On a factor that is there already, of cuts that those of the cut mesh are among: dense problems alone.  All but the
+// cut mesh have to outlive the response.
 std::unique_ptr<LatticeResponse> response_on_cut(const HalfedgeMesh& mesh, const CutMesh& cut_mesh,
                                                  const CutFactor& factor, const LatticeReduction& lattice);
 

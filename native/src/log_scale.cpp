@@ -51,13 +51,10 @@ Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& columns, const Eigen::Vecto
 // What the prescription minimises, log mean e^{2y} + log mean e^{-2y}, as a function of the cone curvatures.
 class Stretch {
  public:
-  Stretch(const Eigen::VectorXd& weight, const Eigen::MatrixXd& green)
-      : weight_(weight), green_(green) {}
+  Stretch(const Eigen::VectorXd& weight, const Eigen::MatrixXd& green) : weight_(weight), green_(green) {}
 
   // All that follows is of this log scale.
-  double evaluate(const Eigen::VectorXd& y) {
-    return log_stretch(weight_, y, shares_);
-  }
+  double evaluate(const Eigen::VectorXd& y) { return log_stretch(weight_, y, shares_); }
   Eigen::VectorXd gradient() {
     means_ = green_.transpose() * shares_;
     return 2 * (means_.col(0) - means_.col(1));

@@ -88,7 +88,7 @@ class LayoutQuantizer {
   Eigen::VectorXcd motion_of_copies_;
   double extent_ = 0, energy_ = 1;
   LatticeReduction reduction_;
-  Eigen::VectorXcd integers_;  // (d) at the start
+  Eigen::VectorXcd integers_;                  // (d) at the start
   std::unique_ptr<LatticeResponse> response_;  // of the Dirichlet form, stiffened around cones
   std::vector<ConePair> cone_pairs_;
   std::optional<LatticeSearch> search_;

@@ -167,7 +167,7 @@ class GridSearch {
   std::vector<std::unique_ptr<LayoutQuantizer>> quantizers_;
   std::vector<std::unique_ptr<ComponentSystem>> merged_systems_;  // by part, of cones that were merged
   std::vector<std::vector<Index>> relaxed_;                       // by part
-  std::vector<Index> merged_;                // the caller's vertices
+  std::vector<Index> merged_;                                     // the caller's vertices
   std::size_t failed_ = 0;
   // Nobody knows how many steps there will be.
   int steps_ = 0;

@@ -23,7 +23,7 @@ bool same_cones(const ComponentCones& a, const ComponentCones& b) {
 
 class Pipeline {
  public:
-  // keeps_systems: from one run to the next, rather than until each component is mapped.
+  // keeps_systems: from one run to the next, rather than until each component is done.
   explicit Pipeline(bool keeps_systems) : keeps_systems_(keeps_systems) {}
   Result run(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
              const Progress& progress);
@@ -42,6 +42,9 @@ class Pipeline {
                     std::vector<Finding>& findings);
   const Geometry& geometry_of(std::size_t i, std::vector<Finding>& findings);
   ComponentSystem& system_of(std::size_t i, const Options& options);
+  void release(std::size_t i) {
+    if (!keeps_systems_) kept_[i]->system->release();
+  }
 
   const bool keeps_systems_;
   Work work_;
@@ -112,7 +115,7 @@ Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& 
       geometry_of(i, result.warnings);
     }
     maps[i] = map_component(system_of(i, options), task, options, findings, monitor);
-    if (!keeps_systems_) kept_[i]->system->release();
+    release(i);
     result.repair.flipped_before += maps[i]->repair.flipped_before;
     result.repair.wrong_angle_sums_before += maps[i]->repair.wrong_angle_sums_before;
     result.repair.iterations += maps[i]->repair.iterations;
@@ -130,6 +133,9 @@ Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& 
       if (maps[i]) parts.push_back({&components[i], &kept_[i]->geometry, &tasks[i], &*maps[i], &*kept_[i]->system});
     }
     result.seamless = make_seamless(options, work_.unit_scale, parts, result.warnings, monitor);
+    for (std::size_t i = 0; i < components.size(); ++i) {
+      if (maps[i]) release(i);
+    }
   }
   const Monitor::Stage stage(monitor, "layout");
   Assembly assembly(surface, components, options, monitor, result);

@@ -62,10 +62,9 @@ void require_memory(std::size_t bytes) {
   const double left = std::min({left_on_the_machine(), left_in_the_container(), left_to_the_process()});
   if (needed <= left) return;
   constexpr double megabyte = 1e6;
-  throw Error(Code::out_of_memory,
-              concat("This surface needs ", std::ceil(needed / megabyte), " MB of memory, and ",
-                     std::max(0.0, std::floor(left / megabyte)),
-                     " MB are left. Unwrap fewer faces at once, or close other programs."));
+  throw Error(Code::out_of_memory, concat("This surface needs ", std::ceil(needed / megabyte), " MB of memory, and ",
+                                          std::max(0.0, std::floor(left / megabyte)),
+                                          " MB are left. Unwrap fewer faces at once, or close other programs."));
 }
 
 void prefer_huge_pages(void* begin, std::size_t bytes) {
