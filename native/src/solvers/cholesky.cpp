@@ -188,6 +188,7 @@ void Cholesky<Scalar>::Factor::substitute(int width, Scalar* x) const {
 template <typename Scalar>
 Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retained)
     : factor_(std::make_unique<Factor>()) {
+  keep_freed_memory();
   const int size = static_cast<int>(lower.rows());
   factor_->adjacency = adjacency_of_lower(size, lower.outerIndexPtr(), lower.innerIndexPtr());
   factor_->plan = order_elimination(factor_->adjacency, retained);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solvers/memory.hpp"
 
+#include <cstdlib>
+
 #ifdef __linux__
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -86,3 +88,20 @@ void prefer_huge_pages(void*, std::size_t) {}
 }  // namespace lsgp
 
 #endif
+
+namespace lsgp {
+
+// glibc gives freed memory back beyond twice the largest block that was freed so far, of those up to 32 MB (mallopt(3),
+// M_MMAP_THRESHOLD).  A block of that size, which is never touched, costs nothing.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  static const bool is_kept = [] {
+    void* volatile block = std::malloc((std::size_t(32) << 20) - 8192);  // volatile: compilers leave such pairs out
+    std::free(block);
+    return true;
+  }();
+  static_cast<void>(is_kept);
+#endif
+}
+
+}  // namespace lsgp
