@@ -14,7 +14,7 @@ void require_memory(std::size_t bytes);
 // microsecond when it is touched first.
 void prefer_huge_pages(void* begin, std::size_t bytes);
 
-// Lets the process keep memory that is freed, up to 64 MB, so that the next map need not have it given page by page again.
+// Lets the process keep memory that is freed, up to 64 MB, so that the next map need not be given it page by page.
 void keep_freed_memory();
 
 }  // namespace lsgp
