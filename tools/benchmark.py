@@ -36,7 +36,7 @@ def main() -> None:
     parser.add_argument("meshes", nargs="*", metavar="mesh", help=f"for rounding and shares: of {', '.join(MESHES)}")
     parser.add_argument("--tables", nargs="+", choices=TABLES, default=TABLES)
     parser.add_argument("--largest", type=int, default=1_000_000, help="triangles of the largest mesh for speed")
-    parser.add_argument("--repetitions", type=int, default=5, help="up to 60,000 triangles; fewer above")
+    parser.add_argument("--repetitions", type=int, default=5, help="at 60,000 triangles; more below, fewer above")
     parser.add_argument("--write", action="store_true", help=f"the tables of speed to {PAGE.relative_to(ROOT)}")
     arguments = parser.parse_args()
     os.environ.update(ONE_THREAD)  # libigl reads its own at its first parallel loop

@@ -56,7 +56,8 @@ class Measured:
 def measure(case: Case, repetitions: int, laplacian: Path | None, blender: str | None) -> Measured:
     """All methods in turn, each in a process of its own, after one unmeasured run each."""
     triangles = len(case.triangles)
-    repetitions = max(1, min(4 * repetitions, repetitions * 60_000 // triangles))
+    is_warm = triangles <= UNWARMED_TRIANGLES
+    repetitions = max(3 if is_warm else 1, min(4 * repetitions, repetitions * 60_000 // triangles))
     runs: dict[str, list[dict[str, object]]] = {}
     with tempfile.TemporaryDirectory() as name, ExitStack() as stack:
         folder = Path(name)
@@ -68,7 +69,6 @@ def measure(case: Case, repetitions: int, laplacian: Path | None, blender: str |
         for method, worker in _other_workers(case, read_cut(folder), laplacian, blender, folder):
             workers[method] = worker
             stack.callback(worker.close)
-        is_warm = triangles <= UNWARMED_TRIANGLES
         if not is_warm:
             runs["lsgp"] = [first]
         for repetition in range(repetitions + is_warm):
