@@ -51,8 +51,8 @@ Eigen::MatrixXcd Condensation::dirichlet_form() const {
 }
 
 // Twice the signed area is the sum of Im(conj(z_from) z_to) over the open edges, whose copies are all retained.
-Eigen::MatrixXcd Condensation::conformal_form() const {
-  Eigen::MatrixXcd out = dirichlet_form();
+Eigen::MatrixXcd Condensation::conformal_form(Eigen::MatrixXcd dirichlet_form) const {
+  Eigen::MatrixXcd out = std::move(dirichlet_form);
   const CutMesh& opened = factor_.cut_mesh();
   std::vector<Index> retained_of_copy(opened.copy_count(), none);
   for (Index i = 0; i < factor_.retained_count(); ++i) retained_of_copy[factor_.retained()[i]] = i;

@@ -23,7 +23,7 @@ class Condensation {
 
   // The forms over them, (unknowns, unknowns), lower triangles; see energies/quadratic_forms.hpp.
   Eigen::MatrixXcd dirichlet_form() const;
-  Eigen::MatrixXcd conformal_form() const;
+  Eigen::MatrixXcd conformal_form(Eigen::MatrixXcd dirichlet_form) const;
 
   // A solve with the Dirichlet form in two halves.  pull: (the factor's copies).  The first half leaves the right side
   // for the condensed unknowns, (unknowns); the other takes their values and leaves the positions of the copies,

@@ -95,8 +95,7 @@ class ResponseOnCut final : public LatticeResponse {
     for (Index i = 0; i < condensation_.unknown_count(); ++i) {
       if (!is_integer[i]) free_.push_back(i);
     }
-    Eigen::MatrixXcd form = condensation_.dirichlet_form();
-    form = Eigen::MatrixXcd(form.selfadjointView<Eigen::Lower>());
+    const Eigen::MatrixXcd form(condensation_.dirichlet_form().selfadjointView<Eigen::Lower>());
     const Eigen::MatrixXcd coupling = form(free_, integers_);
     following_ = -DenseCholesky<Complex>(form(free_, free_)).solve(coupling);
     schur_ = hermitian_part(form(integers_, integers_) + coupling.adjoint() * following_);

@@ -20,7 +20,7 @@ constexpr double too_small_to_see = 1e-11;  // decreases that rounding of the ob
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double ridge = 1e-13;  // relative: cones so close that their Green's functions nearly agree
 
-// log mean e^{2y} + log mean e^{-2y}, weighted, and each vertex' share in the two means, (n, 2).
+// log mean e^{2y} + log mean e^{-2y}, weighted, and what each vertex adds to the two means, (n, 2).
 double log_stretch(const Eigen::VectorXd& weight, const Eigen::VectorXd& y, Eigen::MatrixXd& shares) {
   constexpr double most = 700;                              // that e^x can be taken of
   const double middle = (y.maxCoeff() + y.minCoeff()) / 2;  // cancels
@@ -28,9 +28,7 @@ double log_stretch(const Eigen::VectorXd& weight, const Eigen::VectorXd& y, Eige
   shares.resize(y.size(), 2);
   shares.col(0) = weight.array() * growth;
   shares.col(1) = weight.array() / growth;
-  const Eigen::RowVector2d mean = shares.colwise().sum();
-  shares.array().rowwise() /= mean.array();
-  return mean.array().log().sum();
+  return shares.colwise().sum().array().log().sum();
 }
 
 // columns^T diag(weight) columns, lower triangle; some rows at a time, which stay in the cache.
@@ -56,6 +54,8 @@ class Stretch {
   // All that follows is of this log scale.
   double evaluate(const Eigen::VectorXd& y) { return log_stretch(weight_, y, shares_); }
   Eigen::VectorXd gradient() {
+    const Eigen::RowVector2d whole = shares_.colwise().sum();
+    shares_.array().rowwise() /= whole.array();
     means_ = green_.transpose() * shares_;
     return 2 * (means_.col(0) - means_.col(1));
   }

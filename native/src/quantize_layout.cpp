@@ -4,11 +4,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
 #include <numeric>
-#include <queue>
 #include <utility>
 
 #include "cone_triangulation.hpp"

@@ -130,7 +130,7 @@ class GridSearch {
     const HalfedgeMesh& mesh = part.component->mesh;
     const Eigen::VectorXd& curvature = part.map->curvature.at_vertex;
     const double sum = curvature[pair.first] + curvature[pair.second];
-    const auto away = [&](Index v) { return std::abs(part.geometry->angle_defect[v] - sum); };
+    const auto away = [&](Index v) { return std::abs(part.system->geometry().angle_defect[v] - sum); };
     const auto [kept, given_up] =
         away(pair.first) <= away(pair.second) ? std::pair{pair.first, pair.second} : std::pair{pair.second, pair.first};
     ComponentTask merged = *part.task;
@@ -145,7 +145,8 @@ class GridSearch {
     manual.prescription = PrescriptionRule::manual;
     try {
       std::vector<Finding> unsaid;
-      auto system = std::make_unique<ComponentSystem>(mesh, *part.geometry, merged.cones, options.factorization);
+      auto system =
+          std::make_unique<ComponentSystem>(mesh, part.system->geometry(), merged.cones, options.factorization);
       ComponentMap map = map_component(*system, merged, manual, unsaid, monitor_);
       if (map.validity.defects() > 0) return false;
       *part.map = std::move(map);
@@ -414,7 +415,8 @@ SeamlessReport make_seamless(const Options& options, double unit_scale, std::vec
     if (options.overlaps == Overlaps::split) {
       // Cones off the lattice leave translations off it, across which nothing may move.
       const std::vector<char> nowhere(mesh.halfedge_count(), 0), everywhere(mesh.halfedge_count(), 1);
-      split_map(mesh, *parts[i].geometry, nowhere, search.relaxed(i).empty() ? mesh.seam : everywhere, monitor, map);
+      split_map(mesh, parts[i].system->geometry(), nowhere, search.relaxed(i).empty() ? mesh.seam : everywhere, monitor,
+                map);
     }
     layouts.push_back(divide(mesh, map));
   }
@@ -436,9 +438,9 @@ SeamlessReport make_seamless(const Options& options, double unit_scale, std::vec
       report.error = std::max(report.error, cut.error);
     }
     part.map->position *= seamless.cell;
-    area += part.geometry->total_area;
-    before += part.geometry->total_area * search.energy(i);
-    after += part.geometry->total_area * grid.layouts[i].energy;
+    area += part.system->geometry().total_area;
+    before += part.system->geometry().total_area * search.energy(i);
+    after += part.system->geometry().total_area * grid.layouts[i].energy;
   }
   report_cones_given_up(search, parts, report, findings);
   report.energy_before = before / area;

@@ -15,7 +15,6 @@ namespace lsgp {
 // A component's map, its angles multiples of the lattice's turn, and what it was made from.
 struct SeamlessPart {
   const Component* component;
-  const Geometry* geometry;
   ComponentTask* task;
   ComponentMap* map;
   ComponentSystem* system;  // of the map

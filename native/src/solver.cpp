@@ -130,7 +130,7 @@ Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& 
     monitor.advance(0);
     std::vector<SeamlessPart> parts;
     for (std::size_t i = 0; i < components.size(); ++i) {
-      if (maps[i]) parts.push_back({&components[i], &kept_[i]->geometry, &tasks[i], &*maps[i], &*kept_[i]->system});
+      if (maps[i]) parts.push_back({&components[i], &tasks[i], &*maps[i], &*kept_[i]->system});
     }
     result.seamless = make_seamless(options, work_.unit_scale, parts, result.warnings, monitor);
     for (std::size_t i = 0; i < components.size(); ++i) {

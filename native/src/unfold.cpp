@@ -211,7 +211,8 @@ Eigen::VectorXcd unfold_aligned(const CutSurface& surface, const Reduction& redu
 Eigen::VectorXcd unfold_spectral(const CutSurface& surface, const Reduction& reduction) {
   if (surface.factor != nullptr) {
     const Condensation condensation(surface.mesh, surface.cut_mesh, *surface.factor, reduction);
-    return condensation.extend(smallest_eigenvector(condensation.conformal_form(), condensation.dirichlet_form()));
+    const Eigen::MatrixXcd dirichlet = condensation.dirichlet_form();
+    return condensation.extend(smallest_eigenvector(condensation.conformal_form(dirichlet), dirichlet));
   }
   const auto form = [&](Form kind) {
     return assemble_form(kind, surface.mesh, surface.geometry, surface.cut_mesh, reduction);

@@ -91,9 +91,6 @@ void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lowe
   const DenseKernels<Scalar>& kernels = dense_kernels<Scalar>();
   const int fronts = plan.front_count();
   ++count_of_this_thread().factorizations;
-  // The dense problems that are made of the Schur complement take up to five times as much as itself.
-  const std::size_t dense = 6 * static_cast<std::size_t>(retained()) * retained();
-  if (panels.size() == 0) require_memory((plan.panel_begin.back() + plan.stack_size + dense) * sizeof(Scalar));
   start_schur(lower);
   panels.resize(static_cast<Eigen::Index>(plan.panel_begin.back()));
   prefer_huge_pages(panels.data(), panels.size() * sizeof(Scalar));
@@ -192,6 +189,9 @@ Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retaine
   const int size = static_cast<int>(lower.rows());
   factor_->adjacency = adjacency_of_lower(size, lower.outerIndexPtr(), lower.innerIndexPtr());
   factor_->plan = order_elimination(factor_->adjacency, retained);
+  // The dense problems that are made of the Schur complement take up to five times as much as itself.
+  const std::size_t dense = 6 * static_cast<std::size_t>(retained) * retained;
+  require_memory((factor_->plan.panel_begin.back() + factor_->plan.stack_size + dense) * sizeof(Scalar));
   refactor(lower);
 }
 

@@ -43,7 +43,7 @@ class ShiftedInverse {
  public:
   using Scalar = double;
   template <typename Matrix>
-  ShiftedInverse(const Matrix& form, const Matrix& norm) : size_(form.rows()), factor_(form + shift * norm) {}
+  ShiftedInverse(const Matrix& form, const Matrix& norm) : size_(form.rows()), factor_(regularized(form, norm)) {}
   Eigen::Index rows() const { return 2 * size_; }
   Eigen::Index cols() const { return 2 * size_; }
   void set_shift(double) {}  // fixed when the factor was made
@@ -126,6 +126,7 @@ Eigen::VectorXcd find_smallest(const Matrix& form, const Matrix& norm) {
 }  // namespace
 
 ComplexSparse regularized(const ComplexSparse& form, const ComplexSparse& norm) { return form + shift * norm; }
+Eigen::MatrixXcd regularized(const Eigen::MatrixXcd& form, const Eigen::MatrixXcd& norm) { return form + shift * norm; }
 
 Eigen::VectorXcd smallest_eigenvector(const ComplexSparse& form, const ComplexSparse& norm) {
   return find_smallest<Cholesky<Complex>>(form, norm);

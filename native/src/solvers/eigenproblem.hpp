@@ -17,5 +17,6 @@ Eigen::VectorXcd smallest_eigenvector(const Eigen::MatrixXcd& form, const Eigen:
 // form + share * norm, share just large enough to factor a form that is singular because its map is exact.
 Eigen::SparseMatrix<std::complex<double>> regularized(const Eigen::SparseMatrix<std::complex<double>>& form,
                                                       const Eigen::SparseMatrix<std::complex<double>>& norm);
+Eigen::MatrixXcd regularized(const Eigen::MatrixXcd& form, const Eigen::MatrixXcd& norm);
 
 }  // namespace lsgp
