@@ -96,7 +96,7 @@ void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lowe
   prefer_huge_pages(panels.data(), panels.size() * sizeof(Scalar));
   Vector stack(static_cast<Eigen::Index>(plan.stack_size));
   prefer_huge_pages(stack.data(), stack.size() * sizeof(Scalar));
-  std::vector<Scalar> outer;
+  Vector outer(plan.outer_size);
   std::vector<std::size_t> update_end;  // of the updates on the stack
   std::vector<int> local(size()), waiting;
   for (int i = 0; i < fronts; ++i) {
@@ -127,7 +127,6 @@ void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lowe
         for (int r = c; r < child_below; ++r) to[local[child_rows[r]]] += from[r];
       }
     }
-    outer.resize(std::max(outer.size(), static_cast<std::size_t>(front.retained) * front.retained));
     if (!kernels.eliminate(front, outer.data())) throw_unsolvable();
     for (int c = 0; c < front.retained; ++c) {
       Scalar* column = schur.data() + static_cast<std::size_t>(below[free + c] - plan.eliminated) * retained();

@@ -5,6 +5,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace lsgp {
 
@@ -63,12 +64,25 @@ class Ordering {
 
  private:
   template <typename Visit>
-  void for_each_earlier(int at, Visit visit) const {
+  void for_each_neighbour(int at, Visit visit) const {
     const int row = out_.row_at[at];
     for (int k = adjacency_.begin[row]; k < adjacency_.begin[row + 1]; ++k) {
-      const int other = out_.position[adjacency_.neighbour[k]];
-      if (other < at && other < eliminated_) visit(other);
+      visit(out_.position[adjacency_.neighbour[k]]);
     }
+  }
+
+  template <typename Visit>
+  void for_each_earlier(int at, Visit visit) const {
+    for_each_neighbour(at, [&](int other) {
+      if (other < at && other < eliminated_) visit(other);
+    });
+  }
+
+  template <typename Visit>
+  void for_each_later(int at, Visit visit) const {
+    for_each_neighbour(at, [&](int other) {
+      if (other > at) visit(other);
+    });
   }
 
   void reduce_fill() {
@@ -153,19 +167,37 @@ class Ordering {
     invert();
   }
 
-  // Rows below the diagonal of every column: each row's entries form a subtree of the elimination tree.
+  // Rows below the diagonal of every column (Gilbert, Ng and Peyton 1994): a row's entries span a subtree of the
+  // elimination tree, which is counted where it has a leaf, less where its leaves' paths meet and above its root.
   void count_rows() {
-    count_.assign(eliminated_, 0);
-    std::vector<int> mark(eliminated_, -1);
-    for (int at = 0; at < size_; ++at) {
-      if (at < eliminated_) mark[at] = at;
-      for_each_earlier(at, [&](int column) {
-        for (; column < eliminated_ && mark[column] != at; column = parent_[column]) {
-          mark[column] = at;
-          ++count_[column];
-        }
+    std::vector<int> first(eliminated_, -1);  // descendant of each column
+    for (int at = 0; at < eliminated_; ++at) {
+      for (int node = at; node != size_ && first[node] == -1; node = parent_[node]) first[node] = at;
+    }
+    count_.resize(eliminated_);
+    for (int at = 0; at < eliminated_; ++at) count_[at] = first[at] == at;
+    std::vector<int> ancestor(parent_), newest_first(size_, -1), newest_leaf(size_, -1);
+    const auto meet_above = [&](int leaf, int at) {  // the first on the way up that is not before `at`
+      int root = leaf;
+      while (root < at && ancestor[root] != size_) root = ancestor[root];
+      while (leaf < root) leaf = std::exchange(ancestor[leaf], root);
+      return root;
+    };
+    for (int at = 0; at < eliminated_; ++at) {
+      if (parent_[at] != size_) --count_[parent_[at]];
+      for_each_later(at, [&](int row) {
+        if (first[at] <= newest_first[row]) return;
+        newest_first[row] = first[at];
+        ++count_[at];
+        const int before = std::exchange(newest_leaf[row], at);
+        const int meeting = before == -1 ? -1 : meet_above(before, at);
+        if (meeting >= at) --count_[meeting];
       });
     }
+    for (int at = 0; at < eliminated_; ++at) {
+      if (parent_[at] != size_) count_[parent_[at]] += count_[at];
+    }
+    for (int& count : count_) --count;
   }
 
   // Whether columns that share their rows with the front that follows become part of it, at the price of zeros.
@@ -236,10 +268,11 @@ class Ordering {
     std::vector<std::size_t> held(fronts, 0);  // by the updates of a front's children
     std::size_t in_use = 0;
     for (int front = 0; front < fronts; ++front) {
-      const std::size_t columns = out_.columns(front), below = out_.below(front);
-      const std::size_t update = below * (below - out_.retained_rows[front]);
+      const std::size_t columns = out_.columns(front), below = out_.below(front), retained = out_.retained_rows[front];
+      const std::size_t update = below * (below - retained);
       out_.panel_begin.push_back(out_.panel_begin.back() + columns * (columns + below));
       out_.stack_size = std::max(out_.stack_size, in_use + update);
+      out_.outer_size = std::max(out_.outer_size, retained * retained);
       in_use += update - held[front];
       if (out_.parent[front] != -1) held[out_.parent[front]] += update;
     }

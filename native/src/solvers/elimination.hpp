@@ -28,6 +28,7 @@ struct Elimination {
   std::vector<int> retained_rows;        // (fronts) how many of them are retained
   std::vector<std::size_t> panel_begin;  // (fronts + 1) into the factor's numbers
   std::size_t stack_size = 0;            // the most numbers that updates take up at once
+  std::size_t outer_size = 0;            // and that one front adds to the Schur complement
 
   int front_count() const { return static_cast<int>(parent.size()); }
   int columns(int front) const { return first[front + 1] - first[front]; }
