@@ -17,12 +17,15 @@ std::vector<Index> inside_only(const HalfedgeMesh& mesh, const std::vector<Index
 }
 
 ComponentSystem::ComponentSystem(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
-                                 Factorization factorization)
+                                 Factorization factorization, Eigen::VectorXd memory)
     : mesh_(mesh),
       geometry_(geometry),
       cones_(cones.vertices),
       factorization_(factorization),
-      border_(border_conditions(mesh, geometry, cones)) {}
+      border_(border_conditions(mesh, geometry, cones)),
+      memory_(std::move(memory)) {}
+
+Eigen::VectorXd ComponentSystem::take_memory() { return factor_ ? factor_->take_memory() : std::move(memory_); }
 
 const CutGraph& ComponentSystem::all_cuts() {
   if (!all_cuts_) all_cuts_ = connect_cones(mesh_, geometry_, inside_only(mesh_, cones_), {});
@@ -41,7 +44,7 @@ bool ComponentSystem::covers(const CutGraph& cut_graph) {
 
 const CutFactor* ComponentSystem::factor() {
   if (!is_on_cut()) return nullptr;
-  if (!factor_) factor_.emplace(mesh_, geometry_, all_cuts());
+  if (!factor_) factor_.emplace(mesh_, geometry_, all_cuts(), std::move(memory_));
   return &*factor_;
 }
 

@@ -14,9 +14,10 @@ namespace lsgp {
 
 class ComponentSystem {
  public:
-  // cones: their angles do not matter here.
+  // cones: their angles do not matter here.  memory: of a system that is not needed any more.
   ComponentSystem(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
-                  Factorization factorization);
+                  Factorization factorization, Eigen::VectorXd memory = {});
+  Eigen::VectorXd take_memory();
 
   const HalfedgeMesh& mesh() const { return mesh_; }
   const Geometry& geometry() const { return geometry_; }
@@ -51,6 +52,7 @@ class ComponentSystem {
   const std::vector<Index> cones_;
   const Factorization factorization_;
   const BorderConditions border_;
+  Eigen::VectorXd memory_;  // for the factor, until there is one
   std::optional<CutGraph> all_cuts_;
   std::optional<bool> is_on_cut_;  // known once the cuts are
   std::optional<CutFactor> factor_;

@@ -2,6 +2,7 @@
 #include "cut_factor.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "energies/quadratic_forms.hpp"
 
@@ -21,7 +22,8 @@ bool CutFactor::is_chosen(Factorization asked, const HalfedgeMesh& mesh, const C
   return copies <= worth_while * std::sqrt(static_cast<double>(mesh.vertex_count()));
 }
 
-CutFactor::CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph)
+CutFactor::CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
+                     Eigen::VectorXd memory)
     : cut_graph_(cut_graph), cut_mesh_(cut_open(mesh, cut_graph_)) {
   const std::vector<char> on_cut = on_cuts(mesh, cut_graph_);
   const Index copies = cut_mesh_.copy_count();
@@ -35,7 +37,7 @@ CutFactor::CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, const C
       row_of_copy_[copy] = row++;
   }
   for (const Index copy : retained_) row_of_copy_[copy] = row++;
-  factor_.emplace(assemble_dirichlet(mesh, geometry, cut_mesh_, row_of_copy_), retained_count());
+  factor_.emplace(assemble_dirichlet(mesh, geometry, cut_mesh_, row_of_copy_), retained_count(), std::move(memory));
   for (Index& own : row_of_copy_) own = factor_->place(own);
 }
 

@@ -20,8 +20,9 @@ namespace lsgp {
 
 class CutFactor {
  public:
-  // cut_graph: has to outlive it.
-  CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph);
+  // cut_graph: has to outlive it.  memory: of a factor that is not needed any more.
+  CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph, Eigen::VectorXd memory = {});
+  Eigen::VectorXd take_memory() { return factor_->take_memory(); }
 
   // Whether systems are to be solved with such a factor: as asked, or else where cuts and borders are short enough for
   // the dense problems to be worth while.

@@ -79,7 +79,10 @@ ComponentSystem& Pipeline::system_of(std::size_t i, const Options& options) {
   Kept& kept = *kept_[i];
   const ComponentCones& cones = work_.tasks[i].cones;
   if (!kept.system || !same_cones(kept.cones, cones) || kept.factorization != options.factorization) {
-    kept.system.emplace(work_.topology.components[i].mesh, kept.geometry, cones, options.factorization);
+    Eigen::VectorXd memory;
+    if (kept.system) memory = kept.system->take_memory();
+    kept.system.emplace(work_.topology.components[i].mesh, kept.geometry, cones, options.factorization,
+                        std::move(memory));
     kept.cones = cones;
     kept.factorization = options.factorization;
   }

@@ -92,8 +92,6 @@ void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lowe
   const int fronts = plan.front_count();
   ++count_of_this_thread().factorizations;
   start_schur(lower);
-  panels.resize(static_cast<Eigen::Index>(plan.panel_begin.back()));
-  prefer_huge_pages(panels.data(), panels.size() * sizeof(Scalar));
   Vector stack(static_cast<Eigen::Index>(plan.stack_size));
   prefer_huge_pages(stack.data(), stack.size() * sizeof(Scalar));
   Vector outer(plan.outer_size);
@@ -182,7 +180,7 @@ void Cholesky<Scalar>::Factor::substitute(int width, Scalar* x) const {
 }
 
 template <typename Scalar>
-Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retained)
+Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retained, Vector memory)
     : factor_(std::make_unique<Factor>()) {
   keep_freed_memory();
   const int size = static_cast<int>(lower.rows());
@@ -190,8 +188,19 @@ Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retaine
   factor_->plan = order_elimination(factor_->adjacency, retained);
   // The dense problems that are made of the Schur complement take up to five times as much as itself.
   const std::size_t dense = 6 * static_cast<std::size_t>(retained) * retained;
-  require_memory((factor_->plan.panel_begin.back() + factor_->plan.stack_size + dense) * sizeof(Scalar));
+  const std::size_t numbers = factor_->plan.panel_begin.back();
+  const bool fits = numbers <= static_cast<std::size_t>(memory.size());
+  if (!fits) memory.resize(0);
+  require_memory(((fits ? 0 : numbers) + factor_->plan.stack_size + dense) * sizeof(Scalar));
+  if (!fits) memory.resize(static_cast<Eigen::Index>(numbers));
+  prefer_huge_pages(memory.data(), memory.size() * sizeof(Scalar));
+  factor_->panels = std::move(memory);
   refactor(lower);
+}
+
+template <typename Scalar>
+typename Cholesky<Scalar>::Vector Cholesky<Scalar>::take_memory() {
+  return std::move(factor_->panels);
 }
 
 template <typename Scalar>

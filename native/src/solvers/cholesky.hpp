@@ -33,9 +33,12 @@ class Cholesky {
   using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
   // lower: the lower triangle with its diagonal.  retained: that many of the last rows are not eliminated; what the
-  // elimination of the others makes of them is their Schur complement.
+  // elimination of the others makes of them is their Schur complement.  memory: of a factor that is not needed any
+  // more.
   // Throws SOLVER_FAILED where the eliminated part is not positive definite.
-  explicit Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retained = 0);
+  explicit Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retained = 0, Vector memory = {});
+  // What is left solves nothing.
+  Vector take_memory();
   // Factors another matrix whose entries are in the same places; a part of the work is saved.
   void refactor(const Eigen::SparseMatrix<Scalar>& lower);
   ~Cholesky();
