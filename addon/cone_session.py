@@ -200,6 +200,11 @@ class ConeSession:
         kept = [i for i, cone in enumerate(report.cones) if cone in self._cones]
         return replace(report, cones=[report.cones[i] for i in kept], cone_angles=[report.cone_angles[i] for i in kept])
 
+    @property
+    def stretch(self) -> float | None:
+        """L2, 1 being none, of the map as it is shown; None where nothing is known of it."""
+        return None if self._report is None else self._report.distortion["l2_stretch"]
+
     def marked(self) -> ConeAngles:
         """The cones as they are, by vertex."""
         vertices = self.cones

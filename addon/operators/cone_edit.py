@@ -227,6 +227,8 @@ class MESH_OT_cone_edit(bpy.types.Operator):
             if angle is not None and session.is_automatic(session.active):
                 shown += " (automatic)"
             texts.append(f"Angle: [{self._typed.text}|]°" if self._typed.text else f"Angle: {shown}")
+        if session.stretch is not None:
+            texts.append(f"Stretch: {session.stretch:.3f} (1 is none)")
         if self._problem:
             texts.append(self._problem)
         return "  |  ".join(texts)

@@ -212,6 +212,21 @@ def test_the_finished_map_is_that_of_the_operator():
     assert abs(edited.l2_stretch() - direct.l2_stretch()) < 1e-4
 
 
+def test_the_stretch_told_is_that_of_the_map():
+    ball = add_ball()
+    session = begin(ball)
+    assert session.stretch is None
+    session.add(session.cones[0])
+    session.set_angle(math.pi)
+    follow(session)
+    sharp = session.stretch
+    assert abs(sharp - UvMap(ball).l2_stretch()) < 1e-4
+    session.set_angle(None)
+    follow(session)
+    assert session.stretch < sharp
+    session.put_back()
+
+
 def test_islands_stay_where_they_were():
     ball = add_ball()
     bpy.ops.uv.cone_unwrap()

@@ -25,15 +25,7 @@ def python_with_bpy() -> str | None:
     return sys.executable if importlib.util.find_spec("bpy") else None
 
 
-def by_blender() -> list:
-    """Real Blenders as parameters; the tests of one go to one worker of pytest-xdist, which runs it once."""
-    found = real_blenders()
-    if not found:
-        return [pytest.param(None, id="none")]
-    return [pytest.param(blender, id=blender.name, marks=pytest.mark.xdist_group(blender.name)) for blender in found]
-
-
-@pytest.fixture(scope="session", params=by_blender())
+@pytest.fixture(scope="session", params=real_blenders() or [None], ids=lambda found: found.name if found else "none")
 def real_blender(request: pytest.FixtureRequest) -> RealBlender:
     """A Blender executable; every one there is in turn."""
     if request.param is None:

@@ -10,8 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-from blenders import RealBlender, leave_out, real_blenders
+from blenders import leave_out, real_blenders
 
 ROOT = Path(__file__).resolve().parents[2]
 TOOL = ROOT / "tools" / "test_in_blender.py"
@@ -24,24 +23,17 @@ def run_tool(*arguments: str) -> str:
     return done.stdout
 
 
-@pytest.fixture(scope="module")
-def said_in_real_blender(real_blender: RealBlender, staged: Path) -> str:
-    """What the tool printed of its run in a Blender executable, which accepted the zip for blender.org's, too."""
-    (package,) = staged.parent.glob("*.zip")
-    window = ["--window"] if real_blender.has_screen else []
-    return run_tool(*real_blender.arguments, "--validate", str(package), *window)
-
-
 def test_addon_in_bpy(bpy_python, wheel, tmp_path):
     assert "tests, 0 failures" in run_tool("--python", bpy_python, "--wheel", str(wheel), "--out", str(tmp_path))
 
 
-def test_addon_in_a_real_blender(said_in_real_blender):
-    assert "tests, 0 failures" in said_in_real_blender
-
-
-def test_addon_in_a_window(real_blender, said_in_real_blender):
-    assert real_blender.has_screen == ("tests in a window, 0 failures" in said_in_real_blender)
+def test_addon_in_a_real_blender(real_blender, staged):
+    """In its window, too, where there is a screen; and the Blender accepts the zip for blender.org's."""
+    (package,) = staged.parent.glob("*.zip")
+    window = ["--window"] if real_blender.has_screen else []
+    said = run_tool(*real_blender.arguments, "--validate", str(package), *window)
+    assert "tests, 0 failures" in said
+    assert real_blender.has_screen == ("tests in a window, 0 failures" in said)
 
 
 def test_some_blender_has_a_window():
