@@ -79,8 +79,7 @@ ComponentSystem& Pipeline::system_of(std::size_t i, const Options& options) {
   Kept& kept = *kept_[i];
   const ComponentCones& cones = work_.tasks[i].cones;
   if (!kept.system || !same_cones(kept.cones, cones) || kept.factorization != options.factorization) {
-    Eigen::VectorXd memory;
-    if (kept.system) memory = kept.system->take_memory();
+    Eigen::VectorXd memory = kept.system ? kept.system->take_memory() : Eigen::VectorXd();
     kept.system.emplace(work_.topology.components[i].mesh, kept.geometry, cones, options.factorization,
                         std::move(memory));
     kept.cones = cones;

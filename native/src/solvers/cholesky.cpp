@@ -192,8 +192,10 @@ Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retaine
   const bool fits = numbers <= static_cast<std::size_t>(memory.size());
   if (!fits) memory.resize(0);
   require_memory(((fits ? 0 : numbers) + factor_->plan.stack_size + dense) * sizeof(Scalar));
-  if (!fits) memory.resize(static_cast<Eigen::Index>(numbers));
-  prefer_huge_pages(memory.data(), memory.size() * sizeof(Scalar));
+  if (!fits) {
+    memory.resize(static_cast<Eigen::Index>(numbers));
+    prefer_huge_pages(memory.data(), numbers * sizeof(Scalar));
+  }
   factor_->panels = std::move(memory);
   refactor(lower);
 }

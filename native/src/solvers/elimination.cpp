@@ -171,11 +171,11 @@ class Ordering {
   // elimination tree, which is counted where it has a leaf, less where its leaves' paths meet and above its root.
   void count_rows() {
     std::vector<int> first(eliminated_, -1);  // descendant of each column
+    count_.resize(eliminated_);
     for (int at = 0; at < eliminated_; ++at) {
+      count_[at] = first[at] == -1;
       for (int node = at; node != size_ && first[node] == -1; node = parent_[node]) first[node] = at;
     }
-    count_.resize(eliminated_);
-    for (int at = 0; at < eliminated_; ++at) count_[at] = first[at] == at;
     std::vector<int> ancestor(parent_), newest_first(size_, -1), newest_leaf(size_, -1);
     const auto meet_above = [&](int leaf, int at) {  // the first on the way up that is not before `at`
       int root = leaf;
