@@ -1,5 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cone Unwrap: unwrap meshes through cones, with both sides of every seam related by one rotation and translation."""
+"""Cone Unwrap: UV unwrapping through cones; one rotation and one translation relate the two sides of every seam.
+
+The code is divided into rooms. A room imports only rooms named before it; tests/architecture checks this.
+
+core: arrays, names, errors and findings; nothing is read from meshes here.
+mesh: reading and writing Blender's meshes.
+jobs: computations on what was read: in the background, in batches, for the table of angles.
+overlay: what is drawn over meshes.
+operators: Blender's operators, one per file.
+ui: menus, panels and preferences.
+"""
 
 from .registration import register, unregister
 

@@ -3,13 +3,16 @@
 
 import bpy
 
-from . import changes, command, distortion, reports, texture
+from .jobs import command
+from .mesh import changes, distortion, reports, texture
 from .operators.angle_select import MESH_OT_cone_select_one
 from .operators.angle_set import MESH_OT_cone_set_angle
 from .operators.angle_snap import MESH_OT_cone_snap_angles
 from .operators.angle_spread import MESH_OT_cone_spread_rest
 from .operators.angle_suggest import MESH_OT_cone_suggest
 from .operators.angle_update import MESH_OT_cone_update_table
+from .operators.auto_unwrap import UV_OT_cone_auto_unwrap
+from .operators.clear_data import MESH_OT_cone_clear_data
 from .operators.cone_edit import MESH_OT_cone_edit
 from .operators.cone_mark import MESH_OT_cone_mark
 from .operators.cone_place import MESH_OT_cone_place
@@ -20,10 +23,10 @@ from .operators.measure import UV_OT_cone_measure
 from .operators.scale_preview import MESH_OT_cone_preview
 from .operators.texture import UV_OT_cone_texture
 from .overlay import handlers
-from .preferences import ConeUnwrapPreferences
 from .ui import menus
 from .ui.angle_panel import VIEW3D_PT_cone_angles
 from .ui.panels import PANELS
+from .ui.preferences import ConeUnwrapPreferences
 
 CLASSES = (
     ConeUnwrapPreferences,
@@ -32,6 +35,8 @@ CLASSES = (
     MESH_OT_cone_select,
     MESH_OT_cone_place,
     MESH_OT_cone_select_reported,
+    MESH_OT_cone_clear_data,
+    UV_OT_cone_auto_unwrap,
     UV_OT_cone_unwrap,
     UV_OT_cone_measure,
     UV_OT_cone_texture,
@@ -44,23 +49,24 @@ CLASSES = (
     MESH_OT_cone_preview,
     menus.VIEW3D_MT_cone_angles,
     menus.VIEW3D_MT_cone_seeing,
+    menus.VIEW3D_MT_cone_unwrap,
     *PANELS,
     VIEW3D_PT_cone_angles,
 )
-PARTS = (changes, reports, distortion, texture, handlers, command)
+MODULES = (changes, reports, distortion, texture, handlers, command)
 
 
 def register() -> None:
     for cls in CLASSES:
         bpy.utils.register_class(cls)
-    for part in PARTS:
-        part.register()
+    for module in MODULES:
+        module.register()
     menus.append()
 
 
 def unregister() -> None:
     menus.remove()
-    for part in reversed(PARTS):
-        part.unregister()
+    for module in reversed(MODULES):
+        module.unregister()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The code blocks of the documentation, as the tests that run them need them.
 
-Fences say what a block is: ```sh for the shell, ```python, ```text for what the block before prints, in excerpts. A
-block whose first line is "# not run by the tests: WHY" is left alone; a Python block that imports bpy is run inside
-Blender.
+Fences say what a block is: ```sh for the shell, ```python, ```text for what the block before prints, in excerpts;
+```cpp, ```cmake and ```mermaid are not run. A block whose first line is "# not run by the tests: WHY" is left alone; a
+Python block that imports bpy is run inside Blender.
 """
 
 from __future__ import annotations

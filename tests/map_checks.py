@@ -18,8 +18,8 @@ RESIDUAL = 1e-12
 ANGLE = 1e-6
 
 
-def surface(mesh: Mesh, edges: object = None, seams: object = None) -> lsgp.Surface:
-    return lsgp.Surface(mesh.positions, mesh.triangles, edges, seams)
+def surface(mesh: Mesh, edges: object = None, seams: object = None, cut_costs: object = None) -> lsgp.Surface:
+    return lsgp.Surface(mesh.positions, mesh.triangles, edges, seams, cut_costs=cut_costs)
 
 
 def unwrap(

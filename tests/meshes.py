@@ -188,6 +188,15 @@ def disk_with_holes(n: int = 12, holes: int = 2) -> Mesh:
     return compact(make(mesh.positions, mesh.triangles[~gone]))
 
 
+def plate(holes: int) -> Mesh:
+    """A gently curved square with `holes` by `holes` square holes, each one cell wide and three apart; generic."""
+    n = 4 * holes
+    mesh = grid(n, n, lambda x, y: 0.3 * np.sin(0.4 * x + 0.2) * np.cos(0.3 * y) + 0.01 * np.sin(2 * x + y))
+    cell = np.concatenate([np.arange(n * n)] * 2)
+    gone = (cell // n % 4 == 1) & (cell % n % 4 == 1)
+    return compact(make(mesh.positions, mesh.triangles[~gone]))
+
+
 def cylinder(around: int = 16, along: int = 6, taper: float = 0.3) -> Mesh:
     """A tapering tube about z with two boundary loops; no cones needed."""
     mesh = _quilt(around, along, wrap_u=True, wrap_v=False)

@@ -52,12 +52,17 @@ class Opened:
     closed: NDArray[np.bool_]
     component: NDArray[np.int64]
 
-    def straight_on(self, h: NDArray[np.int64], nodes: NDArray[np.integer]) -> tuple[NDArray[np.int64], ...]:
+    def straight_on(
+        self, h: NDArray[np.int64], nodes: NDArray[np.integer], but_at: NDArray[np.bool_] | None = None
+    ) -> tuple[NDArray[np.int64], ...]:
         """Of cut halfedges h, both directions of each: those that lead to a vertex which the cut passes straight
-        through, neither branching nor ending nor a node, and those by which it goes on, as places in h."""
+        through, neither branching nor ending nor a node, and those by which it goes on, as places in h.
+
+        but_at: (3m) corners at which a node is none."""
         leaving = np.bincount(self.fan[h], minlength=len(self.closed))
         passes = self.closed & (leaving == 2)
-        passes[self.fan[np.isin(self.vertex, nodes)]] = False
+        is_node = np.isin(self.vertex, nodes)
+        passes[self.fan[is_node if but_at is None else is_node & ~but_at]] = False
         out = h[passes[self.fan[h]]]
         out = out[np.argsort(self.fan[out], kind="stable")].reshape(-1, 2)
         place = np.full(len(self.z), -1)

@@ -766,3 +766,24 @@ def unfold(
     solve = spectral_unfold if method == "spectral" else spectral_unfold_dense
     z, lambdas = solve(p, t, opened, rotations)
     return Map(as_uv(z), opened, rotations, y, closure, lambdas)
+
+
+def steiner_cost(n: int, edges: IntArray, costs: FloatArray, terminals: IntArray) -> float:
+    """Cost of the cheapest tree over the terminals (Dreyfus and Wagner 1971): exponential in their number."""
+    graph = sp.coo_matrix((costs, np.asarray(edges).T), (n, n)).tocsr()
+    distance = csgraph.dijkstra(graph, directed=False)
+    *others, last = (int(t) for t in terminals)
+    full = (1 << len(others)) - 1
+    best = np.empty((full + 1, n))  # of trees over a set of terminals and one more vertex
+    for i, terminal in enumerate(others):
+        best[1 << i] = distance[terminal]
+    for chosen in range(1, full + 1):
+        if chosen & (chosen - 1) == 0:
+            continue
+        joined = np.full(n, np.inf)
+        part = (chosen - 1) & chosen
+        while part:
+            joined = np.minimum(joined, best[part] + best[chosen ^ part])
+            part = (part - 1) & chosen
+        best[chosen] = (joined[:, None] + distance).min(axis=0)
+    return float(best[full, last])

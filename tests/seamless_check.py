@@ -114,6 +114,17 @@ def _minus(a: NDArray[np.float64], b: NDArray[np.float64]) -> tuple[NDArray[np.f
     return difference, (a - (difference - part)) + (-b - part) == 0
 
 
+def _flat_sheets(opened: Opened, z: NDArray[np.complex128]) -> NDArray[np.bool_]:
+    """Corners at a vertex of several sheets, which has one entry in the result, on those where its angle is a turn."""
+    fans = len(opened.closed)
+    corner = z.reshape(-1, 3)
+    here = np.angle((corner[:, [2, 0, 1]] - corner) * (corner[:, [1, 2, 0]] - corner).conj())
+    flat = np.abs(np.bincount(opened.fan, here.ravel(), fans) - TURN) < RELAXED
+    vertex = np.zeros(fans, np.int64)
+    vertex[opened.fan] = opened.vertex
+    return (flat & (np.bincount(vertex)[vertex] > 1))[opened.fan]
+
+
 def _cones(
     opened: Opened,
     result: lsgp.Result,
@@ -140,7 +151,7 @@ def _cones(
     ):
         if not np.array_equal(np.sort(getattr(result.seamless, listed)), np.sort(named_by(result, code))):
             faults.append(f"{code} does not name the {listed}")
-    corners = np.flatnonzero(np.isin(opened.vertex, cones) & inner & exact)
+    corners = np.flatnonzero(np.isin(opened.vertex, cones) & inner & exact & ~_flat_sheets(opened, z))
     place = z[corners] / grid.cell - grid.cone_shift
     off = np.abs(place - grid.place(grid.nearest(place)))
     if off.max(initial=0) > (0 if grid.square else last_place):
@@ -177,7 +188,7 @@ def _cuts(
     shift = (real + 1j * imag) / grid.cell
     translation = grid.nearest(shift)
     off = np.abs(shift - grid.place(translation)).max(axis=1)
-    before, after = opened.straight_on(h, result.cones)
+    before, after = opened.straight_on(h, result.cones, _flat_sheets(opened, z))
     path = labels(before, after, len(h))
     first, last = np.ones(len(h), bool), np.ones(len(h), bool)
     first[after] = last[before] = False
@@ -186,7 +197,8 @@ def _cuts(
 
     faults = []
     subtracted = (exact_real & exact_imag).all(axis=1)
-    wrong = exact & (~subtracted | (off != 0) if grid.square else off > last_place)
+    # Stored, each coordinate is off by half a unit at most, so each side by that times the root of 2.
+    wrong = exact & (~subtracted | (off != 0) if grid.square else off > np.sqrt(2) * last_place)
     if wrong.any():
         at = np.flatnonzero(wrong)[off[wrong].argmax()]
         faults.append(

@@ -38,6 +38,21 @@ def shared_mesh(name: str) -> Mesh:
     return make(positions, triangles, shared_cones(name)[0])
 
 
+def hard_mesh(name: str) -> Mesh:
+    """The mesh meshes/hard/<name>.off, polygons as fans; skips without the file."""
+    path = shared_folder() / "meshes" / "hard" / f"{name}.off"
+    if not path.is_file():
+        pytest.skip(f"{path} is missing: set LSGP_SHARED to the folder that holds meshes/ to run this test")
+    lines = [line.split() for line in path.read_text().splitlines()[1:] if line.strip()]
+    vertices, faces = int(lines[0][0]), int(lines[0][1])
+    positions = np.array(lines[1 : 1 + vertices], float)
+    triangles = []
+    for line in lines[1 + vertices : 1 + vertices + faces]:
+        face = [int(x) for x in line[1 : 1 + int(line[0])]]
+        triangles += [[face[0], face[i], face[i + 1]] for i in range(1, len(face) - 1)]
+    return make(positions, triangles)
+
+
 def shared_cones(name: str) -> tuple[list[int], list[float]]:
     """Cones of meshes/<name>.cones.json and the angles in radians that go with them; both empty without the file."""
     path = shared_folder() / "meshes" / f"{name}.cones.json"

@@ -4,7 +4,7 @@
     python tools/reference.py
 
 needs lsgp installed. In docs/, what stands between "<!-- reference: WHAT -->" and "<!-- end -->" is replaced: WHAT is
-"python NAME ..." for public names of lsgp, or "lsgp COMMAND" for the options of a command.
+"python NAME ..." for public names of lsgp, "lsgp COMMAND" for the options of a command, or "exit codes".
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ from pathlib import Path
 from typing import Any
 
 import lsgp
-from lsgp import cli
+from lsgp.cli.command import _parser
+from lsgp.run.exit_codes import OF_A_BATCH, OF_A_RUN
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 PART = re.compile(r"(<!-- reference: (.+?) -->\n).*?(<!-- end -->)", re.DOTALL)
@@ -38,14 +39,17 @@ def parts() -> Iterator[str]:
 
 def commands() -> dict[str, argparse.ArgumentParser]:
     """The parsers by command line: "lsgp", "lsgp unwrap", ..."""
-    parser = cli._parser()
+    parser = _parser()
     (subparsers,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
-    return {"lsgp": parser} | {f"lsgp {name}": command for name, command in subparsers.choices.items()}
+    return {"lsgp": parser} | {f"lsgp {name}": subparser for name, subparser in subparsers.choices.items()}
 
 
 def _filled(part: re.Match[str]) -> str:
     kind, *names = part[2].split()
-    text = "\n".join(map(_python, names)) if kind == "python" else _command(commands()[part[2]])
+    if kind == "python":
+        text = "\n".join(map(_python, names))
+    else:
+        text = _exit_codes() if kind == "exit" else _command(commands()[part[2]])
     return f"{part[1]}\n{text}\n{part[3]}"
 
 
@@ -59,6 +63,11 @@ def _command(parser: argparse.ArgumentParser) -> str:
             lines.append(f"| *{group.title}* | |")
         lines += [f"| `{_usage(action)}` | {_cell(action.help or '')} |" for action in actions]
     return "\n".join(lines) + "\n"
+
+
+def _exit_codes() -> str:
+    rows = [f"| {code} | {OF_A_RUN.get(code, '')} | {meaning} |" for code, meaning in OF_A_BATCH.items()]
+    return "\n".join(["| | of a command | of `lsgp batch` |", "|--:|---|---|", *rows]) + "\n"
 
 
 def _is_obvious(action: argparse.Action) -> bool:

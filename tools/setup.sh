@@ -52,6 +52,23 @@ set_up_system() {
     fi
 }
 
+# The header of the C++ unit tests.
+set_up_unit_tests() { [ -e /usr/include/doctest/doctest.h ] || install_packages doctest-dev; }
+
+# A Clang with the runtimes of its sanitizers and fuzzer; sets `clang`. CLANG names another than Debian's clang++.
+set_up_clang() {
+    clang=${CLANG:-clang++}
+    command -v "$clang" >/dev/null || install_packages clang
+    [ -e "$("$clang" -print-file-name="libclang_rt.fuzzer-$(uname -m).a")" ] ||
+        install_packages "libclang-rt-$("$clang" -dumpversion | cut -d. -f1)-dev"
+}
+
+# clang-tidy; CLANG_TIDY names another than Debian's newest.
+set_up_clang_tidy() {
+    export CLANG_TIDY=${CLANG_TIDY:-clang-tidy-19}
+    command -v "$CLANG_TIDY" >/dev/null || install_packages "$CLANG_TIDY"
+}
+
 # Makes a virtual environment, once: $1 its folder, then what to install there.
 set_up_python() {
     local folder=$1

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The operators, one a file."""
+"""Blender's operators, one per file, and what they share. Mathematics belongs in jobs."""

@@ -1,29 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Select Cone: one row of the table of angles."""
 
-import bmesh
 import bpy
 
-from .. import identifiers, selection
-from .common import poll_edit_mesh
+from ..core import identifiers
+from ..mesh.reader import reader
+from ..mesh.selection import VERTEX_MODE, select_elements, set_select_mode
+from .polling import EditMeshOperator
 
 
-class MESH_OT_cone_select_one(bpy.types.Operator):
+class MESH_OT_cone_select_one(EditMeshOperator, bpy.types.Operator):
     """Select Cone."""
 
     bl_idname = identifiers.SELECT_ONE
     bl_label = "Select Cone"
-    bl_description = "Select this cone alone; with Shift, beside what is selected"
+    bl_description = "Select only this cone; with Shift, extend the selection"
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
     vertex: bpy.props.IntProperty(name="Vertex", description="The cone of the active object", min=0)
     extend: bpy.props.BoolProperty(
-        name="Extend", description="Keep what is selected already", default=False, options={"SKIP_SAVE"}
+        name="Extend", description="Extend the existing selection", default=False, options={"SKIP_SAVE"}
     )
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return poll_edit_mesh(cls, context)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         self.extend = event.shift
@@ -31,10 +28,10 @@ class MESH_OT_cone_select_one(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         mesh = context.edit_object.data
-        if self.vertex >= len(bmesh.from_edit_mesh(mesh).verts):
-            self.report({"WARNING"}, "The mesh has changed; there is no such vertex any more")
+        if self.vertex >= reader(mesh).size()[0]:
+            self.report({"WARNING"}, "The mesh has changed; this vertex no longer exists")
             return {"CANCELLED"}
-        selection.set_select_mode(context, selection.VERTEX_MODE, [mesh])
-        if not selection.select_elements(mesh, self.extend, vertices=[self.vertex]):
+        set_select_mode(context, VERTEX_MODE, [mesh])
+        if not select_elements(mesh, extend=self.extend, vertices=[self.vertex]):
             self.report({"WARNING"}, "This cone is hidden; reveal it to select it")
         return {"FINISHED"}

@@ -9,20 +9,19 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from .. import identifiers, native, reporting
-from ..angle_table import degrees
-from ..angles import ConeAngles, Kind, write_angles
-from ..cones import mark_cones, marked_cones, selected_vertices
-from .angle_common import AngleOperator
-from .common import poll_edit_mesh
+from ..core import identifiers
+from ..core.cone_angles import ConeAngles, Kind
+from ..core.errors import Refused
+from ..core.region import Region
+from ..core.text import counted, degrees
+from ..jobs.prescribing import missing_curvature
+from ..mesh.angles import write_angles
+from ..mesh.cones import mark_cones, marked_cones, selected_vertices
+from .angle_operator import AngleOperator
+from .polling import poll_edit_mesh
 
 if TYPE_CHECKING:
     import lsgp
-
-    from ..mesh_read import Region
-
-# What other angles can still mend.
-NOT_YET = {"GAUSS_BONNET", "TOO_FEW_CONES"}
 
 
 class MESH_OT_cone_set_angle(AngleOperator, bpy.types.Operator):
@@ -30,15 +29,15 @@ class MESH_OT_cone_set_angle(AngleOperator, bpy.types.Operator):
 
     bl_idname = identifiers.SET_ANGLE
     bl_label = "Set Cone Angle"
-    bl_description = "Prescribe the angle left at the selected cones, or leave it to the unwrap again"
+    bl_description = "Prescribe the angle of the selected cones, or let unwrapping choose it again"
     bl_options = {"REGISTER", "UNDO"}
 
     automatic: bpy.props.BoolProperty(
-        name="Automatic", description="The angle is found on unwrapping, where it distorts least", default=False
+        name="Automatic", description="Unwrapping chooses the angle with the least distortion", default=False
     )
     angle: bpy.props.FloatProperty(
         name="Angle",
-        description="What is left of the full turn around the cone; at a corner of the border, the angle of the corner",
+        description="Total angle around the cone, where 360° is flat; on the border, the angle of the corner",
         default=1.5 * math.pi,
         min=math.radians(0.1),
         soft_max=4 * math.pi,
@@ -48,7 +47,7 @@ class MESH_OT_cone_set_angle(AngleOperator, bpy.types.Operator):
     )
     vertex: bpy.props.IntProperty(
         name="Vertex",
-        description="Only this cone of the active object; all selected ones with -1",
+        description="Only this cone of the active object; -1 for all selected ones",
         default=-1,
         min=-1,
         options={"HIDDEN", "SKIP_SAVE"},
@@ -81,44 +80,22 @@ class MESH_OT_cone_set_angle(AngleOperator, bpy.types.Operator):
     def change(self, obj: bpy.types.Object, region: Region, cones: ConeAngles) -> tuple[str, list[lsgp.Finding]]:
         rows = np.flatnonzero(np.isin(cones.cones, self._cones(obj)))
         if not len(rows):
-            raise reporting.Refused("no selected vertex is a cone; select cones, or mark them first")
+            raise Refused("no selected vertex is a cone; select cones, or mark them first")
         angle = None if self.automatic else self.angle
         wanted = cones.fixed()
         for row in rows:
             wanted[row] = angle
-        missing = require_possible(region.surface, cones.cones, wanted, rows, self.library_options())
+        missing = missing_curvature(region.surface, cones.cones, wanted, rows, self.library_options())
         vertices = cones.cones[rows]
-        # Of full weight, where angles count.
+        # Angles count only where the weight is 1.
         mark_cones(obj, self.vertex_group, vertices)
         write_angles(obj, vertices, [angle] * len(rows), [Kind.PRESCRIBED] * len(rows))
-        said = f"{reporting.counted(len(rows), 'cone')} set to {'automatic' if angle is None else degrees(angle)}"
+        said = f"{counted(len(rows), 'cone')} set to {'automatic' if angle is None else degrees(angle)}"
         if missing:
-            said += f"; {degrees(missing)} of curvature are missing now, as the table of angles shows"
+            said += f"; {degrees(missing)} of curvature is missing now, as the table of angles shows"
         return said, []
 
     def _cones(self, obj: bpy.types.Object) -> np.ndarray:
-        """The cones that are to be set."""
+        """The cones to set, ascending."""
         chosen = [self.vertex] if self.vertex >= 0 else selected_vertices(obj.data)
         return np.intersect1d(chosen, marked_cones(obj, self.vertex_group))
-
-
-def require_possible(
-    surface: lsgp.Surface, cones: np.ndarray, angles: list[float | None], changed: np.ndarray, options: lsgp.Options
-) -> float:
-    """The curvature that is missing in parts whose ledger does not close; other angles can still mend that.
-
-    Raises LsgpError where no others can, in the parts of the changed cones.
-    """
-    lsgp = native.lsgp
-    missing = 0.0
-    for part in lsgp.build_ledger(surface, cones, angles, options):
-        own = part.cones
-        if not np.isin(own, changed).any():
-            continue
-        missing += 0.0 if part.closes else part.missing
-        try:
-            lsgp.prescribe_curvature(lsgp.part_surface(surface, part), cones[own], [angles[i] for i in own], options)
-        except lsgp.LsgpError as error:
-            if error.code not in NOT_YET:
-                raise
-    return missing

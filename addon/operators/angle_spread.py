@@ -8,15 +8,18 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from .. import identifiers, native, reporting
-from ..angles import ConeAngles, Kind, write_angles
-from ..cones import selected_vertices
-from .angle_common import AngleOperator
+from ..core import identifiers
+from ..core.cone_angles import ConeAngles, Kind
+from ..core.errors import Refused
+from ..core.region import Region
+from ..core.text import counted
+from ..jobs.prescribing import spread
+from ..mesh.angles import write_angles
+from ..mesh.cones import selected_vertices
+from .angle_operator import AngleOperator
 
 if TYPE_CHECKING:
     import lsgp
-
-    from ..mesh_read import Region
 
 
 class MESH_OT_cone_spread_rest(AngleOperator, bpy.types.Operator):
@@ -25,39 +28,37 @@ class MESH_OT_cone_spread_rest(AngleOperator, bpy.types.Operator):
     bl_idname = identifiers.SPREAD_REST
     bl_label = "Spread the Rest"
     bl_description = (
-        "Have the automatic cones, or those selected, take up the curvature that prescribed and snapped angles leave, "
-        "where it distorts least; their angles are then in the table"
+        "Distribute the curvature that prescribed and snapped angles leave over the automatic or the selected cones, "
+        "with the least distortion; their angles are then in the table"
     )
     bl_options = {"REGISTER", "UNDO"}
     shown = ("selected", "seams", "border")
 
     selected: bpy.props.BoolProperty(
         name="Over Selected",
-        description="Over the selected cones, whose angles are given up, instead of the automatic ones",
+        description="Over the selected cones, whose angles are replaced, instead of the automatic ones",
         default=False,
     )
 
     def change(self, obj: bpy.types.Object, region: Region, cones: ConeAngles) -> tuple[str, list[lsgp.Finding]]:
         self.require_cones(cones)
-        kept = cones.held(region.surface, self.library_options()).angles if self.selected else cones.fixed()
-        if self.selected:
-            chosen = np.isin(cones.cones, selected_vertices(obj.data) if obj.mode == "EDIT" else [])
-            kept = [None if free else angle for angle, free in zip(kept, chosen, strict=True)]
+        options = self.library_options(prescription="manual")
+        kept = self._kept(obj, region, cones)
         if all(angle is not None for angle in kept):
-            raise reporting.Refused(
+            raise Refused(
                 "no cone is selected; select those that are to take up the rest"
                 if self.selected
                 else "no cone is automatic; select those that are to take up the rest, and spread it over these"
             )
-        found = native.lsgp.prescribe_curvature(
-            region.surface, cones.cones, kept, self.library_options(prescription="manual")
-        )
-        angle_at = dict(zip(found.cones.tolist(), found.cone_angles.tolist(), strict=True))
-        spread = [
-            vertex
-            for vertex, angle in zip(cones.cones.tolist(), kept, strict=True)
-            if angle is None and vertex in angle_at
-        ]
-        write_angles(obj, spread, [angle_at[vertex] for vertex in spread], [Kind.FOUND] * len(spread))
-        said = f"spread over {reporting.counted(len(spread), 'cone')}, stretch {found.predicted_l2:.3f} expected"
-        return said, found.warnings
+        new = spread(region.surface, cones.cones, kept, options)
+        write_angles(obj, new.angles.keys(), list(new.angles.values()), [Kind.FOUND] * len(new.angles))
+        said = f"spread over {counted(len(new.angles), 'cone')}, expected stretch {new.prescription.predicted_l2:.3f}"
+        return said, new.prescription.warnings
+
+    def _kept(self, obj: bpy.types.Object, region: Region, cones: ConeAngles) -> list[float | None]:
+        """The angles that stay; None for the cones to spread over."""
+        if not self.selected:
+            return cones.fixed()
+        current = cones.without_stale(region.surface, self.library_options()).angles
+        chosen = np.isin(cones.cones, selected_vertices(obj.data) if obj.mode == "EDIT" else [])
+        return [None if free else angle for angle, free in zip(current, chosen, strict=True)]

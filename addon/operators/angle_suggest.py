@@ -8,18 +8,21 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from .. import identifiers, native, reporting, selection
-from ..angles import ConeAngles, Kind, write_angles
-from ..cones import mark_cones
-from .angle_common import AngleOperator
-from .common import SEAMS
+from ..core import identifiers
+from ..core.cone_angles import ConeAngles, Kind
+from ..core.errors import Refused
+from ..core.region import Region
+from ..jobs.gains import best_gain
+from ..mesh.angles import write_angles
+from ..mesh.cones import mark_cones
+from ..mesh.selection import VERTEX_MODE, select_elements, set_select_mode
+from .angle_operator import AngleOperator
 
 if TYPE_CHECKING:
     import lsgp
 
-    from ..mesh_read import Region
 
-# Of the stretch; less is not worth a cone.
+# Decrease of the stretch; less is not worth a cone.
 LEAST_GAIN = 1e-3
 
 
@@ -33,31 +36,20 @@ class MESH_OT_cone_suggest(AngleOperator, bpy.types.Operator):
     shown = ("mark", "seams")
 
     mark: bpy.props.BoolProperty(
-        name="Mark", description="Mark it as a cone; otherwise it is selected only", default=True
+        name="Mark", description="Mark the vertex as a cone, instead of only selecting it", default=True
     )
 
     def change(self, obj: bpy.types.Object, region: Region, cones: ConeAngles) -> tuple[str, list[lsgp.Finding]]:
-        gains = self._gains(region.surface, cones)
+        gains = best_gain(region.surface, cones, self.library_options())
         if gains.best is None or gains.present_l2 - gains.predicted_l2[gains.best] < LEAST_GAIN:
-            raise reporting.Refused("no further cone lowers the stretch by a thousandth; there is nothing to add")
+            raise Refused("no further cone lowers the stretch by a thousandth; there is nothing to suggest")
         if self.mark:
             mark_cones(obj, self.vertex_group, [gains.best])
             write_angles(obj, [gains.best], [None], [Kind.PRESCRIBED])
         if obj.mode == "EDIT":
-            selection.set_select_mode(bpy.context, selection.VERTEX_MODE, [obj.data])
-            selection.select_elements(obj.data, extend=False, vertices=[gains.best])
-        then = f"stretch {gains.predicted_l2[gains.best]:.3f} expected"
+            set_select_mode(bpy.context, VERTEX_MODE, [obj.data])
+            select_elements(obj.data, extend=False, vertices=[gains.best])
+        then = f"expected stretch {gains.predicted_l2[gains.best]:.3f}"
         if math.isfinite(gains.present_l2):
             then += f", {gains.present_l2:.3f} without it"
         return f"vertex {gains.best}, {then}", gains.warnings
-
-    def _gains(self, surface: lsgp.Surface, cones: ConeAngles) -> lsgp.ConeGains:
-        """What one more cone would do to the part where it does most."""
-        lsgp, fixed, seams = native.lsgp, cones.fixed(), SEAMS[self.seams][0]
-        gains = lsgp.cone_gains(surface, cones.cones, fixed, seams=seams)
-        parts = lsgp.build_ledger(surface, cones.cones, fixed, self.library_options())
-        if gains.best is None or len(parts) == 1:
-            return gains
-        part = next(part for part in parts if (surface.triangles[part.triangles] == gains.best).any())
-        own = part.cones
-        return lsgp.cone_gains(lsgp.part_surface(surface, part), cones.cones[own], [fixed[i] for i in own], seams=seams)

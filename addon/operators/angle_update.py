@@ -3,22 +3,19 @@
 
 import bpy
 
-from .. import angle_table, identifiers
-from .common import poll_computation
+from ..core import identifiers
+from ..jobs.angle_table import current_table, last_settings
+from .polling import ComputingOperator
 
 
-class MESH_OT_cone_update_table(bpy.types.Operator):
+class MESH_OT_cone_update_table(ComputingOperator, bpy.types.Operator):
     """Update Table."""
 
     bl_idname = identifiers.UPDATE_TABLE
     bl_label = "Update Table"
-    bl_description = "Read the cone angles of this large mesh and keep its ledger"
+    bl_description = "Read the cone angles of this large mesh and update their table"
     bl_options = {"INTERNAL"}
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return poll_computation(cls, context)
-
     def execute(self, context: bpy.types.Context) -> set[str]:
-        angle_table.current_table(context.object, angle_table.last_settings(context), asked=True)
+        current_table(context.object, last_settings(context), on_request=True)
         return {"FINISHED"}

@@ -6,40 +6,39 @@ from __future__ import annotations
 import math
 
 import bpy
-import numpy as np
 
-from .. import changes, findings, identifiers, native, reporting
-from ..angle_table import degrees
-from ..computation import Computation
-from ..cone_session import ConeSession, Step
+from ..core import findings, identifiers
+from ..core.errors import object_errors
+from ..core.text import counted, degrees
+from ..jobs.cone_session import ConeSession
+from ..jobs.following import Follower
+from ..mesh import changes
 from ..overlay import cache
-from ..screen import Screen
-from ..typed_number import TypedNumber
-from .common import poll_computation, poll_edit_mesh, require_all
-from .cone_unwrap import chosen_settings
+from ..overlay.content import session_content
+from .conclusion import conclude
+from .cursor import Cursor
+from .polling import poll_computation, poll_edit_mesh
+from .typed_number import TypedNumber
+from .unwrap_properties import unwrap_settings
 
 INTERVAL = 1 / 60
-# Seconds: steps that take less are waited for, so that they are drawn with the cursor that asked for them.
-SOON = 0.1
-# Pixels, at a scale of 1.
-RADIUS = 14
 WHEEL_STEP, FINE_STEP = math.radians(15.0), math.radians(1.0)
 NAVIGATION = {"MIDDLEMOUSE", "TRACKPADPAN", "TRACKPADZOOM", "MOUSEROTATE", "MOUSESMARTZOOM", "NDOF_MOTION"}
 WHEEL = {"WHEELUPMOUSE": 1, "WHEELDOWNMOUSE": -1}
 STATUS = (
-    "Click: add, drag: move, Ctrl-click: remove  |  Wheel over a cone or while dragging: angle, Shift: finely  |  "
-    "Digits: angle in degrees, A: automatic  |  Enter: finish  |  Esc, right click: leave all as it was"
+    "Click: add, drag: move, Ctrl-click: remove  |  Wheel over a cone or while dragging: angle, Shift: fine  |  "
+    "Digits: angle in degrees, A: automatic  |  Enter: confirm  |  Esc, right click: cancel"
 )
 
 
 class MESH_OT_cone_edit(bpy.types.Operator):
-    """A thin shell of events around a `ConeSession`."""
+    """Passes events on to a `ConeSession`."""
 
     bl_idname = identifiers.EDIT
     bl_label = "Edit Cones"
     bl_description = (
         "Add, drag and remove cones with the mouse and give them angles, while the UV map follows. "
-        "It is unwrapped as Unwrap from Cones did it last, each island where it was"
+        "The mesh is unwrapped with the settings of the last Unwrap from Cones, and each island keeps its place"
     )
     bl_options = {"UNDO"}
 
@@ -48,26 +47,24 @@ class MESH_OT_cone_edit(bpy.types.Operator):
         if not (poll_computation(cls, context) and poll_edit_mesh(cls, context)):
             return False
         if context.area is None or context.area.type != "VIEW_3D":
-            cls.poll_message_set("Point at a 3D view first")
+            cls.poll_message_set("Move the mouse over a 3D view first")
             return False
         return True
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         obj = context.edit_object
         try:
-            settings = chosen_settings(context.window_manager.operator_properties_last(identifiers.UNWRAP))
-            self._session = ConeSession(obj, require_all(obj), settings)
-        except (native.lsgp.LsgpError, reporting.Refused, MemoryError) as error:
-            return reporting.conclude(self, [], {}, {obj.name: error})
+            settings = unwrap_settings(context.window_manager.operator_properties_last(identifiers.UNWRAP))
+            self._session = ConeSession(obj, settings)
+        except object_errors() as error:
+            return conclude(self, [], {}, {obj.name: error})
         self._obj, self._uid, self._area = obj, obj.data.session_uid, context.area
-        self._region = next(region for region in context.area.regions if region.type == "WINDOW")
-        self._cursor = event.mouse_x, event.mouse_y
+        self._cursor = Cursor(obj, context.area)
+        self._cursor.follow(event)
+        self._follower = Follower(self._session)
         self._typed = TypedNumber()
-        self._dragging = self._moved = self._outdated = False
-        self._computation: Computation | None = None
-        self._step: Step | None = None
-        self._problem = ""
-        changes.hold(obj.data)
+        self._dragging = self._moved = False
+        changes.suspend(obj.data)
         self._timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
         context.window_manager.modal_handler_add(self)
         context.workspace.status_text_set(STATUS)
@@ -86,7 +83,7 @@ class MESH_OT_cone_edit(bpy.types.Operator):
         elif event.type == "TIMER":
             self._follow()
         elif event.type == "MOUSEMOVE":
-            self._cursor = event.mouse_x, event.mouse_y
+            self._cursor.follow(event)
             self._moved = True
         elif event.type in NAVIGATION or event.alt:
             return {"PASS_THROUGH"}
@@ -99,167 +96,120 @@ class MESH_OT_cone_edit(bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Also called by Blender where it ends the operator, as before another file is opened."""
-        self._stop()
-        self._session.put_back()
+        """Also called by Blender where it ends the operator, for example before another file is opened."""
+        self._follower.stop()
+        self._session.restore()
         self._end(context)
 
     # Events
 
     def _click(self, event: bpy.types.Event) -> None:
-        self._cursor = event.mouse_x, event.mouse_y
+        self._cursor.follow(event)
         if event.value == "RELEASE":
             self._dragging = False
             return
         if event.value not in {"PRESS", "DOUBLE_CLICK"}:
             return
         self._typed.clear()
-        cone = self._cone_under_cursor()
+        cone = self._cursor.cone(self._session)
         if event.ctrl:
             if cone is not None:
-                self._session.remove(cone)
+                self._session.cones.remove(cone)
                 self._changed()
             return
-        vertex = self._vertex_under_cursor() if cone is None else cone
+        vertex = self._cursor.vertex(self._session) if cone is None else cone
         if vertex is None:
             return
         self._dragging = True
-        known = cone is not None
-        self._session.add(vertex)
-        if known:
-            self._draw()
-        else:
+        self._session.cones.add(vertex)
+        if cone is None:
             self._changed()
+        else:
+            self._draw()
 
     def _turn(self, event: bpy.types.Event) -> set[str]:
-        """The wheel zooms where it is not over a cone."""
+        """Away from cones, the wheel zooms."""
         if not self._dragging:
-            cone = self._cone_under_cursor()
+            cone = self._cursor.cone(self._session)
             if cone is None:
                 return {"PASS_THROUGH"}
-            self._session.active = cone
+            self._session.cones.active = cone
         self._typed.clear()
         self._session.turn_angle(FINE_STEP if event.shift else WHEEL_STEP, WHEEL[event.type])
         self._changed()
         return {"RUNNING_MODAL"}
 
     def _type(self, event: bpy.types.Event) -> None:
-        if self._session.active is None:
+        if self._session.cones.active is None:
             return
         if event.type == "A":
             self._typed.clear()
-            self._session.set_angle(None)
+            self._session.cones.set_angle(None)
             self._changed()
         elif self._typed.press(event.type, event.unicode):
             angle = self._typed.value
             if angle:
-                self._session.set_angle(math.radians(angle))
+                self._session.cones.set_angle(math.radians(angle))
                 self._changed()
             self._draw()
 
-    # What is under the cursor
-
-    def _screen(self) -> Screen:
-        matrix = self._area.spaces.active.region_3d.perspective_matrix @ self._obj.matrix_world
-        return Screen(np.array(matrix, np.float64), self._region.width, self._region.height)
-
-    def _place(self) -> tuple[int, int]:
-        return self._cursor[0] - self._region.x, self._cursor[1] - self._region.y
-
-    def _is_inside(self) -> bool:
-        x, y = self._place()
-        return 0 <= x < self._region.width and 0 <= y < self._region.height
-
-    def _vertex_under_cursor(self) -> int | None:
-        return self._session.vertex_at(self._screen(), *self._place()) if self._is_inside() else None
-
-    def _cone_under_cursor(self) -> int | None:
-        radius = RADIUS * bpy.context.preferences.system.pixel_size
-        return self._session.cone_at(self._screen(), *self._place(), radius) if self._is_inside() else None
-
-    # Following
-
     def _changed(self) -> None:
-        self._outdated = True
+        self._follower.outdated = True
         self._draw()
 
     def _follow(self) -> None:
-        """Move the dragged cone to where the cursor is now, and have the map follow the newest state."""
+        """Move the dragged cone to the cursor, and let the map follow."""
         moved = False
         if self._dragging and self._moved:
-            vertex = self._vertex_under_cursor()
-            moved = vertex is not None and self._session.move(vertex)
+            vertex = self._cursor.vertex(self._session)
+            moved = vertex is not None and self._session.cones.move(vertex)
         self._moved = False
-        self._outdated = self._outdated or moved
-        if self._computation is None and self._outdated:
-            self._outdated = False
-            self._step = self._session.draft()
-            self._computation = Computation(self._step.solve)
-            self._take(SOON)
-        elif self._computation is not None:
-            self._take()
-        if moved and self._computation is not None:
-            # The map is late; the cone at least is where the cursor is.
+        self._follower.outdated |= moved
+        # While the map is late, at least the cone is drawn at the cursor.
+        if self._follower.follow() or (moved and self._follower.is_busy):
             self._draw()
 
-    def _take(self, seconds: float = 0.0) -> None:
-        """Show the outcome of the computation if it ends within so long."""
-        if not self._computation.finished(seconds):
-            return
-        computation, self._computation = self._computation, None
-        try:
-            self._session.show(self._step, computation.outcome())
-            self._problem = ""
-        except (native.lsgp.LsgpError, MemoryError) as error:
-            self._problem = reporting.explain(error)
-        self._draw()
+    # What is shown
 
     def _draw(self) -> None:
-        cache.show(self._obj, self._session.content())
+        cache.show(self._obj, session_content(self._obj, self._session))
         self._area.header_text_set(self._header())
 
     def _header(self) -> str:
-        session = self._session
-        texts = [f"Edit Cones: {reporting.counted(len(session.cones), 'cone')}"]
-        if session.active is not None:
-            angle = session.angle(session.active)
+        session, active = self._session, self._session.cones.active
+        texts = [f"Edit Cones: {counted(len(session.cones.vertices), 'cone')}"]
+        if active is not None:
+            angle = session.angle(active)
             shown = "automatic" if angle is None else degrees(angle)
-            if angle is not None and session.is_automatic(session.active):
+            if angle is not None and session.cones.is_automatic(active):
                 shown += " (automatic)"
             texts.append(f"Angle: [{self._typed.text}|]°" if self._typed.text else f"Angle: {shown}")
         if session.stretch is not None:
             texts.append(f"Stretch: {session.stretch:.3f} (1 is none)")
-        if self._problem:
-            texts.append(self._problem)
+        if self._follower.problem:
+            texts.append(self._follower.problem)
         return "  |  ".join(texts)
 
     # Ending
 
     def _finish(self, context: bpy.types.Context) -> set[str]:
-        self._stop()
-        if not self._session.changed:
+        self._follower.stop()
+        if not self._session.cones.changed:
             self.cancel(context)
             return {"CANCELLED"}
         name = self._obj.name
         try:
             unwrapped = self._session.finish()
-            region, warnings = unwrapped.region, unwrapped.result.warnings
-        except (native.lsgp.LsgpError, MemoryError) as error:
+            region, warnings = unwrapped.region, unwrapped.warnings
+        except object_errors() as error:
             region, warnings = None, [error]
         self._end(context)
         findings.keep(self._obj, region, warnings)
-        done = f"{name}: {reporting.counted(len(self._session.cones), 'cone')}"
-        return reporting.conclude(self, [done], {name: warnings}, {})
-
-    def _stop(self) -> None:
-        """Wait for the computation, which is told to end; two of them cannot use the same solver."""
-        if self._computation is not None:
-            self._computation.stop()
-            self._computation.finished(None)
-            self._computation = None
+        done = f"{name}: {counted(len(self._session.cones.vertices), 'cone')}"
+        return conclude(self, [done], {name: warnings}, {})
 
     def _end(self, context: bpy.types.Context) -> None:
         context.window_manager.event_timer_remove(self._timer)
         context.workspace.status_text_set(None)
         self._area.header_text_set(None)
-        changes.release(self._uid)
+        changes.resume(self._uid)

@@ -4,16 +4,20 @@
 import bpy
 import numpy as np
 
-from .. import angles, cones, identifiers, mesh_read, reporting
-from .common import ConeGroupProperty, poll_edit_mesh
+from ..core import identifiers
+from ..core.text import counted
+from ..mesh import angles, cones
+from ..mesh.targets import target_objects
+from .polling import EditMeshOperator
+from .properties import ConeGroupProperty
 
 
-class MESH_OT_cone_mark(ConeGroupProperty, bpy.types.Operator):
+class MESH_OT_cone_mark(ConeGroupProperty, EditMeshOperator, bpy.types.Operator):
     """Mark Cone, or with ``clear`` Clear Cone."""
 
     bl_idname = identifiers.MARK
     bl_label = "Mark Cone"
-    bl_description = "Mark selected vertices as cones: the points that take up the curvature when the mesh is unwrapped"
+    bl_description = "Mark selected vertices as cones: the points that absorb the curvature when the mesh is unwrapped"
     bl_options = {"REGISTER", "UNDO"}
 
     clear: bpy.props.BoolProperty(name="Clear", description="Clear selected cones instead", default=False)
@@ -22,14 +26,10 @@ class MESH_OT_cone_mark(ConeGroupProperty, bpy.types.Operator):
     def description(cls, _context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         return "Clear the cones among the selected vertices" if properties.clear else cls.bl_description
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return poll_edit_mesh(cls, context)
-
     def execute(self, context: bpy.types.Context) -> set[str]:
         changed = 0
         selected = 0
-        for obj in mesh_read.target_objects(context):
+        for obj in target_objects(context):
             vertices = cones.selected_vertices(obj.data)
             selected += len(vertices)
             marked = cones.marked_cones(obj, self.vertex_group)
@@ -54,5 +54,5 @@ class MESH_OT_cone_mark(ConeGroupProperty, bpy.types.Operator):
                 else "All selected vertices are cones already",
             )
             return {"CANCELLED"}
-        self.report({"INFO"}, f"{'Cleared' if self.clear else 'Marked'} {reporting.counted(changed, 'cone')}")
+        self.report({"INFO"}, f"{'Cleared' if self.clear else 'Marked'} {counted(changed, 'cone')}")
         return {"FINISHED"}

@@ -3,11 +3,17 @@
 
 import bpy
 
-from .. import cones, identifiers, mesh_read, reporting, selection
-from .common import ConeGroupProperty, poll_edit_mesh
+from ..core import identifiers
+from ..core.text import counted
+from ..mesh.cones import marked_cones
+from ..mesh.selection import VERTEX_MODE, select_elements, set_select_mode
+from ..mesh.targets import target_objects
+from .conclusion import say_selected
+from .polling import EditMeshOperator
+from .properties import ConeGroupProperty
 
 
-class MESH_OT_cone_select(ConeGroupProperty, bpy.types.Operator):
+class MESH_OT_cone_select(ConeGroupProperty, EditMeshOperator, bpy.types.Operator):
     """Select Cones."""
 
     bl_idname = identifiers.SELECT
@@ -15,14 +21,10 @@ class MESH_OT_cone_select(ConeGroupProperty, bpy.types.Operator):
     bl_description = "Select the vertices marked as cones, in vertex select mode"
     bl_options = {"REGISTER", "UNDO"}
 
-    extend: bpy.props.BoolProperty(name="Extend", description="Keep what is selected already", default=False)
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return poll_edit_mesh(cls, context)
+    extend: bpy.props.BoolProperty(name="Extend", description="Extend the existing selection", default=False)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        by_object = {obj: cones.marked_cones(obj, self.vertex_group) for obj in mesh_read.target_objects(context)}
+        by_object = {obj: marked_cones(obj, self.vertex_group) for obj in target_objects(context)}
         if not any(map(len, by_object.values())):
             self.report(
                 {"WARNING"},
@@ -30,11 +32,10 @@ class MESH_OT_cone_select(ConeGroupProperty, bpy.types.Operator):
             )
             return {"CANCELLED"}
         # A single vertex cannot stay selected in edge or face select mode.
-        selection.set_select_mode(context, selection.VERTEX_MODE, [obj.data for obj in by_object])
+        set_select_mode(context, VERTEX_MODE, [obj.data for obj in by_object])
         total = sum(map(len, by_object.values()))
         visible = sum(
-            selection.select_elements(obj.data, self.extend, vertices=marked) for obj, marked in by_object.items()
+            select_elements(obj.data, extend=self.extend, vertices=marked) for obj, marked in by_object.items()
         )
-        hidden = f"; {total - visible} more hidden" if visible < total else ""
-        self.report({"INFO"}, f"Selected {reporting.counted(visible, 'cone')}{hidden}")
+        say_selected(self, visible, total, counted(visible, "cone"))
         return {"FINISHED"}

@@ -3,73 +3,85 @@
 
 import bpy
 
-from .. import findings, identifiers, mesh_read, reporting, selection
-from .common import poll_edit_mesh
+from ..core import findings, identifiers
+from ..core.text import counted
+from ..mesh.selection import EDGE_MODE, FACE_MODE, VERTEX_MODE, select_elements, set_select_mode
+from ..mesh.targets import target_objects
+from .conclusion import say_selected
+from .polling import EditMeshOperator
 
 
-class MESH_OT_cone_select_reported(bpy.types.Operator):
+class MESH_OT_cone_select_reported(EditMeshOperator, bpy.types.Operator):
     """Select Reported Elements."""
 
     bl_idname = identifiers.SELECT_REPORTED
     bl_label = "Select Reported Elements"
-    bl_description = "Select the vertices, edges and faces that the last unwrap or placement of cones complained about"
+    bl_description = "Select the vertices, edges and faces named by the errors and warnings of the last operation"
     bl_options = {"REGISTER", "UNDO"}
 
-    extend: bpy.props.BoolProperty(name="Extend", description="Keep what is selected already", default=False)
+    extend: bpy.props.BoolProperty(name="Extend", description="Extend the existing selection", default=False)
     finding: bpy.props.IntProperty(
         name="Finding",
-        description="Which one of those in the sidebar to select the elements of; all where it is -1",
+        description="Number of the problem in the sidebar whose elements to select; -1 for all",
         default=-1,
         min=-1,
         options={"SKIP_SAVE"},
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return poll_edit_mesh(cls, context)
-
     def execute(self, context: bpy.types.Context) -> set[str]:
-        objects = mesh_read.target_objects(context)
-        # Counts and indices are those of the mesh itself, which lags behind what is edited.
+        objects = target_objects(context)
+        # Counts and indices are those of the mesh itself, which lags behind edit mode.
         for obj in objects:
             obj.update_from_editmode()
-        reported = {obj: self._reported(obj) for obj in objects}
-        named = {
-            obj: findings.joined(found.named for found in everything if found.mesh_size == findings.mesh_size(obj.data))
-            for obj, everything in reported.items()
-        }
-        current = {obj: found for obj, found in named.items() if found.count()}
+        chosen = {obj: self._chosen(obj) for obj in objects}
+        current = {}
+        for obj, kept in chosen.items():
+            size = findings.mesh_size(obj.data)
+            current[obj] = findings.joined(finding.elements for finding in kept if finding.mesh_size == size)
+        current = {obj: elements for obj, elements in current.items() if elements.count()}
         if not current:
-            changed = [obj.name for obj, everything in reported.items() if any(f.named.count() for f in everything)]
+            outdated = [obj.name for obj, kept in chosen.items() if any(finding.elements.count() for finding in kept)]
             self.report(
                 {"WARNING"},
-                f"{changed[0]} has changed since it was reported on; unwrap it again"
-                if changed
+                f"{outdated[0]} has changed since it was reported on; unwrap it again"
+                if outdated
                 else "Nothing was reported on these meshes; there is nothing to select",
             )
             return {"CANCELLED"}
-        if any(len(found.vertices) for found in current.values()):
-            mode = selection.VERTEX_MODE
-        elif any(len(found.edges) for found in current.values()):
-            mode = selection.EDGE_MODE
-        else:
-            mode = selection.FACE_MODE
-        selection.set_select_mode(context, mode, [obj.data for obj in objects])
-        if not self.extend:
-            for obj in objects:
-                selection.select_elements(obj.data, extend=False)
-        total = sum(found.count() for found in current.values())
-        visible = sum(
-            selection.select_elements(
-                obj.data, True, found.vertices.tolist(), found.edges.tolist(), found.faces.tolist()
-            )
-            for obj, found in current.items()
-        )
-        hidden = f"; {total - visible} more hidden" if visible < total else ""
-        self.report({"INFO"}, f"Selected {reporting.counted(visible, 'reported element')}{hidden}")
+        self._select(context, objects, current)
         return {"FINISHED"}
 
-    def _reported(self, obj: bpy.types.Object) -> list[findings.Reported]:
-        """What is asked for of what was said of the object."""
-        everything = findings.last(obj)
-        return everything if self.finding < 0 else everything[self.finding : self.finding + 1]
+    def _chosen(self, obj: bpy.types.Object) -> list[findings.KeptFinding]:
+        """The findings of the object that were asked for."""
+        kept = findings.last(obj)
+        return kept if self.finding < 0 else kept[self.finding : self.finding + 1]
+
+    def _select(
+        self,
+        context: bpy.types.Context,
+        objects: list[bpy.types.Object],
+        current: dict[bpy.types.Object, findings.MeshElements],
+    ) -> None:
+        """Select the elements of each object, in the select mode of the smallest, and report their number."""
+        if any(len(elements.vertices) for elements in current.values()):
+            mode = VERTEX_MODE
+        elif any(len(elements.edges) for elements in current.values()):
+            mode = EDGE_MODE
+        else:
+            mode = FACE_MODE
+        set_select_mode(context, mode, [obj.data for obj in objects])
+        if not self.extend:
+            for obj in objects:
+                select_elements(obj.data, extend=False)
+        visible = sum(
+            select_elements(
+                obj.data,
+                extend=True,
+                vertices=elements.vertices.tolist(),
+                edges=elements.edges.tolist(),
+                faces=elements.faces.tolist(),
+            )
+            for obj, elements in current.items()
+        )
+        total = sum(elements.count() for elements in current.values())
+        say_selected(self, visible, total, counted(visible, "reported element"))

@@ -1,28 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The properties that choose between keeping angles and keeping lengths."""
+"""The properties that choose between preserving angles and preserving lengths."""
 
 import bpy
 
-from .common import enum_items
+from ..core.identifiers import IMPORTANCE_GROUP
+from .properties import Choices, enum_items
 
-# Identifier: (value for the library, label, description).
-MODES = {
-    "CONFORMAL": ("conformal", "Conformal", "Keep angles; how large faces are may differ from place to place"),
-    "LOW_STRETCH": ("low-stretch", "Low Stretch", "Keep lengths as far as the cone angles let it"),
+MODES: Choices = {
+    "CONFORMAL": ("conformal", "Conformal", "Preserve angles; the scale may vary over the surface"),
+    "LOW_STRETCH": ("low-stretch", "Low Stretch", "Preserve lengths as far as the cone angles allow"),
 }
 
 
 class LowStretchProperties:
-    """Mix-in: what the map keeps, and where it matters most. Weights as in Blender's own unwrap."""
+    """Mix-in: what the map preserves, and where that matters most. Weights as in Blender's own unwrap."""
 
     mode: bpy.props.EnumProperty(
         name="Mode",
-        description="What the map keeps where it cannot keep both angles and lengths",
+        description="What the map preserves where it cannot preserve both angles and lengths",
         items=enum_items(MODES),
     )
     stretch: bpy.props.FloatProperty(
         name="Stretch Reduction",
-        description="From 0, the conformal map, to 1, that of the least stretch",
+        description="From 0, the conformal map, to 1, the map with the least stretch",
         default=1.0,
         min=0.0,
         max=1.0,
@@ -36,7 +36,7 @@ class LowStretchProperties:
     weight_group: bpy.props.StringProperty(
         name="Weight Group",
         description="Vertex group name for importance weights (where they are high, stretch is reduced most)",
-        default="uv_importance",
+        default=IMPORTANCE_GROUP,
     )
     weight_factor: bpy.props.FloatProperty(
         name="Weight Factor",
@@ -48,7 +48,7 @@ class LowStretchProperties:
     )
 
     def draw_mode(self, layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-        """The switch, and the other properties where lengths are kept."""
+        """The mode and, where lengths are preserved, the other properties."""
         layout.row().prop(self, "mode", expand=True)
         if self.mode != "LOW_STRETCH":
             return

@@ -2,67 +2,64 @@
 """Measure Distortion and Clear Distortion."""
 
 import bpy
+import numpy as np
+from numpy.typing import NDArray
 
-from .. import distortion, identifiers, mesh_read, native, reporting
+from ..core import identifiers
+from ..core.errors import Refused
+from ..core.text import counted
+from ..jobs.measuring import measure_faces
+from ..mesh import distortion
+from ..mesh.region_read import Faces, Groups, read_region, require_editable
+from ..mesh.targets import target_objects
 from ..overlay.settings import settings
-from .common import poll_computation
+from .conclusion import conclude, for_each
+from .polling import ComputingOperator
 
 
-class UV_OT_cone_measure(bpy.types.Operator):
+class UV_OT_cone_measure(ComputingOperator, bpy.types.Operator):
     """Measure Distortion, or with ``clear`` Clear Distortion."""
 
     bl_idname = identifiers.MEASURE
     bl_label = "Measure Distortion"
     bl_description = (
-        "Measure how the active UV map distorts angles, areas and lengths, and keep it on the faces as attributes: "
+        "Measure how the active UV map distorts angles, areas and lengths, and store it in face attributes: "
         + ", ".join(identifiers.DISTORTION_ATTRIBUTES.values())
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    clear: bpy.props.BoolProperty(name="Clear", description="Take the attributes away instead", default=False)
+    clear: bpy.props.BoolProperty(name="Clear", description="Remove the attributes instead", default=False)
 
     @classmethod
     def description(cls, _context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        return "Take the attributes of distortion away" if properties.clear else cls.bl_description
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return poll_computation(cls, context)
+        return "Remove the attributes of the measured distortion" if properties.clear else cls.bl_description
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        objects = mesh_read.target_objects(context)
+        objects = target_objects(context)
         return self._clear(objects) if self.clear else self._measure(context, objects)
 
     def _measure(self, context: bpy.types.Context, objects: list[bpy.types.Object]) -> set[str]:
-        measured, failures = [], {}
-        for obj in objects:
-            try:
-                measured.append((obj, _measured(obj)))
-            except (native.lsgp.LsgpError, reporting.Refused, MemoryError) as error:
-                failures[obj.name] = error
+        measured, failures = for_each(objects, _measured)
         for obj, values in measured:
             distortion.write(obj.data, values)
         if measured and settings(context).distortion == "NONE":
             settings(context).distortion = "CONFORMAL"
         faces = sum(len(obj.data.polygons) for obj, _ in measured)
-        done = [f"Measured {reporting.counted(faces, 'face')}"] if measured else []
-        return reporting.conclude(self, done, {}, failures)
+        done = [f"Measured {counted(faces, 'face')}"] if measured else []
+        return conclude(self, done, {}, failures)
 
     def _clear(self, objects: list[bpy.types.Object]) -> set[str]:
         cleared = [obj for obj in objects if obj.data.is_editable and distortion.clear(obj.data)]
         if not cleared:
             self.report({"WARNING"}, "No distortion was measured on these meshes; there is nothing to clear")
             return {"CANCELLED"}
-        self.report({"INFO"}, f"Cleared the distortion of {reporting.counted(len(cleared), 'mesh', 'meshes')}")
+        self.report({"INFO"}, f"Cleared the distortion of {counted(len(cleared), 'mesh', 'meshes')}")
         return {"FINISHED"}
 
 
-def _measured(obj: bpy.types.Object) -> dict:
-    if not obj.data.is_editable:
-        raise reporting.Refused("the mesh is linked from another file; make it local (Object > Relations)")
+def _measured(obj: bpy.types.Object) -> dict[str, NDArray[np.float32]]:
+    """(f,) values of each measure.  Raises LsgpError, Refused."""
+    require_editable(obj)
     if obj.data.uv_layers.active is None:
-        raise reporting.Refused("the mesh has no UV map; unwrap it first")
-    region = mesh_read.read_all(obj)
-    if region is None:
-        raise reporting.Refused("the mesh has no faces; add some or select another object")
-    return distortion.measure(region, len(obj.data.polygons))
+        raise Refused("the mesh has no UV map; unwrap it first")
+    return measure_faces(read_region(obj, Faces.ALL, Groups()))

@@ -3,11 +3,19 @@
 
 import bpy
 
-from .. import identifiers, mesh_read, reporting, reports, texture
+from ..core import identifiers
+from ..core.text import counted
+from ..mesh import reports, texture
+from ..mesh.targets import target_objects
+from .polling import poll_meshes
 
 PATTERNS = (
-    ("CHECKER", "Checker", "Black and white squares: they stay square where angles and sizes are kept"),
-    ("ASYMMETRIC", "Asymmetric", "Tiles that look different turned and mirrored: they show how the map lies"),
+    (
+        "CHECKER",
+        "Checker",
+        "Dark and light squares, which stay squares of one size where angles and areas are preserved",
+    ),
+    ("ASYMMETRIC", "Asymmetric", "Tiles that show how the UV map is rotated and whether it is mirrored"),
 )
 
 
@@ -17,7 +25,7 @@ class UV_OT_cone_texture(bpy.types.Operator):
     bl_idname = identifiers.TEXTURE_SHOW
     bl_label = "Show Texture"
     bl_description = (
-        "Show the UV map by a texture in place of all materials of the mesh, which are remembered and come back "
+        "Show the UV map with a texture in place of all materials of the mesh, which are remembered and restored "
         "when it is removed"
     )
     bl_options = {"REGISTER", "UNDO"}
@@ -33,29 +41,26 @@ class UV_OT_cone_texture(bpy.types.Operator):
     @classmethod
     def description(cls, _context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         if properties.clear:
-            return "Take the texture away and put the materials back that were there before"
+            return "Remove the texture and restore the previous materials"
         return cls.bl_description
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if not mesh_read.target_objects(context):
-            cls.poll_message_set("Enter edit mode on a mesh, or select mesh objects in object mode")
-            return False
-        return True
+        return poll_meshes(cls, context)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         if not self.properties.is_property_set("tiles"):
-            found = [reports.current(obj.data) for obj in mesh_read.target_objects(context)]
+            found = [reports.current(obj.data) for obj in target_objects(context)]
             # A tile of a seamless layout is one UV unit.
             if any(report is not None and report.certificate is not None for report in found):
                 self.tiles = 1
         return self.execute(context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        objects = [obj for obj in mesh_read.target_objects(context) if obj.data.is_editable and obj.is_editable]
+        objects = [obj for obj in target_objects(context) if obj.data.is_editable and obj.is_editable]
         if self.clear:
             changed = [obj for obj in objects if texture.remove(obj)]
-            texture.forget_unused(context)
+            texture.remove_unused(context)
         else:
             changed = objects
             material = texture.make_material(self.pattern, self.tiles)
@@ -71,5 +76,5 @@ class UV_OT_cone_texture(bpy.types.Operator):
             )
             return {"CANCELLED"}
         verb = "Removed the texture from" if self.clear else "Showing the texture on"
-        self.report({"INFO"}, f"{verb} {reporting.counted(len(changed), 'mesh', 'meshes')}")
+        self.report({"INFO"}, f"{verb} {counted(len(changed), 'mesh', 'meshes')}")
         return {"FINISHED"}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Keeps what is drawn of each mesh until the mesh or what is known of it changes."""
+"""Caches what is drawn of each mesh until the mesh or the results on it change."""
 
 from __future__ import annotations
 
@@ -9,14 +9,15 @@ from typing import Any
 
 import bpy
 
-from .. import changes, redraw, reports
-from ..identifiers import DISTORTION_ATTRIBUTES
+from ..core import redraw
+from ..core.identifiers import DISTORTION_ATTRIBUTES
+from ..mesh import changes, reports
 from .content import Content, build_content
 
 
 @dataclass(slots=True)
 class Entry:
-    """The content of a mesh in a version of it, and what drawing has made of that."""
+    """The content for one version of a mesh, and the batches made from it."""
 
     version: tuple[int, int]
     mode: str
@@ -24,7 +25,7 @@ class Entry:
     drawn: dict[Any, Any] = field(default_factory=dict)
 
     def batch(self, key: Any, build: Callable[[], Any]) -> Any:
-        """What ``build`` returned the first time."""
+        """The result of the first call of ``build`` for this key."""
         if key not in self.drawn:
             self.drawn[key] = build()
         return self.drawn[key]
@@ -34,7 +35,7 @@ _entries: dict[int, Entry] = {}
 
 
 def entry(obj: bpy.types.Object) -> Entry:
-    """What is shown of the object's mesh, made anew only where the mesh has changed."""
+    """What is shown of the object's mesh, rebuilt only if the mesh has changed."""
     mesh = obj.data
     version = changes.version(mesh)
     kept = _entries.get(mesh.session_uid)
@@ -45,7 +46,7 @@ def entry(obj: bpy.types.Object) -> Entry:
 
 
 def show(obj: bpy.types.Object, content: Content) -> None:
-    """Show this of the object's mesh, and no distortion, until the mesh is seen to change."""
+    """Show this content, without distortion, until a change of the mesh is noticed."""
     mesh = obj.data
     hidden = dict.fromkeys(DISTORTION_ATTRIBUTES)
     _entries[mesh.session_uid] = Entry(changes.version(mesh), obj.mode, content, hidden)
@@ -53,5 +54,5 @@ def show(obj: bpy.types.Object, content: Content) -> None:
 
 
 def clear() -> None:
-    """Forget everything, with the batches on the graphics card."""
+    """Drop everything, including batches on the GPU."""
     _entries.clear()

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the overlay shows of one mesh, as arrays in the mesh's own space; drawing them is another's."""
+"""What the overlay shows of one mesh, as arrays in the mesh's own space."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -12,18 +12,19 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..angles import read_angles
-from ..identifiers import CONE_GROUP
-from .readers import reader
+from ..core.identifiers import CONE_GROUP
+from ..mesh.angles import read_angles
+from ..mesh.reader import reader
 
 if TYPE_CHECKING:
-    from ..angles import ConeAngles
-    from ..reports import Report
-    from .readers import EditedMesh, StoredMesh
+    from ..core.cone_angles import ConeAngles
+    from ..jobs.cone_session import ConeSession
+    from ..mesh.mesh_reader import MeshReader
+    from ..mesh.reports import Report
 
 FloatArray = NDArray[np.float32]
 
-# The lines of a cut lie this share of its mean edge length apart from it, one on each side.
+# Distance of the two lines of a cut from it, one on each side, relative to its mean edge length.
 SIDE_OFFSET = 0.12
 
 
@@ -31,8 +32,8 @@ SIDE_OFFSET = 0.12
 class Cone:
     """A marked or imposed cone.
 
-    angle: radians, None where it is left to the unwrap. curvature: what it lacks of a full turn, of half a turn on a
-    border; None with the angle.
+    angle: radians, None where unwrapping chooses it. curvature: by how much it is less than a full turn, on a border
+    less than half a turn; None where the angle is.
     """
 
     vertex: int
@@ -42,9 +43,9 @@ class Cone:
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """cones with their places, (k, 3). cut_lines: (s, 2, 3) segments, both sides of every cut, and
-    cut_paths: (s,) the number of each one's path. cut_uv: (s, 2, 2) the same segments in the layout. flipped,
-    overlapping: (t, 3, 3) triangles. active: the vertex of the cone that is edited, None for none.
+    """cone_places: (k, 3) positions of the cones. cut_lines: (s, 2, 3) segments along both sides of every cut, and
+    cut_paths: (s,) the number of the path that each belongs to. cut_uv: (s, 2, 2) the same segments in the layout.
+    flipped, overlapping: (t, 3, 3) triangles. active: the vertex of the active cone, None for none.
     """
 
     cones: list[Cone] = field(default_factory=list)
@@ -60,13 +61,13 @@ class Content:
 def build_content(
     obj: bpy.types.Object,
     report: Report | None,
-    mesh: EditedMesh | StoredMesh | None = None,
+    mesh: MeshReader | None = None,
     marked: ConeAngles | None = None,
 ) -> Content:
-    """What is to be shown of the object's mesh.  report: the current one; None where there is none.
+    """What to show of the object's mesh.  report: the current one, if any.
 
-    mesh: what reads it; None: one for the mode it is in. marked: cones and angles that are not stored yet; None: those
-    stored.
+    mesh: its reader; by default one for its mode. marked: cones and angles that are not stored yet; by default those
+    that are.
     """
     mesh = reader(obj.data) if mesh is None else mesh
     found = find_cones(obj, report, mesh, marked)
@@ -83,13 +84,19 @@ def build_content(
     )
 
 
+def session_content(obj: bpy.types.Object, session: ConeSession) -> Content:
+    """What to show of a mesh while its cones are edited."""
+    content = build_content(obj, session.report(), session.mesh, session.cones.current())
+    return replace(content, active=session.cones.active)
+
+
 def find_cones(
     obj: bpy.types.Object,
     report: Report | None,
-    mesh: EditedMesh | StoredMesh | None = None,
+    mesh: MeshReader | None = None,
     marked: ConeAngles | None = None,
 ) -> list[Cone]:
-    """The marked cones and those of the report, by vertex; the angle last imposed goes before the one typed."""
+    """The marked cones and those of the report, by vertex; an imposed angle takes precedence over a prescribed one."""
     mesh = reader(obj.data) if mesh is None else mesh
     marked = read_angles(obj, CONE_GROUP) if marked is None else marked
     angles = dict(zip(marked.cones.tolist(), marked.angles, strict=True))
@@ -103,10 +110,8 @@ def find_cones(
     ]
 
 
-def _cut_sides(
-    mesh: EditedMesh | StoredMesh, paths: list[list[int]]
-) -> tuple[FloatArray, NDArray[np.int32], FloatArray]:
-    """Segments of both sides of every path, moved into the faces there; their paths; and them in the layout."""
+def _cut_sides(mesh: MeshReader, paths: list[list[int]]) -> tuple[FloatArray, NDArray[np.int32], FloatArray]:
+    """Segments along both sides of every path, offset into the adjacent faces; their paths; and their UVs."""
     lines, numbers, uvs = [], [], []
     for number, path in enumerate(paths):
         places = mesh.positions(path)
@@ -126,8 +131,8 @@ def _cut_sides(
     return np.concatenate(lines).astype(np.float32), np.concatenate(numbers), np.concatenate(uvs)
 
 
-def _along_path(inward: FloatArray, closed: bool) -> FloatArray:
-    """(k + 1, 3) at the vertices of a path what is (k, 3) at its edges: the mean of those that meet."""
+def _along_path(inward: FloatArray, *, closed: bool) -> FloatArray:
+    """(k + 1, 3) directions at the vertices of a path: means of the (k, 3) directions of the edges that meet there."""
     inward = np.nan_to_num(inward)
     before, after = np.vstack([inward[:1], inward]), np.vstack([inward, inward[-1:]])
     if closed:
@@ -140,6 +145,6 @@ def _unit(vectors: FloatArray) -> FloatArray:
         return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
-def _triangles(mesh: EditedMesh | StoredMesh, faces: list[int]) -> FloatArray:
+def _triangles(mesh: MeshReader, faces: list[int]) -> FloatArray:
     vertices = np.array(mesh.triangles(faces), int).reshape(-1)
     return mesh.positions(vertices.tolist()).reshape(-1, 3, 3)

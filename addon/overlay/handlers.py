@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Adds the overlay's drawing to Blender's and takes it away."""
+"""Adds and removes the draw handlers of the overlay."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _handlers: list[tuple[type[bpy.types.Space], object]] = []
 
 def register() -> None:
     settings.register()
-    # Without a window there is nothing to draw on.
+    # There is nothing to draw on without a window.
     if bpy.app.background:
         return
     for space, draw, when in (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Colours of the distortion, and what its scale says."""
+"""Color scales of the distortion."""
 
 from __future__ import annotations
 
@@ -8,33 +8,33 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-# Lets the light on the shape and the wires through.
+# Keeps shading and wires visible.
 OPACITY = 0.75
 
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """Values from least to most, and the colours from one to the other, on a logarithmic scale.
+    """Values from ``least`` to ``most`` with colors in between, on a logarithmic scale.
 
-    label: what is shown. ends: what the least, the middle and the most mean.
+    label: what is shown. ends: texts for the least, the middle and the most.
     """
 
     label: str
     least: float
     most: float
-    colours: tuple[tuple[float, float, float], ...]
+    colors: tuple[tuple[float, float, float], ...]
     ends: tuple[str, str, str]
 
-    def colours_of(self, values: ArrayLike) -> NDArray[np.float32]:
-        """(n, 4) of (n,) values; what lies beyond the scale has the colour of its end."""
+    def colors_of(self, values: ArrayLike) -> NDArray[np.float32]:
+        """(n, 4) of (n,) values; values beyond the scale have the color of its end."""
         values = np.clip(np.asarray(values, np.float64), self.least, self.most)
         place = np.log(values / self.least) / np.log(self.most / self.least)
-        stops = np.linspace(0.0, 1.0, len(self.colours))
-        channels = [np.interp(place, stops, channel) for channel in zip(*self.colours, strict=True)]
+        stops = np.linspace(0.0, 1.0, len(self.colors))
+        channels = [np.interp(place, stops, channel) for channel in zip(*self.colors, strict=True)]
         return np.stack([*channels, np.full(len(values), OPACITY)], axis=1).astype(np.float32)
 
 
-# Both readable without telling red from green.
+# Both work for people who cannot tell red from green.
 _GOOD_TO_BAD = ((0.93, 0.95, 0.97), (0.99, 0.80, 0.35), (0.88, 0.30, 0.12), (0.45, 0.02, 0.20))
 _LOW_TO_HIGH = ((0.05, 0.20, 0.65), (0.40, 0.68, 0.90), (0.94, 0.94, 0.92), (0.98, 0.62, 0.30), (0.70, 0.10, 0.08))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The angles beside cones, so many of them that none lies on another, and the scale of the distortion."""
+"""The angles next to cones, without overlaps, and the scale of the distortion."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ Box = tuple[float, float, float, float]
 
 FONT = 0
 PADDING = 3
-# Pixels: what is seen of a cone is more than its middle.
+# Pixels around the middle of a cone in which it may be visible.
 NEAR = 2
 BAR_WIDTH, BAR_HEIGHT, BAR_MARGIN = 180, 10, 16
 BEHIND_TEXT = (0.0, 0.0, 0.0, 0.7)
 
 
 def label(cone: Cone) -> str:
-    """The angle in degrees, without needless digits; "auto" where it is left to the unwrap."""
+    """The angle in degrees, without trailing zeros; "auto" where unwrapping chooses it."""
     if cone.angle is None:
         return "auto"
     degrees = math.degrees(cone.angle)
@@ -35,9 +35,9 @@ def label(cone: Cone) -> str:
 
 
 def depths(pixels: FloatArray, width: int, height: int) -> FloatArray:
-    """(k,) how deep, from -1 to 1, the deepest is that is drawn near these pixels; 1 off the region.
+    """(k,) largest depth, from -1 to 1, drawn near each of these pixels; 1 outside the region.
 
-    Reads the active framebuffer.
+    pixels: (k, 3).  Reads the active framebuffer.
     """
     found = np.ones(len(pixels), np.float32)
     with np.errstate(invalid="ignore"):
@@ -48,7 +48,7 @@ def depths(pixels: FloatArray, width: int, height: int) -> FloatArray:
     left, low = int(x.min()) - NEAR, int(y.min()) - NEAR
     columns, rows = int(x.max()) - left + NEAR + 1, int(y.max()) - low + NEAR + 1
     buffer = gpu.state.active_framebuffer_get().read_depth(left, low, columns, rows)
-    # Up to Blender 4.3 at least, numpy is told wrong strides of a buffer with two dimensions.
+    # At least up to Blender 4.3, numpy gets wrong strides for buffers with two dimensions.
     buffer.dimensions = rows * columns
     drawn = np.asarray(buffer, np.float32).reshape(rows, columns)
     around = range(-NEAR, NEAR + 1)
@@ -57,7 +57,7 @@ def depths(pixels: FloatArray, width: int, height: int) -> FloatArray:
 
 
 def without_overlaps(boxes: Sequence[Box], order: Sequence[int]) -> list[int]:
-    """Which boxes to keep, first come first served, so that none of them meet.  A box: left, low, right, high."""
+    """Which boxes to keep, in this order of priority, so that no two touch.  A box: left, bottom, right, top."""
     kept: list[int] = []
     for i in order:
         left, low, right, high = boxes[i]
@@ -66,8 +66,11 @@ def without_overlaps(boxes: Sequence[Box], order: Sequence[int]) -> list[int]:
     return kept
 
 
-def draw_labels(texts: Sequence[str], places: FloatArray, offset: float, size: int, colour: Sequence[float]) -> None:
-    """Write texts to the right of (k, 3) pixels and depths, the nearest first, leaving out those that do not fit."""
+def draw_labels(texts: Sequence[str], places: FloatArray, offset: float, size: int, color: Sequence[float]) -> None:
+    """Write texts to the right of their places, the nearest first, without those that would overlap.
+
+    places: (k, 3) pixels and depths.
+    """
     blf.size(FONT, size)
     boxes = []
     for text, (x, y, _) in zip(texts, places.tolist(), strict=True):
@@ -79,7 +82,7 @@ def draw_labels(texts: Sequence[str], places: FloatArray, offset: float, size: i
         return
     corners = np.concatenate([rectangle(*boxes[i]) for i in kept])
     shaders.triangle_batch(corners, np.tile(np.float32(BEHIND_TEXT), (len(corners), 1))).draw(shaders.triangles())
-    blf.color(FONT, *colour)
+    blf.color(FONT, *color)
     for i in kept:
         blf.position(FONT, boxes[i][0] + PADDING, boxes[i][1] + PADDING, 0)
         blf.draw(FONT, texts[i])
@@ -91,10 +94,10 @@ def rectangle(left: float, low: float, right: float, high: float) -> FloatArray:
     return points[[[0, 1, 2], [0, 2, 3]]]
 
 
-def draw_scale_texts(scale: Scale, left: float, low: float, pixel: float, size: int, colour: Sequence[float]) -> None:
-    """What the colours of the bar at this place mean, above and below it."""
+def draw_scale_texts(scale: Scale, left: float, low: float, pixel: float, size: int, color: Sequence[float]) -> None:
+    """Write what the colors of the bar at this place mean, above and below it."""
     blf.size(FONT, size)
-    blf.color(FONT, *colour)
+    blf.color(FONT, *color)
     blf.enable(FONT, blf.SHADOW)
     blf.shadow(FONT, 5, 0.0, 0.0, 0.0, 0.9)
     blf.shadow_offset(FONT, 0, 0)

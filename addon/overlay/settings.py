@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the overlay shows; of the session, not of the file, so that it is no part of undo."""
+"""What the overlay shows; kept per session, not per file, so that undo does not change it."""
 
 import bpy
 
-from .. import redraw
+from ..core import redraw
 
 MEASURES = (
     ("NONE", "None", "Show no distortion"),
-    ("CONFORMAL", "Angles", "How far from keeping angles the UV map is: 1 is none"),
-    ("AREA", "Area", "How much of the texture a face gets, compared with the whole mesh: 1 is its share"),
-    ("STRETCH", "Stretch", "How lengths change between the texture and the mesh: 1 is none"),
+    ("CONFORMAL", "Angles", "How much the UV map distorts angles: 1 is not at all"),
+    ("AREA", "Area", "How much of the texture a face gets, relative to the whole mesh: 1 is its fair share"),
+    ("STRETCH", "Stretch", "How lengths change between the texture and the mesh: 1 is not at all"),
 )
 
 
@@ -18,37 +18,37 @@ def _redraw(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> 
 
 
 class ConeUnwrapOverlay(bpy.types.PropertyGroup):
-    """What is shown of cones, cuts and problems."""
+    """Which cones, cuts and problems are shown."""
 
     show: bpy.props.BoolProperty(
         name="Cones and Cuts",
-        description="Show cones, cuts and problems of the UV map over meshes in edit mode and selected ones",
+        description="Show cones, cuts and problems of the UV map on meshes in edit mode and on selected ones",
         default=True,
         update=_redraw,
     )
     cones: bpy.props.BoolProperty(
-        name="Cones", description="Show cones, coloured by their curvature", default=True, update=_redraw
+        name="Cones", description="Show cones, colored by their curvature", default=True, update=_redraw
     )
     angles: bpy.props.BoolProperty(
-        name="Angles", description="Show the angle left at each cone", default=True, update=_redraw
+        name="Angles", description="Show the angle of each cone", default=True, update=_redraw
     )
     cuts: bpy.props.BoolProperty(
         name="Cuts",
-        description="Show both sides of every cut in one colour, on the mesh and in the UV editor",
+        description="Show both sides of every cut in the same color, on the mesh and in the UV editor",
         default=True,
         update=_redraw,
     )
     flipped: bpy.props.BoolProperty(
-        name="Flipped Faces", description="Show faces that lie upside down in the UV map", default=True, update=_redraw
+        name="Flipped Faces", description="Show faces that are upside down in the UV map", default=True, update=_redraw
     )
     overlapping: bpy.props.BoolProperty(
         name="Overlapping Faces",
-        description="Show faces that lie on others in the UV map",
+        description="Show faces that overlap others in the UV map",
         default=True,
         update=_redraw,
     )
     distortion: bpy.props.EnumProperty(
-        name="Distortion", description="Show measured distortion on faces", items=MEASURES, update=_redraw
+        name="Distortion", description="Show the measured distortion on faces", items=MEASURES, update=_redraw
     )
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Batches for the graphics card, and the one shader that Blender does not bring: round points with two rims."""
+"""Batches for the GPU, and the one shader that Blender does not have: round points with two rims."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _FRAGMENT = """
 void main() {
   float away = 2.0 * length(gl_PointCoord - vec2(0.5));
   if (away > 1.0) discard;
-  // Black round white round the colour: selected vertices have none of that.
+  // The color inside a white rim inside a black one, so that cones differ from selected vertices.
   fragColor = away < 0.58 ? tint : vec4(vec3(away < 0.76 ? 1.0 : 0.0), tint.a);
 }
 """
@@ -56,23 +56,23 @@ def triangles() -> gpu.types.GPUShader:
     return gpu.shader.from_builtin("FLAT_COLOR")
 
 
-def disc_batch(places: FloatArray, colours: FloatArray) -> gpu.types.GPUBatch:
-    """places: (k, 3). colours: (k, 4)."""
-    return batch_for_shader(discs(), "POINTS", {"position": _packed(places), "color": _packed(_linear(colours))})
+def disc_batch(places: FloatArray, colors: FloatArray) -> gpu.types.GPUBatch:
+    """places: (k, 3). colors: (k, 4)."""
+    return batch_for_shader(discs(), "POINTS", {"position": _packed(places), "color": _packed(_linear(colors))})
 
 
-def line_batch(segments: FloatArray, colours: FloatArray) -> gpu.types.GPUBatch:
-    """segments: (s, 2, 3). colours: (s, 4)."""
-    return _batch(lines(), "LINES", segments, colours)
+def line_batch(segments: FloatArray, colors: FloatArray) -> gpu.types.GPUBatch:
+    """segments: (s, 2, 3). colors: (s, 4)."""
+    return _batch(lines(), "LINES", segments, colors)
 
 
-def triangle_batch(corners: FloatArray, colours: FloatArray) -> gpu.types.GPUBatch:
-    """corners: (t, 3, 3). colours: (t, 4)."""
-    return _batch(triangles(), "TRIS", corners, colours)
+def triangle_batch(corners: FloatArray, colors: FloatArray) -> gpu.types.GPUBatch:
+    """corners: (t, 3, 3). colors: (t, 4)."""
+    return _batch(triangles(), "TRIS", corners, colors)
 
 
-def _batch(shader: gpu.types.GPUShader, kind: str, corners: FloatArray, colours: FloatArray) -> gpu.types.GPUBatch:
-    each = np.repeat(colours, corners.shape[1], axis=0)
+def _batch(shader: gpu.types.GPUShader, kind: str, corners: FloatArray, colors: FloatArray) -> gpu.types.GPUBatch:
+    each = np.repeat(colors, corners.shape[1], axis=0)
     return batch_for_shader(shader, kind, {"pos": _packed(corners.reshape(-1, 3)), "color": _packed(each)})
 
 
@@ -80,9 +80,9 @@ def _packed(values: FloatArray) -> FloatArray:
     return np.ascontiguousarray(values, np.float32)
 
 
-def _linear(colours: FloatArray) -> FloatArray:
-    """Display colours as the 3D view's buffer takes them; Blender's own shaders turn them themselves."""
-    colours = colours.copy()
-    shares = colours[:, :3]
-    colours[:, :3] = np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)
-    return colours
+def _linear(colors: FloatArray) -> FloatArray:
+    """Display colors in linear space, as the 3D view's buffer needs them; Blender's own shaders convert them."""
+    colors = colors.copy()
+    shares = colors[:, :3]
+    colors[:, :3] = np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)
+    return colors

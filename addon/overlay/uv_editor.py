@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws the cuts in UV editors, in the colours they have in 3D views."""
+"""Draws cuts in UV editors, in the same colors as in 3D views."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ import bpy
 import gpu
 import numpy as np
 
-from ..preferences import preferences
-from . import cache, colours, shaders
+from . import cache, colors, shaders
 from .content import Content
+from .look import OverlayLook, overlay_look
 from .settings import settings
 
 
@@ -18,7 +18,7 @@ def draw() -> None:
     chosen, space = settings(context), context.space_data
     if not (chosen.show and chosen.cuts and space.show_uvedit and space.overlay.show_overlays):
         return
-    look = preferences(context)
+    look = overlay_look(context)
     shader = shaders.lines()
     gpu.state.blend_set("ALPHA")
     with gpu.matrix.push_pop():
@@ -34,14 +34,14 @@ def draw() -> None:
     gpu.state.blend_set("NONE")
 
 
-def _batch(content: Content, look: bpy.types.AddonPreferences) -> gpu.types.GPUBatch:
+def _batch(content: Content, look: OverlayLook) -> gpu.types.GPUBatch:
     segments = np.zeros((len(content.cut_uv), 2, 3), np.float32)
     segments[..., :2] = content.cut_uv
-    return shaders.line_batch(segments, colours.of_paths(content.cut_paths, look))
+    return shaders.line_batch(segments, colors.of_paths(content.cut_paths, look))
 
 
 def _load_layout_space(region: bpy.types.Region) -> None:
-    """From texture coordinates to pixels of the region."""
+    """Make the GPU's matrix map texture coordinates to pixels of the region."""
     origin = np.array(region.view2d.view_to_region(0.0, 0.0, clip=False))
     unit = np.array(region.view2d.view_to_region(1.0, 1.0, clip=False)) - origin
     gpu.matrix.translate((*origin, 0.0))

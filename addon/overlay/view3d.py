@@ -14,29 +14,29 @@ import numpy as np
 from mathutils import Matrix
 from numpy.typing import NDArray
 
-from .. import distortion
-from ..identifiers import DISTORTION_ATTRIBUTES
-from ..preferences import ConeUnwrapPreferences, preferences
-from ..screen import Screen
-from . import cache, colours, labels, shaders
+from ..core.identifiers import DISTORTION_ATTRIBUTES
+from ..core.screen import Screen
+from ..mesh import distortion
+from ..mesh.reader import reader
+from . import cache, colors, labels, shaders
 from .content import Content
 from .heat import SCALES
-from .readers import reader
+from .look import OverlayLook, overlay_look
 from .settings import ConeUnwrapOverlay, settings
 
-# The share by which what is drawn is brought nearer, as Blender does with its own wires; faces stay behind those.
+# How much nearer the overlay is drawn, relative to depth, as Blender does for wires; faces stay behind those.
 NEARER_PERSPECTIVE, NEARER_PARALLEL = 0.0025, 1e-5
 FACES_NEARER = 0.2
-# How much larger than the others the cone is that is edited.
+# Size of the active cone relative to the others.
 ACTIVE_SIZE = 1.5
 
-# By session_uid of the mesh, of the view that is drawn: where its cones are on the region, (k, 3) pixels and depth, and
-# (k,) which of them nothing hides.
+# By session_uid of the mesh, for the view being drawn: (k, 3) pixels and depths of its cones in the region, and (k,)
+# which of them are visible.
 _seen: dict[int, tuple[NDArray[np.float32], NDArray[np.bool_]]] = {}
 
 
 def shown_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """Meshes in edit mode, or the selected ones, as far as they are visible; each mesh once."""
+    """Visible objects with meshes in edit mode, or else the selected ones; each mesh once in edit mode."""
     if context.mode == "EDIT_MESH":
         objects = context.objects_in_mode_unique_data
     elif context.mode == "OBJECT":
@@ -57,13 +57,13 @@ def draw_in_scene() -> None:
     try:
         _seen.clear()
         if chosen.cones:
-            _find_seen(context, see_through)
+            _find_seen(context, see_through=see_through)
         for draw, share in ((_draw_faces, FACES_NEARER), (_draw_cuts, 1.0), (_draw_cones, 1.0)):
             with _brought_nearer(context.region_data, share):
                 for obj in shown_objects(context):
                     with gpu.matrix.push_pop():
                         gpu.matrix.multiply_matrix(obj.matrix_world)
-                        draw(obj, chosen, preferences(context))
+                        draw(obj, chosen, overlay_look(context))
     finally:
         gpu.state.depth_test_set("NONE")
         gpu.state.depth_mask_set(False)
@@ -86,7 +86,7 @@ def draw_on_top() -> None:
     gpu.state.blend_set("NONE")
 
 
-def _draw_faces(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: ConeUnwrapPreferences) -> None:
+def _draw_faces(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: OverlayLook) -> None:
     entry = cache.entry(obj)
     measure = chosen.distortion.lower()
     heat = _heat_batch(entry, obj, measure) if measure in SCALES else None
@@ -98,7 +98,7 @@ def _draw_faces(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: ConeUnwr
             entry.batch(name, partial(_face_batch, corners, getattr(look, name))).draw(shaders.triangles())
 
 
-def _draw_cuts(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: ConeUnwrapPreferences) -> None:
+def _draw_cuts(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: OverlayLook) -> None:
     entry = cache.entry(obj)
     content, pixel = entry.content, bpy.context.preferences.system.pixel_size
     if chosen.cuts and len(content.cut_lines):
@@ -109,14 +109,14 @@ def _draw_cuts(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: ConeUnwra
         entry.batch("cuts", partial(_cut_batch, content, look)).draw(shader)
 
 
-def _draw_cones(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: ConeUnwrapPreferences) -> None:
-    """Whole discs or none: the surface would cut through those that face the eye from a slope."""
+def _draw_cones(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: OverlayLook) -> None:
+    """Discs are drawn entirely or not at all; a depth test would let inclined surfaces cut through them."""
     entry = cache.entry(obj)
     content, pixel = entry.content, bpy.context.preferences.system.pixel_size
     _, seen = _seen.get(obj.data.session_uid, (None, None))
     if not chosen.cones or seen is None:
         return
-    tints = entry.batch("tints", partial(colours.of_cones, content.cones, look))
+    tints = entry.batch("tints", partial(colors.of_cones, content.cones, look))
     active = np.array([cone.vertex == content.active for cone in content.cones])
     depth = gpu.state.depth_test_get()
     gpu.state.depth_test_set("NONE")
@@ -131,16 +131,16 @@ def _draw_cones(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: ConeUnwr
     gpu.state.depth_test_set(depth)
 
 
-def _face_batch(corners: NDArray[np.float32], colour: Sequence[float]) -> gpu.types.GPUBatch:
-    return shaders.triangle_batch(corners, colours.repeated(colour, len(corners)))
+def _face_batch(corners: NDArray[np.float32], color: Sequence[float]) -> gpu.types.GPUBatch:
+    return shaders.triangle_batch(corners, colors.repeated(color, len(corners)))
 
 
-def _cut_batch(content: Content, look: ConeUnwrapPreferences) -> gpu.types.GPUBatch:
-    return shaders.line_batch(content.cut_lines, colours.of_paths(content.cut_paths, look))
+def _cut_batch(content: Content, look: OverlayLook) -> gpu.types.GPUBatch:
+    return shaders.line_batch(content.cut_lines, colors.of_paths(content.cut_paths, look))
 
 
 def _heat_batch(entry: cache.Entry, obj: bpy.types.Object, measure: str) -> gpu.types.GPUBatch | None:
-    """None where the distortion was not measured, or of another UV map."""
+    """None where no distortion was measured, or that of another UV map."""
 
     def build() -> gpu.types.GPUBatch | None:
         if not distortion.is_current(obj.data):
@@ -149,14 +149,14 @@ def _heat_batch(entry: cache.Entry, obj: bpy.types.Object, measure: str) -> gpu.
         values = mesh.face_values(DISTORTION_ATTRIBUTES[measure])
         if values is None:
             return None
-        triangles, faces = mesh.all_triangles()
-        return shaders.triangle_batch(mesh.all_positions()[triangles], SCALES[measure].colours_of(values[faces]))
+        triangles, faces = mesh.drawn_triangles()
+        return shaders.triangle_batch(mesh.all_positions()[triangles], SCALES[measure].colors_of(values[faces]))
 
     return entry.batch(measure, build)
 
 
-def _find_seen(context: bpy.types.Context, see_through: bool) -> None:
-    """Where on the region the cones of each mesh are, and which of them nothing hides."""
+def _find_seen(context: bpy.types.Context, *, see_through: bool) -> None:
+    """Find where the cones of each mesh are in the region, and which of them are visible."""
     region, view = context.region, context.region_data
     found = [(obj, cache.entry(obj).content) for obj in shown_objects(context)]
     found = [(obj, content.cone_places) for obj, content in found if content.cones]
@@ -173,7 +173,7 @@ def _draw_angles(context: bpy.types.Context, obj: bpy.types.Object) -> None:
     pixels, seen = _seen.get(obj.data.session_uid, (None, None))
     if pixels is None:
         return
-    content, look, system = cache.entry(obj).content, preferences(context), context.preferences.system
+    content, look, system = cache.entry(obj).content, overlay_look(context), context.preferences.system
     labels.draw_labels(
         [labels.label(cone) for cone, show in zip(content.cones, seen, strict=True) if show],
         pixels[seen],
@@ -184,8 +184,8 @@ def _draw_angles(context: bpy.types.Context, obj: bpy.types.Object) -> None:
 
 
 def _draw_scale(context: bpy.types.Context, measure: str) -> None:
-    """A bar of the scale's colours at the bottom left, with what they mean."""
-    scale, look = SCALES[measure], preferences(context)
+    """A bar with the colors of the scale at the bottom left, and what they mean."""
+    scale, look = SCALES[measure], overlay_look(context)
     pixel = context.preferences.system.ui_scale
     size = round(look.text_size * pixel)
     left = labels.BAR_MARGIN * pixel + sum(
@@ -196,7 +196,7 @@ def _draw_scale(context: bpy.types.Context, measure: str) -> None:
     values = scale.least * (scale.most / scale.least) ** np.linspace(0, 1, 64)
     high = low + labels.BAR_HEIGHT * pixel
     corners = np.concatenate([labels.rectangle(a, low, b, high) for a, b in pairwise(edges)])
-    bar = shaders.triangle_batch(corners, np.repeat(scale.colours_of(values), 2, axis=0))
+    bar = shaders.triangle_batch(corners, np.repeat(scale.colors_of(values), 2, axis=0))
     bar.draw(shaders.triangles())
     labels.draw_scale_texts(scale, left, low, pixel, size, look.text)
 
@@ -209,7 +209,7 @@ def _brought_nearer(view: bpy.types.RegionView3D, share: float) -> Iterator[None
 
 
 def _nearer(view: bpy.types.RegionView3D, share: float) -> Matrix:
-    """The view's projection, with depths a little smaller, so that what lies on the surface is not hidden by it."""
+    """The view's projection with slightly smaller depths, so that the surface does not hide what lies on it."""
     projection = view.window_matrix.copy()
     if view.is_perspective:
         projection[2][3] *= 1 + share * NEARER_PERSPECTIVE

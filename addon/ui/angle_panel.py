@@ -7,13 +7,14 @@ from collections.abc import Iterator
 
 import bpy
 
-from .. import angle_table, identifiers
-from ..angle_table import KIND_LABELS, Row, Settings, TablePart, degrees, last_settings, verdict
+from ..core import identifiers
+from ..core.text import degrees
+from ..jobs.angle_table import KIND_LABELS, Row, TablePart, TableSettings, current_table, last_settings, verdict
 from ..overlay import cache
 from ..overlay.content import Cone
 from .panels import ConeUnwrapSubPanel
 
-# More rows and parts than these make no table anybody reads.
+# A table with more rows or parts would not be readable.
 MOST_ROWS = 100
 MOST_PARTS = 8
 
@@ -21,6 +22,7 @@ MOST_PARTS = 8
 class VIEW3D_PT_cone_angles(ConeUnwrapSubPanel, bpy.types.Panel):
     bl_label = "Cone Angles"
     bl_order = 10
+    bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -29,7 +31,7 @@ class VIEW3D_PT_cone_angles(ConeUnwrapSubPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         settings = last_settings(context)
-        table = angle_table.current_table(context.object, settings)
+        table = current_table(context.object, settings)
         if table is None:
             layout.label(text="This mesh is large")
             layout.operator(identifiers.UPDATE_TABLE, icon="FILE_REFRESH")
@@ -58,7 +60,7 @@ class VIEW3D_PT_cone_angles(ConeUnwrapSubPanel, bpy.types.Panel):
         if len(shown) > MOST_PARTS:
             layout.label(text=f"and {len(shown) - MOST_PARTS} more parts")
 
-    def _draw_fixes(self, layout: bpy.types.UILayout, settings: Settings) -> None:
+    def _draw_fixes(self, layout: bpy.types.UILayout, settings: TableSettings) -> None:
         column = layout.column(align=True)
         operators = [
             column.operator(identifiers.SPREAD_REST),
@@ -98,7 +100,7 @@ def draw_head(layout: bpy.types.UILayout) -> None:
 
 
 def draw_row(layout: bpy.types.UILayout, row: Row, imposed: Cone | None) -> None:
-    """imposed: the cone as the overlay shows it; its angle, of the last unwrap, stands in where the next finds one."""
+    """imposed: the cone as the overlay shows it; where the angle is automatic, that of the last unwrap is shown."""
     known = row if row.angle is not None or imposed is None else imposed
     text = "—" if known.angle is None else ("~" if row.angle is None else "") + degrees(known.angle)
     vertex, angle, kind, curvature = columns(layout)

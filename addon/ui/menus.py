@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Menu entries; F3 finds an operator only where a menu holds it."""
+"""Menu entries; the search with F3 only finds operators that are in a menu."""
 
 import bpy
 
-from .. import identifiers
+from ..core import identifiers
 
 
 class VIEW3D_MT_cone_angles(bpy.types.Menu):
@@ -35,55 +35,55 @@ class VIEW3D_MT_cone_seeing(bpy.types.Menu):
         layout.operator(identifiers.TEXTURE_SHOW, text="Remove Texture").clear = True
 
 
-def draw_unwrap(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
-    layout = self.layout
-    layout.separator()
-    # So that long runs show their progress.
-    layout.operator_context = "INVOKE_DEFAULT"
-    layout.operator(identifiers.UNWRAP)
+class VIEW3D_MT_cone_unwrap(bpy.types.Menu):
+    bl_idname = "VIEW3D_MT_cone_unwrap"
+    bl_label = "Cone Unwrap"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = self.layout
+        # Edit Cones needs events, and so does the progress of long runs.
+        layout.operator_context = "INVOKE_DEFAULT"
+        layout.operator(identifiers.AUTO_UNWRAP)
+        layout.operator(identifiers.UNWRAP)
+        layout.separator()
+        layout.operator(identifiers.MARK).clear = False
+        layout.operator(identifiers.MARK, text="Clear Cone").clear = True
+        layout.operator(identifiers.SELECT)
+        layout.operator(identifiers.EDIT)
+        layout.operator(identifiers.PLACE)
+        layout.menu(VIEW3D_MT_cone_angles.bl_idname)
+        layout.separator()
+        layout.operator(identifiers.SELECT_REPORTED)
+        layout.menu(VIEW3D_MT_cone_seeing.bl_idname)
+        layout.operator(identifiers.CLEAR_DATA)
 
 
-def draw_seeing(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
+def draw_submenu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
     self.layout.separator()
-    self.layout.menu(VIEW3D_MT_cone_seeing.bl_idname)
+    self.layout.menu(VIEW3D_MT_cone_unwrap.bl_idname)
 
 
-def draw_in_object_mode(self: bpy.types.Menu, context: bpy.types.Context) -> None:
-    draw_unwrap(self, context)
-    self.layout.operator(identifiers.PLACE)
-    self.layout.menu(VIEW3D_MT_cone_seeing.bl_idname)
+def draw_unwrap(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    self.layout.separator()
+    self.layout.operator_context = "INVOKE_DEFAULT"
+    self.layout.operator(identifiers.AUTO_UNWRAP)
+    self.layout.menu(VIEW3D_MT_cone_unwrap.bl_idname)
 
 
-def draw_cones(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
-    layout = self.layout
-    layout.separator()
-    layout.operator(identifiers.MARK).clear = False
-    layout.operator(identifiers.MARK, text="Clear Cone").clear = True
-    layout.operator(identifiers.SELECT)
-    layout.operator_context = "INVOKE_DEFAULT"
-    layout.operator(identifiers.EDIT)
-    layout.operator(identifiers.PLACE)
-    layout.menu(VIEW3D_MT_cone_angles.bl_idname)
-    layout.operator(identifiers.SELECT_REPORTED)
-
-
-def draw_cones_for_vertices(self: bpy.types.Menu, context: bpy.types.Context) -> None:
-    """The context menu serves all select modes; cones belong to vertices."""
+def draw_for_vertices(self: bpy.types.Menu, context: bpy.types.Context) -> None:
+    """The context menu is shared by all select modes; cones are vertices."""
     if context.tool_settings.mesh_select_mode[0]:
-        draw_cones(self, context)
+        draw_submenu(self, context)
 
 
-# IMAGE_MT_uvs_unwrap also shows in the U menu of the 3D view (VIEW3D_MT_uv_map). The cones stand where the seams do.
+# IMAGE_MT_uvs_unwrap is also part of the U menu of the 3D view (VIEW3D_MT_uv_map). Cones are next to seams.
 ENTRIES = (
     ("IMAGE_MT_uvs_unwrap", draw_unwrap),
-    ("VIEW3D_MT_object", draw_in_object_mode),
-    ("IMAGE_MT_uvs", draw_cones),
-    ("IMAGE_MT_uvs", draw_seeing),
-    ("VIEW3D_MT_uv_map", draw_cones),
-    ("VIEW3D_MT_uv_map", draw_seeing),
-    ("VIEW3D_MT_edit_mesh_edges", draw_cones),
-    ("VIEW3D_MT_edit_mesh_vertices", draw_cones),
-    ("VIEW3D_MT_edit_mesh_context_menu", draw_cones_for_vertices),
+    ("IMAGE_MT_uvs", draw_submenu),
+    ("VIEW3D_MT_object", draw_submenu),
+    ("VIEW3D_MT_edit_mesh_edges", draw_submenu),
+    ("VIEW3D_MT_edit_mesh_vertices", draw_submenu),
+    ("VIEW3D_MT_edit_mesh_context_menu", draw_for_vertices),
 )
 
 

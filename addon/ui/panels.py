@@ -5,15 +5,23 @@ from __future__ import annotations
 
 import bpy
 
-from .. import distortion, findings, identifiers, native, reporting, reports, texture
+from ..core import findings, identifiers, native
+from ..core.text import counted
+from ..mesh import distortion, reports, texture
 from ..overlay.heat import SCALES
 from ..overlay.settings import settings
 from . import tables
 from .text import draw_table, draw_wrapped
 
+ICONS = {
+    findings.Severity.INFORMATION: "INFO",
+    findings.Severity.ATTENTION: "ERROR",
+    findings.Severity.BROKEN: "CANCEL",
+}
+
 
 class ConeUnwrapPanel:
-    """Mix-in: where all our panels stand."""
+    """Mix-in: the place of all panels."""
 
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
@@ -21,7 +29,7 @@ class ConeUnwrapPanel:
 
 
 class ConeUnwrapSubPanel(ConeUnwrapPanel):
-    """Mix-in: a panel that is shown with a mesh to work on and the library to do it."""
+    """Mix-in: a panel that needs a mesh as active object and the computing library."""
 
     bl_parent_id = "VIEW3D_PT_cone_unwrap"
 
@@ -31,7 +39,7 @@ class ConeUnwrapSubPanel(ConeUnwrapPanel):
 
 
 class VIEW3D_PT_cone_unwrap(ConeUnwrapPanel, bpy.types.Panel):
-    """The tools; the other panels stand in this one."""
+    """The tools; contains the other panels."""
 
     bl_label = "Cone Unwrap"
 
@@ -40,20 +48,29 @@ class VIEW3D_PT_cone_unwrap(ConeUnwrapPanel, bpy.types.Panel):
         if native.PROBLEM:
             draw_wrapped(layout, context, native.PROBLEM, icon="ERROR")
             return
-        column = layout.column(align=True)
+        # For the progress of long runs.
+        layout.operator_context = "INVOKE_DEFAULT"
+        column = layout.column()
+        column.scale_y = 1.6
+        column.operator(identifiers.AUTO_UNWRAP, icon="UV")
+        layout.operator(identifiers.UNWRAP)
+
+
+class VIEW3D_PT_cone_unwrap_cones(ConeUnwrapSubPanel, bpy.types.Panel):
+    bl_label = "Cones"
+    bl_order = 7
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        column = self.layout.column(align=True)
+        column.operator_context = "INVOKE_DEFAULT"
         row = column.row(align=True)
         row.operator(identifiers.MARK).clear = False
         row.operator(identifiers.MARK, text="Clear Cone").clear = True
         row = column.row(align=True)
         row.operator(identifiers.SELECT)
         row.operator(identifiers.PLACE)
-        # It lives on events; long runs show their progress with them.
-        column.operator_context = "INVOKE_DEFAULT"
         column.operator(identifiers.EDIT, icon="EMPTY_SINGLE_ARROW")
-        column = layout.column()
-        column.scale_y = 1.4
-        column.operator_context = "INVOKE_DEFAULT"
-        column.operator(identifiers.UNWRAP, icon="UV")
 
 
 class VIEW3D_PT_cone_unwrap_problems(ConeUnwrapSubPanel, bpy.types.Panel):
@@ -67,8 +84,9 @@ class VIEW3D_PT_cone_unwrap_problems(ConeUnwrapSubPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         for number, found in enumerate(findings.last(context.object)):
             box = self.layout.box()
-            draw_wrapped(box, context, found.text, icon="CANCEL" if found.is_error else "ERROR")
-            if found.named.count():
+            times = f" ({found.times} times)" if found.times > 1 else ""
+            draw_wrapped(box, context, found.text + times, icon=ICONS[found.severity])
+            if found.elements.count():
                 operator = box.operator(identifiers.SELECT_REPORTED, text="Select", icon="RESTRICT_SELECT_OFF")
                 operator.finding = number
 
@@ -76,6 +94,7 @@ class VIEW3D_PT_cone_unwrap_problems(ConeUnwrapSubPanel, bpy.types.Panel):
 class VIEW3D_PT_cone_unwrap_quality(ConeUnwrapSubPanel, bpy.types.Panel):
     bl_label = "Quality"
     bl_order = 30
+    bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -87,14 +106,15 @@ class VIEW3D_PT_cone_unwrap_quality(ConeUnwrapSubPanel, bpy.types.Panel):
         if report is None:
             draw_wrapped(self.layout, context, "The UV map has changed since it was unwrapped from cones", icon="INFO")
             return
-        islands, cones = reporting.counted(report.islands, "island"), reporting.counted(len(report.cones), "cone")
-        draw_wrapped(self.layout, context, f"{reporting.counted(report.faces, 'face')}, {islands}, {cones}")
+        islands, cones = counted(report.islands, "island"), counted(len(report.cones), "cone")
+        draw_wrapped(self.layout, context, f"{counted(report.faces, 'face')}, {islands}, {cones}")
         draw_table(self.layout, tables.QUALITY_HEADER, tables.quality_rows(report))
 
 
 class VIEW3D_PT_cone_unwrap_seams(ConeUnwrapSubPanel, bpy.types.Panel):
     bl_label = "Seam Certificate"
     bl_order = 40
+    bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -112,12 +132,13 @@ class VIEW3D_PT_cone_unwrap_seams(ConeUnwrapSubPanel, bpy.types.Panel):
             draw_table(self.layout, tables.SEAM_HEADER, rows)
         rest = len(certificate["cuts"]) - len(rows)
         if rest:
-            self.layout.label(text=f"and {reporting.counted(rest, 'more cut', 'more cuts')}, none worse")
+            self.layout.label(text=f"and {counted(rest, 'more cut', 'more cuts')}, none worse")
 
 
 class VIEW3D_PT_cone_unwrap_overlay(ConeUnwrapSubPanel, bpy.types.Panel):
     bl_label = "Overlay"
     bl_order = 50
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw_header(self, context: bpy.types.Context) -> None:
         self.layout.prop(settings(context), "show", text="")
@@ -171,6 +192,7 @@ class VIEW3D_PT_cone_unwrap_texture(ConeUnwrapSubPanel, bpy.types.Panel):
 PANELS = (
     VIEW3D_PT_cone_unwrap,
     VIEW3D_PT_cone_unwrap_problems,
+    VIEW3D_PT_cone_unwrap_cones,
     VIEW3D_PT_cone_unwrap_quality,
     VIEW3D_PT_cone_unwrap_seams,
     VIEW3D_PT_cone_unwrap_overlay,

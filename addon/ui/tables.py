@@ -1,24 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The tables of the sidebar, as rows of texts."""
+"""The tables of the sidebar as rows of texts."""
 
 from __future__ import annotations
 
 import math
 from typing import Any
 
-from ..reports import Report
+from ..mesh.reports import Report
 
 Row = tuple[str, ...]
 
 QUALITY_HEADER = ("", "Value", "Ideal")
 SEAM_HEADER = ("Turn", "Shift", "Texels")
 
-# The other cuts are summed up in a line.
+# Further cuts are only counted.
 SHOWN_CUTS = 8
+
+EXACT = "exact"
+# Smaller errors are those of the numbers that it was computed with.
+ROUNDING = 1e-9
 
 
 def quality_rows(report: Report) -> list[Row]:
-    """The figures of a map, each with its ideal."""
+    """The figures of a map, each with its ideal value."""
     figures, seams = report.distortion, report.seams
     return [
         ("Angles", f"{figures['quasi_conformal']:.3f}", "1"),
@@ -26,16 +30,16 @@ def quality_rows(report: Report) -> list[Row]:
         ("Areas, 10 %", f"{figures['area_p10']:.3f}", "1"),
         ("Areas, 90 %", f"{figures['area_p90']:.3f}", "1"),
         ("Stretch", f"{figures['l2_stretch']:.3f}", "1"),
-        ("Sides of Cuts", _small(seams["sister_ratio_max"] - 1), "0"),
-        ("Turns of Cuts", f"{_small(math.degrees(seams['rotation_residual']))}°", "0°"),
-        ("Shifts of Cuts", _small(seams["translation_residual"]), "0"),
+        ("Sides of Cuts", _small(seams["sister_ratio_max"] - 1), EXACT),
+        ("Turns of Cuts", _small(math.degrees(seams["rotation_residual"]), "°"), EXACT),
+        ("Shifts of Cuts", _small(seams["translation_residual"]), EXACT),
         ("Flipped Faces", str(len(report.flipped)), "0"),
         ("Overlapping Faces", str(len(report.overlapping)), "0"),
     ]
 
 
 def seam_summary(certificate: dict[str, Any]) -> str:
-    """How well the cuts of a seamless layout match, in a sentence."""
+    """One sentence on how well the cuts of a seamless layout match."""
     count = len(certificate["cuts"])
     if not count:
         return "No cuts, so no seam"
@@ -47,7 +51,7 @@ def seam_summary(certificate: dict[str, Any]) -> str:
 
 
 def seam_rows(certificate: dict[str, Any]) -> list[Row]:
-    """The cuts, the worst first: how one side lies to the other."""
+    """The cuts, the worst first, with the map from one side to the other."""
     symmetry = certificate["symmetry"]
     cuts = sorted(certificate["cuts"], key=lambda cut: -cut["error_texels"])
     return [
@@ -60,5 +64,6 @@ def seam_rows(certificate: dict[str, Any]) -> list[Row]:
     ]
 
 
-def _small(value: float) -> str:
-    return "0" if value == 0 else f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e+")
+def _small(value: float, unit: str = "") -> str:
+    """An error that should be 0."""
+    return EXACT if value < ROUNDING else f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e+") + unit

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Texts in panels as narrow as the artist has made them."""
+"""Texts in panels of any width."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ import bpy
 
 # The font and size in points of Blender's panels.
 FONT, POINTS = 0, 11
-# Pixels beside the text, at a scale of 1: the margins of panel and box, the tabs, and an icon.
+# Pixels besides the text, at a scale of 1: margins of panel and box with the tabs, and an icon.
 MARGIN, ICON = 60, 40
-# Of a region that is not known, and the least one, at a scale of 1.
+# Width of an unknown region, and the least one, at a scale of 1.
 WIDTH, LEAST = 240, 160
 
 
 def wrapped(context: bpy.types.Context, text: str, indent: int = 0) -> list[str]:
-    """The text in lines that fit into the region; indent: pixels taken by something else, at a scale of 1."""
-    # Without a window it is 0.
+    """The text in lines that fit into the region.  indent: pixels used by something else, at a scale of 1."""
+    # It is 0 without a window.
     scale = context.preferences.system.ui_scale or 1.0
     blf.size(FONT, POINTS * scale)
     width = max(WIDTH if context.region is None else context.region.width / scale, LEAST) - MARGIN - indent
@@ -41,7 +41,7 @@ def draw_wrapped(layout: bpy.types.UILayout, context: bpy.types.Context, text: s
 
 
 def draw_table(layout: bpy.types.UILayout, header: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> None:
-    """Rows of texts, the first column to the left and the widest, the others to the right."""
+    """Rows of texts, with a wide first column on the left and the others aligned to the right."""
     column = layout.column(align=True)
     column.scale_y = 0.85
     for row in [header, *rows]:
@@ -49,7 +49,7 @@ def draw_table(layout: bpy.types.UILayout, header: tuple[str, ...], rows: Iterab
         rest.active = row is not header
         for place, text in enumerate(row):
             columns_left = len(row) - place
-            # The first column as wide as the others together.
+            # The first column is as wide as the others together.
             part = rest.split(factor=0.5 if place == 0 else 1 / columns_left) if columns_left > 1 else rest
             cell = part.row()
             cell.alignment = "LEFT" if place == 0 else "RIGHT"

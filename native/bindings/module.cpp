@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <chrono>
 #include <cstring>
 #include <initializer_list>
 
@@ -33,15 +34,31 @@ std::vector<Index> to_vector(const IndexArray& array) {
   return {array.data(), array.data() + array.shape(0)};
 }
 
-lsgp::Surface to_surface(const FloatArray& positions, const IndexArray& triangles,
-                         const std::optional<IndexArray>& edges, const IndexArray& seams) {
-  lsgp::Surface surface{to_matrix<lsgp::Positions>(positions), to_matrix<lsgp::Triangles>(triangles), std::nullopt,
-                        to_matrix<lsgp::VertexPairs>(seams)};
+Eigen::VectorXd to_vector_of_numbers(const FloatArray& array) {
+  if (array.ndim() != 1) throw py::value_error("array of the wrong shape");
+  return Eigen::Map<const Eigen::VectorXd>(array.data(), array.size());
+}
+
+// Positions, triangles, edges, seams, importance, and costs of cuts along the edges.
+using SurfaceArrays = std::tuple<FloatArray, IndexArray, std::optional<IndexArray>, IndexArray, FloatArray, FloatArray>;
+
+lsgp::Surface to_surface(const SurfaceArrays& arrays) {
+  const auto& [positions, triangles, edges, seams, importance, cut_costs] = arrays;
+  lsgp::Surface surface;
+  surface.positions = to_matrix<lsgp::Positions>(positions);
+  surface.triangles = to_matrix<lsgp::Triangles>(triangles);
   if (edges) surface.edges = to_matrix<lsgp::VertexPairs>(*edges);
+  surface.seams = to_matrix<lsgp::VertexPairs>(seams);
+  surface.importance = to_vector_of_numbers(importance);
+  surface.cut_costs = to_vector_of_numbers(cut_costs);
   return surface;
 }
 
-lsgp::Cones to_cones(const IndexArray& vertices, const FloatArray& angles, const BoolArray& has_angle) {
+// Vertices, angles, and which of them are given.
+using ConeArrays = std::tuple<IndexArray, FloatArray, BoolArray>;
+
+lsgp::Cones to_cones(const ConeArrays& arrays) {
+  const auto& [vertices, angles, has_angle] = arrays;
   if (angles.ndim() != 1 || has_angle.ndim() != 1 || angles.shape(0) != has_angle.shape(0)) {
     throw py::value_error("array of the wrong shape");
   }
@@ -234,11 +251,36 @@ lsgp::Options to_options(const py::dict& values) {
   return options;
 }
 
-// A callable that takes what is done; False from it stops the verb, and so does what it raises.
+// Python acts on signals such as that of Ctrl-C between its own instructions only, of which a running verb has none.
+void require_no_signal() {
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+bool is_main_thread() {
+  const py::module_ threading = py::module_::import("threading");
+  return threading.attr("get_ident")().equal(threading.attr("main_thread")().attr("ident"));
+}
+
+// Nobody is told anything; the main thread, to which all signals go, looks for them.
+lsgp::Progress watch_for_signals() {
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds between_looks(50);
+  if (!is_main_thread()) return {};
+  return [next = Clock::now() + between_looks](double) mutable {
+    if (Clock::now() < next) return true;
+    const py::gil_scoped_acquire acquire;
+    require_no_signal();
+    next = Clock::now() + between_looks;
+    return true;
+  };
+}
+
+// callback: takes what is done; False from it stops the verb, and so does what it raises, or a signal.
 lsgp::Progress to_progress(const py::object& callback) {
-  if (callback.is_none()) return {};
+  if (callback.is_none()) return watch_for_signals();
   return [&callback](double done) {
     const py::gil_scoped_acquire acquire;
+    require_no_signal();
     return !callback(done).is(py::bool_(false));
   };
 }
@@ -272,15 +314,6 @@ py::dict to_dict(const lsgp::Result& result) {
   return out;
 }
 
-lsgp::Surface to_surface(const FloatArray& positions, const IndexArray& triangles,
-                         const std::optional<IndexArray>& edges, const IndexArray& seams,
-                         const FloatArray& importance) {
-  lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
-  if (importance.ndim() != 1) throw py::value_error("array of the wrong shape");
-  surface.importance = Eigen::Map<const Eigen::VectorXd>(importance.data(), importance.size());
-  return surface;
-}
-
 // What the verb and the method of the solver take after the surface.
 struct Call {
   lsgp::Cones cones;
@@ -288,37 +321,35 @@ struct Call {
   lsgp::Pins pins;
   lsgp::Progress progress;
 
-  Call(const IndexArray& cones, const FloatArray& angles, const BoolArray& has_angle, const py::dict& option_values,
-       const IndexArray& pinned_corners, const FloatArray& pinned_uv, const py::object& progress)
-      : cones(to_cones(cones, angles, has_angle)),
+  Call(const ConeArrays& cones, const py::dict& option_values, const IndexArray& pinned_corners,
+       const FloatArray& pinned_uv, const py::object& progress)
+      : cones(to_cones(cones)),
         options(to_options(option_values)),
         pins{to_vector(pinned_corners), to_matrix<lsgp::CornerUv>(pinned_uv)},
         progress(to_progress(progress)) {}
 };
 
-py::dict parameterize(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
-                      const IndexArray& seams, const FloatArray& importance, const IndexArray& cones,
-                      const FloatArray& angles, const BoolArray& has_angle, const py::dict& option_values,
+py::dict parameterize(const SurfaceArrays& surface_arrays, const ConeArrays& cones, const py::dict& option_values,
                       const IndexArray& pinned_corners, const FloatArray& pinned_uv, const py::object& progress) {
-  const lsgp::Surface surface = to_surface(positions, triangles, edges, seams, importance);
-  const Call call(cones, angles, has_angle, option_values, pinned_corners, pinned_uv, progress);
+  const lsgp::Surface surface = to_surface(surface_arrays);
+  const Call call(cones, option_values, pinned_corners, pinned_uv, progress);
   return to_dict(
       without_gil([&] { return lsgp::parameterize(surface, call.cones, call.options, call.pins, call.progress); }));
 }
 
-py::dict parameterize_again(lsgp::Solver& solver, const IndexArray& cones, const FloatArray& angles,
-                            const BoolArray& has_angle, const py::dict& option_values, const IndexArray& pinned_corners,
-                            const FloatArray& pinned_uv, const py::object& progress) {
-  const Call call(cones, angles, has_angle, option_values, pinned_corners, pinned_uv, progress);
+py::dict parameterize_again(lsgp::Solver& solver, const ConeArrays& cones, const py::dict& option_values,
+                            const IndexArray& pinned_corners, const FloatArray& pinned_uv, const py::object& progress) {
+  const Call call(cones, option_values, pinned_corners, pinned_uv, progress);
   return to_dict(without_gil([&] { return solver.parameterize(call.cones, call.options, call.pins, call.progress); }));
 }
 
-py::dict find_cuts(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
-                   const IndexArray& seams, const IndexArray& cones, const py::dict& option_values) {
-  const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
+py::dict find_cuts(const SurfaceArrays& surface_arrays, const IndexArray& cones, const py::dict& option_values,
+                   const py::object& progress) {
+  const lsgp::Surface surface = to_surface(surface_arrays);
   const std::vector<Index> wanted = to_vector(cones);
   const lsgp::Options options = to_options(option_values);
-  const lsgp::CutPaths cuts = without_gil([&] { return lsgp::find_cuts(surface, wanted, options); });
+  const lsgp::Progress tell = to_progress(progress);
+  const lsgp::CutPaths cuts = without_gil([&] { return lsgp::find_cuts(surface, wanted, options, tell); });
   py::list paths;
   for (const auto& path : cuts.paths) paths.append(to_array(path));
   py::dict out;
@@ -327,19 +358,56 @@ py::dict find_cuts(const FloatArray& positions, const IndexArray& triangles, con
   return out;
 }
 
-py::dict prescribe_curvature(const FloatArray& positions, const IndexArray& triangles,
-                             const std::optional<IndexArray>& edges, const IndexArray& seams, const IndexArray& cones,
-                             const FloatArray& angles, const BoolArray& has_angle, const py::dict& option_values) {
-  const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
-  const lsgp::Cones wanted = to_cones(cones, angles, has_angle);
+py::array_t<double> cut_costs(const SurfaceArrays& surface_arrays, const std::optional<std::array<double, 3>>& front,
+                              bool creases, const IndexArray& sharp, const FloatArray& paint,
+                              const py::object& progress) {
+  const lsgp::Surface surface = to_surface(surface_arrays);
+  lsgp::CutPreferences preferences;
+  if (front) preferences.front = Eigen::Vector3d((*front)[0], (*front)[1], (*front)[2]);
+  preferences.creases = creases;
+  preferences.sharp = to_matrix<lsgp::VertexPairs>(sharp);
+  preferences.paint = to_vector_of_numbers(paint);
+  const lsgp::Progress tell = to_progress(progress);
+  return to_array(without_gil([&] { return lsgp::cut_costs(surface, preferences, tell); }));
+}
+
+py::dict prescribe_curvature(const SurfaceArrays& surface_arrays, const ConeArrays& cones,
+                             const py::dict& option_values, const py::object& progress) {
+  const lsgp::Surface surface = to_surface(surface_arrays);
+  const lsgp::Cones wanted = to_cones(cones);
   const lsgp::Options options = to_options(option_values);
-  const lsgp::Prescription result = without_gil([&] { return lsgp::prescribe_curvature(surface, wanted, options); });
+  const lsgp::Progress tell = to_progress(progress);
+  const lsgp::Prescription result =
+      without_gil([&] { return lsgp::prescribe_curvature(surface, wanted, options, tell); });
   py::dict out;
   out["cones"] = to_array(result.cones);
   out["cone_angles"] = to_array(result.cone_angles);
   out["log_scale"] = to_array(result.log_scale);
   out["predicted_l2"] = result.predicted_l2;
   out["warnings"] = to_findings(result.warnings);
+  return out;
+}
+
+py::list build_ledger(const SurfaceArrays& surface_arrays, const ConeArrays& cones, const py::dict& option_values,
+                      bool gets_cones) {
+  const lsgp::Surface surface = to_surface(surface_arrays);
+  const lsgp::Cones given = to_cones(cones);
+  const lsgp::Options options = to_options(option_values);
+  const auto of = gets_cones ? lsgp::LedgerOf::placement : lsgp::LedgerOf::map;
+  py::list out;
+  for (const lsgp::LedgerPart& part : without_gil([&] { return lsgp::build_ledger(surface, given, options, of); })) {
+    py::dict values;
+    values["triangles"] = to_array(part.triangles);
+    values["cones"] = to_array(part.cones);
+    values["curvature"] = to_array(part.curvature);
+    values["euler"] = part.euler;
+    values["borders"] = part.borders;
+    values["assigned"] = part.assigned;
+    values["required"] = part.required;
+    values["border_takes_up"] = part.border_takes_up;
+    values["room"] = py::make_tuple(part.room[0], part.room[1]);
+    out.append(values);
+  }
   return out;
 }
 
@@ -359,11 +427,10 @@ lsgp::PlacementOptions to_placement_options(const py::dict& values) {
   return options;
 }
 
-py::dict place_cones(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
-                     const IndexArray& seams, const IndexArray& cones, const FloatArray& angles,
-                     const BoolArray& has_angle, const py::dict& option_values, const py::object& progress) {
-  const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
-  const lsgp::Cones existing = to_cones(cones, angles, has_angle);
+py::dict place_cones(const SurfaceArrays& surface_arrays, const ConeArrays& cones, const py::dict& option_values,
+                     const py::object& progress) {
+  const lsgp::Surface surface = to_surface(surface_arrays);
+  const lsgp::Cones existing = to_cones(cones);
   const lsgp::PlacementOptions options = to_placement_options(option_values);
   const lsgp::Progress tell = to_progress(progress);
   const lsgp::Placement result = without_gil([&] { return lsgp::place_cones(surface, existing, options, tell); });
@@ -372,18 +439,19 @@ py::dict place_cones(const FloatArray& positions, const IndexArray& triangles, c
   out["cone_angles"] = to_array(result.cone_angles);
   out["log_scale"] = to_array(result.log_scale);
   out["predicted_l2"] = result.predicted_l2;
+  out["mapped_l2"] = result.mapped_l2;
   out["reached"] = result.reached;
+  out["maps"] = result.maps;
   out["warnings"] = to_findings(result.warnings);
   out["factorizations"] = result.linear_algebra.factorizations;
   out["back_substitutions"] = result.linear_algebra.back_substitutions;
   return out;
 }
 
-py::dict cone_gains(const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
-                    const IndexArray& seams, const IndexArray& cones, const FloatArray& angles,
-                    const BoolArray& has_angle, const std::string& seam_mode, const py::object& progress) {
-  const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
-  const lsgp::Cones existing = to_cones(cones, angles, has_angle);
+py::dict cone_gains(const SurfaceArrays& surface_arrays, const ConeArrays& cones, const std::string& seam_mode,
+                    const py::object& progress) {
+  const lsgp::Surface surface = to_surface(surface_arrays);
+  const lsgp::Cones existing = to_cones(cones);
   const lsgp::SeamMode mode = to_seam_mode(seam_mode);
   const lsgp::Progress tell = to_progress(progress);
   const lsgp::ConeGains result = without_gil([&] { return lsgp::cone_gains(surface, existing, mode, tell); });
@@ -395,15 +463,15 @@ py::dict cone_gains(const FloatArray& positions, const IndexArray& triangles, co
   return out;
 }
 
-py::dict measure_distortion(const FloatArray& positions, const IndexArray& triangles,
-                            const std::optional<IndexArray>& edges, const IndexArray& seams,
-                            const FloatArray& corner_uv, const std::optional<IndexArray>& cones) {
-  const lsgp::Surface surface = to_surface(positions, triangles, edges, seams);
+py::dict measure_distortion(const SurfaceArrays& surface_arrays, const FloatArray& corner_uv,
+                            const std::optional<IndexArray>& cones, const py::object& progress) {
+  const lsgp::Surface surface = to_surface(surface_arrays);
   if (corner_uv.size() != 6 * surface.triangles.rows()) throw py::value_error("array of the wrong shape");
   const lsgp::CornerUv uv = Eigen::Map<const lsgp::CornerUv>(corner_uv.data(), 3 * surface.triangles.rows(), 2);
   const std::vector<Index> given = cones ? to_vector(*cones) : std::vector<Index>{};
+  const lsgp::Progress tell = to_progress(progress);
   const lsgp::Measurement result =
-      without_gil([&] { return lsgp::measure_distortion(surface, uv, cones ? &given : nullptr); });
+      without_gil([&] { return lsgp::measure_distortion(surface, uv, cones ? &given : nullptr, tell); });
   py::dict out;
   out["distortion"] = to_dict(result.distortion);
   out["seams"] = to_dict(result.seams);
@@ -424,16 +492,18 @@ PYBIND11_MODULE(_lsgp, module) {
       raise_in_python(error);
     }
   });
-  module.def("parameterize", &parameterize);
+  using py::literals::operator""_a;
+  module.def("parameterize", &parameterize, "surface"_a, "cones"_a, "options"_a, "pinned_corners"_a, "pinned_uv"_a,
+             "progress"_a);
   py::class_<lsgp::Solver>(module, "Solver")
-      .def(py::init([](const FloatArray& positions, const IndexArray& triangles, const std::optional<IndexArray>& edges,
-                       const IndexArray& seams, const FloatArray& importance) {
-        return lsgp::Solver(to_surface(positions, triangles, edges, seams, importance));
-      }))
-      .def("parameterize", &parameterize_again);
-  module.def("find_cuts", &find_cuts);
-  module.def("prescribe_curvature", &prescribe_curvature);
-  module.def("place_cones", &place_cones);
-  module.def("cone_gains", &cone_gains);
-  module.def("measure_distortion", &measure_distortion);
+      .def(py::init([](const SurfaceArrays& surface) { return lsgp::Solver(to_surface(surface)); }), "surface"_a)
+      .def("parameterize", &parameterize_again, "cones"_a, "options"_a, "pinned_corners"_a, "pinned_uv"_a,
+           "progress"_a);
+  module.def("find_cuts", &find_cuts, "surface"_a, "cones"_a, "options"_a, "progress"_a);
+  module.def("cut_costs", &cut_costs, "surface"_a, "front"_a, "creases"_a, "sharp"_a, "paint"_a, "progress"_a);
+  module.def("prescribe_curvature", &prescribe_curvature, "surface"_a, "cones"_a, "options"_a, "progress"_a);
+  module.def("build_ledger", &build_ledger, "surface"_a, "cones"_a, "options"_a, "gets_cones"_a);
+  module.def("place_cones", &place_cones, "surface"_a, "cones"_a, "options"_a, "progress"_a);
+  module.def("cone_gains", &cone_gains, "surface"_a, "cones"_a, "seam_mode"_a, "progress"_a);
+  module.def("measure_distortion", &measure_distortion, "surface"_a, "corner_uv"_a, "cones"_a, "progress"_a);
 }

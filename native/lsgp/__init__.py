@@ -9,7 +9,7 @@ from importlib.metadata import version
 from . import certificate, lattice
 from .api import (
     ConeGains,
-    CutGraph,
+    CutPaths,
     Distortion,
     Measurement,
     Options,
@@ -24,12 +24,14 @@ from .api import (
     Solver,
     Surface,
     cone_gains,
+    cut_costs,
     find_cuts,
     measure_distortion,
     parameterize,
     place_cones,
     prescribe_curvature,
 )
+from .auto_unwrap import auto_unwrap, preset_options
 from .cut_paths import split_into_paths
 from .errors import (
     Cancelled,
@@ -41,6 +43,8 @@ from .errors import (
     SolverError,
     TopologyError,
 )
+from .indexed_uv import index_uv
+from .io.mesh_files import MeshFile, read_mesh_file, write_mesh_file
 from .islands import correct_aspect, fit_placement
 from .ledger import LedgerPart, build_ledger, hold_complete, part_surface
 from .triangles import TriangleDistortion, singular_values, triangle_distortion
@@ -51,7 +55,7 @@ __all__ = [
     "Cancelled",
     "ConeGains",
     "CurvatureError",
-    "CutGraph",
+    "CutPaths",
     "Distortion",
     "Elements",
     "Finding",
@@ -59,6 +63,7 @@ __all__ = [
     "LedgerPart",
     "LsgpError",
     "Measurement",
+    "MeshFile",
     "Options",
     "Pins",
     "Placement",
@@ -73,20 +78,26 @@ __all__ = [
     "Surface",
     "TopologyError",
     "TriangleDistortion",
+    "auto_unwrap",
     "build_ledger",
     "certificate",
     "cone_gains",
     "correct_aspect",
+    "cut_costs",
     "find_cuts",
     "fit_placement",
     "hold_complete",
+    "index_uv",
     "lattice",
     "measure_distortion",
     "parameterize",
     "part_surface",
     "place_cones",
     "prescribe_curvature",
+    "preset_options",
+    "read_mesh_file",
     "singular_values",
     "split_into_paths",
     "triangle_distortion",
+    "write_mesh_file",
 ]

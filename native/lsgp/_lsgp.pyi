@@ -10,16 +10,14 @@ from numpy.typing import NDArray
 _Floats = NDArray[np.float64]
 _Indices = NDArray[np.int32]
 _Flags = NDArray[np.bool_]
+_Surface = tuple[_Floats, _Indices, _Indices | None, _Indices, _Floats, _Floats]
+"""Positions, triangles, edges, seams, importance, and costs of cuts along the edges."""
+_Cones = tuple[_Indices, _Floats, _Flags]
+"""Vertices, angles, and which of them are given."""
 
 def parameterize(
-    positions: _Floats,
-    triangles: _Indices,
-    edges: _Indices | None,
-    seams: _Indices,
-    importance: _Floats,
-    cones: _Indices,
-    angles: _Floats,
-    has_angle: _Flags,
+    surface: _Surface,
+    cones: _Cones,
     options: dict[str, Any],
     pinned_corners: _Indices,
     pinned_uv: _Floats,
@@ -29,17 +27,11 @@ def parameterize(
 class Solver:
     def __init__(
         self,
-        positions: _Floats,
-        triangles: _Indices,
-        edges: _Indices | None,
-        seams: _Indices,
-        importance: _Floats,
+        surface: _Surface,
     ) -> None: ...
     def parameterize(
         self,
-        cones: _Indices,
-        angles: _Floats,
-        has_angle: _Flags,
+        cones: _Cones,
         options: dict[str, Any],
         pinned_corners: _Indices,
         pinned_uv: _Floats,
@@ -47,50 +39,46 @@ class Solver:
     ) -> dict[str, Any]: ...
 
 def find_cuts(
-    positions: _Floats,
-    triangles: _Indices,
-    edges: _Indices | None,
-    seams: _Indices,
+    surface: _Surface,
     cones: _Indices,
     options: dict[str, Any],
+    progress: Callable[[float], bool | None] | None,
 ) -> dict[str, Any]: ...
+def cut_costs(
+    surface: _Surface,
+    front: tuple[float, float, float] | None,
+    creases: bool,
+    sharp: _Indices,
+    paint: _Floats,
+    progress: Callable[[float], bool | None] | None,
+) -> _Floats: ...
 def prescribe_curvature(
-    positions: _Floats,
-    triangles: _Indices,
-    edges: _Indices | None,
-    seams: _Indices,
-    cones: _Indices,
-    angles: _Floats,
-    has_angle: _Flags,
+    surface: _Surface,
+    cones: _Cones,
     options: dict[str, Any],
+    progress: Callable[[float], bool | None] | None,
 ) -> dict[str, Any]: ...
+def build_ledger(
+    surface: _Surface,
+    cones: _Cones,
+    options: dict[str, Any],
+    gets_cones: bool,
+) -> list[dict[str, Any]]: ...
 def place_cones(
-    positions: _Floats,
-    triangles: _Indices,
-    edges: _Indices | None,
-    seams: _Indices,
-    cones: _Indices,
-    angles: _Floats,
-    has_angle: _Flags,
+    surface: _Surface,
+    cones: _Cones,
     options: dict[str, Any],
     progress: Callable[[float], bool | None] | None,
 ) -> dict[str, Any]: ...
 def cone_gains(
-    positions: _Floats,
-    triangles: _Indices,
-    edges: _Indices | None,
-    seams: _Indices,
-    cones: _Indices,
-    angles: _Floats,
-    has_angle: _Flags,
+    surface: _Surface,
+    cones: _Cones,
     seam_mode: str,
     progress: Callable[[float], bool | None] | None,
 ) -> dict[str, Any]: ...
 def measure_distortion(
-    positions: _Floats,
-    triangles: _Indices,
-    edges: _Indices | None,
-    seams: _Indices,
+    surface: _Surface,
     corner_uv: _Floats,
     cones: _Indices | None,
+    progress: Callable[[float], bool | None] | None,
 ) -> dict[str, Any]: ...

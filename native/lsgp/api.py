@@ -5,17 +5,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from numbers import Integral, Real
 from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _lsgp
-from .errors import Finding, InputError
-
-FloatArray = NDArray[np.float64]
-IndexArray = NDArray[np.int32]
+from . import _lsgp, arguments
+from .arguments import FloatArray, IndexArray
+from .equality import EqualByContent
+from .errors import Finding
 
 PrescriptionRule = Literal["least-distortion", "harmonic", "straightness", "manual"]
 UnfoldMethod = Literal["poisson", "spectral"]
@@ -31,13 +29,13 @@ Factorization = Literal["automatic", "cut", "sparse"]
 Progress = Callable[[float], bool | None]
 
 
-def _require_choice(name: str, value: Any, choices: tuple[str, ...]) -> None:
-    if value not in choices:
-        raise InputError("WRONG_PARAMETER", f"{name} is {value!r}; choose one of {', '.join(choices)}.")
+def _set(instance: object, name: str, value: object) -> None:
+    """Set a field of a frozen dataclass during its construction."""
+    object.__setattr__(instance, name, value)
 
 
-@dataclass(frozen=True)
-class Surface:
+@dataclass(frozen=True, eq=False)
+class Surface(EqualByContent):
     """A triangulated surface, possibly of several components, and the edges its cuts may follow.
 
     positions: (n, 3) float64, any unit.
@@ -47,6 +45,8 @@ class Surface:
     seams: (s, 2) int32, marked edges; `Options.seams` says what they mean.
     importance: (n,) float64, at least 0: how much stretch at each vertex weighs in the mode "low-stretch"; None: all
         vertices alike.
+    cut_costs: (e,) float64, 0 to 1e6: what a cut along each of `edges` costs for its length; None: 1. Costs decide
+        where cuts run, and leave the map as it is.
     """
 
     positions: FloatArray
@@ -54,25 +54,25 @@ class Surface:
     edges: IndexArray | None = None
     seams: IndexArray | None = None
     importance: FloatArray | None = None
+    cut_costs: FloatArray | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "positions", _float_rows(self.positions, 3, "positions"))
-        object.__setattr__(self, "triangles", _index_rows(self.triangles, 3, "triangles"))
-        if self.edges is not None:
-            object.__setattr__(self, "edges", _index_rows(self.edges, 2, "edges"))
         seams = np.empty((0, 2), np.int32) if self.seams is None else self.seams
-        object.__setattr__(self, "seams", _index_rows(seams, 2, "seams"))
+        _set(self, "positions", arguments.float_rows("positions", self.positions, 3))
+        _set(self, "triangles", arguments.index_rows("triangles", self.triangles, 3))
+        if self.edges is not None:
+            _set(self, "edges", arguments.index_rows("edges", self.edges, 2))
+        _set(self, "seams", arguments.index_rows("seams", seams, 2))
         if self.importance is not None:
-            importance = np.asarray(self.importance)
-            if importance.shape != (len(self.positions),):
-                raise InputError(
-                    "WRONG_SHAPE", f"importance has shape {importance.shape}; pass ({len(self.positions)},)."
-                )
-            object.__setattr__(self, "importance", _floats(importance, "importance"))
+            shape = (len(self.positions),)
+            _set(self, "importance", arguments.floats_of_shape("importance", self.importance, shape))
+        if self.cut_costs is not None:
+            shape = (0 if self.edges is None else len(self.edges),)
+            _set(self, "cut_costs", arguments.floats_of_shape("cut_costs", self.cut_costs, shape))
 
 
-@dataclass(frozen=True)
-class Pins:
+@dataclass(frozen=True, eq=False)
+class Pins(EqualByContent):
     """Corners whose texture coordinates are to stay.
 
     corners: (p,) int32, 3 * triangle + corner. uv: (p, 2) float64.
@@ -82,8 +82,8 @@ class Pins:
     uv: FloatArray
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "corners", _index_vector(self.corners, "corners"))
-        object.__setattr__(self, "uv", _float_rows(self.uv, 2, "uv"))
+        _set(self, "corners", arguments.index_vector("corners", self.corners))
+        _set(self, "uv", arguments.float_rows("uv", self.uv, 2))
 
 
 _CHOICES = {
@@ -110,8 +110,8 @@ class Seamless:
     tiles: cells along the layout's longer side, before rounding. tile_size: or the side of a cell on the surface, in
         its unit. Neither: the coarsest grid that is valid and costs at most a tenth in distortion.
     parity: square lattice only: black and white cells match across cuts as well.
-    coarse_grid: where no layout is valid on a grid as coarse as that: "refine" takes the next finer one, "merge" merges
-        cones less than a cell apart, "relax" leaves cones off the grid that find no place on it.
+    coarse_grid: where no layout on so coarse a grid is valid: "refine" takes the next finer one, "merge" merges
+        cones less than a cell apart, "relax" leaves those cones off the grid that cannot be placed on it.
     cell: side of a cell in texture coordinates, a power of two. 1 is a whole tile; 2**level / size makes translations
         multiples of 2**level texels of a texture of that size, so that its mipmaps match up to that level.
     """
@@ -124,14 +124,13 @@ class Seamless:
     cell: float = 1.0
 
     def __post_init__(self) -> None:
-        _require_choice("lattice", self.lattice, get_args(Lattice))
-        _require_choice("coarse_grid", self.coarse_grid, get_args(CoarseGrid))
+        arguments.require_choice("lattice", self.lattice, get_args(Lattice))
+        arguments.require_choice("coarse_grid", self.coarse_grid, get_args(CoarseGrid))
+        _set(self, "parity", arguments.flag("parity", self.parity))
         for name in ("tiles", "tile_size", "cell"):
             value = getattr(self, name)
-            if value is None and name != "cell":
-                continue
-            if not isinstance(value, Real) or isinstance(value, bool):
-                raise InputError("WRONG_PARAMETER", f"{name} is {value!r}; pass a number.")
+            if value is not None or name == "cell":
+                _set(self, name, arguments.number(name, value))
 
 
 @dataclass(frozen=True)
@@ -139,24 +138,34 @@ class Options:
     """How to prescribe the cone angles and how to unfold.
 
     prescription: the rule that chooses the automatic angles. None: "manual" where angles are given (those are kept,
-        the other cones take up the rest with least distortion), "least-distortion" otherwise.
+        the other cones absorb the rest with least distortion), "least-distortion" otherwise.
     unfold: "poisson" (robust, one linear solve) or "spectral" (the paper's, an eigenproblem; closed surfaces).
     method: "lsgp", or "lscm" for the paper's comparison: the same cuts without transitions.
-    seams: "follow": cuts run along marked seams wherever they can, and seams that close off a part make it an island
-        of its own; "boundary": every seam is an open border, as in Blender's own unwrap; "ignore".
-        With "follow", a closed component without cones is opened along its seams.
-    border: "free": angles along borders come out as they distort least, a cone there with an angle is a corner;
+    seams: "follow": all marked seams are cut, others only where cones or handles need them, and a part enclosed by
+        seams becomes an island of its own; "boundary": every seam is an open border, as in Blender's own unwrap;
+        "ignore".
+        With "follow", a component without cones is opened along its seams too (SEAMS_OPENED), unless its borders are
+        straight, it is seamless and has a border, or it is a torus that they part into disks or not at all; the
+        texture of one with cones, placed ones too, runs on across its seams.
+        Parts that are open along seams and have neither handles nor cones are cut no further, however many holes they
+        have, as long as numbers can hold their map. CUTS_ADDED names all cuts besides the seams.
+    border: "free": angles along borders are those of least distortion, and a cone there that has an angle is a corner;
         "straight": borders run straight from marked cone to marked cone.
-    loop_turning: total turning of borders, radians, by any vertex on each; others turn as they distort least. A free
-        border about which the metric turns almost once, a hole, needs no cut and gets none.
+    loop_turning: total turning of borders, radians, by any vertex on each; the others turn with least distortion. A
+        free border about which the metric turns almost once, a hole, needs no cut and gets none; on surfaces without
+        handles and cones all holes are left whole where that costs less than a tenth of L2 stretch.
     seamless: round angles and translations so that a tileable texture shows no seam; None: leave them.
     mode: "conformal" keeps angles; "low-stretch" keeps lengths as far as the cone angles let it.
     stretch: with "low-stretch", from 0, the conformal map, to 1, that of least stretch.
-    repair: turn flipped triangles over and put angles right that are off by a turn.
-    overlaps: "keep" islands that lie on themselves, or "split" them along further cuts until none does; transitions
+    repair: untangle flipped triangles and correct angles that are off by a full turn.
+    overlaps: "keep" islands that overlap themselves, or "split" them along further cuts until none does; transitions
         stay exact.
-    factorization: how linear systems are solved, the maps being the same but for rounding: "cut" factors once and
+    factorization: how linear systems are solved; maps differ by rounding only. "cut" factors once and
         leaves dense problems of the size of the cut, "sparse" factors for every step, "automatic" takes the cheaper.
+
+    Options that contradict each other are refused (WRONG_PARAMETER; PINS_CONFLICT where pins are concerned): the method
+    "lscm" with "spectral", "low-stretch", "straight", loop_turning, seamless or pins; seamless with "straight" or pins.
+    Maps of "lscm" and "spectral" are not repaired.
     """
 
     prescription: PrescriptionRule | None = None
@@ -176,25 +185,24 @@ class Options:
         for name, choices in _CHOICES.items():
             value = getattr(self, name)
             if not (name == "prescription" and value is None):
-                _require_choice(name, value, get_args(choices))
+                arguments.require_choice(name, value, get_args(choices))
         if not (self.seamless is None or isinstance(self.seamless, Seamless)):
-            raise InputError("WRONG_PARAMETER", f"seamless is {self.seamless!r}; pass a Seamless, or None.")
-        if not isinstance(self.stretch, Real) or isinstance(self.stretch, bool):
-            raise InputError("WRONG_PARAMETER", f"stretch is {self.stretch!r}; pass a number from 0 to 1.")
-        if not isinstance(self.repair, bool):
-            raise InputError("WRONG_PARAMETER", f"repair is {self.repair!r}; pass True or False.")
-        if not isinstance(self.loop_turning, Mapping):
-            raise InputError(
-                "WRONG_PARAMETER", f"loop_turning is {self.loop_turning!r}; pass angles by vertices of borders."
-            )
-        for vertex, turning in self.loop_turning.items():
-            if (
-                not isinstance(vertex, Integral)
-                or not isinstance(turning, Real)
-                or abs(vertex) > np.iinfo(np.int32).max
-            ):
-                wrong = f"{vertex!r}: {turning!r}"
-                raise InputError("WRONG_PARAMETER", f"loop_turning holds {wrong}; pass angles by vertices of borders.")
+            arguments.refuse("seamless", self.seamless, "pass a Seamless, or None")
+        _set(self, "stretch", arguments.number("stretch", self.stretch, "pass a number from 0 to 1"))
+        _set(self, "repair", arguments.flag("repair", self.repair))
+        _set(self, "loop_turning", _loop_turning(self.loop_turning))
+
+
+def _loop_turning(angles: Mapping[int, float]) -> dict[int, float]:
+    remedy = "pass angles by vertices of borders"
+    if not isinstance(angles, Mapping):
+        arguments.refuse("loop_turning", angles, remedy)
+    return {
+        arguments.whole_number("a vertex of loop_turning", vertex, np.iinfo(np.int32).min, remedy): arguments.number(
+            "an angle of loop_turning", turning, remedy
+        )
+        for vertex, turning in angles.items()
+    }
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,11 +225,16 @@ class Distortion:
 
 @dataclass(frozen=True, slots=True)
 class SeamQuality:
-    """How exactly the two sides of every cut are related by one rotation and one translation.
+    """How exactly the two sides of every cut are related by one rotation and one translation, in `corner_uv`.
+
+    Islands enclosed by cuts and seams are placed one by one, and a cut between two of them is measured by itself.
+    INEXACT_SEAMS names the edges that are off by more than rounding explains, as in a part much smaller than the
+    others.
 
     sister_ratio_max: largest ratio of the longer to the shorter of two sister edges; 1 is exact.
     rotation_residual: largest angle between a cut edge's own turn and its cut's rotation, radians.
-    translation_residual: largest distance between a vertex and the image of its sister, relative to the layout's size.
+    translation_residual: largest distance between a vertex and the image of its sister, relative to the size of their
+        islands, of the larger where these are two.
     """
 
     sister_ratio_max: float
@@ -229,8 +242,8 @@ class SeamQuality:
     translation_residual: float
 
 
-@dataclass(frozen=True, slots=True)
-class SeamlessReport:
+@dataclass(frozen=True, slots=True, eq=False)
+class SeamlessReport(EqualByContent):
     """What makes a layout seamless, and at what cost: the certificate of its cuts.
 
     A cut is crossed from its left side to its right one by z -> e^(2 pi i turns / symmetry) z + cell (a + b g), where g
@@ -242,7 +255,8 @@ class SeamlessReport:
     cut_nodes: (c, 2) int32 vertices at the cuts' tails and heads. cut_turns: (c,) int32, 0 .. symmetry - 1.
     cut_translations: (c, 2) int64, (a, b). cut_errors: (c,) float64, the largest distance of a vertex, as float32
         stores it, from the image of its sister, in cells. error: the largest of them, 0 on square lattices.
-    flat_cones: cones that came out flat and are none any more. merged_cones: cones given up for another within a cell.
+    flat_cones: cones whose curvature was rounded to zero, which are no cones any more. merged_cones: cones given up for
+        another within a cell.
     relaxed_cones: cones off the lattice; the cuts to them show a seam.
     """
 
@@ -264,7 +278,7 @@ class SeamlessReport:
 
 @dataclass(frozen=True, slots=True)
 class RepairReport:
-    """What the unfolding left to repair, and the work of that and of relaxing the map.
+    """Defects of the first unfolding, and the iterations spent on repair and on lowering the stretch.
 
     flipped_before, wrong_angle_sums_before: counts after the first unfolding. iterations: of Newton's method, those of
     the mode "low-stretch" included.
@@ -275,28 +289,32 @@ class RepairReport:
     iterations: int
 
 
-@dataclass(frozen=True, slots=True)
-class Result:
-    """A map and everything imposed on it and measured of it.
+@dataclass(frozen=True, slots=True, eq=False)
+class Result(EqualByContent):
+    """A map, what was imposed on it, and what was measured.
 
     corner_uv: (m, 3, 2) float64, one (u, v) per triangle corner; NaN where not solved. Islands have their 3D area
-        up to one common factor, do not overlap each other and lie in the unit square.
+        up to one common factor, do not overlap each other and lie in the unit square; a part that is sheared to less
+        than a tenth of its Dirichlet energy is smaller.
     solved: (m,) bool.
     island: (m,) int32, the island of each triangle, -1 where not solved.
-    cut_edges: (c, 2) int32 vertex pairs along which the layout is open (mesh boundaries not included).
+    cut_edges: (c, 2) int32 vertex pairs along which the layout is open, mesh boundaries and the seams of "boundary" not
+        included; of parts with cones, seams that end inside are, whose two sides lie on each other.
     cones, cone_angles: (k,) int32 and (k,) float64, radians, the angles that were imposed.
-    flipped: indices of triangles with UV area <= 0. wrong_angle_sums: vertices whose UV angles do not add up to their
-        prescribed angle (a deviation is a whole turn). The map is valid when both are empty.
-    overlapping: indices of triangles that lie on others. overlap_area: area of all pairs of them together, as a share
-        of the layout's area.
-    repair: what the unfolding left to repair.
+    flipped: indices of triangles with UV area <= 0. wrong_angle_sums: vertices whose UV angles, those of flipped
+        triangles counted below 0, miss what was imposed by more than a degree: by whole turns, or by anything where the
+        two sides of a cut are not alike. INEXACT_ANGLES names those that miss it by less, but by more than 1e-6
+        radians. On a free border only its turning as a whole is judged. The map is valid when both are empty.
+    overlapping: indices of triangles that overlap others. overlap_area: total area of all overlapping pairs, as a
+        fraction of the layout's area.
+    repair: defects of the first unfolding and the work of repairing them.
     cone_angle_error: largest deviation of a cone's UV angle sum from its imposed angle, radians.
     log_scale: (n,) float64, predicted logarithm of the length scale at each vertex, area-weighted mean 0 on an island.
     seamless: the certificate of a seamless layout; None where none was asked for. Such a layout is not scaled into the
         unit square: one cell has the side `cell`.
     warnings: findings that leave the result usable.
-    stage_seconds: wall-clock seconds of each stage.
-    factorizations, back_substitutions: the linear algebra it took, of sparse matrices.
+    stage_seconds: wall-clock seconds of each stage; results that differ in nothing else are equal.
+    factorizations, back_substitutions: of sparse matrices.
     """
 
     corner_uv: FloatArray
@@ -316,13 +334,13 @@ class Result:
     log_scale: FloatArray
     seamless: SeamlessReport | None
     warnings: list[Finding]
-    stage_seconds: dict[str, float]
+    stage_seconds: dict[str, float] = field(compare=False)
     factorizations: int
     back_substitutions: int
 
 
-@dataclass(frozen=True, slots=True)
-class CutGraph:
+@dataclass(frozen=True, slots=True, eq=False)
+class CutPaths(EqualByContent):
     """Cuts that open a surface into disks through its cones (the paper's section 4.1).
 
     edges: (c, 2) int32 vertex pairs. paths: the cuts, each an int32 array of vertices from node to node; nodes are
@@ -333,8 +351,8 @@ class CutGraph:
     paths: list[IndexArray]
 
 
-@dataclass(frozen=True, slots=True)
-class Prescription:
+@dataclass(frozen=True, slots=True, eq=False)
+class Prescription(EqualByContent):
     """Cone angles under Gauss-Bonnet and the scale they imply (the paper's section 5).
 
     cones, cone_angles: (k,) int32, (k,) float64 radians. log_scale: (n,) float64, area-weighted mean 0 on an island.
@@ -348,34 +366,41 @@ class Prescription:
     warnings: list[Finding]
 
 
-@dataclass(frozen=True, slots=True)
-class Placement:
+@dataclass(frozen=True, slots=True, eq=False)
+class Placement(EqualByContent):
     """Cones placed automatically, with the angles that go with them.
 
     cones, cone_angles: (k,) int32, (k,) float64 radians, existing ones first but for those on a border that prescribe
-        nothing. `parameterize` with both gives what is predicted here.
-    log_scale: (n,) float64, predicted, area-weighted mean 0 on an island. predicted_l2: the L2 stretch the map will
-        have. reached: whether that is within the target on every component.
-    factorizations, back_substitutions: the linear algebra it took.
+        nothing. `parameterize` with both gives the map that was measured here.
+    log_scale: (n,) float64, predicted, area-weighted mean 0 on an island. predicted_l2: the L2 stretch that follows
+        from it, 1 being none, exact in the limit of fine triangles.
+    mapped_l2: the L2 stretch of the map itself; infinite where that has flipped triangles or wrong angles, None where
+        it was not made, which is where a component gets more than 60 cones by `count` or has them.
+    reached: whether mapped_l2, or predicted_l2 where there is none, is within the target on every component.
+    maps: of components, made to find that out. factorizations, back_substitutions: the linear algebra it took to
+        choose, without that of these maps.
     """
 
     cones: IndexArray
     cone_angles: FloatArray
     log_scale: FloatArray
     predicted_l2: float
+    mapped_l2: float | None
     reached: bool
+    maps: int
     warnings: list[Finding]
     factorizations: int
     back_substitutions: int
 
 
-@dataclass(frozen=True, slots=True)
-class ConeGains:
-    """What one more cone would do to the stretch, its angle and the automatic ones chosen anew.
+@dataclass(frozen=True, slots=True, eq=False)
+class ConeGains(EqualByContent):
+    """The stretch to expect with one more cone, its angle and the automatic ones recomputed.
 
     predicted_l2: (n,) float64, the L2 stretch of the vertex's component with a cone there, to first order; NaN where
-        none may be placed.
-    present_l2: the L2 stretch of the whole surface as it is; infinite where a component needs a cone.
+        none may be placed. Values are capped at 1e100.
+    present_l2: the L2 stretch of the whole surface as it is; infinite where a component needs a cone, as one that
+        is opened along its seams for want of cones does.
     best: the vertex where a cone lowers that most; None where none does.
     """
 
@@ -385,11 +410,14 @@ class ConeGains:
     warnings: list[Finding]
 
 
-@dataclass(frozen=True, slots=True)
-class Measurement:
+@dataclass(frozen=True, slots=True, eq=False)
+class Measurement(EqualByContent):
     """Quality of given texture coordinates; cuts are the interior edges whose two sides differ.
 
     island: (m,) int32. flipped: triangles turned against the majority of their island. cut_edges: (c, 2) int32.
+    A part of the surface that has one side only is measured as if open along its cuts, which `seams` then leaves out;
+    where an island of it has one side all the same, each of its triangles is one. Triangles without area in the plane
+    make figures infinite.
     """
 
     distortion: Distortion
@@ -413,29 +441,25 @@ def parameterize(
     pins: with two or more on a component its map goes through them, and its place, size and turn are theirs; with one,
         its place is.
     Components that cannot be solved are named in a warning when others could; the first error is raised otherwise.
-    progress: called now and then with how much is done, 0 to 1; where it returns False, Cancelled is raised, and what
-        it raises itself is raised here.
+    progress: called at intervals with the fraction done, 0 to 1; if it returns False, Cancelled is raised; its own
+        exceptions propagate.
     Raises InputError, TopologyError, CurvatureError, SolverError, Cancelled.
     """
-    return _to_result(
-        _lsgp.parameterize(
-            *_surface_arrays(surface), _importance(surface), *_call(cones, angles, options, pins), progress
-        )
-    )
+    return _to_result(_lsgp.parameterize(surface_arrays(surface), *_call(cones, angles, options, pins, progress)))
 
 
 class Solver:
-    """Parameterizes one surface again and again, as for a cone that is dragged or an angle that is tried out.
+    """Parameterizes one surface repeatedly, for instance while a cone is dragged or an angle is tried out.
 
-    Every call returns what `lsgp.parameterize` does and keeps what the next one may use: the surface's topology and
+    Every call returns what `lsgp.parameterize` does and caches what the next one can reuse: the surface's topology and
     geometry, and, as long as a component's cones stay where they are, its factored linear systems. Angles and all
     options but `seams`, `border` and `factorization`, those of seamless layouts among them, may then change without a
     new factorization.
-    Not for several threads at once.
+    A call during another one, from another thread or from its progress callback, raises SolverError (SOLVER_BUSY).
     """
 
     def __init__(self, surface: Surface) -> None:
-        self._solver = _lsgp.Solver(*_surface_arrays(surface), _importance(surface))
+        self._solver = _lsgp.Solver(surface_arrays(surface))
 
     def parameterize(
         self,
@@ -446,18 +470,21 @@ class Solver:
         progress: Progress | None = None,
     ) -> Result:
         """Arguments, result and errors as of `lsgp.parameterize`."""
-        return _to_result(self._solver.parameterize(*_call(cones, angles, options, pins), progress))
-
-
-def _importance(surface: Surface) -> FloatArray:
-    return np.empty(0) if surface.importance is None else surface.importance
+        return _to_result(self._solver.parameterize(*_call(cones, angles, options, pins, progress)))
 
 
 def _call(
-    cones: ArrayLike, angles: Sequence[float | None] | None, options: Options, pins: Pins | None
+    cones: ArrayLike,
+    angles: Sequence[float | None] | None,
+    options: Options,
+    pins: Pins | None,
+    progress: Progress | None,
 ) -> tuple[Any, ...]:
+    arguments.require_callable(progress)
+    if not (pins is None or isinstance(pins, Pins)):
+        arguments.refuse("pins", pins, "pass Pins, or None")
     corners, uv = (np.empty(0, np.int32), np.empty((0, 2))) if pins is None else (pins.corners, pins.uv)
-    return *_cone_arrays(cones, angles, options), corners, uv
+    return *cone_arrays(cones, angles, options), corners, uv, progress
 
 
 def _to_result(out: dict[str, Any]) -> Result:
@@ -468,10 +495,46 @@ def _to_result(out: dict[str, Any]) -> Result:
     return Result(**out)
 
 
-def find_cuts(surface: Surface, cones: ArrayLike, options: Options = Options()) -> CutGraph:
-    """Shortest cuts that join all cones and boundary loops and open every handle.  Raises InputError, TopologyError."""
-    vertices, _, _, values = _cone_arrays(cones, None, options)
-    return CutGraph(**_lsgp.find_cuts(*_surface_arrays(surface), vertices, values))
+def find_cuts(
+    surface: Surface, cones: ArrayLike, options: Options = Options(), progress: Progress | None = None
+) -> CutPaths:
+    """Cuts that join all cones and boundary loops and open every handle, as short as a local search finds them.
+
+    Where the surface has costs of cuts, as cheap. A map may need fewer: holes that the metric turns about are not cut.
+
+    progress: as for `parameterize`.  Raises InputError, TopologyError, Cancelled.
+    """
+    arguments.require_callable(progress)
+    (vertices, _, _), values = cone_arrays(cones, None, options)
+    return CutPaths(**_lsgp.find_cuts(surface_arrays(surface), vertices, values, progress))
+
+
+def cut_costs(
+    surface: Surface,
+    front: ArrayLike | None = None,
+    *,
+    creases: bool = True,
+    sharp: ArrayLike | None = None,
+    paint: ArrayLike | None = None,
+    progress: Progress | None = None,
+) -> FloatArray:
+    """What a cut along each of the surface's `edges` should cost for its length, (e,) float64, for `Surface.cut_costs`.
+
+    front: (3,), the direction from the surface to who looks at it; cuts hide from the views around it: a cost is 0.1
+        where no view sees the edge and 1.1 where all do. None: it does not matter.
+    creases: costs fall to 0.12 of that along edges where the surface bends by 50 degrees or more, not below 30.
+    sharp: (s, 2) int32, edges that are creases whatever their angle.
+    paint: (n,) float64, from 0 at vertices where cuts should run, for a tenth of the cost, to 1 where they should not,
+        for ten times as much. None: no matter.
+    progress: as for `parameterize`.  Raises InputError, Cancelled.
+    """
+    arguments.require_callable(progress)
+    arrays = surface_arrays(surface)
+    direction = None if front is None else tuple(arguments.floats_of_shape("front", front, (3,)).tolist())
+    marked = np.empty((0, 2), np.int32) if sharp is None else arguments.index_rows("sharp", sharp, 2)
+    painted = np.empty(0) if paint is None else arguments.floats_of_shape("paint", paint, (len(surface.positions),))
+    bends = arguments.flag("creases", creases)
+    return _lsgp.cut_costs(arrays, direction, bends, marked, painted, progress)
 
 
 def prescribe_curvature(
@@ -479,9 +542,11 @@ def prescribe_curvature(
     cones: ArrayLike,
     angles: Sequence[float | None] | None = None,
     options: Options = Options(),
+    progress: Progress | None = None,
 ) -> Prescription:
     """Cone angles and log scale without unfolding.  Arguments and errors as in `parameterize`."""
-    out = _lsgp.prescribe_curvature(*_surface_arrays(surface), *_cone_arrays(cones, angles, options))
+    arguments.require_callable(progress)
+    out = _lsgp.prescribe_curvature(surface_arrays(surface), *cone_arrays(cones, angles, options), progress)
     return Prescription(**out)
 
 
@@ -502,36 +567,33 @@ def place_cones(
     """Place cones where they lower the stretch most, with the angles that go with them.
 
     cones, angles: existing cones, which are kept, and angles of theirs that are, None = automatic.
-    count: cones per component, existing ones included; None: as few as bring the predicted L2 stretch to `target`.
+    count: cones per component, existing ones included; a component that has no room for so many gets fewer, which a
+        warning names. None: as few as bring the L2 stretch of the map to `target`.
     lattice: angles become multiples of its turn, for a seamless layout.
     prefer_sharp: sharp corners before smooth places where that costs little.
     symmetric: the same cones on both sides of a plane: of `mirror`, a point on it and its normal, or None: found.
-    seams, progress: as for `parameterize`.
-    None is placed on a border nor, where the mesh has room, within two rings of another.
+    seams, progress: as for `parameterize`, which does with the cones and angles placed what is assumed here: with
+        "follow" a component that gets cones is not opened along its seams.
+    None is placed on a border, where no edge leads that cuts may follow, nor, where the mesh has room, within two rings
+    of another.
     Raises InputError, TopologyError, CurvatureError, SolverError, Cancelled.
     """
+    arguments.require_callable(progress)
     if count is not None:
-        if not isinstance(count, Integral) or not 0 <= count <= np.iinfo(np.int32).max:
-            raise InputError("WRONG_PARAMETER", f"count is {count!r}; pass a number of cones, or None for automatic.")
-        count = int(count)
-    if not isinstance(target, Real) or isinstance(target, bool):
-        raise InputError("WRONG_PARAMETER", f"target is {target!r}; pass an L2 stretch, a number above 1.")
-    for name, value in (("prefer_sharp", prefer_sharp), ("symmetric", symmetric)):
-        if not isinstance(value, bool):
-            raise InputError("WRONG_PARAMETER", f"{name} is {value!r}; pass True or False.")
+        count = arguments.whole_number("count", count, 0, "pass a number of cones, or None for automatic")
     if lattice is not None:
-        _require_choice("lattice", lattice, get_args(Lattice))
-    _require_choice("seams", seams, get_args(SeamMode))
+        arguments.require_choice("lattice", lattice, get_args(Lattice))
+    arguments.require_choice("seams", seams, get_args(SeamMode))
     options = {
         "count": count,
-        "target": float(target),
+        "target": arguments.number("target", target, "pass an L2 stretch, a number above 1"),
         "lattice": lattice,
-        "prefer_sharp": prefer_sharp,
-        "symmetric": symmetric,
+        "prefer_sharp": arguments.flag("prefer_sharp", prefer_sharp),
+        "symmetric": arguments.flag("symmetric", symmetric),
         "mirror": None if mirror is None else _mirror_numbers(mirror),
         "seams": seams,
     }
-    out = _lsgp.place_cones(*_surface_arrays(surface), *_given_cones(cones, angles), options, progress)
+    out = _lsgp.place_cones(surface_arrays(surface), _given_cones(cones, angles), options, progress)
     return Placement(**out)
 
 
@@ -543,106 +605,59 @@ def cone_gains(
     seams: SeamMode = "follow",
     progress: Progress | None = None,
 ) -> ConeGains:
-    """What one more cone would do to the stretch, wherever it is placed.  Arguments and errors as in `place_cones`."""
-    _require_choice("seams", seams, get_args(SeamMode))
-    return ConeGains(**_lsgp.cone_gains(*_surface_arrays(surface), *_given_cones(cones, angles), seams, progress))
+    """The stretch to expect with one more cone, for every vertex.  Arguments and errors as in `place_cones`."""
+    arguments.require_callable(progress)
+    arguments.require_choice("seams", seams, get_args(SeamMode))
+    return ConeGains(**_lsgp.cone_gains(surface_arrays(surface), _given_cones(cones, angles), seams, progress))
 
 
-def measure_distortion(surface: Surface, corner_uv: ArrayLike, cones: ArrayLike | None = None) -> Measurement:
-    """Measure given texture coordinates, (m, 3, 2) float64, one (u, v) per triangle corner; NaN leaves a triangle out.
+def measure_distortion(
+    surface: Surface, corner_uv: ArrayLike, cones: ArrayLike | None = None, progress: Progress | None = None
+) -> Measurement:
+    """Measure given texture coordinates, (m, 3, 2) float64, one (u, v) per triangle corner; one that is not
+    finite leaves a triangle out.
 
     cones: (k,) int32, the vertices at which a cut may change its rotation; None: every vertex whose angles do not add
-    up to a full turn.
+    up to a full turn. progress: as for `parameterize`.  Raises InputError, Cancelled.
     """
-    uv = np.asarray(corner_uv)
-    expected = (len(surface.triangles), 3, 2)
-    if uv.shape != expected:
-        raise InputError("WRONG_SHAPE", f"corner_uv has shape {uv.shape}; pass {expected}, one (u, v) per corner.")
-    uv = _floats(uv, "corner_uv")
-    out = _lsgp.measure_distortion(
-        *_surface_arrays(surface), uv, None if cones is None else _index_vector(cones, "cones")
-    )
+    arguments.require_callable(progress)
+    arrays = surface_arrays(surface)
+    uv = arguments.corner_coordinates("corner_uv", corner_uv, len(surface.triangles))
+    vertices = None if cones is None else arguments.index_vector("cones", cones)
+    out = _lsgp.measure_distortion(arrays, uv, vertices, progress)
     out["distortion"] = Distortion(**out["distortion"])
     out["seams"] = SeamQuality(**out["seams"])
     return Measurement(**out)
 
 
-def _surface_arrays(surface: Surface) -> tuple[Any, ...]:
-    return surface.positions, surface.triangles, surface.edges, surface.seams
+def surface_arrays(surface: Surface) -> tuple[Any, ...]:
+    arguments.require_type("surface", surface, Surface)
+    importance, cut_costs = (np.empty(0) if a is None else a for a in (surface.importance, surface.cut_costs))
+    return surface.positions, surface.triangles, surface.edges, surface.seams, importance, cut_costs
 
 
 def _given_cones(
     cones: ArrayLike, angles: Sequence[float | None] | None
 ) -> tuple[IndexArray, FloatArray, NDArray[np.bool_]]:
     """Vertices, angles, and which of them are given."""
-    vertices = _index_vector(cones, "cones")
-    given = [None] * len(vertices) if angles is None else list(angles)
+    vertices = arguments.index_vector("cones", cones)
+    given = arguments.cone_angles("angles", angles, len(vertices))
     has_angle = np.array([angle is not None for angle in given], bool)
-    values = np.array([0.0 if angle is None else float(angle) for angle in given], np.float64)
+    values = np.array([0.0 if angle is None else angle for angle in given], np.float64)
     return vertices, values, has_angle
 
 
 def _mirror_numbers(mirror: tuple[ArrayLike, ArrayLike]) -> list[float]:
     """A point on the plane and its normal."""
-    numbers = np.asarray(mirror)
-    if numbers.shape != (2, 3):
-        raise InputError("WRONG_SHAPE", f"mirror has shape {numbers.shape}; pass a point and a normal, (2, 3).")
-    return [float(x) for x in _floats(numbers, "mirror").ravel()]
+    return arguments.floats_of_shape("mirror", mirror, (2, 3), ", a point and a normal").ravel().tolist()
 
 
-def _cone_arrays(cones: ArrayLike, angles: Sequence[float | None] | None, options: Options) -> tuple[Any, ...]:
-    """Vertices, angles, which of them are given, and the options with the rule for the others."""
-    vertices, values, has_angle = _given_cones(cones, angles)
-    rule = options.prescription or ("manual" if has_angle.any() else "least-distortion")
-    return (
-        vertices,
-        values,
-        has_angle,
-        {
-            **vars(options),
-            "prescription": rule,
-            "loop_turning": {int(v): float(a) for v, a in options.loop_turning.items()},
-            "seamless": None if options.seamless is None else vars(options.seamless),
-        },
-    )
-
-
-def _float_rows(values: ArrayLike, width: int, name: str) -> FloatArray:
-    array = np.asarray(values)
-    if array.size == 0:
-        return np.empty((0, width), np.float64)
-    if array.ndim != 2 or array.shape[1] != width:
-        raise InputError("WRONG_SHAPE", f"{name} has shape {array.shape}; pass (n, {width}).")
-    return _floats(array, name)
-
-
-def _floats(array: NDArray[Any], name: str) -> FloatArray:
-    if array.dtype.kind not in "fiu":
-        raise InputError("WRONG_DTYPE", f"{name} holds {array.dtype}; pass numbers.")
-    return np.require(array, np.float64, ["C", "A"])
-
-
-def _index_rows(values: ArrayLike, width: int, name: str) -> IndexArray:
-    array = np.asarray(values)
-    if array.size == 0:
-        return np.empty((0, width), np.int32)
-    if array.ndim != 2 or array.shape[1] != width:
-        raise InputError("WRONG_SHAPE", f"{name} has shape {array.shape}; pass (n, {width}).")
-    return _indices(array, name)
-
-
-def _index_vector(values: ArrayLike, name: str) -> IndexArray:
-    array = np.asarray(values)
-    if array.size == 0:
-        return np.empty(0, np.int32)
-    if array.ndim != 1:
-        raise InputError("WRONG_SHAPE", f"{name} has shape {array.shape}; pass (n,).")
-    return _indices(array, name)
-
-
-def _indices(array: NDArray[Any], name: str) -> IndexArray:
-    if array.dtype.kind not in "iu":
-        raise InputError("WRONG_DTYPE", f"{name} holds {array.dtype}; pass whole numbers.")
-    if array.max() > np.iinfo(np.int32).max or array.min() < np.iinfo(np.int32).min:
-        raise InputError("INDEX_OUT_OF_RANGE", f"{name} holds {array.max()}; indices must fit 32 bits.")
-    return np.require(array, np.int32, ["C", "A"])
+def cone_arrays(
+    cones: ArrayLike, angles: Sequence[float | None] | None, options: Options
+) -> tuple[tuple[IndexArray, FloatArray, NDArray[np.bool_]], dict[str, Any]]:
+    """The cones, and the options with the rule for the angles that are not given."""
+    arguments.require_type("options", options, Options)
+    given = _given_cones(cones, angles)
+    rule = options.prescription or ("manual" if given[2].any() else "least-distortion")
+    seamless = None if options.seamless is None else vars(options.seamless)
+    return given, {**vars(options), "prescription": rule, "seamless": seamless}

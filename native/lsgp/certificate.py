@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from . import arguments
 from .api import SeamlessReport
 
-# Rows of the table; the other cuts are summed up in a line.
+# Rows of the table; one line summarizes the remaining cuts.
 SHOWN_CUTS = 12
 
 
@@ -20,9 +21,9 @@ def certificate(report: SeamlessReport, texture_size: int) -> dict[str, Any]:
     A cut is crossed from its left side to its right one by a turn of `turns` / `symmetry` and a shift by `translation`:
     whole multiples of the two vectors of `basis`, which are (u, v) in cells. `cell` is the side of a cell in texture
     coordinates, `error` the largest error of a cut in cells; error_texels are of a texture of `texture_size` texels a
-    side that covers the unit square.
+    side that covers the unit square.  Raises InputError.
     """
-    texels = report.cell * texture_size
+    texels = _texels(report, texture_size)
     cuts = zip(
         report.cut_nodes.tolist(),
         report.cut_turns.tolist(),
@@ -52,8 +53,8 @@ def certificate(report: SeamlessReport, texture_size: int) -> dict[str, Any]:
 
 
 def certificate_table(report: SeamlessReport, texture_size: int) -> str:
-    """The certificate as lines of text: one row a cut, the worst first, only a sum of those beyond the first few."""
-    texels = report.cell * texture_size
+    """The certificate as lines of text: one row per cut, the worst first, and a summary of the rest."""
+    texels = _texels(report, texture_size)
     unit = "tiles" if report.cell == 1 else "cells"
     count = len(report.cut_errors)
     lines = [
@@ -76,6 +77,12 @@ def certificate_table(report: SeamlessReport, texture_size: int) -> str:
         worst = rest.max() * texels
         lines.append(f"... and {len(rest)} more, {'all exact' if worst == 0 else f'at most {_off(worst)} texels off'}")
     return "\n".join(lines)
+
+
+def _texels(report: SeamlessReport, texture_size: int) -> float:
+    """On the side of a cell."""
+    arguments.require_type("report", report, SeamlessReport)
+    return report.cell * arguments.whole_number("texture_size", texture_size, 1, "pass how many texels a side has")
 
 
 def _basis(symmetry: int) -> list[list[float]]:

@@ -1,25 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The edges a layout is cut along as paths from node to node, for whoever draws them."""
+"""The edges that a layout is cut along, as paths from node to node."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import arguments
+
 
 def split_into_paths(edges: ArrayLike, nodes: ArrayLike) -> list[NDArray[np.int32]]:
     """Vertex chains between nodes: the given ones and every vertex where not exactly two of the edges meet.
 
     edges: (c, 2) vertex pairs, each once. nodes: (k,) vertices. A loop without a node begins and ends at its lowest
-    vertex. The same edges in any order give the same paths.
+    vertex. The same edges in any order give the same paths.  Raises InputError.
     """
-    pairs = np.sort(np.asarray(edges, np.int32).reshape(-1, 2), axis=1)
+    pairs = np.sort(arguments.index_rows("edges", edges, 2), axis=1)
     neighbours: dict[int, list[int]] = {}
     for a, b in pairs[np.lexsort(pairs.T[::-1])].tolist():
         neighbours.setdefault(a, []).append(b)
         neighbours.setdefault(b, []).append(a)
     ends = {vertex for vertex, around in neighbours.items() if len(around) != 2}
-    ends |= neighbours.keys() & set(np.asarray(nodes, np.int32).tolist())
+    ends |= neighbours.keys() & set(arguments.index_vector("nodes", nodes).tolist())
     left = {frozenset(pair) for pair in pairs.tolist()}
     paths = []
     # After the chains that start at nodes only loops without nodes are left.

@@ -8,13 +8,16 @@ what to do, and the offending ``elements`` in the caller's numbering, so that a 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .equality import EqualByContent
 
-@dataclass(frozen=True, slots=True)
-class Elements:
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Elements(EqualByContent):
     """Mesh elements a finding speaks of.
 
     kind: "vertices", "edges" or "triangles" ("faces" once mapped to the polygons of a file).
@@ -38,7 +41,7 @@ class Elements:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """Something to know about a usable result: a warning with a code, a sentence and the elements it concerns."""
+    """A warning about a usable result: a code, a sentence and the elements it concerns."""
 
     code: str
     message: str
@@ -53,6 +56,10 @@ class LsgpError(Exception):
         self.code = code
         self.message = message
         self.elements = elements if elements is not None else Elements()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Lets errors be copied and pickled: Python alone would keep the message and lose the other fields."""
+        return type(self), (self.code, self.message, self.elements), self.__dict__
 
     def __str__(self) -> str:
         where = str(self.elements)

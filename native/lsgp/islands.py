@@ -1,22 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where finished islands lie: put back to where they were, and fitted to images that are not square.
+"""Placement of finished islands: moved back to where they were, and fitted to images that are not square.
 
 Whole islands only are moved, each by one similarity, so that both sides of every cut stay related as they are.
 """
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .api import FloatArray, IndexArray
+from . import arguments
+from .arguments import FloatArray, IndexArray
 from .errors import InputError
 
 # Texture coordinates come in single precision; an island below this share of its distance to the origin is a point.
 _POINT = 1e-6
-# Of the sizes; below this, no turn is better than another.
+# Relative to the sizes; below this, the best rotation is undefined.
 _NO_TURN = 1e-9
 
 
@@ -28,14 +27,11 @@ def fit_placement(corner_uv: FloatArray, old_uv: FloatArray, island: IndexArray)
     keeps the root mean square distance of the corners from their middle: the least-squares scale would shrink an
     island with every change of its shape.
     Triangles without an island stay, and so do islands whose old coordinates are not finite or lie on one point.
-    Returns a new array; raises InputError on shapes that do not belong together.
+    Returns a new array; raises InputError on arrays that do not belong together.
     """
-    corner_uv, old_uv, island = np.asarray(corner_uv, np.float64), np.asarray(old_uv, np.float64), np.asarray(island)
-    shape = (len(island), 3, 2)
-    if corner_uv.shape != shape or old_uv.shape != shape:
-        raise InputError(
-            "WRONG_SHAPE", f"corner_uv has shape {corner_uv.shape}, old_uv {old_uv.shape}; pass {shape} for both."
-        )
+    island = arguments.islands("island", island)
+    corner_uv = arguments.corner_coordinates("corner_uv", corner_uv, len(island))
+    old_uv = arguments.corner_coordinates("old_uv", old_uv, len(island))
     out = corner_uv.copy()
     count = int(island.max(initial=-1)) + 1
     finite = np.isfinite(old_uv).all(axis=(1, 2)) & np.isfinite(corner_uv).all(axis=(1, 2))
@@ -70,9 +66,11 @@ def correct_aspect(corner_uv: ArrayLike, aspect: float) -> FloatArray:
     corner_uv: (..., 2). aspect: width of the image over its height, above 0. What lay in the unit square stays in it.
     Raises InputError on another aspect.
     """
-    if not (math.isfinite(aspect) and aspect > 0):
-        raise InputError("WRONG_PARAMETER", f"aspect is {aspect}; pass width over height of the image, above 0.")
-    return np.asarray(corner_uv, np.float64) * np.array([1 / max(aspect, 1.0), min(aspect, 1.0)])
+    aspect = arguments.positive("aspect", aspect, "pass width over height of the image, above 0")
+    uv = arguments.floats("corner_uv", corner_uv)
+    if uv.ndim == 0 or uv.shape[-1] != 2:
+        raise InputError("WRONG_SHAPE", f"corner_uv has shape {uv.shape}; pass (..., 2).")
+    return uv * np.array([1 / max(aspect, 1.0), min(aspect, 1.0)])
 
 
 def _as_complex(corner_uv: FloatArray) -> np.ndarray:

@@ -3,6 +3,8 @@
 
 Coordinates are those that float32 stores. A move by whole cells keeps every cut's turn and leads its translation from
 lattice point to lattice point; only the grid on which float32 can hold both sides exactly may get coarser.
+
+All functions raise InputError where arguments are not of the shapes and kinds they name.
 """
 
 from __future__ import annotations
@@ -13,11 +15,15 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .api import FloatArray, IndexArray
+from . import arguments
+from .arguments import FloatArray, IndexArray
+from .errors import InputError
 
 # Mantissa of float32: below 2^e it holds every multiple of 2^(e - 24).
 _MANTISSA_BITS = 24
 _QUARTER_TURNS = np.array([1, 1j, -1, -1j])
+# Of the lattices: rotations are multiples of 2 pi / symmetry.
+_SYMMETRIES = (1, 2, 3, 4, 6)
 
 
 def whole_cells(shift: ArrayLike, symmetry: int, cell: float) -> FloatArray:
@@ -25,7 +31,8 @@ def whole_cells(shift: ArrayLike, symmetry: int, cell: float) -> FloatArray:
 
     symmetry, cell: as in `SeamlessReport`.
     """
-    x, y = np.asarray(shift, np.float64).reshape(-1, 2).T
+    symmetry, cell = _cells(symmetry, cell)
+    x, y = _rows_of("shift", shift, 2).T
     gx, gy = _second_vector(symmetry)
     rows = np.round(y / (gy * cell))
     return _points(np.round(x / cell - rows * gx), rows, symmetry, cell)
@@ -38,6 +45,10 @@ def nearest_places(
 
     corner_uv, old_uv: (m, 3, 2). island: (m,), -1 for none. An island with an old coordinate that is not finite stays.
     """
+    symmetry, cell = _cells(symmetry, cell)
+    island = arguments.islands("island", island)
+    corner_uv = arguments.corner_coordinates("corner_uv", corner_uv, len(island))
+    old_uv = arguments.corner_coordinates("old_uv", old_uv, len(island))
     count = int(island.max(initial=-1)) + 1
     solved = island >= 0
     of_corner = np.repeat(island[solved], 3)
@@ -54,7 +65,10 @@ def shelf_places(boxes: ArrayLike, symmetry: int, cell: float) -> FloatArray:
 
     boxes: (k, 4), the least u and v and the largest u and v of each. The tallest come first.
     """
-    boxes = np.asarray(boxes, np.float64).reshape(-1, 4)
+    symmetry, cell = _cells(symmetry, cell)
+    boxes = _rows_of("boxes", boxes, 4)
+    if not (np.isfinite(boxes).all() and (boxes[:, 2:] >= boxes[:, :2]).all()):
+        raise InputError("WRONG_PARAMETER", "boxes are not finite or have no inside; pass those of solved islands.")
     shifts = np.zeros((len(boxes), 2))
     if not len(boxes):
         return shifts
@@ -72,6 +86,8 @@ def shelf_places(boxes: ArrayLike, symmetry: int, cell: float) -> FloatArray:
 
 def island_boxes(corner_uv: FloatArray, island: IndexArray) -> FloatArray:
     """(islands, 4): the least u and v and the largest u and v of each island."""
+    island = arguments.islands("island", island)
+    corner_uv = arguments.corner_coordinates("corner_uv", corner_uv, len(island))
     count = int(island.max(initial=-1)) + 1
     solved = island >= 0
     of_corner = np.repeat(island[solved], 3)
@@ -92,10 +108,28 @@ def shift_islands(
     sides together; cuts crossed by third or sixth turns, which it never holds exactly, are right to its rounding.
     Returns a new array.
     """
+    island = arguments.islands("island", island)
+    triangles = arguments.index_rows("triangles", triangles, 3)
+    corner_uv = arguments.corner_coordinates("corner_uv", corner_uv, len(island))
+    cut_edges = arguments.index_rows("cut_edges", cut_edges, 2)
+    shifts = _rows_of("shifts", shifts, 2)
+    if len(triangles) != len(island) or len(shifts) <= island.max(initial=-1):
+        raise InputError(
+            "WRONG_SHAPE",
+            f"There are {len(triangles)} triangles, {len(island)} islands of triangles and {len(shifts)} shifts; pass "
+            "an island for each triangle and a shift for each island.",
+        )
+    arguments.require_indices("triangles", triangles, np.iinfo(np.int32).max)
+    arguments.require_indices("cut_edges", cut_edges, int(triangles.max(initial=-1)) + 1)
+    lost = np.flatnonzero((island >= 0) & ~np.isfinite(corner_uv).all(axis=(1, 2)))
+    if len(lost):
+        raise InputError(
+            "WRONG_PARAMETER",
+            f"corner_uv is not finite at triangle {lost[0]}, which lies in an island; give such triangles island -1.",
+        )
     moved = corner_uv + np.append(shifts, [[0.0, 0.0]], axis=0)[island][:, None, :]
-    on_cut = np.zeros(int(triangles.max(initial=-1)) + 1, bool)
-    on_cut[cut_edges] = True
-    corners = np.flatnonzero(on_cut[triangles].ravel() & np.repeat(island >= 0, 3))
+    on_cut = np.isin(triangles.ravel(), cut_edges)
+    corners = np.flatnonzero(on_cut & np.repeat(island >= 0, 3))
     flat = moved.reshape(-1, 2)
     if not np.array_equal(flat[corners], flat[corners].astype(np.float32)):
         flat[corners] = _on_coarser_grid(triangles, flat, island, cut_edges, corners)
@@ -164,6 +198,18 @@ def _crossings(
         turn = complex(_QUARTER_TURNS[related[:, pair].argmax()])
         for side in (0, 1):
             yield int(pairs[side, pair]), int(pairs[side + 2, pair]), turn
+
+
+def _cells(symmetry: int, cell: float) -> tuple[int, float]:
+    symmetry = arguments.whole_number("symmetry", symmetry, 1, f"choose one of {_SYMMETRIES}")
+    arguments.require_choice("symmetry", symmetry, _SYMMETRIES)
+    return symmetry, arguments.positive("cell", cell)
+
+
+def _rows_of(name: str, values: ArrayLike, width: int) -> FloatArray:
+    """(k, width); a single row may come without its axis."""
+    array = arguments.as_array(name, values)
+    return arguments.float_rows(name, array[None] if array.ndim == 1 and array.size else array, width)
 
 
 def _second_vector(symmetry: int) -> tuple[float, float]:

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import arguments
 from .api import FloatArray, Surface
-from .errors import InputError
+from .equality import EqualByContent
 
 
-@dataclass(frozen=True, slots=True)
-class TriangleDistortion:
+@dataclass(frozen=True, slots=True, eq=False)
+class TriangleDistortion(EqualByContent):
     """Measures of each triangle, (m,) float64; NaN where it has no area on the surface or no coordinates.
 
     conformal: sigma_1 / sigma_2, 1 where angles are kept. area: (share of the UV area) / (share of the 3D area), 1
@@ -32,10 +33,9 @@ def singular_values(surface: Surface, corner_uv: ArrayLike) -> tuple[FloatArray,
 
     corner_uv: (m, 3, 2). NaN as in `TriangleDistortion`.  Raises InputError.
     """
-    uv = np.asarray(corner_uv, np.float64)
-    expected = (len(surface.triangles), 3, 2)
-    if uv.shape != expected:
-        raise InputError("WRONG_SHAPE", f"corner_uv has shape {uv.shape}; pass {expected}, one (u, v) per corner.")
+    arguments.require_type("surface", surface, Surface)
+    arguments.require_indices("triangles", surface.triangles, len(surface.positions))
+    uv = arguments.corner_coordinates("corner_uv", corner_uv, len(surface.triangles))
     place = surface.positions[surface.triangles]
     first, second = place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]
     length, doubled = np.linalg.norm(first, axis=1), _doubled_areas(surface)
@@ -61,7 +61,7 @@ def triangle_distortion(surface: Surface, corner_uv: ArrayLike) -> TriangleDisto
     areas = np.where(measured, _doubled_areas(surface), 0.0)
     scaled = largest * smallest
     with np.errstate(divide="ignore", invalid="ignore"):
-        # The area of the texture a unit of the surface has on the whole.
+        # Texture area per unit of surface area, over the whole map.
         unit = (scaled[measured] * areas[measured]).sum() / areas.sum()
         stretch = np.sqrt((1 / largest**2 + 1 / smallest**2) / 2 * unit)
         return TriangleDistortion(

@@ -18,7 +18,7 @@ from lsgp.batch.assets import (
     shard_option,
 )
 from lsgp.batch.chunks import MOST_ASSETS, Queue
-from lsgp.side_files import UsageError
+from lsgp.io.side_files import UsageError
 
 SUFFIXES = (".obj", ".off", ".ply")
 
@@ -36,7 +36,7 @@ def names(assets: list[Asset]) -> list[str]:
 
 def test_folder_at_any_depth_without_the_results(tmp_path: Path) -> None:
     touch(tmp_path, "b.OBJ", "a/b/c.ply", "a/note.txt", "a.off", "out/b.OBJ", "a/out/x.obj")
-    found = find_assets(tmp_path, tmp_path / "out", SUFFIXES)
+    found = find_assets(tmp_path, tmp_path / "out", SUFFIXES).assets
     assert names(found) == ["a.off", "a/b/c.ply", "a/out/x.obj", "b.OBJ"]
     assert [asset.size for asset in found] == [len(asset.name) for asset in found]
     assert all(asset.path == tmp_path / asset.name for asset in found)
@@ -47,7 +47,7 @@ def test_list_is_relative_to_its_folder_and_may_lead_anywhere(tmp_path: Path) ->
     absolute = tmp_path / "beside.off"
     lines = ["a.obj", "", "  deep/b b.ply  ", "../beside.off", str(absolute), "gone.obj", "model.stl"]
     (tmp_path / "in" / "list.txt").write_text("\r\n".join(lines))
-    found = find_assets(tmp_path / "in" / "list.txt", tmp_path / "out", SUFFIXES)
+    found = find_assets(tmp_path / "in" / "list.txt", tmp_path / "out", SUFFIXES).assets
     outside = str(absolute).lstrip("/")
     assert names(found) == sorted(["a.obj", "deep/b b.ply", "gone.obj", "model.stl", outside])
     by_name = {asset.name: asset for asset in found}
@@ -62,12 +62,12 @@ def test_nothing_to_do_is_wrong_usage(tmp_path: Path) -> None:
 
 def test_shards_are_a_partition_that_other_assets_do_not_change(tmp_path: Path) -> None:
     touch(tmp_path, *(f"mesh {i}.obj" for i in range(100)))
-    whole = names(find_assets(tmp_path, tmp_path / "out", SUFFIXES))
-    parts = [names(find_assets(tmp_path, tmp_path / "out", SUFFIXES, Shard(i, 7))) for i in range(1, 8)]
+    whole = names(find_assets(tmp_path, tmp_path / "out", SUFFIXES).assets)
+    parts = [names(find_assets(tmp_path, tmp_path / "out", SUFFIXES, Shard(i, 7)).assets) for i in range(1, 8)]
     assert sorted(name for part in parts for name in part) == sorted(whole)
     assert min(map(len, parts)) > 0
     touch(tmp_path, *(f"another {i}.obj" for i in range(50)))
-    again = [names(find_assets(tmp_path, tmp_path / "out", SUFFIXES, Shard(i, 7))) for i in range(1, 8)]
+    again = [names(find_assets(tmp_path, tmp_path / "out", SUFFIXES, Shard(i, 7)).assets) for i in range(1, 8)]
     assert all(set(part) <= set(larger) for part, larger in zip(parts, again, strict=True))
 
 
@@ -89,7 +89,7 @@ def test_results_have_names_of_their_own() -> None:
 @pytest.mark.skipif(os.name != "posix", reason="names that are no text are a POSIX matter")
 def test_names_that_are_no_text(tmp_path: Path) -> None:
     (tmp_path / os.fsdecode(b"b\xe4r.obj")).write_bytes(b"")
-    (found,) = find_assets(tmp_path, tmp_path / "out", SUFFIXES)
+    (found,) = find_assets(tmp_path, tmp_path / "out", SUFFIXES).assets
     assert os.fsencode(found.name) == b"b\xe4r.obj"
 
 

@@ -21,7 +21,7 @@ from lsgp.batch.records import Record
 from lsgp.batch.tasks import Settings, Task
 from lsgp.batch.worker_process import WorkersError
 from lsgp.cli import main
-from lsgp.unwrap_options import add_unwrap_options
+from lsgp.run.unwrap_options import add_unwrap_options
 from meshes import grid, icosphere
 
 TROUBLED = [sys.executable, str(Path(__file__).with_name("troubled_worker.py"))]
@@ -45,7 +45,7 @@ def run_pool(folder: Path, names: list[str], jobs: int = 2, worker: list[str] = 
         return Task.of(asset, out, f"{asset.name}.obj")
 
     pool = Pool(jobs, settings(**limits), task_of, worker, **options)
-    return list(pool.run(find_assets(folder, out, [".off"])))
+    return list(pool.run(find_assets(folder, out, [".off"]).assets))
 
 
 def by_name(records: list[Record]) -> dict[str, tuple[str, str | None]]:
@@ -110,7 +110,7 @@ def test_workers_that_do_not_start_end_the_run(
     with pytest.raises(WorkersError, match="No such file"):
         run_pool(tmp_path, ["good"], worker=["/no/such/program"])
     kind = command.Kind((".off",), str, [*TROUBLED, "does-not-start"])
-    monkeypatch.setattr("lsgp.cli.run_batch", lambda args: command.run_batch(args, kind))
+    monkeypatch.setattr("lsgp.cli.command.run_batch", lambda args: command.run_batch(args, kind))
     assert main(["batch", str(tmp_path), "--out", str(tmp_path / "out")]) == 2
     assert "no worker process can be started" in capsys.readouterr().err
 
@@ -119,7 +119,7 @@ def test_workers_end_with_the_run(tmp_path: Path) -> None:
     for name in ("hang 1", "hang 2", "hang 3"):
         (tmp_path / f"{name}.off").write_text(off_text(grid(3, 3)))
     pool = Pool(2, settings(), lambda asset: Task.of(asset, tmp_path / "out", asset.name), TROUBLED, 1.0)
-    records = pool.run(find_assets(tmp_path, tmp_path / "out", [".off"]))
+    records = pool.run(find_assets(tmp_path, tmp_path / "out", [".off"]).assets)
     first = next(records)
     records.close()
     host_and_pid = re.fullmatch(r".*:(\d+)", first["worker"])
@@ -134,8 +134,8 @@ def test_workers_of_a_run_that_is_stopped_end_too(tmp_path: Path, sent: signal.S
         (tmp_path / f"{name}.off").write_text(off_text(grid(3, 3)))
     script = f"""
 import sys
-from lsgp import cli
 from lsgp.batch import command
+from lsgp.cli import command as cli
 kind = command.Kind((".off",), str, {TROUBLED!r})
 cli.run_batch = lambda args: command.run_batch(args, kind)
 sys.exit(cli.main(sys.argv[1:]))

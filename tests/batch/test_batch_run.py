@@ -206,7 +206,11 @@ def test_names_of_any_kind(batch, lines_in, library: Path) -> None:
 def test_progress_on_a_terminal(library: Path) -> None:
     pty = pytest.importorskip("pty")
     terminal_end, process_end = pty.openpty()
-    command = [sys.executable, "-c", "from lsgp import cli, terminal; terminal.SILENT_SECONDS = 0; cli.main()"]
+    command = [
+        sys.executable,
+        "-c",
+        "from lsgp import cli; from lsgp.run import terminal; terminal.SILENT_SECONDS = 0; cli.main()",
+    ]
     command += ["batch", "library", "--out", "out", "--jobs", "1"]
     process = subprocess.Popen(command, cwd=library.parent, stdout=subprocess.DEVNULL, stderr=process_end)
     os.close(process_end)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-FARM = Path(__file__).resolve().parents[2] / "tools" / "job_templates"
+FARM = Path(__file__).resolve().parents[2] / "examples" / "job_templates"
 ASSETS = ["cube.off", "deep/ball two.off", "deep/ball.off", "moebius.off", "patch.off"]
 
 # What Flamenco Manager gives to job types, as far as ours uses it.
@@ -40,6 +40,33 @@ def program(tmp_path: Path) -> Path:
     return path
 
 
+# Each is a command for a shell that takes it apart, and would leave a file behind.
+HOSTILE = [
+    "$(touch stolen)",
+    "`touch stolen`; touch stolen #",
+    "a \"quoted\" 'name' && touch stolen",
+    "two\nlines\ntouch stolen",
+    "-rf --out=stolen",
+    "\\ back ${HOME} %PATH% {{Param.Options}}",
+    "längs ✂ \u00a0日本",
+]
+
+
+@pytest.fixture(params=HOSTILE)
+def hostile(request: pytest.FixtureRequest, tmp_path: Path, library: Path) -> tuple[Path, Path]:
+    """A library and a folder of results that have such names; a single mesh is enough."""
+    source = tmp_path / f"in {request.param}"
+    source.mkdir()
+    (library / "cube.off").rename(source / f"{request.param}.off")
+    return source, tmp_path / request.param
+
+
+def require_untouched(tmp_path: Path, out: Path, lines_in) -> None:
+    assert {line["status"] for line in lines_in(out / "journal-1-of-1.jsonl")} == {"ok"}
+    assert not [path for path in tmp_path.rglob("*") if path.name.startswith("stolen")]
+    assert not Path("stolen").exists()
+
+
 def require_whole(out: Path, lines_in, shards: int) -> None:
     lines = [line for i in range(1, shards + 1) for line in lines_in(out / f"journal-{i}-of-{shards}.jsonl")]
     assert sorted(line["asset"] for line in lines) == ASSETS
@@ -59,7 +86,7 @@ def test_flamenco_job_type(library: Path, program: Path, lines_in) -> None:
     assert settings.keys() | {"source", "results"} == kinds.keys()
     out = library.parent / "the results"
     settings |= {"source": str(library), "results": str(out), "shards": 3, "program": str(program)}
-    settings |= {"options": "--jobs 1  --cones auto"}
+    settings |= {"options": "--jobs 1  --cones 'auto'"}
     *parts, whole = json.loads(script.get("compiled")(json.dumps(settings)))
     assert len(parts) == 3
     assert whole["dependencies"] == [task["name"] for task in parts]
@@ -68,6 +95,47 @@ def test_flamenco_job_type(library: Path, program: Path, lines_in) -> None:
         assert command["name"] == "exec"
         subprocess.run([command["parameters"]["exe"], *command["parameters"]["args"]], check=True, timeout=120)
     require_whole(out, lines_in, 3)
+
+
+def test_flamenco_job_type_with_names_that_are_commands(
+    hostile: tuple[Path, Path], program: Path, tmp_path: Path, lines_in
+) -> None:
+    quickjs = pytest.importorskip("quickjs")
+    script = quickjs.Context()
+    script.eval(AUTHOR + (FARM / "cone_unwrap.js").read_text())
+    source, out = hostile
+    settings = {"source": str(source), "results": str(out), "shards": 1, "program": str(program), "options": "--jobs 1"}
+    for task in json.loads(script.get("compiled")(json.dumps(settings))):
+        (command,) = task["commands"]
+        parameters = command["parameters"]
+        subprocess.run([parameters["exe"], *parameters["args"]], cwd=tmp_path, check=True, timeout=120)
+    require_untouched(tmp_path, out, lines_in)
+
+
+def test_openjd_job_template_with_names_that_are_commands(
+    hostile: tuple[Path, Path], program: Path, tmp_path: Path, lines_in
+) -> None:
+    pytest.importorskip("openjd.cli")
+    source, out = hostile
+    command = [sys.executable, "-m", "openjd", "run", str(FARM / "cone_unwrap.openjd.yaml"), "--run-dependencies"]
+    command += ["--step", "Summary"]
+    values = {"Source": source, "Results": out, "Shards": 1, "Program": program, "Options": "--jobs 1"}
+    parameters = tmp_path / "parameters.json"
+    parameters.write_text(json.dumps({name: str(value) for name, value in values.items()}))
+    command += ["-p", f"file://{parameters}"]  # a line break does not go through its command line
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=240)
+    assert done.returncode == 0, done.stdout + done.stderr
+    require_untouched(tmp_path, out, lines_in)
+
+
+def test_options_in_one_argument_go_through_no_shell(batch, library: Path, lines_in) -> None:
+    done = batch("--options=--jobs 1 --reports --no-pictures", "--out=--out", "--", library)
+    assert done.returncode == 4, done.stderr
+    assert (library.parent / "--out" / "cube.off.obj.report.json").is_file()
+    for text, said in (("--jobs 'x", "No closing quotation"), ("--jobs $(id)", "$(id)"), ("x; y", "unrecognized")):
+        done = batch("--options", text, "--out", "other", library)
+        assert done.returncode == 2 and said in done.stderr
+        assert not (library.parent / "other").exists()
 
 
 def test_openjd_job_template(library: Path, program: Path, lines_in) -> None:
@@ -82,7 +150,7 @@ def test_openjd_job_template(library: Path, program: Path, lines_in) -> None:
         "Results": out,
         "Shards": 2,
         "Program": program,
-        "Options": "--jobs 1 --cones auto",
+        "Options": "--jobs 1  --cones 'auto'",
     }
     command = [*openjd, "run", template, "--step", "Summary", "--run-dependencies"]
     for name, value in parameters.items():

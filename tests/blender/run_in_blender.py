@@ -6,7 +6,7 @@
     python run_in_blender.py -- ZIP REPORT.xml          (a Python with bpy)
 
 Arguments after these two go to pytest. Exit code 0 only when all tests passed; REPORT.xml is pytest's junit report, by
-which the caller sees how many there were. ``tools/test_in_blender.py`` does all of this.
+which the caller sees how many there were. ``tools/packaging/test_in_blender.py`` does all of this.
 """
 
 import os

@@ -7,7 +7,7 @@
 A test is a generator: it yields how many seconds Blender is to go on by itself, handling events and drawing. Only
 those with the part in their file's name and theirs are run where one is given. Exit code 0 only when all passed;
 REPORT.xml is a junit report. Beside it, in the folder pictures, is the screen as each test left it, where ImageMagick's
-import is installed. ``tools/test_in_blender.py --window`` does all of this.
+import is installed. ``tools/packaging/test_in_blender.py --window`` does all of this.
 """
 
 import os

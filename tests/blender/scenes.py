@@ -458,3 +458,17 @@ class UvMap:
 
     def _length(self, pairs: np.ndarray) -> np.ndarray:
         return np.linalg.norm(self.uv[pairs[:, 0]] - self.uv[pairs[:, 1]], axis=1)
+
+
+def covered_twice(maps: Iterable[UvMap], resolution: int = 400) -> int:
+    """How many points of a raster in the unit square lie in more than one triangle of these maps."""
+    axis = (np.arange(resolution) + 0.37) / resolution
+    points = axis[None, :] + 1j * axis[:, None]
+    count = np.zeros(points.shape, int)
+    for uv_map in maps:
+        for triangle in uv_map._turned_triangles():
+            inside = np.ones(points.shape, bool)
+            for side in range(3):
+                inside &= ((points - triangle[side]) * (triangle[(side + 1) % 3] - triangle[side]).conj()).imag > 0
+            count += inside
+    return int((count > 1).sum())

@@ -4,34 +4,34 @@
 What needs a window is in window_tests.py.
 """
 
-import os
 import threading
-from importlib import import_module
 
 import bmesh
 import bpy
 import pytest
+from installed import addon
 from scenes import UvMap, add_ball, add_cone_cube, add_sphere, changed, edit, snapshot
 
-EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
-computation, gathering, mesh_read, native, reporting, targets, unwrapping = (
-    import_module(f"{EXTENSION}.{name}")
-    for name in ("computation", "gathering", "mesh_read", "native", "reporting", "targets", "unwrapping")
-)
-lsgp = native.lsgp
+computation, unwrapping = addon.jobs.computation, addon.jobs.unwrapping
+region_read, targets = addon.mesh.region_read, addon.mesh.targets
+Refused = addon.core.errors.Refused
+
+lsgp = addon.core.native.lsgp
 
 
 def task(obj, **options):
-    settings = gathering.Settings(
+    settings = unwrapping.UnwrapSettings(
         options=lsgp.Options(**options),
-        group="uv_cones",
+        cone_group="uv_cones",
         weight_group=None,
         weight_factor=1.0,
         use_pins=True,
         keep_placement=False,
         correct_aspect=True,
+        cuts=addon.jobs.cuts.CutChoice(),
     )
-    return gathering.gather(obj, mesh_read.read_region(obj), settings)
+    groups = region_read.Groups(settings.cone_group, settings.weight_group)
+    return unwrapping.unwrap_task(region_read.read_region(obj, region_read.Faces.SELECTED, groups), settings)
 
 
 # --- the computation ------------------------------------------------------------------------------------------------
@@ -156,7 +156,7 @@ def test_a_changed_mesh_is_not_written_to(change):
     target = targets.target(cube)
     assert target.find() == cube
     change(cube)
-    with pytest.raises(reporting.Refused, match="changed since this began"):
+    with pytest.raises(Refused, match="changed since this began"):
         target.find()
 
 
@@ -168,7 +168,7 @@ def test_a_mesh_changed_in_edit_mode_is_not_written_to():
     assert target.find() == cube
     bpy.ops.mesh.select_all(action="SELECT")
     bpy.ops.transform.translate(value=(0, 0, 0.1))
-    with pytest.raises(reporting.Refused):
+    with pytest.raises(Refused):
         target.find()
 
 

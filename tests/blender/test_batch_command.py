@@ -2,18 +2,17 @@
 """Batches in Blender: .blend, glTF and FBX files in, the same with UV maps out, through the command as it is typed."""
 
 import json
-import os
 import struct
 import subprocess
-from importlib import import_module
 
 import bpy
 import numpy as np
 import pytest
-from scenes import UvMap, add_ball, add_cone_cube, add_cube, add_sphere
+from installed import addon
+from scenes import UvMap, add_ball, add_cone_cube, add_cube, add_sphere, covered_twice
 
-EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
-command = import_module(f"{EXTENSION}.command")
+command = addon.jobs.command
+
 
 FILES = ["broken.blend", "deep/ball.fbx", "empty.blend", "gone.glb", "sphere.glb", "two.blend"]
 
@@ -132,6 +131,21 @@ def test_files_of_all_kinds(library, tmp_path):
         assert all(sphere.corner_normals[loop].vector.dot(face.normal) > 0.999 for loop in face.loop_indices)
 
 
+@pytest.mark.parametrize("preset", ["paint", "bake", "tile"])
+def test_with_a_preset_all_objects_of_a_file_are_packed_together(library, tmp_path, preset):
+    out = tmp_path / "out"
+    assert run(library / "two.blend", "--out", out, "--preset", preset, "--no-pictures") == 0
+    (line,) = lines_of(out)
+    assert line["overlapping"] == 0 and line["cones"] > 8
+    bpy.ops.wm.open_mainfile(filepath=str(out / "two.blend"))
+    maps = [UvMap(bpy.data.objects[name]) for name in ("Marked", "Bare")]
+    if preset == "tile":
+        assert [uv_map.tile_error() for uv_map in maps] == [0, 0]
+    else:
+        assert min(uv_map.uv.min() for uv_map in maps) > 0 and max(uv_map.uv.max() for uv_map in maps) < 1
+        assert covered_twice(maps) == 0
+
+
 def test_options_that_name_files_of_one_mesh_are_refused(library, tmp_path):
     (library / "cones.json").write_text('{"cones": [0, 1, 2]}')
     (library / "list.txt").write_text("two.blend\n")
@@ -139,7 +153,7 @@ def test_options_that_name_files_of_one_mesh_are_refused(library, tmp_path):
     assert run(library / "list.txt", "--out", out, "--cones", library / "cones.json") == 3
     (line,) = lines_of(out)
     assert (line["status"], line["code"]) == ("refused", "WRONG_USAGE")
-    assert "cones, seams and importance are those on the meshes" in line["message"]
+    assert "cones, seams and importance are those of the meshes" in line["message"]
 
 
 def test_wrong_usage(tmp_path):

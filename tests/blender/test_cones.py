@@ -72,6 +72,18 @@ def test_mark_then_clear_restores_the_weights():
     assert changed(before, snapshot(cube)) == set()
 
 
+def test_a_vertex_made_between_a_cone_and_another_vertex_is_no_cone():
+    cube = add_cube(cuts=1)
+    edit(cube)
+    select_elements(cube, "verts", [0])
+    bpy.ops.mesh.cone_mark()
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.mesh.subdivide()
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.ops.mesh.cone_select()
+    assert selected(cube) == [0]
+
+
 def test_mark_works_on_every_object_in_edit_mode_and_leaves_hidden_vertices():
     first, second = add_cube("First"), add_cube("Second")
     edit(first, second)

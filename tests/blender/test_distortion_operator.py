@@ -1,18 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Measure Distortion: attributes of faces that hold the distortion, and leave no trace once cleared."""
 
-import os
-from importlib import import_module
-
 import bpy
 import numpy as np
 import pytest
+from installed import addon
 from scenes import UvMap, add_ball, add_cone_cube, add_grid, add_object, changed, edit, plain_copy, set_uv, snapshot
 
-EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
-distortion = import_module(f"{EXTENSION}.distortion")
-heat = import_module(f"{EXTENSION}.overlay.heat")
-NAMES = [f"uv_distortion_{measure}" for measure in ("conformal", "area", "stretch")]
+distortion, heat = addon.mesh.distortion, addon.overlay.heat
+
+NAMES = [f"uv_cone_distortion_{measure}" for measure in ("conformal", "area", "stretch")]
 KEYS = {f"attribute {name} FACE FLOAT" for name in NAMES}
 
 
@@ -131,16 +128,16 @@ def test_several_objects_are_measured_and_one_without_a_uv_map_is_named(reports)
 
 
 @pytest.mark.parametrize("measure", heat.SCALES)
-def test_scales_have_their_colours_at_the_ends_and_nothing_beyond(measure):
+def test_scales_have_their_colors_at_the_ends_and_nothing_beyond(measure):
     scale = heat.SCALES[measure]
-    found = scale.colours_of([0, scale.least, scale.most, 1e30])
+    found = scale.colors_of([0, scale.least, scale.most, 1e30])
     np.testing.assert_array_equal(found[0], found[1])
     np.testing.assert_array_equal(found[2], found[3])
-    np.testing.assert_allclose(found[1, :3], scale.colours[0], rtol=1e-6)
-    np.testing.assert_allclose(found[3, :3], scale.colours[-1], rtol=1e-6)
+    np.testing.assert_allclose(found[1, :3], scale.colors[0], rtol=1e-6)
+    np.testing.assert_allclose(found[3, :3], scale.colors[-1], rtol=1e-6)
 
 
-def test_even_faces_have_the_middle_colour():
+def test_even_faces_have_the_middle_color():
     for measure in ("area", "stretch"):
         scale = heat.SCALES[measure]
-        np.testing.assert_allclose(scale.colours_of([1.0])[0, :3], scale.colours[2], rtol=1e-6)
+        np.testing.assert_allclose(scale.colors_of([1.0])[0, :3], scale.colors[2], rtol=1e-6)

@@ -2,13 +2,13 @@
 """Sessions of Edit Cones: picking, editing, what follows, and putting all of it back."""
 
 import math
-import os
+import time
 from dataclasses import replace
-from importlib import import_module
 
 import bpy
 import numpy as np
 import pytest
+from installed import addon
 from scenes import (
     ANGLES,
     UV_ROUNDING,
@@ -30,20 +30,11 @@ from scenes import (
     uv_key,
 )
 
-EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
-cone_session, content, gathering, mesh_read, native, reports, screens, typed_number = (
-    import_module(f"{EXTENSION}.{name}")
-    for name in (
-        "cone_session",
-        "overlay.content",
-        "gathering",
-        "mesh_read",
-        "native",
-        "reports",
-        "screen",
-        "typed_number",
-    )
-)
+cone_session, unwrapping, content = addon.jobs.cone_session, addon.jobs.unwrapping, addon.overlay.content
+following = addon.jobs.following
+reports, screens, typed_number = addon.mesh.reports, addon.core.screen, addon.operators.typed_number
+lsgp = addon.core.native.lsgp
+
 SIZE = 400
 
 
@@ -51,8 +42,9 @@ def begin(obj, **options):
     """A session on an object, which is brought into edit mode."""
     if obj.mode != "EDIT":
         edit(obj, select="DESELECT")
-    settings = gathering.Settings(native.lsgp.Options(**options), "uv_cones", None, 0.0, True, False, True)
-    return cone_session.ConeSession(obj, mesh_read.read_all(obj), settings)
+    cuts = addon.jobs.cuts.CutChoice()
+    settings = unwrapping.UnwrapSettings(lsgp.Options(**options), "uv_cones", None, 0.0, True, False, True, cuts)
+    return cone_session.ConeSession(obj, settings)
 
 
 def follow(session):
@@ -103,7 +95,7 @@ def test_the_vertex_under_the_cursor_is_the_nearest_of_the_face_there():
     assert session.vertex_at(from_above(), *pixel(0.5, -0.5)) == expected
     assert session.vertex_at(from_above(), *pixel(0.3, -0.68)) == expected
     assert session.vertex_at(from_above(), *pixel(1.5, 0.0)) is None
-    session.put_back()
+    session.restore()
 
 
 def test_the_cone_under_the_cursor_is_seen_and_near():
@@ -115,7 +107,7 @@ def test_the_cone_under_the_cursor_is_seen_and_near():
     assert session.cone_at(from_above(), x + 5, y, 10) == vertex_near(cube, 1.0, 1.0, 1.0)
     assert session.cone_at(from_above(), x + 15, y, 10) is None
     assert session.cone_at(from_above(), *pixel(0.0, 0.0), 10) is None
-    session.put_back()
+    session.restore()
 
 
 def test_hidden_faces_are_not_picked():
@@ -124,17 +116,17 @@ def test_hidden_faces_are_not_picked():
     bpy.ops.mesh.hide(unselected=False)
     session = begin(cube)
     assert session.vertex_at(from_above(), *pixel(0.5, 0.5)) is None
-    session.put_back()
+    session.restore()
 
 
 def test_the_map_follows_a_cone_that_is_moved():
     ball = add_ball(cuts=5)
     session = begin(ball)
     start = marked(ball)[0]
-    session.add(start)
-    assert not session.changed
-    target = neighbour(ball, start)
-    assert session.move(target) and session.cones == sorted({*marked(ball)} - {start} | {target})
+    session.cones.add(start)
+    assert not session.cones.changed
+    target = neighbor(ball, start)
+    assert session.cones.move(target) and session.cones.vertices == sorted({*marked(ball)} - {start} | {target})
     follow(session)
     uv = UvMap(ball)
     assert abs(uv.angle_sum(start) - 2 * math.pi) < 1e-3
@@ -143,10 +135,10 @@ def test_the_map_follows_a_cone_that_is_moved():
     assert uv.sister_difference() < UV_ROUNDING
     # Only the map: the cones are stored at the end.
     assert start in marked(ball) and target not in marked(ball)
-    session.put_back()
+    session.restore()
 
 
-def neighbour(obj, vertex):
+def neighbor(obj, vertex):
     edge = next(edge for edge in obj.data.edges if vertex in edge.vertices[:])
     return next(v for v in edge.vertices if v != vertex)
 
@@ -154,10 +146,10 @@ def neighbour(obj, vertex):
 def test_a_cone_does_not_move_onto_another():
     ball = add_ball()
     session = begin(ball)
-    first, second, *_ = session.cones
-    session.add(first)
-    assert not session.move(second) and not session.changed
-    session.put_back()
+    first, second, *_ = session.cones.vertices
+    session.cones.add(first)
+    assert not session.cones.move(second) and not session.cones.changed
+    session.restore()
 
 
 @pytest.mark.parametrize("has_uv", [True, False])
@@ -168,13 +160,13 @@ def test_putting_back_leaves_no_trace(has_uv):
     edit(ball, select="DESELECT")
     before = snapshot(ball)
     session = begin(ball)
-    session.add(20)
+    session.cones.add(20)
     follow(session)
-    session.set_angle(math.pi)
+    session.cones.set_angle(math.pi)
     follow(session)
-    session.remove(session.cones[0])
+    session.cones.remove(session.cones.vertices[0])
     follow(session)
-    session.put_back()
+    session.restore()
     assert changed(before, snapshot(ball)) == set()
 
 
@@ -184,14 +176,14 @@ def test_finishing_changes_the_map_the_cones_and_their_angles_alone():
     edit(ball, select="DESELECT")
     before, start = snapshot(ball), marked(ball)
     session = begin(ball)
-    session.add(start[0])
-    session.move(neighbour(ball, start[0]))
-    session.set_angle(math.radians(300))
+    session.cones.add(start[0])
+    session.cones.move(neighbor(ball, start[0]))
+    session.cones.set_angle(math.radians(300))
     session.finish()
-    expected = sorted({*start[1:], session.active})
+    expected = sorted({*start[1:], session.cones.active})
     assert marked(ball) == expected and selected(ball) == []
-    assert stored_angle(ball, session.active) == np.float32(math.radians(300))
-    assert abs(UvMap(ball).angle_sum(session.active) - math.radians(300)) < 1e-3
+    assert stored_angle(ball, session.cones.active) == np.float32(math.radians(300))
+    assert abs(UvMap(ball).angle_sum(session.cones.active) - math.radians(300)) < 1e-3
     names = {f"attribute {ANGLES} POINT FLOAT", f"attribute {ANGLES}_kind POINT INT"}
     assert changed(before, snapshot(ball)) == {uv_key(), "weights"} | names
     report = reports.find(ball.data)
@@ -202,7 +194,7 @@ def test_the_finished_map_is_that_of_the_operator():
     ball = add_ball()
     bpy.ops.uv.cone_unwrap()
     session = begin(ball)
-    session.remove(session.cones[0])
+    session.cones.remove(session.cones.vertices[0])
     session.finish()
     edited = UvMap(ball)
     bpy.ops.mesh.select_all(action="SELECT")
@@ -216,15 +208,15 @@ def test_the_stretch_told_is_that_of_the_map():
     ball = add_ball()
     session = begin(ball)
     assert session.stretch is None
-    session.add(session.cones[0])
-    session.set_angle(math.pi)
+    session.cones.add(session.cones.vertices[0])
+    session.cones.set_angle(math.pi)
     follow(session)
     sharp = session.stretch
     assert abs(sharp - UvMap(ball).l2_stretch()) < 1e-4
-    session.set_angle(None)
+    session.cones.set_angle(None)
     follow(session)
     assert session.stretch < sharp
-    session.put_back()
+    session.restore()
 
 
 def test_islands_stay_where_they_were():
@@ -237,51 +229,51 @@ def test_islands_stay_where_they_were():
     bpy.ops.uv.cone_unwrap(keep_placement=True)
     before = UvMap(ball).uv
     session = begin(ball)
-    first = session.cones[0]
-    session.add(first)
-    session.set_angle(session.angle(first) + math.radians(5))
+    first = session.cones.vertices[0]
+    session.cones.add(first)
+    session.cones.set_angle(session.angle(first) + math.radians(5))
     follow(session)
     after = UvMap(ball).uv
     assert np.abs(after - before).max() < 0.2 * np.ptp(before, axis=0).max()
     assert np.abs(after.mean(axis=0) - before.mean(axis=0)).max() < 0.02 * np.ptp(before, axis=0).max()
-    session.put_back()
+    session.restore()
 
 
 def test_a_changed_angle_takes_no_factorization():
     ball = add_ball(cuts=7)
     session = begin(ball, factorization="cut")
-    session.add(session.cones[0])
-    session.set_angle(math.radians(280))
+    session.cones.add(session.cones.vertices[0])
+    session.cones.set_angle(math.radians(280))
     assert follow(session).result.factorizations > 0
     session.turn_angle(math.radians(15), 1)
-    assert session.angle(session.active) == pytest.approx(math.radians(300))
+    assert session.angle(session.cones.active) == pytest.approx(math.radians(300))
     assert follow(session).result.factorizations == 0
-    session.put_back()
+    session.restore()
 
 
 def test_angles_turn_by_multiples_and_return_to_automatic():
     cube = add_cone_cube()
     session = begin(cube)
-    session.add(session.cones[0])
-    session.set_angle(None)
-    assert session.is_automatic(session.active)
+    session.cones.add(session.cones.vertices[0])
+    session.cones.set_angle(None)
+    assert session.cones.is_automatic(session.cones.active)
     follow(session)
-    assert session.angle(session.active) == pytest.approx(1.5 * math.pi, abs=1e-3)
+    assert session.angle(session.cones.active) == pytest.approx(1.5 * math.pi, abs=1e-3)
     session.turn_angle(math.radians(15), -1)
-    assert session.angle(session.active) == pytest.approx(math.radians(255))
+    assert session.angle(session.cones.active) == pytest.approx(math.radians(255))
     session.turn_angle(math.radians(15), -100)
-    assert session.angle(session.active) == pytest.approx(math.radians(15))
-    session.put_back()
+    assert session.angle(session.cones.active) == pytest.approx(math.radians(15))
+    session.restore()
 
 
 def test_what_cannot_be_unwrapped_leaves_the_map_and_keeps_the_cones():
     sphere = add_sphere()
     before = snapshot(sphere)
     session = begin(sphere)
-    session.add(30)
-    with pytest.raises(native.lsgp.LsgpError):
+    session.cones.add(30)
+    with pytest.raises(lsgp.LsgpError):
         follow(session)
-    with pytest.raises(native.lsgp.LsgpError):
+    with pytest.raises(lsgp.LsgpError):
         session.finish()
     assert marked(sphere) == [30]
     assert uv_key() not in changed(before, snapshot(sphere))
@@ -296,25 +288,25 @@ def test_parts_whose_cones_are_not_edited_keep_their_map():
     bpy.ops.object.join()
     before = UvMap(cube).uv
     session = begin(cube)
-    first = session.cones[0]
-    session.remove(first)
+    first = session.cones.vertices[0]
+    session.cones.remove(first)
     follow(session)
     uv = UvMap(cube)
     same = (uv.uv == before).all(axis=1)
     near = uv.positions[uv.vertex][:, 0] < 2
     assert same[~near].all() and not same[near].any()
-    session.put_back()
+    session.restore()
 
 
 def test_found_angles_are_automatic_once_the_cones_of_their_part_are_others():
     ball = add_ball()
     bpy.ops.mesh.cone_place(automatic=False, count=8)
     session = begin(ball)
-    first, second, *_ = session.cones
-    found = session.marked().angles
+    first, second, *_ = session.cones.vertices
+    found = session.cones.current().angles
     assert None not in found
-    session.remove(first)
-    assert session.marked().angles == [None] * 7
+    session.cones.remove(first)
+    assert session.cones.current().angles == [None] * 7
     session.finish()
     assert stored_angle(ball, second) == 0.0
 
@@ -323,8 +315,8 @@ def test_open_borders_need_no_cone():
     grid = add_grid()
     session = begin(grid)
     middle = vertex_near(grid, 0.0, 0.0, 0.0)
-    session.add(middle)
-    session.set_angle(math.radians(330))
+    session.cones.add(middle)
+    session.cones.set_angle(math.radians(330))
     session.finish()
     assert abs(UvMap(grid).angle_sum(middle) - math.radians(330)) < 1e-3
 
@@ -346,18 +338,82 @@ def test_a_session_shows_what_the_overlay_shows_of_the_same_map(build):
     mark(obj, marked(obj) or [0, 24])
     bpy.ops.uv.cone_unwrap()
     edit(obj, select="DESELECT")
-    hidden = [face.index for face in obj.data.polygons][::5]
+    hidden = [face.index for face in obj.data.polygons][::16]
     select_elements(obj, "faces", hidden)
     bpy.ops.mesh.hide()
     session = begin(obj)
     for _ in range(2):
         report = session.report()
         report = replace(report, flipped=[1, 2], overlapping=[3]) if report else None
-        expected = content.build_content(obj, report, marked=session.marked())
-        found = content.build_content(obj, report, session._mesh, session.marked())
+        expected = content.build_content(obj, report, marked=session.cones.current())
+        found = content.build_content(obj, report, session.mesh, session.cones.current())
         assert found.cones == expected.cones
         for name in ("cone_places", "cut_lines", "cut_paths", "cut_uv", "flipped", "overlapping"):
             np.testing.assert_allclose(getattr(found, name), getattr(expected, name), atol=1e-6)
-        session.add(vertex_near(obj, 0.4, 0.3, 0.5))
+        session.cones.add(vertex_near(obj, 0.4, 0.3, 0.5))
         follow(session)
-    assert len(found.cut_lines) and len(found.cut_lines) == len(session.content().cut_lines)
+    assert len(found.cut_lines) and len(found.cut_lines) == len(content.session_content(obj, session).cut_lines)
+
+
+def until_idle(follower):
+    """How often something was shown, or failed, until the map is up to date."""
+    shown = 0
+    while follower.outdated or follower.is_busy:
+        shown += follower.follow()
+    return shown
+
+
+def test_the_map_follows_to_the_newest_state():
+    ball = add_ball(cuts=5)
+    session = begin(ball)
+    follower = following.Follower(session)
+    assert not follower.follow() and not follower.is_busy
+    session.cones.add(session.cones.vertices[0])
+    for degrees in (200, 220, 240):
+        session.cones.set_angle(math.radians(degrees))
+        follower.outdated = True
+        follower.follow()
+    until_idle(follower)
+    followed = UvMap(ball).uv
+    assert UvMap(ball).angle_sum(session.cones.active) == pytest.approx(math.radians(240), abs=1e-3)
+    follow(session)
+    np.testing.assert_array_equal(UvMap(ball).uv, followed)
+    session.restore()
+
+
+def test_a_step_that_fails_is_told_until_one_succeeds():
+    session = begin(add_cone_cube())
+    follower = following.Follower(session)
+    first = session.cones.vertices[0]
+    session.cones.add(first)
+    for cone in session.cones.vertices[1:]:
+        session.cones.remove(cone)
+    follower.outdated = True
+    assert until_idle(follower) == 1
+    assert "Mark more cones" in follower.problem
+    for cone in corners(session._obj)[1:]:
+        session.cones.add(cone)
+    follower.outdated = True
+    assert until_idle(follower) == 1
+    assert follower.problem == ""
+    session.restore()
+
+
+def test_stopping_leaves_no_computation_and_shows_nothing(monkeypatch):
+    def endless(_step, progress):
+        while progress(0.5):
+            time.sleep(0.01)
+        raise lsgp.Cancelled("CANCELLED", "Stopped.")
+
+    monkeypatch.setattr(cone_session.Step, "solve", endless)
+    ball = add_ball()
+    session = begin(ball)
+    follower = following.Follower(session)
+    before = UvMap(ball).uv
+    session.cones.remove(session.cones.vertices[0])
+    follower.outdated = True
+    assert not follower.follow() and follower.is_busy
+    follower.stop()
+    assert not follower.is_busy and not follower.follow()
+    np.testing.assert_array_equal(UvMap(ball).uv, before)
+    session.restore()

@@ -3,13 +3,15 @@
 
 import os
 import sys
-from importlib import import_module
 
 import bpy
 import pytest
+from installed import EXTENSION, addon
 
-EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
+native = addon.core.native
+
 OPERATORS = {
+    "uv.cone_auto_unwrap",
     "uv.cone_unwrap",
     "mesh.cone_mark",
     "mesh.cone_select",
@@ -22,16 +24,9 @@ OPERATORS = {
     "mesh.cone_preview",
     "uv.cone_measure",
     "uv.cone_texture",
+    "mesh.cone_clear_data",
 }
-CONE_ENTRIES = [
-    ("mesh.cone_mark", False),
-    ("mesh.cone_mark", True),
-    ("mesh.cone_select", None),
-    ("mesh.cone_edit", None),
-    ("mesh.cone_place", None),
-    ("VIEW3D_MT_cone_angles", None),
-    ("mesh.cone_select_reported", None),
-]
+SUBMENU = ("VIEW3D_MT_cone_unwrap", None)
 
 
 class RecordingLayout:
@@ -68,7 +63,6 @@ def our_entries(menu):
 def test_library_comes_from_the_extensions_wheel():
     import lsgp
 
-    native = import_module(f"{EXTENSION}.native")
     assert native.lsgp is lsgp
     assert native.PROBLEM == ""
     extensions = os.path.join(os.environ["BLENDER_USER_RESOURCES"], "extensions")
@@ -89,16 +83,28 @@ def test_settings_of_the_unwrap_can_be_kept_as_presets():
 
 
 @pytest.mark.parametrize(
-    "menu", ["IMAGE_MT_uvs", "VIEW3D_MT_uv_map", "VIEW3D_MT_edit_mesh_edges", "VIEW3D_MT_edit_mesh_vertices"]
+    "menu", ["IMAGE_MT_uvs", "VIEW3D_MT_object", "VIEW3D_MT_edit_mesh_edges", "VIEW3D_MT_edit_mesh_vertices"]
 )
-def test_cones_stand_beside_the_seams_and_in_the_vertex_menu(menu):
-    seeing = [("VIEW3D_MT_cone_seeing", None)] if menu in {"IMAGE_MT_uvs", "VIEW3D_MT_uv_map"} else []
-    assert our_entries(menu) == CONE_ENTRIES + seeing
+def test_every_menu_has_one_entry(menu):
+    assert our_entries(menu) == [SUBMENU]
 
 
-def test_object_mode_has_what_works_in_it():
-    names = ["uv.cone_unwrap", "mesh.cone_place", "VIEW3D_MT_cone_seeing"]
-    assert our_entries("VIEW3D_MT_object") == [(name, None) for name in names]
+def test_everything_is_in_the_submenu_and_auto_unwrap_comes_first():
+    stand_in = type("Menu", (), {"layout": RecordingLayout()})()
+    bpy.types.VIEW3D_MT_cone_unwrap.draw(stand_in, bpy.context)
+    assert [(name, entry.clear) for name, entry, _ in stand_in.layout.drawn] == [
+        ("uv.cone_auto_unwrap", None),
+        ("uv.cone_unwrap", None),
+        ("mesh.cone_mark", False),
+        ("mesh.cone_mark", True),
+        ("mesh.cone_select", None),
+        ("mesh.cone_edit", None),
+        ("mesh.cone_place", None),
+        ("VIEW3D_MT_cone_angles", None),
+        ("mesh.cone_select_reported", None),
+        ("VIEW3D_MT_cone_seeing", None),
+        ("mesh.cone_clear_data", None),
+    ]
 
 
 def test_the_menu_of_angles_has_their_operators():
@@ -108,27 +114,25 @@ def test_the_menu_of_angles_has_their_operators():
     assert names == [f"mesh.cone_{verb}" for verb in ("set_angle", "spread_rest", "snap_angles", "suggest", "preview")]
 
 
-def test_unwrap_is_in_the_unwrap_menu_once():
-    assert our_entries("IMAGE_MT_uvs_unwrap") == [("uv.cone_unwrap", None)]
+def test_the_unwrap_menu_which_is_part_of_u_has_auto_unwrap_and_the_submenu():
+    assert our_entries("IMAGE_MT_uvs_unwrap") == [("uv.cone_auto_unwrap", None), SUBMENU]
+    assert our_entries("VIEW3D_MT_uv_map") == []
 
 
 def test_context_menu_has_cones_in_vertex_select_mode_only():
     settings = bpy.context.tool_settings
     settings.mesh_select_mode = (True, False, False)
-    assert our_entries("VIEW3D_MT_edit_mesh_context_menu") == CONE_ENTRIES
+    assert our_entries("VIEW3D_MT_edit_mesh_context_menu") == [SUBMENU]
     settings.mesh_select_mode = (False, True, True)
     assert our_entries("VIEW3D_MT_edit_mesh_context_menu") == []
 
 
 def test_preferences_say_where_the_library_is():
-    preferences = bpy.context.preferences.addons[EXTENSION].preferences
-    assert preferences is not None
-    sentence = import_module(f"{EXTENSION}.preferences").library_state()
-    assert sys.modules["lsgp"].__file__ in sentence
+    assert bpy.context.preferences.addons[EXTENSION].preferences is not None
+    assert sys.modules["lsgp"].__file__ in native.library_state()
 
 
 def test_disabling_removes_operators_and_menu_entries_and_enabling_restores_them():
-    addon = sys.modules[EXTENSION]
     menus = ("IMAGE_MT_uvs_unwrap", "IMAGE_MT_uvs", "VIEW3D_MT_edit_mesh_vertices", "VIEW3D_MT_edit_mesh_context_menu")
     entries = {menu: our_entries(menu) for menu in menus}
     addon.unregister()

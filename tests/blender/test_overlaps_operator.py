@@ -7,7 +7,7 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
-from scenes import UV_ROUNDING, UvMap, add_ramp, changed, edit, pin, set_uv, snapshot, uv_key
+from scenes import UV_ROUNDING, UvMap, add_ramp, changed, covered_twice, edit, pin, set_uv, snapshot, uv_key
 
 
 def unwrap(obj, **options):
@@ -19,12 +19,13 @@ def test_overlaps_are_counted_and_shown(reports):
     ramp = add_ramp()
     edit(ramp)
     reports()
-    uv_map = unwrap(ramp)
+    uv_map = unwrap(ramp, overlaps="KEEP")
     said = reports()
     faces = uv_map.overlapping()
     assert uv_map.islands() == 1 and len(faces) > 60
     assert float(re.search(r"(\S+) % overlapping", said)[1]) == pytest.approx(100 * uv_map.overlap_area(), rel=0.03)
-    triangles = int(re.search(r"OVERLAPPING_TRIANGLES, (\d+) triangles", said)[1])
+    triangles = int(re.search(r"(\d+) triangles lie on others", said)[1])
+    assert "set Overlaps to Split" in said
     assert len(faces) <= triangles <= 2 * len(faces)
     assert bpy.ops.mesh.cone_select_reported() == {"FINISHED"}
     selected = {face.index for face in bmesh.from_edit_mesh(ramp.data).faces if face.select}
@@ -55,7 +56,7 @@ def test_split_islands_lie_neither_on_themselves_nor_on_others(in_edit_mode, mod
     assert uv_map.uv.min() >= 0.0 and uv_map.uv.max() <= 1.0
     said = reports()
     assert f"{uv_map.islands()} islands" in said
-    assert "overlapping" not in said and "OVERLAPPING" not in said
+    assert "overlapping" not in said and "lie on others" not in said
 
 
 def island_boxes(uv_map):
@@ -77,23 +78,16 @@ def test_split_islands_are_packed_by_blender_with_the_margin_asked_for():
     assert sizes[1] < 0.8 * sizes[0]
 
 
-def test_split_islands_of_each_object_are_packed_alone_unless_all_are_to_be_together():
+def test_split_islands_of_all_objects_are_packed_together_unless_they_are_not_to_be_packed():
     ramps = [add_ramp("First"), add_ramp("Second")]
-    assert bpy.ops.uv.cone_unwrap(overlaps="SPLIT") == {"FINISHED"}
+    assert bpy.ops.uv.cone_unwrap(pack=False) == {"FINISHED"}
     alone = [UvMap(ramp) for ramp in ramps]
     assert np.array_equal(alone[0].uv, alone[1].uv)
-    assert bpy.ops.uv.cone_unwrap(overlaps="SPLIT", pack=True) == {"FINISHED"}
+    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
     together = [UvMap(ramp) for ramp in ramps]
-    # Of the same square each has about half.
-    for before, after in zip(alone, together, strict=True):
-        assert size(after) < 0.85 * size(before)
-        assert after.uv.min() >= 0.0 and after.uv.max() <= 1.0
-
-
-def size(uv_map):
-    """Length of all edges in the map."""
-    sides = np.array(list(uv_map.sides.values()))[:, 0]
-    return np.linalg.norm(uv_map.uv[sides[:, 0]] - uv_map.uv[sides[:, 1]], axis=1).sum()
+    assert covered_twice(alone) > 0
+    assert covered_twice(together) == 0
+    assert all(uv_map.uv.min() >= 0.0 and uv_map.uv.max() <= 1.0 for uv_map in together)
 
 
 def test_split_islands_keep_their_place_as_asked():
@@ -121,11 +115,11 @@ def test_seamless_islands_are_split_and_stay_on_their_tiles(pack):
 
 def test_pinned_islands_stay_whole_and_what_overlaps_is_told(reports):
     ramp = add_ramp()
-    uv = unwrap(ramp).uv
+    uv = unwrap(ramp, overlaps="KEEP").uv
     loops = [0, len(uv) - 1]
     pin(ramp, loops, uv[loops])
     reports()
     uv_map = unwrap(ramp, overlaps="SPLIT")
     assert uv_map.islands() == 1
     assert np.array_equal(uv_map.uv[loops], uv[loops])
-    assert "OVERLAPPING_TRIANGLES" in reports()
+    assert "lie on others" in reports()

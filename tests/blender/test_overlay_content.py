@@ -1,22 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the overlay shows, as arrays: cones by their curvature, both sides of every cut, faces with problems."""
 
-import os
 from dataclasses import replace
-from importlib import import_module
 
 import bpy
 import numpy as np
 import pytest
+from installed import addon
 from scenes import UvMap, add_ball, add_cone_cube, add_grid, add_sphere, corners, edit, mark
 
-EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
-reports = import_module(f"{EXTENSION}.reports")
-content = import_module(f"{EXTENSION}.overlay.content")
-labels = import_module(f"{EXTENSION}.overlay.labels")
-colours = import_module(f"{EXTENSION}.overlay.colours")
-cache = import_module(f"{EXTENSION}.overlay.cache")
-cones = import_module(f"{EXTENSION}.cones")
+content, labels, colors, cache = (getattr(addon.overlay, name) for name in ("content", "labels", "colors", "cache"))
+reports, cones = addon.mesh.reports, addon.mesh.cones
 
 
 def shown(obj):
@@ -170,20 +164,20 @@ def test_labels_that_would_lie_on_others_are_left_out():
     assert labels.without_overlaps(boxes, [1, 0, 2, 3]) == [1, 2, 3]
 
 
-def test_cut_colours_take_turns_and_then_lighter_ones():
-    look = bpy.context.preferences.addons[EXTENSION].preferences
-    count = len(look.cut_colours())
-    found = colours.of_paths(np.array([0, 1, count, count + 1, 2 * count], np.int32), look)
+def test_cut_colors_take_turns_and_then_lighter_ones():
+    look = addon.overlay.look.overlay_look(bpy.context)
+    count = len(look.cut_colors())
+    found = colors.of_paths(np.array([0, 1, count, count + 1, 2 * count], np.int32), look)
     assert found[0] == pytest.approx(look.cut_1[:], abs=1e-6)
     np.testing.assert_array_equal(found[4], found[0])
     assert (found[2, :3] > found[0, :3]).all()
     assert len(np.unique(found, axis=0)) == 4
 
 
-def test_colours_in_the_preferences_are_those_that_are_drawn():
-    look = bpy.context.preferences.addons[EXTENSION].preferences
+def test_colors_in_the_preferences_are_those_that_are_drawn():
+    look = addon.overlay.look.overlay_look(bpy.context)
     half = np.pi / 4
-    drawn = colours.of_cones([content.Cone(0, None, c) for c in (4.0, -4.0, 0.0, None, half, -half)], look)
+    drawn = colors.of_cones([content.Cone(0, None, c) for c in (4.0, -4.0, 0.0, None, half, -half)], look)
     for row, name in zip(drawn, ("tip", "saddle", "flat", "automatic"), strict=False):
         assert row == pytest.approx(getattr(look, name)[:], abs=1e-6)
     np.testing.assert_allclose(drawn[4], (drawn[0] + drawn[2]) / 2, atol=1e-6)

@@ -2,12 +2,11 @@
 """The operator's panel: short, because what has no say is left out."""
 
 import inspect
-import os
 
 import bpy
+from installed import EXTENSION
 from scenes import add_cone_cube
 
-EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
 SEAMLESS_ONLY = {
     "lattice",
     "tile_fit",
@@ -24,14 +23,20 @@ SEAMLESS_ONLY = {
 class RecordingLayout:
     """Stands for the redo panel and keeps which properties were drawn, and whether they were greyed out."""
 
-    def __init__(self, drawn, active=True):
-        self.drawn, self.active = drawn, active
+    def __init__(self, drawn, active=True, is_open=True):
+        self.drawn, self.active, self.is_open = drawn, active, is_open
         self.use_property_split = False
 
     def _part(self):
-        return RecordingLayout(self.drawn, self.active)
+        return RecordingLayout(self.drawn, self.active, self.is_open)
 
     row = column = box = _part
+
+    def panel(self, _identifier, default_closed):
+        return self, self if self.is_open or not default_closed else None
+
+    def label(self, text=""):
+        pass
 
     def separator(self):
         pass
@@ -49,8 +54,11 @@ def our_properties():
     return [p for p in bpy.ops.uv.cone_unwrap.get_rna_type().properties if p.identifier not in common]
 
 
-def panel(**options):
-    """Names of the properties drawn with these options; True where they can be changed."""
+def panel(is_open=True, **options):
+    """Names of the properties drawn with these options; True where they can be changed.
+
+    is_open: whether all parts are open, or those that are at first.
+    """
     add_cone_cube()
     ours = [cls for cls in bpy.types.UV_OT_cone_unwrap.__mro__ if cls.__module__.startswith(EXTENSION)]
     functions = {name: f for cls in reversed(ours) for name, f in vars(cls).items() if inspect.isfunction(f)}
@@ -58,7 +66,7 @@ def panel(**options):
     values = {prop.identifier: prop.default for prop in our_properties()} | options
     for name, value in values.items():
         setattr(stand_in, name, value)
-    stand_in.layout = RecordingLayout({})
+    stand_in.layout = RecordingLayout({}, is_open=is_open)
     stand_in.draw(bpy.context)
     return stand_in.layout.drawn
 
@@ -69,7 +77,8 @@ def test_every_property_is_drawn_once_with_the_options_it_has_a_say_in():
     low_stretch = {"stretch", "use_weights"}
     weights = {"weight_group", "weight_factor"}
     margins = {"margin_method", "margin"}
-    assert plain.keys() == everything - low_stretch - weights - margins - SEAMLESS_ONLY
+    assert plain.keys() == everything - low_stretch - weights - SEAMLESS_ONLY
+    assert margins <= plain.keys()
     assert panel(mode="LOW_STRETCH").keys() - plain.keys() == low_stretch
     assert panel(mode="LOW_STRETCH", use_weights=True).keys() - plain.keys() == low_stretch | weights
     assert panel(use_weights=True).keys() == plain.keys()
@@ -78,7 +87,7 @@ def test_every_property_is_drawn_once_with_the_options_it_has_a_say_in():
 def test_options_of_seamless_layouts_are_drawn_only_with_it():
     plain, seamless = panel(), panel(seamless=True)
     assert seamless.keys() - plain.keys() == {"lattice", "tile_fit", "coarse_grid", "parity", "mip_safe"}
-    assert plain.keys() - seamless.keys() == {"correct_aspect"}
+    assert plain.keys() - seamless.keys() == {"correct_aspect", "margin_method", "margin"}
     assert panel(seamless=True, tile_fit="TILES").keys() - seamless.keys() == {"tiles"}
     assert panel(seamless=True, tile_fit="SIZE").keys() - seamless.keys() == {"tile_size"}
     assert panel(seamless=True, mip_safe=True).keys() - seamless.keys() == {"texture_size", "mip_levels"}
@@ -92,14 +101,26 @@ def test_margins_are_drawn_where_blenders_packer_is_used():
 
     packer = {"margin": True, "margin_method": True}
     no_packer = {"margin": False, "margin_method": False}
-    assert drawn() == no_packer | {"keep_placement": True, "pack": True}
-    assert drawn(pack=True) == packer | {"keep_placement": False, "pack": True}
-    # Split islands are packed unless they are to stay where they were.
-    assert drawn(overlaps="SPLIT") == packer | {"keep_placement": True, "pack": False}
-    assert drawn(overlaps="SPLIT", keep_placement=True) == no_packer | {"keep_placement": True, "pack": True}
+    assert drawn() == packer | {"keep_placement": True, "pack": True}
+    assert drawn(pack=False) == no_packer | {"keep_placement": True, "pack": True}
+    # What keeps its place is not packed.
+    assert drawn(keep_placement=True) == no_packer | {"keep_placement": True, "pack": False}
     # Seamless islands are moved by whole tiles only.
-    assert drawn(seamless=True, pack=True) == no_packer | {"keep_placement": False, "pack": True}
-    assert drawn(seamless=True, overlaps="SPLIT") == no_packer | {"keep_placement": True, "pack": True}
+    assert drawn(seamless=True) == no_packer | {"keep_placement": True, "pack": True}
+
+
+def test_a_beginner_sees_few_properties_and_the_rest_is_closed():
+    closed = panel(is_open=False)
+    assert set(closed) == {"mode", "overlaps", "seamless"}
+
+
+def test_without_panels_in_a_popup_all_properties_are_drawn(monkeypatch):
+    def refuse(*_arguments, **_options):
+        raise RuntimeError("Layout panels can not be used in this context")
+
+    whole = panel()
+    monkeypatch.setattr(RecordingLayout, "panel", refuse)
+    assert panel() == whole
 
 
 def test_every_property_has_a_tooltip_in_blenders_manner():

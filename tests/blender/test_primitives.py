@@ -4,6 +4,7 @@
 import bpy
 import numpy as np
 import pytest
+from mathutils import Vector
 from scenes import UV_ROUNDING, UvMap, add_ball, add_object, changed, edit, marked, snapshot, uv_key
 
 PRIMITIVES = ["cube", "monkey", "uv_sphere", "ico_sphere", "torus", "grid", "cylinder", "cone", "plane"]
@@ -29,7 +30,7 @@ def test_primitive_through_placed_cones_twice_in_a_row(primitive, in_edit_mode):
         edit(obj)
     assert bpy.ops.mesh.cone_place() == {"FINISHED"}
     before = snapshot(obj)
-    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    assert bpy.ops.uv.cone_unwrap(overlaps="KEEP") == {"FINISHED"}
     once = snapshot(obj)
     assert changed(before, once) == {uv_key()}
     uv_map = UvMap(obj)
@@ -37,7 +38,7 @@ def test_primitive_through_placed_cones_twice_in_a_row(primitive, in_edit_mode):
     assert uv_map.uv.min() >= 0.0 and uv_map.uv.max() <= 1.0
     assert np.ptp(uv_map.uv, axis=0).max() > 0.9
     assert uv_map.sister_difference() <= UV_ROUNDING
-    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    assert bpy.ops.uv.cone_unwrap(overlaps="KEEP") == {"FINISHED"}
     assert changed(once, snapshot(obj)) == set()
 
 
@@ -62,9 +63,9 @@ def test_one_triangle_keeps_its_shape():
     assert UvMap(triangle).scale_spread() < 1 + 1e-6
 
 
-@pytest.mark.parametrize("scale", [(-1.0, 1.0, 1.0), (-1.0, -2.0, 3.0), (1.0, 1.0, 40.0)])
+@pytest.mark.parametrize("scale", [(-1.0, 1.0, 1.0), (-2.5, -2.5, -2.5), (40.0, 40.0, 40.0)])
 @pytest.mark.parametrize("in_edit_mode", [True, False])
-def test_scale_and_place_of_the_object_do_not_matter(scale, in_edit_mode):
+def test_size_mirroring_and_place_of_the_object_do_not_matter(scale, in_edit_mode):
     first, second = add_ball("First"), add_ball("Second")
     second.scale = scale
     second.location = (1e5, 0.0, 0.0)
@@ -73,10 +74,44 @@ def test_scale_and_place_of_the_object_do_not_matter(scale, in_edit_mode):
     if in_edit_mode:
         edit(first, second)
     before = [snapshot(obj) for obj in (first, second)]
-    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    # Packed, they would lie beside each other, and the front of the scene sees each from another side.
+    assert bpy.ops.uv.cone_unwrap(pack=False, cuts="SHORTEST") == {"FINISHED"}
     assert UvMap(first).uv.tobytes() == UvMap(second).uv.tobytes()
     for state, obj in zip(before, (first, second), strict=True):
         assert changed(state, snapshot(obj)) == {uv_key()}
+
+
+def edge_lengths(obj):
+    uv_map = UvMap(obj)
+    ends = uv_map.uv[np.array([uv_map.sides[edge][0] for edge in sorted(uv_map.sides)])]
+    return np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+
+
+@pytest.mark.parametrize("scale", [(4.0, 1.0, 1.0), (-1.0, -2.0, 3.0), (1.0, 1.0, 40.0)])
+@pytest.mark.parametrize("in_edit_mode", [True, False])
+def test_an_object_is_unwrapped_in_the_shape_that_its_scale_gives_it(scale, in_edit_mode):
+    scaled, applied = add_ball("Scaled"), add_ball("Applied")
+    scaled.scale = scale
+    scaled.rotation_euler = (0.3, 0.2, 0.1)
+    for vertex in applied.data.vertices:
+        vertex.co *= Vector(map(abs, scale))
+    bpy.context.view_layer.update()
+    if in_edit_mode:
+        edit(scaled, applied)
+    before = snapshot(scaled)
+    assert bpy.ops.uv.cone_unwrap(pack=False, cuts="SHORTEST") == {"FINISHED"}
+    assert changed(before, snapshot(scaled)) == {uv_key()}
+    # Symmetric shapes may lie turned.
+    assert edge_lengths(scaled) == pytest.approx(edge_lengths(applied), abs=1e-4)
+
+
+def test_a_flattened_object_is_unwrapped_in_the_shape_of_its_mesh():
+    flat, plain = add_ball("Flat"), add_ball("Plain")
+    flat.scale = (1.0, 0.0, 1.0)
+    bpy.context.view_layer.update()
+    assert bpy.ops.uv.cone_unwrap(pack=False) == {"FINISHED"}
+    assert UvMap(flat).uv.tobytes() == UvMap(plain).uv.tobytes()
+    assert bpy.ops.uv.cone_auto_unwrap() == {"FINISHED"}
 
 
 @pytest.mark.parametrize("in_edit_mode", [True, False])
@@ -93,7 +128,8 @@ def test_modifiers_and_shape_keys_do_not_matter(in_edit_mode):
     if in_edit_mode:
         edit(plain, decorated)
     before = snapshot(decorated)
-    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    # Packed, they would lie beside each other.
+    assert bpy.ops.uv.cone_unwrap(pack=False) == {"FINISHED"}
     assert changed(before, snapshot(decorated)) == {uv_key()}
     assert UvMap(plain).uv.tobytes() == UvMap(decorated).uv.tobytes()
 

@@ -1,18 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Show Texture: a texture in place of all materials, which come back as they were."""
 
-import os
-from importlib import import_module
-
 import bpy
 import numpy as np
 import pytest
+from installed import addon
 from scenes import add_cone_cube, changed, edit, snapshot
 
-EXTENSION = os.environ["CONE_UNWRAP_EXTENSION"]
-texture = import_module(f"{EXTENSION}.texture")
-tile_pictures = import_module(f"{EXTENSION}.tile_pictures")
-image_aspect = import_module(f"{EXTENSION}.image_aspect")
+texture, image_aspect, tile_pictures = addon.mesh.texture, addon.mesh.image_aspect, addon.core.tile_pictures
 
 
 def blocks():

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Vertices that lie at the same place are joined where they are apart for display only."""
 
-import os
-from importlib import import_module
-
 import numpy as np
+from installed import addon
 
-welding = import_module(f"{os.environ['CONE_UNWRAP_EXTENSION']}.welding")
+welding = addon.mesh.welding
+
 
 # Two triangles with a common side, each with its own vertices.
 POSITIONS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float32)

@@ -2,22 +2,20 @@
 """What is drawn over meshes, looked at in the pixels of a real window.  Run by run_in_window.py; no pytest."""
 
 from dataclasses import replace
-from importlib import import_module
 
 import bpy
 import gpu
 import numpy as np
+from installed import addon
 from scenes import add_ball, add_cone_cube, edit
-from windows import EXTENSION, area, region, take_picture
+from windows import area, region, take_picture
 
-reports = import_module(f"{EXTENSION}.reports")
-cache = import_module(f"{EXTENSION}.overlay.cache")
-view3d = import_module(f"{EXTENSION}.overlay.view3d")
+reports, cache, view3d = addon.mesh.reports, addon.overlay.cache, addon.overlay.view3d
 SPACES = {"VIEW_3D": bpy.types.SpaceView3D, "IMAGE_EDITOR": bpy.types.SpaceImageEditor}
 
 
 def pixels(kind="WINDOW", within="VIEW_3D"):
-    """(h, w, 3) colours of a region from 0 to 1, once it has been drawn."""
+    """(h, w, 3) colors of a region from 0 to 1, once it has been drawn."""
     seen = []
 
     def read():
@@ -38,13 +36,13 @@ def pixels(kind="WINDOW", within="VIEW_3D"):
     return seen[-1]
 
 
-def count(picture, colour, off=0.03):
-    """How many pixels have this colour."""
-    return int((np.abs(picture - np.array(colour[:3])) < off).all(axis=2).sum())
+def count(picture, color, off=0.03):
+    """How many pixels have this color."""
+    return int((np.abs(picture - np.array(color[:3])) < off).all(axis=2).sum())
 
 
 def look():
-    return bpy.context.preferences.addons[EXTENSION].preferences
+    return addon.overlay.look.overlay_look(bpy.context)
 
 
 def chosen():
@@ -61,10 +59,10 @@ def unwrapped(build, **options):
 
 
 def cut_pixels(picture):
-    return [count(picture, colour) for colour in look().cut_colours()]
+    return [count(picture, color) for color in look().cut_colors()]
 
 
-def test_cuts_and_cones_are_drawn_in_the_colours_of_the_preferences():
+def test_cuts_and_cones_are_drawn_in_the_colors_of_the_preferences():
     cube = unwrapped(add_cone_cube, seamless=True)
     for in_edit_mode in (False, True):
         if in_edit_mode:
@@ -147,12 +145,12 @@ def test_flipped_and_overlapping_faces_are_drawn():
     for picture, name in ((seen[name], name) for name in seen):
         tinted = np.abs(picture - plain).max(axis=2) > 0.1
         assert tinted.mean() > 0.05, name
-        # Towards the colour of the preferences.
+        # Towards the color of the preferences.
         toward = np.linalg.norm(picture[tinted] - np.array(getattr(look(), name)[:3]), axis=1)
         assert (toward < np.linalg.norm(plain[tinted] - np.array(getattr(look(), name)[:3]), axis=1)).mean() > 0.95
 
 
-def test_distortion_is_drawn_in_its_colours_with_a_scale():
+def test_distortion_is_drawn_in_its_colors_with_a_scale():
     unwrapped(add_ball)
     plain = yield from pixels()
     bpy.ops.uv.cone_measure()
@@ -201,7 +199,7 @@ def test_the_overlay_follows_undo():
     bpy.ops.object.mode_set(mode="OBJECT")
 
 
-def test_the_uv_editor_shows_the_cuts_in_the_same_colours():
+def test_the_uv_editor_shows_the_cuts_in_the_same_colors():
     cube = unwrapped(add_cone_cube)
     edit(cube)
     bpy.context.tool_settings.use_uv_select_sync = False

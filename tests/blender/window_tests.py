@@ -7,18 +7,18 @@ Run by run_in_window.py; no pytest.
 import threading
 import time
 from contextlib import contextmanager, suppress
-from importlib import import_module
 
 import bpy
 import numpy as np
+from installed import addon
 from scenes import add_ball, add_cone_cube, changed, edit, marked, plain_copy, snapshot, uv_key
-from windows import EXTENSION, STEP, press, region, running, until
+from windows import STEP, press, region, running, until
 
 
 @contextmanager
 def slowed(seconds, verb="parameterize"):
     """The library takes so much longer, and tells its progress meanwhile."""
-    lsgp = import_module(f"{EXTENSION}.native").lsgp
+    lsgp = addon.core.native.lsgp
     work = getattr(lsgp, verb)
 
     def slowly(*arguments, **options):
@@ -238,6 +238,27 @@ def test_placing_cones_is_stopped_by_esc_and_nothing_changes():
     assert changed(before, snapshot(cube)) == set()
 
 
+def test_auto_unwrap_is_stopped_by_esc_and_is_one_step_of_undo():
+    cube = add_cone_cube()
+    bpy.ops.ed.undo_push(message="before")
+    before = stored_uv(cube)
+    with slowed(10, "auto_unwrap"):
+        assert bpy.ops.uv.cone_auto_unwrap("INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
+        yield 0.3
+        assert running("UV_OT_cone_auto_unwrap") and computing()
+        yield from press("ESC")
+        yield from until(lambda: not running("UV_OT_cone_auto_unwrap"), 1.0)
+        yield from until(lambda: not computing(), 1.0)
+    assert stored_uv(cube) == before
+    with slowed(0.5, "auto_unwrap"):
+        assert bpy.ops.uv.cone_auto_unwrap("INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
+        yield from until(lambda: not running("UV_OT_cone_auto_unwrap"))
+    assert stored_uv(cube) != before
+    bpy.ops.ed.undo()
+    yield 0.1
+    assert stored_uv(bpy.data.objects["Cube"]) == before
+
+
 def test_placing_cones_for_long_is_one_step_of_undo():
     cube = add_cone_cube()
     edit(cube)
@@ -258,7 +279,7 @@ def test_placing_cones_for_long_is_one_step_of_undo():
 
 def test_the_table_of_angles_is_drawn_and_follows_undo():
     panel = bpy.types.VIEW3D_PT_cone_angles
-    tables = import_module(f"{EXTENSION}.angle_table")
+    tables = addon.jobs.angle_table
     draw, outcomes = panel.draw, []
 
     def watched(self, context):
@@ -270,6 +291,8 @@ def test_the_table_of_angles_is_drawn_and_follows_undo():
             outcomes.append(error)
 
     panel.draw = watched
+    # Nobody opens it here.
+    register(panel, set())
     try:
         edit(add_cone_cube())
         bpy.context.space_data.show_region_ui = True
@@ -289,3 +312,11 @@ def test_the_table_of_angles_is_drawn_and_follows_undo():
         yield from until(lambda: outcomes[-1] == [None] * 8)
     finally:
         panel.draw = draw
+        register(panel, {"DEFAULT_CLOSED"})
+
+
+def register(panel, options):
+    """Register a panel anew with these options."""
+    bpy.utils.unregister_class(panel)
+    panel.bl_options = options
+    bpy.utils.register_class(panel)

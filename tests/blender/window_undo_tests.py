@@ -2,13 +2,12 @@
 """Undo and redo bring every attribute of a mesh back exactly.  Run by run_in_window.py; no pytest."""
 
 from functools import partial
-from importlib import import_module
 
 import bpy
+from installed import addon
 from scenes import add_ball, add_cone_cube, add_grid, add_ramp, add_sphere, add_tube, changed, edit, mark, snapshot
-from windows import EXTENSION
 
-reports = import_module(f"{EXTENSION}.reports")
+reports = addon.mesh.reports
 # Taken in turn, so that most runs change the map; complete, because a run with undo goes on with what was chosen last.
 PLAIN = {"seamless": False, "mode": "CONFORMAL", "prescription": "AUTOMATIC", "pack": False}
 OPTIONS = (

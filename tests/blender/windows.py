@@ -15,7 +15,6 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from run_in_blender import EXTENSION  # noqa: F401 for the tests
 
 Place = tuple[float, float]
 

@@ -8,12 +8,23 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from lsgp.mesh_files import read_mesh
+from lsgp.io.mesh_files import read_mesh
 from polygon_meshes import faces_of
 
 REPORT_KEYS = [
-    *["status", "code", "message", "elements", "warnings", "triangles", "cones", "cone_angles", "distortion", "seams"],
-    *["seamless", "islands", "flipped", "wrong_angle_sums", "repair", "overlapping", "overlap_area", "stage_seconds"],
+    *["status", "code", "message", "elements", "warnings", "triangles", "cones", "cone_angles", "placement"],
+    *[
+        "distortion",
+        "seams",
+        "seamless",
+        "islands",
+        "flipped",
+        "wrong_angle_sums",
+        "repair",
+        "overlapping",
+        "overlap_area",
+        "stage_seconds",
+    ],
 ]
 DISTORTION_KEYS = [
     *["quasi_conformal", "quasi_conformal_area_weighted", "area", "area_p10", "area_p90", "l2_stretch"],

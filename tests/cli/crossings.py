@@ -9,7 +9,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
-from lsgp.mesh_files import read_mesh
+from lsgp.io.mesh_files import read_mesh
 from polygon_meshes import faces_of
 
 Edge = tuple[int, int]

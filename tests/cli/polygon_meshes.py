@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
-from lsgp.polygons import PolygonMesh, Triangulation
+from lsgp.io.polygons import PolygonMesh, Triangulation
 
 Faces = list[list[int]]
 

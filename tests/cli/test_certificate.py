@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from lsgp import SeamlessReport
 from lsgp.certificate import certificate, certificate_table
-from lsgp.report import to_json
+from lsgp.run.report import to_json
 
 
 def report(errors: list[float], symmetry: int = 4, cell: float = 1.0) -> SeamlessReport:

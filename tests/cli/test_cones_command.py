@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 from command import REPORT_KEYS
 from lsgp.cli import main
-from lsgp.mesh_files import read_mesh
-from lsgp.polygons import triangulate
-from polygon_meshes import cube, cube_corners, obj_text
+from lsgp.io.mesh_files import read_mesh
+from lsgp.io.polygons import triangulate
+from meshes import moebius_strip
+from polygon_meshes import cube, cube_corners, faces_of, obj_text
 
 PLACE = ["cones", "ball.obj", "-o", "placed.json"]
 TURN = np.pi / 2
@@ -34,19 +35,21 @@ def test_cones_come_with_angles_that_add_up_and_say_what_they_promise(lsgp, ball
     done = lsgp(*PLACE, "--report", "report.json")
     assert (done.code, done.err) == (0, "")
     file = placed(ball_files)
-    assert list(file) == ["mesh", "cones", "cone_angles", "predicted_l2", "reached"]
+    assert list(file) == ["mesh", "cones", "cone_angles", "predicted_l2", "mapped_l2", "reached"]
     assert file["mesh"] == "ball.obj"
     assert len(file["cones"]) == len(file["cone_angles"]) == len(set(file["cones"])) > 0
     (part,) = ledger(ball_files, file)
     assert part.complete
     told = f"placed.json: {len(file['cones'])} cones, an L2 stretch of {file['predicted_l2']:.4f} predicted"
+    told += f" and {file['mapped_l2']:.4f} in the map"
     assert done.out.startswith(told) and "the target was reached; " in done.out
     assert done.out.rstrip().endswith("back-substitutions") and done.out.count("\n") == 1
     report = done.report()
     assert list(report) == REPORT_KEYS
     assert (report["status"], report["cones"], report["cone_angles"]) == ("ok", file["cones"], file["cone_angles"])
+    assert report["placement"] == {key: file[key] for key in ("predicted_l2", "mapped_l2", "reached")}
     assert report["distortion"] is None
-    assert set(report["stage_seconds"]) == {"read_file", "triangulate", "place_cones", "write_file"}
+    assert set(report["stage_seconds"]) == {"read_file", "triangulate", "cut_costs", "place_cones", "write_file"}
 
 
 def test_what_is_predicted_is_what_is_unwrapped(lsgp, ball_files: Path) -> None:
@@ -57,8 +60,11 @@ def test_what_is_predicted_is_what_is_unwrapped(lsgp, ball_files: Path) -> None:
     assert report["cones"] == file["cones"]
     assert report["cone_angles"] == pytest.approx(file["cone_angles"], abs=1e-9)
     assert report["distortion"]["l2_stretch"] == pytest.approx(file["predicted_l2"], rel=0.03)
+    assert report["distortion"]["l2_stretch"] == pytest.approx(file["mapped_l2"], rel=1e-9)
+    assert report["placement"] is None
     # An unwrap that places cones by itself takes the same ones.
     own = lsgp("unwrap", "ball.obj", "-o", "own.obj", "--cones", "auto:8", "--report", "own.json").report("own.json")
+    assert own["placement"]["mapped_l2"] == file["mapped_l2"]
     assert own["cones"] == file["cones"] and own["cone_angles"] == report["cone_angles"]
     assert (ball_files / "own.obj").read_bytes() == (ball_files / "out.obj").read_bytes()
 
@@ -201,7 +207,7 @@ def test_interrupted_it_leaves_the_file_as_it_was(
         return library.place_cones(*arguments, progress=tell, **options)
 
     (files / "placed.json").write_text("before")
-    monkeypatch.setattr("lsgp.place_file.place_cones", place_cones)
+    monkeypatch.setattr("lsgp.run.place_file.place_cones", place_cones)
     assert main(PLACE) == 130
     assert capsys.readouterr().err == "lsgp: interrupted\n"
     assert (files / "placed.json").read_text() == "before"
@@ -212,3 +218,64 @@ def test_help_names_every_option(lsgp) -> None:
     assert (done.code, done.err) == (0, "")
     for option in ("count", "target", "keep", "seamless", "lattice", "symmetric", "mirror", "prefer-sharp", "seams"):
         assert f"--{option}" in done.out
+
+
+QUAD = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"
+
+
+def test_cones_that_find_no_room_are_said_by_both_commands(lsgp, tmp_path: Path) -> None:
+    (tmp_path / "quad.obj").write_text(QUAD)
+    for command in (["cones", "quad.obj", "-o", "placed.json", "--count", 8], ["unwrap", "quad.obj", "-o", "out.obj"]):
+        asked = [] if command[0] == "cones" else ["--cones", "auto:8"]
+        done = lsgp(*command, *asked, "--report", "report.json")
+        assert done.code == 0 and "0 of the 8 cones asked for" in done.err
+        (warning,) = done.report()["warnings"]
+        assert warning["code"] == "PLACEMENT_NOT_REACHED" and warning["elements"]["indices"] == [0]
+    assert placed(tmp_path)["cones"] == []
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["cones", "quad.obj", "-o", "out.json", "--count", "8"],
+        ["unwrap", "quad.obj", "-o", "out.obj", "--cones", "auto:8"],
+    ],
+    ids=["cones", "unwrap"],
+)
+def test_strict_refuses_what_misses_what_was_asked_for(lsgp, tmp_path: Path, command: list[str]) -> None:
+    (tmp_path / "quad.obj").write_text(QUAD)
+    done = lsgp(*command, "--strict", "--report", "report.json")
+    report = done.report()
+    assert done.code == 3 and "refused: PLACEMENT_NOT_REACHED" in done.err
+    assert (report["status"], report["code"]) == ("refused", "PLACEMENT_NOT_REACHED")
+    assert not (tmp_path / command[3]).exists()
+
+
+def test_strict_lets_a_flawless_result_pass(lsgp, ball_files: Path) -> None:
+    assert lsgp(*PLACE, "--strict").code == 0
+    assert lsgp("unwrap", "ball.obj", "-o", "out.obj", "--cones", "placed.json", "--strict").code == 0
+
+
+def test_strict_refuses_parts_left_out_with_given_cones(lsgp, ball_files: Path) -> None:
+    lsgp(*PLACE)
+    ball, strip = read_mesh(ball_files / "ball.obj"), moebius_strip()
+    faces = [*faces_of(ball), *(strip.triangles + len(ball.positions)).tolist()]
+    (ball_files / "both.obj").write_text(obj_text(np.concatenate([ball.positions, strip.positions + 5]), faces))
+    unwrap = ["unwrap", "both.obj", "--cones", "placed.json"]
+    loose = lsgp(*unwrap, "-o", "out.obj")
+    assert loose.code == 0 and "COMPONENT_SKIPPED" in loose.err
+    strict = lsgp(*unwrap, "-o", "strict.obj", "--strict")
+    assert strict.code == 3 and "refused: COMPONENT_SKIPPED" in strict.err
+    assert not (ball_files / "strict.obj").exists()
+
+
+def test_seams_on_the_way_are_no_reason_to_refuse_placed_cones(lsgp, ball_files: Path) -> None:
+    corners = read_mesh(ball_files / "ball.obj").corners[:4].tolist()
+    (ball_files / "seams.json").write_text(json.dumps([corners[:2], corners[1:3]]))
+    seams = ["--seam-edges", "seams.json"]
+    for mode in ("follow", "boundary", "ignore"):
+        assert lsgp(*PLACE, *seams, "--seams", mode).code == 0
+        with_file = lsgp("unwrap", "ball.obj", "-o", "a.obj", "--cones", "placed.json", *seams, "--seams", mode)
+        at_once = lsgp("unwrap", "ball.obj", "-o", "b.obj", "--cones", "auto", *seams, "--seams", mode)
+        assert (with_file.code, at_once.code) == (0, 0), with_file.err + at_once.err
+        assert (ball_files / "a.obj").read_bytes() == (ball_files / "b.obj").read_bytes()

@@ -124,7 +124,7 @@ REFUSED = (
         "index out of range": ({"in.obj": "v 0 0 0\nf 1 2 3\n"}, UNWRAP, "INDEX_OUT_OF_RANGE"),
         "face of two corners": ({"in.obj": "v 0 0 0\nv 1 0 0\nf 1 2\n"}, UNWRAP, "BAD_FACE"),
         "not finite": ({"in.obj": "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}, UNWRAP, "NON_FINITE_POSITION"),
-        "other format": ({"in.stl": "solid\n"}, ["unwrap", "in.stl", "-o", "out.obj"], "UNKNOWN_FORMAT"),
+        "other format": ({"in.fbx": "Kaydara"}, ["unwrap", "in.fbx", "-o", "out.obj"], "UNKNOWN_FORMAT"),
         "measure without uv": ({"in.obj": "PATCH"}, ["measure", "in.obj"], "NO_UV"),
         "measure an off": ({"in.off": "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"}, ["measure", "in.off"], "NO_UV"),
         "measure no faces": ({"in.obj": "v 0 0 0\nvt 0 0\n"}, ["measure", "in.obj"], "EMPTY_MESH"),
@@ -174,7 +174,24 @@ WRONG_USAGE = {
     "output in no folder": (["unwrap", "in.obj", "-o", "none/out.obj"], "none"),
     "output is a folder": (["unwrap", "in.obj", "-o", "."], "folder"),
     "output in a file": (["unwrap", "in.obj", "-o", "in.obj/out.obj"], "in.obj"),
-    "output of another format": (["unwrap", "in.obj", "-o", "out.ply"], "out.ply"),
+    "output of a format that is only read": (
+        ["unwrap", "in.obj", "-o", "out.off"],
+        "'out.off' cannot be written as OFF",
+    ),
+    **{
+        f"output of another format, {suffix}": (
+            ["unwrap", "in.obj", "-o", f"out.{suffix}"],
+            f"'out.{suffix}' cannot be",
+        )
+        for suffix in ("fbx", "stl", "json", "OBJ2")
+    },
+    "output that names what can be written": (["unwrap", "in.obj", "-o", "out.fbx"], "OBJ (.obj)"),
+    "standard output of a format that is only read": (["unwrap", "in.obj", "-o", "-", "--format", "off"], "as OFF"),
+    "cones into a mesh": (["cones", "in.obj", "-o", "cones.glb"], "cones.glb"),
+    "unknown format": ([*UNWRAP, "--format", "fbx"], "fbx"),
+    "output over the input": (["unwrap", "in.obj", "-o", "./in.obj"], "--in-place"),
+    "in place and elsewhere": ([*UNWRAP, "--in-place"], "out.obj"),
+    "standard input in place": (["unwrap", "-", "--in-place"], "--in-place is for files"),
     "report in no folder": ([*UNWRAP, "--report", "none/r.json"], "none"),
     "report over output": ([*UNWRAP, "--report", "./out.obj"], "same file"),
     "report over input": ([*UNWRAP, "--report", "./in.obj"], "same file"),
@@ -211,7 +228,7 @@ WRONG_USAGE = {
     "repair with a value": ([*UNWRAP, "--no-repair=yes"], "--no-repair"),
     "missing importance": ([*LOW_STRETCH, "--importance", "none.txt"], "none.txt"),
     "importance without end": ([*LOW_STRETCH, "--importance", "deep.json"], "deep.json"),
-    "measure nothing": (["measure"], "FILE.obj"),
+    "measure nothing": (["measure"], "FILE"),
 }
 
 
@@ -285,7 +302,7 @@ def test_not_enough_memory_is_a_refusal(
         raise MemoryError
 
     monkeypatch.chdir(cube_files)
-    monkeypatch.setattr("lsgp.unwrap_file.parameterize", exhaust)
+    monkeypatch.setattr("lsgp.run.unwrap_file.parameterize", exhaust)
     assert main(["unwrap", "cube.obj", "-o", "out.obj", "--cones", "corners.json", "--report", "r.json"]) == 3
     assert json.loads((cube_files / "r.json").read_text())["code"] == "OUT_OF_MEMORY"
     assert "OUT_OF_MEMORY" in capsys.readouterr().err

@@ -13,16 +13,19 @@ from pathlib import Path
 
 import lsgp as library
 import pytest
-from lsgp import terminal
 from lsgp.cli import main
-from lsgp.terminal import BAR_WIDTH, SILENT_SECONDS, ProgressLine
+from lsgp.run import terminal
+from lsgp.run.terminal import BAR_WIDTH, SILENT_SECONDS, ProgressLine
 from polygon_meshes import cube, obj_text
 
 BALL = ["unwrap", "ball.obj", "-o", "out.obj", "--cones", "cones.json", "--report", "report.json"]
 RUNS = {"conformal": BALL, "seamless": [*BALL, "--seamless", "--tiles", "16"], "placed": [*BALL, "--cones", "auto"]}
 
 # The command line with progress from the beginning.
-AT_ONCE = "import sys; from lsgp import cli, terminal; terminal.SILENT_SECONDS = 0; sys.exit(cli.main(sys.argv[1:]))"
+AT_ONCE = (
+    "import sys; from lsgp import cli; from lsgp.run import terminal; "
+    "terminal.SILENT_SECONDS = 0; sys.exit(cli.main(sys.argv[1:]))"
+)
 
 
 class Terminal(io.StringIO):
@@ -138,7 +141,7 @@ def interrupt_at(call: int, monkeypatch: pytest.MonkeyPatch) -> list[float]:
 
         return library.parameterize(*arguments, progress=tell, **options)
 
-    monkeypatch.setattr("lsgp.unwrap_file.parameterize", parameterize)
+    monkeypatch.setattr("lsgp.run.unwrap_file.parameterize", parameterize)
     return told
 
 
@@ -173,14 +176,14 @@ def test_interrupted_while_writing_leaves_no_half_a_file(
     monkeypatch.chdir(ball_files)
     Path("out.obj").write_text("before")
     before = content(ball_files)
-    monkeypatch.setattr(f"lsgp.mesh_files.{fails}", lambda *paths: signal.raise_signal(signal.SIGINT))
+    monkeypatch.setattr(f"lsgp.io.whole_files.{fails}", lambda *paths: signal.raise_signal(signal.SIGINT))
     assert main(BALL) == 130
     assert content(ball_files) == before
 
 
 def test_measuring_can_be_interrupted(ball_files: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ball_files)
-    monkeypatch.setattr("lsgp.unwrap_file.read_mesh", lambda *arguments: signal.raise_signal(signal.SIGINT))
+    monkeypatch.setattr("lsgp.run.unwrap_file.read_input", lambda *arguments: signal.raise_signal(signal.SIGINT))
     assert main(["measure", "ball.obj", "--report", "report.json"]) == 130
     assert not Path("report.json").exists()
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from command import cut_edges
 from crossings import require_certified
-from lsgp.mesh_files import read_mesh
-from lsgp.polygons import triangulate
+from lsgp.io.mesh_files import read_mesh
+from lsgp.io.polygons import triangulate
 from overlap_check import overlaps
 from polygon_meshes import bumpy_ball, faces_of
 

@@ -13,10 +13,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lsgp.errors import InputError
-from lsgp.mesh_files import read_mesh, write_obj
-from lsgp.mesh_obj import format_obj, read_obj
-from lsgp.mesh_off import read_off
-from lsgp.mesh_ply import read_ply
+from lsgp.io.mesh_files import read_mesh
+from lsgp.io.mesh_obj import format_obj, read_obj
+from lsgp.io.mesh_off import read_off
+from lsgp.io.mesh_ply import read_ply
+from lsgp.io.whole_files import write_whole
 from polygon_meshes import (
     PLY_FORMS,
     SQUARE,
@@ -257,10 +258,10 @@ def test_a_file_is_replaced_as_a_whole_or_not_at_all(tmp_path: Path, monkeypatch
     with monkeypatch.context() as patched:
         patched.setattr(os, "replace", fail)
         with pytest.raises(OSError, match="No space"):
-            write_obj(target, mesh, np.zeros((4, 2)))
+            write_whole(target, format_obj(mesh, np.zeros((4, 2))))
     assert target.read_text() == "before"
     assert os.listdir(tmp_path) == ["out.obj"]
-    write_obj(target, mesh, np.zeros((4, 2)))
+    write_whole(target, format_obj(mesh, np.zeros((4, 2))))
     assert target.read_text().startswith("v 0.0 0.0 0.0\n")
     assert os.listdir(tmp_path) == ["out.obj"]
 
@@ -270,8 +271,8 @@ def test_links_and_devices_are_written_to_not_replaced(tmp_path: Path) -> None:
     (tmp_path / "real.obj").write_text("before")
     (tmp_path / "link.obj").symlink_to("real.obj")
     (tmp_path / "null").symlink_to(os.devnull)
-    write_obj(tmp_path / "link.obj", mesh, np.zeros((4, 2)))
-    write_obj(tmp_path / "null", mesh, np.zeros((4, 2)))
+    write_whole(tmp_path / "link.obj", format_obj(mesh, np.zeros((4, 2))))
+    write_whole(tmp_path / "null", format_obj(mesh, np.zeros((4, 2))))
     assert (tmp_path / "link.obj").is_symlink()
     assert (tmp_path / "real.obj").read_text().startswith("v 0.0")
     assert not Path(os.devnull).is_file()

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lsgp.errors import InputError
-from lsgp.polygons import require_polygons, triangulate
+from lsgp.io.polygons import require_polygons, triangulate
 from polygon_meshes import cube, patch, polygon_areas, polygon_mesh, require_triangulation, triangle_areas
 
 
@@ -246,7 +246,6 @@ def test_values_of_triangle_corners_return_to_polygon_corners() -> None:
         ([[0, -1, 2], [0, 1, 2], [5, 6, 7]], "INDEX_OUT_OF_RANGE", [0, 2]),
         ([[0, 1, 2], [0, 1]], "BAD_FACE", [1]),
         ([[], [0, 1, 2], [3]], "BAD_FACE", [0, 2]),
-        ([[0, 1, 2, 3], [0, 1, 2, 1], [2, 2, 3]], "BAD_FACE", [1, 2]),
     ],
 )
 def test_polygons_that_cannot_be_are_refused_by_number(faces: list[list[int]], code: str, named: list[int]) -> None:

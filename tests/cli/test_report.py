@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from command import DISTORTION_KEYS, REPAIR_KEYS, REPORT_KEYS, SEAM_KEYS
 from lsgp import Distortion, Elements, LsgpError, RepairReport, SeamQuality
-from lsgp.polygons import triangulate
-from lsgp.report import on_faces, quality_table, refusal_report, to_json
+from lsgp.io.polygons import triangulate
+from lsgp.run.report import on_faces, quality_table, refusal_report, to_json
 from polygon_meshes import cube, cube_corners, obj_text, patch, polygon_mesh
 
 

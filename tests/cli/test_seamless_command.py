@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from crossings import Crossings, require_certified
-from lsgp.mesh_files import read_mesh
-from lsgp.polygons import triangulate
+from lsgp.io.mesh_files import read_mesh
+from lsgp.io.polygons import triangulate
 
 UNWRAP = ("unwrap", "ball.obj", "-o", "out.obj", "--cones", "cones.json", "--report", "report.json", "--seamless")
 TILES = 24

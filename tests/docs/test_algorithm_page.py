@@ -5,7 +5,7 @@ import re
 
 from code_blocks import ROOT
 
-PAGE = (ROOT / "docs" / "algorithm.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "explanation" / "algorithm.md").read_text(encoding="utf-8")
 SOURCES = ROOT / "native" / "src"
 ROWS = [line.strip("| ").split(" | ") for line in PAGE.splitlines() if re.match(r"\|.*`\w+\.py` \|$", line)]
 

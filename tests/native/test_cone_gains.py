@@ -8,6 +8,7 @@ import meshes
 import numpy as np
 import oracle
 import pytest
+import zoo
 from map_checks import surface
 from meshes import Mesh
 from placement_checks import dense_model, open_vertices, place
@@ -61,3 +62,22 @@ def test_borders_and_existing_cones_have_no_gain() -> None:
     gains = lsgp.cone_gains(surface(mesh), mesh.cones)
     rim = np.concatenate(oracle.boundary_loops(mesh.triangles))
     assert np.isnan(gains.predicted_l2[rim]).all() and np.isnan(gains.predicted_l2[mesh.cones]).all()
+
+
+def test_stretch_beyond_all_numbers_has_a_best_vertex() -> None:
+    """A sphere with a spike so long that stretches overflow: figures are finite, and gains are still told apart."""
+    mesh = zoo.member("spiked-ball-levels=2-spikes=1-height=10").mesh()
+    gains = lsgp.cone_gains(lsgp.Surface(mesh.positions, mesh.triangles))
+    assert np.nanmax(gains.predicted_l2) <= 1e100
+    model = dense_model(mesh)
+    variance = [model.least(np.array([v]))[0] for v in range(len(mesh.positions))]
+    assert variance[gains.best] <= 1.1 * min(variance)
+
+
+def test_a_predicted_stretch_is_a_number() -> None:
+    mesh = zoo.member("mixture-seed=587420").mesh()
+    surface = lsgp.Surface(mesh.positions, mesh.triangles)
+    prescribed = lsgp.prescribe_curvature(surface, mesh.cones)
+    assert np.ptp(prescribed.log_scale) > 710  # what an exponential can be taken of
+    assert 1e50 < prescribed.predicted_l2 <= 1e100
+    assert "HIGH_DISTORTION" in {finding.code for finding in prescribed.warnings}

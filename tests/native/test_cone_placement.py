@@ -22,6 +22,7 @@ from placement_checks import (
     place,
     strength,
 )
+from zoo.tunnels import tunnelled_plate
 
 PI = np.pi
 MESHES = {
@@ -180,6 +181,26 @@ def test_a_target_out_of_reach_is_told() -> None:
     assert not placed.reached and len(placed.cones) <= 57
     assert only(placed.warnings, "PLACEMENT_NOT_REACHED").elements.indices.tolist() == sorted(placed.cones.tolist())
     assert "PLACEMENT_NOT_REACHED" not in codes(place(mesh, count=4, target=1.000001).warnings)
+
+
+@pytest.mark.parametrize(
+    ("across", "along", "options"), [(5, 4, {}), (5, 4, {"lattice": "square"}), (10, 5, {}), (20, 10, {})]
+)
+def test_the_number_of_cones_follows_the_genus(across: int, along: int, options: dict[str, str]) -> None:
+    mesh = tunnelled_plate(across, along, 1)
+    placed = place(mesh, **options)
+    assert placed.reached and placed.predicted_l2 <= 1.05 and not placed.warnings
+    assert_curvature_adds_up(mesh, placed.cones, placed.cone_angles)
+    curvature = 2 * TURN * (across * along - 1)
+    assert 57 < len(placed.cones) <= np.ceil(curvature / (TURN / 4))
+    result = lsgp.parameterize(surface(mesh), placed.cones, placed.cone_angles)
+    assert result.distortion.l2_stretch < 1.1 and "FLIPPED_TRIANGLES" not in codes(result.warnings)
+
+
+def test_a_number_that_the_handles_cannot_do_with_is_refused_with_that_number() -> None:
+    with pytest.raises(lsgp.TopologyError, match="8 cones cannot take up the surface's curvature of -76 pi") as caught:
+        place(tunnelled_plate(5, 4, 1), count=8)
+    assert caught.value.code == "TOO_FEW_CONES" and len(caught.value.elements.indices) == 8
 
 
 @pytest.mark.parametrize("count", [0, 1, 2])

@@ -119,6 +119,58 @@ def test_triangles_without_coordinates_are_left_out() -> None:
 # --- seams of given coordinates -------------------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize("last", [1e150, 1e300, 5e307])
+def test_figures_beside_coordinates_of_any_size_are_numbers(last: float) -> None:
+    mesh = meshes.grid(2, 2)
+    uv = flat_uv(mesh)
+    uv[3] *= last
+    found = lsgp.measure_distortion(surface(mesh), uv)
+    assert not np.isnan(list(figures(found).values())).any()
+    assert len(np.unique(found.island)) == 2 and np.isfinite(found.seams.rotation_residual)
+    if last < 1e200:  # beyond, the other triangles have no area
+        assert figures(found)["quasi_conformal"] == pytest.approx(1) and found.flipped.size == 0
+
+
+@pytest.mark.parametrize("image", [0.5, [[0.0, 0], [1, 1], [2, 2]]], ids=["point", "line"])
+def test_a_triangle_without_area_in_the_plane_makes_figures_infinite(image: object) -> None:
+    mesh = meshes.grid(2, 2)
+    uv = flat_uv(mesh)
+    uv[3] = image
+    found = figures(lsgp.measure_distortion(surface(mesh), uv))
+    assert [name for name, value in found.items() if not np.isinf(value)] == ["area_p10"]
+    assert np.isfinite(found["area_p10"])
+
+
+@pytest.mark.parametrize("mesh", [meshes.moebius_strip(8, 1), meshes.klein_bottle(6, 5)], ids=["strip", "bottle"])
+def test_islands_of_a_surface_with_one_side(mesh: meshes.Mesh) -> None:
+    """Its triangles one by one, as similar triangles; joined in pairs; and all in one point, which has one side."""
+    count = len(mesh.triangles)
+    p = mesh.positions[mesh.triangles]
+    a, b = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
+    x = (a * b).sum(axis=1) / np.linalg.norm(a, axis=1)
+    y = np.linalg.norm(np.cross(a, b), axis=1) / np.linalg.norm(a, axis=1)
+    uv = np.zeros((count, 3, 2))
+    uv[:, 1, 0], uv[:, 2] = np.linalg.norm(a, axis=1), np.stack([x, y], axis=1)
+    uv += 100 * np.arange(count)[:, None, None]
+    alone = lsgp.measure_distortion(surface(mesh), uv)
+    assert sorted(alone.island) == list(range(count)) and alone.flipped.size == 0
+    assert figures(alone)["l2_stretch"] == pytest.approx(1)
+    edges = np.unique(np.sort(mesh.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0, return_counts=True)
+    assert pairs(alone.cut_edges) == pairs(edges[0][edges[1] == 2])
+    point = lsgp.measure_distortion(surface(mesh), np.zeros((count, 3, 2)))
+    assert sorted(point.island) == list(range(count)) and len(point.flipped) == count and len(point.cut_edges) == 0
+
+
+def test_a_strip_with_one_side_that_is_cut_once_is_one_island() -> None:
+    strip = meshes.moebius_strip(8, 1)
+    place = np.stack([np.arange(16) // 2, np.arange(16) % 2], axis=1).astype(float)
+    uv = place[strip.triangles]
+    last = (strip.triangles >= 14).any(axis=1) & (strip.triangles < 2).any(axis=1)
+    uv[last] = np.where(strip.triangles[last, :, None] < 2, [8, 1] - uv[last] * [1, 1], uv[last])
+    found = lsgp.measure_distortion(surface(strip), uv)
+    assert (found.island == 0).all() and found.flipped.size == 0 and pairs(found.cut_edges) == {(0, 1)}
+
+
 def test_cuts_are_where_the_two_sides_differ() -> None:
     for name in ("bumpy sphere", "two holes"):
         mesh = MAPPED[name]
@@ -158,3 +210,13 @@ def test_wrong_shape_is_refused() -> None:
         with pytest.raises(lsgp.InputError) as caught:
             lsgp.measure_distortion(surface(mesh), np.zeros(shape))
         assert caught.value.code == "WRONG_SHAPE"
+
+
+def test_sister_ratio_is_a_number_where_a_side_has_collapsed() -> None:
+    mesh = meshes.grid(1, 1)
+    uv = mesh.positions[mesh.triangles][..., :2] + np.array([0.0, 3.0])[:, None, None]
+    shared = np.intersect1d(*mesh.triangles)
+    a, b = (np.flatnonzero(mesh.triangles[0] == v)[0] for v in shared)
+    uv[0, a] = uv[0, b]
+    found = lsgp.measure_distortion(surface(mesh), uv).seams.sister_ratio_max
+    assert np.isfinite(found) and found > 1e100

@@ -116,3 +116,38 @@ def test_hundreds_of_components_take_linear_time() -> None:
     for mesh in (few, lots):
         seconds.append(min(sum(unwrap(mesh).stage_seconds.values()) for _ in range(3)))
     assert seconds[1] <= 20 * 8 * seconds[0] + 0.05  # quadratic growth would be 400
+
+
+def fin(scale: float) -> meshes.Mesh:
+    """A thin sheet, back to back but for two long needles, so that its map folds and its signed UV area cancels."""
+    positions = np.array(
+        [
+            [-0.0466142, 0.161558, 0.00340303],
+            [-0.047423, 0.161301, 0.00356251],
+            [-0.0478141, 0.161547, 0.00395644],
+            [-0.047073, 0.161575, 0.00368388],
+            [-0.04721415, 0.1715525, 0.003679735],
+            [-0.04721415, 0.1515525, 0.003679735],
+        ]
+    )
+    triangles = [[0, 1, 2], [3, 1, 0], [2, 3, 0], [2, 1, 3], [0, 2, 4], [2, 0, 5]]
+    return meshes.make(positions * scale, triangles)
+
+
+@pytest.mark.parametrize("options", [{}, {"unfold": "spectral"}, {"repair": False}, {"method": "lscm"}], ids=str)
+@pytest.mark.parametrize("scale", [1e-6, 1e-3, 1.0])
+def test_a_scrap_takes_no_more_of_the_layout_than_of_the_surface(scale: float, options: dict) -> None:
+    """Whatever its map is like: folded parts have little signed area, and none is blown up for that."""
+    ball = meshes.bumpy_sphere(2)
+    mesh = meshes.merge([ball, fin(scale)])
+    result = unwrap(mesh, **options)
+    of_ball = np.arange(len(mesh.triangles)) < len(ball.triangles)
+    space = oracle.triangle_areas(mesh.positions, mesh.triangles)
+    plane = np.abs(oracle.signed_areas(result.corner_uv))
+    known = result.solved & ~of_ball
+    size = np.ptp(result.corner_uv[of_ball].reshape(-1, 2), axis=0).max()
+    assert size > 0.4, "the layout is the ball's, not the scrap's"
+    if not known.any():
+        return
+    density = plane[of_ball].sum() / space[of_ball].sum()
+    assert plane[known].sum() <= density * space[known].sum() * (1 + 1e-6)

@@ -181,7 +181,7 @@ def test_rules_that_choose_all_angles_leave_none_assigned() -> None:
 
 def test_what_does_not_belong_together_is_refused() -> None:
     mesh = meshes.cube(2)
-    with pytest.raises(lsgp.InputError, match="no vertex") as outside:
+    with pytest.raises(lsgp.InputError, match="outside the vertices") as outside:
         build_ledger(surface(mesh), [len(mesh.positions)])
     with pytest.raises(lsgp.InputError, match="8 cones but 1") as count:
         build_ledger(surface(mesh), mesh.cones, [1.0])

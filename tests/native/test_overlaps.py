@@ -254,6 +254,19 @@ def test_face_on_itself_cannot_be_split_and_is_reported() -> None:
     assert "could not be split" in only(result.warnings, "OVERLAPPING_TRIANGLES").message
 
 
+def test_specks_that_lie_on_the_rest_are_split_off() -> None:
+    """A fan that winds around its tip more than once: from the third ruling on its triangles are 1e-24 as large."""
+    lengths = np.array([1, 1, 1e-6] + 10 * [1e-12])
+    sine, step = 0.5, np.deg2rad(50)
+    turn = np.arccos((np.cos(step) - 1 + sine**2) / sine**2) * np.arange(len(lengths))
+    rulings = np.stack([sine * np.cos(turn), sine * np.sin(turn), np.full(len(turn), np.sqrt(1 - sine**2))], axis=1)
+    fan = [[0, i, i + 1] for i in range(1, len(lengths))]
+    given = lsgp.Surface(np.concatenate([np.zeros((1, 3)), rulings * lengths[:, None]]), np.array(fan))
+    assert len(lsgp.parameterize(given, []).overlapping)
+    result = lsgp.parameterize(given, [], options=SPLIT)
+    assert len(result.overlapping) == 0 and len(np.unique(result.island)) == 2
+
+
 def test_pinned_islands_are_not_split() -> None:
     mesh, plain = wound(50), unrolled(50)
     corners = np.array([0, len(mesh.triangles)])
@@ -277,6 +290,19 @@ def test_layouts_beside_themselves_are_not_split() -> None:
     surface = lsgp.Surface(mesh.positions, mesh.triangles)
     kept, split = lsgp.parameterize(surface, mesh.cones), lsgp.parameterize(surface, mesh.cones, options=SPLIT)
     assert np.array_equal(kept.corner_uv, split.corner_uv) and np.array_equal(kept.cut_edges, split.cut_edges)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_folds_of_different_parts_side_by_side_are_split_one_by_one(seed: int) -> None:
+    """A ragged strip whose triangles are so thin that its layout is folded all over."""
+    mesh = meshes.grid(20, 20)
+    ragged = mesh.positions / 20 * [1, 1e-6, 0]
+    ragged[:, 2] = np.random.default_rng(seed).normal(size=len(ragged)) * 0.1
+    surface = lsgp.Surface(ragged, mesh.triangles)
+    result = lsgp.parameterize(surface, [], options=SPLIT)
+    assert result.solved.all() and np.isfinite(result.corner_uv).all()
+    # What lies on itself still is beside a triangle that is flipped, where there is nothing to cut along.
+    assert len(result.overlapping) == 0 or len(result.flipped) > 0
 
 
 # --- cones of negative curvature ------------------------------------------------------------------------------------

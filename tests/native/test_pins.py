@@ -91,6 +91,8 @@ def test_pins_against_a_transition_are_refused_by_name() -> None:
         ([10**6], [[0.0, 0.0]], "PIN_INDEX"),
         ([-1], [[0.0, 0.0]], "PIN_INDEX"),
         ([3], [[np.nan, 0.0]], "PIN_NON_FINITE"),
+        ([3, 4], [[1.0, 0.0], [0.0, -1e300]], "PIN_NON_FINITE"),
+        ([3, 4], [[1e-300, 0.0], [0.0, 0.0]], "PINS_CONFLICT"),
         ([3, 9], [[0.0, 0.0]], "PIN_INDEX"),
     ],
 )

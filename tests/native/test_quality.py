@@ -151,14 +151,14 @@ def test_straightness_on_octa_flower_keeps_the_sum_and_nearly_the_best_stretch()
     finding = only(result.warnings, "JUNCTION_SHARE")
     assert finding.elements.indices.tolist() == junctions.tolist()
     share = float(re.search(r"(-?[\d.]+) pi", finding.message)[1]) / 4
-    assert 0 < abs(share) < 0.01  # of the whole curvature
+    assert 0 < abs(share) < 0.02  # of the whole curvature
     assert result.distortion.l2_stretch <= 1.01 * default_map("octa-flower").distortion.l2_stretch
 
 
-def test_straightness_on_fandisk_says_what_went_wrong_and_falls_back() -> None:
-    mesh = shared_mesh("fandisk")
+def test_straightness_on_bird_says_what_went_wrong_and_falls_back() -> None:
+    mesh = shared_mesh("bird")
     found = prescribe(mesh, prescription="straightness")
-    only(found.warnings, "STRAIGHTNESS_FAILED")
+    assert "crosses" in only(found.warnings, "STRAIGHTNESS_FAILED").message
     assert_curvature_adds_up(mesh, found.cones, found.cone_angles)
     assert found.cone_angles == pytest.approx(prescribe(mesh).cone_angles, abs=1e-9)
 

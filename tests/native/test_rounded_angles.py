@@ -199,6 +199,39 @@ def test_no_torus_with_automatic_angles_is_refused(lattice: str) -> None:
         assert not is_no_torus(tuple(turns.tolist()), SYMMETRY[lattice])
 
 
+# The four corners of a patch: two triangles meet at two of them, and one triangle is alone at each of the others.
+CORNERS = meshes.grid(4, 4)._replace(cones=np.array([0, 4, 20, 24], np.int32))
+ALONE = [4, 20]
+
+
+@pytest.mark.parametrize("lattice", ["square", "triangle", "hexagon"])
+def test_corners_of_a_single_triangle_keep_less_than_half_a_turn(lattice: str) -> None:
+    options = lsgp.Options(prescription="manual", seamless=lsgp.Seamless(lattice=lattice))
+    unwrapped = lsgp.parameterize(surface(CORNERS), CORNERS.cones, [1.0] * 4, options)
+    placed = lsgp.place_cones(surface(CORNERS), CORNERS.cones, [1.0] * 4, lattice=lattice)
+    for found in (unwrapped, placed):
+        angle = dict(zip(found.cones.tolist(), found.cone_angles.tolist(), strict=True))
+        assert [angle[v] < PI for v in ALONE] == [True, True]
+        turns = (PI - np.array(list(angle.values()))) * SYMMETRY[lattice] / TURN
+        assert turns == pytest.approx(np.round(turns), abs=1e-9)
+    assert len(unwrapped.flipped) == 0
+
+
+@pytest.mark.parametrize("lattice", ["stripe", "translation"])
+def test_corners_of_a_single_triangle_without_an_angle_are_refused_and_named(lattice: str) -> None:
+    options = lsgp.Options(prescription="manual", seamless=lsgp.Seamless(lattice=lattice))
+    for verb in (
+        lambda: lsgp.parameterize(surface(CORNERS), CORNERS.cones, [1.0] * 4, options),
+        lambda: lsgp.prescribe_curvature(surface(CORNERS), CORNERS.cones, [1.0] * 4, options),
+        lambda: lsgp.place_cones(surface(CORNERS), CORNERS.cones, [1.0] * 4, lattice=lattice),
+    ):
+        with pytest.raises(lsgp.CurvatureError) as caught:
+            verb()
+        assert caught.value.code == "SEAMLESS_IMPOSSIBLE"
+        assert caught.value.message.startswith("The triangles around 2 cones")
+        assert caught.value.elements.indices.tolist() == ALONE
+
+
 @pytest.mark.parametrize("lattice", ["square", "stripe", "translation", "triangle", "hexagon"])
 def test_a_flat_patch_stays_flat(lattice: str) -> None:
     mesh = meshes.grid(6, 6)._replace(cones=np.array([16, 30], np.int32))

@@ -8,7 +8,9 @@ import meshes
 import numpy as np
 import oracle
 import pytest
-from map_checks import assert_exact_transitions, codes, only, pairs, surface, unwrap
+from map_checks import assert_angles_met, assert_exact_transitions, codes, only, pairs, surface, unwrap
+from result_check import undeclared_faults
+from segmentations import glue
 
 CUBE = meshes.cube(4)
 
@@ -118,3 +120,180 @@ def test_moebius_strip_cut_across_is_a_strip() -> None:
     assert len(across) == 3
     result = unwrap(mesh, seams=across, seams_mode="boundary")
     assert result.solved.all() and result.flipped.size == 0
+
+
+@pytest.mark.parametrize("mode", ["follow", "boundary"])
+def test_moebius_strip_with_seams_across_is_opened_in_both_modes(mode: str) -> None:
+    mesh = meshes.moebius_strip()
+    across = [(0, 1), (1, 2), (2, 3)]
+    result = unwrap(mesh, seams=across, seams_mode=mode)
+    assert result.solved.all() and result.flipped.size == 0
+    if mode == "follow":
+        assert only(result.warnings, "SEAMS_OPENED").elements.indices.tolist() == list(range(len(mesh.triangles)))
+
+
+def capped_cylinder(around: int = 16, along: int = 6) -> tuple[meshes.Mesh, np.ndarray, np.ndarray]:
+    """A closed cylinder, the edges of its two rims, and those of one straight line from rim to rim."""
+    tube = meshes.cylinder(around, along, taper=0)
+    positions, triangles, rims = [tube.positions], [tube.triangles], []
+    for loop in oracle.boundary_loops(tube.triangles):
+        after, centre = np.roll(loop, -1), sum(map(len, positions))
+        positions.append(tube.positions[loop].mean(axis=0)[None])
+        triangles.append(np.stack([after, loop, np.full(len(loop), centre)], axis=1))
+        rims.append(np.stack([loop, after], axis=1))
+    mesh = meshes.make(np.concatenate(positions), np.concatenate(triangles))
+    edges = meshes.edges_of(tube.triangles)
+    on_line = (np.abs(tube.positions[:, 1]) < 1e-9) & (tube.positions[:, 0] > 0)
+    return mesh, np.concatenate(rims), edges[on_line[edges].all(axis=1)]
+
+
+@pytest.mark.parametrize("mode", ["follow", "boundary"])
+def test_closed_cylinder_with_rims_and_a_line_is_a_rectangle_and_two_disks(mode: str) -> None:
+    mesh, rims, line = capped_cylinder()
+    seams = np.concatenate([rims, line])
+    result = unwrap(mesh, seams=seams, seams_mode=mode)
+    assert pairs(glue(mesh.triangles).opened(result.corner_uv)) == pairs(seams)
+    caps_and_side = sorted(np.unique(result.island, return_counts=True)[1].tolist())
+    assert caps_and_side == [16, 16, 192]
+    assert result.distortion.l2_stretch <= 1.001
+    tail, head, _ = oracle.halfedges(mesh.triangles)
+    is_seam = [tuple(sorted(edge)) in pairs(seams) for edge in zip(tail.tolist(), head.tolist(), strict=True)]
+    on_side = np.repeat(np.bincount(result.island)[result.island] == 192, 3)
+    z = oracle.as_complex(result.corner_uv)
+    border = (z[:, [1, 2, 0]] - z).ravel()[on_side & is_seam]
+    quarters = np.angle(border / border[0]) / (np.pi / 2)
+    assert np.abs(quarters - np.round(quarters)).max() * 90 <= 0.5
+    assert len(border) == 2 * (16 + 6)
+
+
+@pytest.mark.parametrize("mode", ["follow", "boundary"])
+def test_closed_cylinder_with_rims_alone_is_a_ring_and_two_disks(mode: str) -> None:
+    mesh, rims, _ = capped_cylinder()
+    result = unwrap(mesh, seams=rims, seams_mode=mode)
+    assert pairs(glue(mesh.triangles).opened(result.corner_uv)) == pairs(rims) and islands_of(result) == 3
+    assert "CUTS_ADDED" not in codes(result.warnings)
+    assert undeclared_faults(surface(mesh, seams=rims), result, lsgp.Options(seams=mode)) == []
+    assert result.flipped.size == 0
+
+
+@pytest.mark.parametrize("mode", ["follow", "boundary"])
+def test_seam_that_ends_inside_a_part_is_opened(mode: str) -> None:
+    """Without cones it is a slit; with cones its sides are related by no turn and no shift, and it is listed."""
+    mesh = meshes.hill(10)
+    slit = [(36, 47), (47, 58), (58, 69)]
+    assert set(slit) <= pairs(meshes.edges_of(mesh.triangles))
+    without = mesh._replace(cones=np.empty(0, np.int32))
+    result = unwrap(without, seams=slit, seams_mode=mode)
+    assert pairs(glue(mesh.triangles).opened(result.corner_uv)) == pairs(slit)
+    assert "CUTS_ADDED" not in codes(result.warnings) and result.flipped.size == 0
+    if mode == "follow":
+        result = unwrap(mesh, seams=slit)
+        assert pairs(slit) <= pairs(result.cut_edges)
+        assert_angles_met(mesh, result)
+        added = only(result.warnings, "CUTS_ADDED")
+        assert pairs(added.elements.indices) == pairs(result.cut_edges) - pairs(slit)
+
+
+def test_open_parts_keep_their_texture_across_seams_with_cones_only() -> None:
+    mesh = meshes.hill(10)
+    across = [(11 * i + 5, 11 * i + 16) for i in range(10)]
+    marked = surface(mesh, seams=across)
+    with_cone = lsgp.parameterize(marked, mesh.cones)
+    assert "SEAMS_OPENED" not in codes(with_cone.warnings)
+    assert with_cone.seams.sister_ratio_max <= 1 + 1e-9 and pairs(across) <= pairs(with_cone.cut_edges)
+    without = lsgp.parameterize(marked, [])
+    assert only(without.warnings, "SEAMS_OPENED").elements.indices.tolist() == list(range(len(mesh.triangles)))
+    alone = lsgp.parameterize(marked, [], options=lsgp.Options(seams="boundary"))
+    assert np.array_equal(without.corner_uv, alone.corner_uv)
+
+
+def test_straight_borders_and_tiles_run_on_across_seams_of_open_parts() -> None:
+    mesh = meshes.cylinder(16, 6)
+    seam = [(int(a), int(b)) for a, b in meshes.edges_of(mesh.triangles) if b == a + 16][:6]
+    for options in ({"border": "straight"}, {"seamless": lsgp.Seamless()}):
+        result = lsgp.parameterize(surface(mesh, seams=seam), [], options=lsgp.Options(**options))
+        assert "SEAMS_OPENED" not in codes(result.warnings) and result.solved.all()
+
+
+@pytest.mark.parametrize("mode", ["follow", "boundary"])
+def test_torus_parted_into_rings_is_opened_and_one_parted_into_disks_stays_flat(mode: str) -> None:
+    mesh = meshes.torus(18, 10)
+    x, y, _ = mesh.positions.T
+    edges = meshes.edges_of(mesh.triangles)
+    around = [edges[on[edges].all(axis=1)] for on in (np.abs(y) < 1e-9, (np.abs(y) < 1e-9) & (x > 0))]
+    rings, ring = around
+    assert (len(rings), len(ring)) == (20, 10)
+    result = unwrap(mesh, seams=rings, seams_mode=mode)
+    assert islands_of(result) == 2 and result.flipped.size == 0
+    if mode == "boundary":
+        return
+    assert "SEAMS_OPENED" in codes(result.warnings)
+    result = unwrap(mesh, seams=ring)
+    assert "SEAMS_OPENED" not in codes(result.warnings)
+    assert pairs(only(result.warnings, "CUTS_ADDED").elements.indices) == pairs(result.cut_edges) - pairs(ring)
+
+
+def test_seams_that_leave_handles_say_which_cuts_open_them() -> None:
+    mesh = meshes.subdivide(meshes.double_torus())
+    seam = [tuple(meshes.edges_of(mesh.triangles)[0].tolist())]
+    result = unwrap(mesh, seams=seam, seams_mode="boundary")
+    added = only(result.warnings, "CUTS_ADDED")
+    assert "handles" in added.message and pairs(added.elements.indices) == pairs(result.cut_edges)
+    assert "CUTS_ADDED" not in codes(unwrap(meshes.torus()).warnings)  # where nothing is marked
+
+
+@pytest.mark.parametrize("mode", ["follow", "boundary", "ignore"])
+def test_holes_of_open_surfaces_without_cones_stay_holes(mode: str) -> None:
+    """About these the metric turns by far less or more than once."""
+    lift = meshes.hill(20, height=6)
+    middle = np.linalg.norm(lift.positions[lift.triangles].mean(axis=1)[:, :2] - [10, 10], axis=1)
+    mesh = meshes.compact(meshes.make(lift.positions, lift.triangles[middle > 7]))
+    assert len(oracle.boundary_loops(mesh.triangles)) == 2
+    result = unwrap(mesh, seams_mode=mode)
+    assert result.cut_edges.size == 0 and result.flipped.size == 0 and result.wrong_angle_sums.size == 0
+
+
+@pytest.mark.parametrize("height", [6, 8])
+def test_the_metric_comes_back_around_a_hole_to_where_it_began(height: float) -> None:
+    """Read from the log scale alone: edges as long as it makes them, turning by the curvature it leaves, close."""
+    lift = meshes.hill(20, height)
+    middle = lift.positions[lift.triangles].mean(axis=1)[:, :2]
+    mesh = meshes.compact(meshes.make(lift.positions, lift.triangles[np.linalg.norm(middle - [7, 11], axis=1) > 3.5]))
+    result = unwrap(mesh, seams_mode="boundary")
+    p, t, y = mesh.positions, mesh.triangles, result.log_scale
+    tail, head, twin = oracle.halfedges(t)
+    onward = dict(zip(tail[twin < 0].tolist(), head[twin < 0].tolist(), strict=True))
+    hole = [int(oracle.boundary_loops(t)[1][0])]
+    while (vertex := onward[hole[-1]]) != hole[0]:
+        hole.append(vertex)
+    after = np.roll(hole, -1)
+    turns = (oracle.angle_defects(p, t) + oracle.cotan_laplacian(p, t) @ y)[hole]
+    assert turns.sum() == pytest.approx(-2 * np.pi, abs=1e-9)
+    edges = np.linalg.norm(p[after] - p[hole], axis=1) * np.exp((y[hole] + y[after]) / 2)
+    gap = (edges * np.exp(1j * np.cumsum(turns))).sum() / edges.sum()
+    assert abs(gap) <= 1e-9
+    assert result.cut_edges.size == 0 and result.flipped.size == 0
+    assert result.distortion.quasi_conformal <= 1.025
+
+
+def test_tube_without_seams_is_a_strip_and_a_ring_where_seams_are_borders() -> None:
+    mesh = meshes.cylinder(16, 6)
+    assert unwrap(mesh).cut_edges.size > 0 and unwrap(mesh).distortion.l2_stretch <= 1.05
+    ring = unwrap(mesh, seams_mode="boundary")
+    assert ring.cut_edges.size == 0 and ring.flipped.size == 0 and ring.distortion.l2_stretch > 1.5
+
+
+def test_ring_too_long_for_numbers_is_cut_and_says_so() -> None:
+    mesh, rims, _ = capped_cylinder(8, 60)
+    mesh = mesh._replace(positions=mesh.positions * [1, 1, 8])  # 2.8 times as long as around
+    result = unwrap(mesh, seams=rims, seams_mode="boundary")
+    added = only(result.warnings, "CUTS_ADDED")
+    assert "stretched too much" in added.message
+    assert pairs(added.elements.indices) == pairs(result.cut_edges)
+    assert result.flipped.size == 0 and result.distortion.l2_stretch <= 1.01
+
+
+def test_holes_that_stay_holes_need_no_edges_for_cuts() -> None:
+    mesh, rims, _ = capped_cylinder()
+    result = lsgp.parameterize(lsgp.Surface(mesh.positions, mesh.triangles, rims, rims), [])
+    assert result.solved.all() and islands_of(result) == 3

@@ -1,10 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One factorization for the whole map, kept from call to call; the dense problems on the cut beside the sparse ones."""
 
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import threading
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+
 import lsgp
 import meshes
 import numpy as np
 import pytest
+from map_checks import digest
 
 RAW = lsgp.Options(repair=False)
 SHAPES = [meshes.cube, meshes.bumpy_sphere, meshes.saddle, meshes.cylinder, meshes.torus]
@@ -141,3 +150,137 @@ def test_refused_call_leaves_the_solver_usable() -> None:
     with pytest.raises(lsgp.Cancelled):
         solver.parameterize(mesh.cones, options=RAW, progress=lambda done: False)
     assert_same(solver.parameterize(mesh.cones, options=RAW), first)
+
+
+def two_seamed_cubes() -> lsgp.Surface:
+    mesh = meshes.merge([meshes.cube(2), meshes.cube(2)])
+    return lsgp.Surface(mesh.positions, mesh.triangles, seams=meshes.edges_of(mesh.triangles))
+
+
+def test_cones_that_move_to_another_part_open_and_close_both() -> None:
+    surface = two_seamed_cubes()
+    solver = lsgp.Solver(surface)
+    half = len(surface.positions) // 2
+    cones = meshes.cube(2).cones
+    for given in (cones, cones + half, cones, [], np.concatenate([cones, cones + half])):
+        assert_same(solver.parameterize(given), lsgp.parameterize(surface, given))
+
+
+def test_changed_angles_take_no_factorization_where_another_part_is_open_along_its_seams() -> None:
+    surface, cones = two_seamed_cubes(), meshes.cube(2).cones
+    solver = lsgp.Solver(surface)
+    assert solver.parameterize(cones).factorizations > 0
+    angles = [1.4 * np.pi] + [None] * (len(cones) - 1)
+    again = solver.parameterize(cones, angles)
+    assert again.factorizations == 0
+    assert_same(again, lsgp.parameterize(surface, cones, angles))
+
+
+def outcome(call: object, *args: object) -> object:
+    """What a result holds but for the time and the linear algebra it took, or what it was refused for."""
+    try:
+        result = call(*args)
+    except lsgp.LsgpError as error:
+        return error.code, str(error), error.elements.indices.tolist()
+    return digest(dataclasses.replace(result, factorizations=0, back_substitutions=0))
+
+
+def stops_after(calls: int) -> Callable[[float], bool]:
+    left = iter(range(calls))
+    return lambda done: next(left, None) is not None
+
+
+CHANGES: dict[str, list[object]] = {
+    "prescription": [None, "harmonic", "straightness"],
+    "unfold": ["poisson", "spectral"],
+    "method": ["lsgp", "lscm"],
+    "seams": ["follow", "boundary", "ignore"],
+    "border": ["free", "straight"],
+    "seamless": [None, lsgp.Seamless(tiles=8), lsgp.Seamless(tiles=6, lattice="stripe", coarse_grid="merge")],
+    "mode": ["conformal", "low-stretch"],
+    "stretch": [1.0, 0.5],
+    "repair": [True, False],
+    "overlaps": ["keep", "split"],
+    "factorization": ["automatic", "cut", "sparse"],
+    "loop_turning": [{}, {0: 2 * np.pi}],
+}
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_any_sequence_of_calls_is_that_of_fresh_starts(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    mesh = meshes.merge([meshes.cube(2), meshes.grid(4, 4), meshes.torus(8, 6), meshes.bumpy_sphere(1)])
+    edges = meshes.edges_of(mesh.triangles)
+    weights = rng.random(len(mesh.positions)) if seed % 2 else None
+    surface = lsgp.Surface(
+        mesh.positions, mesh.triangles, seams=rng.choice(edges, len(edges) // 6, replace=False), importance=weights
+    )
+    solver = lsgp.Solver(surface)
+    options, cones, angles, pins = lsgp.Options(), mesh.cones, None, None
+    solved = 0
+    for _ in range(60):
+        # One thing is changed at a time, or all are changed back.
+        what = rng.choice([*CHANGES, "cones", "cones", "angles", "pins", "cancel", *["all"] * 3])
+        if what == "cones":
+            some = rng.choice(len(mesh.positions), rng.integers(0, 12), replace=False)
+            cones, angles = (
+                [mesh.cones, mesh.cones[:8], mesh.cones[::-1], some, [*mesh.cones, 10**6]][rng.integers(5)],
+                None,
+            )
+        elif what == "angles":
+            angles = [None if rng.random() < 0.7 else float(rng.uniform(4, 8)) for _ in cones]
+        elif what == "pins":
+            corners = rng.choice(3 * len(mesh.triangles), rng.integers(1, 4), replace=False)
+            pins = None if pins is not None else lsgp.Pins(corners, rng.random((len(corners), 2)))
+        elif what == "cancel":
+            with contextlib.suppress(lsgp.LsgpError):
+                solver.parameterize(cones, angles, options, pins, stops_after(int(rng.integers(1, 30))))
+        elif what in CHANGES:
+            choices = CHANGES[what]
+            options = dataclasses.replace(options, **{what: choices[rng.integers(len(choices))]})
+        elif what == "all":
+            options, cones, angles, pins = lsgp.Options(), mesh.cones, None, None
+        call = (cones, angles, options, pins)
+        found = outcome(solver.parameterize, *call)
+        assert found == outcome(lsgp.parameterize, surface, *call), (what, options)
+        solved += isinstance(found, str)
+    assert solved > 10
+
+
+def test_call_from_its_own_progress_is_refused_and_leaves_the_outer_one_as_it_is() -> None:
+    mesh = meshes.bumpy_sphere()
+    solver = lsgp.Solver(surface_of(mesh))
+    refusals = []
+
+    def call_again(done: float) -> None:
+        with pytest.raises(lsgp.SolverError) as refused:
+            solver.parameterize(mesh.cones[1:])
+        refusals.append(refused.value.code)
+
+    result = solver.parameterize(mesh.cones, progress=call_again)
+    assert refusals and set(refusals) == {"SOLVER_BUSY"}
+    assert_same(result, lsgp.parameterize(surface_of(mesh), mesh.cones))
+    assert_same(solver.parameterize(mesh.cones), result)
+
+
+def test_threads_that_share_a_solver_take_turns_or_are_refused() -> None:
+    mesh = meshes.bumpy_sphere()
+    solver = lsgp.Solver(surface_of(mesh))
+    fresh = [lsgp.parameterize(surface_of(mesh), cones, options=RAW) for cones in (mesh.cones, mesh.cones[1:])]
+    # The first waits in its progress until the second has been refused.
+    is_under_way, was_refused = threading.Event(), threading.Event()
+
+    def wait(done: float) -> None:
+        is_under_way.set()
+        assert was_refused.wait(60)
+
+    with ThreadPoolExecutor(2) as threads:
+        first = threads.submit(solver.parameterize, mesh.cones, None, RAW, None, wait)
+        assert is_under_way.wait(60)
+        second = threads.submit(solver.parameterize, mesh.cones[1:], None, RAW)
+        with pytest.raises(lsgp.SolverError, match="another call") as refused:
+            second.result(60)
+        was_refused.set()
+        assert refused.value.code == "SOLVER_BUSY"
+        assert_same(first.result(60), fresh[0])
+    assert_same(solver.parameterize(mesh.cones[1:], options=RAW), fresh[1])

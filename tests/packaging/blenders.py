@@ -21,7 +21,7 @@ def leave_out(reason: str) -> NoReturn:
 
 @dataclass(frozen=True)
 class RealBlender:
-    """A Blender executable: arguments of tools/test_in_blender.py that name it, and whether its window is tried."""
+    """A Blender executable: arguments of `test_in_blender.py` that name it, and whether its window is tried."""
 
     name: str
     arguments: tuple[str, ...]

@@ -56,7 +56,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory, bpy_python: str) -> Path:
 def staged(wheel: Path, bpy_python: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The staged folder; its zip lies beside it. Blender's validator has accepted the zip."""
     out = tmp_path_factory.mktemp("extension")
-    tool = ROOT / "tools" / "stage_extension.py"
+    tool = ROOT / "tools" / "packaging" / "stage_extension.py"
     command = [bpy_python, str(tool), "--wheel", str(wheel), "--out", str(out)]
     done = subprocess.run(command, check=True, capture_output=True, text=True)
     assert "not validated" not in done.stderr

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The built extension: what is in the zip, and how it behaves without its library."""
 
-import ast
+import re
 import shutil
 import subprocess
 import sys
@@ -13,7 +13,13 @@ import pytest
 import stage_extension
 
 ROOT = Path(__file__).resolve().parents[2]
-STAGE = ROOT / "tools" / "stage_extension.py"
+STAGE = ROOT / "tools" / "packaging" / "stage_extension.py"
+
+
+def test_the_page_on_installing_has_a_row_for_every_zip():
+    page = (ROOT / "docs" / "how-to" / "installing.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| .+ \| `cone_unwrap-…-(.+)\.zip` \|$", page, re.MULTILINE)
+    assert rows == [blenders.name for blenders in stage_extension.OFFICIAL.values()]
 
 
 @pytest.fixture
@@ -149,34 +155,6 @@ def test_a_file_that_is_no_wheel_is_refused_by_name(tmp_path):
     assert f"{wrong} is not a wheel" in done.stderr
 
 
-def test_only_the_addon_imports_bpy_and_the_library_only_through_one_module():
-    for path in (ROOT / "native" / "lsgp").rglob("*.py"):
-        assert not imported_packages(path) & {"bpy", "bmesh"}, path
-    for path in (ROOT / "addon").rglob("*.py"):
-        if path.name != "native.py":
-            assert "lsgp" not in imported_packages(path), path
-
-
-def imported_packages(path: Path) -> set[str]:
-    """Top-level packages a file imports when it runs; imports for type checkers only do not count."""
-    found = set()
-
-    class Imports(ast.NodeVisitor):
-        def visit_If(self, node):
-            if not (isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"):
-                self.generic_visit(node)
-
-        def visit_Import(self, node):
-            found.update(alias.name.split(".")[0] for alias in node.names)
-
-        def visit_ImportFrom(self, node):
-            if node.level == 0:
-                found.add(node.module.split(".")[0])
-
-    Imports().visit(ast.parse(path.read_text(encoding="utf-8")))
-    return found
-
-
 REGISTER = """
 import os, sys
 sys.path[:0] = sys.argv[1:]
@@ -184,7 +162,7 @@ import bpy
 bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
 import cone_unwrap
 cone_unwrap.register()
-from cone_unwrap.preferences import library_state
+from cone_unwrap.core.native import library_state
 print("STATE", library_state())
 bpy.ops.mesh.primitive_cube_add()
 for call in (bpy.ops.uv.cone_unwrap, bpy.ops.mesh.cone_place):

@@ -13,7 +13,7 @@ from pathlib import Path
 from blenders import leave_out, real_blenders
 
 ROOT = Path(__file__).resolve().parents[2]
-TOOL = ROOT / "tools" / "test_in_blender.py"
+TOOL = ROOT / "tools" / "packaging" / "test_in_blender.py"
 
 
 def run_tool(*arguments: str) -> str:

@@ -289,7 +289,7 @@ lsgp::Surface make_cube_sphere(int n, std::vector<Index>& corners) {
     if (is_new) points.push_back(Eigen::Vector3d(at[0], at[1], at[2]) * 2 / n - Eigen::Vector3d::Ones());
     return place->second;
   };
-  for (int axis = 0; axis < 3; ++axis) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
     for (const bool top : {false, true}) {
       for (int i = 0; i < n * n; ++i) {
         Index corner[4];

@@ -183,6 +183,8 @@ NATIVE = {
     "triangles": MESH.triangles,
     "edges": None,
     "seams": SEAMS,
+    "importance": np.empty(0),
+    "cut_costs": np.empty(0),
     "cones": MESH.cones,
     "angles": np.zeros(6),
     "has_angle": np.zeros(6, bool),
@@ -207,13 +209,30 @@ ODD = {
 }
 
 
+def _parameterize(arguments: dict[str, object]) -> dict[str, object]:
+    """The native verb; it takes the arrays of the surface together, and those of the cones."""
+    surface_arrays = tuple(
+        arguments[name] for name in ("positions", "triangles", "edges", "seams", "importance", "cut_costs")
+    )
+    return _lsgp.parameterize(
+        surface=surface_arrays,
+        cones=tuple(arguments[name] for name in ("cones", "angles", "has_angle")),
+        **{name: arguments[name] for name in ("options", "pinned_corners", "pinned_uv")},
+        progress=None,
+    )
+
+
+def test_the_native_layer_takes_what_the_python_layer_passes() -> None:
+    assert _parameterize(NATIVE)["corner_uv"].shape == (len(MESH.triangles), 3, 2)
+
+
 @pytest.mark.parametrize("odd", ODD)
 @pytest.mark.parametrize("argument", NATIVE)
 def test_the_native_layer_refuses_what_the_python_layer_would_not_pass(argument: str, odd: str) -> None:
     """Nothing but a Python exception or a result may come of it, whatever the caller gets wrong."""
     arguments = NATIVE | {argument: ODD[odd]}
     try:
-        found = _lsgp.parameterize(**arguments)["corner_uv"]
+        found = _parameterize(arguments)["corner_uv"]
     except (TypeError, ValueError, KeyError, RuntimeError, lsgp.LsgpError):
         return
     assert found.shape == (len(arguments["triangles"]), 3, 2) and np.isfinite(found).all()

@@ -17,8 +17,8 @@ from typing import Any
 import lsgp
 import numpy as np
 import pytest
-from lsgp import polygons
-from lsgp.mesh_files import read_mesh
+from lsgp.io import polygons
+from lsgp.io.mesh_files import read_mesh
 from result_check import undeclared_faults
 from shared_meshes import shared_folder
 
@@ -160,7 +160,7 @@ def test_through_the_command_line(tmp_path: Path, name: str) -> None:
     (tmp_path / "cones.json").write_text(json.dumps({"cones": case["cones"], "cone_angles": case["cone_angles"]}))
     (tmp_path / "seams.json").write_text(json.dumps(case["seams"]))
     command = [sys.executable, "-m", "lsgp", "unwrap", "in.obj", "-o", "out.obj", "--report", "report.json"]
-    command += ["--cones", "cones.json", "--seam-edges", "seams.json"]
+    command += ["--cones", "cones.json", "--seam-edges", "seams.json", "--cuts", "shortest"]
     if "resolution" in case["params"]:
         command += ["--seamless", "--tiles", str(case["params"]["resolution"])]
     if "weight" in case["params"]:
@@ -182,6 +182,9 @@ def test_through_the_command_line(tmp_path: Path, name: str) -> None:
         assert isinstance(expected, lsgp.LsgpError), "the API has a result"
         assert report["code"] == expected.code
         assert not (tmp_path / "out.obj").exists()
+        return
+    if isinstance(expected, lsgp.LsgpError) and expected.code == "BAD_FACE":  # files are taken without such faces
+        assert {"FACES_LEFT_OUT", "REPEATED_CORNERS"} & {warning["code"] for warning in report["warnings"]}
         return
     assert isinstance(expected, lsgp.Result), "the API refuses this"
     assert [warning["code"] for warning in report["warnings"]] == [finding.code for finding in expected.warnings]

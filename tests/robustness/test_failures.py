@@ -33,6 +33,8 @@ def size(key):
 
 mesh = meshes.bumpy_sphere(7 if sys.argv[1] == "fine" else 5)
 surface = lsgp.Surface(mesh.positions, mesh.triangles)
+many = np.arange(0, len(mesh.positions), 20)
+plate = meshes.plate(25)
 overlapping, flipped = np.array([[1, 1, 1, 5, 4, 4], [3, 4, 1, 2, 1, 5]]) * np.pi / 2
 calls = {
     "poisson": lambda: lsgp.parameterize(surface, mesh.cones),
@@ -42,7 +44,12 @@ calls = {
     "low stretch": lambda: lsgp.parameterize(surface, mesh.cones, None, lsgp.Options(mode="low-stretch")),
     "repair": lambda: lsgp.parameterize(surface, mesh.cones, flipped),
     "split": lambda: lsgp.parameterize(surface, mesh.cones, overlapping, lsgp.Options(overlaps="split")),
+    "seamless": lambda: lsgp.parameterize(surface, mesh.cones, None, lsgp.Options(seamless=lsgp.Seamless())),
+    "many cones": lambda: lsgp.parameterize(surface, many),
     "place": lambda: lsgp.place_cones(surface),
+    "place many": lambda: lsgp.place_cones(surface, count=1500),
+    "gains": lambda: lsgp.cone_gains(surface, many),
+    "holes": lambda: lsgp.parameterize(lsgp.Surface(plate.positions, plate.triangles), []),
     "measure": lambda: lsgp.measure_distortion(surface, mesh.positions[mesh.triangles][..., :2]),
     "command": lambda: main(sys.argv[3:]),
     "again": lambda: [new_pages() for _ in range(5)],
@@ -224,7 +231,22 @@ def test_parts_far_from_each_other_are_no_far_vertices(distance: float) -> None:
 class TestMemory:
     @pytest.mark.parametrize("percent", [10, 25, 40, 50, 60, 75, 90])
     @pytest.mark.parametrize(
-        "call", ["poisson", "spectral", "straightness", "low stretch", "repair", "split", "place", "measure"]
+        "call",
+        [
+            "poisson",
+            "spectral",
+            "straightness",
+            "low stretch",
+            "repair",
+            "split",
+            "seamless",
+            "many cones",
+            "place",
+            "place many",
+            "gains",
+            "holes",
+            "measure",
+        ],
     )
     def test_too_little_of_it_is_an_error_and_no_crash(self, call: str, percent: int) -> None:
         found = run_child(call, peak(call) * percent // 100)

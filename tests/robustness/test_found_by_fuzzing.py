@@ -11,7 +11,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
-from lsgp.mesh_obj import read_obj
+from lsgp.io.mesh_obj import read_obj
 from map_checks import codes, surface
 from meshes import Mesh
 from result_check import undeclared_faults
@@ -104,6 +104,14 @@ def test_cones_on_a_border_beside_each_other(border: str) -> None:
     strip = meshes.grid(4, 1, lambda x, y: np.sin(x + y))
     result = honest(strip._replace(cones=np.arange(4, dtype=np.int32)), border=border)
     assert border == "free" or "HIGH_DISTORTION" in codes(result.warnings)
+
+
+@pytest.mark.parametrize("parity", [False, True])
+def test_a_seamless_layout_without_a_cut(parity: bool) -> None:
+    """Nothing to round: sanitizers saw the diagonal taken of a matrix without elements."""
+    options = {"seamless": lsgp.Seamless(parity=parity)}
+    result = honest(meshes.grid(1, 1), **options)
+    assert len(result.cut_edges) == 0 and result.seamless.error == 0
 
 
 @pytest.mark.parametrize("vertex", [-1, 12, 2**31 - 1])

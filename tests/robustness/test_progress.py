@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -161,3 +162,44 @@ def test_a_run_may_be_started_from_progress() -> None:
 def test_progress_that_cannot_be_called_is_a_type_error(progress: object) -> None:
     with pytest.raises(TypeError):
         RUNS["torus"](progress)
+
+
+# Work of about a second each, and how often its caller is to be let in at least.
+FINE = meshes.bumpy_sphere(5)
+CUBE_OF_MANY = meshes.subdivide(meshes.subdivide(CUBE))
+OVERLAPPING = [n * PI / 2 for n in HARD]
+LONG = {
+    "place": (10, lambda told: lsgp.place_cones(surface(FINE), count=30, progress=told)),
+    "place many": (20, lambda told: lsgp.place_cones(surface(FINE), count=800, progress=told)),
+    "gains": (3, lambda told: lsgp.cone_gains(surface(FINE), np.arange(0, 10000, 25), progress=told)),
+    "many cones": (20, lambda told: Run(FINE._replace(cones=np.arange(0, 10000, 12)))(told)),
+    "many seamless cones": (
+        40,
+        lambda told: Run(FINE._replace(cones=np.arange(0, 10000, 30)), None, lsgp.Options(seamless=lsgp.Seamless()))(
+            told
+        ),
+    ),
+    "many holes": (8, lambda told: Run(meshes.plate(40)._replace(cones=[]))(told)),
+    "low stretch": (20, lambda told: Run(FINE, None, lsgp.Options(mode="low-stretch"))(told)),
+    "spectral": (5, lambda told: Run(FINE, None, lsgp.Options(unfold="spectral"))(told)),
+    "split": (10, lambda told: Run(CUBE_OF_MANY, OVERLAPPING, lsgp.Options(overlaps="split"))(told)),
+}
+
+
+@pytest.mark.parametrize("name", LONG)
+def test_long_work_is_told_of_often_and_stops_at_once(name: str) -> None:
+    least, run = LONG[name]
+    told: list[float] = []
+    run(lambda done: told.append(done) or True)
+    assert len(told) >= least
+    for stop in (len(told) // 3, 2 * len(told) // 3):
+        begin: list[float] = []
+
+        def progress(_done: float, stop: int = stop, begin: list[float] = begin) -> bool:
+            begin.append(time.monotonic())
+            return len(begin) <= stop
+
+        with pytest.raises(lsgp.Cancelled):
+            run(progress)
+        assert len(begin) == stop + 1, "asked again after the answer"
+        assert time.monotonic() - begin[-1] < 2  # a watchdog: it is to be over at once

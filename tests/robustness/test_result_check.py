@@ -113,6 +113,17 @@ def test_overlaps_withheld_are_noticed() -> None:
         assert undeclared_faults(cube, replace(whole, overlapping=listed, warnings=[*others, finding])) != []
 
 
+def test_overlaps_too_thin_to_be_sure_of_may_count() -> None:
+    """Far from the origin rounding moves sides by a part of a triangle's width."""
+    cube = surface(HARD_CUBE)
+    far = lsgp.Pins(np.array([0], np.int32), np.array([[1e9, 0.0]]))
+    result = lsgp.parameterize(cube, LYING_ON_ITSELF.cones, LYING_ON_ITSELF.cone_angles, pins=far)
+    assert len(result.overlapping) and undeclared_faults(cube, result) == []
+    for share in (0.9, 1.1):
+        other = replace(result, overlap_area=share * result.overlap_area)
+        assert any("area of overlaps" in fault for fault in undeclared_faults(cube, other))
+
+
 def test_islands_on_each_other_are_noticed() -> None:
     both = meshes.merge([MESH, MESH])
     result = unwrap(both)

@@ -52,6 +52,7 @@ enum class Code {
   solver_failed,
   grid_too_coarse,
   out_of_memory,
+  solver_busy,
   // Cancelled
   cancelled,
   // warnings
@@ -63,6 +64,7 @@ enum class Code {
   split_vertex,
   reoriented,
   seams_opened,
+  cuts_added,
   cone_on_boundary,
   junction_share,
   straightness_failed,
@@ -74,6 +76,7 @@ enum class Code {
   wrong_angle_sums,
   flat_cones,
   grid_refined,
+  grid_distorts,
   cones_merged,
   cones_not_snapped,
   angles_adjusted,

@@ -5,8 +5,10 @@
 // All verbs throw Error and leave their arguments untouched; all are deterministic and safe to call from any thread.
 #pragma once
 
+#include "lsgp/cut_costs.hpp"
 #include "lsgp/errors.hpp"
 #include "lsgp/export.hpp"
+#include "lsgp/ledger.hpp"
 #include "lsgp/options.hpp"
 #include "lsgp/placement.hpp"
 #include "lsgp/progress.hpp"
@@ -24,16 +26,29 @@ namespace lsgp {
 LSGP_API Result parameterize(const Surface& surface, const Cones& cones, const Options& options = {},
                              const Pins& pins = {}, const Progress& progress = {});
 
-// The cuts alone (section 4.1): shortest paths that join cones and boundary loops and open every handle.  A map needs
-// fewer where the metric turns exactly once about a hole, which only its prescription tells.
-LSGP_API CutPaths find_cuts(const Surface& surface, const std::vector<Index>& cones, const Options& options = {});
+// The cuts alone (section 4.1): paths that join cones and boundary loops and open every handle, as short as a local
+// search finds them, or as cheap where the surface has costs of cuts. A map needs fewer where the metric turns exactly
+// once about a hole, which only its prescription tells.
+LSGP_API CutPaths find_cuts(const Surface& surface, const std::vector<Index>& cones, const Options& options = {},
+                            const Progress& progress = {});
+
+// What a cut along each of the surface's `edges` should cost, (e), for `Surface::cut_costs`: little where it is hidden,
+// runs along a crease or is wanted. WRONG_PARAMETER without edges, or with preferences that are none.
+LSGP_API Eigen::VectorXd cut_costs(const Surface& surface, const CutPreferences& preferences,
+                                   const Progress& progress = {});
 
 // The cone angles alone (section 5) and the scale they imply.
-LSGP_API Prescription prescribe_curvature(const Surface& surface, const Cones& cones, const Options& options = {});
+LSGP_API Prescription prescribe_curvature(const Surface& surface, const Cones& cones, const Options& options = {},
+                                          const Progress& progress = {});
+
+// The account of every connected part, in the order of their first triangles. Positions are not looked at, and of the
+// cones only that they are vertices; the options' prescription, seams and border count.
+LSGP_API std::vector<LedgerPart> build_ledger(const Surface& surface, const Cones& cones, const Options& options = {},
+                                              LedgerOf of = LedgerOf::map);
 
 // Completes existing cones, whose given angles stay, to as many as asked for or as few as reach the target; none is
-// placed on a border.  A component without a solution is reported as a finding when another one has one, thrown
-// otherwise; a target that is not reached is a finding.
+// placed on a border, or where no edges lead that cuts may follow. A component without a solution is reported as a
+// finding when another one has one, thrown otherwise; a target that is not reached is a finding.
 LSGP_API Placement place_cones(const Surface& surface, const Cones& existing = {}, const PlacementOptions& options = {},
                                const Progress& progress = {});
 
@@ -41,9 +56,9 @@ LSGP_API Placement place_cones(const Surface& surface, const Cones& existing = {
 LSGP_API ConeGains cone_gains(const Surface& surface, const Cones& existing = {}, SeamMode seams = SeamMode::follow,
                               const Progress& progress = {});
 
-// Measures given texture coordinates, (3m, 2); triangles with a NaN are left out.  cones: where a cut may change its
-// rotation; none: every vertex whose angles do not add up to a full turn.
+// Measures given texture coordinates, (3m, 2), otherwise WRONG_PARAMETER; triangles with one that is not finite are
+// left out.  cones: where a cut may change its rotation; none: every vertex whose angles do not add up to a full turn.
 LSGP_API Measurement measure_distortion(const Surface& surface, const CornerUv& corner_uv,
-                                        const std::vector<Index>* cones = nullptr);
+                                        const std::vector<Index>* cones = nullptr, const Progress& progress = {});
 
 }  // namespace lsgp

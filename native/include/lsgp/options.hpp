@@ -24,7 +24,9 @@ enum class UnfoldMethod {
 
 enum class Method {
   lsgp,  // exact affine transitions across every cut
-  lscm,  // the paper's comparison: the same cuts, two pinned vertices, no transitions (Levy et al. 2002)
+  // The paper's comparison: the same cuts, two pinned vertices, no transitions (Levy et al. 2002). Not with spectral
+  // unfolding, low stretch, straight borders, given turning, seamless layouts or pins.
+  lscm,
 };
 
 // What a map keeps where it cannot keep both.
@@ -41,7 +43,7 @@ enum class Overlaps {
 
 // What a marked seam means.
 enum class SeamMode {
-  follow,    // cuts run along seams wherever they can; seams that close off a part make it an island of its own
+  follow,    // all seams are cut, and others where cones and handles need them; a part without cones is open there
   boundary,  // every seam is an open border, as in Blender's own unwrap
   ignore,
 };

@@ -18,23 +18,29 @@ struct MirrorPlane {
 };
 
 struct PlacementOptions {
-  std::optional<int> count;        // cones of every component, existing ones included; none: as few as reach the target
-  double target = 1.05;            // predicted L2 stretch
-  std::optional<Lattice> lattice;  // angles are multiples of its turn, for a seamless layout
-  bool prefer_sharp = false;       // sharp corners before smooth places where that costs little
-  bool symmetric = false;          // the same cones on both sides of a mirror plane
+  // Cones of every component, existing ones included, fewer where there is no room: then a finding says so. None: as
+  // few as reach the target.
+  std::optional<int> count;
+  double target = 1.05;               // L2 stretch of the map
+  std::optional<Lattice> lattice;     // angles are multiples of its turn, for a seamless layout
+  bool prefer_sharp = false;          // sharp corners before smooth places where that costs little
+  bool symmetric = false;             // the same cones on both sides of a mirror plane
   std::optional<MirrorPlane> mirror;  // none: found, every component its own
-  SeamMode seams = SeamMode::follow;
+  SeamMode seams = SeamMode::follow;  // a component that gets cones is not opened along its seams
 };
 
 struct Placement {
   std::vector<Index> cones;         // (k) existing ones first, but for those on a border that prescribe nothing
-  std::vector<double> cone_angles;  // (k) radians: unwrapping with these gives what is predicted
+  std::vector<double> cone_angles;  // (k) radians: unwrapping with these gives the map that was measured
   Eigen::VectorXd log_scale;        // (n) predicted, area-weighted mean 0 on every island
-  double predicted_l2 = 1;          // over the whole surface
-  bool reached = true;              // the target, on every component
+  double predicted_l2 = 1;          // over the whole surface, of that log scale
+  // The same measured on the map with these cones; infinite where it has flipped triangles or wrong angles, none where
+  // it was not made: beyond 60 cones of a component that were asked for by number or marked.
+  std::optional<double> mapped_l2;
+  bool reached = true;  // the target, on every component: by its map, or as predicted where none was made
+  int maps = 0;         // made to find out, of single components
   std::vector<Finding> warnings;
-  LinearAlgebra linear_algebra;
+  LinearAlgebra linear_algebra;  // of choosing, without those maps
 };
 
 // What one more cone would do, its angle and the automatic ones chosen anew.

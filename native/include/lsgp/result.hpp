@@ -23,11 +23,12 @@ struct Distortion {
   double l2_stretch = 0;                     // Sander et al. 2001, normalised: 1 is isometric
 };
 
-// How exactly the two sides of every cut are related by one rotation and one translation.
+// How exactly the two sides of every cut are related by one rotation and one translation, in the coordinates that are
+// returned.
 struct SeamQuality {
   double sister_ratio_max = 1;      // longer to shorter of two sister edges
   double rotation_residual = 0;     // angle between a cut edge's own turn and its cut's rotation, radians
-  double translation_residual = 0;  // distance of a vertex to the image of its sister, relative to the layout
+  double translation_residual = 0;  // distance of a vertex to the image of its sister, relative to its islands' size
 };
 
 using StageSeconds = std::vector<std::pair<std::string, double>>;  // wall clock
@@ -90,7 +91,7 @@ struct Result {
   Distortion distortion;
   SeamQuality seams;
   std::vector<Index> flipped;           // triangles with UV area <= 0
-  std::vector<Index> wrong_angle_sums;  // vertices whose UV angles are off by a turn
+  std::vector<Index> wrong_angle_sums;  // vertices whose UV angles are off by more than a degree
   std::vector<Index> overlapping;       // triangles that lie on others
   double overlap_area = 0;              // of all pairs of triangles together, as a share of the layout's area
   RepairReport repair;

@@ -25,6 +25,7 @@ struct Surface {
   std::optional<VertexPairs> edges;  // (e, 2) edges a cut may follow; absent: every edge of the triangles
   VertexPairs seams;                 // (s, 2) marked edges; cuts are drawn to them
   Eigen::VectorXd importance;        // (n) weights of stretch at vertices, or empty: all weigh alike
+  Eigen::VectorXd cut_costs;         // (e) cost of a cut along each of `edges` per length, or empty: 1
 };
 
 struct Cones {

@@ -1,25 +1,33 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The assets of a run: what a folder or a list names, which of them are this shard's, and where their results go."""
+"""The assets of a run: those of a folder or a list, the ones of this shard, and the paths of their results."""
 
 from __future__ import annotations
 
 import argparse
 import os
+import stat
 import zlib
-from collections.abc import Iterable, Iterator
+from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path, PurePath
 
-from ..side_files import UsageError
+from ..io.mesh_files import MESH_SUFFIXES
+from ..io.side_files import UsageError
 
 PICTURES = "pictures"
+
+# No system takes a longer path.
+_LONGEST_PATH = 1 << 15
+_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+_OF_A_DEVICE = "device or pipe"
 
 
 @dataclass(frozen=True, slots=True)
 class Asset:
     """A file to unwrap.
 
-    name: by which it goes everywhere, a relative path with slashes; the same in every run on the same folder or list.
+    name: identifies it, a relative path with slashes; the same in every run on the same folder or list.
     path: where it is. size: in bytes, 0 where there is no such file.
     """
 
@@ -29,8 +37,20 @@ class Asset:
 
 
 @dataclass(frozen=True, slots=True)
+class Found:
+    """The files of a folder or a list.
+
+    assets: sorted by name. skipped: number of other mesh files, which cannot be read, by kind; devices and pipes
+    included.
+    """
+
+    assets: list[Asset]
+    skipped: Counter[str]
+
+
+@dataclass(frozen=True, slots=True)
 class Shard:
-    """One of `count` parts of a run that are worked on by themselves; index is from 1."""
+    """One of `count` independent parts of a run; index is from 1."""
 
     index: int
     count: int
@@ -39,7 +59,7 @@ class Shard:
         return f"{self.index}-of-{self.count}"
 
     def holds(self, name: str) -> bool:
-        """Told by the name alone, so that assets that come or go do not move others to another shard."""
+        """Decided by the name alone, so that assets that come or go do not move others to another shard."""
         return zlib.crc32(os.fsencode(name)) % self.count == self.index - 1
 
 
@@ -53,19 +73,38 @@ def shard_option(text: str) -> Shard:
     return Shard(int(index), int(count))
 
 
-def find_assets(source: Path, out: Path, suffixes: Iterable[str], shard: Shard | None = None) -> list[Asset]:
-    """The assets that a folder holds, at any depth, or that a list names, by name; of them the shard's.
+def find_assets(source: Path, out: Path, suffixes: Iterable[str], shard: Shard | None = None) -> Found:
+    """The assets that a folder holds, at any depth, or that a list names, or a single one; of them the shard's.
 
     A list has a path on each line, relative to its own folder; empty lines are left out.
     out: the folder of the results; what lies there is no asset.
-    suffixes: of the files of a folder, lower case, with the dot; the files of a list may have any.
-    Raises OSError; UsageError where there is no asset at all.
+    suffixes: of the files of a folder, and of a single asset, lower case, with the dot; those of a list may have any.
+    Raises OSError; UsageError where there is no asset at all, or the source is no list.
     """
-    found = dict(_in_folder(source, out, frozenset(suffixes)) if source.is_dir() else _in_list(source))
+    suffixes = tuple(suffixes)
+    skipped: Counter[str] = Counter()
+    if source.is_dir():
+        found = _in_folder(source, out, suffixes, skipped)
+    elif source.suffix.lower() in suffixes:
+        found = {source.name: source}
+    elif source.suffix.lower() in MESH_SUFFIXES:
+        raise UsageError(f"'{source}' is a mesh of a kind that is not read; export it as {_any_of(suffixes)}")
+    else:
+        found = _in_list(source)
     if not found:
-        raise UsageError(f"'{source}' has no assets ({', '.join(suffixes)}); name a folder with some or a list of them")
+        others = f"; {skipped_note(skipped)}" if skipped else ""
+        raise UsageError(
+            f"'{source}' has no assets ({', '.join(suffixes)}){others}; name a folder with some or a list of them"
+        )
     names = sorted(name for name in found if shard is None or shard.holds(name))
-    return [Asset(name, found[name], _size(found[name])) for name in names]
+    return Found([Asset(name, found[name], _size(found[name])) for name in names], skipped)
+
+
+def skipped_note(skipped: Counter[str]) -> str:
+    """How many files were left out, and of which kinds."""
+    kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(skipped.items()))
+    total = skipped.total()
+    return f"{total} {'file was' if total == 1 else 'files were'} left out, of kinds that are not read: {kinds}"
 
 
 def output_name(name: str, suffix: str = ".obj") -> str:
@@ -79,7 +118,7 @@ def picture_name(name: str) -> str:
 
 
 def require_distinct_results(assets: Iterable[Asset], results: Iterable[str]) -> None:
-    """Raise UsageError where two assets have the same result, or an asset would be overwritten by a result."""
+    """Raise UsageError where two assets have the same result."""
     owner: dict[str, str] = {}
     for asset, result in zip(assets, results, strict=True):
         other = owner.setdefault(os.path.normcase(result), asset.name)
@@ -87,21 +126,46 @@ def require_distinct_results(assets: Iterable[Asset], results: Iterable[str]) ->
             raise UsageError(f"'{other}' and '{asset.name}' would both be written to '{result}'; rename one of them")
 
 
-def _in_folder(folder: Path, out: Path, suffixes: frozenset[str]) -> Iterator[tuple[str, Path]]:
+def _in_folder(folder: Path, out: Path, suffixes: tuple[str, ...], skipped: Counter[str]) -> dict[str, Path]:
     results = os.path.realpath(out)
+    found = {}
     for place, folders, files in os.walk(folder):
         folders[:] = [name for name in folders if os.path.realpath(os.path.join(place, name)) != results]
         for file in files:
-            if os.path.splitext(file)[1].lower() in suffixes:
-                path = Path(place, file)
-                yield path.relative_to(folder).as_posix(), path
+            path, suffix = Path(place, file), os.path.splitext(file)[1].lower()
+            if suffix not in suffixes:
+                skipped.update([suffix] if suffix in MESH_SUFFIXES else [])
+            elif _would_block(path):
+                skipped.update([_OF_A_DEVICE])
+            else:
+                found[path.relative_to(folder).as_posix()] = path
+    return found
 
 
-def _in_list(source: Path) -> Iterator[tuple[str, Path]]:
-    for line in source.read_bytes().splitlines():
+def _would_block(path: Path) -> bool:
+    """Whether it is a pipe or a device, which would block its reader; a missing file is reported when it is read."""
+    try:
+        return not stat.S_ISREG(path.stat().st_mode)
+    except OSError:
+        return False
+
+
+def _in_list(source: Path) -> dict[str, Path]:
+    found = {}
+    for number, line in enumerate(source.read_bytes().removeprefix(_BYTE_ORDER_MARK).splitlines(), 1):
+        if b"\0" in line or len(line) > _LONGEST_PATH:
+            raise UsageError(
+                f"'{source}' is no list of files: line {number} cannot be a path. Name a folder, a mesh, or a text "
+                "file in UTF-8 with a path on each line"
+            )
         text = os.fsdecode(line.strip())
         if text:
-            yield _name_of(Path(text), source.parent), source.parent / text
+            found[_name_of(Path(text), source.parent)] = source.parent / text
+    return found
+
+
+def _any_of(suffixes: tuple[str, ...]) -> str:
+    return " or ".join([", ".join(suffixes[:-1]), suffixes[-1]]) if len(suffixes) > 1 else suffixes[0]
 
 
 def _name_of(path: Path, folder: Path) -> str:

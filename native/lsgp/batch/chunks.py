@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which assets go to a worker together: large ones first and alone, small ones later and many at once.
+"""Groups assets for workers: large ones first and alone, small ones later and many at a time.
 
-What is left at the end is then small, so that all workers end at nearly the same time, and handing out costs little.
+The last chunks are then small, so that all workers end at nearly the same time and dispatch costs little.
 """
 
 from __future__ import annotations
@@ -46,5 +46,5 @@ class Queue:
 
 
 def _weight(asset: Asset) -> int:
-    """How much work an asset is taken for; opening the smallest file is some as well."""
+    """The estimated work of an asset; opening even the smallest file costs some."""
     return asset.size + 10_000

@@ -5,36 +5,45 @@ from __future__ import annotations
 
 import argparse
 import os
+import shlex
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from .. import exit_codes
-from ..mesh_files import remove_old_partials, write_whole
-from ..side_files import UsageError
-from ..terminal import ProgressLine, say
-from .assets import Asset, find_assets, output_name, require_distinct_results, shard_option
+from ..io.mesh_files import READABLE
+from ..io.safe_files import require_inputs_kept
+from ..io.side_files import UsageError
+from ..io.standard_streams import complain, say
+from ..io.whole_files import remove_old_partials, write_whole
+from ..run import exit_codes
+from ..run.terminal import ProgressLine
+from .assets import (
+    Asset,
+    find_assets,
+    output_name,
+    picture_name,
+    require_distinct_results,
+    shard_option,
+    skipped_note,
+)
 from .contact_sheet import write_contact_sheet
-from .dask_engine import run_on_cluster
+from .dask_engine import Cluster, run_on_cluster
 from .journal import Journal, read_records
 from .pool import PYTHON_WORKER, Pool
 from .progress import RunProgress, duration
-from .records import FAILED, OK, Record
+from .records import OK, REFUSED, Record
 from .summary import summary_table
 from .tasks import Settings, Task
 from .worker_process import WorkersError
 
-EXIT_CODES = (
-    "Exit code: 0 all assets have a result, 4 some of them, 3 none; 2 wrong usage or a folder that is missing or not "
-    "writable, 130 interrupted."
-)
+EXIT_CODES = exit_codes.listed(exit_codes.OF_A_BATCH)
 
 
 @dataclass(frozen=True)
 class Kind:
-    """What tells the batches of one program from those of another.
+    """What differs between the programs that run batches.
 
     suffixes: of the files in a folder that are assets. output_name: the name of an asset's result.
     worker: the command that starts a worker process.
@@ -45,19 +54,26 @@ class Kind:
     worker: Sequence[str]
 
 
-MESH_FILES = Kind((".obj", ".off", ".ply"), output_name, PYTHON_WORKER)
+MESH_FILES = Kind(READABLE, output_name, PYTHON_WORKER)
+
+FURTHER_OPTIONS = "--options"
 
 
 def add_batch_options(batch: argparse.ArgumentParser) -> None:
     """The options of a batch beside those of an unwrap."""
-    batch.add_argument("source", metavar="LIST|FOLDER", type=Path, help="files, one a line, or a folder, at any depth")
+    batch.add_argument(
+        "source",
+        metavar="LIST|FOLDER",
+        type=Path,
+        help="files, one a line, or a folder, at any depth; or a single mesh",
+    )
     batch.add_argument("--out", metavar="DIR", type=Path, required=True, help="folder of the results; made if missing")
     batch.add_argument("--jobs", metavar="N", type=_count_option, help="processes at a time (default: one each core)")
     batch.add_argument("--shard", metavar="i/n", type=shard_option, help="only the i-th of n parts, for array jobs")
     batch.add_argument(
         "--only-missing",
         action="store_true",
-        help="go on with an earlier run: leave out what has a result or was refused, try again what failed",
+        help="resume an earlier run: skip what has a result or was refused, retry what failed",
     )
     batch.add_argument("--timeout", metavar="S", type=_seconds_option, help="seconds an asset may take")
     batch.add_argument("--memory-limit", metavar="MB", type=_count_option, help="memory an asset may take (Linux)")
@@ -68,18 +84,54 @@ def add_batch_options(batch: argparse.ArgumentParser) -> None:
     batch.add_argument(
         "--no-pictures", dest="pictures", action="store_false", help="draw no pictures and no contact sheet"
     )
-
-
-def add_scheduler_option(batch: argparse.ArgumentParser) -> None:
     batch.add_argument(
-        "--scheduler", metavar="ADDRESS", help="work on the Dask cluster with this scheduler, tcp://host:8786 for one"
+        FURTHER_OPTIONS,
+        metavar="TEXT",
+        help="further options in one argument, quoted as for a shell: for job templates",
     )
+
+
+def add_scheduler_options(batch: argparse.ArgumentParser) -> None:
+    group = batch.add_argument_group(
+        "Dask", "Whoever can reach a scheduler or a worker of Dask can run any code on it: use TLS or a closed network."
+    )
+    group.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="work on the Dask cluster with this scheduler, tls://host:8786 or tcp://host:8786 for one",
+    )
+    group.add_argument("--tls-ca-file", metavar="FILE", help="certificates of the cluster's authorities, PEM")
+    group.add_argument("--tls-cert", metavar="FILE", help="certificate to show to the scheduler, PEM")
+    group.add_argument("--tls-key", metavar="FILE", help="its key, if it is in a file of its own, PEM")
+
+
+def expand_options(argv: Sequence[str]) -> list[str]:
+    """A batch's arguments, with --options replaced by the options it holds.  Raises UsageError."""
+    arguments = list(argv)
+    end = arguments.index("--") if "--" in arguments else len(arguments)
+    at = next((i for i in range(end) if arguments[i].partition("=")[0] == FURTHER_OPTIONS), None)
+    if at is None:
+        return arguments
+    option, is_joined, text = arguments[at].partition("=")
+    after = at + 1
+    if not is_joined:
+        if after == len(arguments):
+            return arguments  # which is refused
+        text, after = arguments[after], after + 1
+    try:
+        words = shlex.split(text)
+    except ValueError as error:
+        raise UsageError(f"{option} is no list of options: {error}") from error
+    return [*arguments[:at], *words, *arguments[after:]]
 
 
 def main(argv: Sequence[str], kind: Kind, parser: argparse.ArgumentParser) -> int:
     """Run the command line of a batch program and return its exit code."""
     try:
-        args = parser.parse_args(argv)
+        args = parser.parse_args(expand_options(argv))
+    except UsageError as error:
+        complain(f"{parser.prog}: error: {error}")
+        return exit_codes.USAGE
     except SystemExit as end:  # argparse has said why
         return int(end.code or 0)
     return exit_codes.ended(lambda: run_batch(args, kind))
@@ -89,21 +141,27 @@ def run_batch(args: argparse.Namespace, kind: Kind = MESH_FILES) -> int:
     """Run a batch and return its exit code.  Raises OSError, UsageError, KeyboardInterrupt."""
     if args.jobs is not None and args.scheduler is not None:
         raise UsageError("--jobs is for this machine; how many jobs a cluster does is told to its workers")
+    cluster = Cluster.of(args)
     if args.memory_limit is not None and not sys.platform.startswith("linux"):
         raise UsageError("--memory-limit works on Linux only; leave it out")
     settings = Settings.of(args)
-    assets = find_assets(args.source, args.out, kind.suffixes, args.shard)
+    found = find_assets(args.source, args.out, kind.suffixes, args.shard)
+    if found.skipped:
+        complain(f"lsgp: warning: {skipped_note(found.skipped)}")
+    assets = found.assets
     require_distinct_results(assets, (kind.output_name(asset.name) for asset in assets))
+    results = ((asset.path, args.out / kind.output_name(asset.name)) for asset in assets)
+    require_inputs_kept(results, in_place=args.in_place)
     args.out.mkdir(parents=True, exist_ok=True)
     if args.shard is None:
         remove_old_partials(args.out)
     begin = time.monotonic()
     with Journal(args.out, args.shard, keep=args.only_missing) as journal:
-        ended = _ended_before(args, assets, settings) if args.only_missing else {}
+        ended = _ended_before(args, assets, settings, kind) if args.only_missing else {}
         missing = [asset for asset in assets if asset.name not in ended]
         with ProgressLine(sys.stderr) as line:
             show = RunProgress(line, assets, ended.values())
-            for record in _records(args, missing, settings, kind):
+            for record in _records(args, missing, settings, kind, cluster):
                 journal.write(record)
                 ended[record["asset"]] = record
                 show(record)
@@ -115,14 +173,19 @@ def run_batch(args: argparse.Namespace, kind: Kind = MESH_FILES) -> int:
     return exit_codes.SOME if results else exit_codes.REFUSED
 
 
-def _ended_before(args: argparse.Namespace, assets: Sequence[Asset], settings: Settings) -> dict[str, Record]:
-    """Of these assets the records that stay: refusals, and results that are still there."""
+def _ended_before(
+    args: argparse.Namespace, assets: Sequence[Asset], settings: Settings, kind: Kind
+) -> dict[str, Record]:
+    """The records of these assets that stay valid: refusals, and results whose files still exist."""
     names = {asset.name for asset in assets}
-    records = read_records(args.out, args.shard)
+    before = read_records(args.out, args.shard)
+    for journal, count in before.damaged.items():
+        lines = "1 line is" if count == 1 else f"{count} lines are"
+        complain(f"lsgp: warning: {lines} damaged in '{args.out / journal}'; those assets count as not done")
     stay = {
         name: record
-        for name, record in records.items()
-        if name in names and record["status"] != FAILED and (record["status"] != OK or _is_there(args.out, record))
+        for name, record in before.records.items()
+        if name in names and (record["status"] == REFUSED or _has_result(args.out, record, kind))
     }
     if {record["options"] for record in stay.values()} - {settings.digest()}:
         raise UsageError(
@@ -132,19 +195,23 @@ def _ended_before(args: argparse.Namespace, assets: Sequence[Asset], settings: S
     return stay
 
 
-def _is_there(out: Path, record: Record) -> bool:
-    return Path(out, record["output"]).is_file()
+def _has_result(out: Path, record: Record, kind: Kind) -> bool:
+    if record["status"] != OK or record["picture"] not in (None, picture_name(record["asset"])):
+        return False
+    return record["output"] == kind.output_name(record["asset"]) and Path(out, record["output"]).is_file()
 
 
-def _records(args: argparse.Namespace, assets: Sequence[Asset], settings: Settings, kind: Kind) -> Iterator[Record]:
+def _records(
+    args: argparse.Namespace, assets: Sequence[Asset], settings: Settings, kind: Kind, cluster: Cluster | None
+) -> Iterator[Record]:
     def task_of(asset: Asset) -> Task:
         return Task.of(asset, args.out, kind.output_name(asset.name))
 
     if not assets:
         return
     try:
-        if args.scheduler is not None:
-            yield from run_on_cluster(args.scheduler, settings, task_of, assets, args.timeout)
+        if cluster is not None:
+            yield from run_on_cluster(cluster, settings, task_of, assets, args.timeout)
         else:
             jobs = min(args.jobs or _cores(), len(assets))
             yield from Pool(jobs, settings, task_of, kind.worker, args.timeout).run(assets)
@@ -153,13 +220,14 @@ def _records(args: argparse.Namespace, assets: Sequence[Asset], settings: Settin
 
 
 def _conclude(args: argparse.Namespace, records: Sequence[Record], worked: int, seconds: float) -> None:
-    """Say what the run came to; of the whole of it, not of a shard, in files as well."""
+    """Print the summary of a run; for a whole run, not a shard, write it into files as well."""
     table = summary_table(records)
     if args.shard is None:
         write_whole(args.out / "summary.txt", f"{table}\n".encode("utf-8", "replace"))
-    say(sys.stdout, f"{table}\n{worked} of them in this run, in {duration(seconds)}")
+    lines = [table, f"{worked} of them in this run, in {duration(seconds)}"]
     if args.shard is None and args.pictures:
-        say(sys.stdout, f"contact sheet: {write_contact_sheet(args.out, records)}")
+        lines.append(f"contact sheet: {write_contact_sheet(args.out, records)}")
+    say(sys.stdout, "\n".join(lines))
 
 
 def _cores() -> int:

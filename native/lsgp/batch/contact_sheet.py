@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The contact sheet: pages of all pictures with names and figures, to be looked at in a browser.
+"""The contact sheet: HTML pages of all pictures with names and figures.
 
-Assets without a result come first, then results from the highest stretch down.
+Assets without a result come first, then results by decreasing stretch.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from urllib.parse import quote_from_bytes
 
-from ..mesh_files import write_whole
+from ..io.whole_files import write_whole
 from .records import OK, Record
 
 PER_PAGE = 500

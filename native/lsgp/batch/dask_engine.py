@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A run on the workers of a Dask cluster, which has the files under the same paths and the same lsgp.
+"""A run on the workers of a Dask cluster, which needs the files under the same paths and the same version of lsgp.
 
 A chunk is a task of Dask's, which moves it to another worker where one is lost.  In the task it goes to a process of
-its own, as on one machine, so that no mesh can harm a worker of Dask's.
+its own, as on one machine, so that no mesh can crash a worker of Dask's.
 """
 
 from __future__ import annotations
 
+import argparse
+import os
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 
-from ..side_files import UsageError
+from ..io.side_files import UsageError
 from .assets import Asset
 from .chunks import Queue
 from .pool import ASSETS_PER_WORKER, Pool
@@ -21,8 +24,38 @@ CHUNKS_PER_THREAD = 2
 CONNECT_SECONDS = 30
 
 
+@dataclass(frozen=True)
+class Cluster:
+    """The scheduler's address, and the PEM files of mutual TLS authentication; None: those of Dask's configuration."""
+
+    address: str
+    tls_ca_file: str | None = None
+    tls_client_cert: str | None = None
+    tls_client_key: str | None = None
+
+    @classmethod
+    def of(cls, args: argparse.Namespace) -> Cluster | None:
+        """None where the batch runs on this machine.  Raises UsageError."""
+        if args.scheduler is None:
+            if any(vars(args).get(name) for name in ("tls_ca_file", "tls_cert", "tls_key")):
+                raise UsageError(
+                    "--tls-ca-file, --tls-cert and --tls-key are for a --scheduler; name one or leave them out"
+                )
+            return None
+        files = (args.tls_ca_file, args.tls_cert, args.tls_key)
+        if any(files):
+            if not args.scheduler.startswith("tls://"):
+                raise UsageError(f"'{args.scheduler}' does not use TLS; name the scheduler as tls://host:port")
+            if args.tls_ca_file is None or args.tls_cert is None:
+                raise UsageError("--tls-ca-file and --tls-cert belong together; give both")
+        for path in files:
+            if path is not None and not os.path.isfile(path):
+                raise UsageError(f"there is no file '{path}' for TLS")
+        return cls(args.scheduler, *files)
+
+
 def run_on_cluster(
-    address: str,
+    cluster: Cluster,
     settings: Settings,
     task_of: Callable[[Asset], Task],
     assets: Sequence[Asset],
@@ -30,14 +63,10 @@ def run_on_cluster(
 ) -> Iterator[Record]:
     """The record of each asset, once.  seconds: an asset may take.  Raises UsageError, WorkersError."""
     try:
-        from distributed import Client, as_completed
+        from distributed import as_completed
     except ImportError as error:
         raise UsageError("--scheduler needs Dask; install it with: pip install lsgp[dask]") from error
-    try:
-        client = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
-    except (OSError, ValueError) as error:
-        raise UsageError(f"no Dask scheduler answers at '{address}': {error}") from error
-    with client:
+    with _connect(cluster) as client:
         queue = Queue(assets, max(1, _threads(client)), ASSETS_PER_WORKER)
         chunk_of = {}
         running = as_completed(loop=client.loop)
@@ -53,10 +82,23 @@ def run_on_cluster(
 
 
 def work_on_chunk(tasks: Sequence[tuple[Asset, Task]], settings: Settings, seconds: float | None) -> list[Record]:
-    """What a worker of Dask's does: the chunk in a process of its own."""
+    """The task that a Dask worker runs: the chunk, in a process of its own."""
     task_of = dict(tasks)
     pool = Pool(1, settings, task_of.__getitem__, seconds=seconds)
     return list(pool.run(list(task_of)))
+
+
+def _connect(cluster: Cluster):
+    """A client of Dask's.  Raises UsageError."""
+    from distributed import Client
+    from distributed.security import Security
+
+    try:
+        files = {name: value for name, value in vars(cluster).items() if name != "address" and value is not None}
+        security = Security(require_encryption=True, **files) if files else None
+        return Client(cluster.address, timeout=CONNECT_SECONDS, set_as_default=False, security=security)
+    except (OSError, ValueError, TypeError, RuntimeError) as error:  # by what is wrong: the network, address, TLS
+        raise UsageError(f"no Dask scheduler answers at '{cluster.address}': {error}") from error
 
 
 def _threads(client) -> int:

@@ -1,26 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The journal of a run: a JSON line for each asset, written when the asset has ended.
 
-It alone says what is done.  Only whole lines count, so that a run may be killed at any moment and go on later.
+It is the only record of progress. Only complete lines count, so that a run may be killed at any moment and resumed; an
+asset with a damaged line counts as not done.
 """
 
 from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from ..report import finite
-from ..side_files import UsageError
+from ..io.side_files import UsageError
+from ..run.report import finite
 from .assets import Shard
-from .records import Record
+from .records import Record, is_record
 
 try:
     import fcntl
-except ImportError:  # Windows, where nothing keeps two runs from one folder
+except ImportError:  # Windows, where two runs are not kept out of one folder
     fcntl = None
 
 
@@ -28,14 +29,29 @@ def journal_path(out: Path, shard: Shard | None) -> Path:
     return out / ("journal.jsonl" if shard is None else f"journal-{shard}.jsonl")
 
 
-def read_records(out: Path, shard: Shard | None = None) -> dict[str, Record]:
-    """By name how each asset ended last: in the shard's journal, or in all journals of the folder."""
-    paths = [journal_path(out, shard)] if shard is not None else sorted(out.glob("journal*.jsonl"))
-    return {record["asset"]: record for path in paths for record in _records_in(path)}
+@dataclass
+class Ended:
+    """The content of journals.
+
+    records: by name how each asset ended last; none where its last line is damaged. damaged: how many lines of each
+    journal are, by its name.
+    """
+
+    records: dict[str, Record] = field(default_factory=dict)
+    damaged: dict[str, int] = field(default_factory=dict)
+
+
+def read_records(out: Path, shard: Shard | None = None) -> Ended:
+    """How assets ended, by the shard's journal or by all journals of the folder.  Raises OSError."""
+    ended = Ended()
+    for path in [journal_path(out, shard)] if shard is not None else sorted(out.glob("journal*.jsonl")):
+        if path.is_file():
+            _read_journal(path, ended)
+    return ended
 
 
 class Journal:
-    """Open for writing, by one run at a time.
+    """Open for writing, locked against other runs.
 
     keep: go on with what is there; otherwise begin anew, and where this is no shard without the shards' journals too.
     Raises OSError, UsageError.
@@ -46,7 +62,8 @@ class Journal:
             for path in out.glob("journal-*-of-*.jsonl"):
                 os.close(_open_locked(path))
                 path.unlink()
-        self._descriptor = _open_locked(journal_path(out, shard))
+        self._path = journal_path(out, shard)
+        self._descriptor = _open_locked(self._path)
         os.ftruncate(self._descriptor, _end_of_whole_lines(self._descriptor) if keep else 0)
         os.lseek(self._descriptor, 0, os.SEEK_END)
 
@@ -59,9 +76,13 @@ class Journal:
         os.close(self._descriptor)
 
     def write(self, record: Record) -> None:
+        """Raises OSError that names the journal, when the disk is full for one."""
         line = (json.dumps(finite(record), allow_nan=False) + "\n").encode("ascii")
-        while line:
-            line = line[os.write(self._descriptor, line) :]
+        try:
+            while line:
+                line = line[os.write(self._descriptor, line) :]
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, os.fspath(self._path)) from error
 
 
 def _open_locked(path: Path) -> int:
@@ -91,19 +112,24 @@ def _end_of_whole_lines(descriptor: int) -> int:
     return 0
 
 
-def _records_in(path: Path) -> Iterator[Record]:
-    if not path.exists():
-        return
+def _read_journal(path: Path, ended: Ended) -> None:
     with path.open("rb") as lines:
         for line in lines:
-            record = _parsed(line)
-            if isinstance(record, dict) and isinstance(record.get("asset"), str):
-                yield record
+            if not line.endswith(b"\n"):
+                continue  # it was being written when the run was killed
+            value = _parsed(line)
+            name = value.get("asset") if isinstance(value, dict) else None
+            if is_record(value):
+                ended.records[name] = value
+            else:
+                ended.damaged[path.name] = ended.damaged.get(path.name, 0) + 1
+                if isinstance(name, str):
+                    ended.records.pop(name, None)
 
 
 def _parsed(line: bytes) -> Any:
-    """None for a line that is broken, as an unfinished one is, or one on a disk that lost its power."""
+    """None for a damaged line, as after a power failure."""
     try:
         return json.loads(line)
-    except ValueError:
+    except (ValueError, RecursionError):
         return None

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A small picture of a result: on the left the surface under a checker, on the right its layout.
 
-The checker shows where texels are large, small, turned or torn; the colours of the layout say the same as a figure: red
+The checker shows where texels are large, small, turned or torn; the colours of the layout show the scale: red
 where the layout is larger than the surface, blue where it is smaller, by up to twice in length, magenta where it is
 flipped.  Drawn by points spread over the triangles: that is quick, and exact enough for a picture of this size.
 
@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..api import Result, Surface
-from ..mesh_files import write_whole
+from ..io.whole_files import write_whole
 
 Floats = NDArray[np.floating]
 

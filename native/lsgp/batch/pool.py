@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A pool of worker processes: each gets chunks, and is watched.
+"""A pool of worker processes, which get chunks of assets and are monitored.
 
-A worker that dies, or works on an asset for too long, costs that asset; the others of its chunk go to the next worker.
+If a worker dies or exceeds the time limit, the asset it was working on fails; the rest of its chunk goes to another
+worker.
 """
 
 from __future__ import annotations
@@ -22,10 +23,10 @@ MOST_FAILED_STARTS = 3
 
 
 class Pool:
-    """jobs: processes at a time. task_of: what a worker is told of an asset. command: that starts a worker.
+    """jobs: processes at a time. task_of: makes the task of an asset. command: starts a worker.
 
-    seconds: an asset may take, None for any time. assets_per_worker: after so many a process makes room for a new one,
-    which keeps whatever piles up in long-lived processes small.
+    seconds: time limit of an asset, None for no limit. assets_per_worker: a process is replaced after so many assets,
+    which bounds what leaks in long-lived processes.
     """
 
     def __init__(
@@ -66,7 +67,7 @@ class Pool:
             self._workers.clear()
 
     def _hand_out(self, queue: Queue) -> None:
-        """Give every worker without work a chunk, start workers, and let those go for whom there is nothing to do."""
+        """Give every idle worker a chunk, start workers, and stop those for which no work is left."""
         for worker in list(self._workers):
             if not worker.waiting and (not queue or worker.answered >= self._assets_per_worker):
                 self._workers.remove(worker)
@@ -82,7 +83,7 @@ class Pool:
         return worker
 
     def _hear(self, queue: Queue) -> Iterator[Record]:
-        """What a worker says next, unless there is one that is late before that."""
+        """The records that a worker's next message brings; none when a time limit passes before."""
         left = [worker.seconds_left(self._seconds) for worker in self._workers]
         first = min((seconds for seconds in left if seconds is not None), default=None)
         try:
@@ -105,7 +106,7 @@ class Pool:
                 yield from self._ended(worker, queue, late=True)
 
     def _ended(self, worker: WorkerProcess, queue: Queue, late: bool = False) -> Iterator[Record]:
-        """A process that has ended, or is ended because it is late: the asset it was working on pays for it."""
+        """A process has ended, or is ended because it exceeded its time limit: the asset it was working on fails."""
         seconds = worker.seconds()
         self._workers.remove(worker)
         way, printed = worker.end(patience=0) if late else worker.end()

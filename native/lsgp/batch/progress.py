@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far a run is: assets done, their rate, and the time that is left."""
+"""Progress of a run: assets done, their rate, and the remaining time."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Sequence
 
-from ..terminal import ProgressLine
+from ..run.terminal import ProgressLine
 from .assets import Asset
 from .records import OK, Record
 
 
 class RunProgress:
-    """Told every record, it shows where the run is.
+    """Shows the progress of a run as records arrive.
 
-    The time that is left is told by the bytes that are left, because large assets come first.
+    The remaining time is estimated from the remaining bytes, because large assets come first.
     """
 
     def __init__(self, line: ProgressLine, assets: Sequence[Asset], done: Iterable[Record]) -> None:

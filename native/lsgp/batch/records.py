@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is known of an asset once it has ended: a record, which is a line of the journal."""
+"""The outcome of an asset as a record, which is a line of the journal."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
-from ..report import Report
+from ..run.report import Report
 
 Record = dict[str, Any]
 
@@ -46,9 +47,63 @@ def record_of(report: Report) -> Record:
     return EMPTY | figures | {"warnings": warnings, "cones": len(report["cones"])}
 
 
+def is_record(value: Any) -> bool:
+    """Whether it is a valid record: all keys are present, and those that are read have the right types."""
+    if not (isinstance(value, dict) and value.keys() >= EMPTY.keys()):
+        return False
+    has_result = value["status"] == OK
+    always = {key: accepts for accepts, keys in _ALWAYS for key in keys}
+    expected = always | (_OF_RESULTS if has_result else _OF_OTHERS)
+    return value["status"] in (OK, REFUSED, FAILED) and all(accepts(value[key]) for key, accepts in expected.items())
+
+
+def _is_text(value: Any) -> bool:
+    """Text, also of a file name in any encoding."""
+    if not isinstance(value, str):
+        return False
+    try:
+        value.encode("utf-8", "surrogateescape")
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+def _is_figure(value: Any) -> bool:
+    """A number that is finite."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e300
+
+
+def _or_null(accepts: Callable[[Any], bool]) -> Callable[[Any], bool]:
+    return lambda value: value is None or accepts(value)
+
+
+def _is_distortion(value: Any) -> bool:
+    return isinstance(value, dict) and "l2_stretch" in value and all(map(_or_null(_is_figure), value.values()))
+
+
+def _is_counts(value: Any) -> bool:
+    return isinstance(value, dict) and all(map(_is_figure, value.values()))
+
+
+_ALWAYS = (
+    (_is_text, ("asset", "options")),
+    (_or_null(_is_figure), ("seconds", "cpu_seconds", "peak_memory_mb")),
+    (_or_null(_is_distortion), ("distortion",)),
+)
+_OF_RESULTS = {
+    "output": _is_text,
+    "picture": _or_null(_is_text),
+    "warnings": _is_counts,
+    "triangles": _is_figure,
+    "cones": _is_figure,
+    "distortion": _is_distortion,
+}
+_OF_OTHERS = {"code": _is_text, "message": _is_text}
+
+
 def ending(status: str, code: str, message: str, **known: Any) -> Record:
     """The record of an asset without a result.
 
-    status: "refused" is the asset's fault: it ends so every time; "failed" may end otherwise another time.
+    status: "refused" is due to the asset and final; "failed" may succeed in another run.
     """
     return EMPTY | known | {"status": status, "code": code, "message": message}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a run came to, as a table."""
+"""The summary of a run as a table."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def _figures(records: Sequence[Record], results: Sequence[Record]) -> list[tuple
 
 
 def _spread(records: Sequence[Record], label: str, form: str, figure) -> tuple[str, str, str]:
-    """The median of a figure, and the asset with the highest one; null, which stands for infinity, is left out."""
+    """The median of a figure, and the asset with the highest value; null, which stands for infinity, is left out."""
     values = [(figure(record), record["asset"]) for record in records if figure(record) is not None]
     if not values:
         return label, "-", ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a worker is told: the settings of the run, then a task for each asset; plain values, to be sent anywhere."""
+"""The input of a worker: the settings of the run, then a task for each asset; plain values, which can be serialized."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from .. import __version__
-from ..side_files import UsageError
-from ..unwrap_options import add_unwrap_options, library_options
+from ..io.side_files import UsageError
+from ..run.unwrap_options import add_unwrap_options, library_options
 from .assets import Asset, picture_name
 
 # Options that name a file beside each mesh; "{}" in them stands for the mesh's own path without its suffix.
@@ -38,8 +38,8 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """options: the values of the options of an unwrap, files by their whole paths. memory_limit: in MB, for what a
-    worker takes beyond what it needs without an asset; None for no limit."""
+    """options: the values of the options of an unwrap, files by absolute paths. memory_limit: in MB, of what a worker
+    allocates beyond its memory at start; None for no limit."""
 
     options: dict[str, Any]
     pictures: bool = True
@@ -48,7 +48,7 @@ class Settings:
 
     @classmethod
     def of(cls, args: argparse.Namespace) -> Settings:
-        """Raises UsageError where options do not go together or a file they name is missing."""
+        """Raises UsageError where options contradict each other or a file they name is missing."""
         names = argparse.ArgumentParser(add_help=False)
         add_unwrap_options(names)
         options = {name: getattr(args, name) for name in vars(names.parse_args([]))}
@@ -64,7 +64,7 @@ class Settings:
         return self.options | own
 
     def digest(self) -> str:
-        """By which results that were made with other options, or by another version, are told from these."""
+        """Identifies options and version, so that results made with others are recognized."""
         content = json.dumps([__version__, self.options], sort_keys=True)
         return hashlib.blake2b(content.encode(), digest_size=6).hexdigest()
 

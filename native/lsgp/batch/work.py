@@ -4,15 +4,16 @@
 from __future__ import annotations
 
 import argparse
+import os
 from pathlib import Path
 
-from .. import report as reports
 from ..errors import LsgpError
-from ..exit_codes import describe
-from ..mesh_files import write_whole
-from ..side_files import UsageError
-from ..unwrap_file import Run, out_of_memory, unwrap_file
-from ..unwrap_options import texture_size
+from ..io.side_files import UsageError
+from ..io.whole_files import write_whole
+from ..run import report as reports
+from ..run.exit_codes import describe
+from ..run.unwrap_file import Run, out_of_memory, unwrap_file
+from ..run.unwrap_options import texture_size
 from .pictures import write_picture
 from .records import FAILED, REFUSED, Record, ending, record_of
 from .tasks import Settings, Task
@@ -22,6 +23,7 @@ def unwrap_asset(task: Task, settings: Settings) -> Record:
     """Unwrap an asset, write its files, and say how it ended."""
     run = Run()
     try:
+        _require_ordinary(Path(task.input))
         return _unwrap(task, settings, run)
     except LsgpError as error:
         return refusal(error, run)
@@ -41,12 +43,18 @@ def refusal(error: LsgpError, run: Run) -> Record:
     return ending(status, error.code, message, triangles=count)
 
 
+def _require_ordinary(path: Path) -> None:
+    """Refuse a pipe or a device, which would block the process; a missing file is reported when it is read."""
+    if path.exists() and not path.is_file():
+        raise OSError(None, "This is no ordinary file", os.fspath(path))
+
+
 def _unwrap(task: Task, settings: Settings, run: Run) -> Record:
     output = Path(task.out, task.output)
     output.parent.mkdir(parents=True, exist_ok=True)
     args = argparse.Namespace(input=Path(task.input), output=output, **settings.options_for(task))
     result = unwrap_file(args, run)
-    report = reports.unwrap_report(result, run.triangulation, run.stage_seconds, texture_size(args))
+    report = reports.unwrap_report(result, run.placement, run.triangulation, run.stage_seconds, texture_size(args))
     if settings.reports:
         write_whole(output.with_name(f"{output.name}.report.json"), reports.to_json(report))
     record = record_of(report) | {"output": task.output}

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A worker process: told tasks on its standard input, line by line, it answers with records on its standard output.
+"""A worker process: reads tasks from its standard input, line by line, and writes records to its standard output.
 
     python -m lsgp.batch.worker
 
-It ends, in the middle of an asset as well, when its input ends: whoever started it is gone or wants no more of it.
+It ends, even in the middle of an asset, when its input ends: the process that started it has ended or stopped it.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
-from ..report import finite
+from ..run.report import finite
 from .records import FAILED, Record, ending
 from .tasks import Settings, Task
 
-# What begins a line that is meant; programs that workers run in print lines of their own.
+# Prefix of the protocol's lines; host programs print lines of their own.
 MARK = "\x1elsgp "
 
 
 def serve(work: Callable[[Task, Settings], Record]) -> None:
     """Answer until the input ends, and end the process."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a Ctrl-C is for who started this process
-    # Whatever else is printed goes to the standard error.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is handled by the process that started this one
+    # Any other output is redirected to standard error.
     answers = os.dup(1)
     os.dup2(2, 1)
     lines: SimpleQueue[bytes] = SimpleQueue()
@@ -49,7 +49,7 @@ def serve(work: Callable[[Task, Settings], Record]) -> None:
         _forget_peak_memory()
         try:
             record = work(task, settings)
-        except Exception as error:  # whatever it is costs this asset only
+        except Exception as error:  # any error fails this asset only
             message = f"{type(error).__name__}: {error}. This is a fault of the program; please report it."
             record = ending(FAILED, "INTERNAL_ERROR", message)
         figures = {
@@ -75,12 +75,12 @@ def _send(descriptor: int, value: Any) -> None:
     try:
         while data:
             data = data[os.write(descriptor, data) :]
-    except OSError:  # nobody is left to hear it
+    except OSError:  # the reader has gone
         os._exit(1)
 
 
 def _limit_memory(megabytes: int) -> None:
-    """Let the process have only so much memory beyond what it has now."""
+    """Limit the memory that the process may allocate beyond what it has now."""
     import resource
 
     pages = int(Path("/proc/self/statm").read_text().split()[0])
@@ -89,7 +89,7 @@ def _limit_memory(megabytes: int) -> None:
 
 
 def _forget_peak_memory() -> None:
-    """So that the peak is that of one asset; where that cannot be done it is that of all assets so far."""
+    """Reset the peak, so that it is that of one asset; elsewhere it remains that of all assets so far."""
     with contextlib.suppress(OSError):
         Path("/proc/self/clear_refs").write_text("5")
 

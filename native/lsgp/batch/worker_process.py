@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A worker process, seen by who started it: given assets, it answers on one after the other until it is ended."""
+"""A worker process, seen from the process that started it: it is given assets and answers with their records."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class WorkersError(Exception):
 class WorkerProcess:
     """name: None until it is ready. waiting: the assets it has not answered on; it works on the first of them.
 
-    answered: on how many it has. What it says goes into the queue `said`, None for its end.
+    answered: number of answers. Its output goes into the queue `said`, None for its end.
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class WorkerProcess:
         threading.Thread(target=self._listen, args=(said,), daemon=True).start()
 
     def give(self, assets: Iterable[Asset], task_of: Callable[[Asset], Task]) -> None:
-        """To a worker that has none."""
+        """Give assets to an idle worker."""
         self._since = time.monotonic()
         for asset in assets:
             self.waiting.append(asset)
@@ -74,17 +74,17 @@ class WorkerProcess:
         return said
 
     def seconds(self) -> float:
-        """Since it was started, was given assets, or said something."""
+        """Time since it was started, was given assets, or answered."""
         return time.monotonic() - self._since
 
     def seconds_left(self, seconds: float | None) -> float | None:
-        """To get ready, or where an asset may take so many seconds to answer on it; None for any time."""
+        """Time left to get ready, or to answer on an asset that may take so many seconds; None for no limit."""
         allowed = START_SECONDS if self.name is None else seconds
         return None if allowed is None else allowed - self.seconds()
 
     def end(self, patience: float = END_SECONDS) -> tuple[str, str]:
-        """End it, by force where it takes longer than `patience`.  In words how it ended, and the last it printed."""
-        with contextlib.suppress(OSError):  # what was still to be said to it
+        """End it, by force after `patience` seconds.  Returns how it ended, in words, and its last line of output."""
+        with contextlib.suppress(OSError):  # unsent input
             self._process.stdin.close()
         try:
             code = self._process.wait(patience)

@@ -7,20 +7,32 @@
 
 namespace lsgp {
 
+namespace {
+
+constexpr double at_bound = 1e-12;
+constexpr int most_pivoted_singly = 64;      // variables
+constexpr int most_rounds = 100;             // of block pivoting, a factorization each; some 5 to 10 is usual
+constexpr int most_changes_when_large = 30;  // of single sides, a factorization each
+constexpr int spare_rounds = 3;              // in which no fewer variables than before may be wrong
+
+}  // namespace
+
 void BoxProgram::set_hessian(Eigen::MatrixXd hessian) {
   hessian_ = std::move(hessian);
   free_.clear();
+  block_free_.clear();
+  block_.reset();
 }
 
-std::vector<int> BoxProgram::free_variables() const {
-  std::vector<int> free;
+Array<int> BoxProgram::free_variables() const {
+  Array<int> free;
   for (std::size_t i = 0; i < side_.size(); ++i) {
     if (side_[i] == Side::free) free.push_back(static_cast<int>(i));
   }
   return free;
 }
 
-void BoxProgram::factorize(const std::vector<int>& free) {
+void BoxProgram::factorize(const Array<int>& free) {
   if (free == free_) return;
   const int count = static_cast<int>(free.size()), size = count + (keep_sum_ ? 1 : 0);
   Eigen::MatrixXd system = Eigen::MatrixXd::Zero(size, size);
@@ -34,7 +46,7 @@ void BoxProgram::factorize(const std::vector<int>& free) {
   free_ = free;
 }
 
-BoxProgram::Step BoxProgram::step_to_minimum(const Eigen::VectorXd& slope, const std::vector<int>& free) {
+BoxProgram::Step BoxProgram::step_to_minimum(const Eigen::VectorXd& slope, const Array<int>& free) {
   factorize(free);
   const int count = static_cast<int>(free.size());
   Eigen::VectorXd right = Eigen::VectorXd::Zero(factor_->rows());
@@ -45,20 +57,83 @@ BoxProgram::Step BoxProgram::step_to_minimum(const Eigen::VectorXd& slope, const
   return step;
 }
 
+bool BoxProgram::factorize_block(const Array<int>& free) {
+  if (block_ && free == block_free_) return true;
+  block_ = DenseCholesky<double>::factored(hessian_(free, free));
+  block_free_ = free;
+  if (!block_) return false;
+  block_ones_ = block_->solve(Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(free.size()), 1));
+  return true;
+}
+
+// Solves for the free variables, the others at their bounds, and changes the side of all that come out wrong: free ones
+// out of bounds, others that the objective pulls inwards. When their number has not fallen for a while, only the last
+// one is changed until it does, which ends the cycles that are possible otherwise.
+std::optional<Eigen::VectorXd> BoxProgram::pivot_blocks(const Eigen::VectorXd& gradient, const Eigen::VectorXd& low,
+                                                        const Eigen::VectorXd& high) {
+  const int size = static_cast<int>(gradient.size());
+  for (int i = 0; i < size; ++i) {
+    side_[i] = low[i] >= -at_bound ? Side::low : high[i] <= at_bound ? Side::high : Side::free;
+  }
+  const double pull = at_bound * (1 + gradient.cwiseAbs().maxCoeff());
+  int fewest = size + 1, spare = spare_rounds;
+  for (int round = 0; round < most_rounds; ++round) {
+    const Array<int> free = free_variables();
+    if (keep_sum_ && free.empty()) return std::nullopt;
+    Eigen::VectorXd d = Eigen::VectorXd::Zero(size);
+    for (int i = 0; i < size; ++i) {
+      if (side_[i] != Side::free) d[i] = side_[i] == Side::low ? low[i] : high[i];
+    }
+    double multiplier = 0;
+    if (!free.empty()) {
+      if (!factorize_block(free)) return std::nullopt;
+      const Eigen::VectorXd slope = gradient + hessian_ * d;
+      Eigen::VectorXd solution = block_->solve(-slope(free));
+      if (keep_sum_) {
+        multiplier = (solution.sum() + d.sum()) / block_ones_.sum();
+        solution -= multiplier * block_ones_;
+      }
+      d(free) = solution;
+    }
+    const Eigen::VectorXd reduced = (gradient + hessian_ * d).array() + multiplier;
+    Array<std::pair<int, Side>> wrong;
+    for (int i = 0; i < size; ++i) {
+      if (side_[i] == Side::free) {
+        if (d[i] < low[i] - at_bound) wrong.emplace_back(i, Side::low);
+        if (d[i] > high[i] + at_bound) wrong.emplace_back(i, Side::high);
+      } else if (low[i] < high[i] && (side_[i] == Side::low ? -reduced[i] : reduced[i]) > pull) {
+        wrong.emplace_back(i, Side::free);
+      }
+    }
+    if (wrong.empty()) return d.cwiseMax(low).cwiseMin(high).eval();
+    const int count = static_cast<int>(wrong.size());
+    if (count < fewest) {
+      fewest = count;
+      spare = spare_rounds;
+    } else if (--spare < 0) {
+      wrong.erase(wrong.begin(), wrong.end() - 1);
+    }
+    for (const auto& [i, side] : wrong) side_[i] = side;
+  }
+  return std::nullopt;
+}
+
 Eigen::VectorXd BoxProgram::minimize(const Eigen::VectorXd& gradient, const Eigen::VectorXd& low,
                                      const Eigen::VectorXd& high) {
-  constexpr double at_bound = 1e-12;
   const int size = static_cast<int>(gradient.size());
   side_.resize(size, Side::free);
+  if (size > most_pivoted_singly) {
+    if (std::optional<Eigen::VectorXd> found = pivot_blocks(gradient, low, high)) return *found;
+  }
   for (int i = 0; i < size; ++i) {
     const bool is_there = side_[i] == Side::low ? low[i] >= -at_bound : side_[i] == Side::high && high[i] <= at_bound;
     if (!is_there) side_[i] = Side::free;
     if (low[i] >= high[i]) side_[i] = Side::low;  // a fixed variable is never released
   }
   Eigen::VectorXd d = Eigen::VectorXd::Zero(size);
-  const int most_changes = 50 * (size + 1);
+  const int most_changes = size > most_pivoted_singly ? most_changes_when_large : 50 * (size + 1);
   for (int change = 0; change < most_changes; ++change) {
-    const std::vector<int> free = free_variables();
+    const Array<int> free = free_variables();
     const Eigen::VectorXd slope = gradient + hessian_ * d;
     double multiplier = 0;
     if (free.size() > (keep_sum_ ? 1u : 0u)) {

@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small dense convex quadratic programs between bounds.
+// Small dense convex quadratic programs with box constraints.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <optional>
-#include <vector>
+
+#include "base/array.hpp"
+#include "solvers/dense_cholesky.hpp"
 
 namespace lsgp {
 
 // Minimises  gradient . d + d . hessian d / 2  over  low <= d <= high  and, with keep_sum, sum d = 0.
-// A primal active-set method: every iterate is feasible and the objective never rises.  Which variables are at their
+// A primal active-set method: every iterate is feasible and the objective never rises. Which variables are at their
 // bounds is remembered from one program to the next, and a factorization is kept while that does not change.
+// Large programs change the sides of many variables at once (block principal pivoting, Judice and Pires 1994) and fall
+// back on the other method, cut short, where that leads nowhere.
 class BoxProgram {
  public:
   explicit BoxProgram(bool keep_sum) : keep_sum_(keep_sum) {}
@@ -27,16 +31,23 @@ class BoxProgram {
     double multiplier = 0;      // of the sum
   };
 
+  std::optional<Eigen::VectorXd> pivot_blocks(const Eigen::VectorXd& gradient, const Eigen::VectorXd& low,
+                                              const Eigen::VectorXd& high);
+  bool factorize_block(const Array<int>& free);
   // The step to the minimum over the free variables, the others held.
-  Step step_to_minimum(const Eigen::VectorXd& slope, const std::vector<int>& free);
-  std::vector<int> free_variables() const;
-  void factorize(const std::vector<int>& free);
+  Step step_to_minimum(const Eigen::VectorXd& slope, const Array<int>& free);
+  Array<int> free_variables() const;
+  void factorize(const Array<int>& free);
 
   const bool keep_sum_;
   Eigen::MatrixXd hessian_;
-  std::vector<Side> side_;  // (k)
-  std::vector<int> free_;   // those that are factored
+  Array<Side> side_;  // (k)
+  Array<int> free_;   // those that are factored
   std::optional<Eigen::PartialPivLU<Eigen::MatrixXd>> factor_;
+  // Of large programs.
+  Array<int> block_free_;
+  std::optional<DenseCholesky<double>> block_;
+  Eigen::VectorXd block_ones_;  // the block's inverse times ones
 };
 
 // The point low <= x <= high with the given sum that differs from the wanted one by a common shift, as far as the

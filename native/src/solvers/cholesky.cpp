@@ -3,34 +3,22 @@
 
 #include <algorithm>
 #include <utility>
-#include <vector>
 
-#include "lsgp/errors.hpp"
-#include "solvers/checkpoint.hpp"
+#include "base/checkpoint.hpp"
+#include "base/memory.hpp"
 #include "solvers/dense_kernels.hpp"
 #include "solvers/elimination.hpp"
-#include "solvers/memory.hpp"
+#include "solvers/failure.hpp"
+#include "solvers/linear_algebra_counter.hpp"
 
 namespace lsgp {
 
 namespace {
 
-LinearAlgebra& count_of_this_thread() {
-  thread_local LinearAlgebra count;
-  return count;
-}
+// Of numbers that are not negative, beyond the range of int.
+std::size_t product(int a, int b) { return static_cast<std::size_t>(a) * static_cast<std::size_t>(b); }
 
 }  // namespace
-
-LinearAlgebraCounter::LinearAlgebraCounter() : around_(std::exchange(count_of_this_thread(), {})) {}
-LinearAlgebraCounter::~LinearAlgebraCounter() { count_of_this_thread() = around_; }
-LinearAlgebra LinearAlgebraCounter::counted() const { return count_of_this_thread(); }
-
-void throw_unsolvable() {
-  throw Error(Code::solver_failed,
-              "A linear system could not be factored: the surface has triangles too thin or too large to compute with. "
-              "Clean the mesh (merge by distance, dissolve degenerate faces) and try again.");
-}
 
 template <typename Scalar>
 struct Cholesky<Scalar>::Factor {
@@ -48,7 +36,7 @@ struct Cholesky<Scalar>::Factor {
   }
 
   void factorize(const Eigen::SparseMatrix<Scalar>& lower);
-  void fill(const Eigen::SparseMatrix<Scalar>& lower, int front, const std::vector<int>& local);
+  void fill(const Eigen::SparseMatrix<Scalar>& lower, int front, const Array<int>& local);
   void start_schur(const Eigen::SparseMatrix<Scalar>& lower);
 
   // x: (size, width) by rows, in the order of elimination.
@@ -68,14 +56,13 @@ void Cholesky<Scalar>::Factor::start_schur(const Eigen::SparseMatrix<Scalar>& lo
 
 // The matrix's own entries in a front's columns, and zeros.  local: the place in the panel of every row of the front.
 template <typename Scalar>
-void Cholesky<Scalar>::Factor::fill(const Eigen::SparseMatrix<Scalar>& lower, int front,
-                                    const std::vector<int>& local) {
+void Cholesky<Scalar>::Factor::fill(const Eigen::SparseMatrix<Scalar>& lower, int front, const Array<int>& local) {
   const int first = plan.first[front], columns = plan.columns(front), rows = columns + plan.below(front);
   Scalar* panel = panels.data() + plan.panel_begin[front];
-  std::fill_n(panel, static_cast<std::size_t>(rows) * columns, Scalar(0));
+  std::fill_n(panel, product(rows, columns), Scalar(0));
   for (int c = 0; c < columns; ++c) {
     const int row = plan.row_at[first + c];
-    Scalar* column = panel + static_cast<std::size_t>(c) * rows;
+    Scalar* column = panel + product(c, rows);
     column[c] += lower.valuePtr()[lower.outerIndexPtr()[row]];
     for (int k = adjacency.begin[row]; k < adjacency.begin[row + 1]; ++k) {
       const int other = adjacency.neighbour[k], at = plan.position[other];
@@ -90,13 +77,13 @@ template <typename Scalar>
 void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lower) {
   const DenseKernels<Scalar>& kernels = dense_kernels<Scalar>();
   const int fronts = plan.front_count();
-  ++count_of_this_thread().factorizations;
+  count_factorization();
   start_schur(lower);
   Vector stack(static_cast<Eigen::Index>(plan.stack_size));
-  prefer_huge_pages(stack.data(), stack.size() * sizeof(Scalar));
+  prefer_huge_pages(stack.data(), plan.stack_size * sizeof(Scalar));
   Vector outer(plan.outer_size);
-  std::vector<std::size_t> update_end;  // of the updates on the stack
-  std::vector<int> local(size()), waiting;
+  Array<std::size_t> update_end;  // of the updates on the stack
+  Array<int> local(size()), waiting;
   for (int i = 0; i < fronts; ++i) {
     Front<Scalar> front = this->front(i);
     const int first = plan.first[i], rows = front.columns + front.below, free = front.below - front.retained;
@@ -105,7 +92,7 @@ void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lowe
     for (int r = 0; r < front.below; ++r) local[below[r]] = front.columns + r;
     fill(lower, i, local);
     const std::size_t top = update_end.empty() ? 0 : update_end.back();
-    const std::size_t update_size = static_cast<std::size_t>(front.below) * free;
+    const std::size_t update_size = product(front.below, free);
     front.update = stack.data() + top;
     std::fill_n(front.update, update_size, Scalar(0));
     std::size_t base = top;
@@ -117,18 +104,17 @@ void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lowe
       const int* child_rows = this->rows(child);
       const int child_below = plan.below(child), child_free = child_below - plan.retained_rows[child];
       for (int c = 0; c < child_free; ++c) {
-        const Scalar* from = stack.data() + base + static_cast<std::size_t>(c) * child_below;
+        const Scalar* from = stack.data() + base + product(c, child_below);
         const int at = local[child_rows[c]];
-        Scalar* to = at < front.columns
-                         ? front.panel + static_cast<std::size_t>(at) * rows
-                         : front.update + static_cast<std::size_t>(at - front.columns) * front.below - front.columns;
+        Scalar* to = at < front.columns ? front.panel + product(at, rows)
+                                        : front.update + product(at - front.columns, front.below) - front.columns;
         for (int r = c; r < child_below; ++r) to[local[child_rows[r]]] += from[r];
       }
     }
     if (!kernels.eliminate(front, outer.data())) throw_unsolvable();
     for (int c = 0; c < front.retained; ++c) {
-      Scalar* column = schur.data() + static_cast<std::size_t>(below[free + c] - plan.eliminated) * retained();
-      const Scalar* from = outer.data() + static_cast<std::size_t>(c) * front.retained;
+      Scalar* column = schur.data() + product(below[free + c] - plan.eliminated, retained());
+      const Scalar* from = outer.data() + product(c, front.retained);
       for (int r = c; r < front.retained; ++r) column[below[free + r] - plan.eliminated] += from[r];
     }
     if (plan.parent[i] != -1) {
@@ -146,18 +132,18 @@ void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lowe
 template <typename Scalar>
 void Cholesky<Scalar>::Factor::eliminate(int width, Scalar* x) const {
   const DenseKernels<Scalar>& kernels = dense_kernels<Scalar>();
-  std::vector<Scalar> others;
+  Array<Scalar> others;
   for (int i = 0; i < plan.front_count(); ++i) {
     const Front<Scalar> front = this->front(i);
-    Scalar* own = x + static_cast<std::size_t>(plan.first[i]) * width;
+    Scalar* own = x + product(plan.first[i], width);
     // Impulses reach the fronts above them alone.
     if (std::all_of(own, own + front.columns * width, [](const Scalar& value) { return value == Scalar(0); })) continue;
-    others.resize(std::max(others.size(), static_cast<std::size_t>(front.below) * width));
+    others.resize(std::max(others.size(), product(front.below, width)));
     kernels.substitute_forward(front, width, own, others.data());
     const int* below = rows(i);
     for (int r = 0; r < front.below; ++r) {
-      Scalar* to = x + static_cast<std::size_t>(below[r]) * width;
-      const Scalar* from = others.data() + static_cast<std::size_t>(r) * width;
+      Scalar* to = x + product(below[r], width);
+      const Scalar* from = others.data() + product(r, width);
       for (int w = 0; w < width; ++w) to[w] -= from[w];
     }
   }
@@ -166,16 +152,15 @@ void Cholesky<Scalar>::Factor::eliminate(int width, Scalar* x) const {
 template <typename Scalar>
 void Cholesky<Scalar>::Factor::substitute(int width, Scalar* x) const {
   const DenseKernels<Scalar>& kernels = dense_kernels<Scalar>();
-  std::vector<Scalar> others;
+  Array<Scalar> others;
   for (int i = plan.front_count(); i-- > 0;) {
     const Front<Scalar> front = this->front(i);
-    others.resize(std::max(others.size(), static_cast<std::size_t>(front.below) * width));
+    others.resize(std::max(others.size(), product(front.below, width)));
     const int* below = rows(i);
     for (int r = 0; r < front.below; ++r) {
-      std::copy_n(x + static_cast<std::size_t>(below[r]) * width, width,
-                  others.data() + static_cast<std::size_t>(r) * width);
+      std::copy_n(x + product(below[r], width), width, others.data() + product(r, width));
     }
-    kernels.substitute_backward(front, width, x + static_cast<std::size_t>(plan.first[i]) * width, others.data());
+    kernels.substitute_backward(front, width, x + product(plan.first[i], width), others.data());
   }
 }
 
@@ -187,11 +172,11 @@ Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retaine
   factor_->adjacency = adjacency_of_lower(size, lower.outerIndexPtr(), lower.innerIndexPtr());
   factor_->plan = order_elimination(factor_->adjacency, retained);
   // The dense problems that are made of the Schur complement take up to five times as much as itself.
-  const std::size_t dense = 6 * static_cast<std::size_t>(retained) * retained;
+  const std::size_t dense = 6 * product(retained, retained);
   const std::size_t numbers = factor_->plan.panel_begin.back();
   const bool fits = numbers <= static_cast<std::size_t>(memory.size());
   if (!fits) memory.resize(0);
-  require_memory(((fits ? 0 : numbers) + factor_->plan.stack_size + dense) * sizeof(Scalar));
+  require_memory(static_cast<double>(((fits ? 0 : numbers) + factor_->plan.stack_size + dense) * sizeof(Scalar)));
   if (!fits) {
     memory.resize(static_cast<Eigen::Index>(numbers));
     prefer_huge_pages(memory.data(), numbers * sizeof(Scalar));
@@ -261,7 +246,7 @@ void Cholesky<Scalar>::eliminate(Rows& right_sides) const {
 
 template <typename Scalar>
 void Cholesky<Scalar>::substitute(Rows& half_solved, Eigen::Index sides) const {
-  count_of_this_thread().back_substitutions += static_cast<int>(sides);
+  count_back_substitutions(static_cast<int>(sides));
   checkpoint(2.0 * static_cast<double>(factor_->panels.size() * half_solved.cols()));
   factor_->substitute(static_cast<int>(half_solved.cols()), half_solved.data());
 }

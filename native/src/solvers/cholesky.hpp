@@ -7,24 +7,7 @@
 #include <complex>
 #include <memory>
 
-#include "lsgp/result.hpp"
-
 namespace lsgp {
-
-// Counts what this thread does with sparse matrices while it lives, but for what another counter inside it counts.
-class LinearAlgebraCounter {
- public:
-  LinearAlgebraCounter();
-  ~LinearAlgebraCounter();
-  LinearAlgebraCounter(const LinearAlgebraCounter&) = delete;
-  LinearAlgebraCounter& operator=(const LinearAlgebraCounter&) = delete;
-  LinearAlgebra counted() const;
-
- private:
-  LinearAlgebra around_;
-};
-
-[[noreturn]] void throw_unsolvable();  // SOLVER_FAILED
 
 template <typename Scalar>
 class Cholesky {
@@ -33,11 +16,10 @@ class Cholesky {
   using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
   // lower: the lower triangle with its diagonal.  retained: that many of the last rows are not eliminated; what the
-  // elimination of the others makes of them is their Schur complement.  memory: of a factor that is not needed any
-  // more.
+  // elimination of the others makes of them is their Schur complement.  memory: of a factor that is no longer needed.
   // Throws SOLVER_FAILED where the eliminated part is not positive definite.
   explicit Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retained = 0, Vector memory = {});
-  // What is left solves nothing.
+  // Gives up the factor's memory; the factor cannot be used afterwards.
   Vector take_memory();
   // Factors another matrix whose entries are in the same places; a part of the work is saved.
   void refactor(const Eigen::SparseMatrix<Scalar>& lower);
@@ -53,8 +35,8 @@ class Cholesky {
   // The Schur complement of the retained rows, (retained, retained).
   const Matrix& schur() const;
 
-  // A solve in two halves.  Values come in the order of elimination, those of retained rows last: one, two or
-  // `solve_width` right sides beside each other, the last ones of which may be there to make up the number.
+  // A solve in two halves. Values come in the order of elimination, those of retained rows last: one, two or
+  // `solve_width` right sides beside each other, the last of which may be padding.
   using Rows = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   static constexpr int solve_width = 8;
   static Eigen::Index width_for(Eigen::Index sides) { return sides > 2 ? solve_width : sides; }

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/checkpoint.hpp"
 #include "solvers/cholesky.hpp"
 #include "solvers/dense_kernels.hpp"
+#include "solvers/failure.hpp"
 
 namespace lsgp {
 
@@ -21,7 +23,23 @@ Front<Scalar> whole(const Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>&
 
 template <typename Scalar>
 DenseCholesky<Scalar>::DenseCholesky(Matrix lower) : factor_(std::move(lower)) {
-  if (factor_.size() > 0 && !dense_kernels<Scalar>().eliminate(whole(factor_), nullptr)) throw_unsolvable();
+  if (!factorize()) throw_unsolvable();
+}
+
+template <typename Scalar>
+std::optional<DenseCholesky<Scalar>> DenseCholesky<Scalar>::factored(Matrix lower) {
+  DenseCholesky out;
+  out.factor_ = std::move(lower);
+  if (!out.factorize()) return std::nullopt;
+  return out;
+}
+
+template <typename Scalar>
+bool DenseCholesky<Scalar>::factorize() {
+  const double size = static_cast<double>(factor_.rows());
+  const bool done = factor_.size() == 0 || dense_kernels<Scalar>().eliminate(whole(factor_), nullptr);
+  checkpoint(size * size * size / 6);
+  return done;
 }
 
 template <typename Scalar>

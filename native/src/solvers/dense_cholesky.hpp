@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <complex>
+#include <optional>
 
 namespace lsgp {
 
@@ -12,13 +13,18 @@ class DenseCholesky {
  public:
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 
-  // lower: its lower triangle is read.  Throws SOLVER_FAILED where it is not positive definite.
+  // lower: its lower triangle is read. Throws SOLVER_FAILED where it is not positive definite.
   explicit DenseCholesky(Matrix lower);
+  // None where it is not positive definite.
+  static std::optional<DenseCholesky> factored(Matrix lower);
 
   // One right side a column.
   Matrix solve(const Eigen::Ref<const Matrix>& right_sides) const;
 
  private:
+  DenseCholesky() = default;
+  bool factorize();
+
   Matrix factor_;
 };
 

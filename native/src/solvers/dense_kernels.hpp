@@ -5,7 +5,7 @@
 
 namespace lsgp {
 
-// A front: the columns of one supernode, and the rows below them that they touch.  Column-major.
+// A front: the columns of one supernode, and the rows below them that they touch. Column-major.
 template <typename Scalar>
 struct Front {
   Scalar* panel;  // (columns + below, columns) lower trapezoid
@@ -19,13 +19,13 @@ struct Front {
 template <typename Scalar>
 struct DenseKernels {
   // Factors the panel, subtracts its outer product from the update and writes that of the retained rows, lower
-  // triangle, to `outer` (retained, retained).  False where a pivot is not positive.
+  // triangle, to `outer` (retained, retained). False where a pivot is not positive.
   bool (*eliminate)(const Front<Scalar>& front, Scalar* outer);
   // own = L^-1 own, (columns, width);  others = panel below * own, (below, width).
   void (*substitute_forward)(const Front<Scalar>& front, int width, Scalar* own, Scalar* others);
   // own = L^-H (own - panel below^H * others).
   void (*substitute_backward)(const Front<Scalar>& front, int width, Scalar* own, const Scalar* others);
-  // sum += A^H A, lower triangle, (count, count).  A: (rows, count), column-major.
+  // sum += A^H A, lower triangle, (count, count). A: (rows, count), column-major.
   void (*add_gram)(const Scalar* matrix, int rows, int count, Scalar* sum);
 };
 

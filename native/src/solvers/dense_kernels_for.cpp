@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled once for every instruction set: LSGP_INSTRUCTIONS is the namespace that its code lives in.  Eigen is renamed
+// Compiled once for every instruction set: LSGP_INSTRUCTIONS is the namespace that its code lives in. Eigen is renamed
 // alike, or the linker might take what was compiled for one machine to run on another.
 #include <Eigen/Cholesky>
 #include <cmath>

@@ -26,7 +26,7 @@ Adjacency adjacency_of_lower(int size, const int* outer, const int* inner) {
   std::partial_sum(out.begin.begin(), out.begin.end(), out.begin.begin());
   out.neighbour.resize(out.begin.back());
   out.entry.resize(out.begin.back());
-  std::vector<int> cursor(out.begin.begin(), out.begin.end() - 1);
+  Array<int> cursor(out.begin.begin(), out.begin.end() - 1);
   for_each_off_diagonal([&](int column, int row, int k) {
     out.neighbour[cursor[column]] = row;
     out.entry[cursor[column]++] = k;
@@ -56,7 +56,7 @@ class Ordering {
     find_parents();
     post_order();
     count_rows();
-    const std::vector<int> front_of = find_fronts();
+    const Array<int> front_of = find_fronts();
     list_rows(front_of);
     measure();
     return std::move(out_);
@@ -104,6 +104,7 @@ class Ordering {
     }
     pattern.outerIndexPtr()[eliminated_] = filled;
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
+    // Eigen's public functor sorts the pattern anew first, which takes 3 % of a map.
     if (eliminated_ > 0) Eigen::internal::minimum_degree_ordering(pattern, order);
     out_.eliminated = eliminated_;
     out_.row_at.resize(size_);
@@ -120,7 +121,7 @@ class Ordering {
   // The elimination tree (Liu 1990), with paths compressed; `size_` for children of what is retained.
   void find_parents() {
     parent_.assign(eliminated_, size_);
-    std::vector<int> ancestor(eliminated_, size_);
+    Array<int> ancestor(eliminated_, size_);
     for (int at = 0; at < eliminated_; ++at) {
       for_each_earlier(at, [&](int other) {
         while (other != at && other != size_) {
@@ -135,7 +136,7 @@ class Ordering {
 
   // Renumbers so that every subtree is contiguous.
   void post_order() {
-    std::vector<int> child(eliminated_ + 1, -1), sibling(eliminated_, -1), order, stack;
+    Array<int> child(eliminated_ + 1, -1), sibling(eliminated_, -1), order, stack;
     const auto list_of = [&](int node) { return node == size_ ? eliminated_ : node; };
     for (int node = eliminated_; node-- > 0;) {
       sibling[node] = child[list_of(parent_[node])];
@@ -155,7 +156,7 @@ class Ordering {
         }
       }
     }
-    std::vector<int> place(size_ + 1), row_at = out_.row_at, parent(eliminated_);
+    Array<int> place(size_ + 1), row_at = out_.row_at, parent(eliminated_);
     place[size_] = size_;
     for (int at = 0; at < eliminated_; ++at) {
       place[order[at]] = at;
@@ -170,13 +171,13 @@ class Ordering {
   // Rows below the diagonal of every column (Gilbert, Ng and Peyton 1994): a row's entries span a subtree of the
   // elimination tree, which is counted where it has a leaf, less where its leaves' paths meet and above its root.
   void count_rows() {
-    std::vector<int> first(eliminated_, -1);  // descendant of each column
+    Array<int> first(eliminated_, -1);  // descendant of each column
     count_.resize(eliminated_);
     for (int at = 0; at < eliminated_; ++at) {
       count_[at] = first[at] == -1;
       for (int node = at; node != size_ && first[node] == -1; node = parent_[node]) first[node] = at;
     }
-    std::vector<int> ancestor(parent_), newest_first(size_, -1), newest_leaf(size_, -1);
+    Array<int> ancestor(parent_), newest_first(size_, -1), newest_leaf(size_, -1);
     const auto meet_above = [&](int leaf, int at) {  // the first on the way up that is not before `at`
       int root = leaf;
       while (root < at && ancestor[root] != size_) root = ancestor[root];
@@ -209,9 +210,9 @@ class Ordering {
   }
 
   // Gathers columns into fronts, from the last to the first; returns the front of every column.
-  std::vector<int> find_fronts() {
-    std::vector<int> last;  // column of every front, from the last front to the first
-    double zeros = 0;       // in the front that grows
+  Array<int> find_fronts() {
+    Array<int> last;   // column of every front, from the last front to the first
+    double zeros = 0;  // in the front that grows
     for (int end = eliminated_ - 1, begin = end; end >= 0; end = begin - 1, begin = end) {
       while (begin > 0 && parent_[begin - 1] == begin && count_[begin - 1] == count_[begin] + 1) --begin;
       if (!last.empty() && parent_[end] <= last.back()) {
@@ -229,7 +230,7 @@ class Ordering {
     const int fronts = static_cast<int>(last.size());
     out_.first.assign(1, 0);
     for (const int column : last) out_.first.push_back(column + 1);
-    std::vector<int> front_of(eliminated_);
+    Array<int> front_of(eliminated_);
     for (int front = 0; front < fronts; ++front) {
       std::fill(front_of.begin() + out_.first[front], front_of.begin() + out_.first[front + 1], front);
     }
@@ -238,18 +239,18 @@ class Ordering {
     for (int front = 0; front < fronts; ++front) {
       const int above = parent_[last[front]];
       out_.parent[front] = above == size_ ? -1 : front_of[above];
-      out_.rows_begin.push_back(out_.rows_begin.back() + count_[last[front]]);
+      out_.rows_begin.push_back(out_.rows_begin.back() + static_cast<std::size_t>(count_[last[front]]));
     }
     return front_of;
   }
 
   // Rows come in ascending order, each into the fronts of its subtree.
-  void list_rows(const std::vector<int>& front_of) {
+  void list_rows(const Array<int>& front_of) {
     const int fronts = out_.front_count();
     out_.rows.resize(out_.rows_begin.back());
     out_.retained_rows.assign(fronts, 0);
-    std::vector<std::size_t> cursor(out_.rows_begin.begin(), out_.rows_begin.end() - 1);
-    std::vector<int> mark(fronts, -1);
+    Array<std::size_t> cursor(out_.rows_begin.begin(), out_.rows_begin.end() - 1);
+    Array<int> mark(fronts, -1);
     for (int at = 0; at < size_; ++at) {
       if (at < eliminated_) mark[front_of[at]] = at;
       for_each_earlier(at, [&](int column) {
@@ -265,10 +266,12 @@ class Ordering {
   void measure() {
     const int fronts = out_.front_count();
     out_.panel_begin.assign(1, 0);
-    std::vector<std::size_t> held(fronts, 0);  // by the updates of a front's children
+    Array<std::size_t> held(fronts, 0);  // by the updates of a front's children
     std::size_t in_use = 0;
     for (int front = 0; front < fronts; ++front) {
-      const std::size_t columns = out_.columns(front), below = out_.below(front), retained = out_.retained_rows[front];
+      const auto columns = static_cast<std::size_t>(out_.columns(front)),
+                 below = static_cast<std::size_t>(out_.below(front)),
+                 retained = static_cast<std::size_t>(out_.retained_rows[front]);
       const std::size_t update = below * (below - retained);
       out_.panel_begin.push_back(out_.panel_begin.back() + columns * (columns + below));
       out_.stack_size = std::max(out_.stack_size, in_use + update);
@@ -280,7 +283,7 @@ class Ordering {
 
   const Adjacency& adjacency_;
   const int size_, eliminated_;
-  std::vector<int> parent_, count_;
+  Array<int> parent_, count_;
   Elimination out_;
 };
 

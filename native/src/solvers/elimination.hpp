@@ -3,32 +3,33 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
+
+#include "base/array.hpp"
 
 namespace lsgp {
 
 // Where the entries of a symmetric matrix are: the neighbours of every row, and which stored entry joins them.
 struct Adjacency {
-  std::vector<int> begin;      // (n + 1)
-  std::vector<int> neighbour;  // without the row itself
-  std::vector<int> entry;      // in the lower triangle as it was given
+  Array<int> begin;      // (n + 1)
+  Array<int> neighbour;  // without the row itself
+  Array<int> entry;      // in the lower triangle as it was given
 };
 // outer, inner: the lower triangle by columns.
 Adjacency adjacency_of_lower(int size, const int* outer, const int* inner);
 
 // Columns are eliminated front by front; children stand before their parent, the last child just before it.
 struct Elimination {
-  std::vector<int> position;             // (n) of every row; retained ones come last, in their own order
-  std::vector<int> row_at;               // (n) its inverse
-  int eliminated = 0;                    // rows that are not retained
-  std::vector<int> first;                // (fronts + 1) position of each front's first column
-  std::vector<int> parent;               // (fronts) or -1
-  std::vector<std::size_t> rows_begin;   // (fronts + 1)
-  std::vector<int> rows;                 // positions of the rows below each front's columns, ascending
-  std::vector<int> retained_rows;        // (fronts) how many of them are retained
-  std::vector<std::size_t> panel_begin;  // (fronts + 1) into the factor's numbers
-  std::size_t stack_size = 0;            // the most numbers that updates take up at once
-  std::size_t outer_size = 0;            // and that one front adds to the Schur complement
+  Array<int> position;             // (n) of every row; retained ones come last, in their own order
+  Array<int> row_at;               // (n) its inverse
+  int eliminated = 0;              // rows that are not retained
+  Array<int> first;                // (fronts + 1) position of each front's first column
+  Array<int> parent;               // (fronts) or -1
+  Array<std::size_t> rows_begin;   // (fronts + 1)
+  Array<int> rows;                 // positions of the rows below each front's columns, ascending
+  Array<int> retained_rows;        // (fronts) how many of them are retained
+  Array<std::size_t> panel_begin;  // (fronts + 1) into the factor's numbers
+  std::size_t stack_size = 0;      // the most numbers that updates take up at once
+  std::size_t outer_size = 0;      // and that one front adds to the Schur complement
 
   int front_count() const { return static_cast<int>(parent.size()); }
   int columns(int front) const { return first[front + 1] - first[front]; }

@@ -4,7 +4,15 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/checkpoint.hpp"
+
 namespace lsgp {
+
+namespace {
+
+constexpr double arc_visits = 10;  // of a blocking flow, each as long as so many multiplications
+
+}  // namespace
 
 FlowNetwork::FlowNetwork(int node_count) : first_(node_count, -1) {}
 
@@ -22,15 +30,19 @@ int FlowNetwork::add_arc(int from, int to, Units capacity, Units capacity_back) 
 
 FlowNetwork::Units FlowNetwork::maximize(int source, int sink) {
   Units total = 0;
-  while (find_distances(source, sink)) total += send_along_shortest(source, sink);
+  // The distance grows with each blocking flow, so there are fewer of them than nodes.
+  while (find_distances(source, sink)) {
+    total += send_along_shortest(source, sink);
+    checkpoint(arc_visits * static_cast<double>(to_.size()));
+  }
   return total;
 }
 
 FlowNetwork::Units FlowNetwork::flow(int arc) const { return capacity_[2 * arc] - residual_[2 * arc]; }
 
-std::vector<char> FlowNetwork::reachable(int source) const {
-  std::vector<char> reached(first_.size(), 0);
-  std::vector<int> front{source};
+Array<char> FlowNetwork::reachable(int source) const {
+  Array<char> reached(first_.size(), 0);
+  Array<int> front{source};
   reached[source] = 1;
   while (!front.empty()) {
     const int node = front.back();
@@ -48,7 +60,7 @@ std::vector<char> FlowNetwork::reachable(int source) const {
 bool FlowNetwork::find_distances(int source, int sink) {
   distance_.assign(first_.size(), -1);
   distance_[sink] = 0;
-  std::vector<int> queue{sink};
+  Array<int> queue{sink};
   for (std::size_t i = 0; i < queue.size() && distance_[source] < 0; ++i) {
     for (int a = first_[queue[i]]; a >= 0; a = next_[a]) {
       if (residual_[a ^ 1] == 0 || distance_[to_[a]] >= 0) continue;
@@ -62,13 +74,14 @@ bool FlowNetwork::find_distances(int source, int sink) {
 // A blocking flow: walks towards the sink, sends what the walk can carry, goes on from where it is blocked.
 FlowNetwork::Units FlowNetwork::send_along_shortest(int source, int sink) {
   current_ = first_;
-  std::vector<int> walk;  // arcs from the source
+  Array<int> walk;  // arcs from the source
   Units total = 0;
   int node = source;
   for (;;) {
     if (node == sink) {
       Units units = std::numeric_limits<Units>::max();
       for (const int a : walk) units = std::min(units, residual_[a]);
+      checkpoint(arc_visits * static_cast<double>(walk.size()));
       std::size_t blocked = walk.size();
       for (std::size_t i = walk.size(); i-- > 0;) {
         residual_[walk[i]] -= units;

@@ -3,11 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+
+#include "base/array.hpp"
 
 namespace lsgp {
 
-// A network of nodes 0, 1, ... whose arcs carry whole units.  Dinic's algorithm.
+// A network of nodes 0, 1, ... whose arcs carry whole units. Dinic's algorithm.
 class FlowNetwork {
  public:
   using Units = std::int64_t;
@@ -23,16 +24,16 @@ class FlowNetwork {
   Units flow(int arc) const;  // net, from its first node to its second
 
   // (nodes) which of them `source` can still send to: its side of a minimum cut once the flow is maximal.
-  std::vector<char> reachable(int source) const;
+  Array<char> reachable(int source) const;
 
  private:
   bool find_distances(int source, int sink);
   Units send_along_shortest(int source, int sink);
 
-  // Arc a and the one back, a ^ 1, lie side by side.  The arcs of a node are a chain.
-  std::vector<int> first_, next_, to_;      // (nodes), (arcs), (arcs) -1 at a chain's end
-  std::vector<Units> residual_, capacity_;  // (arcs) what they can still carry, and could at first
-  std::vector<int> distance_, current_;     // (nodes) arcs to the sink, -1 without a way; the arc to try next
+  // Arc a and the one back, a ^ 1, lie side by side. The arcs of a node are a chain.
+  Array<int> first_, next_, to_;      // (nodes), (arcs), (arcs) -1 at a chain's end
+  Array<Units> residual_, capacity_;  // (arcs) what they can still carry, and could at first
+  Array<int> distance_, current_;     // (nodes) arcs to the sink, -1 without a way; the arc to try next
 };
 
 }  // namespace lsgp

@@ -3,7 +3,8 @@
 #pragma once
 
 #include <Eigen/SparseCore>
-#include <vector>
+
+#include "base/array.hpp"
 
 namespace lsgp {
 
@@ -14,7 +15,7 @@ class LowerAssembly {
     entries_.reserve(expected_entries);
   }
 
-  // Adds to entry (row, column); the entry's mirror image is implied.  Entries above the diagonal are mirrored.
+  // Adds to entry (row, column); the entry's mirror image is implied. Entries above the diagonal are mirrored.
   void add(int row, int column, const Scalar& value) {
     if (row >= column)
       entries_.push_back({row, column, value});
@@ -24,9 +25,9 @@ class LowerAssembly {
 
   // Two counting sorts, by row and then by column, leave every column in order of its rows; equal entries are added.
   // slot: where given, receives the place of every entry, in the order of their adding, among the matrix's values.
-  Eigen::SparseMatrix<Scalar> build(std::vector<int>* slot = nullptr) const {
-    const std::vector<int> by_row = sorted({}, [](const Entry& entry) { return entry.row; });
-    const std::vector<int> by_column = sorted(by_row, [](const Entry& entry) { return entry.column; });
+  Eigen::SparseMatrix<Scalar> build(Array<int>* slot = nullptr) const {
+    const Array<int> by_row = sorted({}, [](const Entry& entry) { return entry.row; });
+    const Array<int> by_column = sorted(by_row, [](const Entry& entry) { return entry.column; });
     Eigen::SparseMatrix<Scalar> matrix(size_, size_);
     matrix.resizeNonZeros(static_cast<Eigen::Index>(entries_.size()));
     int* outer = matrix.outerIndexPtr();
@@ -55,9 +56,9 @@ class LowerAssembly {
   };
 
   template <typename Key>
-  std::vector<int> sorted(const std::vector<int>& order, Key key) const {
+  Array<int> sorted(const Array<int>& order, Key key) const {
     const int count = static_cast<int>(entries_.size());
-    std::vector<int> cursor(size_ + 1, 0), out(count);
+    Array<int> cursor(size_ + 1, 0), out(count);
     for (const Entry& entry : entries_) ++cursor[key(entry) + 1];
     for (int i = 0; i < size_; ++i) cursor[i + 1] += cursor[i];
     for (int i = 0; i < count; ++i) {
@@ -68,7 +69,7 @@ class LowerAssembly {
   }
 
   int size_;
-  std::vector<Entry> entries_;
+  Array<Entry> entries_;
 };
 
 // A matrix that is summed up again and again from entries at the same places in the same order.
@@ -97,7 +98,7 @@ class RepeatedAssembly {
  private:
   int size_;
   Eigen::SparseMatrix<Scalar> matrix_;
-  std::vector<int> slot_;
+  Array<int> slot_;
 };
 
 }  // namespace lsgp

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every name that the add-on gives to something in Blender or on a mesh."""
+
+EXTENSION = __package__.rpartition(".")[0]
+"""The Python package of the add-on, by which Blender knows it."""
+
+CONE_GROUP = "uv_cones"
+"""Default vertex group; a weight above 0.5 marks a cone."""
+
+CONE_ANGLE_ATTRIBUTE = "uv_cone_angle"
+"""Float attribute on points: total angle of a cone in radians, 0 for automatic."""
+
+CONE_ANGLE_KIND_ATTRIBUTE = "uv_cone_angle_kind"
+"""Integer attribute on points: the origin of that angle, a `cone_angles.Kind`; prescribed where it is missing."""
+
+SEAM_COST_GROUP = "uv_seam_cost"
+"""Vertex group that keeps cuts away where its weights are high, and draws them near where they are low."""
+
+IMPORTANCE_GROUP = "uv_importance"
+"""Default vertex group of importance weights; Blender's own name for it."""
+
+LOG_SCALE_ATTRIBUTE = "uv_cone_log_scale"
+"""Float attribute on points: predicted logarithm of the length scale, with mean 0 on every connected part."""
+
+GAIN_ATTRIBUTE = "uv_cone_gain"
+"""Float attribute on points: by how much one more cone there would lower the predicted L2 stretch of its part."""
+
+NEW_UV_LAYER = "UVMap"
+"""UV layer created on a mesh that has none; Blender's own name for it."""
+
+DISTORTION_ATTRIBUTES = {
+    "conformal": "uv_cone_distortion_conformal",
+    "area": "uv_cone_distortion_area",
+    "stretch": "uv_cone_distortion_stretch",
+}
+"""Float attributes on faces, by the library's name of the measure."""
+
+TEXTURE = "Cone Unwrap Texture"
+"""Material and image that show the UV map in place of a mesh's materials."""
+
+AUTO_UNWRAP = "uv.cone_auto_unwrap"
+UNWRAP = "uv.cone_unwrap"
+MARK = "mesh.cone_mark"
+SELECT = "mesh.cone_select"
+EDIT = "mesh.cone_edit"
+PLACE = "mesh.cone_place"
+SET_ANGLE = "mesh.cone_set_angle"
+SPREAD_REST = "mesh.cone_spread_rest"
+SNAP_ANGLES = "mesh.cone_snap_angles"
+SUGGEST = "mesh.cone_suggest"
+SELECT_ONE = "mesh.cone_select_one"
+UPDATE_TABLE = "mesh.cone_update_table"
+PREVIEW = "mesh.cone_preview"
+SELECT_REPORTED = "mesh.cone_select_reported"
+MEASURE = "uv.cone_measure"
+TEXTURE_SHOW = "uv.cone_texture"
+CLEAR_DATA = "mesh.cone_clear_data"
+
+COMMAND = "cone_unwrap"
+"""Command of Blender's command line."""

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Islands on their way to the packer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True)
+class Islands:
+    """Islands of one mesh that are to be packed.
+
+    triangles: (m, 3) int32, vertices. corner_uv: (m, 3, 2) float64. island: (m,) int32, at least 0.
+    pinned: (m, 3) bool; an island with a pinned corner is not moved.
+    aspect: width over height of the image that the coordinates are for; 1 where they are not corrected for one.
+    """
+
+    triangles: NDArray[np.int32]
+    corner_uv: NDArray[np.float64]
+    island: NDArray[np.int32]
+    pinned: NDArray[np.bool_]
+    aspect: float

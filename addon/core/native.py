@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The computing library ``lsgp``; None where it cannot be loaded.
+
+PROBLEM is then one sentence for the artist and REASON Python's message. All other modules take ``lsgp`` from here, so
+that the add-on registers and can say what is wrong where the bundled wheel is for another Python or is damaged.
+"""
+
+import platform
+import sys
+from importlib import import_module, metadata
+from types import ModuleType
+
+NATIVE_FILES = (".so", ".dylib", ".pyd")
+
+
+def _require_whole_native_files() -> None:
+    """Raise ImportError where a native file is missing or its size is not the one recorded in its wheel.
+
+    Loading a truncated library would crash Blender instead of raising an error.
+    """
+    for file in metadata.files("lsgp") or ():
+        if file.suffix in NATIVE_FILES and file.size not in (None, file.locate().stat().st_size):
+            raise ImportError(f"{file} is damaged: {file.locate().stat().st_size} of {file.size} bytes")
+
+
+try:
+    _require_whole_native_files()
+    import lsgp
+except (ImportError, OSError) as error:
+    lsgp = None
+    REASON = str(error)
+    PROBLEM = (
+        "Cone Unwrap cannot load its computing library; install the extension built for "
+        f"Python {sys.version_info.major}.{sys.version_info.minor} on {platform.system()} {platform.machine()} "
+        "and restart Blender"
+    )
+else:
+    REASON = PROBLEM = ""
+
+
+def part(name: str) -> ModuleType:
+    """A module of the library that is imported only where it is used."""
+    return import_module(f"lsgp.{name}")
+
+
+def library_state() -> str:
+    """One sentence: the version of the computing library and where it was loaded from, or that it is missing."""
+    return PROBLEM or f"Computing library {lsgp.__version__} loaded from {lsgp.__file__}"

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The arrays that all computations start from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import lsgp
+
+    from .cone_angles import ConeAngles
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """Faces of one mesh, as triangles, with everything that is read from Blender about them.
+
+    Vertex indices are those of the mesh, so that the library's errors name Blender's vertices.
+
+    surface: all vertices (the library ignores those without a triangle), the triangles that Blender draws the faces
+        with, the edges of the faces, and the marked seams among them. In the shape that the object's transform gives
+        them, at the size of the mesh.
+    triangle_loops: (m, 3) int32, mesh loop of each triangle corner.
+    triangle_faces: (m,) int32, mesh face of each triangle.
+    face_loop_start: (f,) int32, for all faces of the mesh.
+    vertex_used: (n,) bool, the vertices of the region's faces.
+    corner_uv: (m, 3, 2) float64, the active UV layer; NaN where the mesh has none.
+    pinned: (m, 3) bool, the corners whose UV is pinned in that layer.
+    cones: all cones of the mesh, also those outside the region.
+    sharp: (s, 2) int32, the edges marked sharp.
+    cut_paint: (n,) float64, from 0 where cuts should run to 1 where they should not; None without such a vertex group.
+    axes: (3, 3), the rotation from the region's shape to the world: a direction in the world, times it, is one here.
+    weights: (n,) float64, importance weights; None without such a vertex group, or where they were not asked for.
+    image_aspect: width over height of the image in the mesh's material; 1 where there is none.
+    object_scale: by how much the object's transform scales lengths, on the average; 0 where it leaves none.
+    """
+
+    surface: lsgp.Surface
+    triangle_loops: NDArray[np.int32]
+    triangle_faces: NDArray[np.int32]
+    face_loop_start: NDArray[np.int32]
+    vertex_used: NDArray[np.bool_]
+    corner_uv: NDArray[np.float64]
+    pinned: NDArray[np.bool_]
+    cones: ConeAngles
+    sharp: NDArray[np.int32]
+    cut_paint: NDArray[np.float64] | None
+    axes: NDArray[np.float64]
+    weights: NDArray[np.float64] | None
+    image_aspect: float
+    object_scale: float
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether these are all faces of the mesh."""
+        return len(np.unique(self.triangle_faces)) == len(self.face_loop_start)
+
+    @property
+    def own_cones(self) -> ConeAngles:
+        """The cones in the region."""
+        return self.cones.on(self.vertex_used)

@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Numbers in sentences."""
+
+from __future__ import annotations
+
+import math
+
+
+def counted(number: int, noun: str, plural: str | None = None) -> str:
+    """Number and noun: "1 cone", "8 cones", "2 meshes".  plural: where it is not the noun with an s."""
+    return f"{number} {noun}" if number == 1 else f"{number} {plural or noun + 's'}"
+
+
+def degrees(angle: float, *, signed: bool = False) -> str:
+    """An angle in radians as text in degrees."""
+    shown = round(math.degrees(angle), 1) + 0.0  # never "-0.0"
+    return f"{shown:+.1f}°" if signed else f"{shown:.1f}°"

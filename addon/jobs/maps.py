@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Finished maps on their way to the mesh: final placement of the islands, report, writing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core import native
+from ..core.islands import Islands
+from ..mesh import reports
+from ..mesh.uv_write import write_uv
+from . import cells, packing
+from .unwrapping import Unwrapped
+
+TEXTURE_SIZE = 1024
+"""Side, in texels, of the texture for which errors of seams are reported."""
+
+FILLED = 0.6
+"""Part of the square that packed islands usually fill."""
+
+
+@dataclass(frozen=True, slots=True)
+class PackSettings:
+    """How islands are placed: packed, those of all objects together, or not; by whole cells or not.
+
+    margin_method, margin: as of `packing.pack`.
+    """
+
+    pack: bool
+    by_cells: bool
+    margin_method: str
+    margin: float
+
+
+def packing_of_preset(preset: str, margin: float, *, by_cells: bool) -> PackSettings:
+    """How the islands of all objects are packed by a preset of `lsgp.auto_unwrap`.  margin, by_cells: as above."""
+    # The exact margin takes several passes, which are for textures that are computed to the texel.
+    return PackSettings(True, by_cells, packing.EXACT if preset == "bake" else "ADD", margin)
+
+
+def final_layouts(solved: Sequence[Unwrapped], settings: PackSettings) -> list[NDArray[np.float64]]:
+    """The coordinates of each map as they are to be written, (m, 3, 2) arrays.  Raises Refused."""
+    if not settings.pack or not solved:
+        return [unwrapped.corner_uv for unwrapped in solved]
+    if settings.by_cells:
+        return cells.pack(solved)
+    packed = packing.pack(_with_one_density(solved), settings.margin_method, settings.margin)
+    layouts = [unwrapped.corner_uv.copy() for unwrapped in solved]
+    for unwrapped, layout, uv in zip(solved, layouts, packed, strict=True):
+        layout[unwrapped.result.solved] = uv
+    return layouts
+
+
+def _with_one_density(solved: Sequence[Unwrapped]) -> list[Islands]:
+    """The islands of each map, at one scale for all objects; those with pins keep theirs.
+
+    Together they have about the area that they will have, so that a margin that is added before the packer scales them
+    is about what was asked for.
+    """
+    sizes = np.array([_size_on_the_surface(unwrapped) for unwrapped in solved])
+    sizes *= np.sqrt(FILLED / (sizes**2).sum())
+    parts = []
+    for unwrapped, size in zip(solved, sizes, strict=True):
+        part = unwrapped.islands()
+        scale = size / np.sqrt(_area(part.corner_uv))
+        moved = ~np.isin(part.island, part.island[part.pinned.any(axis=1)])
+        parts.append(replace(part, corner_uv=np.where(moved[:, None, None], scale * part.corner_uv, part.corner_uv)))
+    return parts
+
+
+def _size_on_the_surface(unwrapped: Unwrapped) -> float:
+    """Square root of the area of the triangles of a map, with the object's scale."""
+    surface = unwrapped.region.surface
+    corners = surface.positions[surface.triangles[unwrapped.result.solved]]
+    return float(np.sqrt(_area(corners))) * (unwrapped.region.object_scale or 1.0)
+
+
+def _area(corners: NDArray[np.float64]) -> float:
+    """Of triangles, (m, 3, 2) or (m, 3, 3)."""
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    squared = (first**2).sum(axis=1) * (second**2).sum(axis=1) - (first * second).sum(axis=1) ** 2
+    return float(np.sqrt(np.maximum(squared, 0.0)).sum()) / 2
+
+
+def write_map(obj: bpy.types.Object, unwrapped: Unwrapped, corner_uv: NDArray[np.float64]) -> None:
+    """Write the coordinates, (m, 3, 2), and store the report on them."""
+    report = reports.joined(reports.find(obj.data), report_on(unwrapped), unwrapped.region)
+    write_uv(obj, unwrapped.region, unwrapped.result.solved, corner_uv)
+    reports.store(obj.data, report)
+
+
+def report_on(unwrapped: Unwrapped) -> reports.Report:
+    """What is kept of a finished map."""
+    result, region = unwrapped.result, unwrapped.region
+    certificate = None
+    if result.seamless is not None:
+        certificate = native.lsgp.certificate.certificate(result.seamless, TEXTURE_SIZE)
+    return reports.Report(
+        paths=[path.tolist() for path in native.lsgp.split_into_paths(result.cut_edges, result.cones)],
+        cones=result.cones.tolist(),
+        cone_angles=result.cone_angles.tolist(),
+        flipped=np.unique(region.triangle_faces[result.flipped]).tolist(),
+        overlapping=np.unique(region.triangle_faces[result.overlapping]).tolist(),
+        faces=len(np.unique(region.triangle_faces[result.solved])),
+        islands=int(result.island.max()) + 1,
+        distortion=asdict(result.distortion),
+        seams=asdict(result.seams),
+        overlap_area=result.overlap_area,
+        certificate=certificate,
+    )

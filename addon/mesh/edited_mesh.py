@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reads a mesh in edit mode."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import bmesh
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from .arrays import rows
+from .mesh_reader import FloatArray, MeshReader, triangulated
+
+
+class EditedMesh(MeshReader):
+    """A mesh in edit mode, read from its bmesh. Reading all elements takes long, a few are quick."""
+
+    def __init__(self, mesh: bpy.types.Mesh) -> None:
+        self._mesh = mesh
+        self._bm = bmesh.from_edit_mesh(mesh)
+        for sequence in (self._bm.verts, self._bm.edges, self._bm.faces):
+            sequence.ensure_lookup_table()
+        self._bm.verts.index_update()
+
+    def size(self) -> tuple[int, int, int]:
+        return len(self._bm.verts), len(self._bm.edges), len(self._bm.faces)
+
+    def positions(self, vertices: Sequence[int]) -> FloatArray:
+        return rows([self._bm.verts[v].co[:] for v in vertices], 3)
+
+    def all_positions(self) -> FloatArray:
+        return rows([v.co[:] for v in self._bm.verts], 3)
+
+    def on_border(self, vertices: Sequence[int]) -> list[bool]:
+        return [self._bm.verts[v].is_boundary for v in vertices]
+
+    def seams(self) -> NDArray[np.int32]:
+        return rows([[v.index for v in edge.verts] for edge in self._bm.edges if edge.seam], 2, np.int32)
+
+    def triangles(self, faces: Sequence[int]) -> list[tuple[int, int, int]]:
+        found = []
+        for face in faces:
+            vertices = self._bm.faces[face].verts
+            found += triangulated([v.index for v in vertices], [v.co for v in vertices])
+        return found
+
+    def all_triangles(self) -> NDArray[np.int32]:
+        return self._vertices(self._bm.calc_loop_triangles())
+
+    def drawn_triangles(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        self._bm.faces.index_update()
+        drawn = [triangle for triangle in self._bm.calc_loop_triangles() if not triangle[0].face.hide]
+        return self._vertices(drawn), np.array([triangle[0].face.index for triangle in drawn], np.int32)
+
+    def corners(self, faces: Sequence[int]) -> tuple[list[int], FloatArray]:
+        layer = self._uv_layer()
+        loops = [loop for face in faces for loop in self._bm.faces[face].loops]
+        uv = [] if layer is None else [loop[layer].uv[:] for loop in loops]
+        return [loop.vert.index for loop in loops], np.array(uv, np.float32)
+
+    def side_normals(self, pairs: Sequence[tuple[int, int]]) -> FloatArray:
+        normals = np.full((len(pairs), 3), np.nan, np.float32)
+        for row, loop in enumerate(map(self._loop, pairs)):
+            if loop is not None:
+                normals[row] = loop.face.normal
+        return normals
+
+    def side_uv(self, pairs: Sequence[tuple[int, int]]) -> FloatArray:
+        uv = np.full((len(pairs), 2, 2), np.nan, np.float32)
+        layer = self._uv_layer()
+        for row, loop in enumerate(map(self._loop, pairs)):
+            if loop is not None and layer is not None:
+                uv[row] = loop[layer].uv, loop.link_loop_next[layer].uv
+        return uv
+
+    def weights(self, group: int, outside: float) -> NDArray[np.float64]:
+        deform = self._bm.verts.layers.deform.active
+        if deform is None:
+            return np.full(len(self._bm.verts), outside)
+        return np.array([vertex[deform].get(group, outside) for vertex in self._bm.verts], np.float64)
+
+    def point_values(self, name: str, item: str, vertices: Sequence[int]) -> list[float]:
+        layer = getattr(self._bm.verts.layers, item.lower()).get(name)
+        return [0 if layer is None else self._bm.verts[vertex][layer] for vertex in vertices]
+
+    def face_values(self, name: str) -> FloatArray | None:
+        layer = self._bm.faces.layers.float.get(name)
+        return None if layer is None else np.array([face[layer] for face in self._bm.faces], np.float32)
+
+    def _uv_layer(self) -> bmesh.types.BMLayerItem | None:
+        active = self._mesh.uv_layers.active
+        return None if active is None else self._bm.loops.layers.uv.get(active.name)
+
+    def _vertices(self, triangles: Sequence[Sequence[bmesh.types.BMLoop]]) -> NDArray[np.int32]:
+        return rows([[loop.vert.index for loop in triangle] for triangle in triangles], 3, np.int32)
+
+    def _loop(self, pair: tuple[int, int]) -> bmesh.types.BMLoop | None:
+        """The visible loop that runs along a directed edge."""
+        first, second = (self._bm.verts[v] for v in pair)
+        edge = self._bm.edges.get((first, second))
+        if edge is None:
+            return None
+        return next((loop for loop in edge.link_loops if loop.vert == first and not loop.face.hide), None)

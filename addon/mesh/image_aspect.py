@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The aspect ratio of a mesh's image texture, determined as in Blender's own unwrap."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..core.versions import has_nodes
+from .texture import material_of
+
+
+def image_aspect(obj: bpy.types.Object) -> float:
+    """Width over height of the image in the material of the active face; 1 where there is none."""
+    faces = obj.data.polygons
+    # As in Blender, the first face stands in where none is active.
+    face = faces[faces.active if 0 <= faces.active < len(faces) else 0]
+    slots = len(obj.material_slots)
+    material = material_of(obj, min(face.material_index, slots - 1)) if slots else None
+    if material is None or not has_nodes(material):
+        return 1.0
+    image = getattr(_active_texture(material.node_tree), "image", None)
+    if image is None or not all(image.size):
+        return 1.0
+    width, height = (size * aspect for size, aspect in zip(image.size, image.display_aspect, strict=True))
+    return width / height
+
+
+def _active_texture(tree: bpy.types.NodeTree) -> bpy.types.Node | None:
+    """The texture node that the viewport shows, in this tree or in one of its groups; otherwise any texture node."""
+    shown = [node for node in tree.nodes if node.show_texture]
+    if shown:
+        return next((node for node in shown if node == tree.nodes.active), shown[-1])
+    groups = [node for node in tree.nodes if node.type == "GROUP" and node.node_tree is not None]
+    for group in sorted(groups, key=lambda node: node != tree.nodes.active):
+        found = _active_texture(group.node_tree)
+        if found is not None:
+            return found
+    return next((node for node in tree.nodes if node.type in {"TEX_IMAGE", "TEX_ENVIRONMENT"}), None)

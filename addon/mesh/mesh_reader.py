@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What can be read of a mesh, in edit mode and in object mode alike."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+from mathutils.geometry import tessellate_polygon
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float32]
+
+
+class MeshReader(Protocol):
+    """Reads a mesh of n vertices and f faces. To be used at once, before anything changes the mesh."""
+
+    def size(self) -> tuple[int, int, int]:
+        """Numbers of vertices, edges and faces."""
+
+    def positions(self, vertices: Sequence[int]) -> FloatArray:
+        """(k, 3) positions of vertices."""
+
+    def all_positions(self) -> FloatArray:
+        """(n, 3) positions of all vertices."""
+
+    def on_border(self, vertices: Sequence[int]) -> list[bool]:
+        """Which of the vertices have an edge with a single face."""
+
+    def seams(self) -> NDArray[np.int32]:
+        """(s, 2) vertex pairs of the edges marked as seams."""
+
+    def triangles(self, faces: Sequence[int]) -> list[tuple[int, int, int]]:
+        """Vertices of triangles that cover these faces."""
+
+    def all_triangles(self) -> NDArray[np.int32]:
+        """(m, 3) vertices of triangles that cover all faces."""
+
+    def drawn_triangles(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        """(t, 3) vertices and (t,) faces of triangles that cover what Blender draws: no hidden faces in edit mode."""
+
+    def corners(self, faces: Sequence[int]) -> tuple[list[int], FloatArray]:
+        """(c,) vertices and (c, 2) UVs in the active layer of the corners of faces; (0,) UVs without a layer."""
+
+    def side_normals(self, pairs: Sequence[tuple[int, int]]) -> FloatArray:
+        """(k, 3) normal of the face to the left of each directed edge; NaN where there is none."""
+
+    def side_uv(self, pairs: Sequence[tuple[int, int]]) -> FloatArray:
+        """(k, 2, 2) UVs of both ends of each directed edge in the face to its left; NaN where there is none."""
+
+    def weights(self, group: int, outside: float) -> NDArray[np.float64]:
+        """(n,) weight of each vertex in the vertex group with this index, and of those outside it."""
+
+    def point_values(self, name: str, item: str, vertices: Sequence[int]) -> list[float]:
+        """(k,) values of a point attribute of type "FLOAT" or "INT" at vertices; 0 where there is no such attribute."""
+
+    def face_values(self, name: str) -> FloatArray | None:
+        """(f,) values of a float attribute on faces; None where there is no such attribute."""
+
+
+def triangulated(vertices: list[int], positions: list) -> list[tuple[int, int, int]]:
+    """Vertices of triangles that cover one face."""
+    if len(vertices) == 3:
+        return [tuple(vertices)]
+    return [tuple(vertices[i] for i in triangle) for triangle in tessellate_polygon([positions])]

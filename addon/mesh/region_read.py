@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From Blender to the arrays of computations: everything that is read about a mesh's faces is read here, at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum, auto
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core import native
+from ..core.cone_angles import ConeAngles
+from ..core.errors import Refused
+from ..core.identifiers import SEAM_COST_GROUP
+from ..core.region import Region
+from .angles import angles_in
+from .cones import weights_in
+from .image_aspect import image_aspect
+from .reader import readable_mesh
+from .stored_mesh import StoredMesh
+from .subdivided import places_on_subdivision
+
+# Ratios of the sizes of an object's axes, which Blender has in single precision.
+FLAT = 1e-6
+UNIFORM = 1e-5
+
+
+class Faces(Enum):
+    """Which faces of a mesh to read."""
+
+    ALL = auto()
+    SELECTED = auto()
+    """The selected, visible ones in edit mode; all in object mode."""
+    UV_SELECTED = auto()
+    """Of the selected ones those with all UVs selected in the UV editor."""
+
+
+@dataclass(frozen=True, slots=True)
+class Groups:
+    """The vertex groups to read: that of the cones and that of importance weights; None for neither."""
+
+    cones: str | None = None
+    weights: str | None = None
+
+
+def read_region(obj: bpy.types.Object, faces: Faces, groups: Groups, *, subdivided: bool = False) -> Region | None:
+    """The faces of an object's mesh; None where none of them is selected.
+
+    subdivided: with its vertices where the Subdivision Surface modifier puts them.
+    Raises Refused where the mesh has no faces or is linked from another file.
+    """
+    require_editable(obj)
+    with readable_mesh(obj) as mesh:
+        places = places_on_subdivision(obj, mesh) if subdivided else None
+        return build_region(obj, StoredMesh(mesh), faces, groups, places)
+
+
+def build_region(
+    obj: bpy.types.Object,
+    mesh: StoredMesh,
+    faces: Faces,
+    groups: Groups,
+    places: NDArray[np.float32] | None = None,
+) -> Region | None:
+    """As `read_region`, of a mesh that is readable already.  places: (n, 3) of its vertices; None for those it has."""
+    chosen = _chosen_faces(mesh, faces, obj.mode)
+    if not chosen.any():
+        if faces is Faces.ALL or obj.mode != "EDIT":
+            raise Refused("the mesh has no faces; add some or select another object")
+        return None
+    inside = chosen[mesh.triangle_faces]
+    triangle_loops = mesh.triangle_loops[inside]
+    triangles = mesh.loop_vertices[triangle_loops]
+    vertex_used = np.zeros(len(mesh.places), bool)
+    vertex_used[triangles] = True
+    edge_used = np.zeros(len(mesh.edges), bool)
+    edge_used[mesh.loop_edges[chosen[mesh.loop_faces]]] = True
+    places, axes, size = _in_object_shape((mesh.places if places is None else places).astype(np.float64), obj)
+    uv = np.full((len(mesh.loop_vertices), 2), np.nan) if mesh.uv is None else mesh.uv.astype(np.float64)
+    return Region(
+        surface=native.lsgp.Surface(
+            places,
+            triangles,
+            edges=mesh.edges[edge_used],
+            seams=mesh.edges[edge_used & mesh.is_seam],
+        ),
+        triangle_loops=triangle_loops,
+        triangle_faces=mesh.triangle_faces[inside],
+        face_loop_start=mesh.loop_start,
+        vertex_used=vertex_used,
+        corner_uv=uv[triangle_loops],
+        pinned=mesh.pinned[triangle_loops],
+        cones=ConeAngles.none() if groups.cones is None else angles_in(obj, groups.cones, mesh),
+        sharp=mesh.edges[edge_used & mesh.is_sharp],
+        cut_paint=weights_in(obj, SEAM_COST_GROUP, mesh, outside=0.5),
+        axes=axes,
+        weights=None if groups.weights is None else weights_in(obj, groups.weights, mesh),
+        image_aspect=image_aspect(obj),
+        object_scale=size,
+    )
+
+
+def _in_object_shape(
+    places: NDArray[np.float64], obj: bpy.types.Object
+) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+    """The places as the object's transform stretches them, along the mesh's axes, how it turns these, (3, 3), and how
+    much it enlarges them.
+
+    A transform that enlarges alike in all directions changes no shape, and one that flattens leaves none: then the
+    places are those of the mesh.
+    """
+    turned, sizes, axes = np.linalg.svd(np.array(obj.matrix_world.to_3x3(), np.float64))
+    if sizes[-1] <= FLAT * sizes[0] or sizes[0] <= (1 + UNIFORM) * sizes[-1]:
+        return places, turned @ axes, obj.matrix_world.median_scale
+    size = float(np.cbrt(sizes.prod()))
+    return places @ (axes.T * (sizes / size)) @ axes, turned @ axes, size
+
+
+def require_editable(obj: bpy.types.Object) -> None:
+    """Raise Refused where the mesh belongs to another file."""
+    if not obj.data.is_editable:
+        raise Refused("the mesh is linked from another file and cannot be changed; make it local (Object > Relations)")
+
+
+def _chosen_faces(mesh: StoredMesh, faces: Faces, mode: str) -> NDArray[np.bool_]:
+    if faces is Faces.ALL or mode != "EDIT":
+        chosen = np.ones(len(mesh.loop_start), bool)
+    else:
+        chosen = mesh.is_selected & ~mesh.is_hidden
+    if faces is Faces.UV_SELECTED:
+        chosen[mesh.loop_faces[~mesh.uv_selected]] = False
+    return chosen

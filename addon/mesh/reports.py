@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The report on the last unwrap of a mesh, stored with the mesh so that it can also be shown after loading a file.
+
+A report is looked up by the digest of its UV map: it is not shown once the map has changed, and shown again when undo
+or redo restore the map.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import OrderedDict
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import bpy
+import numpy as np
+
+from ..core.region import Region
+from . import changes
+from .uv_digest import uv_digest
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """What is kept of a map, as lists and numbers that fit into JSON. Indices are those of the mesh.
+
+    paths: the cuts, each as the vertices from node to node. cones, cone_angles: as imposed, in radians. flipped,
+    overlapping: faces. faces: how many were unwrapped. islands, distortion, seams, overlap_area, certificate: as in the
+    library's result of the last unwrap; certificate is None for layouts that are not seamless.
+    """
+
+    paths: list[list[int]]
+    cones: list[int]
+    cone_angles: list[float]
+    flipped: list[int]
+    overlapping: list[int]
+    faces: int
+    islands: int
+    distortion: dict[str, float]
+    seams: dict[str, float]
+    overlap_area: float
+    certificate: dict[str, Any] | None
+
+
+# Reports since Blender was started, by digest; undo in edit mode restores UVs, but no properties of the mesh.
+_known: OrderedDict[str, Report] = OrderedDict()
+KNOWN = 64
+
+# By session_uid of the mesh: its version and the report that was current then.
+_current: dict[int, tuple[tuple[int, int], Report | None]] = {}
+
+
+def joined(earlier: Report | None, report: Report, region: Region) -> Report:
+    """The report on a region, with what the earlier report says about all other faces."""
+    if earlier is None:
+        return report
+    again, faces = region.vertex_used, np.zeros(len(region.face_loop_start), bool)
+    faces[region.triangle_faces] = True
+    kept = [i for i, cone in enumerate(earlier.cones) if not again[cone]]
+    return replace(
+        report,
+        paths=[path for path in earlier.paths if not again[path].all()] + report.paths,
+        cones=[earlier.cones[i] for i in kept] + report.cones,
+        cone_angles=[earlier.cone_angles[i] for i in kept] + report.cone_angles,
+        flipped=[face for face in earlier.flipped if not faces[face]] + report.flipped,
+        overlapping=[face for face in earlier.overlapping if not faces[face]] + report.overlapping,
+    )
+
+
+def store(mesh: bpy.types.Mesh, report: Report) -> None:
+    """Keep the report with the mesh and its current UV map."""
+    digest = uv_digest(mesh)
+    _remember(digest, report)
+    mesh.cone_unwrap_report = f"{digest}\n{json.dumps(asdict(report))}"
+    changes.mark_changed(mesh)
+
+
+def current(mesh: bpy.types.Mesh) -> Report | None:
+    """The report on the active UV map; None where there is none or the map has changed since."""
+    version = changes.version(mesh)
+    kept = _current.get(mesh.session_uid)
+    if kept is None or kept[0] != version:
+        kept = _current[mesh.session_uid] = version, find(mesh)
+    return kept[1]
+
+
+def find(mesh: bpy.types.Mesh) -> Report | None:
+    """As `current`, but without relying on Blender to have noticed all changes."""
+    digest = uv_digest(mesh)
+    stored, _, text = mesh.cone_unwrap_report.partition("\n")
+    if stored == digest and digest not in _known:
+        _remember(digest, _parsed(text))
+    return _known.get(digest)
+
+
+def forget(mesh: bpy.types.Mesh) -> bool:
+    """Remove the report from the mesh.  Returns whether there was one."""
+    present = bool(mesh.cone_unwrap_report)
+    _known.pop(uv_digest(mesh), None)
+    mesh.property_unset("cone_unwrap_report")
+    changes.mark_changed(mesh)
+    return present
+
+
+def _remember(digest: str, report: Report | None) -> None:
+    _known[digest] = report
+    _known.move_to_end(digest)
+    while len(_known) > KNOWN:
+        _known.popitem(last=False)
+
+
+def _parsed(text: str) -> Report | None:
+    """None where another version of the add-on wrote it."""
+    try:
+        return Report(**json.loads(text))
+    except (TypeError, ValueError):
+        return None
+
+
+def register() -> None:
+    bpy.types.Mesh.cone_unwrap_report = bpy.props.StringProperty(
+        name="Cone Unwrap Report", description="The result of the last unwrap from cones", options={"HIDDEN"}
+    )
+
+
+def unregister() -> None:
+    del bpy.types.Mesh.cone_unwrap_report
+    _known.clear()
+    _current.clear()

@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reads a mesh in object mode, or a copy of one in edit mode."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core import versions
+from .arrays import read_array
+from .mesh_reader import FloatArray, MeshReader, triangulated
+
+
+class StoredMesh(MeshReader):
+    """A mesh out of edit mode. Each array is read once, when it is first asked for.
+
+    l and e are the numbers of loops and edges.
+    """
+
+    def __init__(self, mesh: bpy.types.Mesh) -> None:
+        self._mesh = mesh
+
+    # Arrays of all elements
+
+    @cached_property
+    def places(self) -> FloatArray:
+        """(n, 3) positions of the vertices."""
+        return read_array(self._mesh.vertices, "co", np.float32, 3)
+
+    @cached_property
+    def edges(self) -> NDArray[np.int32]:
+        """(e, 2) vertices of the edges."""
+        return read_array(self._mesh.edges, "vertices", np.int32, 2)
+
+    @cached_property
+    def is_seam(self) -> NDArray[np.bool_]:
+        """(e,)"""
+        return read_array(self._mesh.edges, "use_seam", bool)
+
+    @cached_property
+    def is_sharp(self) -> NDArray[np.bool_]:
+        """(e,)"""
+        return read_array(self._mesh.edges, "use_edge_sharp", bool)
+
+    @cached_property
+    def loop_start(self) -> NDArray[np.int32]:
+        """(f,) first loop of each face."""
+        return read_array(self._mesh.polygons, "loop_start", np.int32)
+
+    @cached_property
+    def loop_total(self) -> NDArray[np.int32]:
+        """(f,) number of loops of each face."""
+        return read_array(self._mesh.polygons, "loop_total", np.int32)
+
+    @cached_property
+    def face_normals(self) -> FloatArray:
+        """(f, 3)"""
+        return read_array(self._mesh.polygons, "normal", np.float32, 3)
+
+    @cached_property
+    def is_selected(self) -> NDArray[np.bool_]:
+        """(f,)"""
+        return read_array(self._mesh.polygons, "select", bool)
+
+    @cached_property
+    def is_hidden(self) -> NDArray[np.bool_]:
+        """(f,)"""
+        return read_array(self._mesh.polygons, "hide", bool)
+
+    @cached_property
+    def loop_vertices(self) -> NDArray[np.int32]:
+        """(l,)"""
+        return read_array(self._mesh.loops, "vertex_index", np.int32)
+
+    @cached_property
+    def loop_edges(self) -> NDArray[np.int32]:
+        """(l,) edge from each loop's vertex to that of the next loop of the face."""
+        return read_array(self._mesh.loops, "edge_index", np.int32)
+
+    @cached_property
+    def loop_faces(self) -> NDArray[np.int64]:
+        """(l,)"""
+        return np.repeat(np.arange(len(self.loop_total)), self.loop_total)
+
+    @cached_property
+    def next_loops(self) -> NDArray[np.int64]:
+        """(l,) the following loop of the same face."""
+        following = np.arange(1, len(self.loop_vertices) + 1)
+        following[self.loop_start + self.loop_total - 1] = self.loop_start
+        return following
+
+    @cached_property
+    def triangle_loops(self) -> NDArray[np.int32]:
+        """(m, 3) loops of the triangles that Blender draws the faces with."""
+        self._mesh.calc_loop_triangles()
+        return read_array(self._mesh.loop_triangles, "loops", np.int32, 3)
+
+    @cached_property
+    def triangle_faces(self) -> NDArray[np.int32]:
+        """(m,) face of each of these triangles."""
+        self._mesh.calc_loop_triangles()
+        return read_array(self._mesh.loop_triangles, "polygon_index", np.int32)
+
+    @cached_property
+    def uv(self) -> FloatArray | None:
+        """(l, 2) of the active layer; None without one."""
+        layer = self._mesh.uv_layers.active
+        return None if layer is None else read_array(layer.uv, "vector", np.float32, 2)
+
+    @cached_property
+    def pinned(self) -> NDArray[np.bool_]:
+        """(l,) the loops whose UV is pinned in the active layer."""
+        layer, mesh = self._mesh.uv_layers.active, self._mesh
+        return np.zeros(len(mesh.loops), bool) if layer is None else versions.pinned_loops(mesh, layer.name)
+
+    @cached_property
+    def uv_selected(self) -> NDArray[np.bool_]:
+        """(l,) the loops whose UV is selected in a UV editor with its own selection; all without a layer."""
+        layer = self._mesh.uv_layers.active
+        return (
+            np.ones(len(self._mesh.loops), bool) if layer is None else versions.selected_loops(self._mesh, layer.name)
+        )
+
+    @cached_property
+    def _border(self) -> NDArray[np.bool_]:
+        """(n,) vertices of edges with a single face."""
+        border = np.zeros(len(self.places), bool)
+        faces_at = np.bincount(self.loop_edges, minlength=len(self.edges))
+        border[self.edges[faces_at == 1]] = True
+        return border
+
+    @cached_property
+    def _directed_edges(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """(l,) the directed edge of each loop as one number, ascending, and (l,) the loops in this order."""
+        keys = self._key(self.loop_vertices, self.loop_vertices[self.next_loops])
+        order = np.argsort(keys, kind="stable")
+        return keys[order], order
+
+    # As every reader
+
+    def size(self) -> tuple[int, int, int]:
+        return len(self._mesh.vertices), len(self._mesh.edges), len(self._mesh.polygons)
+
+    def positions(self, vertices: Sequence[int]) -> FloatArray:
+        return self.places[np.asarray(vertices, int)]
+
+    def all_positions(self) -> FloatArray:
+        return self.places
+
+    def on_border(self, vertices: Sequence[int]) -> list[bool]:
+        return self._border[np.asarray(vertices, int)].tolist()
+
+    def seams(self) -> NDArray[np.int32]:
+        return self.edges[self.is_seam]
+
+    def triangles(self, faces: Sequence[int]) -> list[tuple[int, int, int]]:
+        found = []
+        for face in faces:
+            vertices = self.loop_vertices[self.loop_start[face] :][: self.loop_total[face]]
+            found += triangulated(vertices.tolist(), self.places[vertices].tolist())
+        return found
+
+    def all_triangles(self) -> NDArray[np.int32]:
+        return self.loop_vertices[self.triangle_loops]
+
+    def drawn_triangles(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        return self.all_triangles(), self.triangle_faces
+
+    def corners(self, faces: Sequence[int]) -> tuple[list[int], FloatArray]:
+        # Only of these faces: to read all takes longer on large meshes.
+        active = self._mesh.uv_layers.active
+        stored = None if active is None else active.uv
+        loops = [loop for face in faces for loop in self._mesh.polygons[face].loop_indices]
+        uv = [] if stored is None else [stored[loop].vector[:] for loop in loops]
+        return [self._mesh.loops[loop].vertex_index for loop in loops], np.array(uv, np.float32)
+
+    def side_normals(self, pairs: Sequence[tuple[int, int]]) -> FloatArray:
+        loops = self._loops(pairs)
+        found = self.face_normals[self.loop_faces[loops]]
+        found[loops < 0] = np.nan
+        return found
+
+    def side_uv(self, pairs: Sequence[tuple[int, int]]) -> FloatArray:
+        loops = self._loops(pairs)
+        if self.uv is None:
+            return np.full((len(pairs), 2, 2), np.nan, np.float32)
+        found = self.uv[np.stack([loops, self.next_loops[loops]], axis=1)]
+        found[loops < 0] = np.nan
+        return found
+
+    def weights(self, group: int, outside: float) -> NDArray[np.float64]:
+        weights = np.full(len(self._mesh.vertices), outside)
+        for vertex in self._mesh.vertices:
+            for entry in vertex.groups:
+                if entry.group == group:
+                    weights[vertex.index] = entry.weight
+        return weights
+
+    def point_values(self, name: str, item: str, vertices: Sequence[int]) -> list[float]:
+        attribute = self._mesh.attributes.get(name)
+        if attribute is None or (attribute.domain, attribute.data_type) != ("POINT", item):
+            return [0] * len(vertices)
+        values = read_array(attribute.data, "value", np.float32 if item == "FLOAT" else np.int32)
+        return values[np.asarray(vertices, int)].tolist()
+
+    def face_values(self, name: str) -> FloatArray | None:
+        attribute = self._mesh.attributes.get(name)
+        if attribute is None or (attribute.domain, attribute.data_type) != ("FACE", "FLOAT"):
+            return None
+        return read_array(attribute.data, "value", np.float32)
+
+    def _key(self, first: NDArray, second: NDArray) -> NDArray[np.int64]:
+        return first.astype(np.int64) * len(self.places) + second
+
+    def _loops(self, pairs: Sequence[tuple[int, int]] | NDArray) -> NDArray[np.int64]:
+        """(k,) the loop that runs along each directed edge, -1 where there is none."""
+        pairs = np.asarray(pairs, np.int64).reshape(-1, 2)
+        keys, order = self._directed_edges
+        if not len(keys):
+            return np.full(len(pairs), -1)
+        wanted = self._key(pairs[:, 0], pairs[:, 1])
+        place = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+        return np.where(keys[place] == wanted, order[place], -1)
+
+
+class FrozenMesh(StoredMesh):
+    """A mesh in edit mode of which nothing changes but the UVs, which are set as ``uv``; hidden faces are left out.
+
+    copy: of the mesh, out of edit mode; it may be removed afterwards.
+    """
+
+    def __init__(self, copy: bpy.types.Mesh) -> None:
+        super().__init__(copy)
+        # What is not read by now cannot be read later.
+        for name, member in vars(StoredMesh).items():
+            if isinstance(member, cached_property):
+                getattr(self, name)
+        drawn = ~self.is_hidden[self.triangle_faces]
+        self._drawn = self.all_triangles()[drawn], self.triangle_faces[drawn]
+
+    def drawn_triangles(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        return self._drawn
+
+    def _loops(self, pairs: Sequence[tuple[int, int]] | NDArray) -> NDArray[np.int64]:
+        loops = super()._loops(pairs)
+        return np.where(self.is_hidden[self.loop_faces[loops]], -1, loops)

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The add-on's preferences: the state of the computing library, and how the overlay looks."""
+
+import bpy
+
+from ..core import native
+from ..core.identifiers import EXTENSION
+from ..overlay.look import CUT_NAMES, OverlayLook
+
+
+class ConeUnwrapPreferences(OverlayLook, bpy.types.AddonPreferences):
+    bl_idname = EXTENSION
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.label(text=native.library_state(), icon="ERROR" if native.PROBLEM else "CHECKMARK")
+        if native.REASON:
+            layout.label(text=native.REASON)
+        layout.separator()
+        split = layout.row()
+        for heading, names in (
+            ("Cones", ("tip", "saddle", "flat", "automatic")),
+            ("Faces and Text", ("flipped", "overlapping", "text")),
+            ("Sizes", ("line_width", "cone_size", "text_size")),
+        ):
+            column = split.column()
+            column.label(text=heading)
+            for name in names:
+                column.prop(self, name)
+        layout.label(text="Cuts, in turn")
+        row = layout.row(align=True)
+        for name in CUT_NAMES:
+            row.prop(self, name, text="")

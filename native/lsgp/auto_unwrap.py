@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From a surface to a finished map in one call: presets, and cones where the given ones do not suffice."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import arguments
+from .api import Options, Pins, Placement, Progress, Result, Seamless, Surface, parameterize, place_cones
+from .arguments import IndexArray
+from .errors import Cancelled, Finding, LsgpError
+from .ledger import LedgerPart, build_ledger, surface_of_triangles
+
+Preset = Literal["paint", "tile", "bake"]
+
+# The stretch of the map that automatic cones are to reach, as of `place_cones`.
+TARGET = 1.05
+# Fraction of an unwrap's time that placing cones takes.
+PLACING = 0.6
+
+# Islands are split in all of them: what lies on itself can neither be painted nor baked, and the cuts of a seamless
+# layout show nowhere.
+_PRESETS: dict[Preset, Options] = {
+    "paint": Options(mode="low-stretch", overlaps="split"),
+    "tile": Options(seamless=Seamless(lattice="square"), overlaps="split"),
+    "bake": Options(mode="low-stretch", overlaps="split"),
+}
+
+
+def preset_options(preset: Preset) -> Options:
+    """The options of a preset of `auto_unwrap`; `dataclasses.replace` changes some of them.
+
+    preset: "paint" keeps lengths, for texture painting; "tile" makes a tileable texture of squares show no seam; "bake"
+        is for textures that are computed, and has the options of "paint": what differs is how a packer places islands.
+    No island of theirs overlaps itself.  Raises InputError.
+    """
+    arguments.require_choice("preset", preset, get_args(Preset))
+    return _PRESETS[preset]
+
+
+def auto_unwrap(
+    surface: Surface,
+    cones: ArrayLike = (),
+    angles: Sequence[float | None] | None = None,
+    *,
+    preset: Preset = "paint",
+    options: Options | None = None,
+    count: int | None = None,
+    pins: Pins | None = None,
+    progress: Progress | None = None,
+) -> Result:
+    """Unwrap a surface ready for use: cones are placed where they are missing, and what a preset asks for is done.
+
+    cones, angles: as of `parameterize`; they are kept. A component without cones gets as many as its stretch takes,
+        which may be none; one whose cones cannot take up its curvature gets more.
+    options: in place of `preset_options(preset)`. count: cones on each component that gets some, as of `place_cones`;
+        None: as few as bring the L2 stretch to 1.05.
+    pins, progress, errors and the result as of `parameterize`; `Result.cones` has the placed ones too, warnings those
+        of placing them.
+    """
+    chosen = preset_options(preset)
+    if options is not None:
+        arguments.require_type("options", options, Options)
+        chosen = options
+    arguments.require_callable(progress)
+    completed = complete_cones(surface, cones, angles, chosen, count, part_of(progress, 0.0, PLACING))
+    rest = part_of(progress, PLACING, 1.0)
+    return completed.told(parameterize(surface, completed.cones, completed.angles, chosen, pins, rest), chosen)
+
+
+@dataclass(frozen=True, slots=True)
+class CompletedCones:
+    """Given cones with those placed besides.
+
+    cones: (k,) int32, given ones first. angles: one each for `parameterize`, None = automatic. placement: of the
+    components that got some or were looked at; None where there is none. by_target: whether it was a stretch to reach,
+    and not a number, that said how many.
+    """
+
+    cones: IndexArray
+    angles: list[float | None]
+    placement: Placement | None
+    by_target: bool = True
+
+    def told(self, result: Result, options: Options) -> Result:
+        """The result of a map through these cones with the warnings of placing them, as far as they hold for it."""
+        if self.placement is None:
+            return result
+        findings = self.placement.warnings
+        if self.by_target and options.mode == "low-stretch" and result.distortion.l2_stretch <= TARGET:
+            # It speaks of the conformal map, and this one reaches the target.
+            findings = [finding for finding in findings if finding.code != "PLACEMENT_NOT_REACHED"]
+        return replace(result, warnings=joined_warnings(findings, result.warnings))
+
+
+def complete_cones(
+    surface: Surface,
+    cones: ArrayLike,
+    angles: Sequence[float | None] | None,
+    options: Options,
+    count: int | None = None,
+    progress: Progress | None = None,
+) -> CompletedCones:
+    """Cones for a map with these options: the given ones, and automatic ones where they do not suffice.
+
+    Components without cones get some as far as they need them, and so do those whose ledger does not close.
+    cones, angles, count, progress and errors as of `place_cones`.
+    """
+    given = arguments.index_vector("cones", cones)
+    held = list(arguments.cone_angles("angles", angles, len(given)))
+    if not len(given):
+        return _completed(given, held, options, count, _place(surface, given, held, options, count, progress))
+    lacking = [part for part in build_ledger(surface, given, held, options, gets_cones=True) if _lacks(part)]
+    if not lacking:
+        return CompletedCones(given, held, None)
+    triangles = np.sort(np.concatenate([part.triangles for part in lacking]))
+    present = np.unique(np.concatenate([part.cones for part in lacking]))
+    part = surface_of_triangles(surface, triangles)
+    try:
+        placed = _place(part, given[present], [held[i] for i in present], options, count, progress)
+    except Cancelled:
+        raise
+    except LsgpError:
+        # The map of the other components can still be made; it says what is wrong with these.
+        return CompletedCones(given, held, None)
+    placed = replace(placed, warnings=_renumbered(placed.warnings, triangles))
+    return _completed(given, held, options, count, placed)
+
+
+def joined_warnings(of_placement: Sequence[Finding], of_map: Sequence[Finding]) -> list[Finding]:
+    """Those of placing cones and of the map through them; what both say of the surface is said once."""
+    said = {(finding.code, finding.message) for finding in of_map}
+    return [finding for finding in of_placement if (finding.code, finding.message) not in said] + list(of_map)
+
+
+def part_of(progress: Progress | None, begin: float, end: float) -> Progress | None:
+    """Maps progress of one stage to the range from begin to end."""
+    return None if progress is None else lambda done: progress(begin + (end - begin) * done)
+
+
+def _place(
+    surface: Surface,
+    cones: IndexArray,
+    angles: list[float | None],
+    options: Options,
+    count: int | None,
+    progress: Progress | None,
+) -> Placement:
+    lattice = None if options.seamless is None else options.seamless.lattice
+    return place_cones(
+        surface, cones, angles, count=count, target=TARGET, lattice=lattice, seams=options.seams, progress=progress
+    )
+
+
+def _completed(
+    given: IndexArray, held: list[float | None], options: Options, count: int | None, placed: Placement
+) -> CompletedCones:
+    # The angles are for free borders, and for rules that keep them.
+    as_placed = options.prescription is None and options.border == "free"
+    angle_at = dict(zip(placed.cones.tolist(), placed.cone_angles.tolist(), strict=True)) if as_placed else {}
+    new = placed.cones[~np.isin(placed.cones, given)]
+    angles = [angle_at.get(cone, angle) for cone, angle in zip(given.tolist(), held, strict=True)]
+    angles += [angle_at.get(cone) for cone in new.tolist()]
+    return CompletedCones(np.concatenate([given, new]), angles, placed, by_target=count is None)
+
+
+def _renumbered(findings: Sequence[Finding], triangles: NDArray[np.integer]) -> list[Finding]:
+    """Findings on these triangles of a surface as findings on the surface, of which the others are a part as well."""
+    of_surface = []
+    for finding in findings:
+        elements = finding.elements
+        if elements.kind == "triangles":
+            elements = replace(elements, indices=triangles[elements.indices].astype(np.int32))
+        if finding.code != "ISOLATED_VERTICES":
+            of_surface.append(replace(finding, elements=elements))
+    return of_surface
+
+
+def _lacks(part: LedgerPart) -> bool:
+    return not len(part.cones) or not part.closes

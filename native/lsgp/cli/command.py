@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The command line: `lsgp unwrap`, `lsgp cones`, `lsgp batch` and `lsgp measure`.
+
+`run.exit_codes` has how they end. Files are written at the end, each as a whole or not at all.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from .. import __version__
+from ..api import measure_distortion
+from ..batch.command import EXIT_CODES, add_batch_options, add_scheduler_options, expand_options, run_batch
+from ..certificate import certificate_table
+from ..errors import Elements, Finding, InputError, LsgpError
+from ..io.mesh_formats import BY_KEY, formats_table
+from ..io.polygons import Triangulation
+from ..io.safe_files import is_standard_stream
+from ..io.side_files import UsageError
+from ..io.standard_streams import complain, hold_standard_descriptors, say
+from ..io.whole_files import write_whole
+from ..run import report as reports
+from ..run.exit_codes import OF_A_RUN, OK, REFUSED, USAGE, ended, flushed, listed
+from ..run.place_file import add_placement_options, place_file, summary
+from ..run.terminal import ProgressLine
+from ..run.unwrap_file import Run, out_of_memory, read_file, unwrap_file
+from ..run.unwrap_options import add_unwrap_options, texture_size
+from .output_paths import require_usable_paths
+
+INPUT = "OBJ, OFF, PLY, glTF, GLB or STL, or - for standard input; polygons of any size"
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a command line, without the program's name, and return its exit code."""
+    hold_standard_descriptors()
+    parser = _parser()
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    try:
+        args = parser.parse_args(expand_options(arguments) if arguments[:1] == ["batch"] else arguments)
+        if args.version or args.formats:
+            return ended(lambda: _say_about(args))
+        if args.command is None:
+            parser.error("a command is needed: unwrap, cones, batch or measure")
+    except UsageError as error:
+        complain(f"lsgp: error: {error}")
+        return USAGE
+    except SystemExit as end:  # argparse has said why
+        return flushed(int(end.code or 0))
+    return ended(lambda: args.run(args))
+
+
+def _say_about(args: argparse.Namespace) -> int:
+    say(sys.stdout, f"lsgp {__version__}" if args.version else formats_table())
+    return OK
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="lsgp",
+        description="Unwrap triangle and polygon meshes through cones, continuous across every cut.",
+        epilog=listed(OF_A_RUN),
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="store_true", help="print the version and exit")
+    parser.add_argument(
+        "--formats", action="store_true", help="print which formats of meshes are read and written here, and exit"
+    )
+    commands = parser.add_subparsers(dest="command", metavar="command")
+
+    unwrap = commands.add_parser(
+        "unwrap",
+        allow_abbrev=False,
+        help="write a mesh with texture coordinates",
+        description="Cut a mesh through its cones, unfold it, and write it with texture coordinates. OBJ, PLY and glTF "
+        "files written in the same format keep everything else that they have.",
+    )
+    unwrap.add_argument("input", metavar="IN", type=Path, help=INPUT)
+    unwrap.add_argument(
+        "-o",
+        "--output",
+        metavar="OUT",
+        type=Path,
+        help="OBJ, PLY, glTF or GLB, by its suffix, or - for standard output; the messages then go to standard error",
+    )
+    add_unwrap_options(unwrap)
+    unwrap.set_defaults(run=_reported, make=_unwrap)
+
+    cones = commands.add_parser(
+        "cones",
+        allow_abbrev=False,
+        help="place cones and find their angles",
+        description="Place cones where they lower the stretch of a mesh most, and write them with their angles into a "
+        "file for lsgp unwrap --cones.",
+    )
+    cones.add_argument("input", metavar="IN", type=Path, help=INPUT)
+    cones.add_argument(
+        "-o", "--output", metavar="OUT.json", type=Path, required=True, help="the file, or - for standard output"
+    )
+    add_placement_options(cones)
+    cones.set_defaults(run=_reported, make=_cones, in_place=False)
+
+    batch = commands.add_parser(
+        "batch",
+        allow_abbrev=False,
+        help="unwrap many meshes",
+        description="Unwrap all meshes of a folder or a list, or a single one, each as `lsgp unwrap` does it. Every "
+        "asset gets a line in DIR/journal.jsonl when it has ended; DIR/summary.txt and DIR/contact-sheet.html are "
+        "written at the end. In the names of files for --cones, --seam-edges and --importance, {} stands for a mesh's "
+        "path without its suffix.",
+        epilog=EXIT_CODES,
+    )
+    add_batch_options(batch)
+    add_scheduler_options(batch)
+    add_unwrap_options(batch)
+    batch.set_defaults(run=run_batch)
+
+    measure = commands.add_parser(
+        "measure",
+        allow_abbrev=False,
+        help="measure the texture coordinates of a file",
+        description="Print the quality of the texture coordinates of an OBJ, glTF or GLB file.",
+    )
+    measure.add_argument("input", metavar="FILE", type=Path, help="OBJ, glTF or GLB, or - for standard input")
+    measure.set_defaults(run=_reported, make=_measure, output=None)
+    for command in (unwrap, cones, measure):
+        command.add_argument(
+            "--format",
+            metavar="F",
+            choices=list(BY_KEY),
+            help="format of standard input and output and of files without a suffix: "
+            f"{', '.join(BY_KEY)} (default: by the first bytes, otherwise obj)",
+        )
+        command.add_argument("--report", metavar="FILE.json", type=Path, help="write a report, also when refused")
+    return parser
+
+
+def _reported(args: argparse.Namespace) -> int:
+    """Run the command; on a refusal say why and write that into the report."""
+    require_usable_paths(args)
+    run = Run()
+    try:
+        report, text = args.make(args, run)
+        code = OK
+    except LsgpError as error:
+        report, text, code = _refusal(error, run), None, REFUSED
+    except MemoryError:
+        report, text, code = _refusal(out_of_memory(), run), None, REFUSED
+    if args.report is not None:
+        write_whole(args.report, reports.to_json(report))
+    if text is not None and is_standard_stream(args.output):
+        complain(text)
+    elif text is not None:
+        say(sys.stdout, text)
+    return code
+
+
+def _refusal(error: LsgpError, run: Run) -> reports.Report:
+    complain(f"lsgp: refused: {error.code}: {error.message}{reports.where(error.elements, run.triangulation)}")
+    return reports.refusal_report(error, run.triangulation)
+
+
+def _unwrap(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
+    """The report and the lines for people."""
+    with ProgressLine(sys.stderr) as progress:
+        result = unwrap_file(args, run, progress, args.format)
+    _warn(result.warnings, run.triangulation)
+    islands = reports.island_count(result.island)
+    lines = [
+        f"{args.output}: {int(result.solved.sum())} of {len(result.solved)} triangles unwrapped, "
+        f"{len(result.cones)} cones, {islands} {'island' if islands == 1 else 'islands'}",
+        reports.quality_table(result),
+    ]
+    if result.seamless is not None:
+        lines.append(certificate_table(result.seamless, texture_size(args)))
+    report = reports.unwrap_report(result, run.placement, run.triangulation, run.stage_seconds, texture_size(args))
+    return report, "\n".join(lines)
+
+
+def _cones(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
+    with ProgressLine(sys.stderr) as progress:
+        placement = place_file(args, run, progress)
+    _warn(placement.warnings, run.triangulation)
+    return reports.placement_report(placement, run.triangulation, run.stage_seconds), summary(args, placement)
+
+
+def _measure(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
+    file = read_file(args.input, run, args.format, with_uv=True)
+    triangulation, corner_uv = file.triangulation, file.triangle_uv
+    without = np.flatnonzero(np.isnan(corner_uv).any(axis=(1, 2))).astype(np.int32)
+    if len(file.mesh.sizes) and len(without) == len(triangulation.triangles):
+        raise InputError("NO_UV", "The file has no texture coordinates to measure. Unwrap it first: lsgp unwrap.")
+    warnings = list(file.findings)
+    if len(without):
+        faces = Elements("faces", triangulation.polygons_of(without))
+        message = (
+            f"{len(faces.indices)} faces have no texture coordinates and were left out. Unwrap them to measure them."
+        )
+        warnings.append(Finding("FACES_WITHOUT_UV", message, faces))
+    with run.stage("measure_distortion"):
+        measurement = measure_distortion(file.surface(), corner_uv)
+    _warn(warnings, triangulation)
+    total = len(triangulation.triangles)
+    text = f"{args.input}: {total - len(without)} of {total} triangles measured\n{reports.quality_table(measurement)}"
+    return reports.measure_report(measurement, warnings, triangulation, run.stage_seconds), text
+
+
+def _warn(findings: Sequence[Finding], triangulation: Triangulation) -> None:
+    for finding in findings:
+        where = reports.where(finding.elements, triangulation)
+        complain(f"lsgp: warning: {finding.code}: {finding.message}{where}")

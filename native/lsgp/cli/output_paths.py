@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Checks of a command's paths before the work begins."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+
+from ..io.mesh_formats import BY_KEY, output_format
+from ..io.safe_files import is_same_file, is_standard_stream, require_separate, require_writable_kind
+from ..io.side_files import UsageError
+
+
+def require_usable_paths(args: argparse.Namespace) -> None:
+    """Raise UsageError or OSError where what a command writes cannot be written; with --in-place alone the output
+    becomes the input.
+
+    args: input, output and report, format, and whether the result may be written over the input.
+    """
+    if args.command == "unwrap":
+        _choose_output(args)
+        output_format(None if is_standard_stream(args.output) else args.output, args.format)
+        require_separate(args.input, args.output, in_place=args.in_place)
+    elif args.output is not None and args.output.suffix.lower()[1:] in BY_KEY:
+        raise UsageError(f"the output is JSON; name it .json, not '{args.output}'")
+    if args.report is not None:
+        for other, what in ((args.output, "the output"), (args.input, "the input")):
+            if other is not None and is_same_file(other, args.report):
+                raise UsageError(f"{what} and the report cannot be the same file")
+    for path in (args.output, args.report):
+        if path is not None and not is_standard_stream(path):
+            _require_writable(path)
+
+
+def _choose_output(args: argparse.Namespace) -> None:
+    if args.in_place and is_standard_stream(args.input):
+        raise UsageError("--in-place is for files; give the path of the input")
+    if args.output is None and not args.in_place:
+        raise UsageError("where to write to is missing: -o/--output, or --in-place")
+    if args.output is None:
+        args.output = args.input
+    if args.in_place and not is_same_file(args.input, args.output):
+        raise UsageError(f"--in-place writes over the input, not to '{args.output}'; leave out one of the two")
+
+
+def _require_writable(path: Path) -> None:
+    target = Path(os.path.realpath(path))
+    if target.is_dir():
+        raise UsageError(f"'{path}' is a folder")
+    if not target.parent.is_dir():
+        raise UsageError(f"there is no folder '{target.parent}' to write '{path.name}' to")
+    require_writable_kind(target)
+    # A file is replaced through its folder; a device is written to.
+    touched = [target] if target.exists() else []
+    if not touched or target.is_file():
+        touched.append(target.parent)
+    if not all(os.access(place, os.W_OK) for place in touched):
+        raise UsageError(f"'{path}' cannot be written")

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A mesh file in, the same file with texture coordinates out, in every format that `mesh_formats` has."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..api import Surface
+from ..errors import Finding, InputError
+from .mesh_formats import GLB, GLTF, OBJ, OFF, PLY, STL, Format, input_format, output_format
+from .mesh_gltf import edit_gltf, new_gltf, read_gltf
+from .mesh_obj import format_obj, read_obj
+from .mesh_obj_edit import edit_obj
+from .mesh_off import read_off
+from .mesh_ply import read_ply
+from .mesh_ply_write import format_ply
+from .mesh_stl import read_stl
+from .polygons import PolygonMesh, Triangulation, triangulate
+from .repeated_corners import without_repeated_corners
+from .safe_files import is_same_file, require_separate
+from .side_files import UsageError, read_regular
+from .whole_files import write_whole
+
+# By lower-case suffix: the files of a folder that batches take, and other files that hold meshes.
+READABLE = (".obj", ".off", ".ply")
+MESH_SUFFIXES = frozenset(READABLE) | {
+    *(".3ds", ".3mf", ".abc", ".blend", ".c4d", ".ctm", ".dae", ".dxf", ".fbx", ".glb", ".gltf", ".iges", ".igs"),
+    *(".lwo", ".ma", ".max", ".mb", ".mesh", ".msh", ".step", ".stl", ".stp", ".usd", ".usda", ".usdc", ".usdz"),
+    *(".vtk", ".vtp", ".vtu", ".wrl", ".x3d"),
+}
+GLTF_FORMS = (GLTF, GLB)
+NAMED_EXTRAS = 8
+
+
+@dataclass(frozen=True, eq=False)
+class MeshFile:
+    """A mesh file that has been read, with everything needed to write it again.
+
+    path: None for standard input. format, data: its format and its bytes.
+    mesh: its vertices and polygons. triangulation: their triangles, and which polygons and corners they are of.
+    findings: what was left out.
+    """
+
+    path: Path | None
+    format: Format
+    data: bytes
+    mesh: PolygonMesh
+    triangulation: Triangulation
+    findings: tuple[Finding, ...]
+
+    @property
+    def triangle_uv(self) -> NDArray[np.float64] | None:
+        """(m, 3, 2) the texture coordinates that the file has, NaN at corners without; None where its format is not
+        read with them or it was read without."""
+        return None if self.mesh.corner_uv is None else self.mesh.corner_uv[self.triangulation.corner]
+
+    def surface(self, seam_edges: ArrayLike = (), importance: ArrayLike | None = None) -> Surface:
+        """What the verbs of the library take.  Arguments and errors as of `Surface`."""
+        seams = np.asarray(seam_edges, np.int32).reshape(-1, 2)
+        return Surface(self.mesh.positions, self.triangulation.triangles, self.triangulation.edges, seams, importance)
+
+
+def read_mesh(path: str | os.PathLike[str], with_uv: bool = False) -> PolygonMesh:
+    """The vertices and polygons alone.  Raises as `read_mesh_file`."""
+    return parse_mesh(Path(path), read_regular(Path(path)), with_uv=with_uv)[1]
+
+
+def read_mesh_file(path: str | os.PathLike[str], with_uv: bool = False) -> MeshFile:
+    """Read a mesh file: OBJ, OFF, PLY, glTF, GLB; with the extra `formats` STL too.
+
+    Vertices are those of the file, in its order; of STL and glTF, which repeat them, each place once. Polygons are cut
+    into triangles.
+    with_uv: read texture coordinates as well, of OBJ and glTF.
+    Raises OSError; InputError: UNKNOWN_FORMAT, FORMAT_NOT_INSTALLED, MALFORMED_FILE, INDEX_OUT_OF_RANGE, BAD_FACE.
+    """
+    data = read_regular(Path(path))
+    form, mesh = parse_mesh(Path(path), data, with_uv=with_uv)
+    triangulation, findings = triangulated(mesh)
+    return MeshFile(Path(path), form, data, mesh, triangulation, findings)
+
+
+def write_mesh_file(
+    path: str | os.PathLike[str], file: MeshFile, corner_uv: ArrayLike, in_place: bool = False
+) -> list[Finding]:
+    """Write a mesh file with texture coordinates: OBJ, glTF, GLB; with the extra `formats` PLY too.
+
+    corner_uv: (m, 3, 2), one (u, v) per corner of the triangles of `file`; NaN where there is none.
+    in_place: the path may be that of `file` itself.
+
+    In the file's own format everything but the texture coordinates stays as it was; otherwise vertices and polygons
+    do, and what else the format cannot hold is in the findings returned. The file is written as a whole or not at all.
+    Raises OSError; InputError: WRONG_SHAPE, WRONG_PARAMETER for a format that cannot be written and for a path that is
+    the input.
+    """
+    uv = np.asarray(corner_uv, np.float64)
+    expected = (len(file.triangulation.triangles), 3, 2)
+    if uv.shape != expected:
+        raise InputError("WRONG_SHAPE", f"corner_uv has shape {uv.shape}; pass {expected}, one (u, v) per corner.")
+    try:
+        form = output_format(path)
+        if file.path is not None:
+            require_separate(file.path, Path(path), in_place=in_place)
+    except UsageError as error:
+        raise InputError("WRONG_PARAMETER", f"{str(error)[0].upper()}{str(error)[1:]}.") from error
+    data, findings = format_mesh(file, uv, form, Path(path).parent)
+    write_whole(path, data, keep_backup=in_place)
+    return list(findings)
+
+
+def parse_mesh(
+    path: Path | None, data: bytes, given: str | None = None, *, with_uv: bool = False
+) -> tuple[Format, PolygonMesh]:
+    """The format and the mesh of a file's content.  path, given: as for `input_format`.  Raises as `read_mesh_file`."""
+    form = input_format(path, data, given)
+    readers: dict[Format, Callable[[], PolygonMesh]] = {
+        OBJ: lambda: read_obj(data, with_uv),
+        OFF: lambda: read_off(data),
+        PLY: lambda: read_ply(data),
+        GLTF: lambda: read_gltf(data, _beside(path), with_uv),
+        GLB: lambda: read_gltf(data, _beside(path), with_uv),
+        STL: lambda: read_stl(data),
+    }
+    return form, readers[form]()
+
+
+def triangulated(mesh: PolygonMesh) -> tuple[Triangulation, tuple[Finding, ...]]:
+    """The triangles of the polygons that can be used, and what was left out.  Raises InputError: BAD_FACE."""
+    usable = without_repeated_corners(mesh)
+    return usable.in_whole_mesh(triangulate(usable.mesh)), usable.findings
+
+
+def format_mesh(
+    file: MeshFile, corner_uv: NDArray[np.float64], form: Format, folder: Path | None
+) -> tuple[bytes, tuple[Finding, ...]]:
+    """The content of a file of this format, to be written into the folder, with coordinates (m, 3, 2), and what it
+    lacks.
+
+    folder: None for standard output.
+    """
+    polygon_uv = file.triangulation.to_polygon_corners(corner_uv, len(file.mesh.corners))
+    if form in GLTF_FORMS and file.format in GLTF_FORMS:
+        elsewhere = file.path is not None and folder is not None and not is_same_file(file.path.parent, folder)
+        return edit_gltf(file.data, _beside(file.path), polygon_uv, binary=form == GLB, with_images=elsewhere)
+    if form == OBJ and file.format == OBJ:
+        return edit_obj(file.data, file.mesh, polygon_uv), ()
+    lost = () if form == file.format else _not_kept(file, form)
+    if form == OBJ:
+        return format_obj(file.mesh, polygon_uv), lost
+    if form == PLY:
+        data, further = format_ply(file.mesh, polygon_uv, file.data if file.format == PLY else None)
+        return data, lost + further
+    data, further = new_gltf(file.mesh.positions, file.triangulation.triangles, corner_uv, binary=form == GLB)
+    return data, lost + further
+
+
+def _not_kept(file: MeshFile, form: Format) -> tuple[Finding, ...]:
+    """Warnings of content that another format cannot hold."""
+    extras = list(file.mesh.extras)
+    if form in GLTF_FORMS and (file.mesh.sizes > 3).any():
+        extras.append("polygons of more than three corners, which are cut into triangles")
+    if not extras:
+        return ()
+    rest = f" and {len(extras) - NAMED_EXTRAS} more" if len(extras) > NAMED_EXTRAS else ""
+    return (
+        Finding(
+            "CONTENT_NOT_KEPT",
+            f"The {file.format.name} file has more than {form.name} is written with; left behind: "
+            f"{', '.join(extras[:NAMED_EXTRAS])}{rest}. Write {file.format.name} to keep all, where it can be written.",
+        ),
+    )
+
+
+def _beside(path: Path | None) -> Callable[[str], bytes]:
+    """Reads files that a document names."""
+
+    def read(uri: str) -> bytes:
+        if path is None:
+            raise InputError(
+                "MALFORMED_FILE", f"The document needs '{uri}', which is not beside standard input. Give its path."
+            )
+        return read_regular(path.parent / uri)
+
+    return read

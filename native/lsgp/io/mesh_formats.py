@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The formats of mesh files: how they are recognized, which can be read and written, and what that requires."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+from ..errors import InputError
+from .mesh_off import HEADER as OFF_HEADER
+from .side_files import UsageError
+
+INSTALL = "pip install 'lsgp[formats]'"
+
+
+@dataclass(frozen=True)
+class Format:
+    """A format of mesh files.
+
+    name: as people write it. suffix: of its files, with the dot, lower case.
+    reader, writer: the package this requires, "" for none; None where there is no reader or writer.
+    """
+
+    name: str
+    suffix: str
+    reader: str | None
+    writer: str | None
+
+    @property
+    def key(self) -> str:
+        """By which options name it."""
+        return self.suffix[1:]
+
+
+OBJ = Format("OBJ", ".obj", "", "")
+OFF = Format("OFF", ".off", "", None)
+PLY = Format("PLY", ".ply", "", "plyfile")
+GLTF = Format("glTF", ".gltf", "", "")
+GLB = Format("GLB", ".glb", "", "")
+STL = Format("STL", ".stl", "trimesh", None)
+FORMATS = (OBJ, OFF, PLY, GLTF, GLB, STL)
+BY_KEY = {form.key: form for form in FORMATS}
+
+
+def input_format(path: str | os.PathLike[str] | None, data: bytes, given: str | None = None) -> Format:
+    """The format of a file that can be read: by its suffix, then as given, then by its first bytes.
+
+    path: None for standard input, which is OBJ where nothing tells otherwise. given: a key.
+    Raises InputError: UNKNOWN_FORMAT, FORMAT_NOT_INSTALLED.
+    """
+    suffix = "" if path is None else Path(path).suffix.lower()
+    found = BY_KEY.get(suffix[1:]) or (BY_KEY[given] if given else _by_content(data)) or (OBJ if path is None else None)
+    if found is None or found.reader is None:
+        readable = [form.name for form in FORMATS if form.reader is not None]
+        raise InputError(
+            "UNKNOWN_FORMAT", f"'{os.fspath(path or '-')}' is no {_one_of(readable)} file. Export the mesh as one."
+        )
+    if not _is_there(found.reader):
+        raise InputError(
+            "FORMAT_NOT_INSTALLED",
+            f"Reading {found.name} takes the package {found.reader}: {INSTALL}. Without it "
+            f"{_one_of(_names_at_hand('reader'))} can be read.",
+        )
+    return found
+
+
+def output_format(path: str | os.PathLike[str] | None, given: str | None = None) -> Format:
+    """The format of a file to be written: by its suffix; where it has none, or for None, as given, or OBJ.
+
+    Raises UsageError where it cannot be written.
+    """
+    suffix = "" if path is None else Path(path).suffix.lower()
+    found = BY_KEY.get(suffix[1:]) if suffix else BY_KEY[given or OBJ.key]
+    shown = os.fspath(path or "-")
+    if found is None or found.writer is None:
+        raise UsageError(
+            f"'{shown}' cannot be written as {suffix if found is None else found.name}; "
+            f"{_one_of(_names_at_hand('writer', suffixes=True))} can"
+        )
+    if not _is_there(found.writer):
+        raise UsageError(f"writing '{shown}' takes the package {found.writer}; {INSTALL}")
+    return found
+
+
+def formats_table() -> str:
+    """Which formats are read and written here, and how to get the others, as lines of text."""
+    rows = [f"{'':6}{'read':34}write"]
+    for form in FORMATS:
+        rows.append(f"{form.name:6}{_state(form.reader):34}{_state(form.writer)}")
+    return "\n".join(rows)
+
+
+def _state(package: str | None) -> str:
+    if package is None:
+        return "no"
+    return "yes" if _is_there(package) else f"no, {INSTALL}"
+
+
+def _is_there(package: str) -> bool:
+    return not package or find_spec(package) is not None
+
+
+def _names_at_hand(use: str, *, suffixes: bool = False) -> list[str]:
+    forms = [form for form in FORMATS if (package := getattr(form, use)) is not None and _is_there(package)]
+    return [f"{form.name} ({form.suffix})" if suffixes else form.name for form in forms]
+
+
+def _one_of(names: list[str]) -> str:
+    return f"{', '.join(names[:-1])} or {names[-1]}"
+
+
+def _by_content(data: bytes) -> Format | None:
+    if data[:4].rstrip() == b"ply":
+        return PLY
+    if data[:4] == b"glTF":
+        return GLB
+    if OFF_HEADER.match((data[:80].split() or [b""])[0]):
+        return OFF
+    return None

@@ -1,0 +1,311 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""glTF and GLB: all triangles of all meshes as one mesh, and new texture coordinates into the document."""
+
+from __future__ import annotations
+
+import base64
+import contextlib
+import copy
+import mimetypes
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import Finding, InputError
+from ..indexed_uv import index_corners
+from .gltf_document import COMPONENTS, INDICES, VERTICES, Document, ReadUri, load_document, uri_data
+from .mesh_text import malformed
+from .polygons import PolygonMesh
+from .welding import weld
+
+TRIANGLES, STRIPS = 4, (5, 6)
+UV, TANGENTS = "TEXCOORD_0", "TANGENT"
+FLOAT, SHORT, LONG = 5126, 5123, 5125
+BROKEN = (KeyError, IndexError, TypeError, ValueError, AttributeError)
+
+
+@dataclass(frozen=True)
+class _Primitive:
+    """One of a mesh. content: its JSON. vertices: (3 t,) the vertices at the corners of its triangles."""
+
+    mesh: int
+    content: dict[str, Any]
+    vertices: NDArray[np.int64]
+
+
+def read_gltf(data: bytes, read_uri: ReadUri, with_uv: bool = False) -> PolygonMesh:
+    """The triangles of all meshes, in their order, at the places that their first node gives them.
+
+    Vertices of a mesh at exactly the same place are one: glTF repeats them at hard edges, materials and seams.
+    read_uri: the content of a file beside the document.  Raises OSError, InputError: MALFORMED_FILE.
+    """
+    try:
+        return _joined(load_document(data, read_uri), with_uv)
+    except InputError:
+        raise
+    except BROKEN as error:
+        raise malformed(f"the glTF contradicts itself ({type(error).__name__}: {error}).") from error
+
+
+def edit_gltf(
+    data: bytes, read_uri: ReadUri, corner_uv: NDArray[np.float64], *, binary: bool, with_images: bool
+) -> tuple[bytes, tuple[Finding, ...]]:
+    """The document with these texture coordinates, (c, 2) per corner of `read_gltf`'s mesh, as a GLB or a glTF file.
+
+    They become TEXCOORD_0 of every primitive; vertices with several coordinates are split, with all that they have.
+    Triangles with a NaN keep the coordinates they have. Tangents follow from coordinates and are taken out. The rest of
+    the document stays, its binary data inside the file.
+
+    with_images: take images that are files of their own into the document.
+    """
+    document = load_document(data, read_uri)
+    if with_images:
+        _take_in_images(document, read_uri)
+    uses = _accessor_uses(document)
+    tangents = missing = at = 0
+    for primitive in list(_primitives(document)):
+        count = len(primitive.vertices)
+        uv, without = _stored(document, primitive, corner_uv[at : at + count])
+        at += count
+        missing += without
+        tangents += primitive.content["attributes"].pop(TANGENTS, None) is not None
+        _split(document, primitive, uv, uses)
+    findings = []
+    if tangents:
+        findings.append(
+            Finding("CONTENT_NOT_KEPT", "Tangents belong to the old texture coordinates and were taken out.")
+        )
+    if missing:
+        findings.append(unsolved_at_origin(missing, "glTF"))
+    return document.to_bytes(binary=binary), tuple(findings)
+
+
+def new_gltf(
+    positions: NDArray[np.float64], triangles: NDArray[np.int32], corner_uv: NDArray[np.float64], *, binary: bool
+) -> tuple[bytes, tuple[Finding, ...]]:
+    """A document of one mesh.  triangles: (m, 3). corner_uv: (m, 3, 2), NaN where there is none."""
+    missing = int(np.isnan(corner_uv).any(axis=(1, 2)).sum())
+    solved = np.where(np.isnan(corner_uv).any(axis=(1, 2))[:, None, None], 0.0, corner_uv)
+    vt, index = index_corners(triangles.ravel(), _flipped(solved.reshape(-1, 2)))
+    vertex = np.empty(len(vt), np.int64)
+    vertex[index] = triangles.ravel()
+    document = Document({"asset": {"version": "2.0", "generator": "lsgp"}}, [])
+    places = positions[vertex].astype(np.float32)
+    limits = {"min": places.min(axis=0).tolist(), "max": places.max(axis=0).tolist()}
+    attributes = {
+        "POSITION": _new_accessor(document, places, "VEC3", FLOAT, VERTICES) | limits,
+        UV: _new_accessor(document, vt.astype(np.float32), "VEC2", FLOAT, VERTICES),
+    }
+    primitive = {name: document.add_accessor(accessor) for name, accessor in attributes.items()}
+    indices = document.add_accessor(_new_accessor(document, index.astype(np.uint32)[:, None], "SCALAR", LONG, INDICES))
+    document.content |= {
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": primitive, "indices": indices}]}],
+    }
+    return document.to_bytes(binary=binary), (unsolved_at_origin(missing, "glTF"),) if missing else ()
+
+
+def unsolved_at_origin(count: int, form: str) -> Finding:
+    """The warning about faces without texture coordinates in a format that requires them for every vertex."""
+    return Finding(
+        "UNSOLVED_AT_ORIGIN",
+        f"{count} faces have no texture coordinates; {form} cannot say so, and has them at the origin. Write OBJ where "
+        "that matters.",
+    )
+
+
+def _joined(document: Document, with_uv: bool) -> PolygonMesh:
+    transforms = _transforms(document)
+    primitives = list(_primitives(document))
+    positions, corners, first = [np.empty((0, 3))], [np.empty(0, np.int64)], 0
+    for mesh in sorted({primitive.mesh for primitive in primitives}):
+        parts = [primitive for primitive in primitives if primitive.mesh == mesh]
+        points = [_points(document, part) for part in parts]
+        offsets = np.cumsum([0, *map(len, points)])
+        used = np.concatenate([part.vertices + offset for part, offset in zip(parts, offsets, strict=False)])
+        places, index = weld(np.concatenate(points)[used])
+        positions.append(_placed(places, transforms.get(mesh, np.eye(4))))
+        corners.append(index + first)
+        first += len(places)
+    faces = np.concatenate(corners).astype(np.int32)
+    uv = [np.empty((0, 2)), *(_old_uv(document, part) for part in primitives)] if with_uv else None
+    return PolygonMesh(
+        np.concatenate(positions),
+        faces,
+        np.full(len(faces) // 3, 3, np.int64),
+        None if uv is None else np.concatenate(uv),
+        _extras(document, primitives),
+    )
+
+
+def _primitives(document: Document) -> Iterator[_Primitive]:
+    """Those of triangles, in the order of the document; points and lines are passed over."""
+    for number, mesh in enumerate(document.content.get("meshes", [])):
+        for content in mesh["primitives"]:
+            mode = content.get("mode", TRIANGLES)
+            if mode in STRIPS:
+                raise malformed("triangle strips and fans are not read; export triangles.")
+            if mode != TRIANGLES or "POSITION" not in content["attributes"]:
+                continue
+            count = document.content["accessors"][content["attributes"]["POSITION"]]["count"]
+            vertices = np.arange(count)
+            if "indices" in content:
+                vertices = document.numbers(content["indices"])[:, 0].astype(np.int64)
+            if len(vertices) % 3 or (vertices >= count).any():
+                raise malformed("triangles that are cut short or name vertices that are not there.")
+            yield _Primitive(number, content, vertices)
+
+
+def _points(document: Document, primitive: _Primitive) -> NDArray[np.float64]:
+    return document.numbers(primitive.content["attributes"]["POSITION"])
+
+
+def _old_uv(document: Document, primitive: _Primitive) -> NDArray[np.float64]:
+    """(3 t, 2) coordinates at the corners, NaN where the primitive has none."""
+    accessor = primitive.content["attributes"].get(UV)
+    if accessor is None:
+        return np.full((len(primitive.vertices), 2), np.nan)
+    return _flipped(document.numbers(accessor)[primitive.vertices])
+
+
+def _flipped(uv: NDArray[np.float64]) -> NDArray[np.float64]:
+    """To glTF, where v runs down from the upper left corner of the texture, or from it."""
+    return np.stack([uv[:, 0], 1.0 - uv[:, 1]], axis=1)
+
+
+def _placed(points: NDArray[np.float64], transform: NDArray[np.float64]) -> NDArray[np.float64]:
+    placed = points @ transform[:3, :3].T + transform[:3, 3]
+    if np.linalg.det(transform[:3, :3]) < 0:
+        placed[:, 0] *= -1  # the triangles are to turn as they do in the mesh
+    return placed
+
+
+def _transforms(document: Document) -> dict[int, NDArray[np.float64]]:
+    """Of each mesh, by its number, the transform of the first node that has it, to the scene."""
+    nodes = document.content.get("nodes", [])
+    children = {child for node in nodes for child in node.get("children", [])}
+    found: dict[int, NDArray[np.float64]] = {}
+    seen = set()
+    waiting = [(number, np.eye(4)) for number in range(len(nodes)) if number not in children][::-1]
+    while waiting:
+        number, above = waiting.pop()
+        if number in seen:
+            continue
+        seen.add(number)
+        transform = above @ _matrix(nodes[number])
+        if "mesh" in nodes[number]:
+            found.setdefault(nodes[number]["mesh"], transform)
+        waiting += [(child, transform) for child in nodes[number].get("children", [])[::-1]]
+    return found
+
+
+def _matrix(node: dict[str, Any]) -> NDArray[np.float64]:
+    if "matrix" in node:
+        return np.array(node["matrix"], np.float64).reshape(4, 4).T
+    x, y, z, w = node.get("rotation", (0.0, 0.0, 0.0, 1.0))
+    rotation = np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+    matrix = np.eye(4)
+    matrix[:3, :3] = rotation * np.array(node.get("scale", (1.0, 1.0, 1.0)), np.float64)
+    matrix[:3, 3] = node.get("translation", (0.0, 0.0, 0.0))
+    return matrix
+
+
+def _extras(document: Document, primitives: list[_Primitive]) -> tuple[str, ...]:
+    """Content of the document other than triangles and their texture coordinates."""
+    names = {name for primitive in primitives for name in primitive.content["attributes"]} - {"POSITION", UV}
+    names |= {key for key in ("materials", "skins", "animations", "cameras") if document.content.get(key)}
+    if len(document.content.get("nodes", [])) > 1:
+        names.add("nodes")
+    if any("targets" in primitive.content for primitive in primitives):
+        names.add("morph targets")
+    return tuple(sorted(names))
+
+
+def _accessor_uses(document: Document) -> Counter[int]:
+    """How often primitives refer to each accessor."""
+    uses: Counter[int] = Counter()
+    for mesh in document.content.get("meshes", []):
+        for primitive in mesh["primitives"]:
+            for accessors in (primitive["attributes"], *primitive.get("targets", [])):
+                uses.update(accessors.values())
+            uses.update([primitive["indices"]] if "indices" in primitive else [])
+    return uses
+
+
+def _take_in_images(document: Document, read_uri: ReadUri) -> None:
+    for image in document.content.get("images", []):
+        uri = image.get("uri", "data:")
+        if uri.startswith("data:"):
+            continue
+        with contextlib.suppress(OSError):  # one that is missing here is no more missing elsewhere
+            text = base64.b64encode(uri_data(uri, read_uri)).decode("ascii")
+            kind = image.get("mimeType") or mimetypes.guess_type(uri)[0] or "application/octet-stream"
+            image["uri"] = f"data:{kind};base64,{text}"
+
+
+def _stored(
+    document: Document, primitive: _Primitive, corner_uv: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], int]:
+    """The coordinates of the corners as they are stored, and how many triangles have none, neither old nor new."""
+    old = _old_uv(document, primitive).reshape(-1, 3, 2)
+    uv = corner_uv.reshape(-1, 3, 2)
+    uv = np.where(np.isnan(uv).any(axis=(1, 2))[:, None, None], old, uv)
+    missing = np.isnan(uv).any(axis=(1, 2))
+    uv = np.where(missing[:, None, None], 0.0, uv)
+    return _flipped(uv.reshape(-1, 2)), int(missing.sum())
+
+
+def _split(document: Document, primitive: _Primitive, uv: NDArray[np.float64], uses: Counter[int]) -> None:
+    """Give the primitive vertices that have one coordinate each."""
+    vt, index = index_corners(primitive.vertices, uv)
+    vertex = np.empty(len(vt), np.int64)
+    vertex[index] = primitive.vertices
+    content = primitive.content
+    for accessors in (content["attributes"], *content.get("targets", [])):
+        for name in [name for name in accessors if name != UV or accessors is not content["attributes"]]:
+            accessors[name] = _taken(document, accessors[name], vertex, uses)
+    new_uv = _new_accessor(document, vt.astype(np.float32), "VEC2", FLOAT, VERTICES)
+    content["attributes"][UV] = _put(document, content["attributes"].get(UV), new_uv, uses)
+    is_short = len(vt) < np.iinfo(np.uint16).max
+    numbers = index.astype(np.uint16 if is_short else np.uint32)[:, None]
+    indices = _new_accessor(document, numbers, "SCALAR", SHORT if is_short else LONG, INDICES)
+    content["indices"] = _put(document, content.get("indices"), indices, uses)
+
+
+def _taken(document: Document, accessor: int, vertex: NDArray[np.int64], uses: Counter[int]) -> int:
+    """An accessor of the elements of these vertices, with all else that the old one says."""
+    old = document.content["accessors"][accessor]
+    new = copy.deepcopy(old)
+    new |= {"bufferView": document.add_view(document.rows(accessor)[vertex], VERTICES), "count": len(vertex)}
+    new.pop("byteOffset", None)
+    if "min" in old:
+        dtype = np.dtype(COMPONENTS[old["componentType"]])
+        values = np.ascontiguousarray(document.rows(accessor)[vertex]).view(dtype)
+        new |= {"min": values.min(axis=0).tolist(), "max": values.max(axis=0).tolist()}
+    return _put(document, accessor, new, uses)
+
+
+def _put(document: Document, old: int | None, accessor: dict[str, Any], uses: Counter[int]) -> int:
+    """In the place of the old one where nothing else uses that, otherwise behind all others."""
+    if old is None or uses[old] > 1:
+        uses[old] -= 1
+        return document.add_accessor(accessor)
+    document.content["accessors"][old] = accessor
+    return old
+
+
+def _new_accessor(document: Document, rows: NDArray, kind: str, component: int, target: int) -> dict[str, Any]:
+    view = document.add_view(rows, target)
+    return {"bufferView": view, "componentType": component, "count": len(rows), "type": kind}

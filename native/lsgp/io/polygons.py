@@ -1,0 +1,367 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Polygon meshes as files hold them, and their triangles as the library wants them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..equality import EqualByContent
+from ..errors import Elements, InputError
+from .ear_clipping import (
+    ALLOWS_ANY,
+    NEARLY_STRAIGHT,
+    NEARLY_TOUCHING,
+    NEEDLE_PENALTY,
+    ROUNDING,
+    STRICT,
+    TINY,
+    TOUCHING_SHARE,
+    clip_ears_of_one,
+)
+from .mesh_text import ranges
+
+# In the frame where a polygon has the size of 1.
+NEARLY_FLAT_TRIANGLE = 1e-9
+NEARLY_EQUAL_LENGTH = 1e-9
+
+# Corners of a polygon from which on it is cut by itself: many at once test every ear against all corners.
+LARGE = 1024
+
+# Polygon corners worked on at once: bounds the memory of the triangulation.
+CHUNK = 1 << 19
+
+
+@dataclass(frozen=True, eq=False)
+class PolygonMesh(EqualByContent):
+    """Vertices and polygons of a file, in its order.
+
+    positions: (n, 3) float64. corners: (c,) int32, the vertices of all polygons one after the other.
+    sizes: (f,) int64, the number of corners of each polygon.
+    corner_uv: (c, 2) float64, NaN at corners without texture coordinates; None where the file was not asked for them.
+    extras: what else the file has, in its own words.
+    """
+
+    positions: NDArray[np.float64]
+    corners: NDArray[np.int32]
+    sizes: NDArray[np.int64]
+    corner_uv: NDArray[np.float64] | None = None
+    extras: tuple[str, ...] = ()
+
+    @property
+    def starts(self) -> NDArray[np.int64]:
+        """(f,) int64, where in `corners` each polygon begins."""
+        return np.cumsum(self.sizes) - self.sizes
+
+
+@dataclass(frozen=True, eq=False)
+class Triangulation(EqualByContent):
+    """Triangles of a polygon mesh; those of one polygon stand together, polygons in their order.
+
+    triangles: (m, 3) int32 vertices, turning the way of their polygon. polygon: (m,) int32.
+    corner: (m, 3) int64, the polygon corner (index into `PolygonMesh.corners`) that each triangle corner is.
+    edges: (e, 2) int32, the edges of the polygons, each once, the smaller vertex first; diagonals are not among them.
+    repeats: (r, 2) int64, polygon corners that were left out, as they repeat a vertex, and the ones they repeat.
+    """
+
+    triangles: NDArray[np.int32]
+    polygon: NDArray[np.int32]
+    corner: NDArray[np.int64]
+    edges: NDArray[np.int32]
+    repeats: NDArray[np.int64] = field(default_factory=lambda: np.empty((0, 2), np.int64))
+
+    def to_polygon_corners(self, triangle_values: NDArray[np.float64], corner_count: int) -> NDArray[np.float64]:
+        """Values at triangle corners, (m, 3, d), brought to polygon corners, (c, d); NaN at all corners of a polygon
+        any triangle of which has a NaN."""
+        values = np.full((corner_count, triangle_values.shape[-1]), np.nan)
+        values[self.corner] = triangle_values
+        missing = np.isnan(triangle_values).any(axis=(1, 2))
+        if missing.any():
+            values[self.corner[np.isin(self.polygon, self.polygon[missing])]] = np.nan
+        values[self.repeats[:, 0]] = values[self.repeats[:, 1]]
+        return values
+
+    def polygons_of(self, triangles: NDArray[np.int32]) -> NDArray[np.int32]:
+        """The polygons that given triangles belong to, ascending, each once."""
+        return np.unique(self.polygon[triangles])
+
+
+def require_polygons(
+    vertex_count: int,
+    corners: NDArray[np.int64],
+    sizes: NDArray[np.int64],
+    place: Callable[[int], str] = lambda polygon: "",
+) -> None:
+    """Refuse polygons that name vertices the file has not or have fewer than three corners.
+
+    place: says where in the file a polygon stands, for the message, e.g. " (line 12)".
+    Raises InputError: INDEX_OUT_OF_RANGE, BAD_FACE, with the polygons as elements of kind "faces".
+    """
+    polygon_of_corner = np.repeat(np.arange(len(sizes)), sizes)
+    outside = (corners < 0) | (corners >= vertex_count)
+    if outside.any():
+        faces = np.unique(polygon_of_corner[outside])
+        valid = f"valid are 0 to {vertex_count - 1}" if vertex_count else "the file has no vertices"
+        raise InputError(
+            "INDEX_OUT_OF_RANGE",
+            f"{_faces(faces, place)} with a vertex index that is not in the file: {corners[outside][0]}, counted from "
+            f"0; {valid}. Export the mesh again.",
+            Elements("faces", faces.astype(np.int32)),
+        )
+    small = np.flatnonzero(sizes < 3)
+    if len(small):
+        raise InputError(
+            "BAD_FACE",
+            f"{_faces(small, place)} with fewer than three corners. Remove such faces: loose edges are no faces.",
+            Elements("faces", small.astype(np.int32)),
+        )
+
+
+def triangulate(mesh: PolygonMesh) -> Triangulation:
+    """Cut polygons into triangles that turn the way their polygon does.
+
+    Triangles pass as they are. Quads get a diagonal on both sides of which the triangles agree with the polygon's
+    normal (Newell's), the shorter one where both do. Larger polygons lose ear after ear in the plane of that normal,
+    the one with the shortest diagonal first, so that concave ones come out right; what is left of a degenerate polygon
+    becomes a fan. No diagonal doubles an edge or another diagonal where that can be avoided: it would join more than
+    two triangles.
+
+    mesh: one that `require_polygons` accepts, without repeated corners. Coordinates may be anything, also not finite.
+    """
+    counts = mesh.sizes - 2
+    firsts = np.cumsum(counts) - counts
+    corner = np.empty((int(counts.sum()), 3), np.int64)
+    with np.errstate(all="ignore"):  # coordinates that overflow are refused by the library, by name
+        for polygons, rows in _equal_polygons(mesh):
+            size = rows.shape[1]
+            if size == 3:
+                local = np.broadcast_to(np.arange(3), (len(rows), 1, 3))
+            elif size == 4:
+                local = _split_quads(mesh.positions[mesh.corners[rows]], mesh.corners[rows])
+            else:
+                local = _clip_ears(_in_plane(mesh.positions[mesh.corners[rows]]))
+            target = firsts[polygons][:, None] + np.arange(size - 2)
+            corner[target] = rows[np.arange(len(rows))[:, None, None], local]
+        edges = _edge_keys(mesh)
+        _separate_diagonals(mesh, corner, firsts, edges)
+    n = len(mesh.positions)
+    return Triangulation(
+        triangles=mesh.corners[corner],
+        polygon=np.repeat(np.arange(len(mesh.sizes), dtype=np.int32), counts),
+        corner=corner,
+        edges=np.stack(np.divmod(edges, max(n, 1)), axis=1).astype(np.int32),
+    )
+
+
+def _faces(faces: NDArray[np.int64], place: Callable[[int], str]) -> str:
+    """The subject of a refusal: how many faces, and the first of them with its place."""
+    if len(faces) == 1:
+        return f"Face {faces[0]}{place(int(faces[0]))}"
+    return f"{len(faces)} faces, first face {faces[0]}{place(int(faces[0]))},"
+
+
+def _equal_polygons(mesh: PolygonMesh) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64]]]:
+    """Polygons of equal size together: their indices (k,) and their corners (k, size), indices into `corners`."""
+    order = np.argsort(mesh.sizes, kind="stable")
+    sizes, begins = np.unique(mesh.sizes[order], return_index=True)
+    starts = mesh.starts
+    ends = np.append(begins, len(order))[1:]
+    for size, begin, end in np.stack([sizes, begins, ends], axis=1).tolist():
+        for chunk in range(begin, end, max(1, CHUNK // size)):
+            polygons = order[chunk : min(end, chunk + max(1, CHUNK // size))]
+            yield polygons, starts[polygons][:, None] + np.arange(size)
+
+
+def _unit_size(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Polygons (k, n, 3) moved to the origin and scaled to 1, so that no product of coordinates over- or underflows."""
+    points = points - points[:, :1]
+    extent = np.abs(points).max(axis=(1, 2), keepdims=True)
+    return points / np.where(extent > 0, extent, 1.0)
+
+
+def _split_quads(points: NDArray[np.float64], vertices: NDArray[np.int32]) -> NDArray[np.int64]:
+    """Two triangles each, (k, 2, 3) local corners, for quads (k, 4, 3) with vertices (k, 4)."""
+    a, b, c, d = np.moveaxis(_unit_size(points), 1, 0)
+    normal = np.cross(c - a, d - b)  # twice Newell's area vector
+    square = np.maximum(_dot(normal, normal), np.finfo(float).tiny)
+    # The two triangles on a diagonal have shares of this normal that add up to 1; a turned one has a negative share.
+    share_ac = _dot(np.cross(b - a, c - a), normal) / square
+    share_bd = _dot(np.cross(b - a, d - a), normal) / square
+    worst_ac = np.minimum(share_ac, 1 - share_ac)
+    worst_bd = np.minimum(share_bd, 1 - share_bd)
+    good_ac = worst_ac > NEARLY_FLAT_TRIANGLE
+    good_bd = worst_bd > NEARLY_FLAT_TRIANGLE
+    length_ac = _dot(c - a, c - a)
+    length_bd = _dot(d - b, d - b)
+    tie = np.abs(length_ac - length_bd) <= NEARLY_EQUAL_LENGTH * (length_ac + length_bd)
+    lower_ac = vertices[:, 0::2].min(axis=1) < vertices[:, 1::2].min(axis=1)
+    take_ac = np.where(
+        good_ac & good_bd,
+        np.where(tie, lower_ac, length_ac < length_bd),
+        np.where(good_ac == good_bd, worst_ac >= worst_bd, good_ac),
+    )
+    on_ac = np.array([[0, 1, 2], [0, 2, 3]])
+    on_bd = np.array([[0, 1, 3], [1, 2, 3]])
+    return np.where(take_ac[:, None, None], on_ac, on_bd)
+
+
+def _in_plane(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Polygons (k, n, 3) seen along Newell's normal, (k, n, 2): counter-clockwise, of the size of 1."""
+    points = _unit_size(points)
+    normal = np.cross(points, np.roll(points, -1, axis=1)).sum(axis=1)
+    length = np.linalg.norm(normal, axis=1, keepdims=True)
+    normal = np.where(length > ROUNDING, normal / np.where(length > 0, length, 1.0), 0.0)
+    helper = np.eye(3)[np.abs(normal).argmin(axis=1)]
+    first = np.cross(helper, normal)
+    norm = np.linalg.norm(first, axis=1, keepdims=True)
+    first = first / np.where(norm > 0, norm, 1.0)
+    second = np.cross(normal, first)
+    return np.stack([_dot(points, first[:, None]), _dot(points, second[:, None])], axis=2)
+
+
+def _clip_ears(points: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Triangles (k, n - 2, 3), local corners, of k polygons (k, n, 2) at once, one ear of each polygon at a time.
+
+    A polygon tries its cheapest ear; if another corner lies in it, the ear is put aside. A polygon that runs out of
+    ears becomes less strict by a step: corners close to the diagonal are allowed, then corners inside, then the rest
+    becomes a fan. After an ear it is strict again.
+    """
+    k, n, _ = points.shape
+    if n >= LARGE:
+        return np.stack([clip_ears_of_one(polygon) for polygon in points])
+    every = np.arange(n)
+    before = np.tile(np.roll(every, 1), (k, 1))
+    after = np.tile(np.roll(every, -1), (k, 1))
+    alive = np.ones((k, n), bool)
+    leniency = np.zeros(k, np.int64)
+    made = np.zeros(k, np.int64)
+    triangles = np.empty((k, n - 2, 3), np.int64)
+
+    def ear_cost(row: NDArray[np.int64], tip: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Squared length of the diagonal and penalties; infinite where the corner is no ear."""
+        p, q = before[row, tip], after[row, tip]
+        back, ahead = points[row, tip] - points[row, p], points[row, q] - points[row, tip]
+        diagonal = back + ahead
+        area = _cross(back, ahead)
+        needle = area <= NEARLY_STRAIGHT * np.sqrt(_dot(back, back) * _dot(ahead, ahead))
+        cost = _dot(diagonal, diagonal) + NEEDLE_PENALTY * needle
+        return np.where(alive[row, tip] & (area > ROUNDING), cost, np.inf)
+
+    cost = ear_cost(np.arange(k)[:, None], every[None])
+    rows = np.arange(k)
+    while len(rows):
+        tip = cost[rows].argmin(axis=1)
+        stuck = np.isinf(cost[rows, tip])
+        again = rows[stuck]
+        leniency[again] += 1
+        cost[again] = ear_cost(again[:, None], every[None])
+        for row in again[leniency[again] > ALLOWS_ANY]:
+            ring = every[alive[row]]
+            triangles[row, made[row] :] = np.stack([np.full(len(ring) - 2, ring[0]), ring[1:-1], ring[2:]], axis=1)
+            made[row] = n - 2
+        row, tip = rows[~stuck], tip[~stuck]
+        p, q = before[row, tip], after[row, tip]
+        blocked = _occupied(points, alive, row, p, tip, q, leniency[row])
+        cost[row[blocked], tip[blocked]] = np.inf
+        row, p, tip, q = row[~blocked], p[~blocked], tip[~blocked], q[~blocked]
+        triangles[row, made[row]] = np.stack([p, tip, q], axis=1)
+        made[row] += 1
+        leniency[row] = 0
+        alive[row, tip] = False
+        cost[row, tip] = np.inf
+        after[row, p], before[row, q] = q, p
+        cost[row, p] = ear_cost(row, p)
+        cost[row, q] = ear_cost(row, q)
+        rows = rows[made[rows] < n - 2]
+    return triangles
+
+
+def _occupied(
+    points: NDArray[np.float64],
+    alive: NDArray[np.bool_],
+    row: NDArray[np.int64],
+    p: NDArray[np.int64],
+    tip: NDArray[np.int64],
+    q: NDArray[np.int64],
+    leniency: NDArray[np.int64],
+) -> NDArray[np.bool_]:
+    """Whether another corner lies in the ear p, tip, q of each given polygon, or on its diagonal."""
+    others = points[row]
+    a, b, c = (points[row, corner][:, None] for corner in (p, tip, q))
+    diagonal = np.sqrt(_dot(a - c, a - c))
+    height = _cross(b - a, c - b) / np.maximum(diagonal, TINY)
+    close = np.maximum(np.minimum(NEARLY_TOUCHING, TOUCHING_SHARE * height), ROUNDING)
+    margin = np.where((leniency == STRICT)[:, None], close, ROUNDING)
+    inside = (
+        (_cross(b - a, others - a) >= -ROUNDING)
+        & (_cross(c - b, others - b) >= -ROUNDING)
+        & (_cross(a - c, others - c) >= -margin * diagonal)
+    )
+    # A corner at the same place as one of the ear's own touches it only: the two sides of a keyhole.
+    for own in (a, b, c):
+        inside &= (others != own).any(axis=2)
+    return (inside & alive[row]).any(axis=1) & (leniency < ALLOWS_ANY)
+
+
+def _edge_keys(mesh: PolygonMesh) -> NDArray[np.int64]:
+    """Every polygon edge once, as smaller vertex * n + larger vertex, ascending."""
+    following = np.arange(1, len(mesh.corners) + 1)
+    following[mesh.starts + mesh.sizes - 1] = mesh.starts
+    return np.unique(_pair_keys(mesh.corners, mesh.corners[following], len(mesh.positions)))
+
+
+def _pair_keys(a: NDArray[np.int32], b: NDArray[np.int32], vertex_count: int) -> NDArray[np.int64]:
+    return np.minimum(a, b).astype(np.int64) * vertex_count + np.maximum(a, b)
+
+
+def _separate_diagonals(
+    mesh: PolygonMesh, corner: NDArray[np.int64], firsts: NDArray[np.int64], edges: NDArray[np.int64]
+) -> None:
+    """Triangulate anew, in `corner`, the polygons with a diagonal between vertices that an edge or another polygon's
+    diagonal joins already (two quads back to back, for example)."""
+    if (mesh.sizes == 3).all():
+        return
+    n = len(mesh.positions)
+    size = np.repeat(mesh.sizes, mesh.sizes - 2)
+    polygon = np.repeat(np.arange(len(mesh.sizes)), mesh.sizes - 2)
+    step = np.abs(corner - np.roll(corner, -1, axis=1))
+    diagonal = (step != 1) & (step != size[:, None] - 1)
+    vertices = mesh.corners[corner]
+    keys = _pair_keys(vertices, np.roll(vertices, -1, axis=1), n)[diagonal]
+    owner = np.broadcast_to(polygon[:, None], corner.shape)[diagonal]
+    unique, inverse, count = np.unique(keys, return_inverse=True, return_counts=True)
+    # A polygon's own diagonal occurs twice, once in each of its two triangles.
+    doubled = ((count > 2) | np.isin(unique, edges))[inverse]
+    if not doubled.any():
+        return
+    redo = np.unique(owner[doubled])
+    # Only edges and diagonals between vertices of these polygons can be in their way.
+    near = np.zeros(n, bool)
+    near[mesh.corners[ranges(mesh.starts[redo], mesh.sizes[redo])]] = True
+    joined = np.concatenate([edges, keys[~np.isin(owner, redo)]])
+    joined = set(joined[near[joined // n] & near[joined % n]].tolist())
+    starts = mesh.starts
+    for chosen in redo.tolist():
+        count = int(mesh.sizes[chosen])
+        row = starts[chosen] + np.arange(count)
+        own = mesh.corners[row].tolist()
+
+        def is_taken(p: int, q: int, own: list[int] = own) -> bool:
+            a, b = own[p], own[q]
+            return (a * n + b if a < b else b * n + a) in joined
+
+        local = clip_ears_of_one(_in_plane(mesh.positions[mesh.corners[row]][None])[0], is_taken)
+        corner[firsts[chosen] : firsts[chosen] + count - 2] = row[local]
+        vertices = mesh.corners[row[local]]
+        joined.update(_pair_keys(vertices, np.roll(vertices, -1, axis=1), n).ravel().tolist())
+
+
+def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    return (a * b).sum(axis=-1)
+
+
+def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Faces that name a vertex twice: usable ones are simplified and the others left out, instead of refusing the file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import Elements, Finding, InputError
+from .polygons import PolygonMesh, Triangulation
+
+
+@dataclass(frozen=True)
+class Places:
+    """Where the parts of a mesh are in the whole of it.
+
+    corner, polygon: the index of each. repeats: (r, 2) int64, corners of the whole mesh that were left out of a face,
+    and those that they repeat.
+    """
+
+    corner: NDArray[np.int64]
+    polygon: NDArray[np.int32]
+    repeats: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Usable:
+    """The part of a mesh that has no repeated corners. places: None where that is all of it. findings: what was left
+    out."""
+
+    mesh: PolygonMesh
+    places: Places | None = None
+    findings: tuple[Finding, ...] = ()
+
+    def in_whole_mesh(self, triangulation: Triangulation) -> Triangulation:
+        """A triangulation of the part with the indices of the whole mesh."""
+        if self.places is None:
+            return triangulation
+        return replace(
+            triangulation,
+            polygon=self.places.polygon[triangulation.polygon],
+            corner=self.places.corner[triangulation.corner],
+            repeats=self.places.repeats,
+        )
+
+
+def without_repeated_corners(mesh: PolygonMesh) -> Usable:
+    """Of corners that name the vertex of the one before the first stays; a face that has less than three then, or names
+    a vertex twice all the same, is left out, for no shorter face has the same shape.
+
+    Raises InputError: BAD_FACE where no face is left.
+    """
+    owner = np.repeat(np.arange(len(mesh.sizes)), mesh.sizes)
+    follows = np.arange(-1, len(mesh.corners) - 1)
+    follows[mesh.starts] = mesh.starts + mesh.sizes - 1
+    is_repeat = mesh.corners == mesh.corners[follows]
+    sizes = np.bincount(owner[~is_repeat], minlength=len(mesh.sizes))
+    left_out = sizes < 3
+    left_out[_touching_themselves(mesh, owner, ~is_repeat & (sizes > 3)[owner])] = True
+    if not (is_repeat.any() or left_out.any()):
+        return Usable(mesh)
+
+    if left_out.all():
+        raise InputError(
+            "BAD_FACE",
+            f"All {len(left_out)} faces name a vertex twice. Merge doubled vertices and delete faces without area.",
+            Elements("faces", np.flatnonzero(left_out).astype(np.int32)),
+        )
+    corner = np.flatnonzero(~is_repeat & ~left_out[owner])
+    polygon = np.flatnonzero(~left_out).astype(np.int32)
+    corner_uv = None if mesh.corner_uv is None else mesh.corner_uv[corner]
+    part = PolygonMesh(mesh.positions, mesh.corners[corner], sizes[polygon], corner_uv)
+    repeats = np.flatnonzero(is_repeat & ~left_out[owner])
+    # The corner that stayed is the last one before that is no repeat; before the face's first comes its last.
+    latest = np.maximum.accumulate(np.where(is_repeat, -1, np.arange(len(is_repeat))))
+    stayed, face = latest[repeats], owner[repeats]
+    stayed = np.where(stayed < mesh.starts[face], latest[(mesh.starts + mesh.sizes - 1)[face]], stayed)
+    places = Places(corner, polygon, np.stack([repeats, stayed], axis=1))
+    return Usable(part, places, _findings(owner, repeats, left_out))
+
+
+def _touching_themselves(
+    mesh: PolygonMesh, owner: NDArray[np.int64], considered: NDArray[np.bool_]
+) -> NDArray[np.int64]:
+    """The polygons that name a vertex at two of the corners that are considered."""
+    corners = np.flatnonzero(considered)
+    order = corners[np.lexsort((mesh.corners[corners], owner[corners]))]
+    again = (np.diff(mesh.corners[order]) == 0) & (np.diff(owner[order]) == 0)
+    return owner[order][1:][again]
+
+
+def _findings(owner: NDArray[np.int64], repeats: NDArray[np.int64], left_out: NDArray[np.bool_]) -> tuple[Finding, ...]:
+    findings = []
+    shortened = np.unique(owner[repeats]).astype(np.int32)
+    if len(shortened):
+        findings.append(
+            Finding(
+                "REPEATED_CORNERS",
+                f"{len(shortened)} faces name a vertex twice in a row and were taken without the repetition.",
+                Elements("faces", shortened),
+            )
+        )
+    faces = np.flatnonzero(left_out).astype(np.int32)
+    if len(faces):
+        findings.append(
+            Finding(
+                "FACES_LEFT_OUT",
+                f"{len(faces)} faces name a vertex twice and have no shape; they were left out and have no texture "
+                "coordinates. Delete them.",
+                Elements("faces", faces),
+            )
+        )
+    return tuple(findings)

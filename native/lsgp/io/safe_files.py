@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which files may be read and overwritten: regular ones, and the input only on request."""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+
+from .side_files import UsageError, read_regular
+
+STANDARD_STREAM = "-"
+# What is added to the name of a file while it is replaced in place.
+BACKUP = ".lsgp-backup"
+
+
+def is_standard_stream(path: str | os.PathLike[str] | None) -> bool:
+    """Whether the path stands for standard input or output."""
+    return path is not None and os.fspath(path) == STANDARD_STREAM
+
+
+def read_input(path: Path) -> bytes:
+    """The content of a regular file or of standard input, "-".  Raises OSError."""
+    if not is_standard_stream(path):
+        return read_regular(path)
+    if sys.stdin is None:
+        raise OSError(errno.EBADF, os.strerror(errno.EBADF), "standard input")
+    return sys.stdin.buffer.read()
+
+
+def is_same_file(one: str | os.PathLike[str], other: str | os.PathLike[str]) -> bool:
+    """Whether two paths lead to one file, by links of either kind or another spelling; also where it is not there
+    yet."""
+    if is_standard_stream(one) or is_standard_stream(other):
+        return False
+    try:
+        return os.path.samefile(one, other)
+    except OSError:
+        return os.path.normcase(os.path.realpath(one)) == os.path.normcase(os.path.realpath(other))
+
+
+def require_separate(source: Path, target: Path, *, in_place: bool) -> None:
+    """Raise UsageError where the output would overwrite the input without a request, or while a backup of it exists."""
+    if not is_same_file(source, target):
+        return
+    if not in_place:
+        raise UsageError(
+            f"the output '{target}' is the input '{source}' itself; name another file, or write over it with --in-place"
+        )
+    backup = backup_of(Path(os.path.realpath(target)))
+    if backup.exists():
+        raise UsageError(
+            f"there is a backup '{backup}' of a run that was killed; compare it with the file, and remove it"
+        )
+
+
+def backup_of(path: Path) -> Path:
+    """Where a file is kept while it is replaced in place."""
+    return path.with_name(path.name + BACKUP)
+
+
+def require_inputs_kept(results: Iterable[tuple[Path, Path]], *, in_place: bool) -> None:
+    """Raise UsageError where a result would be written over an input: over its own without having been asked to, or
+    over that of another.
+
+    results: the input and the output of each asset.
+    """
+    pairs = list(results)
+    owners = {identity: source for source, _ in pairs if (identity := _identity(source)) is not None}
+    for source, target in pairs:
+        identity = _identity(target)
+        owner = None if identity is None else owners.get(identity)
+        if owner is None:
+            continue
+        if _identity(source) != identity:
+            raise UsageError(f"the result of '{source}' would be written over '{owner}'; name another folder")
+        require_separate(source, target, in_place=in_place)
+
+
+def require_writable_kind(path: str | os.PathLike[str]) -> None:
+    """Raise OSError for a pipe, a socket or a block device; character devices, as /dev/null, are written to."""
+    try:
+        mode = os.stat(path).st_mode
+    except FileNotFoundError:
+        return
+    if stat.S_ISFIFO(mode) or stat.S_ISSOCK(mode) or stat.S_ISBLK(mode):
+        raise OSError(
+            errno.EINVAL,
+            "Not a regular file (to write to a pipe, let the output be - and redirect it)",
+            os.fspath(path),
+        )
+
+
+def _identity(path: Path) -> tuple[int, int] | None:
+    """The same for all paths to one file; None where there is none."""
+    try:
+        found = os.stat(path)
+    except OSError:
+        return None
+    return found.st_dev, found.st_ino

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The files beside a mesh on the command line: cones and their angles, seam edges, importance."""
+
+from __future__ import annotations
+
+import errno
+import json
+import math
+import os
+import stat
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from .mesh_text import Rows, content_lines
+
+
+class UsageError(Exception):
+    """Wrong usage: a command or an option that cannot be carried out."""
+
+
+def read_regular(path: Path) -> bytes:
+    """The content of a regular file.  Raises OSError, for pipes and devices too: they may never begin or end."""
+    mode = os.stat(path).st_mode
+    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+        raise OSError(
+            errno.EINVAL, "Not a regular file (to read a mesh from a pipe, let the input be - and redirect it)", path
+        )
+    return path.read_bytes()
+
+
+def load_json(path: Path) -> Any:
+    """The content of a JSON file.  Raises OSError, UsageError."""
+    return _parsed(read_regular(path), path)
+
+
+def cones_in(content: Any, path: Path, prescription: str | None) -> tuple[NDArray[np.int32], list[float | None] | None]:
+    """Cones of a cones file and the angles to use, in radians.  Raises InputError."""
+    cones = content.get("cones") if isinstance(content, dict) else None
+    if not _is_list_of(cones, _is_integer):
+        raise _unlike(path, '{"cones": [vertex, ...]} with vertices counted from 0')
+    angles = {}
+    for key, unit in (("cone_angles", 1.0), ("angles_over_pi_2", math.pi / 2)):
+        values = content.get(key)
+        if values is None:
+            continue
+        if not _is_list_of(values, lambda value: value is None or _is_number(value)):
+            raise _unlike(path, f'"{key}": [number or null, ...]')
+        if len(values) != len(cones):
+            raise InputError(
+                "ANGLE_COUNT",
+                f"'{path}' has {len(cones)} cones but {len(values)} {key}. Give one for each cone, null for automatic.",
+            )
+        angles[key] = [None if value is None else unit * _as_float(value) for value in values]
+    indices = _indices(cones, "CONE_INDEX", "cone").reshape(-1)
+    if prescription == "manual":
+        if not angles:
+            raise InputError(
+                "ANGLE_COUNT", f"'{path}' has no angles for the manual prescription. Add \"cone_angles\" in radians."
+            )
+        return indices, angles.get("cone_angles", angles.get("angles_over_pi_2"))
+    return indices, angles.get("cone_angles") if prescription is None else None
+
+
+def seam_edges_in(content: Any, path: Path | None) -> NDArray[np.int32]:
+    """(s, 2) vertex pairs of a seam edges file.  Raises InputError."""
+    if not _is_list_of(content, lambda pair: _is_list_of(pair, _is_integer) and len(pair) == 2):
+        raise _unlike(path, "[[a, b], ...] with vertices counted from 0")
+    return _indices([vertex for pair in content for vertex in pair], "INDEX_OUT_OF_RANGE", "seam vertex").reshape(-1, 2)
+
+
+def load_importance(path: Path) -> NDArray[np.float64]:
+    """The numbers of a file, a JSON list or text with white space between them.  Raises OSError, UsageError,
+    InputError."""
+    data = read_regular(path)
+    if data.lstrip()[:1] in (b"[", b"{"):
+        content = _parsed(data, path)
+        if not _is_list_of(content, _is_number):
+            raise _unlike(path, "[number, ...], one for each vertex")
+        return np.array([_as_float(value) for value in content], np.float64)
+    rows = Rows.split(*content_lines(data))
+    try:
+        return rows.floats(np.arange(len(rows.tokens)))
+    except InputError as error:
+        raise InputError(error.code, f"'{path}' does not hold the importance of vertices. {error.message}") from error
+
+
+def _parsed(data: bytes, path: Path) -> Any:
+    try:
+        return json.loads(data)
+    except (ValueError, RecursionError) as error:
+        raise UsageError(f"'{path}' is no JSON: {error}") from error
+
+
+def _is_list_of(value: Any, accepts: Callable[[Any], bool]) -> bool:
+    return isinstance(value, list) and all(map(accepts, value))
+
+
+def _is_integer(value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def _is_number(value: Any) -> bool:
+    return _is_integer(value) or isinstance(value, float)
+
+
+def _as_float(value: float) -> float:
+    try:
+        return float(value)
+    except OverflowError:  # an integer of more than 308 digits
+        return math.inf
+
+
+def _indices(values: list[int], code: str, what: str) -> NDArray[np.int32]:
+    limit = np.iinfo(np.int32)
+    wrong = next((value for value in values if not limit.min <= value <= limit.max), None)
+    if wrong is not None:
+        raise InputError(
+            code, f"A {what} lies outside the mesh: {_as_float(wrong):.3g}. Use vertices of the file, counted from 0."
+        )
+    return np.array(values, np.int32)
+
+
+def _unlike(path: Path | None, form: str) -> InputError:
+    return InputError("MALFORMED_FILE", f"'{path}' does not have the form {form}. Correct the file.")

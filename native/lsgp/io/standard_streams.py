@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Standard output and error: unbuffered writing that copes with streams that are closed, full or without a reader."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import sys
+from typing import TextIO
+
+
+def say(stream: TextIO | None, text: str) -> None:
+    """Print a line at once; characters the terminal has not are escaped.  Raises OSError.
+
+    stream: None where the process was started without it, which is no error; nor is a reader that has closed its end.
+    """
+    if stream is None:
+        return
+    encoding = stream.encoding or "utf-8"
+    try:
+        print(text.encode(encoding, "backslashreplace").decode(encoding), file=stream, flush=True)
+    except BrokenPipeError:  # the command goes on, as it still has files to write
+        silence(stream)
+    except OSError as error:
+        silence(stream)
+        raise _not_written(error.strerror or str(error)) from error
+
+
+def complain(text: str) -> None:
+    """Print a line to standard error, ignoring failures."""
+    with contextlib.suppress(OSError):
+        say(sys.stderr, text)
+
+
+def write_to_standard_output(data: bytes) -> None:
+    """Raises OSError, also where the reader has closed its end before it received everything."""
+    if sys.stdout is None:
+        raise _not_written(os.strerror(errno.EBADF))
+    try:
+        sys.stdout.buffer.write(data)
+        sys.stdout.buffer.flush()
+    except OSError as error:
+        silence(sys.stdout)
+        raise _not_written(error.strerror or str(error)) from error
+
+
+def silence(stream: TextIO) -> None:
+    """Redirect a stream to the null device, so that flushing it at exit cannot fail again."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, stream.fileno())
+    os.close(nowhere)
+
+
+def hold_standard_descriptors() -> None:
+    """Open closed ones of standard input, output and error on the null device, or files would get their descriptors."""
+    for descriptor in range(3):
+        try:
+            os.fstat(descriptor)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)
+
+
+def _not_written(reason: str) -> OSError:
+    return OSError(errno.EIO, reason, "standard output")

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Atomic writing: a file is there as a whole or not at all."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import secrets
+import shutil
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+from .safe_files import backup_of, is_standard_stream, require_writable_kind
+from .standard_streams import write_to_standard_output
+
+# Pattern of temporary files, which remain where a process is killed. A suffix may follow.
+PARTIAL = ".lsgp-*.partial"
+ABANDONED_SECONDS = 3600.0
+
+
+def write_output(path: Path, data: bytes, *, keep_backup: bool = False) -> None:
+    """Write a file as `write_whole` does, or for "-" to standard output.  Raises OSError."""
+    if is_standard_stream(path):
+        write_to_standard_output(data)
+    else:
+        write_whole(path, data, keep_backup=keep_backup)
+
+
+def write_whole(path: str | os.PathLike[str], data: bytes, *, keep_backup: bool = False) -> None:
+    """Write a file so that it is there as a whole or not at all; a device, such as /dev/null, is written to.
+
+    keep_backup: as for `whole_file`.  Raises OSError.
+    """
+    target = Path(os.path.realpath(path))
+    require_writable_kind(target)
+    try:
+        if target.exists() and not target.is_file():
+            target.write_bytes(data)
+            return
+        with whole_file(target, keep_backup=keep_backup) as partial, partial.open("xb") as file:
+            file.write(data)
+    except OSError as error:
+        if error.filename is None:  # the error of a full disk names no file
+            raise OSError(error.errno, error.strerror or str(error), os.fspath(path)) from error
+        raise
+
+
+@contextlib.contextmanager
+def whole_file(target: Path, suffix: str = "", *, keep_backup: bool = False) -> Iterator[Path]:
+    """The path of a temporary file, which replaces the target on success and is removed otherwise.
+
+    suffix: of that path, for writers that tell the format by it.
+    keep_backup: what was there stays as well, as `backup_of` it, until the new file is on the disk and in its
+    place.  Raises OSError; FileExistsError where there is such a backup already.
+    """
+    partial = target.with_name(PARTIAL.replace("*", secrets.token_hex(6)) + suffix)
+    backup = None
+    try:
+        yield partial
+        if target.exists():
+            shutil.copymode(target, partial)
+            backup = _make_backup(target, partial) if keep_backup else None
+        os.replace(partial, target)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            partial.unlink()
+        raise
+    finally:
+        if backup is not None:  # the target is the old file or the new one, as a whole
+            backup.unlink()
+
+
+def _make_backup(target: Path, partial: Path) -> Path:
+    """Back the file up by a hard link, or a copy where there are no links, once the new file is on the disk."""
+    with partial.open("rb") as file:
+        os.fsync(file.fileno())
+    backup = backup_of(target)
+    if backup.exists():
+        raise FileExistsError(
+            errno.EEXIST, "A backup of a run that was killed is there; compare it with the file and remove it", backup
+        )
+    try:
+        os.link(target, backup)
+    except OSError:  # a file system without links
+        shutil.copy2(target, backup)
+    return backup
+
+
+def remove_old_partials(folder: Path) -> None:
+    """Remove, at any depth, temporary files of processes that were killed an hour ago or more."""
+    for partial in folder.rglob(f"{PARTIAL}*"):
+        with contextlib.suppress(OSError):
+            if time.time() - partial.stat().st_mtime > ABANDONED_SECONDS:
+                partial.unlink()

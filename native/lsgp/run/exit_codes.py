@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Exit codes of commands, and the messages of those that fail."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+
+from ..io.side_files import UsageError
+from ..io.standard_streams import complain, silence
+
+OK, USAGE, REFUSED, SOME, INTERRUPTED = 0, 2, 3, 4, 130
+
+# What they mean, to a run over one file and to a batch.
+OF_A_RUN = {
+    OK: "a result, with warnings or not",
+    USAGE: "wrong usage, or a file that is missing or cannot be written",
+    REFUSED: "the input was refused, or with --strict its result",
+    INTERRUPTED: "interrupted",
+}
+OF_A_BATCH = {
+    OK: "all assets have a result",
+    USAGE: "wrong usage, or a list, folder, journal or summary that is missing or cannot be written",
+    REFUSED: "no asset has a result",
+    SOME: "some assets have a result",
+    INTERRUPTED: "interrupted",
+}
+
+
+def listed(meanings: dict[int, str]) -> str:
+    """The sentence that ends a command's help."""
+    return "Exit code: " + "; ".join(f"{code} {meaning}" for code, meaning in meanings.items()) + "."
+
+
+def ended(run: Callable[[], int]) -> int:
+    """Run a command and return its exit code; wrong usage, unusable files and interruptions are printed."""
+    try:
+        return run()
+    except UsageError as error:
+        complain(f"lsgp: error: {error}")
+    except OSError as error:
+        complain(f"lsgp: error: {describe(error)}")
+    except KeyboardInterrupt:
+        complain("lsgp: interrupted")
+        return INTERRUPTED
+    return USAGE
+
+
+def flushed(code: int) -> int:
+    """Flush the standard streams; returns the exit code, that of wrong usage where output cannot be written."""
+    try:
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except BrokenPipeError:
+        silence(sys.stdout)
+    except OSError as error:
+        silence(sys.stdout)
+        complain(f"lsgp: error: {describe(error)}: 'standard output'")
+        code = USAGE
+    try:
+        if sys.stderr is not None:
+            sys.stderr.flush()
+    except OSError:
+        silence(sys.stderr)
+    return code
+
+
+def describe(error: OSError) -> str:
+    """The system's message and the file it concerns."""
+    where = "" if error.filename is None else f": '{os.fsdecode(error.filename)}'"
+    return f"{error.strerror or error}{where}"

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A mesh file in, a file of cones placed on it and their angles out."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from ..api import Placement, Progress, place_cones
+from ..io.side_files import UsageError, cones_in, load_json, seam_edges_in
+from ..io.whole_files import write_output
+from .report import finite, placed_figures
+from .unwrap_file import Run, read_file, require_flawless
+from .unwrap_options import (
+    LATTICES,
+    SEAM_MODES,
+    add_cut_options,
+    add_strict_option,
+    cut_costs_of,
+    require_cut_options,
+)
+
+DEFAULT_LATTICE = "square"
+
+
+def add_placement_options(cones: argparse.ArgumentParser) -> None:
+    """The options of placing cones, which args of `place_file` have."""
+    number = cones.add_mutually_exclusive_group()
+    number.add_argument("--count", metavar="N", type=int, help="cones on each component, kept ones included")
+    number.add_argument(
+        "--target",
+        metavar="L2",
+        type=float,
+        help="as few as bring the L2 stretch of each component's map to this, 1 being none (default: 1.05)",
+    )
+    cones.add_argument("--keep", metavar="FILE.json", help="a cones file to be completed; its cone_angles stay")
+    cones.add_argument(
+        "--seamless", action="store_true", help="choose places and angles together for a seamless layout"
+    )
+    cones.add_argument(
+        "--lattice", choices=LATTICES, help=f"with --seamless: whose turns the angles are (default: {DEFAULT_LATTICE})"
+    )
+    cones.add_argument("--symmetric", action="store_true", help="the same cones on both sides of a mirror plane")
+    cones.add_argument(
+        "--mirror",
+        metavar=("PX", "PY", "PZ", "NX", "NY", "NZ"),
+        nargs=6,
+        type=float,
+        help="with --symmetric: a point on the plane and its normal (default: found)",
+    )
+    cones.add_argument(
+        "--prefer-sharp", action="store_true", help="sharp corners before smooth places where that costs little"
+    )
+    cones.add_argument("--seam-edges", metavar="FILE.json", help="[[a, b], ...]: marked edges, as for lsgp unwrap")
+    cones.add_argument(
+        "--seams", choices=SEAM_MODES, default="follow", help="what marked edges mean, as for lsgp unwrap"
+    )
+    add_cut_options(cones)
+    add_strict_option(cones, "set of cones")
+
+
+def place_file(args: argparse.Namespace, run: Run, progress: Progress | None = None) -> Placement:
+    """Place cones on args.input and write them into args.output.  Raises OSError, UsageError, LsgpError."""
+    how = _placement(args)
+    require_cut_options(args)
+    kept_json = None if args.keep is None else load_json(Path(args.keep))
+    seams_path = None if args.seam_edges is None else Path(args.seam_edges)
+    seams_json = [] if seams_path is None else load_json(seams_path)
+    file = read_file(args.input, run, args.format)
+    kept, angles = ((), None) if kept_json is None else cones_in(kept_json, Path(args.keep), None)
+    surface = file.surface(seam_edges_in(seams_json, seams_path))
+    with run.stage("cut_costs"):
+        surface = replace(surface, cut_costs=cut_costs_of(args, surface))
+    with run.stage("place_cones"):
+        placement = place_cones(surface, kept, angles, seams=args.seams, **how, progress=progress)
+    if args.strict:
+        require_flawless(placement.warnings)
+    with run.stage("write_file"):
+        write_output(args.output, _cones_file(args.input, placement))
+    return replace(placement, warnings=[*file.findings, *placement.warnings])
+
+
+def summary(args: argparse.Namespace, placement: Placement) -> str:
+    """What was placed and what it costs, on one line."""
+    count = len(placement.cones)
+    told = f"{args.output}: {count} {'cone' if count == 1 else 'cones'}"
+    told += f", an L2 stretch of {placement.predicted_l2:.4f} predicted"
+    if placement.mapped_l2 is not None:
+        told += f" and {placement.mapped_l2:.4f} in the map"
+    if args.count is None:
+        told += f", the target was {'' if placement.reached else 'not '}reached"
+    work = placement.factorizations
+    told += f"; {placement.maps} {'map' if placement.maps == 1 else 'maps'}"
+    told += f", {work} {'factorization' if work == 1 else 'factorizations'}"
+    return f"{told}, {placement.back_substitutions} back-substitutions"
+
+
+def _placement(args: argparse.Namespace) -> dict[str, Any]:
+    """The options as the library takes them.  Raises UsageError where they do not go together."""
+    if args.lattice is not None and not args.seamless:
+        raise UsageError("--lattice is for seamless layouts; add --seamless")
+    if args.mirror is not None and not args.symmetric:
+        raise UsageError("--mirror is for symmetric cones; add --symmetric")
+    how: dict[str, Any] = {"count": args.count, "prefer_sharp": args.prefer_sharp, "symmetric": args.symmetric}
+    if args.target is not None:
+        how["target"] = args.target
+    if args.seamless:
+        how["lattice"] = args.lattice or DEFAULT_LATTICE
+    if args.mirror is not None:
+        how["mirror"] = (args.mirror[:3], args.mirror[3:])
+    return how
+
+
+def _cones_file(mesh: Path, placement: Placement) -> bytes:
+    """The cones and their angles as `lsgp unwrap --cones` reads them, and what they promise."""
+    content = {
+        "mesh": mesh.name,
+        "cones": placement.cones.tolist(),
+        "cone_angles": placement.cone_angles.tolist(),
+        **placed_figures(placement),
+    }
+    return (json.dumps(finite(content), allow_nan=False) + "\n").encode("ascii")

@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The output of a run: the JSON report for programs and the table for people."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..api import Measurement, Placement, Result
+from ..certificate import certificate
+from ..errors import Elements, Finding, LsgpError
+from ..io.polygons import Triangulation
+
+Report = dict[str, Any]
+
+# Every report has all of these keys, in this order; what does not apply is null or empty.
+EMPTY: Report = {
+    "status": "ok",
+    "code": None,
+    "message": None,
+    "elements": None,
+    "warnings": [],
+    "triangles": None,
+    "cones": [],
+    "cone_angles": [],
+    "placement": None,
+    "distortion": None,
+    "seams": None,
+    "seamless": None,
+    "islands": None,
+    "flipped": None,
+    "wrong_angle_sums": None,
+    "repair": None,
+    "overlapping": None,
+    "overlap_area": None,
+    "stage_seconds": {},
+}
+
+
+def on_faces(elements: Elements, triangulation: Triangulation | None) -> Elements:
+    """Triangles become the faces of the file they were cut from; other elements stay."""
+    if elements.kind != "triangles" or triangulation is None:
+        return elements
+    return Elements("faces", triangulation.polygons_of(elements.indices))
+
+
+def where(elements: Elements, triangulation: Triangulation | None) -> str:
+    """The elements that a message concerns, to be appended to it: in brackets and in the file's numbering."""
+    named = str(on_faces(elements, triangulation))
+    return f" ({named})" if named else ""
+
+
+def refusal_report(error: LsgpError, triangulation: Triangulation | None) -> Report:
+    """The report of an input that was refused.  triangulation: None where the file was refused before it had one."""
+    return EMPTY | {
+        "status": "refused",
+        "code": error.code,
+        "message": error.message,
+        "elements": _elements(on_faces(error.elements, triangulation)),
+        "triangles": None if triangulation is None else len(triangulation.triangles),
+    }
+
+
+def placed_figures(placement: Placement) -> Report:
+    """What placed cones promise, over all components: the L2 stretch predicted and that of the map, null where it was
+    not made or is not valid, and whether the target was reached."""
+    return {
+        "predicted_l2": placement.predicted_l2,
+        "mapped_l2": placement.mapped_l2,
+        "reached": placement.reached,
+    }
+
+
+def unwrap_report(
+    result: Result,
+    placement: Placement | None,
+    triangulation: Triangulation,
+    stage_seconds: Mapping[str, float],
+    texture_size: int,
+) -> Report:
+    """The report of a map. "flipped", "wrong_angle_sums" and "overlapping" are counts; the warnings name the faces and
+    vertices. "cones" and "cone_angles" are those that were imposed, so that a report serves as a cones file too.
+
+    placement: of its cones, None where they were given. texture_size: side of the texture in whose texels the errors of
+    a seamless layout are given."""
+    return EMPTY | {
+        "warnings": _warnings(result.warnings, triangulation),
+        "triangles": len(triangulation.triangles),
+        "cones": result.cones.tolist(),
+        "cone_angles": result.cone_angles.tolist(),
+        "placement": None if placement is None else placed_figures(placement),
+        "distortion": asdict(result.distortion),
+        "seams": asdict(result.seams),
+        "seamless": None if result.seamless is None else certificate(result.seamless, texture_size),
+        "islands": island_count(result.island),
+        "flipped": len(result.flipped),
+        "wrong_angle_sums": len(result.wrong_angle_sums),
+        "repair": asdict(result.repair),
+        "overlapping": len(result.overlapping),
+        "overlap_area": result.overlap_area,
+        "stage_seconds": dict(stage_seconds),
+    }
+
+
+def placement_report(placement: Placement, triangulation: Triangulation, stage_seconds: Mapping[str, float]) -> Report:
+    """The report of cones that were placed; the map that was made for that is not kept."""
+    return EMPTY | {
+        "warnings": _warnings(placement.warnings, triangulation),
+        "triangles": len(triangulation.triangles),
+        "cones": placement.cones.tolist(),
+        "cone_angles": placement.cone_angles.tolist(),
+        "placement": placed_figures(placement),
+        "stage_seconds": dict(stage_seconds),
+    }
+
+
+def measure_report(
+    measurement: Measurement,
+    warnings: Iterable[Finding],
+    triangulation: Triangulation,
+    stage_seconds: Mapping[str, float],
+) -> Report:
+    """The report on given texture coordinates, which tell nothing of cones or the angles they should have."""
+    return EMPTY | {
+        "warnings": _warnings(warnings, triangulation),
+        "triangles": len(triangulation.triangles),
+        "distortion": asdict(measurement.distortion),
+        "seams": asdict(measurement.seams),
+        "islands": island_count(measurement.island),
+        "flipped": len(measurement.flipped),
+        "stage_seconds": dict(stage_seconds),
+    }
+
+
+def to_json(report: Report) -> bytes:
+    """The report as JSON text; NaN and infinity become null."""
+    return (json.dumps(finite(report), indent=1, allow_nan=False) + "\n").encode("ascii")
+
+
+def finite(value: Any) -> Any:
+    """The value with null in the place of NaN and infinity, which JSON has not."""
+    if isinstance(value, dict):
+        return {key: finite(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def island_count(island: NDArray[np.int32]) -> int:
+    """island: the island of each triangle, negative where it has none."""
+    return len(np.unique(island[island >= 0]))
+
+
+def quality_table(measured: Result | Measurement) -> str:
+    """The quality of a map as lines of text, the ideal value beside each figure that has one."""
+    d, s = measured.distortion, measured.seams
+    rows = [
+        ("quasi-conformal", f"{d.quasi_conformal:.4f}", "1", f"area-weighted {d.quasi_conformal_area_weighted:.4f}"),
+        ("area", f"{d.area:.4f}", "1", f"10 % {d.area_p10:.4f}, 90 % {d.area_p90:.4f}"),
+        ("L2 stretch", f"{d.l2_stretch:.4f}", "1", ""),
+        ("sister ratio - 1", f"{s.sister_ratio_max - 1:.1e}", "0", ""),
+        ("rotation residual", f"{s.rotation_residual:.1e}", "0", "radians"),
+        ("translation residual", f"{s.translation_residual:.1e}", "0", "of the layout"),
+    ]
+    flips = ""
+    further = []
+    if isinstance(measured, Result):
+        repair, overlap = measured.repair, 100 * measured.overlap_area
+        wrong, before = len(measured.wrong_angle_sums), repair.wrong_angle_sums_before
+        flips = f"{repair.flipped_before} as first unfolded"
+        further = [
+            ("wrong angle sums", f"{wrong}", "0", f"vertices, {before} as first unfolded"),
+            ("Newton iterations", f"{repair.iterations}", "", ""),
+            ("overlapping triangles", f"{len(measured.overlapping)}", "0", f"{overlap:.3g} % of the layout"),
+        ]
+    rows += [("flipped triangles", f"{len(measured.flipped)}", "0", flips), *further]
+    lines = [f"{'':<22}{'value':>10}{'ideal':>7}"]
+    lines += [f"{label:<22}{value:>10}{ideal:>7}  {note}".rstrip() for label, value, ideal, note in rows]
+    return "\n".join(lines)
+
+
+def _warnings(findings: Iterable[Finding], triangulation: Triangulation) -> list[Report]:
+    return [
+        {"code": f.code, "message": f.message, "elements": _elements(on_faces(f.elements, triangulation))}
+        for f in findings
+    ]
+
+
+def _elements(elements: Elements) -> Report:
+    return {"kind": elements.kind, "indices": np.asarray(elements.indices).tolist()}

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A mesh file in, the same mesh with texture coordinates out."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from ..api import Options, Placement, Progress, Result, Surface, parameterize
+from ..auto_unwrap import PLACING, complete_cones, part_of
+from ..errors import Finding, InputError, LsgpError
+from ..io.mesh_files import MeshFile, format_mesh, parse_mesh, triangulated
+from ..io.mesh_formats import output_format
+from ..io.polygons import Triangulation
+from ..io.safe_files import is_standard_stream, read_input, require_separate
+from ..io.side_files import cones_in, load_importance, load_json, seam_edges_in
+from ..io.whole_files import write_output
+from .unwrap_options import cone_count, cones_file, cut_costs_of, library_options
+
+# Warnings of results that are not what was asked for, which --strict refuses.
+FLAWS = frozenset(
+    {
+        "FLIPPED_TRIANGLES",
+        "WRONG_ANGLE_SUMS",
+        "INEXACT_ANGLES",
+        "INEXACT_SEAMS",
+        "COMPONENT_SKIPPED",
+        "PLACEMENT_NOT_REACHED",
+    }
+)
+
+
+@dataclass
+class Run:
+    """The intermediate results of a command; enough to report on a refusal at any point."""
+
+    triangulation: Triangulation | None = None
+    surface: Surface | None = None
+    placement: Placement | None = None
+    stage_seconds: dict[str, float] = field(default_factory=dict)
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        begin = time.perf_counter()
+        yield
+        self.stage_seconds[name] = time.perf_counter() - begin
+
+
+def unwrap_file(
+    args: argparse.Namespace, run: Run, progress: Progress | None = None, given_format: str | None = None
+) -> Result:
+    """Unwrap args.input into args.output.  Raises OSError, UsageError, LsgpError.
+
+    args: these two, either of which may be "-", and the values of the options of an unwrap.
+    given_format: of what has no suffix that tells it.
+
+    The warnings of the result are also those of the files.
+    """
+    options = library_options(args)
+    target = None if is_standard_stream(args.output) else args.output
+    form = output_format(target, given_format)
+    require_separate(args.input, args.output, in_place=args.in_place)
+    file, result = _map(args, options, run, progress, given_format)
+    if args.strict:
+        require_flawless(result.warnings)
+    with run.stage("write_file"):
+        data, findings = format_mesh(file, result.corner_uv, form, None if target is None else target.parent)
+        write_output(args.output, data, keep_backup=args.in_place)
+    return replace(result, warnings=[*file.findings, *findings, *result.warnings])
+
+
+def require_flawless(warnings: Sequence[Finding]) -> None:
+    """Raise LsgpError with the first warning of what --strict does not let pass."""
+    for finding in warnings:
+        if finding.code in FLAWS:
+            raise LsgpError(finding.code, finding.message, finding.elements)
+
+
+def out_of_memory() -> LsgpError:
+    """The library's error that reports a MemoryError."""
+    return LsgpError(
+        "OUT_OF_MEMORY", "There is not enough memory for this mesh. Use a machine with more or fewer faces."
+    )
+
+
+def read_file(path: Path, run: Run, given_format: str | None = None, *, with_uv: bool = False) -> MeshFile:
+    """A mesh file, or standard input.  Raises OSError, InputError."""
+    source = None if is_standard_stream(path) else path
+    with run.stage("read_file"):
+        data = read_input(path)
+        form, mesh = parse_mesh(source, data, given_format, with_uv=with_uv)
+    if with_uv and mesh.corner_uv is None:
+        raise InputError("NO_UV", f"{form.name} is not read with texture coordinates. Convert the file to OBJ.")
+    with run.stage("triangulate"):
+        run.triangulation, findings = triangulated(mesh)
+    return MeshFile(source, form, data, mesh, run.triangulation, findings)
+
+
+def _map(
+    args: argparse.Namespace, options: Options, run: Run, progress: Progress | None, given_format: str | None
+) -> tuple[MeshFile, Result]:
+    """The mesh that was given and its map."""
+    cones_path = cones_file(args)
+    seams_path = None if args.seam_edges is None else Path(args.seam_edges)
+    cones_json = None if cones_path is None else load_json(cones_path)
+    seams_json = [] if seams_path is None else load_json(seams_path)
+    importance = None if args.importance is None else load_importance(Path(args.importance))
+    file = read_file(args.input, run, given_format)
+    if importance is not None and len(importance) != len(file.mesh.positions):
+        raise InputError(
+            "WRONG_PARAMETER",
+            f"'{args.importance}' has {len(importance)} numbers for {len(file.mesh.positions)} vertices. "
+            "Give one for each.",
+        )
+    surface = file.surface(seam_edges_in(seams_json, seams_path), importance)
+    with run.stage("cut_costs"):
+        surface = run.surface = replace(surface, cut_costs=cut_costs_of(args, surface))
+    given = ((), None) if cones_path is None else cones_in(cones_json, cones_path, args.prescription)
+    if cones_path is not None and args.preset is None:
+        result = parameterize(surface, *given, options, progress=progress)
+        run.stage_seconds.update(result.stage_seconds)
+        return file, result
+    with run.stage("place_cones"):
+        completed = complete_cones(surface, *given, options, cone_count(args), part_of(progress, 0.0, PLACING))
+    run.placement = completed.placement
+    result = parameterize(surface, completed.cones, completed.angles, options, progress=part_of(progress, PLACING, 1.0))
+    run.stage_seconds.update(result.stage_seconds)
+    return file, completed.told(result, options)

@@ -1,0 +1,276 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The options of an unwrap, declared once for all commands, and their conversion to the library's.
+
+Their values are plain text, numbers and truth values, so that they can be handed to other processes and machines.
+"""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+from typing import get_args
+
+from ..api import Options, Progress, Seamless, Surface, cut_costs
+from ..arguments import FloatArray
+from ..auto_unwrap import Preset, preset_options
+from ..io.side_files import UsageError
+
+DEFAULT_TEXTURE_SIZE = 1024
+LARGEST_TEXTURE_SIZE = 65536
+
+SEAM_MODES = ["follow", "boundary", "ignore"]
+LATTICES = ["square", "stripe", "translation", "triangle", "hexagon"]
+
+# Of most exporters of OBJ and of glTF.
+DEFAULT_FRONT = (0.0, 0.0, 1.0)
+
+AUTO, AUTO_COUNT = "auto", "auto:"
+
+
+def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
+    unwrap.add_argument(
+        "--preset",
+        choices=get_args(Preset),
+        help="unwrap ready for use: cones of a file are kept, components with too few get more, no island overlaps "
+        "itself, and lengths are kept (paint, bake) or a tileable texture of squares shows no seam (tile); options "
+        "given besides win over the preset's (default: none)",
+    )
+    unwrap.add_argument(
+        "--cones",
+        metavar="FILE.json|auto|auto:N",
+        type=_cones_option,
+        default=AUTO,
+        help='{"cones": [vertices, from 0], "cone_angles": [radians or null], "angles_over_pi_2": [quarter turns]}, '
+        "angles optional; or cones placed automatically, N on each component (default: auto)",
+    )
+    unwrap.add_argument(
+        "--prescription",
+        choices=["least-distortion", "harmonic", "straightness", "manual"],
+        help="how cone angles are chosen (default: the cone_angles of the cones file where it has them, otherwise "
+        "least-distortion)",
+    )
+    unwrap.add_argument("--unfold", choices=["poisson", "spectral"], default="poisson", help="default: poisson")
+    unwrap.add_argument("--method", choices=["lsgp", "lscm"], default="lsgp", help="default: lsgp")
+    unwrap.add_argument(
+        "--seam-edges", metavar="FILE.json", help="[[a, b], ...]: marked edges; --seams says what they mean"
+    )
+    unwrap.add_argument(
+        "--seams",
+        choices=SEAM_MODES,
+        default="follow",
+        help="marked edges: they are cut, and others where cones need it, they are open borders, or they are ignored "
+        "(default: follow)",
+    )
+    add_cut_options(unwrap)
+    unwrap.add_argument(
+        "--border",
+        choices=["free", "straight"],
+        default="free",
+        help="borders take the shape of least distortion, or run straight from cone to cone (default: free)",
+    )
+    unwrap.add_argument(
+        "--mode",
+        choices=["conformal", "low-stretch"],
+        help="keep angles, or lengths as far as the cone angles let it (default: conformal)",
+    )
+    unwrap.add_argument(
+        "--no-repair",
+        dest="repair",
+        action="store_false",
+        help="do not repair flipped triangles and angles that are off by a full turn",
+    )
+    unwrap.add_argument(
+        "--overlaps",
+        choices=["keep", "split"],
+        help="keep islands that overlap themselves, or split them along further cuts (default: keep)",
+    )
+    unwrap.add_argument(
+        "--in-place",
+        action="store_true",
+        help="overwrite the input, which is kept as a backup until the result is complete",
+    )
+    add_strict_option(unwrap, "layout")
+    _add_low_stretch_options(unwrap)
+    _add_seamless_options(unwrap)
+
+
+def add_cut_options(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--cuts",
+        choices=["hidden", "sharp", "shortest"],
+        default="hidden",
+        help="where cuts run: out of sight from the front and along creases, along creases alone, or the shortest way; "
+        "the map is the same (default: hidden)",
+    )
+    command.add_argument(
+        "--front",
+        metavar=("X", "Y", "Z"),
+        nargs=3,
+        type=float,
+        help="with --cuts hidden: the direction from the model to who looks at it (default: 0 0 1)",
+    )
+
+
+def require_cut_options(args: argparse.Namespace) -> None:
+    """Raises UsageError where they do not go together."""
+    if args.front is not None and args.cuts != "hidden":
+        raise UsageError("--front is for cuts that hide from it; add --cuts hidden")
+
+
+def cut_costs_of(args: argparse.Namespace, surface: Surface, progress: Progress | None = None) -> FloatArray | None:
+    """What cuts along the surface's edges cost, for `Surface.cut_costs`.  Raises LsgpError."""
+    if args.cuts == "shortest":
+        return None
+    front = None if args.cuts == "sharp" else args.front or DEFAULT_FRONT
+    return cut_costs(surface, front, progress=progress)
+
+
+def add_strict_option(command: argparse.ArgumentParser, result: str) -> None:
+    command.add_argument(
+        "--strict",
+        action="store_true",
+        help=f"refuse a {result} with flipped triangles, wrong or inexact angles, inexact seams, parts left out, or "
+        "cones that miss what was asked for, instead of warning of them: exit code 3, and no file but the report",
+    )
+
+
+def _add_low_stretch_options(unwrap: argparse.ArgumentParser) -> None:
+    low_stretch = unwrap.add_argument_group("with --mode low-stretch")
+    low_stretch.add_argument(
+        "--stretch",
+        metavar="S",
+        type=float,
+        help="from 0, the conformal map, to 1, that of least stretch (default: 1)",
+    )
+    low_stretch.add_argument(
+        "--importance",
+        metavar="FILE",
+        help="how much stretch at each vertex weighs, numbers from 0 up, as text or [number, ...] (default: all alike)",
+    )
+
+
+def _add_seamless_options(unwrap: argparse.ArgumentParser) -> None:
+    unwrap.add_argument(
+        "--seamless",
+        action="store_true",
+        default=None,
+        help="round angles and translations so that a tileable texture shows no seam; coordinates are in tiles",
+    )
+    seamless = unwrap.add_argument_group("with --seamless")
+    scale = seamless.add_mutually_exclusive_group()
+    scale.add_argument(
+        "--tiles",
+        metavar="N",
+        type=float,
+        help="tiles along the layout's longer side (default: as few as cost at most a tenth in distortion)",
+    )
+    scale.add_argument("--tile-size", metavar="X", type=float, help="side of a tile on the surface, in its unit")
+    seamless.add_argument(
+        "--lattice",
+        choices=LATTICES,
+        help="under what the texture looks the same: quarter turns, half turns or none of squares, third or sixth "
+        "turns of triangles (default: square)",
+    )
+    seamless.add_argument(
+        "--parity", action="store_true", default=None, help="the black and white squares of a checker match as well"
+    )
+    seamless.add_argument(
+        "--coarse-grid",
+        choices=["refine", "merge", "relax"],
+        help="where the tiles are too large for a valid layout: take smaller ones, merge cones less than a tile apart, "
+        "or leave cones off the grid (default: refine)",
+    )
+    seamless.add_argument(
+        "--texture-size",
+        metavar="T",
+        type=_texture_size_option,
+        help=f"texels of the texture's side, a power of two; errors are given in them "
+        f"(default: {DEFAULT_TEXTURE_SIZE})",
+    )
+    seamless.add_argument(
+        "--mip-levels",
+        metavar="L",
+        type=int,
+        help="cells of 2^L texels instead of whole tiles, for a texture that repeats in them; its first L mipmaps "
+        "match as well",
+    )
+
+
+def _texture_size_option(text: str) -> int:
+    size = int(text) if text.isascii() and text.isdigit() and len(text) < 10 else 0
+    if not (1 <= size <= LARGEST_TEXTURE_SIZE and size.bit_count() == 1):
+        raise argparse.ArgumentTypeError(f"'{text}': T is a power of two, at most {LARGEST_TEXTURE_SIZE}")
+    return size
+
+
+def _cones_option(text: str) -> str:
+    if text.startswith(AUTO_COUNT):
+        count = text.removeprefix(AUTO_COUNT)
+        if not (count.isascii() and count.isdigit() and len(count) < 10):
+            raise argparse.ArgumentTypeError(f"'{text}': N in auto:N is a number of cones, 0 or more")
+    return text
+
+
+def cones_file(args: argparse.Namespace) -> Path | None:
+    """The cones file; None where cones are placed automatically."""
+    return None if args.cones == AUTO or args.cones.startswith(AUTO_COUNT) else Path(args.cones)
+
+
+def cone_count(args: argparse.Namespace) -> int | None:
+    """How many cones are to be placed automatically on each component; None where that is left to the library."""
+    return int(args.cones.removeprefix(AUTO_COUNT)) if args.cones.startswith(AUTO_COUNT) else None
+
+
+def texture_size(args: argparse.Namespace) -> int:
+    """Side of the texture, in texels, that errors are given for."""
+    return DEFAULT_TEXTURE_SIZE if args.texture_size is None else args.texture_size
+
+
+def library_options(args: argparse.Namespace) -> Options:
+    """The options as the library takes them.  Raises UsageError where they do not go together; InputError."""
+    if args.prescription == "manual" and cones_file(args) is None:
+        raise UsageError("--prescription manual needs a cones file with angles; give one with --cones FILE.json")
+    require_cut_options(args)
+    base = Options() if args.preset is None else preset_options(args.preset)
+    mode = base.mode if args.mode is None else args.mode
+    if mode != "low-stretch":
+        for name in ("stretch", "importance"):
+            if getattr(args, name) is not None:
+                raise UsageError(f"--{name} is for maps of low stretch; add --mode low-stretch")
+    return replace(
+        base,
+        prescription=args.prescription,
+        unfold=args.unfold,
+        method=args.method,
+        seams=args.seams,
+        border=args.border,
+        seamless=_seamless(args, base.seamless),
+        mode=mode,
+        stretch=base.stretch if args.stretch is None else args.stretch,
+        repair=args.repair,
+        overlaps=base.overlaps if args.overlaps is None else args.overlaps,
+    )
+
+
+def _seamless(args: argparse.Namespace, preset: Seamless | None) -> Seamless | None:
+    """Raises UsageError where the options for seamless layouts do not fit.  preset: what it says of them."""
+    base = Seamless() if args.seamless else preset
+    if base is None:
+        for name in ("tiles", "tile_size", "lattice", "parity", "coarse_grid", "texture_size", "mip_levels"):
+            if getattr(args, name) is not None:
+                raise UsageError(f"--{name.replace('_', '-')} is for seamless layouts; add --seamless")
+        return None
+    wanted = {name: getattr(args, name) for name in ("lattice", "tiles", "tile_size", "parity", "coarse_grid")}
+    return replace(base, **{name: value for name, value in wanted.items() if value is not None}, cell=_cell(args))
+
+
+def _cell(args: argparse.Namespace) -> float:
+    """The side of a cell in texture coordinates.  Raises UsageError where the texture has no such level."""
+    if args.mip_levels is None:
+        return 1.0
+    size = texture_size(args)
+    most = size.bit_length() - 1
+    if not 0 <= args.mip_levels <= most:
+        raise UsageError(f"--mip-levels {args.mip_levels}: a texture of {size} texels a side has levels 0 to {most}")
+    return 2.0**args.mip_levels / size

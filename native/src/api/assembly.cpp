@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "api/assembly.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "api/divided_seams.hpp"
+#include "base/text.hpp"
+#include "plane/overlaps.hpp"
+#include "seamless/seamless.hpp"
+#include "split/split_map.hpp"
+#include "unfold/unfold.hpp"
+
+namespace lsgp {
+
+namespace {
+
+// Brings a map to the surface's texel density: by the area its triangles have, whichever way up they are, but where
+// they are folded flat or sheared so much that their lengths are far more than that area's, by their lengths, which
+// bounds what a part without area takes of the layout.
+double scale_to_surface(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map) {
+  constexpr double least_share = 0.1;  // of the Dirichlet energy, which is the area of a conformal map
+  const Jacobians jacobians = measure_jacobians(mesh, geometry, map.cut_mesh, map.position);
+  const Eigen::ArrayXd grown = jacobians.f_z.array().abs2(), mirrored = jacobians.f_zbar.array().abs2();
+  const double area = (geometry.area.array() * (grown - mirrored).abs()).sum();
+  const double energy = (geometry.area.array() * (grown + mirrored)).sum();
+  const double scale = std::sqrt(geometry.total_area / std::max(area, least_share * energy));
+  return std::isfinite(scale) ? scale : 1;
+}
+
+// Seamless layouts promise what single precision stores.
+void add_flips_as_stored(const HalfedgeMesh& mesh, const CornerPositions& corners, Validity& validity) {
+  const Eigen::VectorXcd stored = corners.unaryExpr([](Complex z) { return as_stored(z); });
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    if (!(doubled_area(stored, f) > 0)) validity.flipped.push_back(f);
+  }
+  sort_unique(validity.flipped);
+}
+
+}  // namespace
+
+Assembly::Assembly(const Surface& surface, const Array<Component>& components, const Options& options,
+                   ProgressMonitor& monitor, Result& result)
+    : surface_(surface), components_(components), options_(options), monitor_(monitor), result_(result) {
+  result.corner_uv = CornerUv::Constant(3 * surface.triangles.rows(), 2, std::numeric_limits<double>::quiet_NaN());
+  result.island.assign(static_cast<std::size_t>(surface.triangles.rows()), none);
+  result.log_scale = Eigen::VectorXd::Zero(surface.positions.rows());
+  cone_angle_.assign(surface.positions.rows(), std::numeric_limits<double>::quiet_NaN());
+}
+
+void Assembly::add(std::size_t component_index, const ComponentCones& cones, const Geometry& geometry, ComponentMap map,
+                   std::vector<Finding> findings) {
+  const Component& component = components_[component_index];
+  // A seamless layout was split before its parts were put onto the lattice; pinned ones keep their place.
+  if (options_.overlaps == Overlaps::split && !result_.seamless && map.pins.size() < 2) {
+    try {
+      split_map(component.mesh, geometry, open_seams(component.mesh), component.mesh.seam, monitor_, map);
+    } catch (const Error& error) {
+      failures_.push_back(failure_of(component, error));
+      return;
+    }
+  }
+  move_findings(component, findings, result_.warnings);
+  added_cuts_.add(component, map);
+  for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
+    result_.log_scale[component.source_vertex[v]] = map.curvature.log_scale[v];
+  }
+  Array<char> is_flat(component.mesh.vertex_count(), 0);
+  for (const Index v : map.flat_cones) {
+    is_flat[v] = 1;
+    flat_cones_.push_back(component.source_vertex[v]);
+  }
+  for (const Index v : cones.vertices) {
+    if (is_flat[v]) continue;
+    cone_angle_[component.source_vertex[v]] = component.mesh.flat_angle(v) - map.curvature.at_vertex[v];
+  }
+  Solved solved;
+  solved.component = &component;
+  solved.map = std::move(map);
+  add_islands(geometry, solved);
+  solved_.push_back(std::move(solved));
+}
+
+void Assembly::require_any() {
+  if (solved_.empty() && !failures_.empty()) throw failures_.front().error;
+  report_skipped(failures_, result_.warnings);
+}
+
+void Assembly::finish(const Cones& cones, const Array<std::pair<Index, Index>>& duplicates) {
+  place(arrange(islands_));
+  {
+    const ProgressMonitor::Stage stage(monitor_, "check");
+    for (Solved& solved : solved_) {
+      check_in_layout(solved);
+      collect_checks(*solved.component, solved.map);
+    }
+  }
+  {
+    const ProgressMonitor::Stage stage(monitor_, "overlaps");
+    find_overlapping();
+  }
+  Array<Index> triangles;
+  for (Index f = 0; f < surface_.triangles.rows(); ++f) {
+    if (element(result_.island, f) != none) triangles.push_back(f);
+  }
+  result_.distortion = measure_triangles(surface_, result_.corner_uv, triangles);
+  for (const auto& [f, original] : duplicates) share_map(f, original);
+  name_unmapped(duplicates);
+  add_opened_seams();
+  report_flat_cones();
+  added_cuts_.report(result_.warnings);
+  result_.cut_edges = Eigen::Map<VertexPairs>(cut_edges_.data(), static_cast<Eigen::Index>(cut_edges_.size() / 2), 2);
+  for (const Index v : cones.vertices) {
+    if (std::isnan(cone_angle_[v])) continue;
+    result_.cones.push_back(v);
+    result_.cone_angles.push_back(cone_angle_[v]);
+  }
+  report_defects();
+}
+
+void Assembly::place(const Array<Similarity>& placement) {
+  Eigen::Index corner_count = 0;
+  for (Solved& solved : solved_) {
+    solved.first_corner = corner_count;
+    corner_count += solved.component->mesh.halfedge_count();
+  }
+  layout_.resize(corner_count);
+  for (Solved& solved : solved_) {
+    const Component& component = *solved.component;
+    solved.turn.assign(solved.part_count, 0);
+    for (Index part = 0; part < solved.part_count && !solved.is_in_place; ++part) {
+      solved.turn[part] = std::arg(placement[solved.first_island + part].turn);
+    }
+    const auto move = [&](Index part, Complex z) {
+      return solved.is_in_place ? z : placement[solved.first_island + part](solved.scale * z);
+    };
+    const bool is_whole = solved.part_count == 1;  // its copies are moved just once each
+    Eigen::VectorXcd moved = solved.map.position;
+    if (is_whole) moved = moved.unaryExpr([&](Complex z) { return move(0, z); });
+    for (Index corner = 0; corner < component.mesh.halfedge_count(); ++corner) {
+      Complex z = moved[solved.map.cut_mesh.copy_of_corner[corner]];
+      if (!is_whole) z = move(solved.part[corner / 3], z);
+      layout_[solved.first_corner + corner] = z;
+      result_.corner_uv.row(component.source_corner(corner)) << z.real(), z.imag();
+    }
+  }
+  if (layout_.allFinite()) return;
+  throw Error(Code::solver_failed,
+              "The layout's sizes differ by more than numbers can hold. Add cones where the surface is stretched most, "
+              "or unwrap its parts one by one.");
+}
+
+void Assembly::check_in_layout(Solved& solved) const {
+  const HalfedgeMesh& mesh = solved.component->mesh;
+  check_triangles(mesh, corners(solved), solved.map);
+  if (result_.seamless) add_flips_as_stored(mesh, corners(solved), solved.map.validity);
+  if (solved.part_count == 1)
+    check_seams(mesh, corners(solved), solved.map);
+  else
+    check_divided_seams(mesh, {solved.part, solved.turn}, corners(solved), solved.map);
+}
+
+void Assembly::collect_checks(const Component& component, const ComponentMap& map) {
+  result_.seams = worse(result_.seams, map.seams);
+  for (const Index f : map.validity.flipped) result_.flipped.push_back(component.source_triangle[f]);
+  for (const Index v : map.validity.wrong_angle_sums) {
+    result_.wrong_angle_sums.push_back(component.source_vertex[v]);
+  }
+  result_.cone_angle_error = std::max(result_.cone_angle_error, map.validity.cone_angle_error);
+  for (const Index v : map.validity.inexact_angles) inexact_angles_.push_back(component.source_vertex[v]);
+  for (const Index h : map.inexact_seams) {
+    inexact_seams_.push_back(component.source_vertex[component.mesh.origin(h)]);
+    inexact_seams_.push_back(component.source_vertex[component.mesh.target(h)]);
+  }
+}
+
+Array<char> Assembly::open_seams(const HalfedgeMesh& mesh) const {
+  // A seamless layout runs on across seams that were not cut.
+  return result_.seamless ? Array<char>(mesh.halfedge_count(), 0) : mesh.seam;
+}
+
+void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
+  const Component& component = *solved.component;
+  const ComponentMap& map = solved.map;
+  const HalfedgeMesh& mesh = component.mesh;
+  Array<char> open = open_seams(mesh);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) open[h] = open[h] || map.cut_graph.is_cut[h];
+  solved.part_count = label_parts(mesh, open, solved.part);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (!open[h] || mesh.twin[h] < h) continue;
+    cut_edges_.push_back(component.source_vertex[mesh.origin(h)]);
+    cut_edges_.push_back(component.source_vertex[mesh.target(h)]);
+  }
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    element(result_.island, component.source_triangle[f]) = island_count_ + solved.part[f];
+  }
+  island_count_ += solved.part_count;
+  solved.is_in_place = map.pins.size() > 1 || result_.seamless;
+  if (solved.is_in_place) return;
+  solved.scale = scale_to_surface(mesh, geometry, map);
+  solved.first_island = ssize(islands_);
+  Array<Array<Index>> copies(solved.part_count);  // of every island
+  Array<Index> listed_in(map.cut_mesh.copy_count(), none);
+  for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
+    const Index copy = map.cut_mesh.copy_of_corner[corner], part = solved.part[corner / 3];
+    if (listed_in[copy] == part) continue;
+    listed_in[copy] = part;
+    copies[part].push_back(copy);
+  }
+  for (const Array<Index>& own : copies) {
+    Island island{Eigen::VectorXcd(own.size()), std::nullopt, static_cast<Index>(solved_.size())};
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      island.position[static_cast<Eigen::Index>(k)] = solved.scale * map.position[own[k]];
+      if (!map.pins.empty() && own[k] == map.pins.front().copy) {
+        island.pin = {static_cast<Eigen::Index>(k), map.pins.front().position};
+      }
+    }
+    islands_.push_back(std::move(island));
+  }
+}
+
+void Assembly::add_opened_seams() {
+  if (options_.seams != SeamMode::follow) return;
+  Array<std::pair<Index, Index>> sides;  // of borders that are marked, the lower vertex first
+  for (const Solved& solved : solved_) {
+    const Component& component = *solved.component;
+    for (Index h = 0; h < component.mesh.halfedge_count(); ++h) {
+      if (component.mesh.twin[h] != none || !component.mesh.seam[h]) continue;
+      sides.push_back(std::minmax(component.source_vertex[component.mesh.origin(h)],
+                                  component.source_vertex[component.mesh.target(h)]));
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  for (auto side = sides.begin(); side != sides.end();) {
+    const auto end = std::upper_bound(side, sides.end(), *side);
+    if (end - side > 1) cut_edges_.insert(cut_edges_.end(), {side->first, side->second});
+    side = end;
+  }
+}
+
+void Assembly::report_flat_cones() {
+  const auto is_cone = [&](Index v) { return !std::isnan(cone_angle_[v]); };
+  sort_unique(flat_cones_);  // a vertex where parts meet is one of each
+  flat_cones_.erase(std::remove_if(flat_cones_.begin(), flat_cones_.end(), is_cone), flat_cones_.end());
+  if (flat_cones_.empty()) return;
+  result_.seamless->flat_cones = flat_cones_;  // angles are rounded for seamless layouts alone
+  result_.warnings.push_back(
+      {Code::flat_cones,
+       concat(count(flat_cones_.size(), "cone", "cones"),
+              " came out flat when angles were rounded: ordinary vertices now, which need no cut."),
+       {ElementKind::vertices, flat_cones_}});
+}
+
+void Assembly::name_unmapped(const Array<std::pair<Index, Index>>& duplicates) {
+  for (Finding& finding : result_.warnings) {
+    if (finding.code != Code::component_skipped) continue;
+    std::vector<Index>& skipped = finding.elements.indices;
+    const std::vector<Index> originals = skipped;  // sorted, as a component lists its triangles
+    for (const auto& [f, original] : duplicates) {
+      if (std::binary_search(originals.begin(), originals.end(), original)) skipped.push_back(f);
+    }
+    std::sort(skipped.begin(), skipped.end());
+  }
+}
+
+void Assembly::share_map(Index triangle, Index original) {
+  element(result_.island, triangle) = element(result_.island, original);
+  for (Index corner = 3 * triangle; corner < 3 * triangle + 3; ++corner) {
+    for (Index other = 3 * original; other < 3 * original + 3; ++other) {
+      if (surface_.triangles.data()[corner] == surface_.triangles.data()[other]) {
+        result_.corner_uv.row(corner) = result_.corner_uv.row(other);
+      }
+    }
+  }
+}
+
+// Triangles that lie on others, over all islands.
+void Assembly::find_overlapping() {
+  Array<Index> twin(layout_.size()), triangle(layout_.size() / 3);
+  double area = 0;
+  for (const Solved& solved : solved_) {
+    const HalfedgeMesh& mesh = solved.component->mesh;
+    const Index first = static_cast<Index>(solved.first_corner);
+    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+      const Index other = mesh.twin[h];
+      const bool runs_on =
+          other != none && !solved.map.cut_graph.is_cut[h] && solved.part[h / 3] == solved.part[other / 3];
+      twin[first + h] = runs_on ? first + other : none;
+    }
+    for (Index f = 0; f < mesh.triangle_count(); ++f) {
+      triangle[first / 3 + f] = solved.component->source_triangle[f];
+      area += std::abs(doubled_area(layout_, first / 3 + f)) / 2;
+    }
+  }
+  double shared = 0;
+  for (const Overlap& overlap : result_.flipped.empty() ? find_overlaps(layout_, twin) : find_overlaps(layout_)) {
+    shared += overlap.area;
+    result_.overlapping.insert(result_.overlapping.end(), {triangle[overlap.first], triangle[overlap.second]});
+  }
+  sort_unique(result_.overlapping);
+  result_.overlap_area = shared > 0 ? shared / area : 0;
+}
+
+void Assembly::report_defects() {
+  std::vector<Index>& flipped = result_.flipped;
+  std::vector<Index>& wrong = result_.wrong_angle_sums;
+  std::sort(flipped.begin(), flipped.end());
+  sort_unique(wrong);
+  sort_unique(inexact_angles_);
+  // One of its copies may be off by more than another.
+  const auto is_wrong = [&](Index v) { return std::binary_search(wrong.begin(), wrong.end(), v); };
+  inexact_angles_.erase(std::remove_if(inexact_angles_.begin(), inexact_angles_.end(), is_wrong),
+                        inexact_angles_.end());
+  const bool foretold = std::any_of(result_.warnings.begin(), result_.warnings.end(),
+                                    [](const Finding& finding) { return finding.code == Code::high_distortion; });
+  if (!foretold && flipped.empty() && !(result_.distortion.l2_stretch < high_l2)) {
+    result_.warnings.push_back({Code::high_distortion,
+                                concat("The map stretches much: its L2 stretch is ", result_.distortion.l2_stretch,
+                                       ", 1 being none. Add cones where the texture becomes too small."),
+                                {}});
+  }
+  if (!inexact_seams_.empty()) {
+    result_.warnings.push_back(
+        {Code::inexact_seams,
+         concat(
+             "At ", count(inexact_seams_.size() / 2, "cut edge", "cut edges"),
+             " the two sides agree to fewer than nine digits, because the layout shrinks too much there or a part is "
+             "much smaller than the others. Add cones nearby, or unwrap small parts by themselves."),
+         {ElementKind::edges, inexact_seams_}});
+  }
+  if (!inexact_angles_.empty()) {
+    result_.warnings.push_back({Code::inexact_angles,
+                                concat("The angles around ", count(inexact_angles_.size(), "vertex", "vertices"),
+                                       " miss what was imposed by more than a millionth. Add cones nearby."),
+                                {ElementKind::vertices, inexact_angles_}});
+  }
+  if (!flipped.empty()) {
+    result_.warnings.push_back({Code::flipped_triangles,
+                                concat(count(flipped.size(), "triangle is", "triangles are"),
+                                       " flipped in the layout. Add a cone nearby or improve the mesh there."),
+                                {ElementKind::triangles, flipped}});
+  }
+  if (!wrong.empty()) {
+    result_.warnings.push_back({Code::wrong_angle_sums,
+                                concat("At ", count(wrong.size(), "vertex", "vertices"),
+                                       " angles are off by more than a degree: by a turn, where the layout turns once "
+                                       "too often or too little, or because it shrinks too much. Move or add cones "
+                                       "nearby."),
+                                {ElementKind::vertices, wrong}});
+  }
+  report_overlapping();
+}
+
+void Assembly::report_overlapping() {
+  const std::vector<Index>& overlapping = result_.overlapping;
+  if (overlapping.empty()) return;
+  const char* remedy = options_.overlaps == Overlaps::keep
+                           ? "To bake onto it, choose to split overlaps."
+                           : "They could not be split: unpin corners, or improve the mesh where triangles are flipped.";
+  result_.warnings.push_back(
+      {Code::overlapping_triangles,
+       concat(count(overlapping.size(), "triangle lies", "triangles lie"), " on others in the layout. ", remedy),
+       {ElementKind::triangles, overlapping}});
+}
+
+}  // namespace lsgp

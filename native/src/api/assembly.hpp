@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Assembles the components' maps into one result in the caller's numbering.
+#pragma once
+
+#include <utility>
+
+#include "api/added_cuts.hpp"
+#include "base/array.hpp"
+#include "pipeline/component_map.hpp"
+#include "pipeline/components.hpp"
+#include "plane/layout.hpp"
+
+namespace lsgp {
+
+class Assembly {
+ public:
+  // Everything is collected in `result`, which holds the findings so far.
+  Assembly(const Surface& surface, const Array<Component>& components, const Options& options, ProgressMonitor& monitor,
+           Result& result);
+
+  // A component whose map cannot be split is left out, with the findings about its map.
+  void add(std::size_t component_index, const ComponentCones& cones, const Geometry& geometry, ComponentMap map,
+           std::vector<Finding> findings);
+
+  // Reports components that were left out; throws the first one's error where no other is there.
+  void require_any();
+
+  // Arranges the islands, checks what is returned and names what is wrong.  duplicates: as in Topology.
+  void finish(const Cones& cones, const Array<std::pair<Index, Index>>& duplicates);
+
+ private:
+  struct Solved {
+    const Component* component;
+    ComponentMap map;
+    Array<Index> part;  // (m) the island of every triangle, counted from the component's first
+    Index part_count = 1;
+    double scale = 1;               // of the map to the texel density of all
+    Array<double> turn;             // (parts) by which each is turned in the layout, radians
+    Eigen::Index first_island = 0;  // of those to be arranged
+    bool is_in_place = false;       // nothing of it is to be arranged
+    Eigen::Index first_corner = 0;  // in the layout
+  };
+
+  // Writes where every corner comes to lie, in the result and in `layout_`.
+  void place(const Array<Similarity>& placement);
+  CornerPositions corners(const Solved& solved) const {
+    return layout_.segment(solved.first_corner, solved.component->mesh.halfedge_count());
+  }
+  // Checks the coordinates that are returned: a component much smaller than the others has lost digits to its place.
+  void check_in_layout(Solved& solved) const;
+  void collect_checks(const Component& component, const ComponentMap& map);
+
+  // Halfedges at which a component's layout may end besides its cuts, (3m).
+  Array<char> open_seams(const HalfedgeMesh& mesh) const;
+
+  // A component is one island, or several where its cuts and seams together close off parts: those keep their size and
+  // are placed one by one, related across the seam by how they were moved. Seams that end inside are cut too, and both
+  // their sides lie on each other.
+  void add_islands(const Geometry& geometry, Solved& solved);
+
+  // Seams along which components without cones were opened are cut too, though their sides are borders.
+  void add_opened_seams();
+
+  // A vertex where parts meet may be flat in one and a cone of another: then it is not named as flat.
+  void report_flat_cones();
+
+  // Triangles that lie on one of a skipped component were skipped with it.
+  void name_unmapped(const Array<std::pair<Index, Index>>& duplicates);
+
+  void share_map(Index triangle, Index original);
+  void find_overlapping();
+  void report_defects();
+  void report_overlapping();
+
+  const Surface& surface_;
+  const Array<Component>& components_;
+  const Options& options_;
+  ProgressMonitor& monitor_;
+  Result& result_;
+  Array<double> cone_angle_;                // by the caller's vertex, NaN where none was imposed
+  Array<Index> cut_edges_, inexact_seams_;  // vertex pairs
+  AddedCuts added_cuts_;
+  Array<Index> inexact_angles_, flat_cones_;
+  Array<Solved> solved_;
+  Array<Failure> failures_;
+  Array<Island> islands_;    // those to be arranged
+  Eigen::VectorXcd layout_;  // u + iv at the corners of all solved components, one after the other
+  Index island_count_ = 0;
+};
+
+}  // namespace lsgp

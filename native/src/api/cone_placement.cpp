@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The verbs of cone placement; every component is worked on for itself.
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "api/opened_component.hpp"
+#include "base/array.hpp"
+#include "base/progress_monitor.hpp"
+#include "base/text.hpp"
+#include "lsgp/lsgp.hpp"
+#include "pipeline/components.hpp"
+#include "pipeline/validation.hpp"
+#include "placement/component_placement.hpp"
+#include "solvers/linear_algebra_counter.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr double same_angle = 1e-9;  // radians
+
+// A surface split into components, each with what cones may be placed on.
+class PlacementWork {
+ public:
+  PlacementWork(const Surface& surface, const Cones& existing, SeamMode seams, MoreCones more,
+                std::vector<Finding>& findings, const Progress& progress)
+      : triangles_(surface.triangles.rows()), findings_(findings), monitor_(progress, seconds_) {
+    work_ = prepare_placement(surface, existing, seams, more, findings);
+    copies_.assign(surface.positions.rows(), 0);
+    for (const Component& component : work_.topology.components) {
+      for (const Index v : component.source_vertex) ++copies_[v];
+    }
+  }
+
+  double unit_scale() const { return work_.unit_scale; }
+  const Array<Component>& components() const { return work_.topology.components; }
+  ProgressMonitor& monitor() { return monitor_; }
+
+  // Calls visit(component, geometry, existing cones, allowed vertices, findings) for every component.
+  template <typename Visit>
+  void for_each(Visit visit) {
+    Index triangles_before = 0;
+    for_each_component(components(), findings_, [&](std::size_t i) {
+      const Component& component = components()[i];
+      const double begin = static_cast<double>(triangles_before) / static_cast<double>(triangles_);
+      triangles_before += component.mesh.triangle_count();
+      const ProgressMonitor::Part part(monitor_, begin,
+                                       static_cast<double>(triangles_before) / static_cast<double>(triangles_));
+      monitor_.advance(0);
+      const Geometry geometry = require_geometry(component, findings_);
+      // A vertex where parts meet cannot have an angle on each.
+      Array<char> allowed;
+      for (const Index v : component.source_vertex) allowed.push_back(copies_[v] == 1);
+      std::vector<Finding> found;
+      visit(component, geometry, work_.tasks[i].cones, allowed, found);
+      report_border_cones(component, work_.tasks[i].border_cones, findings_);
+      move_findings(component, found, findings_);
+    });
+    monitor_.advance(1);
+  }
+
+ private:
+  Eigen::Index triangles_;
+  std::vector<Finding>& findings_;
+  StageSeconds seconds_;
+  ProgressMonitor monitor_;
+  Work work_;
+  Array<Index> copies_;  // (n) components' vertices that are one of the caller's
+};
+
+Array<Index> mirror_images(const Component& component, const Geometry& geometry, const PlacementOptions& options,
+                           double unit_scale, std::vector<Finding>& findings) {
+  if (!options.symmetric) return {};
+  std::optional<MirrorPlane> plane = options.mirror;
+  if (plane) plane->point *= unit_scale;
+  Array<Index> images = find_mirror_images(component.mesh, geometry, plane);
+  if (images.empty()) {
+    Array<Index> all(component.source_triangle.size());
+    for (std::size_t f = 0; f < all.size(); ++f) all[f] = static_cast<Index>(f);
+    findings.push_back({Code::not_symmetric,
+                        concat("A part of the surface is not its own mirror image in ",
+                               options.mirror ? "the given plane" : "any plane that was tried",
+                               "; its cones were placed without regard to symmetry. Symmetrize the mesh, or give its "
+                               "mirror plane."),
+                        {ElementKind::triangles, std::move(all)}});
+  }
+  return images;
+}
+
+// A vertex has one angle in the result, whatever is best on each part that touches there.
+void report_shared(Array<Index> vertices, std::vector<Finding>& findings) {
+  if (vertices.empty()) return;
+  sort_unique(vertices);
+  findings.push_back({Code::split_vertex,
+                      concat(count(vertices.size(), "cone is", "cones are"),
+                             " where parts of the surface touch, and should have an angle of its own on each; only one "
+                             "can be given. Split the vertices there."),
+                      {ElementKind::vertices, std::move(vertices)}});
+}
+
+}  // namespace
+
+Placement place_cones(const Surface& surface, const Cones& existing, const PlacementOptions& options,
+                      const Progress& progress) {
+  require_valid(options);
+  Placement out;
+  const LinearAlgebraCounter counter;
+  const MoreCones more = options.count == 0 ? MoreCones::none : MoreCones::some;
+  PlacementWork work(surface, existing, options.seams, more, out.warnings, progress);
+  out.log_scale = Eigen::VectorXd::Zero(surface.positions.rows());
+  Array<std::optional<double>> angle(surface.positions.rows());
+  Array<Index> placed, shared;
+  double stretched_area = 0, stretched_in_maps = 0, total_area = 0;
+  bool all_mapped = true;
+  Shortfalls shortfalls(options);
+  work.for_each([&](const Component& component, const Geometry& geometry, const ComponentCones& cones,
+                    const Array<char>& allowed, std::vector<Finding>& findings) {
+    const Array<Index> mirrored = mirror_images(component, geometry, options, work.unit_scale(), findings);
+    const PlacementTask task{component.mesh, geometry, cones, allowed, mirrored};
+    PlacedCones found = place_component(task, options, findings, work.monitor());
+    if (is_opened(component, found, options)) describe_opened(component, options, work.monitor(), found);
+    for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
+      out.log_scale[component.source_vertex[v]] = found.curvature.log_scale[v];
+    }
+    Array<Index> own;
+    for (std::size_t i = 0; i < found.cones.vertices.size(); ++i) {
+      own.push_back(component.source_vertex[found.cones.vertices[i]]);
+      std::optional<double>& told = angle[own.back()];
+      if (told && std::abs(*told - *found.cones.angles[i]) > same_angle) shared.push_back(own.back());
+      told = found.cones.angles[i];
+    }
+    placed.insert(placed.end(), own.begin(), own.end());
+    // Islands get the same area in 2D as in 3D, so their squared stretches add up by area.
+    stretched_area += found.curvature.predicted_l2 * found.curvature.predicted_l2 * geometry.total_area;
+    total_area += geometry.total_area;
+    all_mapped &= found.mapped_l2.has_value();
+    if (found.mapped_l2) stretched_in_maps += *found.mapped_l2 * *found.mapped_l2 * geometry.total_area;
+    out.maps += found.maps;
+    out.reached &= found.reached;
+    if (found.missing) shortfalls.add(*found.missing, component.source_triangle);
+    if (!options.count && !found.reached) {
+      shortfalls.add(found.mapped_l2.value_or(found.curvature.predicted_l2), own, component.source_triangle);
+    }
+  });
+  shortfalls.report(out.warnings);
+  report_shared(std::move(shared), out.warnings);
+  out.linear_algebra = counter.counted();
+  out.predicted_l2 = std::sqrt(stretched_area / total_area);
+  if (all_mapped) out.mapped_l2 = std::sqrt(stretched_in_maps / total_area);
+  std::vector<Index> all = existing.vertices;
+  all.insert(all.end(), placed.begin(), placed.end());
+  for (const Index v : all) {
+    if (!angle[v]) continue;
+    out.cones.push_back(v);
+    out.cone_angles.push_back(*angle[v]);
+    angle[v].reset();  // listed
+  }
+  return out;
+}
+
+ConeGains cone_gains(const Surface& surface, const Cones& existing, SeamMode seams, const Progress& progress) {
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  ConeGains out;
+  PlacementWork work(surface, existing, seams, MoreCones::some, out.warnings, progress);
+  out.predicted_l2 = Eigen::VectorXd::Constant(surface.positions.rows(), std::numeric_limits<double>::quiet_NaN());
+  double stretched_area = 0, total_area = 0, most = 0, most_without = 0;
+  work.for_each([&](const Component& component, const Geometry& geometry, const ComponentCones& cones,
+                    const Array<char>& allowed, std::vector<Finding>&) {
+    const ComponentGains gains = component_gains({component.mesh, geometry, cones, allowed, {}}, work.monitor());
+    for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
+      if (!std::isnan(gains.predicted_l2[v])) out.predicted_l2[component.source_vertex[v]] = gains.predicted_l2[v];
+    }
+    stretched_area += gains.present_l2 * gains.present_l2 * geometry.total_area;
+    total_area += geometry.total_area;
+    if (gains.best == none) return;
+    // A component that has to have a cone comes first, the largest before others.
+    const bool needed = gains.present_l2 == unlimited;
+    const double with_cone = gains.predicted_l2[gains.best];
+    const double saved = geometry.total_area * (gains.present_l2 * gains.present_l2 - with_cone * with_cone);
+    const double gained = needed ? geometry.total_area : saved;
+    double& record = needed ? most_without : most;
+    if (!(gained > record) || (!needed && most_without > 0)) return;
+    record = gained;
+    out.best = component.source_vertex[gains.best];
+  });
+  out.present_l2 = std::sqrt(stretched_area / total_area);
+  return out;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Seam residuals of components that were split into islands, which are moved independently.
+#pragma once
+
+#include "base/array.hpp"
+#include "pipeline/component_map.hpp"
+
+namespace lsgp {
+
+struct PlacedParts {
+  const Array<Index>& of_triangle;  // (m)
+  Array<double> turn;               // (parts) by which each was turned, radians
+};
+
+// Measures positions u + iv at the component's corners, (3m), against what the map imposed and what the parts were
+// turned by: its cuts, and the edges along which it was parted without a cut.
+void check_divided_seams(const HalfedgeMesh& mesh, const PlacedParts& parts, const CornerPositions& corners,
+                         ComponentMap& map);
+
+}  // namespace lsgp

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The whole way from a surface to its map; every component is worked on for itself.
+#include "lsgp/solver.hpp"
+#include "base/array.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <utility>
+
+#include "api/assembly.hpp"
+#include "base/progress_monitor.hpp"
+#include "lsgp/lsgp.hpp"
+#include "pipeline/component_map.hpp"
+#include "pipeline/components.hpp"
+#include "prescription/component_system.hpp"
+#include "seamless/seamless.hpp"
+#include "solvers/linear_algebra_counter.hpp"
+
+namespace lsgp {
+
+namespace {
+
+bool same_cones(const ComponentCones& a, const ComponentCones& b) {
+  return a.vertices == b.vertices && a.border == b.border;
+}
+
+class Pipeline {
+ public:
+  // keeps_systems: from one run to the next, rather than until each component is done.
+  explicit Pipeline(bool keeps_systems) : keeps_systems_(keeps_systems) {}
+  Result run(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
+             const Progress& progress);
+
+ private:
+  // What is kept of one component.
+  struct Kept {
+    Geometry geometry;
+    std::vector<Finding> found;  // while it was built
+    ComponentCones cones;        // of the system
+    Factorization factorization = Factorization::automatic;
+    std::optional<ComponentSystem> system;
+  };
+
+  void prepare_work(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
+                    std::vector<Finding>& findings);
+  const Geometry& geometry_of(std::size_t i, std::vector<Finding>& findings);
+  ComponentSystem& system_of(std::size_t i, const Options& options);
+  void release(std::size_t i) {
+    if (!keeps_systems_) kept_[i]->system->release();
+  }
+
+  const bool keeps_systems_;
+  Work work_;
+  Array<std::unique_ptr<Kept>> kept_;  // (components) systems refer to the geometry beside them
+  std::int64_t kept_of_ = 0;           // generation of the topology it was made from
+};
+
+void Pipeline::prepare_work(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
+                            std::vector<Finding>& findings) {
+  try {
+    work_ = prepare(surface, cones, options, findings, pins, std::move(work_));
+  } catch (...) {
+    kept_.clear();
+    work_ = {};
+    throw;
+  }
+  if (work_.generation != kept_of_) kept_.clear();
+  kept_of_ = work_.generation;
+  kept_.resize(work_.topology.components.size());
+}
+
+const Geometry& Pipeline::geometry_of(std::size_t i, std::vector<Finding>& findings) {
+  if (!kept_[i]) {
+    auto kept = std::make_unique<Kept>();
+    kept->geometry = require_geometry(work_.topology.components[i], kept->found);
+    kept_[i] = std::move(kept);
+  }
+  findings.insert(findings.end(), kept_[i]->found.begin(), kept_[i]->found.end());
+  return kept_[i]->geometry;
+}
+
+ComponentSystem& Pipeline::system_of(std::size_t i, const Options& options) {
+  Kept& kept = *kept_[i];
+  const ComponentCones& cones = work_.tasks[i].cones;
+  if (!kept.system || !same_cones(kept.cones, cones) || kept.factorization != options.factorization) {
+    Eigen::VectorXd memory = kept.system ? kept.system->take_memory() : Eigen::VectorXd();
+    kept.system.emplace(work_.topology.components[i].mesh, kept.geometry, cones, options.factorization,
+                        std::move(memory));
+    kept.cones = cones;
+    kept.factorization = options.factorization;
+  }
+  return *kept.system;
+}
+
+Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
+                     const Progress& progress) {
+  Result result;
+  const LinearAlgebraCounter counter;
+  ProgressMonitor monitor(progress, result.stage_seconds);
+  {
+    const ProgressMonitor::Stage stage(monitor, "topology");
+    prepare_work(surface, cones, options, pins, result.warnings);
+  }
+  const Array<Component>& components = work_.topology.components;
+  if (options.seamless) require_valid(*options.seamless, options, pins);
+  constexpr double share_of_rounding = 0.5;
+  const double share_of_maps = options.seamless ? 1 - share_of_rounding : 1;
+  Index triangles_before = 0;
+  Array<std::optional<ComponentMap>> maps(components.size());
+  Array<std::vector<Finding>> found(components.size());  // about the maps
+  for_each_component(components, result.warnings, [&](std::size_t i) {
+    const Component& component = components[i];
+    const ComponentTask& task = work_.tasks[i];
+    const auto share_up_to = [&](Index count) {
+      return share_of_maps * count / static_cast<double>(surface.triangles.rows());
+    };
+    const double begin = share_up_to(triangles_before);
+    triangles_before += component.mesh.triangle_count();
+    const ProgressMonitor::Part part(monitor, begin, share_up_to(triangles_before));
+    monitor.advance(0);
+    {
+      const ProgressMonitor::Stage stage(monitor, "geometry");
+      geometry_of(i, result.warnings);
+    }
+    ComponentMap map = map_component(system_of(i, options), task, options, found[i], monitor);
+    release(i);
+    if (options.seamless) require_quantizable(component.mesh, map);
+    result.repair.flipped_before += map.repair.flipped_before;
+    result.repair.wrong_angle_sums_before += map.repair.wrong_angle_sums_before;
+    result.repair.iterations += map.repair.iterations;
+    maps[i] = std::move(map);
+    report_border_cones(component, task.border_cones, result.warnings);
+  });
+  Array<ComponentTask> tasks = work_.tasks;  // seamless layouts merge cones
+  if (options.seamless) {
+    const ProgressMonitor::Stage stage(monitor, "quantize");
+    const ProgressMonitor::Part part(monitor, share_of_maps, 1);
+    monitor.advance(0);
+    Array<SeamlessPart> parts;
+    for (std::size_t i = 0; i < components.size(); ++i) {
+      if (maps[i]) parts.push_back({&components[i], &tasks[i], &*maps[i], &*kept_[i]->system});
+    }
+    result.seamless = make_seamless(options, work_.unit_scale, parts, result.warnings, monitor);
+    for (std::size_t i = 0; i < components.size(); ++i) {
+      if (!maps[i]) continue;
+      release(i);
+      const bool is_laid_out = std::any_of(parts.begin(), parts.end(),
+                                           [&](const SeamlessPart& part) { return part.component == &components[i]; });
+      if (!is_laid_out) maps[i].reset();
+    }
+  }
+  const ProgressMonitor::Stage stage(monitor, "layout");
+  Assembly assembly(surface, components, options, monitor, result);
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    if (maps[i]) assembly.add(i, tasks[i].cones, kept_[i]->geometry, std::move(*maps[i]), std::move(found[i]));
+  }
+  assembly.require_any();
+  assembly.finish(cones, work_.topology.duplicates);
+  monitor.advance(1);
+  result.linear_algebra = counter.counted();
+  return result;
+}
+
+}  // namespace
+
+struct Solver::Kept {
+  Pipeline pipeline{true};
+  std::atomic<bool> is_busy{false};
+};
+
+namespace {
+
+// Marks a solver as busy for as long as this lives.
+class Turn {
+ public:
+  explicit Turn(std::atomic<bool>& is_busy) : is_busy_(is_busy) {
+    if (!is_busy_.exchange(true)) return;
+    throw Error(Code::solver_busy,
+                "The solver is at work on another call, of another thread or of the one whose progress is told. Wait "
+                "until that one ends, or take a solver for each.");
+  }
+  ~Turn() { is_busy_ = false; }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+ private:
+  std::atomic<bool>& is_busy_;
+};
+
+}  // namespace
+
+Solver::Solver(Surface surface) : surface_(std::move(surface)), kept_(std::make_unique<Kept>()) {}
+Solver::~Solver() = default;
+Solver::Solver(Solver&&) noexcept = default;
+
+Result Solver::parameterize(const Cones& cones, const Options& options, const Pins& pins, const Progress& progress) {
+  const Turn turn(kept_->is_busy);
+  return kept_->pipeline.run(surface_, cones, options, pins, progress);
+}
+
+Result parameterize(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
+                    const Progress& progress) {
+  return Pipeline(false).run(surface, cones, options, pins, progress);
+}
+
+}  // namespace lsgp

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The intrinsic triangulation whose only vertices are the cones: it tells whether cones moved to other places still
+// make a layout without flips.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "base/array.hpp"
+#include "cut/cut_mesh.hpp"
+
+namespace lsgp {
+
+// Where a triangle's corner lies in the triangle's own chart:
+//   turn * z + sum of coefficient * t,
+// z the position of the cone's first copy (its number is the vertex's), t the translations of cuts,
+// z_right = e^{i rotation} z_left + t.
+struct ConeCorner {
+  Index cone;                                     // vertex
+  Complex turn;                                   // of modulus 1
+  Array<std::pair<Index, Complex>> translations;  // cuts, ascending, and their coefficients
+};
+
+// All three corners of a triangle are in one chart, counter-clockwise. A cone can be at several of them. For moved
+// cones and translations the corners hold as far as these satisfy the closing equations of all nodes.
+struct ConeTriangulation {
+  Array<std::array<ConeCorner, 3>> triangles;  // 2 (cones - Euler characteristic)
+};
+
+// Closed surfaces of any genus.  cones: at least one, and all vertices whose angle is not 2 pi; flat ones may be among
+// them.  turn: (cuts) e^{i rotation}.  position: (copies) u + iv, without flips, the angles around every other vertex
+// adding up to 2 pi, both sides of every cut related by its transition.
+// None where a vertex cannot be removed, as happens when the positions are not so.
+std::optional<ConeTriangulation> triangulate_cones(const HalfedgeMesh& mesh, const CutGraph& cut_graph,
+                                                   const CutMesh& cut_mesh, const Array<Complex>& turn,
+                                                   const Array<Index>& cones, const Eigen::VectorXcd& position);
+
+}  // namespace lsgp

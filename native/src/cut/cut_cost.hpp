@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a cut costs: where it may run, and how long each of its edges counts.
+#pragma once
+
+#include "mesh/geometry.hpp"
+#include "mesh/topology.hpp"
+
+namespace lsgp {
+
+// A cut edge runs inside the surface, along an edge of the mesh proper.
+inline bool may_cut(const HalfedgeMesh& mesh, Index h) { return mesh.twin[h] != none && mesh.cuttable[h]; }
+
+// The length of an edge times its factor. Seams cost nothing: they are to be opened anyway.
+inline double cut_cost(const HalfedgeMesh& mesh, const Geometry& geometry, Index h) {
+  if (mesh.seam[h]) return 0;
+  return mesh.cut_factor.empty() ? geometry.length[h] : mesh.cut_factor[h] * geometry.length[h];
+}
+
+}  // namespace lsgp

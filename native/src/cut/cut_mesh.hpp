@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The surface opened along its cut graph: copies of vertices, and the sisters on both sides of every cut.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "base/array.hpp"
+#include "cut/cut_graph.hpp"
+#include "mesh/topology.hpp"
+
+namespace lsgp {
+
+struct CutMesh {
+  Array<Index> copy_of_corner;  // (3m) copies below n are the vertices themselves, further copies follow
+  Array<Index> source;          // (copies) the vertex of each
+  Index copy_count() const { return static_cast<Index>(source.size()); }
+};
+
+class CutFactor;
+class FrameTree;
+
+// A surface and how it is opened. What has been computed for a cut graph with these cuts, and maybe others, serves
+// here too.
+struct CutSurface {
+  const HalfedgeMesh& mesh;
+  const Geometry& geometry;
+  const CutGraph& cut_graph;
+  const CutMesh& cut_mesh;
+  const CutFactor* factor = nullptr;  // of this geometry, where there is one
+  const FrameTree* frame_tree = nullptr;
+};
+
+// Values of copies, (copies), at the corners, (3m).
+Eigen::VectorXcd at_corners(const CutMesh& cut_mesh, const Eigen::VectorXcd& of_copies);
+
+// The copies of one vertex: sectors between outgoing cut halfedges, counter-clockwise.
+struct Sector {
+  Index copy;
+  Index opened_by;  // the cut halfedge on its right, none for the first of a boundary vertex or of an uncut one
+};
+
+CutMesh cut_open(const HalfedgeMesh& mesh, const CutGraph& cut_graph);
+
+// The sectors of v from the first outgoing cut halfedge on; an inside vertex closes up with that halfedge again.
+Array<Sector> sectors(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh, Index v);
+
+// Whether a halfedge lies on the border of the opened surface.
+inline bool is_open(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, Index h) {
+  const Index twin = mesh.twin[h];
+  return twin == none || cut_mesh.copy_of_corner[twin] != cut_mesh.copy_of_corner[next(h)] ||
+         cut_mesh.copy_of_corner[next(twin)] != cut_mesh.copy_of_corner[h];
+}
+
+// Both copies of the vertex a cut's halfedge leaves from, and of the vertex it runs to.
+struct Sisters {
+  Index left, right;
+};
+inline Sisters origin_sisters(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, Index h) {
+  return {cut_mesh.copy_of_corner[h], cut_mesh.copy_of_corner[next(mesh.twin[h])]};
+}
+inline Sisters target_sisters(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, Index h) {
+  return {cut_mesh.copy_of_corner[next(h)], cut_mesh.copy_of_corner[mesh.twin[h]]};
+}
+
+}  // namespace lsgp

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cuts while they are being improved: a graph of edges with the vertices that it has to reach.
+#pragma once
+
+#include "base/array.hpp"
+#include "cut/cut_cost.hpp"
+
+namespace lsgp {
+
+using CutPath = Array<Index>;  // halfedges, one after the other
+
+// Cut edges at each vertex, (n).
+Array<Index> count_cuts(const HalfedgeMesh& mesh, const Array<char>& is_cut);
+
+struct CutNetwork {
+  const HalfedgeMesh& mesh;
+  const Geometry& geometry;
+  const Array<char>& is_cone;  // (n) vertices inside that have to stay on the cuts
+  Array<char> is_avoided;      // (n) vertices of borders that no cut may touch
+  Array<char> is_cut;          // (3m) on both halfedges
+  Array<Index> degree;         // (n) cut edges at each vertex
+
+  // uncut: (loops) the borders to avoid, or empty.
+  CutNetwork(const HalfedgeMesh& surface, const Geometry& metric, const Array<char>& cones, const Array<char>& uncut,
+             Array<char> cuts);
+
+  bool is_on_border(Index v) const { return mesh.loop_of_vertex[v] != none; }
+  bool holds(Index v) const { return degree[v] > 0 || is_cone[v] || (is_on_border(v) && !is_avoided[v]); }
+  bool is_node(Index v) const { return is_cone[v] || is_on_border(v) || degree[v] != 2; }
+  double cost(const CutPath& path) const;
+
+  // The path between two nodes that a cut halfedge is on, or the closed curve without a node.
+  CutPath trace(Index h) const;
+  void open(const CutPath& path) { set(path, 1); }
+  void close(const CutPath& path) { set(path, 0); }
+
+ private:
+  void set(const CutPath& path, char cut);
+};
+
+}  // namespace lsgp

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cut/cut_regions.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace lsgp {
+
+CutRegions::CutRegions(const CutNetwork& network)
+    : network_(network),
+      reached_(network.mesh.vertex_count()),
+      again_(network.mesh.vertex_count()),
+      redone_(network.mesh.vertex_count(), 0) {
+  const HalfedgeMesh& mesh = network.mesh;
+  PathStarts starts;
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (!network.holds(v)) continue;
+    reached_[v] = {0, none, v};
+    starts.emplace_back(0.0, v);
+  }
+  grow_paths(
+      mesh, network.geometry, std::move(starts), [&](Index v) { return !network_.is_avoided[v]; }, reached_);
+  first_.assign(mesh.vertex_count() + 1, 0);
+  for (const Reached& there : reached_) {
+    if (there.source != none) ++first_[there.source + 1];
+  }
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  members_.resize(first_.back());
+  Array<Index> cursor(first_.begin(), first_.end() - 1);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (reached_[v].source != none) members_[cursor[reached_[v].source]++] = v;
+  }
+  bridges_ = sorted_bridges(mesh, network.geometry, reached_, [&](Index h) {
+    return !network.is_cut[h] && reached_[mesh.origin(h)].source != reached_[mesh.target(h)].source;
+  });
+}
+
+// Divides the regions of the vertices inside a closed path among those around, as far as a cost.
+void CutRegions::redo(const CutPath& closed, double below) {
+  const HalfedgeMesh& mesh = network_.mesh;
+  ++round_;
+  around_.clear();
+  for (std::size_t i = 1; i < closed.size(); ++i) {
+    const Index base = mesh.origin(closed[i]);
+    for (Index m = first_[base]; m < first_[base + 1]; ++m) {
+      around_.push_back(members_[m]);
+      redone_[members_[m]] = round_;
+      again_[members_[m]] = {};
+    }
+  }
+  PathStarts starts;
+  for (const Index v : around_) {
+    mesh.for_each_outgoing(v, [&](Index out) {
+      const Index h = mesh.twin[out];
+      if (h == none || !may_cut(mesh, h) || redone_[mesh.origin(h)] == round_) return;
+      const Reached& there = reached_[mesh.origin(h)];
+      if (there.source == none || !network_.holds(there.source)) return;
+      const double through = there.distance + cut_cost(mesh, network_.geometry, h);
+      if (through < below && through < again_[v].distance) again_[v] = {through, h, there.source};
+    });
+    if (again_[v].source != none) starts.emplace_back(again_[v].distance, v);
+  }
+  grow_paths(
+      mesh, network_.geometry, std::move(starts), [&](Index v) { return redone_[v] == round_; }, again_);
+}
+
+CutPath CutRegions::find(const CutPath& closed, const Array<Index>& is_apart, Index mark, double below) {
+  const HalfedgeMesh& mesh = network_.mesh;
+  Index best = none;
+  const auto joins = [&](const Reached& a, const Reached& b) {
+    return a.source != none && b.source != none && (is_apart[a.source] == mark) != (is_apart[b.source] == mark) &&
+           network_.holds(a.source) && network_.holds(b.source);
+  };
+  redo(closed, below);
+  for (const Bridge& bridge : bridges_) {
+    if (!(bridge.cost < below)) break;
+    const Index a = mesh.origin(bridge.halfedge), b = mesh.target(bridge.halfedge);
+    if (redone_[a] == round_ || redone_[b] == round_ || !joins(reached_[a], reached_[b])) continue;
+    below = bridge.cost;
+    best = bridge.halfedge;
+  }
+  for (const Index v : around_) {
+    mesh.for_each_outgoing(v, [&](Index h) {
+      const Reached &a = at(v), &b = at(mesh.target(h));
+      if (!may_cut(mesh, h) || !joins(a, b)) return;
+      const double cost = a.distance + cut_cost(mesh, network_.geometry, h) + b.distance;
+      if (!(cost < below)) return;
+      below = cost;
+      best = h;
+    });
+  }
+  if (best == none) return {};
+  // Cuts may have been opened across the path since the regions were built: what leads from part to part is enough.
+  const CutPath whole = path_through(best);
+  const bool from = is_apart[mesh.origin(whole.front())] == mark;
+  CutPath path;
+  for (const Index h : whole) {
+    const Index v = mesh.origin(h);
+    const bool holds = network_.holds(v);
+    if (holds && (is_apart[v] == mark) != from) break;
+    if (holds) path.clear();
+    path.push_back(h);
+  }
+  return path;
+}
+
+// From the vertex of the cuts at one end of an edge to that at the other.
+CutPath CutRegions::path_through(Index bridge) const {
+  const HalfedgeMesh& mesh = network_.mesh;
+  CutPath path;
+  for (Index h = at(mesh.origin(bridge)).by; h != none; h = at(mesh.origin(h)).by) path.push_back(h);
+  std::reverse(path.begin(), path.end());
+  path.push_back(bridge);
+  for (Index h = at(mesh.target(bridge)).by; h != none; h = at(mesh.origin(h)).by) path.push_back(mesh.twin[h]);
+  return path;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "base/array.hpp"
+#include "cut/cut_network.hpp"
+#include "cut/shortest_paths.hpp"
+
+namespace lsgp {
+
+// The vertices nearest to each vertex of the cuts, and the edges between these regions, as they were when this was
+// built: paths through them stay as long as the cuts that they lead to (Mehlhorn 1988; Uchoa and Werneck 2012).
+class CutRegions {
+ public:
+  explicit CutRegions(const CutNetwork& network);
+
+  // The cheapest path between the parts into which closing a path has divided the cuts, with the regions of the path's
+  // vertices divided among the others; empty where none is below a cost.
+  // is_apart: (n) marks the vertices of one part by `mark`.
+  CutPath find(const CutPath& closed, const Array<Index>& is_apart, Index mark, double below);
+
+ private:
+  const Reached& at(Index v) const { return redone_[v] == round_ ? again_[v] : reached_[v]; }
+  void redo(const CutPath& closed, double below);
+  CutPath path_through(Index bridge) const;
+
+  const CutNetwork& network_;
+  Array<Reached> reached_;        // (n)
+  Array<Index> first_, members_;  // the vertices of each region
+  Array<Bridge> bridges_;         // cheapest first
+  Array<Reached> again_;          // (n) of the vertices whose region's cut was closed
+  Array<Index> redone_;           // (n) the last round that did so
+  Array<Index> around_;           // these vertices
+  Index round_ = 0;
+};
+
+}  // namespace lsgp

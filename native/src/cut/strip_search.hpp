@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "base/array.hpp"
+#include "cut/cut_network.hpp"
+
+namespace lsgp {
+
+// Finds the cheapest path across the strip that is left where a cut is closed and its two sides are not joined any
+// more; where they meet in other vertices, as around a handle, as well.
+class StripSearch {
+ public:
+  explicit StripSearch(const CutNetwork& network);
+
+  // What followed both ends of a path on the border of the opened surface, before it was closed.
+  struct Ends {
+    Index after_head, after_tail;  // halfedges
+  };
+  Ends ends_of(const CutPath& path) const;
+
+  // The cheapest path that opens the surface again where `path` was closed; empty where none is below a cost.
+  CutPath find(const CutPath& path, const Ends& ends, double below);
+
+ private:
+  // How the search got to a vertex.
+  struct Reached {
+    double distance;
+    Index by;      // the halfedge that leads there
+    Index search;  // its number: others are out of date
+  };
+  // The sides are marked by numbers that no other strip has; one of a single cone is named instead.
+  struct Side {
+    Index mark, lone;
+    Index length = 0;  // edges
+  };
+
+  template <typename Visit>
+  Index follow_border(Index h, Visit visit) const;
+  bool is_border(Index h) const { return network_.is_cut[h] || network_.mesh.twin[h] == none; }
+  Side mark_side(Index first, Index lone);
+  Array<Index> starts(const Side& side, Index first) const;
+  bool arrives(const Side& side, Index h) const;
+  CutPath cross(const Side& from, const Side& to, const Array<Index>& starts, double below);
+
+  const CutNetwork& network_;
+  Array<Index> mark_;  // (3m) the last one given
+  Array<Reached> reached_;
+  Index marks_ = 0, searches_ = 0;
+};
+
+}  // namespace lsgp

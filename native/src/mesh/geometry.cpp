@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh/geometry.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace lsgp {
+
+namespace {
+
+// A triangle counts as degenerate when its height is below this share of its longest edge.
+constexpr double degenerate_height = 1e-8;
+constexpr double least_margin = 1e-4;  // of triangle inequalities where there are degenerate triangles
+
+// Angles, half cotangents and area of one triangle from its three edge lengths (Kahan's stable area).
+void measure_from_lengths(Geometry& geometry, Index f) {
+  double sorted[3] = {geometry.length[3 * f], geometry.length[3 * f + 1], geometry.length[3 * f + 2]};
+  std::sort(sorted, sorted + 3, [](double a, double b) { return a > b; });
+  const double a = sorted[0], b = sorted[1], c = sorted[2];
+  const double square = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c));
+  const double area = geometry.area[f] = std::sqrt(std::max(square, 0.0)) / 4;
+  for (int i = 0; i < 3; ++i) {
+    const double opposite = geometry.length[3 * f + i], left = geometry.length[3 * f + (i + 1) % 3],
+                 right = geometry.length[3 * f + (i + 2) % 3];
+    const double dot = (left * left + right * right - opposite * opposite) / 2;
+    geometry.half_cotangent[3 * f + i] = dot / (4 * area);
+    geometry.angle[3 * f + (i + 2) % 3] = std::atan2(2 * area, dot);
+  }
+}
+
+// margin: in mean edge lengths.
+void mollify(Geometry& geometry, double margin) {
+  const double mean = geometry.length.mean();
+  double added = 0;
+  for (Index h = 0; h < geometry.length.size(); ++h) {
+    const double slack = geometry.length[next(h)] + geometry.length[prev(h)] - geometry.length[h];
+    added = std::max(added, margin * mean - slack);
+  }
+  geometry.length.array() += added;
+  for (Index f = 0; f < geometry.area.size(); ++f) measure_from_lengths(geometry, f);
+}
+
+void place_apexes(Geometry& geometry) {
+  geometry.apex.resize(geometry.area.size());
+  for (Index f = 0; f < geometry.area.size(); ++f) {
+    const double height = 2 * geometry.area[f] / geometry.length[3 * f];
+    geometry.apex[f] = {2 * height * geometry.half_cotangent[3 * f + 1], height};
+  }
+}
+
+void add_up_vertices(const HalfedgeMesh& mesh, Geometry& geometry) {
+  geometry.vertex_area = Eigen::VectorXd::Zero(mesh.vertex_count());
+  geometry.angle_defect.resize(mesh.vertex_count());
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    geometry.angle_defect[v] = mesh.flat_angle(v);
+  }
+  for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
+    const Index v = mesh.origin(corner);
+    geometry.vertex_area[v] += geometry.area[corner / 3] / 3;
+    geometry.angle_defect[v] -= geometry.angle[corner];
+  }
+  geometry.total_area = geometry.area.sum();
+}
+
+}  // namespace
+
+Geometry build_geometry(const HalfedgeMesh& mesh) {
+  const Index triangle_count = mesh.triangle_count(), halfedge_count = mesh.halfedge_count();
+  Geometry geometry;
+  geometry.length.resize(halfedge_count);
+  geometry.angle.resize(halfedge_count);
+  geometry.half_cotangent.resize(halfedge_count);
+  geometry.area.resize(triangle_count);
+  for (Index f = 0; f < triangle_count; ++f) {
+    Eigen::Vector3d corner[3], edge[3];
+    for (int c = 0; c < 3; ++c) corner[c] = mesh.positions.row(mesh.triangles(f, c));
+    for (int c = 0; c < 3; ++c) {
+      edge[c] = corner[(c + 1) % 3] - corner[c];
+      geometry.length[3 * f + c] = edge[c].norm();
+    }
+    const double doubled_area = edge[0].cross(edge[1]).norm();
+    const double longest = geometry.length.segment<3>(3 * f).maxCoeff();
+    if (!(doubled_area > degenerate_height * longest * longest)) geometry.degenerate.push_back(f);
+    geometry.area[f] = doubled_area / 2;
+    for (int c = 0; c < 3; ++c) {
+      const double dot = -edge[(c + 1) % 3].dot(edge[(c + 2) % 3]);  // at the corner opposite halfedge c
+      geometry.half_cotangent[3 * f + c] = dot / (2 * doubled_area);
+      geometry.angle[3 * f + (c + 2) % 3] = std::atan2(doubled_area, dot);
+    }
+  }
+  if (!geometry.degenerate.empty()) mollify(geometry, least_margin);
+  place_apexes(geometry);
+  add_up_vertices(mesh, geometry);
+  return geometry;
+}
+
+Geometry mollified(const HalfedgeMesh& mesh, Geometry geometry, double margin) {
+  mollify(geometry, margin);
+  place_apexes(geometry);
+  add_up_vertices(mesh, geometry);
+  return geometry;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The intrinsic geometry of a surface: lengths, angles, areas, cotangent weights, angle defects.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "base/array.hpp"
+#include "mesh/topology.hpp"
+
+namespace lsgp {
+
+struct Geometry {
+  Eigen::VectorXd length;          // (3m) of halfedges
+  Eigen::VectorXd angle;           // (3m) at corners, radians
+  Eigen::VectorXd half_cotangent;  // (3m) half the cotangent of the angle opposite a halfedge
+  Eigen::VectorXd area;            // (m) of triangles
+  Eigen::VectorXcd apex;           // (m) the last corner from the first one, along the first halfedge and across it
+  Eigen::VectorXd vertex_area;     // (n) a third of the triangles around
+  Eigen::VectorXd angle_defect;    // (n) 2 pi minus the angle sum, pi minus it on a boundary
+  double total_area = 0;
+  Array<Index> degenerate;  // triangles without a usable area; lengths are mollified when there are any
+};
+
+// Degenerate triangles are given area: one constant is added to all lengths, the smallest that leaves every triangle
+// inequality a margin (Sharp and Crane 2020, section 4.5).
+Geometry build_geometry(const HalfedgeMesh& mesh);
+
+// The same with a margin given, in mean edge lengths: fatter triangles, for which more maps are valid.
+Geometry mollified(const HalfedgeMesh& mesh, Geometry geometry, double margin);
+
+// The edge vector of halfedge h in its triangle's own frame, in which the triangle's first halfedge is real.
+inline Complex edge_vector(const Geometry& geometry, Index h) {
+  const Index f = h / 3;
+  switch (h % 3) {
+    case 0: return {geometry.length[h], 0};
+    case 1: return geometry.apex[f] - geometry.length[3 * f];
+    default: return -geometry.apex[f];
+  }
+}
+
+// Its direction in the same frame, radians.
+inline double edge_direction(const Geometry& geometry, Index h) {
+  const Index first = h - h % 3;
+  switch (h % 3) {
+    case 0: return 0;
+    case 1: return M_PI - geometry.angle[first + 1];
+    default: return M_PI + geometry.angle[first];
+  }
+}
+
+// The cotangent weight of an edge (half the sum of the cotangents opposite), on either of its halfedges.
+inline double cotangent_weight(const HalfedgeMesh& mesh, const Geometry& geometry, Index h) {
+  return geometry.half_cotangent[h] + (mesh.twin[h] == none ? 0.0 : geometry.half_cotangent[mesh.twin[h]]);
+}
+
+}  // namespace lsgp

@@ -1,0 +1,387 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh/topology.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "base/memory.hpp"
+#include "base/text.hpp"
+#include "base/union_find.hpp"
+
+namespace lsgp {
+
+namespace {
+
+// The undirected edges of the triangles; every edge lists its halfedges.
+class EdgeTable {
+ public:
+  // Leaves out the triangles marked to skip; their halfedges have no edge.
+  EdgeTable(const Surface& surface, const Array<char>& skip) {
+    const Triangles& triangles = surface.triangles;
+    const auto for_each_halfedge = [&](auto visit) {
+      for (Index f = 0; f < triangles.rows(); ++f) {
+        if (skip[f]) continue;
+        const Index a = triangles(f, 0), b = triangles(f, 1), c = triangles(f, 2);
+        visit(3 * f, a, b);
+        visit(3 * f + 1, b, c);
+        visit(3 * f + 2, c, a);
+      }
+    };
+    bucket_.assign(surface.positions.rows() + 1, 0);
+    for_each_halfedge([&](Index, Index tail, Index head) { ++bucket_[std::min(tail, head) + 1]; });
+    std::partial_sum(bucket_.begin(), bucket_.end(), bucket_.begin());
+    const Index used = bucket_.back();
+    entries_.resize(used);
+    Array<Index> cursor(bucket_.begin(), bucket_.end() - 1);
+    for_each_halfedge([&](Index h, Index tail, Index head) {
+      entries_[cursor[std::min(tail, head)]++] = {std::max(tail, head), h};
+    });
+    edge_of_entry_.resize(used);
+    edge_of_halfedge_.assign(3 * triangles.rows(), none);
+    for (std::size_t v = 0; v + 1 < bucket_.size(); ++v) {
+      std::sort(entries_.begin() + bucket_[v], entries_.begin() + bucket_[v + 1]);
+      for (Index i = bucket_[v]; i < bucket_[v + 1]; ++i) {
+        if (i == bucket_[v] || entries_[i].high != entries_[i - 1].high) first_.push_back(i);
+        edge_of_entry_[i] = edge_of_halfedge_[entries_[i].halfedge] = static_cast<Index>(first_.size()) - 1;
+      }
+    }
+    first_.push_back(used);
+  }
+
+  Index count() const { return static_cast<Index>(first_.size()) - 1; }
+  Index edge_of(Index halfedge) const { return edge_of_halfedge_[halfedge]; }
+  Index halfedge_count(Index edge) const { return first_[edge + 1] - first_[edge]; }
+  Index halfedge(Index edge, Index i) const { return entries_[first_[edge] + i].halfedge; }
+
+  // The edge between two vertices, or none.
+  Index find(Index a, Index b) const {
+    const Index low = std::min(a, b), high = std::max(a, b);
+    const auto begin = entries_.begin() + bucket_[low], end = entries_.begin() + bucket_[low + 1];
+    const auto at = std::lower_bound(begin, end, Entry{high, 0});
+    return at != end && at->high == high ? edge_of_entry_[at - entries_.begin()] : none;
+  }
+
+ private:
+  struct Entry {
+    Index high, halfedge;
+    bool operator<(const Entry& other) const {
+      return high != other.high ? high < other.high : halfedge < other.halfedge;
+    }
+  };
+  Array<Index> bucket_;  // entries by their edge's lower vertex
+  Array<Entry> entries_;
+  Array<Index> first_;  // the first entry of each edge
+  Array<Index> edge_of_entry_, edge_of_halfedge_;
+};
+
+Array<char> mark_edges(const EdgeTable& edges, const VertexPairs& pairs, Code code, const char* sentence) {
+  Array<char> marked(edges.count(), 0);
+  Array<Index> missing;
+  for (Index row = 0; row < pairs.rows(); ++row) {
+    const Index a = pairs(row, 0), b = pairs(row, 1), edge = a == b ? none : edges.find(a, b);
+    if (edge != none)
+      marked[edge] = 1;
+    else
+      missing.insert(missing.end(), {a, b});
+  }
+  if (!missing.empty()) {
+    throw Error(code, concat(count(missing.size() / 2, "vertex pair", "vertex pairs"), " ", sentence),
+                {ElementKind::edges, missing});
+  }
+  return marked;
+}
+
+// What each of the surface's edges counts as a cut, empty where nothing was said; 1 where no cut may run.
+Array<double> cut_factors(const EdgeTable& edges, const Surface& surface) {
+  if (surface.cut_costs.size() == 0) return {};
+  Array<double> out(edges.count(), 1);
+  for (Index row = 0; row < surface.edges->rows(); ++row) {
+    out[edges.find((*surface.edges)(row, 0), (*surface.edges)(row, 1))] = surface.cut_costs[row];
+  }
+  return out;
+}
+
+// Pairs of a triangle and the first one with the same vertices.
+Array<std::pair<Index, Index>> find_duplicates(const Surface& surface, const EdgeTable& edges) {
+  const Index* corner_vertex = surface.triangles.data();
+  Array<std::pair<Index, Index>> duplicates;
+  // Most surfaces have no edge of more than two triangles and none of two with the same third vertex.
+  bool is_plain = true;
+  for (Index edge = 0; edge < edges.count() && is_plain; ++edge) {
+    const Index count = edges.halfedge_count(edge);
+    is_plain = count == 1 || (count == 2 && corner_vertex[prev(edges.halfedge(edge, 0))] !=
+                                                corner_vertex[prev(edges.halfedge(edge, 1))]);
+  }
+  if (is_plain) return duplicates;
+  for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    // On the edge of fewest triangles, since a crowd may share the others.
+    Index own = 3 * f;
+    for (Index h = 3 * f + 1; h < 3 * f + 3; ++h) {
+      if (edges.halfedge_count(edges.edge_of(h)) < edges.halfedge_count(edges.edge_of(own))) own = h;
+    }
+    const Index edge = edges.edge_of(own);
+    for (Index i = 0; i < edges.halfedge_count(edge); ++i) {
+      const Index h = edges.halfedge(edge, i);
+      if (h / 3 >= f) break;  // an edge lists its halfedges in order
+      if (corner_vertex[prev(h)] != corner_vertex[prev(own)]) continue;
+      duplicates.emplace_back(f, h / 3);
+      break;
+    }
+  }
+  return duplicates;
+}
+
+struct Orientation {
+  Array<Index> component;  // (m) none for triangles left out
+  Array<char> reversed;    // (m)
+  Array<char> orientable;  // per component
+};
+
+// The other halfedge of every edge across which the surface goes on, those of two triangles that are no open seam;
+// none at others, (3m).
+Array<Index> join_halfedges(const EdgeTable& edges, const Array<char>& seam, const OpenSeams& open_seams,
+                            Index halfedge_count) {
+  Array<Index> twin(halfedge_count, none);
+  for (Index edge = 0; edge < edges.count(); ++edge) {
+    if (edges.halfedge_count(edge) != 2) continue;
+    const Index a = edges.halfedge(edge, 0), b = edges.halfedge(edge, 1);
+    if (seam[edge] && !open_seams.empty() && (open_seams[a / 3] || open_seams[b / 3])) continue;
+    twin[a] = b;
+    twin[b] = a;
+  }
+  return twin;
+}
+
+// Labels components by breadth-first search over joined halfedges and turns every triangle like its component's
+// majority.
+Orientation orient(const Surface& surface, const Array<char>& skip, const Array<Index>& twin) {
+  const Index triangle_count = static_cast<Index>(surface.triangles.rows());
+  const Index* corner_vertex = surface.triangles.data();
+  Orientation out{Array<Index>(triangle_count, none), Array<char>(triangle_count, 0), {}};
+  Array<Index> queue;
+  for (Index seed = 0; seed < triangle_count; ++seed) {
+    if (out.component[seed] != none || skip[seed]) continue;
+    const Index label = static_cast<Index>(out.orientable.size());
+    out.orientable.push_back(1);
+    out.component[seed] = label;
+    queue.assign(1, seed);
+    std::size_t turned = 0;
+    for (std::size_t i = 0; i < queue.size(); ++i) {
+      const Index f = queue[i];
+      for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+        const Index other = twin[h], g = other / 3;
+        if (other == none) continue;
+        const bool wanted = out.reversed[f] != (corner_vertex[h] == corner_vertex[other]);
+        if (out.component[g] == none) {
+          out.component[g] = label;
+          out.reversed[g] = wanted;
+          turned += wanted;
+          queue.push_back(g);
+        } else if (out.reversed[g] != wanted) {
+          out.orientable[label] = 0;
+        }
+      }
+    }
+    if (2 * turned > queue.size()) {
+      for (const Index f : queue) out.reversed[f] ^= 1;
+    }
+  }
+  return out;
+}
+
+void find_boundary_loops(HalfedgeMesh& mesh) {
+  mesh.loop_of_vertex.assign(mesh.vertex_count(), none);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (mesh.loop_of_vertex[v] != none || mesh.twin[mesh.outgoing[v]] != none) continue;
+    const Index loop = static_cast<Index>(mesh.boundary_loops.size());
+    mesh.boundary_loops.emplace_back();
+    for (Index at = v; mesh.loop_of_vertex[at] == none; at = mesh.target(mesh.outgoing[at])) {
+      mesh.loop_of_vertex[at] = loop;
+      mesh.boundary_loops.back().push_back(at);
+    }
+  }
+}
+
+// Numbers vertices by fans: corners joined by turning about them share a vertex.
+void number_vertices(const Surface& surface, Component& component) {
+  HalfedgeMesh& mesh = component.mesh;
+  const Index halfedge_count = mesh.halfedge_count();
+  Array<Index> vertex(halfedge_count, none);
+  for (Index corner = 0; corner < halfedge_count; ++corner) {
+    if (vertex[corner] != none) continue;
+    const Index v = static_cast<Index>(mesh.outgoing.size());
+    Index first = corner, h = corner;
+    do {
+      vertex[h] = v;
+      h = mesh.rotate(h);
+    } while (h != none && h != corner);
+    while (h == none && mesh.twin[first] != none) {  // a boundary: back to where the fan begins
+      first = next(mesh.twin[first]);
+      vertex[first] = v;
+    }
+    mesh.outgoing.push_back(first);
+    const Index source = component.source_corner(corner);
+    component.source_vertex.push_back(surface.triangles(source / 3, source % 3));
+  }
+  std::copy(vertex.begin(), vertex.end(), mesh.triangles.data());
+  mesh.positions.resize(mesh.vertex_count(), 3);
+  for (Index v = 0; v < mesh.vertex_count(); ++v)
+    mesh.positions.row(v) = surface.positions.row(component.source_vertex[v]);
+}
+
+void measure_topology(HalfedgeMesh& mesh) {
+  find_boundary_loops(mesh);
+  Index paired = 0;
+  for (const Index twin : mesh.twin) paired += twin != none;
+  const Index edge_count = mesh.halfedge_count() - paired / 2;
+  mesh.euler = mesh.vertex_count() - edge_count + mesh.triangle_count();
+  mesh.genus = (2 - static_cast<int>(mesh.boundary_loops.size()) - mesh.euler) / 2;
+}
+
+void report_repairs(const Surface& surface, const EdgeTable& edges, const Array<Index>& twin,
+                    const Orientation& orientation, const Array<Component>& components,
+                    std::vector<Finding>& findings) {
+  Array<Index> crowded;
+  for (Index edge = 0; edge < edges.count(); ++edge) {
+    if (edges.halfedge_count(edge) <= 2) continue;
+    const Index h = edges.halfedge(edge, 0);
+    crowded.insert(crowded.end(), {surface.triangles.data()[h], surface.triangles.data()[next(h)]});
+  }
+  if (!crowded.empty()) {
+    findings.push_back(
+        {Code::non_manifold_edge,
+         concat(count(crowded.size() / 2, "edge is", "edges are"),
+                " shared by more than two triangles. The layout is open there; delete the surplus faces to close it."),
+         {ElementKind::edges, crowded}});
+  }
+  Array<Index> fans(surface.positions.rows(), 0), split, isolated, turned;
+  for (const Component& component : components) {
+    for (const Index v : component.source_vertex) ++fans[v];
+  }
+  Array<char> open(fans.size(), 0);
+  for (Index edge = 0; edge < edges.count(); ++edge) {
+    const Index h = edges.halfedge(edge, 0);
+    if (twin[h] != none || edges.halfedge_count(edge) < 2) continue;  // opened on purpose: fans part there
+    open[surface.triangles.data()[h]] = open[surface.triangles.data()[next(h)]] = 1;
+  }
+  for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    if (orientation.component[f] == none || !orientation.orientable[orientation.component[f]]) {
+      for (int c = 0; c < 3; ++c) open[surface.triangles(f, c)] = 1;
+    }
+    if (orientation.reversed[f]) turned.push_back(f);
+  }
+  for (std::size_t v = 0; v < fans.size(); ++v) {
+    if (open[v]) continue;
+    if (fans[v] == 0) isolated.push_back(static_cast<Index>(v));
+    if (fans[v] > 1) split.push_back(static_cast<Index>(v));
+  }
+  if (!split.empty()) {
+    findings.push_back({Code::split_vertex,
+                        concat("At ", count(split.size(), "vertex", "vertices"),
+                               " separate parts of the surface touch. They were unwrapped as separate vertices; split "
+                               "them to be rid of this note."),
+                        {ElementKind::vertices, split}});
+  }
+  if (!isolated.empty()) {
+    findings.push_back(
+        {Code::isolated_vertices,
+         concat(count(isolated.size(), "vertex belongs", "vertices belong"), " to no face and got no coordinates."),
+         {ElementKind::vertices, isolated}});
+  }
+  if (!turned.empty()) {
+    findings.push_back(
+        {Code::reoriented,
+         concat(count(turned.size(), "triangle faces", "triangles face"), " the other way than the rest of ",
+                "the surface. Unwrapped as if turned; recalculate normals to repair it."),
+         {ElementKind::triangles, turned}});
+  }
+}
+
+}  // namespace
+
+Index label_parts(const HalfedgeMesh& mesh, const Array<char>& open, Array<Index>& part) {
+  UnionFind parts(mesh.triangle_count());
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (!open[h] && h < mesh.twin[h]) parts.unite(h / 3, mesh.twin[h] / 3);
+  }
+  part.resize(mesh.triangle_count());
+  Index count = 0;
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    const Index lowest = parts.find(f);
+    part[f] = lowest == f ? count++ : part[lowest];
+  }
+  return count;
+}
+
+Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std::vector<Finding>& findings) {
+  // Halfedges, edges while they are sorted, and the geometry that follows.
+  constexpr double bytes_a_triangle = 250;
+  require_memory(bytes_a_triangle * static_cast<double>(surface.triangles.rows()));
+  Topology topology;
+  Array<char> skip(surface.triangles.rows(), 0);
+  EdgeTable edges(surface, skip);
+  topology.duplicates = find_duplicates(surface, edges);
+  if (!topology.duplicates.empty()) {
+    Array<Index> doubled;
+    for (const auto& [f, original] : topology.duplicates) {
+      skip[f] = 1;
+      doubled.push_back(f);
+    }
+    edges = EdgeTable(surface, skip);
+    findings.push_back({Code::duplicate_face,
+                        concat(count(doubled.size(), "triangle lies", "triangles lie"),
+                               " on another one and got its coordinates. Delete doubled faces to be rid of this note."),
+                        {ElementKind::triangles, doubled}});
+  }
+  const Array<char> cuttable =
+      surface.edges ? mark_edges(edges, *surface.edges, Code::edge_not_in_mesh,
+                                 "name no edge of a triangle. Pass edges of this mesh as cuttable edges.")
+                    : Array<char>(edges.count(), 1);
+  const Array<double> factor = cut_factors(edges, surface);
+  const Array<char> seam = mark_edges(edges, surface.seams, Code::seam_not_an_edge,
+                                      "are marked as a seam but name no edge. Mark edges of this mesh.");
+  const Array<Index> twin = join_halfedges(edges, seam, open_seams, static_cast<Index>(3 * surface.triangles.rows()));
+  const Orientation orientation = orient(surface, skip, twin);
+
+  Array<Component>& components = topology.components;
+  components.resize(orientation.orientable.size());
+  Array<Index> local_triangle(surface.triangles.rows());
+  for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    if (orientation.component[f] == none) continue;
+    Component& component = components[orientation.component[f]];
+    local_triangle[f] = static_cast<Index>(component.source_triangle.size());
+    component.source_triangle.push_back(f);
+    component.reversed.push_back(orientation.reversed[f]);
+  }
+  // The halfedge of a reversed triangle runs the other way: corners (0, 2, 1), halfedges (2, 1, 0).
+  const auto local_halfedge = [&](Index h) {
+    const Index f = h / 3, c = h % 3;
+    return 3 * local_triangle[f] + (orientation.reversed[f] ? 2 - c : c);
+  };
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    Component& component = components[i];
+    component.orientable = orientation.orientable[i];
+    if (!component.orientable) continue;
+    HalfedgeMesh& mesh = component.mesh;
+    mesh.triangles.resize(ssize(component.source_triangle), 3);
+    mesh.twin.resize(mesh.halfedge_count());
+    mesh.cuttable.resize(mesh.halfedge_count());
+    mesh.seam.resize(mesh.halfedge_count());
+    if (!factor.empty()) mesh.cut_factor.resize(mesh.halfedge_count());
+    for (const Index f : component.source_triangle) {
+      for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+        const Index edge = edges.edge_of(h), local = local_halfedge(h);
+        mesh.cuttable[local] = cuttable[edge];
+        mesh.seam[local] = seam[edge];
+        if (!factor.empty()) mesh.cut_factor[local] = factor[edge];
+        mesh.twin[local] = twin[h] == none ? none : local_halfedge(twin[h]);
+      }
+    }
+    number_vertices(surface, component);
+    measure_topology(mesh);
+  }
+  report_repairs(surface, edges, twin, orientation, components, findings);
+  return topology;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Halfedges, boundary loops and components.
+//
+// A halfedge is 3 * triangle + corner: it leaves that corner's vertex, runs to the next corner and has its triangle
+// on its left. The same number names the corner it leaves.
+#pragma once
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "base/array.hpp"
+#include "lsgp/errors.hpp"
+#include "lsgp/surface.hpp"
+
+namespace lsgp {
+
+constexpr Index none = -1;
+
+inline Index next(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
+inline Index prev(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }
+
+// A connected, oriented manifold surface in its own numbering.
+struct HalfedgeMesh {
+  Positions positions;                 // (n, 3)
+  Triangles triangles;                 // (m, 3)
+  Array<Index> twin;                   // (3m) none on the boundary
+  Array<Index> outgoing;               // (n) a halfedge leaving each vertex; on the boundary the one without a twin
+  Array<char> cuttable, seam;          // (3m) equal on both halfedges of an edge
+  Array<double> cut_factor;            // (3m) of an edge's length as a cut, or empty: 1
+  Array<Array<Index>> boundary_loops;  // vertices, surface on the left
+  Array<Index> loop_of_vertex;         // (n) none inside
+  int euler = 0;                       // V - E + F
+  int genus = 0;
+
+  Index vertex_count() const { return static_cast<Index>(outgoing.size()); }
+  Index triangle_count() const { return static_cast<Index>(triangles.rows()); }
+  Index halfedge_count() const { return 3 * triangle_count(); }
+  Index origin(Index h) const { return triangles.data()[h]; }
+  Index target(Index h) const { return triangles.data()[next(h)]; }
+  bool closed() const { return boundary_loops.empty(); }
+
+  // The angle of a vertex of no curvature: 2 pi inside, pi on a border.
+  double flat_angle(Index v) const { return loop_of_vertex[v] == none ? 2 * M_PI : M_PI; }
+
+  // The next outgoing halfedge counter-clockwise about the same vertex; none after the last at a boundary.
+  Index rotate(Index h) const { return twin[prev(h)]; }
+
+  // Calls visit(h) for the halfedges leaving v, counter-clockwise from outgoing[v].
+  template <typename Visit>
+  void for_each_outgoing(Index v, Visit visit) const {
+    Index h = outgoing[v];
+    do {
+      visit(h);
+      h = rotate(h);
+    } while (h != none && h != outgoing[v]);
+  }
+};
+
+// Numbers the parts into which open edges, (3m) on both halfedges, divide the triangles; part: (m). Returns how many.
+Index label_parts(const HalfedgeMesh& mesh, const Array<char>& open, Array<Index>& part);
+
+// One component of the caller's surface.
+struct Component {
+  HalfedgeMesh mesh;
+  Array<Index> source_vertex;    // (n) the caller's vertices
+  Array<Index> source_triangle;  // (m) the caller's triangles
+  Array<char> reversed;          // (m) corners 1 and 2 exchanged to orient the component
+  bool orientable = true;        // otherwise the mesh is empty but for its sources
+
+  // The caller's corner 3 * triangle + corner of one of this component's.
+  Index source_corner(Index corner) const {
+    const Index f = corner / 3, c = corner % 3;
+    return 3 * source_triangle[f] + (reversed[f] && c > 0 ? 3 - c : c);
+  }
+};
+
+struct Topology {
+  Array<Component> components;
+  // Triangles with the same three vertices as an earlier one, and that one; in no component, they share its map.
+  Array<std::pair<Index, Index>> duplicates;
+};
+
+// Which seams are borders: those of the triangles marked, (m); empty: none.
+using OpenSeams = Array<char>;
+
+// Splits a surface into components joined along edges of exactly two triangles. Edges of more triangles are opened,
+// vertices whose triangles form several fans are split, triangles turned against their component's majority are
+// reversed, triangles that lie on another are left out; each is reported. Throws EDGE_NOT_IN_MESH, SEAM_NOT_AN_EDGE.
+Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std::vector<Finding>& findings);
+
+}  // namespace lsgp

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh/visibility.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/array.hpp"
+#include "base/checkpoint.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr int view_count = 16;
+
+// Directions whose density is the cosine to an axis: uniform points on the disk below (Vogel's spiral).
+Array<Eigen::Vector3d> views_around(const Eigen::Vector3d& axis) {
+  const double golden_angle = M_PI * (3 - std::sqrt(5.0));
+  const Eigen::Vector3d right = axis.unitOrthogonal(), up = axis.cross(right);
+  Array<Eigen::Vector3d> out;
+  for (int i = 0; i < view_count; ++i) {
+    const double radius = std::sqrt((i + 0.5) / view_count), turn = golden_angle * i;
+    out.push_back(radius * (std::cos(turn) * right + std::sin(turn) * up) + std::sqrt(1 - radius * radius) * axis);
+  }
+  return out;
+}
+
+// The surface seen along one direction: for every pixel the depth of what is nearest to the viewer.
+class DepthBuffer {
+ public:
+  DepthBuffer(int size, double extent)
+      : size_(size), scale_(size / extent), depth_(static_cast<Eigen::Index>(size) * size) {}
+
+  void look(const Eigen::Vector3d& view, const Eigen::RowVector3d& center) {
+    const Eigen::Vector3d right = view.unitOrthogonal();
+    axes_ << right, view.cross(right), view;
+    center_ = center;
+    std::fill(depth_.begin(), depth_.end(), -std::numeric_limits<float>::infinity());
+  }
+
+  // Columns and rows of pixels, and depth in pixels, larger towards the viewer.
+  Eigen::RowVector3d project(const Eigen::RowVector3d& point) const {
+    Eigen::RowVector3d out = scale_ * (point - center_) * axes_;
+    out.head<2>().array() += 0.5 * size_;
+    return out;
+  }
+
+  void draw(const Eigen::RowVector3d& a, const Eigen::RowVector3d& b, const Eigen::RowVector3d& c) {
+    const Eigen::RowVector3d ab = b - a, ac = c - a;
+    const double doubled_area = ab[0] * ac[1] - ab[1] * ac[0];
+    if (doubled_area == 0) return;
+    const auto [left, right] = std::minmax({a[0], b[0], c[0]});
+    const auto [bottom, top] = std::minmax({a[1], b[1], c[1]});
+    for (int row = first_center(bottom); row <= last_center(top); ++row) {
+      for (int column = first_center(left); column <= last_center(right); ++column) {
+        const double x = column + 0.5 - a[0], y = row + 0.5 - a[1];
+        const double s = (x * ac[1] - y * ac[0]) / doubled_area, t = (ab[0] * y - ab[1] * x) / doubled_area;
+        if (s < 0 || t < 0 || s + t > 1) continue;
+        float& nearest = depth_[static_cast<Eigen::Index>(row) * size_ + column];
+        nearest = std::max(nearest, static_cast<float>(a[2] + s * ab[2] + t * ac[2]));
+      }
+    }
+  }
+
+  // Of the four pixels around a point one at least shows no surface nearer to the viewer: surfaces that are steep in
+  // this view do not hide themselves.
+  bool shows(const Eigen::RowVector3d& point) const {
+    constexpr double slack = 1;  // pixels
+    const int column = first_center(point[0]) - 1, row = first_center(point[1]) - 1;
+    for (int r = std::max(row, 0); r <= std::min(row + 1, size_ - 1); ++r) {
+      for (int c = std::max(column, 0); c <= std::min(column + 1, size_ - 1); ++c) {
+        if (depth_[static_cast<Eigen::Index>(r) * size_ + c] <= point[2] + slack) return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  int first_center(double x) const { return std::clamp(static_cast<int>(std::ceil(x - 0.5)), 0, size_); }
+  int last_center(double x) const { return std::clamp(static_cast<int>(std::floor(x - 0.5)), -1, size_ - 1); }
+
+  const int size_;
+  const double scale_;
+  Eigen::Matrix3d axes_;
+  Eigen::RowVector3d center_;
+  Array<float> depth_;
+};
+
+// Pixels of about a triangle's size.
+int buffer_size(Eigen::Index triangles) {
+  return static_cast<int>(std::clamp(2 * std::sqrt(static_cast<double>(triangles)), 256.0, 768.0));
+}
+
+}  // namespace
+
+Eigen::VectorXd visible_share(const Surface& surface, const Positions& points, const Eigen::Vector3d& front) {
+  constexpr double operations_a_triangle = 50;
+  Eigen::RowVector3d low = Eigen::RowVector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (Eigen::Index corner = 0; corner < surface.triangles.size(); ++corner) {
+    const auto position = surface.positions.row(surface.triangles.data()[corner]);
+    low = low.cwiseMin(position);
+    high = high.cwiseMax(position);
+  }
+  const double diameter = (high - low).norm();
+  DepthBuffer buffer(buffer_size(surface.triangles.rows()), diameter > 0 ? diameter : 1);
+  Positions projected(surface.positions.rows(), 3);
+  Eigen::VectorXd seen = Eigen::VectorXd::Zero(points.rows());
+  for (const Eigen::Vector3d& view : views_around(front.normalized())) {
+    buffer.look(view, (low + high) / 2);
+    for (Eigen::Index v = 0; v < projected.rows(); ++v) projected.row(v) = buffer.project(surface.positions.row(v));
+    for (Eigen::Index f = 0; f < surface.triangles.rows(); ++f) {
+      checkpoint(operations_a_triangle);
+      buffer.draw(projected.row(surface.triangles(f, 0)), projected.row(surface.triangles(f, 1)),
+                  projected.row(surface.triangles(f, 2)));
+    }
+    for (Eigen::Index p = 0; p < points.rows(); ++p) seen[p] += buffer.shows(buffer.project(points.row(p)));
+  }
+  return seen / view_count;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The map of one component: cut, prescribe, unfold, repair (the paper's section 3.2).
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/array.hpp"
+#include "base/progress_monitor.hpp"
+#include "cut/cut_graph.hpp"
+#include "cut/cut_mesh.hpp"
+#include "pipeline/components.hpp"
+#include "prescription/component_system.hpp"
+#include "unfold/distortion.hpp"
+#include "unfold/pins.hpp"
+
+namespace lsgp {
+
+// A component's map and all that was imposed on it, in its own numbering.
+struct ComponentMap {
+  CutGraph cut_graph;
+  CutMesh cut_mesh;
+  Array<Index> required_cuts;  // halfedges, one of each edge that is cut before overlaps are split
+  Curvature curvature;
+  Array<Index> cones;                       // inside
+  Array<Index> flat_cones;                  // and those that rounding has left no curvature
+  std::optional<Eigen::VectorXd> rotation;  // (cuts) imposed, radians; none without transitions
+  Eigen::VectorXcd position;                // (copies) u + iv
+  Array<Pin> pins;
+  double uv_area = 0;  // signed
+  SeamQuality seams;
+  Array<Index> inexact_seams;  // halfedges
+  Validity validity;
+  RepairReport repair;
+};
+
+// findings are added to. Throws what the stages throw, in the component's own numbering.
+// system: of the task's cones.
+ComponentMap map_component(ComponentSystem& system, const ComponentTask& task, const Options& options,
+                           std::vector<Finding>& findings, ProgressMonitor& monitor);
+
+// The first map that `map_component` makes, with the easy repairs only: the same where it has no defects.
+ComponentMap attempt_component(ComponentSystem& system, const ComponentTask& task, const Options& options,
+                               std::vector<Finding>& findings, ProgressMonitor& monitor);
+
+// Measure positions u + iv at the component's corners, (3m), against what the map imposed.
+void check_seams(const HalfedgeMesh& mesh, const CornerPositions& corners, ComponentMap& map);
+void check_triangles(const HalfedgeMesh& mesh, const CornerPositions& corners, ComponentMap& map);
+
+}  // namespace lsgp

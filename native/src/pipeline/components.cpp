@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/components.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <set>
+
+#include "base/text.hpp"
+#include "cut/parts.hpp"
+#include "pipeline/validation.hpp"
+#include "plane/point_lattice.hpp"
+
+namespace lsgp {
+
+namespace {
+
+// open: along whose seams the surface is open.
+Array<ComponentTask> hand_out(const Surface& surface, const Array<Component>& components, const OpenSeams& open,
+                              const Cones& cones, const Options& options) {
+  Array<Index> cone_at(surface.positions.rows(), none);
+  for (std::size_t i = 0; i < cones.vertices.size(); ++i) cone_at[cones.vertices[i]] = static_cast<Index>(i);
+  Array<ComponentTask> tasks(components.size());
+  for (std::size_t c = 0; c < components.size(); ++c) {
+    const Component& component = components[c];
+    ComponentCones& own = tasks[c].cones;
+    own.border = options.border;
+    if (!open.empty() && open[component.source_triangle.front()]) own.holes = Holes::all;
+    if (options.seamless) own.symmetry = symmetry(options.seamless->lattice);
+    own.loop_turning.resize(component.mesh.boundary_loops.size());
+    Array<std::pair<Index, Index>> found;  // place in the caller's list, vertex
+    for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
+      const Index cone = cone_at[component.source_vertex[v]];
+      if (cone == none) continue;
+      const bool imposed = options.prescription == PrescriptionRule::manual && element(cones.angles, cone);
+      const bool corner = options.border == BorderMode::straight || imposed;
+      if (component.mesh.loop_of_vertex[v] == none || corner)
+        found.emplace_back(cone, v);
+      else
+        tasks[c].border_cones.push_back(v);
+    }
+    std::sort(found.begin(), found.end());
+    for (const auto& [cone, v] : found) {
+      own.vertices.push_back(v);
+      own.angles.push_back(element(cones.angles, cone));
+    }
+  }
+  return tasks;
+}
+
+void hand_out_turning(const Array<Component>& components, const Options& options, Eigen::Index vertex_count,
+                      Array<ComponentTask>& tasks) {
+  for (const auto& [vertex, turning] : options.loop_turning) {
+    bool found = false;
+    for (std::size_t c = 0; c < components.size(); ++c) {
+      const Component& component = components[c];
+      for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
+        const Index loop = component.source_vertex[v] == vertex ? component.mesh.loop_of_vertex[v] : none;
+        if (loop == none) continue;
+        tasks[c].cones.loop_turning[loop] = turning;
+        found = true;
+      }
+    }
+    if (found && std::isfinite(turning)) continue;
+    const bool exists = vertex >= 0 && vertex < vertex_count;
+    throw Error(
+        Code::loop_turning,
+        concat("The turning of a border was given ", found ? "as no finite number" : "for a vertex that lies on none",
+               exists ? "" : concat(" (", vertex, ")"), ". Give an angle, by a vertex on the border."),
+        {ElementKind::vertices, exists ? Array<Index>{vertex} : Array<Index>{}});
+  }
+}
+
+void hand_out_pins(const Surface& surface, const Pins& pins, Work& work) {
+  if (pins.corners.empty()) return;
+  Array<Index> pin_at(3 * surface.triangles.rows(), none);
+  for (std::size_t i = 0; i < pins.corners.size(); ++i) pin_at[pins.corners[i]] = static_cast<Index>(i);
+  for (std::size_t c = 0; c < work.tasks.size(); ++c) {
+    const Component& component = work.topology.components[c];
+    for (Index corner = 0; corner < component.mesh.halfedge_count(); ++corner) {
+      const Index pin = pin_at[component.source_corner(corner)];
+      if (pin == none) continue;
+      work.tasks[c].pinned_corners.emplace_back(corner, Complex(pins.positions(pin, 0), pins.positions(pin, 1)));
+    }
+  }
+}
+
+void hand_out_importance(const Eigen::VectorXd& importance, Work& work) {
+  if (importance.size() == 0) return;
+  for (std::size_t c = 0; c < work.tasks.size(); ++c) {
+    const Component& component = work.topology.components[c];
+    Eigen::VectorXd& own = work.tasks[c].importance;
+    own.resize(component.mesh.vertex_count());
+    for (Index v = 0; v < own.size(); ++v) own[v] = importance[component.source_vertex[v]];
+  }
+}
+
+// The power of two that brings the surface to about unit size: exact, and areas can neither overflow nor vanish.
+double unit_scale(const Surface& surface) {
+  double largest = 0;
+  for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    const auto corner = surface.positions.row(surface.triangles(f, 0));
+    for (const int c : {1, 2}) {
+      largest = std::max(largest, (surface.positions.row(surface.triangles(f, c)) - corner).cwiseAbs().maxCoeff());
+    }
+  }
+  return largest > 0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
+}
+
+// The components of the surface, unless they are those already.
+void split(const Surface& surface, SeamMode seams, OpenSeams open, Work& work) {
+  if (!work.topology.components.empty() && work.seams == seams && work.open_seams == open) return;
+  Surface used = surface;
+  work.unit_scale = unit_scale(surface);
+  used.positions *= work.unit_scale;
+  if (seams == SeamMode::ignore) used.seams.resize(0, 2);
+  const bool was_unopened = work.seams == seams && work.open_seams.empty();
+  if (seams != SeamMode::follow || open.empty()) work.unopened.clear();
+  if (seams == SeamMode::follow && !open.empty() && was_unopened) work.unopened = std::move(work.topology.components);
+  work.found.clear();
+  work.topology = build_topology(used, open, work.found);
+  ++work.generation;
+  work.seams = seams;
+  work.open_seams = std::move(open);
+}
+
+// The triangles of components that are opened along their seams.
+struct Opened {
+  Array<Index> without_cones, not_orientable;
+};
+
+// Of a component that is not orientable, which has no mesh, whether it has one of the seams, the lower vertex first.
+bool has_seam(const Surface& surface, const Component& component, const std::set<std::pair<Index, Index>>& seams) {
+  const auto is_seam = [&](Index a, Index b) { return seams.count(std::minmax(a, b)) > 0; };
+  return std::any_of(component.source_triangle.begin(), component.source_triangle.end(), [&](Index f) {
+    const auto v = surface.triangles.row(f);
+    return is_seam(v[0], v[1]) || is_seam(v[1], v[2]) || is_seam(v[2], v[0]);
+  });
+}
+
+Opened find_opened(const Surface& surface, const Array<Component>& components, const Array<ComponentTask>& tasks,
+                   const Options& options, MoreCones more) {
+  Opened out;
+  if (surface.seams.rows() == 0) return out;
+  std::set<std::pair<Index, Index>> seams;
+  for (Index i = 0; i < surface.seams.rows(); ++i) seams.insert(std::minmax(surface.seams(i, 0), surface.seams(i, 1)));
+  for (std::size_t c = 0; c < tasks.size(); ++c) {
+    const Array<Index>& triangles = components[c].source_triangle;
+    const auto add_to = [&](Array<Index>& list) { list.insert(list.end(), triangles.begin(), triangles.end()); };
+    if (!components[c].orientable) {
+      if (has_seam(surface, components[c], seams)) add_to(out.not_orientable);
+    } else if (more == MoreCones::none && opens_along_seams(components[c], tasks[c].cones, options)) {
+      add_to(out.without_cones);
+    }
+  }
+  return out;
+}
+
+void divide(const Surface& surface, const Cones& cones, const Options& options, MoreCones more,
+            std::vector<Finding>& findings, Work& work) {
+  const auto split_along = [&](OpenSeams open) {
+    split(surface, options.seams, std::move(open), work);
+    work.tasks = hand_out(surface, work.topology.components, work.open_seams, cones, options);
+  };
+  if (options.seams != SeamMode::follow) {
+    const bool opens_all = options.seams == SeamMode::boundary;
+    return split_along(opens_all ? OpenSeams(surface.triangles.rows(), 1) : OpenSeams());
+  }
+  Opened opened;
+  if (work.seams == SeamMode::follow && !work.unopened.empty()) {
+    const Array<ComponentTask> tasks = hand_out(surface, work.unopened, {}, cones, options);
+    opened = find_opened(surface, work.unopened, tasks, options, more);
+  } else {
+    split_along({});
+    opened = find_opened(surface, work.topology.components, work.tasks, options, more);
+  }
+  OpenSeams open;
+  for (const Array<Index>* list : {&opened.without_cones, &opened.not_orientable}) {
+    if (!list->empty()) open.resize(surface.triangles.rows(), 0);
+    for (const Index f : *list) open[f] = 1;
+  }
+  split_along(std::move(open));
+  const auto report = [&](Array<Index>& triangles, const char* sentence) {
+    if (triangles.empty()) return;
+    findings.push_back({Code::seams_opened, sentence, {ElementKind::triangles, std::move(triangles)}});
+  };
+  report(opened.without_cones,
+         "A part has seams but no cones: it was opened along its seams like an ordinary unwrap. Mark cones to have the "
+         "texture run on across them.");
+  report(opened.not_orientable,
+         "A part has one side only: it was opened along its seams like an ordinary unwrap, since no texture can run on "
+         "across all of them.");
+}
+
+// A torus without cones is flat, and its texture runs on across its seams, unless these part it into planar parts some
+// of which have holes: they need no cut of their own when the torus is opened.
+bool is_flat_along_seams(const HalfedgeMesh& torus) {
+  const Array<PartTopology> parts = measure_parts(torus, torus.seam);
+  const bool all_planar = std::all_of(parts.begin(), parts.end(), [](const auto& part) { return part.is_planar(); });
+  const bool all_disks = std::all_of(parts.begin(), parts.end(), [](const auto& part) { return part.is_disk(); });
+  return parts.size() == 1 || all_disks || !all_planar;
+}
+
+}  // namespace
+
+Work prepare_placement(const Surface& surface, const Cones& existing, SeamMode seams, MoreCones more,
+                       std::vector<Finding>& findings) {
+  require_valid(surface);
+  require_valid(surface, existing);
+  Options options;
+  options.prescription = PrescriptionRule::manual;
+  options.seams = seams;
+  Work work;
+  divide(surface, existing, options, more, findings, work);
+  findings.insert(findings.end(), work.found.begin(), work.found.end());
+  return work;
+}
+
+Work prepare(const Surface& surface, const Cones& cones, const Options& options, std::vector<Finding>& findings,
+             const Pins& pins, Work earlier) {
+  if (earlier.topology.components.empty()) require_valid(surface);
+  require_valid(surface, cones);
+  require_valid(surface, pins);
+  require_valid(options, pins);
+  Work work = std::move(earlier);
+  divide(surface, cones, options, MoreCones::none, findings, work);
+  hand_out_pins(surface, pins, work);
+  hand_out_importance(surface.importance, work);
+  hand_out_turning(work.topology.components, options, surface.positions.rows(), work.tasks);
+  findings.insert(findings.end(), work.found.begin(), work.found.end());
+  return work;
+}
+
+Work prepare_topology(const Surface& surface, const Cones& cones, const Options& options, MoreCones more) {
+  require_connectivity(surface);
+  require_vertices(surface, cones);
+  std::vector<Finding> findings;
+  Work work;
+  divide(surface, cones, options, more, findings, work);
+  return work;
+}
+
+bool opens_along_seams(const Component& component, const ComponentCones& cones, const Options& options) {
+  const HalfedgeMesh& mesh = component.mesh;
+  if (options.seams != SeamMode::follow || !component.orientable || !cones.vertices.empty()) return false;
+  // Straight borders need corners, which parts would not have, and tiles run on across seams.
+  if (!mesh.closed() && (options.border != BorderMode::free || options.seamless)) return false;
+  bool has_seam = false;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) has_seam |= mesh.seam[h] && mesh.twin[h] != none;
+  return has_seam && !(mesh.closed() && mesh.euler == 0 && is_flat_along_seams(mesh));
+}
+
+Geometry require_geometry(const Component& component, std::vector<Finding>& findings) {
+  if (!component.orientable) {
+    Array<Index> all(component.source_triangle.size());
+    for (std::size_t f = 0; f < all.size(); ++f) all[f] = static_cast<Index>(f);
+    throw Error(Code::not_orientable,
+                "The surface has one side only, like a Moebius strip, so no side of it can be unwrapped face up. "
+                "Delete or split faces so that it has two sides.",
+                {ElementKind::triangles, std::move(all)});
+  }
+  Geometry geometry = build_geometry(component.mesh);
+  if (geometry.degenerate.empty()) return geometry;
+  if (geometry.degenerate.size() == component.source_triangle.size()) {
+    throw Error(
+        Code::degenerate_mesh,
+        concat("None of the ", geometry.degenerate.size(), " triangles has an area. Restore the surface's shape."),
+        {ElementKind::triangles, geometry.degenerate});
+  }
+  require_comparable(component.mesh.positions);  // what lies far away has degenerate triangles only
+  findings.push_back(
+      {Code::degenerate_faces,
+       concat(count(geometry.degenerate.size(), "triangle has", "triangles have"),
+              " no area; they were given a little for the computation. Merge by distance to be rid of them."),
+       in_source(component, {ElementKind::triangles, geometry.degenerate})});
+  return geometry;
+}
+
+Elements in_source(const Component& component, Elements elements) {
+  const auto& source = elements.kind == ElementKind::triangles ? component.source_triangle : component.source_vertex;
+  for (Index& i : elements.indices) i = source[i];
+  // Fans of one vertex are several of the component's.
+  if (elements.kind == ElementKind::vertices) sort_unique(elements.indices);
+  return elements;
+}
+
+void report_border_cones(const Component& component, const Array<Index>& border_cones, std::vector<Finding>& findings) {
+  if (border_cones.empty()) return;
+  findings.push_back(
+      {Code::cone_on_boundary,
+       concat(count(border_cones.size(), "cone lies", "cones lie"),
+              " on an open border, where angles are free anyway; nothing was prescribed there. Give it an "
+              "angle to make it a corner."),
+       in_source(component, {ElementKind::vertices, border_cones})});
+}
+
+Failure failure_of(const Component& component, const Error& error) {
+  if (error.code() == Code::cancelled) throw error;
+  return {&component, Error(error.code(), error.what(), in_source(component, error.elements()))};
+}
+
+void report_skipped(const Array<Failure>& failures, std::vector<Finding>& findings) {
+  for (const auto& [component, error] : failures) {
+    findings.push_back({Code::component_skipped,
+                        concat("A part of the surface was left as it is (", name(error.code()), "): ", error.what()),
+                        {ElementKind::triangles, component->source_triangle}});
+  }
+}
+
+void move_findings(const Component& component, std::vector<Finding>& from, std::vector<Finding>& to) {
+  for (Finding& finding : from) {
+    to.push_back({finding.code, std::move(finding.message), in_source(component, std::move(finding.elements))});
+  }
+}
+
+}  // namespace lsgp

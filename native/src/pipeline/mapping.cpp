@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/mapping.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.hpp"
+#include "mesh/border.hpp"
+#include "prescription/border_turning.hpp"
+#include "prescription/parallel_transport.hpp"
+#include "repair/low_stretch.hpp"
+#include "repair/untangle.hpp"
+#include "systems/quadratic_forms.hpp"
+#include "unfold/unfold.hpp"
+
+namespace lsgp {
+
+namespace {
+
+using Kind = DistortionEnergy::Kind;
+
+constexpr double tangled_share = 0.002;  // of the triangles flipped, for which another fit is tried
+
+// A surface with boundary has conformal maps without number, so the spectral step would return an arbitrary one; only
+// without cones does the smallest eigenvector still mean something (Mullen et al. 2008).
+UnfoldMethod usable_unfold(const HalfedgeMesh& mesh, const ComponentCones& cones, UnfoldMethod asked,
+                           std::vector<Finding>& findings) {
+  const bool plain_disk =
+      mesh.boundary_loops.size() == 1 && mesh.genus == 0 && cones.vertices.empty() && cones.border == BorderMode::free;
+  if (asked == UnfoldMethod::poisson || mesh.closed() || plain_disk) return asked;
+  findings.push_back(
+      {Code::spectral_needs_closed,
+       "The spectral unfolding is ill-posed on a surface with boundary and cones; the Poisson unfolding was "
+       "used instead.",
+       {}});
+  return UnfoldMethod::poisson;
+}
+
+// A border without corners is one straight line along its own translation, but the discrete metric knows the angle
+// between two such borders only to the mesh's resolution. Its direction is therefore taken from the map without
+// straight borders, whose translations are consistent.
+void turn_cornerless_borders(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Array<Index>& corners,
+                             const Eigen::VectorXcd& natural, const Array<Index>& edges, Eigen::VectorXd& directions) {
+  const std::size_t loop_count = mesh.boundary_loops.size();
+  Array<char> has_corner(loop_count, 0);
+  for (const Index v : corners) {
+    if (mesh.loop_of_vertex[v] != none) has_corner[mesh.loop_of_vertex[v]] = 1;
+  }
+  Array<Complex> along(loop_count, 0.0);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const Complex edge = natural[cut_mesh.copy_of_corner[next(edges[i])]] - natural[cut_mesh.copy_of_corner[edges[i]]];
+    along[mesh.loop_of_vertex[mesh.origin(edges[i])]] +=
+        std::polar(1.0, -directions[static_cast<Eigen::Index>(i)]) * edge;
+  }
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const Index loop = mesh.loop_of_vertex[mesh.origin(edges[i])];
+    if (!has_corner[loop]) directions[static_cast<Eigen::Index>(i)] += std::arg(along[loop]);
+  }
+}
+
+Eigen::VectorXcd unfold_along_borders(const CutSurface& surface, const ComponentMap& map, const ComponentCones& cones,
+                                      const ParallelTransport& connection, const Array<Index>& edges) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
+  const Eigen::VectorXd& log_scale = map.curvature.log_scale;
+  Eigen::VectorXd directions = metric_directions(mesh, geometry, log_scale, connection.frames, edges);
+  if (cones.border == BorderMode::straight) {
+    const Eigen::VectorXcd natural =
+        PoissonSystem(surface, connection.reduction).fit(prescribed_jacobians(mesh, log_scale, connection.frames));
+    turn_cornerless_borders(mesh, map.cut_mesh, cones.vertices, natural, edges, directions);
+  }
+  return unfold_aligned(surface, connection.reduction, log_scale, connection.frames, edges, directions);
+}
+
+// The fit to the prescribed Jacobians with every triangle's error relative to its scale: where scales differ much, the
+// plain fit loses what is small to what is large. One more factorization.
+Eigen::VectorXcd unfold_relatively(const CutSurface& surface, const Curvature& curvature,
+                                   const ParallelTransport& connection) {
+  Jacobians jacobians = prescribed_jacobians(surface.mesh, curvature.log_scale, connection.frames);
+  constexpr double widest_range = 1e8;  // of the weights, so that the form can be factored
+  Eigen::VectorXd weight = jacobians.f_z.cwiseAbs2().cwiseInverse();
+  weight = weight.cwiseMin(widest_range * weight.minCoeff());
+  const Geometry weighted = with_weights(surface.geometry, weight);
+  jacobians.f_z = jacobians.f_z.cwiseProduct(weight);
+  const CutSurface weighted_surface{surface.mesh, weighted, surface.cut_graph, surface.cut_mesh};
+  return PoissonSystem(weighted_surface, connection.reduction).fit(jacobians);
+}
+
+// Where lengths differ so much that the small triangles vanish in the last digit of the large ones, no repair helps.
+void require_representable(const ComponentMap& map) {
+  constexpr double widest = 36;  // 1 / epsilon as a power of e
+  const double range = map.curvature.log_scale.maxCoeff() - map.curvature.log_scale.minCoeff();
+  if (map.validity.defects() == 0 || range < widest) return;
+  throw Error(Code::solver_failed,
+              concat("With these cones and angles lengths in the layout would differ by a factor of ", std::exp(range),
+                     ", more than numbers can hold. Add cones where the texture becomes too small, or let angles that "
+                     "were given be chosen."));
+}
+
+}  // namespace
+
+bool repairs(const Options& options) {
+  return options.repair && options.method == Method::lsgp && options.unfold == UnfoldMethod::poisson;
+}
+
+ComponentMap Mapping::attempt(const ComponentCones& cones, Effort effort, std::vector<Finding>& findings) {
+  ComponentMap map;
+  {
+    const ProgressMonitor::Stage stage(monitor_, "prescribe");
+    const ProgressMonitor::Part part(monitor_, 0, 0.2);
+    monitor_.advance(0);
+    map.curvature = prescribe(system_, cones, options_.prescription, findings);
+  }
+  {
+    const ProgressMonitor::Stage stage(monitor_, "cut");
+    monitor_.advance(0.2);
+    cut(map);
+  }
+  const ProgressMonitor::Stage stage(monitor_, "unfold");
+  monitor_.advance(0.3);
+  const CutSurface surface = open(map);
+  if (options_.method == Method::lscm) {
+    map.position = unfold_lscm(mesh_, geometry_, map.cut_mesh);
+    check(map);
+    return map;
+  }
+  const ParallelTransportChoice connections(surface, map.curvature, cones.symmetry);
+  const ParallelTransport connection = connections.at(1, map.curvature);
+  map.rotation = connection.rotation;
+  const Array<Index> aligned = aligned_edges();
+  const bool spectral = usable_unfold(mesh_, cones, options_.unfold, findings) == UnfoldMethod::spectral;
+  if (spectral) {
+    map.position = unfold_spectral(surface, connection.reduction);
+  } else if (!aligned.empty()) {
+    map.position = unfold_along_borders(surface, map, cones, connection, aligned);
+  } else {
+    map.position = PoissonSystem(surface, connection.reduction)
+                       .fit(prescribed_jacobians(mesh_, map.curvature.log_scale, connection.frames));
+  }
+  Curvature target = map.curvature;
+  if (map.pins.size() > 1) {
+    PinnedMap pinned =
+        move_onto_pins(mesh_, geometry_, map.cut_mesh, connection.reduction, map.pins, !aligned.empty(), map.position);
+    map.position = std::move(pinned.position);
+    target.log_scale.array() += std::log(pinned.scale);
+  }
+  check(map);
+  require_representable(map);
+  if (!repair_) {
+    repair_ = {static_cast<Index>(map.validity.flipped.size()),
+               static_cast<Index>(map.validity.wrong_angle_sums.size()), 0};
+  }
+  if (map.validity.defects() > 0 && repairs(options_) && !spectral) {
+    const Array<Index> flipped = map.validity.flipped;
+    repair(connections, connection, target, effort, map);
+    if (map.validity.defects() == 0) polish(connection, flipped, map);
+  }
+  return map;
+}
+
+void Mapping::approach_angles(ComponentMap& map, std::vector<Finding>& findings) {
+  if (!aligned_edges().empty() || map.pins.size() > 1 || map.cones.empty()) return;
+  const ProgressMonitor::Stage stage(monitor_, "repair");
+  ComponentTask automatic = task_;
+  automatic.cones.vertices = map.cones;
+  automatic.cones.angles.assign(map.cones.size(), std::nullopt);
+  automatic.cones.symmetry = 0;
+  for (std::size_t loop = 0; loop < map.curvature.needs_no_cut.size(); ++loop) {
+    if (map.curvature.needs_no_cut[loop]) automatic.cones.loop_turning[loop] = once_around_a_hole;
+  }
+  Options plain = options_;
+  plain.prescription = PrescriptionRule::least_distortion;
+  plain.mode = Mode::conformal;
+  std::vector<Finding> unsaid;
+  ComponentSystem system(mesh_, geometry_, automatic.cones, options_.factorization);
+  const ComponentMap start = map_component(system, automatic, plain, unsaid, monitor_);
+  repair_->iterations += start.repair.iterations;
+  if (start.validity.defects() > 0 || start.cut_graph.is_cut != map.cut_graph.is_cut) return;
+  const CutSurface surface = open(map);
+  const ParallelTransportChoice connections(surface, map.curvature, task_.cones.symmetry);
+  Continuation end = follow(surface, path_between(start.curvature, connections, map.curvature), fixed_vertices(map),
+                            Effort::global, counter(), start.position);
+  if (end.reached < 1) {
+    if (task_.cones.symmetry > 0) return;
+    report_adjusted(map, end, findings);
+  }
+  map.curvature = std::move(end.at.curvature);
+  map.rotation = std::move(end.at.connection.rotation);
+  map.position = std::move(end.position);
+  check(map);
+}
+
+void Mapping::relax(ComponentMap& map) {
+  const ProgressMonitor::Stage stage(monitor_, "relax");
+  const CutSurface surface = open(map);
+  const ParallelTransport connection = connection_of(map);
+  map.position = lower_stretch(surface, connection, map.curvature, options_.stretch, fixed_vertices(map),
+                               task_.importance, counter(), map.position);
+  check(map);
+}
+
+void Mapping::smooth(ComponentMap& map) {
+  constexpr int steps = 4;
+  const ProgressMonitor::Stage stage(monitor_, "repair");
+  const CutSurface surface = open(map);
+  const ParallelTransport connection = connection_of(map);
+  NewtonMinimizer(surface, map.curvature.log_scale, connection.frames,
+                  free_all(mesh_, map.cut_mesh, connection.reduction, fixed_vertices(map)), counter(), map.position)
+      .smooth(Kind::conformal_barrier, steps);
+  check(map);
+}
+
+void Mapping::cut(ComponentMap& map) const {
+  for (const Index v : inside_only(mesh_, task_.cones.vertices)) {
+    const bool flat = task_.cones.symmetry > 0 && map.curvature.at_vertex[v] == 0;
+    (flat ? map.flat_cones : map.cones).push_back(v);
+  }
+  const Array<char>& uncut = map.curvature.needs_no_cut;
+  if (std::find(uncut.begin(), uncut.end(), 1) != uncut.end()) {
+    map.cut_graph = connect_cones(mesh_, geometry_, map.cones, uncut);
+  } else if (map.flat_cones.empty()) {
+    map.cut_graph = system_.all_cuts();
+  } else {
+    map.cut_graph = keep_cones(mesh_, system_.all_cuts(), map.cones);
+  }
+  for (const Cut& cut : map.cut_graph.cuts) {
+    map.required_cuts.insert(map.required_cuts.end(), cut.halfedges.begin(), cut.halfedges.end());
+  }
+  map.cut_mesh = cut_open(mesh_, map.cut_graph);
+  map.pins = pins_of_copies(map.cut_mesh, task_.pinned_corners);
+}
+
+void Mapping::check(ComponentMap& map) {
+  const ProgressMonitor::Stage stage(monitor_, "check");
+  if (!map.position.allFinite()) {
+    throw Error(Code::solver_failed,
+                "The unfolding returned values that are not finite. Clean the mesh (merge by distance, "
+                "dissolve degenerate faces) and try again.");
+  }
+  const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
+  map.uv_area = 0;
+  for (Index f = 0; f < mesh_.triangle_count(); ++f) map.uv_area += doubled_area(corners, f) / 2;
+  check_triangles(mesh_, corners, map);
+}
+
+void Mapping::repair(const ParallelTransportChoice& connections, const ParallelTransport& connection,
+                     const Curvature& target, Effort effort, ComponentMap& map) {
+  const ProgressMonitor::Stage stage(monitor_, "repair");
+  const CutSurface surface = open(map);
+  const Array<char> fixed = fixed_vertices(map);
+  const bool tangled = static_cast<double>(map.validity.flipped.size()) > tangled_share * mesh_.triangle_count();
+  if (tangled && aligned_edges().empty() && map.pins.size() < 2) {
+    ComponentMap relative = map;
+    relative.position = unfold_relatively(surface, map.curvature, connection);
+    check(relative);
+    if (relative.validity.defects() < map.validity.defects()) {
+      map = std::move(relative);
+      if (map.validity.defects() == 0) return smooth(map);
+    }
+  }
+  const auto repair_with = [&](Effort of_repair) {
+    const auto first = connections.is_twisted() ? Kind::framed_foldover_free : Kind::foldover_free;
+    map.position = untangle(surface, connection, target, fixed, of_repair, first, counter(), map.position);
+    check(map);
+  };
+  repair_with(connections.is_twisted() ? Effort::local : effort);
+  if (map.validity.defects() == 0 || !connections.is_twisted()) return;
+  twist_gradually(connections, fixed, map);
+  if (map.validity.defects() > 0) repair_with(Effort::global);
+}
+
+void Mapping::polish(const ParallelTransport& connection, const Array<Index>& flipped, ComponentMap& map) {
+  constexpr double sheared = 1.5;  // ratio of the singular values
+  constexpr int near = 10, rings = 3, steps = 3;
+  const ProgressMonitor::Stage stage(monitor_, "repair");
+  const CutSurface surface = open(map);
+  const Jacobians jacobians = measure_jacobians(mesh_, geometry_, map.cut_mesh, map.position);
+  const Array<char> around = mark_around(mesh_, flipped, near);
+  Array<Index> where;
+  for (Index f = 0; f < mesh_.triangle_count(); ++f) {
+    if (!around[mesh_.triangles(f, 0)]) continue;
+    const double a = std::abs(jacobians.f_z[f]), b = std::abs(jacobians.f_zbar[f]);
+    if (a + b > sheared * (a - b)) where.push_back(f);
+  }
+  Array<char> marked = mark_around(mesh_, where, rings);
+  const Array<char> fixed = fixed_vertices(map);
+  for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+    if (fixed[v] || (mesh_.loop_of_vertex[v] == none && map.curvature.at_vertex[v] != 0)) marked[v] = 0;
+  }
+  const Eigen::VectorXcd motion = motion_of_copies(mesh_, map.cut_graph, map.cut_mesh, connection.rotation);
+  NewtonMinimizer(surface, map.curvature.log_scale, connection.frames,
+                  free_vertices(mesh_, map.cut_mesh, motion, marked), counter(), map.position)
+      .smooth(Kind::conformal_barrier, steps);
+  check(map);
+}
+
+void Mapping::twist_gradually(const ParallelTransportChoice& connections, const Array<char>& fixed, ComponentMap& map) {
+  const CutSurface surface = open(map);
+  const ParallelTransport natural = connections.at(0, map.curvature);
+  ComponentMap moved = map;
+  moved.position = PoissonSystem(surface, natural.reduction)
+                       .fit(prescribed_jacobians(mesh_, map.curvature.log_scale, natural.frames));
+  moved.position = untangle(surface, natural, map.curvature, fixed, Effort::local, Kind::framed_foldover_free,
+                            counter(), moved.position);
+  check(moved);
+  if (moved.validity.defects() > 0) return;
+  Continuation end = follow(surface, path_between(map.curvature, connections, map.curvature), fixed, Effort::local,
+                            counter(), moved.position);
+  if (end.reached < 1) return;
+  map.position = std::move(end.position);
+  check(map);
+}
+
+void Mapping::report_adjusted(const ComponentMap& map, const Continuation& end, std::vector<Finding>& findings) const {
+  Eigen::Index most = 0;
+  const double off = (map.curvature.at_vertex - end.at.curvature.at_vertex).cwiseAbs().maxCoeff(&most);
+  findings.push_back(
+      {Code::angles_adjusted,
+       concat("No map without flips was found for the angles given; this one has angles ",
+              std::round(100 * end.reached), " % of the way to them from those of least distortion, up to ",
+              off * 180 / M_PI, " degrees off. Take angles nearer to the automatic ones, or subdivide the mesh at ",
+              "the cones."),
+       {ElementKind::vertices, map.cones}});
+}
+
+ParallelTransport Mapping::connection_of(const ComponentMap& map) const {
+  constexpr double same_rotation = 1e-12;  // radians
+  const CutSurface surface = open(map);
+  ParallelTransport metric = ParallelTransportChoice(surface, map.curvature, task_.cones.symmetry).at(1, map.curvature);
+  const auto off = [](double a, double b) { return std::abs(std::remainder(a - b, 2 * M_PI)); };
+  for (Eigen::Index p = 0; p < map.rotation->size(); ++p) {
+    if (off(metric.rotation[p], (*map.rotation)[p]) > same_rotation) {
+      return connection_of_map(surface, map.curvature, *map.rotation, map.position);
+    }
+  }
+  return metric;
+}
+
+CutSurface Mapping::open(const ComponentMap& map) const { return system_.open(map.cut_graph, map.cut_mesh); }
+
+Array<Index> Mapping::aligned_edges() const {
+  return task_.cones.border == BorderMode::straight ? straight_edges(mesh_, task_.cones.vertices)
+                                                    : corner_edges(mesh_, task_.cones.vertices);
+}
+
+Array<char> Mapping::fixed_vertices(const ComponentMap& map) const {
+  Array<char> fixed(mesh_.vertex_count(), 0);
+  for (const Pin& pin : map.pins) fixed[map.cut_mesh.source[pin.copy]] = 1;
+  for (const Index h : aligned_edges()) fixed[mesh_.origin(h)] = fixed[mesh_.target(h)] = 1;
+  return fixed;
+}
+
+StepHook Mapping::counter() {
+  return [this] { monitor_.advance(1 - 0.5 * std::pow(0.98, ++repair_->iterations)); };
+}
+
+}  // namespace lsgp

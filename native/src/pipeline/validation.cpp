@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/validation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/text.hpp"
+
+namespace lsgp {
+
+namespace {
+
+// Squared areas and their sums must neither overflow nor vanish in double precision.
+constexpr double largest_extent = 1e60;
+constexpr double smallest_extent = 1e-60;
+// What lies so much farther out leaves the rest no digit, in lengths or in angles.
+constexpr double farthest = 1e20;
+constexpr double smallest_cone_angle = 1e-6;  // radians; less is lost beside the angles of triangles
+constexpr double largest_cost = 1e6;          // of a cut per length
+
+void require_indices(const VertexPairs& pairs, Index vertex_count, const char* what) {
+  Array<Index> bad;
+  for (Index row = 0; row < pairs.rows(); ++row) {
+    for (const Index v : {pairs(row, 0), pairs(row, 1)}) {
+      if (v < 0 || v >= vertex_count) bad.push_back(v);
+    }
+  }
+  if (!bad.empty()) {
+    throw Error(Code::index_out_of_range,
+                concat("The ", what, " name ", count(bad.size(), "vertex", "vertices"), " outside 0 to ",
+                       vertex_count - 1, " (", list(bad), "). Pass vertex pairs of this mesh."));
+  }
+}
+
+Array<char> used_vertices(const Surface& surface) {
+  Array<char> used(surface.positions.rows(), 0);
+  for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    for (int c = 0; c < 3; ++c) used[surface.triangles(f, c)] = 1;
+  }
+  return used;
+}
+
+void require_extent(const Positions& positions, const Array<char>& used) {
+  Eigen::RowVector3d low = Eigen::RowVector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (Index v = 0; v < positions.rows(); ++v) {
+    if (!used[v]) continue;
+    low = low.cwiseMin(positions.row(v));
+    high = high.cwiseMax(positions.row(v));
+  }
+  const double extent = (high - low).maxCoeff();
+  if (extent > largest_extent || (extent > 0 && extent < smallest_extent)) {
+    throw Error(Code::scale_range, concat("The surface is ", extent, " units large; sizes from ", smallest_extent,
+                                          " to ", largest_extent, " can be computed with. Scale it."));
+  }
+  if (!(extent > 0)) {
+    throw Error(Code::degenerate_mesh, "All vertices of the surface coincide, so it has no area. Restore its shape.");
+  }
+}
+
+void require_importance(const Eigen::VectorXd& importance, Index vertex_count) {
+  if (importance.size() == 0) return;
+  if (importance.size() != vertex_count) {
+    throw Error(Code::wrong_parameter, concat("There are ", importance.size(), " weights of importance for ",
+                                              vertex_count, " vertices. Give one for each."));
+  }
+  Array<Index> bad;
+  for (Index v = 0; v < vertex_count; ++v) {
+    if (!(importance[v] >= 0 && std::isfinite(importance[v]))) bad.push_back(v);
+  }
+  if (!bad.empty()) {
+    throw Error(Code::wrong_parameter,
+                concat("The importance of ", count(bad.size(), "vertex", "vertices"),
+                       " is negative or no finite number. Give weights of 0 or more."),
+                {ElementKind::vertices, bad});
+  }
+}
+
+void require_cut_costs(const Surface& surface) {
+  const Eigen::VectorXd& costs = surface.cut_costs;
+  if (costs.size() == 0) return;
+  const Eigen::Index edges = surface.edges ? surface.edges->rows() : 0;
+  if (costs.size() != edges) {
+    throw Error(Code::wrong_parameter,
+                concat("There are ", costs.size(), " costs of cuts for ", edges,
+                       " edges that a cut may follow. Name those edges, and give one cost for each."));
+  }
+  Array<Index> bad;
+  for (Eigen::Index row = 0; row < edges; ++row) {
+    if (costs[row] >= 0 && costs[row] <= largest_cost) continue;
+    bad.insert(bad.end(), {(*surface.edges)(row, 0), (*surface.edges)(row, 1)});
+  }
+  if (bad.empty()) return;
+  throw Error(Code::wrong_parameter,
+              concat("The cost of a cut along ", count(bad.size() / 2, "edge", "edges"), " does not lie between 0 and ",
+                     largest_cost, ". Costs are factors of lengths; scale them down."),
+              {ElementKind::edges, bad});
+}
+
+}  // namespace
+
+void require_valid(const Options& options) {
+  if (!(options.stretch >= 0 && options.stretch <= 1)) {
+    throw Error(Code::wrong_parameter,
+                concat("The share of stretch to take away is ", options.stretch, ". Choose one from 0 to 1."));
+  }
+  if (options.method != Method::lscm) return;
+  // Its least squares are its own, and it has no transitions that others could keep.
+  const auto refuse = [](const char* what, const char* instead) {
+    throw Error(Code::wrong_parameter, concat("The method lscm ", what, ". Choose the method lsgp, or ", instead, "."));
+  };
+  if (options.unfold == UnfoldMethod::spectral) refuse("unfolds in its own way, not spectrally", "unfold as usual");
+  if (options.mode == Mode::low_stretch) refuse("keeps no lengths", "the mode conformal");
+  if (options.border == BorderMode::straight) refuse("keeps no border straight", "leave borders free");
+  if (!options.loop_turning.empty()) refuse("keeps no turning of borders", "leave it as it comes out");
+}
+
+void require_valid(const Options& options, const Pins& pins) {
+  require_valid(options);
+  if (options.method != Method::lscm || pins.corners.empty()) return;
+  throw Error(Code::pins_conflict,
+              "The method lscm has two pins of its own, so pinned texture coordinates cannot be kept. Choose the "
+              "method lsgp, or unpin them.");
+}
+
+void require_connectivity(const Surface& surface) {
+  const Index n = static_cast<Index>(surface.positions.rows());
+  const Triangles& triangles = surface.triangles;
+  if (triangles.rows() == 0) throw Error(Code::empty_mesh, "The mesh has no faces. Add faces to unwrap.");
+
+  Array<Index> outside, repeated;
+  for (Index f = 0; f < triangles.rows(); ++f) {
+    const Index a = triangles(f, 0), b = triangles(f, 1), c = triangles(f, 2);
+    if (a < 0 || b < 0 || c < 0 || a >= n || b >= n || c >= n) {
+      outside.push_back(f);
+    } else if (a == b || b == c || c == a) {
+      repeated.push_back(f);
+    }
+  }
+  if (!outside.empty()) {
+    throw Error(Code::index_out_of_range,
+                concat(count(outside.size(), "triangle names", "triangles name"), " vertices outside 0 to ", n - 1,
+                       ". Repair the face indices."),
+                {ElementKind::triangles, outside});
+  }
+  if (!repeated.empty()) {
+    throw Error(Code::bad_face,
+                concat(count(repeated.size(), "triangle repeats", "triangles repeat"),
+                       " a vertex. Merge by distance or delete them."),
+                {ElementKind::triangles, repeated});
+  }
+  if (surface.edges) require_indices(*surface.edges, n, "edges");
+  require_cut_costs(surface);
+  require_indices(surface.seams, n, "seams");
+}
+
+void require_valid(const Surface& surface) {
+  require_connectivity(surface);
+  const Index n = static_cast<Index>(surface.positions.rows());
+  const Array<char> used = used_vertices(surface);
+  Array<Index> bad;
+  for (Index v = 0; v < n; ++v) {
+    if (used[v] && !surface.positions.row(v).allFinite()) bad.push_back(v);
+  }
+  if (!bad.empty()) {
+    throw Error(Code::non_finite_position,
+                concat(count(bad.size(), "vertex has", "vertices have"),
+                       " a coordinate that is not a finite number. Move or delete them."),
+                {ElementKind::vertices, bad});
+  }
+  require_extent(surface.positions, used);
+  require_importance(surface.importance, n);
+}
+
+void require_comparable(const Positions& positions) {
+  const Index n = static_cast<Index>(positions.rows());
+  Eigen::RowVector3d middle;
+  Array<double> sorted(n);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (Index v = 0; v < n; ++v) sorted[v] = positions(v, axis);
+    std::nth_element(sorted.begin(), sorted.begin() + n / 2, sorted.end());
+    middle[axis] = sorted[n / 2];
+  }
+  const Eigen::VectorXd distance = (positions.rowwise() - middle).cwiseAbs().rowwise().maxCoeff();
+  for (Index v = 0; v < n; ++v) sorted[v] = distance[v];
+  std::sort(sorted.begin(), sorted.end());
+  // Where more than a few are apart it is the surface's shape.
+  for (Index reached = n - n / 4; reached < n; ++reached) {
+    const double reach = sorted[reached - 1];
+    if (!(reach > 0 && sorted[reached] > farthest * reach)) continue;
+    Array<Index> far;
+    for (Index v = 0; v < n; ++v) {
+      if (distance[v] > reach) far.push_back(v);
+    }
+    throw Error(Code::scale_range,
+                concat(count(far.size(), "vertex lies", "vertices lie"), " more than ", farthest,
+                       " times as far out as the others, whose shape is lost beside that. Move or delete ",
+                       far.size() == 1 ? "it." : "them."),
+                {ElementKind::vertices, far});
+  }
+}
+
+void require_vertices(const Surface& surface, const Cones& cones) {
+  const Index n = static_cast<Index>(surface.positions.rows());
+  if (cones.angles.size() != cones.vertices.size()) {
+    throw Error(Code::angle_count, concat(cones.vertices.size(), " cones but ", cones.angles.size(),
+                                          " angles were given. Pass one angle per cone, none for automatic."));
+  }
+  Array<Index> outside;
+  for (const Index v : cones.vertices) {
+    if (v < 0 || v >= n) outside.push_back(v);
+  }
+  if (!outside.empty()) {
+    throw Error(Code::cone_index, concat(count(outside.size(), "cone lies", "cones lie"), " outside the vertices 0 to ",
+                                         n - 1, " (", list(outside), "). Mark vertices of this mesh."));
+  }
+}
+
+void require_valid(const Surface& surface, const Cones& cones) {
+  require_vertices(surface, cones);
+  const Index n = static_cast<Index>(surface.positions.rows());
+  const Array<char> used = used_vertices(surface);
+  Array<char> seen(n, 0);
+  Array<Index> duplicate, loose, non_finite, impossible;
+  for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
+    const Index v = cones.vertices[i];
+    if (seen[v]++) duplicate.push_back(v);
+    if (!used[v]) loose.push_back(v);
+    if (!cones.angles[i]) continue;
+    if (!std::isfinite(*cones.angles[i]))
+      non_finite.push_back(v);
+    else if (*cones.angles[i] < smallest_cone_angle)
+      impossible.push_back(v);
+  }
+  const auto refuse = [](Code code, const Array<Index>& bad, const char* one, const char* many, const char* remedy) {
+    if (!bad.empty()) {
+      throw Error(code, concat(count(bad.size(), one, many), ". ", remedy), {ElementKind::vertices, bad});
+    }
+  };
+  refuse(Code::cone_duplicate, duplicate, "cone is listed twice", "cones are listed twice", "List every cone once.");
+  refuse(Code::cone_not_on_surface, loose, "cone belongs to no face", "cones belong to no face",
+         "Mark vertices of the surface only.");
+  refuse(Code::cone_angle_non_finite, non_finite, "cone angle is not a finite number",
+         "cone angles are not finite numbers", "Give an angle above 0, or none for automatic.");
+  refuse(Code::cone_angle_range, impossible, "cone angle is not above zero", "cone angles are not above zero",
+         "Give an angle above 0 degrees.");
+}
+
+void require_valid(const PlacementOptions& options) {
+  if (options.count && *options.count < 0) {
+    throw Error(Code::wrong_parameter, concat("The number of cones is ", *options.count, ". Give 0 or more."));
+  }
+  if (!(options.target > 1) || !std::isfinite(options.target)) {
+    throw Error(Code::wrong_parameter,
+                concat("The L2 stretch to reach is ", options.target, ". Give a number above 1, which is none."));
+  }
+  if (!options.mirror) return;
+  if (!options.symmetric) {
+    throw Error(Code::wrong_parameter,
+                "A mirror plane is given for cones that need not be symmetric. Ask for symmetric ones, or leave it "
+                "out.");
+  }
+  const bool finite = options.mirror->point.allFinite() && options.mirror->normal.allFinite();
+  if (!finite || !(options.mirror->normal.norm() > 0)) {
+    throw Error(Code::wrong_parameter,
+                "The mirror plane has no usable point and normal. Give finite numbers, and a "
+                "normal that is not zero.");
+  }
+}
+
+void require_valid(const Surface& surface, const Pins& pins) {
+  const Index corner_count = static_cast<Index>(3 * surface.triangles.rows());
+  if (pins.positions.rows() != static_cast<Eigen::Index>(pins.corners.size())) {
+    throw Error(Code::pin_index, concat(pins.corners.size(), " corners are pinned but ", pins.positions.rows(),
+                                        " positions were given. Pass one position per pinned corner."));
+  }
+  Array<Index> outside, non_finite;
+  for (std::size_t i = 0; i < pins.corners.size(); ++i) {
+    const Index corner = pins.corners[i];
+    if (corner < 0 || corner >= corner_count)
+      outside.push_back(corner);
+    else if (!(pins.positions.row(static_cast<Eigen::Index>(i)).cwiseAbs().maxCoeff() <= largest_extent))
+      non_finite.push_back(corner / 3);
+  }
+  if (!outside.empty()) {
+    throw Error(Code::pin_index, concat("The pins name ", count(outside.size(), "corner", "corners"), " outside 0 to ",
+                                        corner_count - 1, " (", list(outside), "). Pass corners of this mesh."));
+  }
+  if (!non_finite.empty()) {
+    throw Error(Code::pin_non_finite,
+                concat(count(non_finite.size(), "pin is", "pins are"), " not at a finite place within ", largest_extent,
+                       " of the origin. Unpin or move them."),
+                {ElementKind::triangles, non_finite});
+  }
+}
+
+}  // namespace lsgp

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Validation of the caller's arrays, before any topology is built.
+#pragma once
+
+#include "lsgp/errors.hpp"
+#include "lsgp/options.hpp"
+#include "lsgp/placement.hpp"
+#include "lsgp/surface.hpp"
+
+namespace lsgp {
+
+// That triangles, edges and seams name vertices. Throws EMPTY_MESH, INDEX_OUT_OF_RANGE, BAD_FACE.
+void require_connectivity(const Surface& surface);
+
+// Throws EMPTY_MESH, INDEX_OUT_OF_RANGE, BAD_FACE, NON_FINITE_POSITION, SCALE_RANGE, DEGENERATE_MESH,
+// WRONG_PARAMETER.
+void require_valid(const Surface& surface);
+
+// For the vertices of one component. Throws SCALE_RANGE where a few of them lie immeasurably far from all others, as
+// Blender leaves infinite coordinates.
+void require_comparable(const Positions& positions);
+
+// That cones are vertices and have an angle or none each. Throws CONE_INDEX, ANGLE_COUNT.
+void require_vertices(const Surface& surface, const Cones& cones);
+
+// Throws CONE_INDEX, CONE_DUPLICATE, CONE_NOT_ON_SURFACE, ANGLE_COUNT, CONE_ANGLE_NON_FINITE, CONE_ANGLE_RANGE.
+void require_valid(const Surface& surface, const Cones& cones);
+
+// Throws WRONG_PARAMETER.
+void require_valid(const Options& options);
+
+// The same for what cannot be kept together with pins as well. Throws PINS_CONFLICT.
+void require_valid(const Options& options, const Pins& pins);
+
+// Throws WRONG_PARAMETER.
+void require_valid(const PlacementOptions& options);
+
+// Throws PIN_INDEX, PIN_NON_FINITE.
+void require_valid(const Surface& surface, const Pins& pins);
+
+}  // namespace lsgp

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "placement/batch_placement.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <queue>
+#include <utility>
+
+#include "base/checkpoint.hpp"
+#include "base/memory.hpp"
+#include "solvers/dense_cholesky.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr int batches_to_double = 6;  // more, and cones of a batch get into each other's way
+constexpr int exchanged_share = 10;   // one in so many
+constexpr double worthwhile = 0.998;  // of the variance: less is not worth a further round
+constexpr double blocks = 6;          // of H at once: the fit's form, its factor, and one to go back to
+constexpr std::size_t probes = 8;     // sites at which the spread is measured
+
+// Rings that are left free around each of so many cones without crowding them into what is left over.
+int rings_for(int cones, Index vertices) {
+  int rings = free_rings;
+  const auto vertices_within = [&] { return 1.0 + 3 * rings * (rings + 1); };  // where all have six neighbours
+  while (rings > 0 && cones * vertices_within() > vertices) --rings;
+  return rings;
+}
+
+}  // namespace
+
+NearestDistance::NearestDistance(const HalfedgeMesh& mesh, const Geometry& geometry)
+    : mesh_(mesh),
+      geometry_(geometry),
+      far_(Eigen::VectorXd::Constant(mesh.vertex_count(), std::numeric_limits<double>::infinity())) {}
+
+void NearestDistance::add(Index vertex) {
+  using Reached = std::pair<double, Index>;
+  std::priority_queue<Reached, Array<Reached>, std::greater<Reached>> reached;
+  const auto reach = [&](Index v, double distance) {
+    if (!(distance < far_[v])) return;
+    far_[v] = distance;
+    reached.emplace(distance, v);
+  };
+  reach(vertex, 0);
+  while (!reached.empty()) {
+    const auto [distance, v] = reached.top();
+    reached.pop();
+    if (distance > far_[v]) continue;
+    mesh_.for_each_outgoing(v, [&, from = distance](Index h) {
+      reach(mesh_.target(h), from + geometry_.length[h]);
+      // The last edge around a border vertex has no halfedge that leaves it.
+      if (mesh_.twin[prev(h)] == none) reach(mesh_.origin(prev(h)), from + geometry_.length[prev(h)]);
+    });
+  }
+}
+
+int BatchPlacement::cone_count() const {
+  int count = 0;
+  for (const int site : state_.sites) count += problem_.kernel.sites()[site].cones();
+  return count;
+}
+
+void BatchPlacement::add(const Array<int>& sites) {
+  const Eigen::Index before = static_cast<Eigen::Index>(state_.sites.size());
+  const Eigen::Index added = static_cast<Eigen::Index>(sites.size());
+  require_matrix_memory(static_cast<double>(before + added), blocks * static_cast<double>(before + added), fewer_cones);
+  state_.sites.insert(state_.sites.end(), sites.begin(), sites.end());
+  const Eigen::MatrixXd columns = problem_.kernel.entries(state_.sites, sites);
+  state_.hessian.conservativeResize(before + added, before + added);
+  state_.hessian.rightCols(added) = columns;
+  state_.hessian.bottomLeftCorner(added, before) = columns.topRows(before).transpose();
+  state_.fit.curvature.conservativeResize(before + added);
+  state_.fit.curvature.tail(added).setZero();
+  state_.fit = fit_curvature(problem_, state_.sites, reach_, state_.hessian, std::move(state_.fit.curvature));
+}
+
+void BatchPlacement::remove(const Array<int>& places) {
+  Array<char> is_removed(state_.sites.size(), 0);
+  for (const int place : places) is_removed[place] = 1;
+  Array<int> left, sites;
+  for (std::size_t i = 0; i < is_removed.size(); ++i) {
+    if (is_removed[i]) continue;
+    left.push_back(static_cast<int>(i));
+    sites.push_back(state_.sites[i]);
+  }
+  state_.sites = std::move(sites);
+  state_.hessian = state_.hessian(left, left).eval();
+  state_.fit = fit_curvature(problem_, state_.sites, reach_, state_.hessian, state_.fit.curvature(left).eval());
+}
+
+NearestDistance BatchPlacement::distances() const {
+  NearestDistance out(mesh_, geometry_);
+  for (const int site : state_.sites) {
+    for (const Index v : {problem_.kernel.sites()[site].vertex, problem_.kernel.sites()[site].mirrored}) {
+      if (v != none) out.add(v);
+    }
+  }
+  return out;
+}
+
+// By how much half the variance falls with curvature at each site, (sites), less what keeping the sum takes.
+Eigen::VectorXd BatchPlacement::slopes() const {
+  Eigen::VectorXd slope = -problem_.kernel.gradient() - problem_.kernel.product(state_.sites, curvature());
+  if (problem_.balanced) slope.array() -= mean_slope(state_.fit, state_.sites, slope);
+  return slope;
+}
+
+// What a unit of curvature at a site adds to the variance when the cones respond falls with the square of the distance
+// to the nearest of them, as the deflection of a thin plate that is held there does. This is the factor, the median
+// over some sites.
+double BatchPlacement::spread_of(const Array<int>& sites, const Eigen::VectorXd& far) const {
+  const LogScaleVariance& kernel = problem_.kernel;
+  Array<int> rows = state_.sites;
+  rows.insert(rows.end(), sites.begin(), sites.end());
+  const Eigen::MatrixXd columns = kernel.entries(rows, sites);
+  const Eigen::Index k = state_.hessian.rows();
+  const Eigen::MatrixXd response = DenseCholesky<double>(with_ridge(state_.hessian)).solve(columns.topRows(k));
+  Array<double> factors;
+  for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+    const double left = columns(k + i, i) - response.col(i).dot(columns.col(i).head(k));
+    const double distance = far[kernel.sites()[sites[static_cast<std::size_t>(i)]].vertex];
+    factors.push_back(std::max(left, 0.0) / (distance * distance));
+  }
+  std::nth_element(factors.begin(), factors.begin() + static_cast<std::ptrdiff_t>(factors.size() / 2), factors.end());
+  return factors[factors.size() / 2];
+}
+
+// Sites that gain most, each nearer to a cone that is there already than to another of them.
+Array<int> BatchPlacement::choose(int cones, double spread, int rings) const {
+  const LogScaleVariance& kernel = problem_.kernel;
+  const Array<char> open = search_.open_sites(state_.sites, rings);
+  const Eigen::VectorXd slope = slopes();
+  NearestDistance nearest = distances();
+  const Eigen::VectorXd before = nearest.all();
+  Array<std::pair<double, int>> gains;
+  for (int i = 0; i < kernel.site_count(); ++i) {
+    if (!open[i]) continue;
+    const double distance = before[kernel.sites()[i].vertex];
+    const double d = std::clamp(spread * distance * distance, 1e-12 * kernel.diagonal().mean(), kernel.diagonal()[i]);
+    const double t = std::clamp(slope[i] / d, problem_.limits.low(i, reach_), problem_.limits.high(i, reach_));
+    gains.emplace_back(-search_.preference(i) * (2 * t * slope[i] - t * t * d) / kernel.sites()[i].cones(), i);
+  }
+  std::sort(gains.begin(), gains.end());
+  Array<int> chosen;
+  for (const auto& [gain, site] : gains) {
+    const Site& at = kernel.sites()[site];
+    if (at.cones() > cones || nearest.all()[at.vertex] < before[at.vertex]) continue;
+    chosen.push_back(site);
+    cones -= at.cones();
+    if (cones == 0) break;
+    nearest.add(at.vertex);
+    if (at.mirrored != none) nearest.add(at.mirrored);
+  }
+  return chosen;
+}
+
+void BatchPlacement::grow(int cones) {
+  const int rings = rings_for(cones, mesh_.vertex_count());
+  std::optional<double> spread;
+  while (cone_count() < cones) {
+    if (!spread) {
+      const Array<char> open = search_.open_sites(state_.sites, rings);
+      Array<int> all, some;
+      for (std::size_t i = 0; i < open.size(); ++i) {
+        if (open[i]) all.push_back(static_cast<int>(i));
+      }
+      if (all.empty()) return;
+      const std::size_t count = std::min(probes, all.size());
+      for (std::size_t i = 0; i < count; ++i) some.push_back(all[i * all.size() / count]);
+      spread = spread_of(some, distances().all());
+    }
+    const int present = cone_count();
+    const int batch = std::min(cones - present, std::max(2, present / batches_to_double));
+    const Array<int> chosen = choose(batch, *spread, rings);
+    if (chosen.empty()) return;
+    add(chosen);
+    monitor_.tick();
+  }
+}
+
+// By what the variance would rise, to first order, without each.
+Array<int> BatchPlacement::least_needed(int count) const {
+  const Eigen::Index k = state_.hessian.rows();
+  const DenseCholesky<double> factor(with_ridge(state_.hessian));
+  Eigen::VectorXd inverse(k);
+  constexpr Eigen::Index columns_at_once = 64;
+  for (Eigen::Index begin = 0; begin < k; begin += columns_at_once) {
+    const Eigen::Index width = std::min(columns_at_once, k - begin);
+    Eigen::MatrixXd units = Eigen::MatrixXd::Zero(k, width);
+    units.middleRows(begin, width).setIdentity();
+    inverse.segment(begin, width) = factor.solve(units).middleRows(begin, width).diagonal();
+    checkpoint(static_cast<double>(2 * k * k * width));
+  }
+  Array<int> places(k - kept_);
+  std::iota(places.begin(), places.end(), kept_);
+  const auto loss = [&](int place) { return curvature()[place] * curvature()[place] / inverse[place]; };
+  std::stable_sort(places.begin(), places.end(), [&](int a, int b) { return loss(a) < loss(b); });
+  places.resize(std::min(places.size(), static_cast<std::size_t>(count)));
+  return places;
+}
+
+void BatchPlacement::exchange(int rounds) {
+  const int exchanged = static_cast<int>(state_.sites.size()) / exchanged_share;
+  for (int round = 0; exchanged > 0 && round < rounds; ++round) {
+    const int cones = cone_count();
+    const State before = state_;
+    remove(least_needed(exchanged));
+    grow(cones);
+    if (cone_count() == cones && variance() < worthwhile * before.fit.variance) continue;
+    if (!(cone_count() == cones && variance() < before.fit.variance)) state_ = before;
+    return;
+  }
+}
+
+}  // namespace lsgp

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Hundreds of cones and more: placed and exchanged in batches.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "base/array.hpp"
+#include "base/progress_monitor.hpp"
+#include "placement/cone_search.hpp"
+#include "placement/cone_set.hpp"
+
+namespace lsgp {
+
+// How far every vertex is from the nearest of some, along edges.
+class NearestDistance {
+ public:
+  NearestDistance(const HalfedgeMesh& mesh, const Geometry& geometry);
+  void add(Index vertex);                              // visits only what is nearer to it than to those before
+  const Eigen::VectorXd& all() const { return far_; }  // (n) infinite where there is none
+
+ private:
+  const HalfedgeMesh& mesh_;
+  const Geometry& geometry_;
+  Eigen::VectorXd far_;
+};
+
+// A cone for cone search needs the columns of H at all sites and a fit a cone. Here a batch of cones is chosen at
+// once, apart from each other, and one fit of all curvatures follows: two back-substitutions a cone, some 20 fits from
+// 60 cones to 1,000, and memory for their own block of H.
+class BatchPlacement {
+ public:
+  // The first `kept` sites stay. All arguments have to outlive it.
+  BatchPlacement(const HalfedgeMesh& mesh, const Geometry& geometry, const PlacementProblem& problem,
+                 const ConeSearch& search, double reach, int kept, ProgressMonitor& monitor)
+      : mesh_(mesh),
+        geometry_(geometry),
+        problem_(problem),
+        search_(search),
+        reach_(reach),
+        kept_(kept),
+        monitor_(monitor) {}
+
+  void add(const Array<int>& sites);  // two back-substitutions each, and a fit
+  void grow(int cones);               // until there are so many, or no room is left
+
+  // Takes out the cones that matter least, a tenth of all, and puts them where they gain most, as long as that helps.
+  void exchange(int rounds);
+
+  const Array<int>& sites() const { return state_.sites; }
+  const Eigen::VectorXd& curvature() const { return state_.fit.curvature; }
+  double variance() const { return state_.fit.variance; }
+  bool feasible() const { return state_.fit.feasible(); }
+  int cone_count() const;
+
+ private:
+  struct State {
+    Array<int> sites;
+    Eigen::MatrixXd hessian;  // (k, k) their block of H
+    CurvatureFit fit;
+  };
+
+  void remove(const Array<int>& places);
+  Array<int> least_needed(int count) const;  // places
+  NearestDistance distances() const;
+  Eigen::VectorXd slopes() const;
+  double spread_of(const Array<int>& sites, const Eigen::VectorXd& far) const;
+  Array<int> choose(int cones, double spread, int rings) const;
+
+  const HalfedgeMesh& mesh_;
+  const Geometry& geometry_;
+  const PlacementProblem& problem_;
+  const ConeSearch& search_;
+  const double reach_;
+  const int kept_;
+  ProgressMonitor& monitor_;
+  State state_;
+};
+
+}  // namespace lsgp

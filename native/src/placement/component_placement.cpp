@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "placement/component_placement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/text.hpp"
+#include "cut/cut_graph.hpp"
+#include "placement/verified_placement.hpp"
+#include "prescription/component_system.hpp"
+
+namespace lsgp {
+
+namespace {
+
+// Refuses cones that are too few because cuts do not get to where others could be.
+void require_reachable(const ConeChooser& chooser, const ConeChoice& choice) {
+  if (choice.is_possible() || chooser.reaches_all()) return;
+  const Index places = chooser.place_count();
+  if (ssize(choice.vertices) < places) return;
+  throw Error(Code::cuts_blocked,
+              concat("The edges a cut may follow lead to ", count(places, "place", "places"),
+                     " for cones, too few for the curvature of this surface. Allow more edges to be cut."));
+}
+
+void require_room(const ConeChoice& choice) {
+  if (choice.is_possible()) return;
+  throw Error(Code::too_few_cones,
+              concat(count(choice.vertices.size(), "cone is", "cones are"),
+                     " too few for the curvature of this surface. Place more, or as many as it takes."),
+              {ElementKind::vertices, choice.vertices});
+}
+
+// Cones that somebody marked stay, and the map says what is wrong with it; others are no result.
+void require_right(const VerifiedChoice& choice, bool has_marked) {
+  const TriedMap& map = choice.map;
+  if (!choice.is_mapped || !map.is_off() || !map.is_repaired || has_marked) return;
+  throw Error(
+      Code::solver_failed,
+      concat("No cones were found with which the angles and seams of this part come out right: with ",
+             count(choice.cones.vertices.size(), "cone", "cones"), ", ",
+             map.failed ? std::string("there is no map")
+                        : concat("angles are off at ", count(map.wrong_angles, "vertex", "vertices"), " and seams at ",
+                                 count(map.inexact_seams, "cut edge", "cut edges")),
+             ". Place more of them, mark cones at tips and branches, or cut the part into simpler ones along seams."),
+      {ElementKind::vertices, choice.cones.vertices});
+}
+
+std::optional<MissingCones> missing_cones(const ConeChooser& chooser, const ConeChoice& choice) {
+  const int asked = chooser.options().count.value_or(0), placed = static_cast<int>(choice.vertices.size());
+  if (placed >= asked) return std::nullopt;
+  const auto why = choice.left_flat > 0             ? MissingCones::Why::left_flat
+                   : chooser.place_count() > placed ? MissingCones::Why::only_pairs
+                                                    : MissingCones::Why::no_room;
+  return MissingCones{placed, why};
+}
+
+}  // namespace
+
+PlacedCones place_component(const PlacementTask& task, const PlacementOptions& options, std::vector<Finding>& findings,
+                            ProgressMonitor& monitor) {
+  ConeChooser chooser(task, options, effort_for(task.mesh.vertex_count()), monitor);
+  const ProgressMonitor::Part part(monitor, 0.3, 1);
+  VerifiedPlacement placement(chooser, monitor);
+  const VerifiedChoice choice = placement.place();
+  PlacedCones out;
+  out.cones = chooser.with_given_angles(choice.cones.vertices);
+  require_reachable(chooser, choice.cones);
+  require_feasible(task.mesh, out.cones, chooser.border());
+  require_room(choice.cones);
+  require_possible(task.mesh, task.geometry, out.cones);
+  out.missing = missing_cones(chooser, choice.cones);
+  out.cones = chooser.with_angles(choice.cones);
+  out.curvature = impose(task.mesh, task.geometry, out.cones, chooser.border(), chooser.scale(), choice.cones.curvature,
+                         chooser.scale().evaluate_held(choice.cones.vertices, choice.cones.curvature), findings);
+  connect_cones(task.mesh, task.geometry, inside_only(task.mesh, choice.cones.vertices), out.curvature.needs_no_cut);
+  require_right(choice, !task.existing.vertices.empty());
+  if (choice.is_mapped) out.mapped_l2 = choice.map.l2;
+  out.maps = placement.maps();
+  out.reached = out.mapped_l2.value_or(out.curvature.predicted_l2) <= options.target;
+  return out;
+}
+
+ComponentGains component_gains(const PlacementTask& task, ProgressMonitor& monitor) {
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  PlacementEffort effort = effort_for(task.mesh.vertex_count());
+  effort.sites = std::numeric_limits<int>::max();
+  const PlacementOptions options;
+  const ConeChooser chooser(task, options, effort, monitor);
+  const ConeSet set = chooser.existing(usual_reach);
+  ComponentGains out;
+  out.present_l2 = chooser.predicted_l2(set);
+  out.predicted_l2 = Eigen::VectorXd::Constant(task.mesh.vertex_count(), std::numeric_limits<double>::quiet_NaN());
+  const Eigen::VectorXd gains = set.gains();
+  const Array<char> open = chooser.search().open_sites(set.sites());
+  double most = -unlimited;
+  for (std::size_t s = 0; s < chooser.sites().size(); ++s) {
+    const auto i = static_cast<Eigen::Index>(s);
+    if (!open[s]) continue;
+    const Index vertex = chooser.sites()[s].vertex;
+    // The L2 stretch is e^{2 J} to leading order.
+    const double with_cone = out.present_l2 == unlimited ? std::exp(2 * (set.variance() - gains[i]))
+                                                         : out.present_l2 * std::exp(-2 * gains[i]);
+    out.predicted_l2[vertex] = std::clamp(with_cone, 1.0, largest_l2);
+    if (!(gains[i] > most)) continue;
+    most = gains[i];
+    out.best = vertex;
+  }
+  return out;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cones placed automatically on one component.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "base/progress_monitor.hpp"
+#include "lsgp/placement.hpp"
+#include "placement/cone_chooser.hpp"
+#include "placement/shortfalls.hpp"
+
+namespace lsgp {
+
+// One component's cones and all that is known of them.
+struct PlacedCones {
+  ComponentCones cones;  // existing ones first, all with angles
+  Curvature curvature;
+  std::optional<double> mapped_l2;  // of the map, infinite where it is not valid; none where it was not made
+  int maps = 0;                     // that were made
+  std::optional<MissingCones> missing;
+  bool reached = true;
+};
+
+// findings are added to. Throws what require_feasible, require_possible and connect_cones throw, and SOLVER_FAILED
+// where cones that were placed would leave angles or seams off.
+PlacedCones place_component(const PlacementTask& task, const PlacementOptions& options, std::vector<Finding>& findings,
+                            ProgressMonitor& monitor);
+
+// What one more cone would do to one component.
+struct ComponentGains {
+  double present_l2 = 1;         // infinite where it needs a cone
+  Eigen::VectorXd predicted_l2;  // (n) with a cone there, NaN where none may be
+  Index best = none;             // the vertex that gains most, also where stretches are too large to be told apart
+};
+ComponentGains component_gains(const PlacementTask& task, ProgressMonitor& monitor);
+
+}  // namespace lsgp

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cones chosen by the stretch that their log scale predicts.
+#pragma once
+
+#include <limits>
+
+#include "base/array.hpp"
+#include "base/progress_monitor.hpp"
+#include "lsgp/placement.hpp"
+#include "placement/batch_placement.hpp"
+#include "placement/cone_search.hpp"
+#include "prescription/curvature.hpp"
+
+namespace lsgp {
+
+// Cones at some vertices, with curvatures.
+struct ConeChoice {
+  Array<Index> vertices;
+  Eigen::VectorXd curvature;
+  double predicted_l2 = 1;  // infinite where these cones cannot take up the curvature
+  Index left_flat = 0;      // by rounding, and given up
+
+  bool is_possible() const { return predicted_l2 < std::numeric_limits<double>::infinity(); }
+};
+
+// What cones may be placed on, and how.
+struct PlacementTask {
+  const HalfedgeMesh& mesh;
+  const Geometry& geometry;
+  const ComponentCones& existing;
+  const Array<char>& allowed;    // (n) vertices that cones may be placed at
+  const Array<Index>& mirrored;  // (n) images in a mirror plane, or empty
+};
+
+// The effort that a mesh is worth: sites to choose from, random probes of the diagonal of H, sweeps of exchange.
+struct PlacementEffort {
+  int sites, probes, sweeps;
+};
+PlacementEffort effort_for(Index vertices);
+
+constexpr double isometric_l2 = 1.001;                                        // an L2 stretch that every cone is worth
+constexpr int cone_stages[] = {4, 6, 8, 10, 12, 15, 19, 24, 30, 37, 46, 57};  // cones at which sets are exchanged
+// Within which cones are chosen. Beyond the second, maps begin to miss their prediction; beyond the fourth, many do.
+constexpr double reaches[] = {usual_reach, wider_reach, 1.0, 1.15, 1.6};
+constexpr int most_one_by_one = 60;  // cones that are chosen one by one, more of them in batches
+
+class ConeChooser {
+ public:
+  // All arguments have to outlive it.
+  ConeChooser(const PlacementTask& task, const PlacementOptions& options, const PlacementEffort& effort,
+              ProgressMonitor& monitor);
+  ConeChooser(const ConeChooser&) = delete;
+  ConeChooser& operator=(const ConeChooser&) = delete;
+
+  // So many cones, existing ones included, or as many as there is room for.
+  ConeChoice choose(int count);
+  // As many, one by one, with curvatures within this of the angle defects, in units of pi; see CurvatureBounds.
+  ConeChoice choose_within(double reach, int count);
+  // As many at the extrema of the log scale that is 0 at the cones so far (Ben-Chen et al. 2008), then exchanged: where
+  // limbs have too few cones this sees better what is stretched most.
+  ConeChoice choose_harmonically(int count);
+  // These cones and so many more where this is largest, (n), apart from each other.
+  ConeChoice choose_more(const ConeChoice& present, const Eigen::VectorXd& wanted, int more);
+  // The same cones with these curvatures, one for each.
+  ConeChoice choice_with(const Array<Index>& vertices, const Eigen::VectorXd& curvature) const;
+
+  // What sets of cones are made of.
+  ConeSet existing(double reach) const;
+  BatchPlacement batches(double reach) {
+    return {task_.mesh, task_.geometry, problem_, search_, reach, sites_.existing, monitor_};
+  }
+  const ConeSearch& search() const { return search_; }
+  const Array<Site>& sites() const { return kernel_.sites(); }
+  Index place_count() const;  // of single cones, at all sites
+  bool reaches_all() const { return sites_.reaches_all; }
+  int existing_count() const;  // cones, with those that mirror them
+
+  // What becomes of a set, a ConeSet or a BatchPlacement, its angles rounded where a lattice is given.
+  template <typename Set>
+  ConeChoice settled(const Set& set);
+  template <typename Set>
+  double predicted_l2(const Set& set) const;
+
+  // The angles that are given, for cones at these vertices.
+  ComponentCones with_given_angles(const Array<Index>& vertices) const;
+  ComponentCones with_angles(const ConeChoice& choice) const;
+  Eigen::VectorXd given_curvature() const;  // (n) NaN where none is given
+
+  const BorderConditions& border() const { return border_; }
+  const LogScale& scale() const { return scale_; }
+  const PlacementTask& task() const { return task_; }
+  const PlacementOptions& options() const { return options_; }
+  const PlacementEffort& effort() const { return effort_; }
+  const PlacementProblem& problem() const { return problem_; }
+  ProgressMonitor& monitor() { return monitor_; }
+
+ private:
+  LogScaleVariance make_kernel();
+  Array<int> existing_sites() const;
+  template <typename Set>
+  ConeChoice choice_of(const Set& set) const;
+  template <typename Set>
+  ConeChoice rounded(const Set& set, Lattice lattice);
+  ConeChoice choose_in_batches(int count);
+  ConeChoice quantized(ConeChoice choice, int symmetry);
+  void use_cones(const Array<Index>& vertices);
+  Array<Index> vertices_of(const Array<int>& sites) const;
+
+  const PlacementTask& task_;
+  const PlacementOptions& options_;
+  const PlacementEffort effort_;
+  ProgressMonitor& monitor_;
+  BorderConditions border_;
+  LogScale scale_;
+  ConeSites sites_;
+  LogScaleVariance kernel_;
+  CurvatureBounds limits_;
+  PlacementProblem problem_;
+  ConeSearch search_;
+};
+
+}  // namespace lsgp

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "placement/cone_growth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace lsgp {
+
+namespace {
+
+constexpr double stage_growth = 1.25;    // beyond the stages
+constexpr double usual_turn = M_PI / 2;  // of a cone where Gauss-Bonnet asks for many
+constexpr std::size_t usual_reaches = 2;
+constexpr double poor_l2 = 1.15;  // an L2 stretch that stronger cones are tried against
+
+}  // namespace
+
+ConeGrowth::ConeGrowth(ConeChooser& chooser, double reach)
+    : chooser_(chooser), reach_(reach), set_(chooser.existing(reach)), best_(chooser.settled(set_)) {}
+
+ConeChoice ConeGrowth::grow_to(double target) {
+  while (best_.predicted_l2 > target && advance(target)) {
+  }
+  // The best ones that reach the target are the latest: growth stops there.
+  if (best_.predicted_l2 > target || chooser_.options().lattice || batches_) return best_;
+  ConeSet fewer = set_;
+  drop_unneeded(fewer, target, isometric_l2);
+  return chooser_.settled(fewer);
+}
+
+ConeChoice ConeGrowth::shrink_to(double target) const {
+  if (chooser_.options().lattice || batches_) return best_;
+  ConeSet fewer = set_;
+  drop_unneeded(fewer, target, 1);
+  return chooser_.settled(fewer);
+}
+
+bool ConeGrowth::advance(double target) {
+  if (!has_room_) return false;
+  if (!batches_) {
+    while (next_stage_ < std::size(cone_stages)) {
+      const int stage = cone_stages[next_stage_++], before = set_.cone_count();
+      if (stage <= before) continue;
+      chooser_.search().grow(set_, stage);
+      if (set_.cone_count() == before) break;  // no room
+      chooser_.search().exchange(set_, 1);
+      keep_better(chooser_.settled(set_));
+      return true;
+    }
+    has_room_ = set_.cone_count() < most_automatic();
+    if (!has_room_) return false;
+    batches_.emplace(chooser_.batches(reach_));
+    batches_->add(set_.sites());
+  }
+  advance_in_batches(target);
+  return true;
+}
+
+// The stages go on where Gauss-Bonnet asks for more cones than they have, as on surfaces of many handles.
+void ConeGrowth::advance_in_batches(double target) {
+  const int before = batches_->cone_count(), most = most_automatic();
+  batches_->grow(std::min(most, static_cast<int>(stage_growth * before)));
+  const bool has_grown = batches_->cone_count() > before;
+  has_room_ = has_grown && batches_->cone_count() < most;
+  if (!batches_->feasible()) return;
+  if (has_grown) batches_->exchange(1);
+  // Rounded angles stretch no less.
+  if (chooser_.options().lattice && has_room_ && chooser_.predicted_l2(*batches_) > target) return;
+  keep_better(chooser_.settled(*batches_));
+}
+
+// Every surface is worth the stages; beyond them, one of which Gauss-Bonnet asks more has a cone for each quarter turn.
+int ConeGrowth::most_automatic() const {
+  const PlacementProblem& problem = chooser_.problem();
+  const double turns = problem.balanced ? std::abs(problem.required_sum) / usual_turn : 0;
+  return std::max(*std::rbegin(cone_stages), static_cast<int>(std::ceil(turns)));
+}
+
+// Of choices that are all impossible, the one with more cones is nearer to a map.
+void ConeGrowth::keep_better(ConeChoice choice) {
+  const bool both_impossible = !best_.is_possible() && !choice.is_possible();
+  if (both_impossible ? choice.vertices.size() > best_.vertices.size() : choice.predicted_l2 < best_.predicted_l2) {
+    best_ = std::move(choice);
+  }
+}
+
+// worth_all: a stretch so low is worth all cones.
+void ConeGrowth::drop_unneeded(ConeSet& set, double target, double worth_all) const {
+  const ConeSearch& search = chooser_.search();
+  while (search.can_drop(set) && chooser_.predicted_l2(set) > worth_all) {
+    ConeSet fewer = set;
+    search.drop(fewer);
+    if (chooser_.predicted_l2(fewer) > target) search.exchange(fewer, chooser_.effort().sweeps);
+    if (chooser_.predicted_l2(fewer) > target) return;
+    set = std::move(fewer);
+  }
+}
+
+bool AutomaticCones::is_exhausted(double target) const { return target <= missed_; }
+
+ConeChoice AutomaticCones::shrink_to(double target) const { return growths_[latest_].shrink_to(target); }
+
+ConeChoice AutomaticCones::reach(double target) {
+  ConeChoice best;
+  for (std::size_t i = 0; i < std::size(reaches); ++i) {
+    if (i >= usual_reaches && best.predicted_l2 <= poor_l2) break;
+    if (i == growths_.size()) growths_.emplace_back(chooser_, reaches[i]);
+    ConeChoice choice = growths_[i].grow_to(target);
+    if (i == 0 || choice.predicted_l2 < best.predicted_l2) {
+      best = std::move(choice);
+      latest_ = i;
+    }
+    if (best.predicted_l2 <= target) return best;
+  }
+  missed_ = std::max(missed_, target);
+  return best;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "placement/cone_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace lsgp {
+
+namespace {
+
+constexpr int tries = 2;                   // of new sites for a cone that is exchanged
+constexpr double worthwhile = 0.998;       // of the variance: less is not worth an exchange
+constexpr double sharp_defect = M_PI / 6;  // of an angle
+constexpr double sharp_price = 1.25;       // the factor of variance that it may cost
+
+}  // namespace
+
+ConeSearch::ConeSearch(const HalfedgeMesh& mesh, const PlacementProblem& problem, int kept, bool sharp,
+                       ProgressMonitor& monitor)
+    : mesh_(mesh), problem_(problem), kept_(kept), prefers_sharp_(sharp), monitor_(monitor) {}
+
+bool ConeSearch::is_sharp(int site) const { return std::abs(problem_.limits.defect(site)) >= sharp_defect; }
+
+Array<char> ConeSearch::open_sites(const Array<int>& used, int rings) const {
+  const Array<Site>& sites = problem_.kernel.sites();
+  Array<char> open(sites.size());
+  for (; rings >= 0; --rings) {
+    Array<char> near(mesh_.vertex_count(), 0);
+    for (const int site : used) {
+      for (const Index v : {sites[site].vertex, sites[site].mirrored}) {
+        if (v != none) mark_rings(mesh_, v, rings, near);
+      }
+    }
+    bool room = false;
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+      open[i] = !near[sites[i].vertex] && (sites[i].mirrored == none || !near[sites[i].mirrored]);
+      room |= open[i] != 0;
+    }
+    if (room) break;
+  }
+  return open;
+}
+
+std::optional<int> ConeSearch::best_site(const Eigen::VectorXd& gains, const Array<char>& open) const {
+  std::optional<int> best, sharp;
+  const Array<Site>& sites = problem_.kernel.sites();
+  const auto gain = [&](int i) { return gains[i] / sites[i].cones(); };
+  for (int i = 0; i < gains.size(); ++i) {
+    if (!open[i]) continue;
+    if (!best || gain(i) > gain(*best)) best = i;
+    if (prefers_sharp_ && is_sharp(i) && (!sharp || gain(i) > gain(*sharp))) sharp = i;
+  }
+  if (sharp && gain(*sharp) >= sharp_share * gain(*best)) return sharp;
+  return best;
+}
+
+void ConeSearch::grow(ConeSet& set, int cones) const {
+  while (set.cone_count() < cones) {
+    Array<char> open = open_sites(set.sites());
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      open[i] = open[i] && problem_.kernel.sites()[i].cones() <= cones - set.cone_count();
+    }
+    const std::optional<int> best = best_site(set.gains(), open);
+    if (!best) break;
+    set.add(*best);
+    monitor_.tick();
+  }
+}
+
+Array<int> ConeSearch::by_loss(const ConeSet& set) const {
+  Array<int> places(static_cast<int>(set.sites().size()) - kept_);
+  std::iota(places.begin(), places.end(), kept_);
+  const Eigen::VectorXd losses = set.losses();
+  std::stable_sort(places.begin(), places.end(), [&](int a, int b) { return losses[a] < losses[b]; });
+  return places;
+}
+
+void ConeSearch::exchange(ConeSet& set, int sweeps) const {
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    bool moved = false;
+    Array<int> sites;
+    for (const int place : by_loss(set)) sites.push_back(set.sites()[place]);
+    ConeSet::Explained explained = set.explain();
+    for (const int site : sites) {
+      monitor_.tick();
+      if (!exchange_one(set, explained, site)) continue;
+      moved = true;
+      explained = set.explain();
+    }
+    if (!moved) return;
+  }
+}
+
+bool ConeSearch::exchange_one(ConeSet& set, const ConeSet::Explained& explained, int site) const {
+  const Array<Site>& sites = problem_.kernel.sites();
+  const int place = static_cast<int>(std::find(set.sites().begin(), set.sites().end(), site) - set.sites().begin());
+  ConeSet rest = set;
+  rest.remove(place);
+  const Eigen::VectorXd gains = rest.gains(explained.without(place));
+  Array<char> open = open_sites(rest.sites());
+  for (std::size_t i = 0; i < open.size(); ++i) open[i] = open[i] && sites[i].cones() == sites[site].cones();
+  for (int i = 0; i < tries; ++i) {
+    const std::optional<int> best = best_site(gains, open);
+    if (!best || *best == site) return false;
+    const bool sharper = prefers_sharp_ && is_sharp(*best) && !is_sharp(site);
+    const double most = set.variance() * (sharper ? sharp_price : worthwhile);
+    if (rest.variance() - gains[*best] >= most) return false;
+    ConeSet moved = rest;
+    moved.add(*best);
+    if (moved.variance() < most) {
+      set = std::move(moved);
+      return true;
+    }
+    open[*best] = 0;
+  }
+  return false;
+}
+
+void ConeSearch::drop(ConeSet& set) const { set.remove(by_loss(set).front()); }
+
+}  // namespace lsgp

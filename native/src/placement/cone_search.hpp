@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The search for sites of cones: growth by matching pursuit, then exchange of cone after cone.
+#pragma once
+
+#include <optional>
+
+#include "base/array.hpp"
+#include "base/progress_monitor.hpp"
+#include "placement/cone_set.hpp"
+
+namespace lsgp {
+
+constexpr int free_rings = 2;  // around each cone: cones side by side cancel each other
+
+class ConeSearch {
+ public:
+  // The first `kept` sites of every set stay.  sharp: sharp corners are taken where they gain nearly as much.
+  ConeSearch(const HalfedgeMesh& mesh, const PlacementProblem& problem, int kept, bool sharp, ProgressMonitor& monitor);
+
+  // Adds the site that gains most, again and again, until there are so many cones or no room is left.
+  void grow(ConeSet& set, int cones) const;
+
+  // Takes out every cone in turn, the one that matters least first, and puts it where it gains most.
+  void exchange(ConeSet& set, int sweeps) const;
+
+  // Drops the cone that matters least.
+  void drop(ConeSet& set) const;
+  bool can_drop(const ConeSet& set) const { return static_cast<int>(set.sites().size()) > kept_; }
+
+  // The factor by which a gain there counts.
+  double preference(int site) const { return prefers_sharp_ && is_sharp(site) ? 1 / sharp_share : 1; }
+
+  // Sites, (all), near none of some: not within so many rings, or fewer where the mesh has no room.
+  Array<char> open_sites(const Array<int>& used, int rings = free_rings) const;
+
+ private:
+  static constexpr double sharp_share = 0.5;  // of the largest gain that a sharp corner has to have to be preferred
+
+  std::optional<int> best_site(const Eigen::VectorXd& gains, const Array<char>& open) const;
+  bool exchange_one(ConeSet& set, const ConeSet::Explained& explained, int site) const;
+  Array<int> by_loss(const ConeSet& set) const;  // places that may change
+  bool is_sharp(int site) const;
+
+  const HalfedgeMesh& mesh_;
+  const PlacementProblem& problem_;
+  int kept_;
+  bool prefers_sharp_;
+  ProgressMonitor& monitor_;
+};
+
+}  // namespace lsgp

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cones at some sites with the curvatures that make the variance of the log scale least, and what another one would
+// gain or the loss of one cost.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "base/array.hpp"
+#include "placement/curvature_bounds.hpp"
+#include "placement/log_scale_variance.hpp"
+
+namespace lsgp {
+
+// What all sets on one component have in common.
+struct PlacementProblem {
+  LogScaleVariance& kernel;
+  const CurvatureBounds& limits;
+  bool balanced;        // Gauss-Bonnet has to hold
+  double required_sum;  // then of all curvatures
+};
+
+// The curvatures of cones at some sites that make the variance least, and their bounds.
+struct CurvatureFit {
+  Eigen::VectorXd low, high, curvature;  // (k)
+  double used_reach = 0;                 // of the bounds: widened where Gauss-Bonnet wants more
+  double variance = 0;
+
+  bool feasible() const { return used_reach <= widest_reach; }
+  Array<int> free_places() const;  // whose curvatures are at no bound
+};
+
+// hessian: (k, k) the sites' block of H.  start: (k) as they were.
+CurvatureFit fit_curvature(const PlacementProblem& problem, const Array<int>& sites, double reach,
+                           const Eigen::MatrixXd& hessian, Eigen::VectorXd start);
+
+// What the multiplier of Gauss-Bonnet takes off all slopes, (all sites): their mean where curvatures are free.
+double mean_slope(const CurvatureFit& fit, const Array<int>& sites, const Eigen::VectorXd& slope);
+
+// A block of H, symmetric, and its diagonal raised so that cones whose effects nearly agree can be told apart.
+Eigen::MatrixXd with_ridge(const Eigen::MatrixXd& hessian);
+
+class ConeSet {
+ public:
+  ConeSet(const PlacementProblem& problem, double reach) : problem_(&problem), reach_(reach) {
+    columns_.resize(problem.kernel.site_count(), 0);
+    fit();
+  }
+
+  void add(int site) { add(Array<int>{site}); }
+  void add(const Array<int>& sites);  // one fit, and two back-substitutions a site that is new
+  void remove(int place);
+
+  const Array<int>& sites() const { return sites_; }
+  const Eigen::VectorXd& curvature() const { return fit_.curvature; }  // of the sites, both of two cones together
+  int cone_count() const;
+  double variance() const { return fit_.variance; }
+  // The bounds need not be widened further than they can be to satisfy Gauss-Bonnet.
+  bool feasible() const { return fit_.feasible(); }
+
+  // By how much the variance would fall with a cone at each site, (sites): exact, but for the estimate of the
+  // diagonal, where no further curvature comes to its bound (orthogonal matching pursuit).
+  Eigen::VectorXd gains() const { return gains(explained()); }
+  // The same with what the cones explain of the diagonal of H, (sites), known already.
+  Eigen::VectorXd gains(const Eigen::VectorXd& explained) const;
+
+  // What all cones explain of the diagonal of H: a curvature added anywhere is taken up in part by theirs.
+  struct Explained {
+    Eigen::VectorXd by_all;     // (sites)
+    Array<int> free;            // places whose curvatures are at no bound
+    Eigen::MatrixXd responses;  // (sites, free) what these do, negative
+    Eigen::VectorXd inverse;    // (free) diagonal of the inverse that this comes from
+    // What the others would explain without one.
+    Eigen::VectorXd without(int place) const;
+  };
+  Explained explain() const;
+  Eigen::VectorXd explained() const;  // what it has by all cones, without memory for the rest
+
+  // By how much it would rise, to first order, without each of the cones, (k).
+  Eigen::VectorXd losses() const;
+
+ private:
+  void fit();
+  Array<int> places_that_respond() const;
+  Eigen::MatrixXd inverse_over(const Array<int>& free) const;
+  Eigen::VectorXd first_gains() const;
+
+  const PlacementProblem* problem_;
+  double reach_;
+  Array<int> sites_;
+  Eigen::MatrixXd columns_;  // (all sites, k)
+  CurvatureFit fit_;
+};
+
+}  // namespace lsgp

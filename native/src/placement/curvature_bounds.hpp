@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What curvature a cone may have at each site for its map to come out as the log scale predicts.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "base/array.hpp"
+#include "placement/log_scale_variance.hpp"
+
+namespace lsgp {
+
+class CurvatureBounds {
+ public:
+  // given: (n) curvature of cones whose angle is prescribed, NaN elsewhere.
+  CurvatureBounds(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<Site>& sites,
+                  const Eigen::VectorXd& given);
+
+  // Bounds of a site's curvature, both of its cones together.  reach: how far a cone's curvature may be from the angle
+  // defect that its vertex has anyway, in units of pi. From 1 up the bounds of its angle widen as well.
+  double low(int site, double reach) const;
+  double high(int site, double reach) const;
+
+  double defect(int site) const { return defect_[site]; }  // of each of its vertices
+
+ private:
+  Eigen::VectorXd defect_, least_defect_, flat_, triangles_, given_;  // (sites)
+  Eigen::VectorXi cones_;
+};
+
+constexpr double usual_reach = 0.6, wider_reach = 0.75, widest_reach = 8;
+
+}  // namespace lsgp

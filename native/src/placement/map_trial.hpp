@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Trial maps that choices of cones are judged by.
+#pragma once
+
+#include <limits>
+
+#include "base/progress_monitor.hpp"
+#include "pipeline/component_map.hpp"
+
+namespace lsgp {
+
+// What the map with some cones comes to.
+struct TriedMap {
+  double l2 = std::numeric_limits<double>::infinity();  // its L2 stretch; infinite with any of the following
+  Index flipped = 0;                                    // triangles
+  Index wrong_angles = 0;                               // vertices whose angles do not add up to what was imposed
+  Index inexact_seams = 0;                              // cut edges, where sides disagree visibly
+  bool failed = true;                                   // there is none
+  bool is_repaired = false;                             // as far as it can be
+  Eigen::VectorXd curvature;                            // (cones) that it has, in their order; empty where it failed
+
+  Eigen::VectorXd stretch;  // (n) the triangles' around each vertex, by area and less 1; empty where it is not valid
+
+  bool is_valid() const { return l2 < std::numeric_limits<double>::infinity(); }
+  Index defects() const { return flipped + wrong_angles + inexact_seams; }
+  // Angles or seams are off, which no texture bears.
+  bool is_off() const { return failed || wrong_angles > 0 || inexact_seams > 0; }
+};
+
+// Makes maps of one component as unwrapping with default options makes them. The linear algebra of these is not
+// counted.
+class MapTrial {
+ public:
+  MapTrial(const HalfedgeMesh& mesh, const Geometry& geometry, ProgressMonitor& monitor)
+      : mesh_(mesh), geometry_(geometry), monitor_(monitor) {}
+
+  enum class Repairs { easy, all };
+  // cones: with the angles that are to be imposed, others are chosen for least distortion.
+  // Throws CANCELLED and OUT_OF_MEMORY; other errors are failures of the map.
+  TriedMap make(const ComponentCones& cones, Repairs repairs);
+
+  int made() const { return made_; }
+
+ private:
+  TriedMap measured(ComponentMap map, const ComponentCones& cones) const;
+
+  const HalfedgeMesh& mesh_;
+  const Geometry& geometry_;
+  ProgressMonitor& monitor_;
+  int made_ = 0;
+};
+
+}  // namespace lsgp

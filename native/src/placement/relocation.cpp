@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "placement/relocation.hpp"
+
+#include <algorithm>
+
+namespace lsgp {
+
+namespace {
+
+constexpr double worthwhile = 0.002;  // of the variance
+constexpr int tries = 2;              // of new sites for a cone
+
+// What of the variance depends on where a curvature is, the slope of the others' variance being given.
+double share(double curvature, double slope, double diagonal) {
+  return 2 * curvature * slope + curvature * curvature * diagonal;
+}
+
+}  // namespace
+
+bool relocate(const PlacementProblem& problem, const ConeSearch& search, int kept, const Eigen::VectorXd& curvature,
+              Array<int>& sites) {
+  LogScaleVariance& kernel = problem.kernel;
+  Eigen::VectorXd slope = kernel.gradient();
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    slope += curvature[static_cast<Eigen::Index>(i)] * kernel.column(sites[i]);
+  }
+  double variance = kernel.without_cones();
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    variance += curvature[static_cast<Eigen::Index>(i)] * (kernel.gradient()[sites[i]] + slope[sites[i]]);
+  }
+  bool moved = false;
+  for (Eigen::Index i = kept; i < ssize(sites); ++i) {
+    const double kappa = curvature[i];
+    if (kappa == 0) continue;
+    slope -= kappa * kernel.column(sites[i]);
+    Array<int> others = sites;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    Array<char> open = search.open_sites(others);
+    const int cones = kernel.sites()[sites[i]].cones();
+    for (int tried = 0; tried < tries; ++tried) {
+      const double present = share(kappa, slope[sites[i]], kernel.diagonal()[sites[i]]);
+      const auto at = [&](int site) { return share(kappa, slope[site], kernel.diagonal()[site]); };
+      int best = sites[i];
+      for (int site = 0; site < kernel.site_count(); ++site) {
+        if (!open[site] || kernel.sites()[site].cones() != cones || !(at(site) < at(best))) continue;
+        if (problem.limits.low(site, wider_reach) > kappa || problem.limits.high(site, wider_reach) < kappa) continue;
+        best = site;
+      }
+      const double wanted = present - worthwhile * variance;
+      if (best == sites[i] || at(best) > wanted) break;
+      open[best] = 0;
+      if (share(kappa, slope[best], kernel.column(best)[best]) > wanted) continue;
+      variance += at(best) - present;
+      sites[i] = best;
+      moved = true;
+      break;
+    }
+    slope += kappa * kernel.column(sites[i]);
+  }
+  return moved;
+}
+
+}  // namespace lsgp

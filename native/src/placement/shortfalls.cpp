@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "placement/shortfalls.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/text.hpp"
+
+namespace lsgp {
+
+namespace {
+
+const char* remedy_for(MissingCones::Why why) {
+  switch (why) {
+    case MissingCones::Why::left_flat:
+      return "the others came out flat when angles were rounded for the lattice, and a flat cone is none. Ask for "
+             "fewer, or choose a lattice of smaller turns.";
+    case MissingCones::Why::only_pairs:
+      return "the places that are left come in mirrored pairs. Ask for one more or one fewer.";
+    case MissingCones::Why::no_room: break;
+  }
+  return "no other vertex inside it is left where a cone may be. Ask for fewer, or subdivide it.";
+}
+
+void append(Array<Index>& to, const Array<Index>& more) { to.insert(to.end(), more.begin(), more.end()); }
+
+}  // namespace
+
+void Shortfalls::add(const MissingCones& missing, const Array<Index>& triangles) {
+  Missing& of_reason = missing_[static_cast<int>(missing.why)];
+  ++of_reason.parts;
+  of_reason.placed += missing.placed;
+  append(of_reason.triangles, triangles);
+}
+
+void Shortfalls::add(double l2, const Array<Index>& cones, const Array<Index>& triangles) {
+  if (parts_++ == 0 || l2 > worst_l2_) {
+    worst_l2_ = l2;
+    worst_cones_ = cones.size();
+  }
+  all_have_cones_ &= !cones.empty();
+  append(cones_, cones);
+  append(triangles_, triangles);
+}
+
+void Shortfalls::report(std::vector<Finding>& findings) const {
+  for (int i = 0; i < reasons; ++i) {
+    if (missing_[i].parts > 0) findings.push_back(told(static_cast<MissingCones::Why>(i), missing_[i]));
+  }
+  if (parts_ > 0) findings.push_back(told_of_stretch());
+}
+
+Finding Shortfalls::told(MissingCones::Why why, const Missing& missing) const {
+  const int asked = options_.count.value_or(0);
+  const std::string how_many =
+      missing.parts == 1 ? concat(missing.placed, " of the ", count(asked, "cone", "cones"), " asked for ",
+                                  missing.placed == 1 ? "was" : "were", " placed on a part of the surface: ")
+                         : concat(missing.placed, missing.placed == 1 ? " cone was" : " cones were", " placed on ",
+                                  missing.parts, " parts of the surface instead of ", asked, " on each: ");
+  return {Code::placement_not_reached, how_many + remedy_for(why), {ElementKind::triangles, missing.triangles}};
+}
+
+Finding Shortfalls::told_of_stretch() const {
+  Array<Index> places = all_have_cones_ ? cones_ : triangles_;
+  std::sort(places.begin(), places.end());
+  const std::string cones = count(worst_cones_, "cone", "cones");
+  const std::string stretch =
+      std::isfinite(worst_l2_) ? concat("has an L2 stretch of ", worst_l2_) : "has flipped triangles or wrong angles";
+  const std::string missed =
+      parts_ == 1
+          ? concat("With ", cones, " the map ", stretch, "; an L2 stretch of ", options_.target, " was asked for. ")
+          : concat("On ", parts_, " parts of the surface the L2 stretch of ", options_.target,
+                   " asked for is not reached: with ", cones, " the worst map ", stretch, ". ");
+  return {Code::placement_not_reached,
+          missed + "Mark cones at thin tips, clean up spikes and thin triangles, or ask for less.",
+          {all_have_cones_ ? ElementKind::vertices : ElementKind::triangles, std::move(places)}};
+}
+
+}  // namespace lsgp

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "placement/verified_placement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace lsgp {
+
+namespace {
+
+constexpr Index small = 2000;         // triangles: all repairs of such a surface cost little
+constexpr int most_hard_repairs = 2;  // of a larger one
+constexpr double hopeless_l2 = 2;     // as predicted: lower targets are out of reach
+constexpr double as_predicted = 1.03;
+constexpr double same_angles = 1e-9;  // of all of them
+// Lower targets, and by how much of the stretch above 1.
+constexpr int most_maps = 8, most_lowerings = 12;
+constexpr int most_shrinkings = 3;
+constexpr double least_lowered = 0.4, most_lowered = 0.9, lowered_when_invalid = 0.6;
+// Additions, of one cone for so many, and what one may leave of the stretch above 1 to come before lower targets.
+constexpr int most_additions = 3, least_added = 2, added_share = 6;
+constexpr double worthwhile = 0.7;
+constexpr double usual_l2 = 1.05;  // of a map that is not worth more than the stages
+
+// Whether one is nearer to a map that can be used.
+bool is_better(const TriedMap& a, const TriedMap& b) {
+  const auto rank = [](const TriedMap& map) { return map.is_off() ? 2 : map.is_valid() ? 0 : 1; };
+  return rank(a) != rank(b) ? rank(a) < rank(b) : a.is_valid() ? a.l2 < b.l2 : a.defects() < b.defects();
+}
+
+bool is_as_predicted(const VerifiedChoice& choice) { return choice.map.l2 <= as_predicted * choice.cones.predicted_l2; }
+
+}  // namespace
+
+VerifiedPlacement::VerifiedPlacement(ConeChooser& chooser, ProgressMonitor& monitor)
+    : chooser_(chooser), monitor_(monitor), trial_(chooser.task().mesh, chooser.task().geometry, monitor) {}
+
+VerifiedChoice VerifiedPlacement::place() {
+  const std::optional<int> count = chooser_.options().count;
+  const int most = std::max(count.value_or(0), chooser_.existing_count());
+  if (most > most_one_by_one) return {chooser_.choose(most), {}, false};
+  VerifiedChoice out = count ? place_count(*count) : place_to_target();
+  const bool misses = count ? !is_as_predicted(out) : out.map.l2 > chooser_.options().target;
+  if (misses) choose_other_angles(out);
+  if (out.map.l2 > hopeless_l2 && is_worth_trying(out.cones)) {
+    const auto present = static_cast<int>(out.cones.vertices.size());
+    VerifiedChoice weaker = verified(chooser_.choose_within(usual_reach, present));
+    choose_other_angles(weaker);
+    if (is_better(weaker.map, out.map)) out = std::move(weaker);
+  }
+  return out;
+}
+
+VerifiedChoice VerifiedPlacement::verified(ConeChoice cones) {
+  if (!cones.is_possible()) return {std::move(cones), {}};
+  VerifiedChoice out{std::move(cones), {}};
+  out.map = trial_.make(chooser_.with_angles(out.cones), MapTrial::Repairs::easy);
+  const bool try_all = is_worth_trying(out.cones) && (is_small() || hard_repairs_ < most_hard_repairs);
+  if (out.map.is_valid() || !try_all) return out;
+  ++hard_repairs_;
+  TriedMap repaired = trial_.make(chooser_.with_angles(out.cones), MapTrial::Repairs::all);
+  if (!repaired.is_valid() || repaired.curvature.isApprox(out.cones.curvature, same_angles)) {
+    out.map = std::move(repaired);
+  } else {
+    out.map.is_repaired = true;
+    if (chooses_angles()) take_angles(repaired, MapTrial::Repairs::all, out);
+  }
+  return out;
+}
+
+// The angles of another map with the same cones, where they give a better map by themselves.
+void VerifiedPlacement::take_angles(const TriedMap& other, MapTrial::Repairs repairs, VerifiedChoice& choice) {
+  if (!is_better(other, choice.map)) return;
+  ConeChoice cones = chooser_.choice_with(choice.cones.vertices, other.curvature);
+  TriedMap map = trial_.make(chooser_.with_angles(cones), repairs);
+  if (is_better(map, choice.map)) choice = {std::move(cones), std::move(map)};
+}
+
+std::optional<VerifiedChoice> VerifiedPlacement::placed_naturally(Corners corners) {
+  std::optional<ConeChoice> natural = natural_cones(chooser_, corners);
+  if (!natural) return std::nullopt;
+  VerifiedChoice out = verified(std::move(*natural));
+  if (!(out.map.l2 <= isometric_l2)) return std::nullopt;
+  return out;
+}
+
+VerifiedChoice VerifiedPlacement::place_to_target() {
+  const double target = chooser_.options().target;
+  AutomaticCones automatic(chooser_);
+  VerifiedChoice best{automatic.reach(target), {}, false};
+  // No cone more is best where that will do; corners are next.
+  const bool adds_none = static_cast<int>(best.cones.vertices.size()) <= chooser_.existing_count();
+  if (adds_none) best = verified(std::move(best.cones));
+  if (best.map.l2 <= target) return best;
+  if (std::optional<VerifiedChoice> natural = placed_naturally(Corners::sharp)) return std::move(*natural);
+  if (!best.is_mapped) best = verified(std::move(best.cones));
+  if (!is_as_predicted(best)) add_where_stretched(best, worthwhile);
+  lower_target(automatic, best);
+  add_where_stretched(best, 1);
+  if (best.map.l2 <= target) return best;
+  if (std::optional<VerifiedChoice> natural = placed_naturally(Corners::any)) return std::move(*natural);
+  return best;
+}
+
+// Cones where the map itself is stretched, as long as each addition leaves no more than this share of the stretch.
+void VerifiedPlacement::add_where_stretched(VerifiedChoice& best, double share) {
+  for (int i = 0; i < most_additions && is_short(best) && best.map.is_valid(); ++i) {
+    // At corners of the surface rather than beside them.
+    const Eigen::VectorXd wanted = best.map.stretch.cwiseProduct(chooser_.task().geometry.angle_defect.cwiseAbs());
+    const auto present = static_cast<int>(best.cones.vertices.size());
+    const int more = std::max(least_added, present / added_share);
+    if (present > most_one_by_one) return;
+    if (present + more > *std::rbegin(cone_stages) && best.map.l2 <= usual_l2) return;
+    VerifiedChoice found = verified(chooser_.choose_more(best.cones, wanted, more));
+    const bool is_enough = found.map.l2 <= chooser_.options().target;
+    if (!is_enough && !(found.map.l2 - 1 < share * (best.map.l2 - 1))) return;
+    best = std::move(found);
+    monitor_.tick();
+  }
+}
+
+void VerifiedPlacement::lower_target(AutomaticCones& automatic, VerifiedChoice& best) {
+  const double target = chooser_.options().target;
+  VerifiedChoice latest = best;
+  double lower = target, missed_at = target;
+  int misses = 1;  // the target is lowered by more each time
+  for (int i = 0; i < most_lowerings && trial_.made() < most_maps && is_short(best); ++i) {
+    if (automatic.is_exhausted(lower)) break;
+    const double missed = std::min((target - 1) / (latest.map.l2 - 1), most_lowered);
+    const double share = std::max(std::pow(missed, misses), least_lowered);
+    missed_at = lower;
+    lower = 1 + (lower - 1) * (latest.map.is_valid() ? share : lowered_when_invalid);
+    ConeChoice next = automatic.reach(lower);
+    if (next.vertices == latest.cones.vertices) continue;
+    latest = verified(std::move(next));
+    ++misses;
+    if (is_better(latest.map, best.map)) best = latest;
+    monitor_.tick();
+  }
+  if (misses > 1 && latest.map.l2 <= target) take_fewer(automatic, missed_at, lower, best);
+}
+
+// The target was lowered in large steps: from `missed`, with which the map misses it, to `reached`.
+void VerifiedPlacement::take_fewer(const AutomaticCones& automatic, double missed, double reached,
+                                   VerifiedChoice& best) {
+  for (int i = 0; i < most_shrinkings; ++i) {
+    const double between = 1 + std::sqrt((missed - 1) * (reached - 1));
+    ConeChoice fewer = automatic.shrink_to(between);
+    if (fewer.vertices.size() >= best.cones.vertices.size()) return;
+    VerifiedChoice found = verified(std::move(fewer));
+    const bool is_enough = found.map.l2 <= chooser_.options().target;
+    (is_enough ? reached : missed) = between;
+    if (is_enough) best = std::move(found);
+    monitor_.tick();
+  }
+}
+
+bool VerifiedPlacement::is_small() const { return chooser_.task().mesh.triangle_count() <= small; }
+
+bool VerifiedPlacement::is_short(const VerifiedChoice& choice) const {
+  return choice.map.l2 > chooser_.options().target && choice.cones.predicted_l2 <= hopeless_l2;
+}
+
+VerifiedChoice VerifiedPlacement::place_count(int count) {
+  if (std::optional<VerifiedChoice> natural = placed_naturally(Corners::sharp)) return std::move(*natural);
+  VerifiedChoice best = verified(chooser_.choose(count));
+  const auto is_settled = [&] {
+    const bool adds_none = static_cast<int>(best.cones.vertices.size()) <= chooser_.existing_count();
+    return is_as_predicted(best) || adds_none || !best.cones.is_possible();
+  };
+  constexpr std::size_t other_reaches = 3;  // the first ones
+  const std::size_t placed = best.cones.vertices.size();
+  for (std::size_t i = 0; i <= other_reaches && !is_settled(); ++i) {
+    const bool harmonic = i == other_reaches;
+    if (harmonic && chooser_.options().lattice) break;
+    ConeChoice other = harmonic ? chooser_.choose_harmonically(count) : chooser_.choose_within(reaches[i], count);
+    if (!other.is_possible() || other.vertices.size() != placed || other.vertices == best.cones.vertices) continue;
+    VerifiedChoice found = verified(std::move(other));
+    if (is_better(found.map, best.map)) best = std::move(found);
+    monitor_.tick();
+  }
+  return best;
+}
+
+// Angles that the bounds of cones and the variance know nothing of: those of least distortion. Where angles or seams
+// are off, all that unwrapping would try with the angles left to it.
+void VerifiedPlacement::choose_other_angles(VerifiedChoice& best) {
+  const std::size_t count = best.cones.vertices.size();
+  if (!chooses_angles() || count == 0 || count > most_one_by_one || !is_worth_trying(best.cones)) return;
+  const auto repairs = best.map.is_off() || is_small() ? MapTrial::Repairs::all : MapTrial::Repairs::easy;
+  take_angles(trial_.make(chooser_.with_given_angles(best.cones.vertices), repairs), repairs, best);
+}
+
+// Repairs of large surfaces take long where much is stretched.
+bool VerifiedPlacement::is_worth_trying(const ConeChoice& cones) const {
+  if (!cones.is_possible()) return false;
+  return is_small() || cones.predicted_l2 <= hopeless_l2;
+}
+
+// Rather than a lattice, a mirror plane, or the caller.
+bool VerifiedPlacement::chooses_angles() const {
+  const ComponentCones& existing = chooser_.task().existing;
+  return !chooser_.options().lattice && chooser_.task().mirrored.empty() &&
+         std::none_of(existing.angles.begin(), existing.angles.end(),
+                      [](const auto& angle) { return angle.has_value(); });
+}
+
+}  // namespace lsgp

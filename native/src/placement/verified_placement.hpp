@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Automatic cones, verified on their maps.
+#pragma once
+
+#include <optional>
+
+#include "placement/cone_chooser.hpp"
+#include "placement/cone_growth.hpp"
+#include "placement/map_trial.hpp"
+#include "placement/natural_cones.hpp"
+
+namespace lsgp {
+
+// Cones and the map with them.
+struct VerifiedChoice {
+  ConeChoice cones;
+  TriedMap map;
+  bool is_mapped = true;  // not where more are there or asked for than are chosen one by one
+};
+
+// The log scale predicts the stretch in the limit of fine meshes; coarse ones are stretched more. So the map with the
+// cones chosen is made and measured.
+//
+// Without a number of cones the target stands for the map: where it is missed, corners of a polyhedron are taken, cones
+// are added where the map is stretched, or chosen for a lower target, going on from those before, and as few of these
+// as will do. A given number of cones stays, but they are chosen in other ways where the map is not as predicted.
+// Where all of these miss, the angles of least distortion are tried.
+//
+// Some ten maps are made at most, one or two where the prediction is hopeless, most of them with the easy repairs only.
+class VerifiedPlacement {
+ public:
+  // All arguments have to outlive it.
+  VerifiedPlacement(ConeChooser& chooser, ProgressMonitor& monitor);
+
+  VerifiedChoice place();
+  int maps() const { return trial_.made(); }
+
+ private:
+  VerifiedChoice place_to_target();
+  VerifiedChoice place_count(int count);
+  VerifiedChoice verified(ConeChoice cones);
+  std::optional<VerifiedChoice> placed_naturally(Corners corners);
+  void add_where_stretched(VerifiedChoice& best, double share);
+  void lower_target(AutomaticCones& automatic, VerifiedChoice& best);
+  void take_fewer(const AutomaticCones& automatic, double missed, double reached, VerifiedChoice& best);
+  bool is_small() const;
+  bool is_worth_trying(const ConeChoice& cones) const;
+  bool chooses_angles() const;
+  bool is_short(const VerifiedChoice& choice) const;  // of the target, and not hopelessly
+  void take_angles(const TriedMap& other, MapTrial::Repairs repairs, VerifiedChoice& choice);
+  void choose_other_angles(VerifiedChoice& best);
+
+  ConeChooser& chooser_;
+  ProgressMonitor& monitor_;
+  MapTrial trial_;
+  int hard_repairs_ = 0;
+};
+
+}  // namespace lsgp

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pairs of intersecting axis-aligned boxes in the plane.
+#pragma once
+
+#include <algorithm>
+#include <utility>
+
+#include "base/array.hpp"
+#include "base/checkpoint.hpp"
+#include "lsgp/surface.hpp"
+
+namespace lsgp {
+
+// Closed, sides parallel to the axes.
+struct Box {
+  double left, right, bottom, top;
+};
+
+inline bool meet(const Box& a, const Box& b) {
+  // Without branches, which could not be foretold.
+  return static_cast<int>(a.left <= b.right) & static_cast<int>(b.left <= a.right) &
+         static_cast<int>(a.bottom <= b.top) & static_cast<int>(b.bottom <= a.top);
+}
+
+inline Box around(const Box& a, const Box& b) {
+  return {std::min(a.left, b.left), std::max(a.right, b.right), std::min(a.bottom, b.bottom), std::max(a.top, b.top)};
+}
+
+// A binary tree of boxes in the order of a space-filling curve, halved by number: it does not mind that they differ
+// much in size or crowd in one place.
+class AabbTree {
+ public:
+  explicit AabbTree(const Array<Box>& boxes);
+
+  // Calls visit(i, j), i < j, for every two boxes that meet, in a fixed order.
+  template <typename Visit>
+  void for_each_meeting_pair(Visit visit) const {
+    Array<std::pair<Index, Index>> open;  // nodes
+    if (!nodes_.empty()) open.emplace_back(0, 0);
+    while (!open.empty()) {
+      const auto [a, b] = open.back();
+      open.pop_back();
+      checkpoint(operations_a_node);
+      const Node &first = nodes_[a], &second = nodes_[b];
+      if (a == b) {
+        if (first.is_leaf())
+          visit_pairs(first, visit);
+        else
+          open.insert(open.end(), {{a + 1, a + 1}, {first.right, first.right}, {a + 1, first.right}});
+      } else if (meet(first.box, second.box)) {
+        if (first.is_leaf() && second.is_leaf())
+          visit_pairs(first, second, visit);
+        else if (second.is_leaf() || (!first.is_leaf() && first.count() >= second.count()))
+          open.insert(open.end(), {{a + 1, b}, {first.right, b}});
+        else
+          open.insert(open.end(), {{a, b + 1}, {a, second.right}});
+      }
+    }
+  }
+
+ private:
+  static constexpr double operations_a_node = 20;
+
+  struct Node {
+    Box box;
+    Index begin, end;  // in item_
+    Index right;       // node of the second half, the first half's follows its parent; none for a leaf
+    bool is_leaf() const { return right < 0; }
+    Index count() const { return end - begin; }
+  };
+
+  Index build(Index begin, Index end);
+
+  template <typename Visit>
+  void visit_pairs(const Node& node, Visit& visit) const {
+    for (Index i = node.begin; i < node.end; ++i) {
+      for (Index j = i + 1; j < node.end; ++j) {
+        if (meet(box_[i], box_[j])) visit(std::min(item_[i], item_[j]), std::max(item_[i], item_[j]));
+      }
+    }
+  }
+  template <typename Visit>
+  void visit_pairs(const Node& a, const Node& b, Visit& visit) const {
+    for (Index i = a.begin; i < a.end; ++i) {
+      if (!meet(box_[i], b.box)) continue;
+      for (Index j = b.begin; j < b.end; ++j) {
+        if (meet(box_[i], box_[j])) visit(std::min(item_[i], item_[j]), std::max(item_[i], item_[j]));
+      }
+    }
+  }
+
+  Array<Index> item_;  // the boxes in the order of the leaves
+  Array<Box> box_;     // theirs
+  Array<Node> nodes_;
+};
+
+}  // namespace lsgp

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The boundary polygon of a layout.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <complex>
+#include <limits>
+
+#include "base/array.hpp"
+#include "lsgp/surface.hpp"
+
+namespace lsgp {
+
+// Where c lies beside the line from a to b: 1 left, -1 right, 0 where rounding leaves that open (Shewchuk 1997).
+inline int side(Complex a, Complex b, Complex c) {
+  constexpr double last_digit = std::numeric_limits<double>::epsilon();
+  const Complex along = b - a, to = c - a;
+  const double left = along.real() * to.imag(), right = along.imag() * to.real();
+  const double bound = 2 * last_digit * (std::abs(left) + std::abs(right));
+  return left - right > bound ? 1 : left - right < -bound ? -1 : 0;
+}
+
+// The directed edges of a layout's border, loop after loop, the layout on their left.
+class BoundaryPolygon {
+ public:
+  // position, twin: as of has_overlap.
+  BoundaryPolygon(const Eigen::VectorXcd& position, const Array<Index>& twin);
+
+  Index edge_count() const { return static_cast<Index>(tail_.size()); }
+  Complex tail(Index edge) const { return tail_[edge]; }
+  Complex head(Index edge) const { return head_[edge]; }
+  // Whether an edge begins where the one numbered before it ends.
+  bool runs_on(Index edge) const { return loops_[loop_[edge]] != edge; }
+
+  bool touches_itself() const;
+
+  // Whether the layout lies on itself somewhere, its border being simple curves that do not touch.
+  bool encloses_itself() const;
+
+ private:
+  bool follows(Index i, Index j) const;
+  // Whether two edges have a point in common, or may have one, but for the corner between an edge and the next.
+  bool touch(Index i, Index j) const;
+  // Whether an edge turns back onto the one before it.
+  bool folds_back(Index i, Index j) const;
+  // How often the layout covers what lies just left of the leftmost point of a loop.
+  int covers_left_of(Complex point, Index loop) const;
+
+  Array<Complex> tail_, head_;  // (edges)
+  Array<Index> loop_;           // (edges)
+  Array<Index> loops_;          // the first edge of each, and the end
+};
+
+}  // namespace lsgp

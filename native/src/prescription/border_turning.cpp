@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "prescription/border_turning.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/text.hpp"
+#include "prescription/component_system.hpp"
+#include "prescription/hole_translation.hpp"
+#include "systems/quadratic_forms.hpp"
+
+namespace lsgp {
+
+namespace {
+
+using Turning = Array<std::optional<double>>;  // (loops) radians, where it is not left free
+
+constexpr double mismatch = 1e-6;  // of Gauss-Bonnet, radians
+
+// Log scales c along the borders (loops) that bring the turning of the wanted ones to the wanted value, the others
+// staying at 0: the turning is affine in c.
+class LoopScales {
+ public:
+  LoopScales(const HalfedgeMesh& mesh, const Geometry& geometry, const LogScale& scale)
+      : mesh_(mesh), geometry_(geometry), scale_(scale) {}
+
+  Eigen::VectorXd turning(const Eigen::VectorXd& log_scale) const {
+    return turning_of(geometry_.angle_defect + apply_laplacian(mesh_, geometry_, log_scale));
+  }
+
+  // The log scale changed so that loop i turns by wanted[i] where given, and the shifts that took, (loops).
+  std::pair<Eigen::VectorXd, Eigen::VectorXd> adjust(const Eigen::VectorXd& log_scale, const Turning& wanted) const {
+    Array<Index> loops;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      if (wanted[i]) loops.push_back(static_cast<Index>(i));
+    }
+    const Eigen::VectorXd before = turning(log_scale);
+    if (loops.size() == wanted.size()) {
+      // Shifting all borders alike changes nothing: the last turning follows from the others.
+      double sum = 0;
+      for (const auto& turning : wanted) sum += *turning;
+      if (!(std::abs(sum - before.sum()) <= mismatch)) {
+        throw Error(Code::loop_turning, concat("The turning prescribed for all borders adds up to ", sum / M_PI,
+                                               " pi, but with these cone angles it has to be ", before.sum() / M_PI,
+                                               " pi. Leave the turning of one border free."));
+      }
+      loops.pop_back();
+    }
+    const Index k = static_cast<Index>(loops.size());
+    Eigen::VectorXd shifts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(wanted.size()));
+    if (k == 0) return {log_scale, shifts};
+    Eigen::VectorXd missing(k);
+    for (Index j = 0; j < k; ++j) missing[j] = *wanted[loops[j]] - before[loops[j]];
+    const Eigen::VectorXd shift = k <= most_dense ? solve_dense(loops, missing) : solve_iteratively(loops, missing);
+    for (Index j = 0; j < k; ++j) shifts[loops[j]] = shift[j];
+    return {log_scale + caused_by(loops, shift), shifts};
+  }
+
+ private:
+  static constexpr Index most_dense = 64;       // loops, beyond which a matrix for them takes more than iterations
+  static constexpr int most_iterations = 1000;  // a back-substitution each, about 4 times the root of the loops' number
+  static constexpr double accuracy = 1e-14;     // of the missing turning
+
+  // The log scale, (n), that is 0 on all borders but for some shifted ones, and harmonic between them.
+  Eigen::VectorXd caused_by(const Array<Index>& loops, const Eigen::VectorXd& shift) const {
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(mesh_.vertex_count());
+    for (std::size_t j = 0; j < loops.size(); ++j) {
+      for (const Index v : mesh_.boundary_loops[loops[j]]) out[v] = shift[static_cast<Eigen::Index>(j)];
+    }
+    return extend_from_borders(mesh_, geometry_, scale_, out);
+  }
+
+  Eigen::VectorXd change_of_turning(const Array<Index>& loops, const Eigen::VectorXd& shift) const {
+    return turning_of(apply_laplacian(mesh_, geometry_, caused_by(loops, shift)))(loops);
+  }
+
+  Eigen::VectorXd solve_dense(const Array<Index>& loops, const Eigen::VectorXd& missing) const {
+    const Index k = static_cast<Index>(loops.size());
+    Eigen::MatrixXd effect(k, k);
+    for (Index j = 0; j < k; ++j) effect.col(j) = change_of_turning(loops, Eigen::VectorXd::Unit(k, j));
+    return effect.partialPivLu().solve(missing);
+  }
+
+  // The change of turning is a Schur complement of the Laplacian and so symmetric and positive definite: conjugate
+  // gradients, started again once to win back what rounding lost.
+  Eigen::VectorXd solve_iteratively(const Array<Index>& loops, const Eigen::VectorXd& missing) const {
+    Eigen::VectorXd shift = Eigen::VectorXd::Zero(missing.size());
+    const double enough = accuracy * missing.norm();
+    for (int start = 0; start < 2; ++start) {
+      Eigen::VectorXd residual = missing - change_of_turning(loops, shift), direction = residual;
+      double square = residual.squaredNorm();
+      for (int i = 0; i < most_iterations && std::sqrt(square) > enough; ++i) {
+        const Eigen::VectorXd change = change_of_turning(loops, direction);
+        const double length = square / direction.dot(change);
+        if (!std::isfinite(length)) break;
+        shift += length * direction;
+        residual -= length * change;
+        const double before = std::exchange(square, residual.squaredNorm());
+        direction = residual + (square / before) * direction;
+      }
+    }
+    return shift;
+  }
+
+  Eigen::VectorXd turning_of(const Eigen::VectorXd& curvature) const {
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(ssize(mesh_.boundary_loops));
+    for (Eigen::Index i = 0; i < out.size(); ++i) {
+      for (const Index v : mesh_.boundary_loops[i]) out[i] += curvature[v];
+    }
+    return out;
+  }
+
+  const HalfedgeMesh& mesh_;
+  const Geometry& geometry_;
+  const LogScale& scale_;
+};
+
+// Borders whose scale can be shifted: those with a vertex that is no corner.
+Array<char> shiftable_loops(const HalfedgeMesh& mesh, const BorderConditions& border) {
+  Array<char> out;
+  for (const auto& loop : mesh.boundary_loops) {
+    out.push_back(std::any_of(loop.begin(), loop.end(), [&](Index v) { return border.held[v]; }));
+  }
+  return out;
+}
+
+// The turning of all borders rounded to multiples of 2 pi / symmetry, the sum kept: those that lose most by it give
+// way.
+void quantize_turning(const Eigen::VectorXd& turning, int symmetry, Turning& wanted) {
+  const Eigen::Index count = turning.size();
+  Eigen::VectorXd exact = turning * (symmetry / (2 * M_PI));
+  for (Eigen::Index i = 0; i < count; ++i) {
+    if (wanted[i]) exact[i] = *wanted[i] * symmetry / (2 * M_PI);
+  }
+  Eigen::VectorXd rounded = exact.array().round();
+  double missing = std::round(turning.sum() * symmetry / (2 * M_PI)) - rounded.sum();
+  // What rounding leaves is less than a step for every border; prescribed turning may leave more, evenly shared.
+  const double whole = std::trunc(missing / static_cast<double>(count));
+  rounded.array() += whole;
+  missing -= whole * static_cast<double>(count);
+  const double step = missing > 0 ? 1 : -1;
+  for (Eigen::Index taken = 0; taken < count && static_cast<double>(taken) < std::abs(missing); ++taken) {
+    Eigen::Index at;
+    (step * (exact - rounded)).maxCoeff(&at);
+    rounded[at] += step;
+  }
+  for (Eigen::Index i = 0; i < count; ++i) wanted[i] = rounded[i] * 2 * M_PI / symmetry;
+}
+
+// Holes about which the metric turns almost exactly once are made to turn exactly once where that takes no more than
+// this shift of the log scale along their border: the layout closes around them without a cut.
+constexpr double largest_hole_shift = 0.1;
+constexpr double nearly_once = 0.5;  // radians off a full turn
+
+// Returns the borders' turning as wanted and that of the holes that close besides, and changes the log scale to it.
+Turning close_near_holes(const LoopScales& loops, const Array<char>& shiftable, const Turning& wanted,
+                         Eigen::VectorXd& log_scale) {
+  const Eigen::VectorXd turning = loops.turning(log_scale);
+  Turning closed = wanted;
+  std::size_t left_free = 0;
+  for (Eigen::Index i = 0; i < turning.size(); ++i) {
+    const bool hole = shiftable[i] && !wanted[i] && std::abs(turning[i] - once_around_a_hole) < nearly_once;
+    if (hole) closed[i] = once_around_a_hole;
+    left_free += !closed[i] && shiftable[i];
+  }
+  if (left_free == 0) return wanted;  // one border has to take up the rest
+  // Without the holes that take too much, until those that are left can be closed.
+  while (true) {
+    auto [adjusted, shifts] = loops.adjust(log_scale, closed);
+    bool dropped = false;
+    for (std::size_t i = 0; i < closed.size(); ++i) {
+      if (wanted[i] || !closed[i] || std::abs(shifts[static_cast<Eigen::Index>(i)]) <= largest_hole_shift) continue;
+      closed[i].reset();
+      dropped = true;
+    }
+    if (dropped) continue;
+    log_scale = std::move(adjusted);
+    return closed;
+  }
+}
+
+// A part without handles and cones inside can be laid out in the plane as it is: the border that turns most by itself
+// goes around all others, which are holes.
+bool is_planar(const HalfedgeMesh& mesh, const ComponentCones& cones) {
+  return mesh.genus == 0 && inside_only(mesh, cones.vertices).empty();
+}
+
+// The log scale with which all holes of a planar part close, or none where that is not to be had.
+std::optional<Eigen::VectorXd> close_all_holes(const HalfedgeMesh& mesh, const Geometry& geometry,
+                                               const LoopScales& loops, const Array<char>& shiftable, Holes holes,
+                                               const LogScale& scale, const Eigen::VectorXd& log_scale) {
+  constexpr double cheap = 1.1;      // times the L2 stretch without
+  constexpr double worth = 1.5;      // times that with holes whose borders do not lead back to where they began
+  constexpr Index most_closed = 20;  // holes; beyond, three back-substitutions each are too many
+  Eigen::Index outer = 0;
+  loops.turning(log_scale).maxCoeff(&outer);
+  Turning wanted(shiftable.size(), once_around_a_hole);
+  wanted[outer].reset();
+  Array<Index> inner;
+  for (std::size_t i = 0; i < shiftable.size(); ++i) {
+    if (!wanted[i]) continue;
+    if (!shiftable[i]) return std::nullopt;
+    inner.push_back(static_cast<Index>(i));
+  }
+  auto [closed, shifts] = loops.adjust(log_scale, wanted);
+  const auto is_taken = [&](const Eigen::VectorXd& tried) {
+    return holes == Holes::all ? tried.maxCoeff() - tried.minCoeff() < wide_range
+                               : scale.predicted_l2(tried) <= cheap * scale.predicted_l2(log_scale);
+  };
+  if (!is_taken(closed)) return std::nullopt;
+  // The map takes up what little is missing where the metric turns nearly once by itself.
+  if (shifts.cwiseAbs().maxCoeff() > largest_hole_shift && ssize(inner) <= most_closed) {
+    const auto exact = close_translations(mesh, geometry, scale, inner, closed);
+    const bool pays = exact && is_taken(*exact) && scale.predicted_l2(*exact) <= worth * scale.predicted_l2(closed);
+    if (pays) return exact;
+  }
+  return std::move(closed);
+}
+
+}  // namespace
+
+void prescribe_turning(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
+                       const BorderConditions& border, const LogScale& scale, Curvature& curvature) {
+  const std::size_t loop_count = mesh.boundary_loops.size();
+  curvature.needs_no_cut.assign(loop_count, 0);
+  const Array<char> shiftable = shiftable_loops(mesh, border);
+  for (std::size_t i = 0; i < cones.loop_turning.size(); ++i) {
+    if (!cones.loop_turning[i] || shiftable[i]) continue;
+    throw Error(
+        Code::loop_turning,
+        "The turning of a border cannot be prescribed where the border is straight or all its vertices are corners: "
+        "their angles say how it turns. Leave its turning free.",
+        {ElementKind::vertices, mesh.boundary_loops[i]});
+  }
+  if (border.balanced) return;
+  const LoopScales loops(mesh, geometry, scale);
+  Turning wanted = cones.loop_turning;
+  wanted.resize(loop_count);
+  const bool is_free = std::none_of(wanted.begin(), wanted.end(), [](const auto& turning) { return turning; });
+  const bool rounds = cones.symmetry > 0;
+  if (loop_count > 1 && is_free && is_planar(mesh, cones) && cones.holes != Holes::as_they_are &&
+      (cones.holes == Holes::all || !rounds)) {
+    if (auto closed = close_all_holes(mesh, geometry, loops, shiftable, cones.holes, scale, curvature.log_scale)) {
+      curvature.log_scale = std::move(*closed);
+      curvature.needs_no_cut.assign(loop_count, 1);
+      return;
+    }
+  }
+  if (rounds) quantize_turning(loops.turning(curvature.log_scale), cones.symmetry, wanted);
+  curvature.log_scale = loops.adjust(curvature.log_scale, wanted).first;
+  const Turning reached = close_near_holes(loops, shiftable, wanted, curvature.log_scale);
+  for (std::size_t i = 0; i < loop_count; ++i)
+    curvature.needs_no_cut[i] = reached[i] && *reached[i] == once_around_a_hole;
+}
+
+}  // namespace lsgp

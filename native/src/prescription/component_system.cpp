@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "prescription/component_system.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "systems/stiffness.hpp"
+
+namespace lsgp {
+
+Array<Index> inside_only(const HalfedgeMesh& mesh, const Array<Index>& vertices) {
+  Array<Index> out;
+  for (const Index v : vertices) {
+    if (mesh.loop_of_vertex[v] == none) out.push_back(v);
+  }
+  return out;
+}
+
+ComponentSystem::ComponentSystem(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
+                                 Factorization factorization, Eigen::VectorXd memory)
+    : mesh_(mesh),
+      geometry_(geometry),
+      cones_(cones.vertices),
+      factorization_(factorization),
+      border_(border_conditions(mesh, geometry, cones)),
+      memory_(std::move(memory)) {}
+
+Eigen::VectorXd ComponentSystem::take_memory() { return factor_ ? factor_->take_memory() : std::move(memory_); }
+
+const CutGraph& ComponentSystem::all_cuts() {
+  if (!all_cuts_) all_cuts_ = connect_cones(mesh_, geometry_, inside_only(mesh_, cones_), {});
+  return *all_cuts_;
+}
+
+bool ComponentSystem::has_all_cuts() {
+  if (all_cuts_ || is_blocked_) return !is_blocked_;
+  try {
+    all_cuts();
+  } catch (const Error& error) {
+    if (error.code() != Code::cuts_blocked) throw;
+    is_blocked_ = true;  // angles need no cuts, and neither do holes that close without
+  }
+  return !is_blocked_;
+}
+
+bool ComponentSystem::is_on_cut() {
+  if (!is_on_cut_) is_on_cut_ = has_all_cuts() && CutFactor::is_chosen(factorization_, mesh_, all_cuts());
+  return *is_on_cut_;
+}
+
+bool ComponentSystem::covers(const CutGraph& cut_graph) {
+  if (!has_all_cuts()) return false;
+  const Array<char>&cut = cut_graph.is_cut, &cut_here = all_cuts().is_cut;
+  return std::equal(cut.begin(), cut.end(), cut_here.begin(), [](char a, char b) { return a <= b; });
+}
+
+const CutFactor* ComponentSystem::factor() {
+  if (!is_on_cut()) return nullptr;
+  if (!factor_) factor_.emplace(mesh_, geometry_, all_cuts(), std::move(memory_));
+  return &*factor_;
+}
+
+CutSurface ComponentSystem::open(const CutGraph& cut_graph, const CutMesh& cut_mesh) {
+  CutSurface out{mesh_, geometry_, cut_graph, cut_mesh};
+  if (!covers(cut_graph)) return out;
+  if (!frame_tree_) frame_tree_.emplace(mesh_, geometry_, all_cuts());
+  out.factor = factor();
+  out.frame_tree = &*frame_tree_;
+  return out;
+}
+
+const CutFactor* ComponentSystem::stiff_factor(const Array<Index>& cones, const CutGraph& cut_graph) {
+  if (!is_on_cut() || !covers(cut_graph)) return nullptr;
+  if (!stiff_factor_ || stiff_factor_->cones != cones) {
+    stiff_factor_.reset();
+    stiff_factor_.emplace(StiffFactor{cones, CutFactor(mesh_, stiffen_around(mesh_, geometry_, cones), all_cuts())});
+  }
+  return &stiff_factor_->factor;
+}
+
+void ComponentSystem::release() {
+  factor_.reset();
+  log_scale_.reset();
+  frame_tree_.reset();
+  stiff_factor_.reset();
+}
+
+const LogScale& ComponentSystem::log_scale() {
+  if (!log_scale_) log_scale_.emplace(mesh_, geometry_, border_, cones_, factor());
+  return *log_scale_;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "prescription/curvature.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/text.hpp"
+#include "cut/cut_mesh.hpp"
+#include "prescription/angle_flow.hpp"
+#include "prescription/border_turning.hpp"
+#include "prescription/component_system.hpp"
+#include "prescription/quantize_curvature.hpp"
+#include "prescription/straightness.hpp"
+#include "solvers/box_qp.hpp"
+#include "systems/quadratic_forms.hpp"
+
+namespace lsgp {
+
+namespace {
+
+// Automatic angles stay where a map with them can be expected to have no flips.
+constexpr double largest_share_of_valence = 0.6;  // of pi per triangle
+// Outside these no map exists, or none worth having.
+constexpr double impossible_angle = 0.02 * M_PI;
+constexpr double impossible_share_of_valence = 1;
+
+constexpr double renormalized_mismatch = 1e-6;  // of Gauss-Bonnet, radians
+
+// Bounds of the cone curvatures; fixed cones have both equal.
+struct Bounds {
+  Eigen::VectorXd low, high;
+};
+
+Bounds bounds_from_angles(const HalfedgeMesh& mesh, const ComponentCones& cones, double smallest, double largest,
+                          double share) {
+  const Index k = static_cast<Index>(cones.vertices.size());
+  Bounds bounds{Eigen::VectorXd(k), Eigen::VectorXd(k)};
+  for (Index i = 0; i < k; ++i) {
+    const double most = std::min(largest, share * M_PI * valence(mesh, cones.vertices[i]));
+    const double flat = mesh.flat_angle(cones.vertices[i]);
+    bounds.high[i] = flat - (cones.angles[i] ? *cones.angles[i] : smallest);
+    bounds.low[i] = flat - (cones.angles[i] ? *cones.angles[i] : most);
+  }
+  return bounds;
+}
+
+// Beyond these no map exists.
+Bounds widest_bounds(const HalfedgeMesh& mesh, const ComponentCones& cones) {
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  return bounds_from_angles(mesh, cones, impossible_angle, unlimited, impossible_share_of_valence);
+}
+
+bool all_fixed(const ComponentCones& cones) {
+  return std::all_of(cones.angles.begin(), cones.angles.end(), [](const auto& angle) { return angle.has_value(); });
+}
+
+[[noreturn]] void throw_gauss_bonnet(const ComponentCones& cones, double sum, double required, const char* remedy) {
+  throw Error(Code::gauss_bonnet,
+              concat("The ", count(cones.vertices.size(), "cone angle leaves", "cone angles leave"), " a curvature of ",
+                     sum / M_PI, " pi in sum (", sum, "), but this surface requires ", required / M_PI, " pi (",
+                     required, "). ", remedy),
+              {ElementKind::vertices, cones.vertices});
+}
+
+Eigen::VectorXd least_distortion(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale) {
+  const Eigen::VectorXd harmonic = scale.harmonic_curvature();
+  Bounds bounds = bounds_from_angles(mesh, cones, cones.range.smallest, cones.range.largest, largest_share_of_valence);
+  const Bounds widest = widest_bounds(mesh, cones);
+  for (Eigen::Index i = 0; i < harmonic.size(); ++i) {
+    if (cones.angles[i] || !cones.range.widened) continue;
+    bounds.low[i] = std::max(widest.low[i], std::min(bounds.low[i], harmonic[i]));
+    bounds.high[i] = std::min(widest.high[i], std::max(bounds.high[i], harmonic[i]));
+  }
+  Eigen::VectorXd start = harmonic.cwiseMax(bounds.low).cwiseMin(bounds.high);
+  if (scale.balanced()) {
+    const double required = scale.required_sum();
+    if (bounds.low.sum() > required) bounds.low = widest.low;
+    if (bounds.high.sum() < required) bounds.high = widest.high;
+    start = nearest_with_sum(bounds.low, bounds.high, start, required);
+  }
+  return scale.least_distortion_curvature(bounds.low, bounds.high, std::move(start));
+}
+
+bool possible(const HalfedgeMesh& mesh, Index vertex, double curvature) {
+  const double angle = mesh.flat_angle(vertex) - curvature;
+  return angle >= impossible_angle && angle < M_PI * valence(mesh, vertex);
+}
+
+Eigen::VectorXd harmonic(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale) {
+  const Eigen::VectorXd curvature = scale.harmonic_curvature();
+  Array<Index> impossible;
+  for (Eigen::Index i = 0; i < curvature.size(); ++i) {
+    if (!possible(mesh, cones.vertices[i], curvature[i])) impossible.push_back(cones.vertices[i]);
+  }
+  if (!impossible.empty()) {
+    throw Error(Code::cone_angle_range,
+                concat("The harmonic angle of ", count(impossible.size(), "cone is", "cones is"),
+                       " one no map can have. Add cones near it, or use the least-distortion prescription."),
+                {ElementKind::vertices, impossible});
+  }
+  return curvature;
+}
+
+// The paper's rule; the angles that junctions of the cut read are handed on to the cones in equal parts.
+std::optional<Eigen::VectorXd> straightness(ComponentSystem& system, const ComponentCones& cones,
+                                            std::vector<Finding>& findings) {
+  const HalfedgeMesh& mesh = system.mesh();
+  if (!mesh.closed()) {
+    // With a free border the straightened layout is an arbitrary one of many, and so are its angles.
+    findings.push_back(
+        {Code::straightness_failed,
+         "Straight cuts give usable cone angles on closed surfaces only, and this one has an open border. The "
+         "least-distortion angles were used instead.",
+         {ElementKind::vertices, cones.vertices}});
+    return std::nullopt;
+  }
+  const CutMesh cut_mesh = cut_open(mesh, system.all_cuts());
+  const StraightenedLayout layout = straighten(system.open(system.all_cuts(), cut_mesh));
+  const Index k = static_cast<Index>(cones.vertices.size());
+  Eigen::VectorXd curvature(k);
+  for (Index i = 0; i < k; ++i) curvature[i] = layout.curvature[cones.vertices[i]];
+  const double junctions = layout.curvature.sum() - curvature.sum();
+  curvature.array() += junctions / k;
+
+  std::string failure = layout.failure;
+  for (Index i = 0; i < k && failure.empty(); ++i) {
+    if (!possible(mesh, cones.vertices[i], curvature[i])) {
+      failure = concat("a cone would keep an angle of ", 2 - curvature[i] / M_PI, " pi");
+    }
+  }
+  if (!failure.empty()) {
+    findings.push_back({Code::straightness_failed,
+                        concat("Straight cuts give no usable cone angles here: ", failure, " (", layout.crossings,
+                               " crossings at first). The least-distortion angles were used instead."),
+                        {ElementKind::vertices, cones.vertices}});
+    return std::nullopt;
+  }
+  Array<Index> junction_vertices;
+  for (const Cut& cut : system.all_cuts().cuts) {
+    for (const Index v : {cut.tail, cut.head}) {
+      const bool is_cone = std::find(cones.vertices.begin(), cones.vertices.end(), v) != cones.vertices.end();
+      const bool listed = std::find(junction_vertices.begin(), junction_vertices.end(), v) != junction_vertices.end();
+      if (!is_cone && !listed) junction_vertices.push_back(v);
+    }
+  }
+  if (!junction_vertices.empty()) {
+    findings.push_back({Code::junction_share,
+                        concat("Straight cuts left a curvature of ", junctions / M_PI, " pi (", junctions, ") at ",
+                               count(junction_vertices.size(), "junction", "junctions"),
+                               " of the cut; it was shared out evenly among the cones."),
+                        {ElementKind::vertices, junction_vertices}});
+  }
+  return curvature;
+}
+
+}  // namespace
+
+std::pair<double, double> room_of_automatic(const HalfedgeMesh& mesh, const ComponentCones& cones) {
+  const Bounds bounds = widest_bounds(mesh, cones);
+  double low = 0, high = 0;
+  for (Eigen::Index i = 0; i < bounds.low.size(); ++i) {
+    if (cones.angles[i]) continue;
+    low += bounds.low[i];
+    high += bounds.high[i];
+  }
+  return {low, high};
+}
+
+int valence(const HalfedgeMesh& mesh, Index vertex) {
+  int triangles = 0;
+  mesh.for_each_outgoing(vertex, [&](Index) { ++triangles; });
+  return triangles;
+}
+
+BorderConditions border_conditions(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones) {
+  return cones.border == BorderMode::straight && !mesh.closed() ? straight_border(mesh, geometry, cones.vertices)
+                                                                : free_border(mesh, cones.vertices);
+}
+
+void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, const BorderConditions& border) {
+  Array<Index> overloaded;
+  for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
+    const int triangles = valence(mesh, cones.vertices[i]);
+    if (cones.angles[i] && *cones.angles[i] >= M_PI * triangles) overloaded.push_back(cones.vertices[i]);
+  }
+  if (!overloaded.empty()) {
+    throw Error(Code::cone_angle_range,
+                concat(count(overloaded.size(), "cone has", "cones have"),
+                       " an angle that the triangles around it cannot carry, less than 180 degrees each. Lower the "
+                       "angle or subdivide the mesh there."),
+                {ElementKind::vertices, overloaded});
+  }
+  if (!border.balanced) return;
+  const double required = 2 * M_PI * mesh.euler - border.curvature.sum();
+  if (cones.vertices.empty()) {
+    if (std::abs(required) < renormalized_mismatch) return;
+    if (!mesh.closed()) {
+      throw Error(Code::too_few_cones, concat("A straight border has to turn by ", required / M_PI,
+                                              " pi in all, at marked corners. Mark the "
+                                              "border's corners as cones, or leave the border free."));
+    }
+    throw Error(Code::too_few_cones,
+                concat("A closed surface without cones cannot be unfolded: its curvature of ", required / M_PI,
+                       " pi has to go somewhere. Mark cones at tips and corners, or place them automatically."));
+  }
+  const Bounds widest = widest_bounds(mesh, cones);
+  if (all_fixed(cones)) {
+    const double sum = widest.low.sum();
+    if (std::abs(sum - required) > renormalized_mismatch) {
+      throw_gauss_bonnet(cones, sum, required, "Change an angle, or leave one automatic to take up the rest.");
+    }
+    return;
+  }
+  if (widest.low.sum() <= required && required <= widest.high.sum()) return;
+  const bool some_fixed =
+      std::any_of(cones.angles.begin(), cones.angles.end(), [](const auto& a) { return a.has_value(); });
+  if (some_fixed) {
+    throw_gauss_bonnet(cones, required < widest.low.sum() ? widest.low.sum() : widest.high.sum(), required,
+                       "The automatic cones cannot take up the rest: change the given angles or add cones.");
+  }
+  throw Error(
+      Code::too_few_cones,
+      concat(count(cones.vertices.size(), "cone cannot", "cones cannot"), " take up the surface's curvature of ",
+             required / M_PI, " pi, less than 2 pi each. Mark more cones, or place them automatically."),
+      {ElementKind::vertices, cones.vertices});
+}
+
+void require_possible(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones) {
+  if (cones.symmetry > 0) return;  // rounded angles are the tool's own choice
+  const BorderConditions border = border_conditions(mesh, geometry, cones);
+  Eigen::VectorXd angle(mesh.vertex_count());
+  Array<char> is_free = border.held;
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    angle[v] = mesh.flat_angle(v) - border.curvature[v];
+    is_free[v] |= border.curvature[v] != 0;  // teeth
+  }
+  Array<Index> given;
+  for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
+    const Index v = cones.vertices[i];
+    is_free[v] = !cones.angles[i];
+    if (!cones.angles[i]) continue;
+    angle[v] = *cones.angles[i];
+    given.push_back(v);
+  }
+  if (!given.empty()) require_possible_angles(mesh, angle, is_free, given);
+}
+
+Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, PrescriptionRule rule,
+                    std::vector<Finding>& findings) {
+  const HalfedgeMesh& mesh = system.mesh();
+  const Geometry& geometry = system.geometry();
+  ComponentCones asked = cones;
+  if (rule != PrescriptionRule::manual) std::fill(asked.angles.begin(), asked.angles.end(), std::nullopt);
+  const BorderConditions& border = system.border();
+  require_feasible(mesh, asked, border);
+  const LogScale& scale = system.log_scale();
+
+  Eigen::VectorXd curvature(asked.vertices.size());
+  std::optional<Eigen::VectorXd> straight;
+  if (asked.vertices.empty()) {
+    // A closed torus or a surface with border: flat everywhere.
+  } else if (all_fixed(asked)) {
+    for (Eigen::Index i = 0; i < curvature.size(); ++i) {
+      curvature[i] = mesh.flat_angle(asked.vertices[i]) - *asked.angles[i];
+    }
+  } else if (rule == PrescriptionRule::harmonic) {
+    curvature = harmonic(mesh, asked, scale);
+  } else if (rule == PrescriptionRule::straightness && (straight = straightness(system, asked, findings))) {
+    curvature = *straight;
+  } else {
+    curvature = least_distortion(mesh, asked, scale);
+  }
+  if (asked.symmetry > 0) {
+    curvature = quantize_curvature(mesh, asked, scale, curvature, asked.symmetry);
+  } else if (border.balanced && curvature.size() > 0) {
+    curvature.array() += (scale.required_sum() - curvature.sum()) / static_cast<double>(curvature.size());
+  }
+  return impose(mesh, geometry, asked, border, scale, curvature, scale.evaluate_held(curvature), findings);
+}
+
+Curvature impose(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& asked,
+                 const BorderConditions& border, const LogScale& scale, const Eigen::VectorXd& curvature,
+                 Eigen::VectorXd log_scale, std::vector<Finding>& findings) {
+  Curvature out;
+  out.log_scale = std::move(log_scale);
+  prescribe_turning(mesh, geometry, asked, border, scale, out);
+  out.predicted_l2 = scale.predicted_l2(out.log_scale);
+  out.at_vertex = border.curvature;
+  for (Eigen::Index i = 0; i < curvature.size(); ++i) out.at_vertex[asked.vertices[i]] += curvature[i];
+  // Where the scale is held, the curvature is what it makes of it: kappa = K + L y.
+  const Eigen::VectorXd free = geometry.angle_defect + apply_laplacian(mesh, geometry, out.log_scale);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (border.held[v]) out.at_vertex[v] = free[v];
+  }
+  out.is_free = border.held;
+  for (Index v = 0; v < mesh.vertex_count(); ++v) out.is_free[v] |= border.curvature[v] != 0;  // at teeth
+  for (const Index v : asked.vertices) out.is_free[v] = 0;
+  out.log_scale.array() -= geometry.vertex_area.dot(out.log_scale) / geometry.total_area;
+  const double range = out.log_scale.maxCoeff() - out.log_scale.minCoeff();
+  if (!(out.predicted_l2 < high_l2 && range < wide_range)) {
+    findings.push_back({Code::high_distortion,
+                        concat("With these cones the map stretches much: an L2 stretch of ", out.predicted_l2,
+                               " is expected, 1 being none, and lengths that differ by a factor of ", std::exp(range),
+                               ". Add cones where the texture becomes too small."),
+                        {ElementKind::vertices, asked.vertices}});
+  }
+  return out;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/array.hpp"
+#include "base/checkpoint.hpp"
+#include "base/memory.hpp"
+#include "prescription/curvature.hpp"
+#include "solvers/box_qp.hpp"
+#include "solvers/dense_kernels.hpp"
+#include "systems/quadratic_forms.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr int most_newton_steps = 60;
+constexpr double newton_decrement = 1e-20;  // of the objective, a logarithm of order 1
+constexpr double too_small_to_see = 1e-11;  // decreases that rounding of the objective would hide
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double ridge = 1e-13;  // relative: cones so close that their Green's functions nearly agree
+
+// log mean e^{2y} + log mean e^{-2y}, weighted, and what each vertex adds to the two means, (n, 2).
+double log_stretch(const Eigen::VectorXd& weight, const Eigen::VectorXd& y, Eigen::MatrixXd& shares) {
+  constexpr double most = 700;                              // that e^x can be taken of
+  const double middle = (y.maxCoeff() + y.minCoeff()) / 2;  // cancels
+  const Eigen::ArrayXd growth = (2 * (y.array() - middle)).min(most).max(-most).exp();
+  shares.resize(y.size(), 2);
+  shares.col(0) = weight.array() * growth;
+  shares.col(1) = weight.array() / growth;
+  return shares.colwise().sum().array().log().sum();
+}
+
+// columns^T diag(weight) columns, lower triangle; some rows at a time, which stay in the cache.
+Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& columns, const Eigen::VectorXd& weight) {
+  constexpr Eigen::Index rows_at_once = 512;
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  for (Eigen::Index begin = 0; begin < columns.rows(); begin += rows_at_once) {
+    const Eigen::Index count = std::min(rows_at_once, columns.rows() - begin);
+    const Eigen::MatrixXd scaled =
+        weight.segment(begin, count).cwiseSqrt().asDiagonal() * columns.middleRows(begin, count);
+    dense_kernels<double>().add_gram(scaled.data(), static_cast<int>(count), static_cast<int>(columns.cols()),
+                                     sum.data());
+    checkpoint(static_cast<double>(count * columns.cols() * columns.cols()));
+  }
+  return sum;
+}
+
+// What the prescription minimises, log mean e^{2y} + log mean e^{-2y}, as a function of the cone curvatures.
+class Stretch {
+ public:
+  Stretch(const Eigen::VectorXd& weight, const Eigen::MatrixXd& green) : weight_(weight), green_(green) {}
+
+  // All that follows is of this log scale.
+  double evaluate(const Eigen::VectorXd& y) { return log_stretch(weight_, y, shares_); }
+  Eigen::VectorXd gradient() {
+    const Eigen::RowVector2d whole = shares_.colwise().sum();
+    shares_.array().rowwise() /= whole.array();
+    means_ = green_.transpose() * shares_;
+    return 2 * (means_.col(0) - means_.col(1));
+  }
+  Eigen::MatrixXd hessian() const {  // after the gradient
+    Eigen::MatrixXd out = 4 * weighted_gram(green_, shares_.rowwise().sum());
+    out.selfadjointView<Eigen::Lower>().rankUpdate(means_, -4);
+    out.triangularView<Eigen::StrictlyUpper>() = out.transpose();
+    out.diagonal().array() += ridge * out.diagonal().mean();
+    return out;
+  }
+
+ private:
+  const Eigen::VectorXd& weight_;
+  const Eigen::MatrixXd& green_;
+  Eigen::MatrixXd shares_;  // (n, 2) of the area, weighted by e^{2y} and by e^{-2y}
+  Eigen::MatrixXd means_;   // (k, 2) of the Green's functions
+};
+
+// How many more steps that decrease the objective by so much, the one before by that, it takes to the minimum.
+double steps_left(double decrease, double before) {
+  return decrease < before ? std::log(newton_decrement / decrease) / std::log(decrease / before) : infinity;
+}
+
+// The vertex that fixes the constant: a cone, whose Green's function is 0 then, or another one on the cuts.
+Index ground(const Array<Index>& cones, const CutFactor* factor) {
+  if (!cones.empty()) return cones.back();
+  return factor != nullptr ? factor->cut_mesh().source[factor->retained().front()] : 0;
+}
+
+}  // namespace
+
+LogScale::LogScale(const HalfedgeMesh& mesh, const Geometry& geometry, const BorderConditions& border,
+                   const Array<Index>& cones, const CutFactor* factor)
+    : mesh_(mesh),
+      geometry_(geometry),
+      border_(border),
+      cones_(cones),
+      weight_(geometry.vertex_area / geometry.total_area) {
+  Array<char> held = border.held;
+  if (border.balanced) held[ground(cones, factor)] = 1;
+  require_matrix_memory(mesh.vertex_count(), static_cast<double>(cones.size()), fewer_cones);
+  laplace_ = factor != nullptr ? laplace_on_cut(*factor, held) : sparse_laplace(mesh, geometry, held);
+  LaplaceSolver::Response response = laplace_->solve(border.curvature - geometry.angle_defect, cones);
+  without_cones_ = std::move(response.to_right_side);
+  green_ = std::move(response.to_impulses);
+}
+
+Eigen::VectorXd LogScale::solve(const Eigen::VectorXd& right_side) const { return laplace_->solve(right_side); }
+
+Eigen::MatrixXd LogScale::solve_columns(const Eigen::MatrixXd& right_sides) const {
+  return laplace_->solve(right_sides);
+}
+
+void LogScale::add_cones(const Array<Index>& vertices) {
+  require_matrix_memory(mesh_.vertex_count(), 3.0 * static_cast<double>(vertices.size()), fewer_cones);
+  Eigen::MatrixXd impulses = Eigen::MatrixXd::Zero(mesh_.vertex_count(), static_cast<Eigen::Index>(vertices.size()));
+  for (std::size_t i = 0; i < vertices.size(); ++i) impulses(vertices[i], static_cast<Eigen::Index>(i)) = 1;
+  const Eigen::MatrixXd added = laplace_->solve(impulses);
+  green_.conservativeResize(Eigen::NoChange, green_.cols() + added.cols());
+  green_.rightCols(added.cols()) = added;
+  cones_.insert(cones_.end(), vertices.begin(), vertices.end());
+}
+
+void LogScale::remove_cones() {
+  cones_.clear();
+  green_.resize(mesh_.vertex_count(), 0);
+}
+
+Eigen::VectorXd LogScale::evaluate(const Eigen::VectorXd& cone_curvature) const {
+  Eigen::VectorXd y = evaluate_held(cone_curvature);
+  y.array() -= weight_.dot(y);
+  return y;
+}
+
+Eigen::VectorXd LogScale::evaluate_held(const Eigen::VectorXd& cone_curvature) const {
+  return without_cones_ + green_ * cone_curvature;
+}
+
+Eigen::VectorXd LogScale::evaluate_held(const Array<Index>& vertices, const Eigen::VectorXd& curvature) const {
+  Eigen::VectorXd right_side = Eigen::VectorXd::Zero(mesh_.vertex_count());
+  for (std::size_t i = 0; i < vertices.size(); ++i) right_side[vertices[i]] += curvature[static_cast<Eigen::Index>(i)];
+  return without_cones_ + solve(right_side);
+}
+
+Eigen::VectorXd LogScale::harmonic_curvature() const {
+  const Index k = cone_count();
+  const bool balanced = border_.balanced;
+  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(k + balanced, k + balanced);
+  Eigen::VectorXd right(k + balanced);
+  for (Index i = 0; i < k; ++i) {
+    system.row(i).head(k) = green_.row(cones_[i]);
+    right[i] = -without_cones_[cones_[i]];
+  }
+  if (balanced) {
+    system.col(k).head(k).setOnes();
+    system.row(k).head(k).setOnes();
+    right[k] = required_sum();
+  }
+  return system.partialPivLu().solve(right).head(k);
+}
+
+// With many cones a Hessian costs as much as dozens of gradients: it is kept while the steps left with it are fewer.
+Eigen::VectorXd LogScale::least_distortion_curvature(const Eigen::VectorXd& low, const Eigen::VectorXd& high,
+                                                     Eigen::VectorXd start) const {
+  const double gradients_of_hessian = 2 + cone_count() / 20.0;
+  Eigen::VectorXd kappa = std::move(start);
+  Eigen::VectorXd y = without_cones_ + green_ * kappa;
+  Stretch stretch(weight_, green_);
+  BoxProgram program(border_.balanced);
+  double value = stretch.evaluate(y), before = infinity;
+  for (int step = 0; step < most_newton_steps; ++step) {
+    const Eigen::VectorXd gradient = stretch.gradient();
+    Eigen::VectorXd direction;
+    double decrease = infinity;
+    const auto minimize = [&] {
+      direction = program.minimize(gradient, low - kappa, high - kappa);
+      decrease = -gradient.dot(direction);
+    };
+    if (step > 0) minimize();
+    const bool is_fresh =
+        step == 0 || (decrease > newton_decrement && steps_left(decrease, before) > gradients_of_hessian);
+    if (is_fresh) {
+      program.set_hessian(stretch.hessian());
+      minimize();
+    }
+    const bool is_visible = decrease > too_small_to_see;
+    if (!(decrease > newton_decrement) || (is_fresh && !is_visible && !(decrease < before))) break;
+    const Eigen::VectorXd change = green_ * direction;
+    double length = 1, tried = value;
+    for (; length > 1e-6; length /= 2) {
+      tried = stretch.evaluate(y + length * change);
+      if (!is_visible || tried <= value - 1e-4 * length * decrease) break;
+    }
+    if (is_visible && !(tried < value)) break;
+    kappa += length * direction;
+    y += length * change;
+    value = tried;
+    before = decrease;
+  }
+  return kappa;
+}
+
+double LogScale::predicted_l2(const Eigen::VectorXd& log_scale) const {
+  constexpr double most = 350;  // so that e^(2 most) and its reciprocal are numbers
+  const double middle = (log_scale.maxCoeff() + log_scale.minCoeff()) / 2;  // cancels
+  const Eigen::VectorXd factor = (log_scale.array() - middle).min(most).max(-most).exp();
+  double growth = 0, shrinkage = 0;
+  for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
+    const double scale = factor[mesh_.origin(h)] * factor[mesh_.target(h)];
+    growth += geometry_.area[h / 3] * scale;
+    shrinkage += geometry_.area[h / 3] / scale;
+  }
+  return std::min(std::sqrt(growth) * std::sqrt(shrinkage) / (3 * geometry_.total_area), largest_l2);
+}
+
+double LogScale::lumped_l2(const Eigen::VectorXd& log_scale) const {
+  Eigen::MatrixXd shares;
+  return std::exp(log_stretch(weight_, log_scale, shares) / 2);
+}
+
+LogScale::Variance LogScale::variance() const {
+  const Eigen::VectorXd mean = green_.transpose() * weight_;
+  Variance out{weighted_gram(green_, weight_), {}};
+  out.hessian.triangularView<Eigen::StrictlyUpper>() = out.hessian.transpose();
+  out.hessian -= mean * mean.transpose();
+  out.gradient = green_.transpose() * weight_.cwiseProduct(without_cones_) - weight_.dot(without_cones_) * mean;
+  return out;
+}
+
+}  // namespace lsgp

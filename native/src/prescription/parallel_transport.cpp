@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "prescription/parallel_transport.hpp"
+
+#include <cmath>
+
+#include "base/checkpoint.hpp"
+#include "prescription/quantize_curvature.hpp"
+#include "unfold/unfold.hpp"
+
+namespace lsgp {
+
+Eigen::VectorXd curvature_of_nodes(const HalfedgeMesh& mesh, const NodeGraph& nodes, const Eigen::VectorXd& at_vertex) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(ssize(nodes.vertex));
+  for (Eigen::Index node = 0; node < out.size(); ++node) {
+    if (nodes.vertex[node] != none) {
+      out[node] = at_vertex[nodes.vertex[node]];
+    } else {
+      for (const Index v : mesh.boundary_loops[nodes.loop[node]]) out[node] += at_vertex[v];
+    }
+  }
+  return out;
+}
+
+namespace {
+
+// The changes of all rotations, (cuts, loops), that turn each of the loops about handles by 1.
+Eigen::MatrixXd loop_changes(const NodeGraph& nodes) {
+  const Eigen::Index cuts = static_cast<Eigen::Index>(nodes.tail.size());
+  Array<Eigen::VectorXd> columns;
+  for (Eigen::Index p = 0; p < cuts; ++p) {
+    if (nodes.in_tree[p]) continue;
+    columns.push_back(
+        find_rotations(nodes, Eigen::VectorXd::Zero(ssize(nodes.vertex)), Eigen::VectorXd::Unit(cuts, p)));
+  }
+  Eigen::MatrixXd out(cuts, static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) out.col(static_cast<Eigen::Index>(k)) = columns[k];
+  return out;
+}
+
+// Whole numbers near `exact` with small (x - exact)^T form (x - exact): the nearest ones, changed one or two at a time.
+Eigen::VectorXd round_by_energy(const Eigen::MatrixXd& form, const Eigen::VectorXd& exact) {
+  constexpr int most_rounds = 100;  // over all pairs; the cost falls in each, and a handful is usual
+  Eigen::VectorXd x = exact.array().round();
+  Eigen::VectorXd slope = form * (x - exact);  // half the gradient
+  double least = (x - exact).dot(slope);
+  bool lowered = true;
+  for (int round = 0; lowered && round < most_rounds; ++round) {
+    lowered = false;
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      for (Eigen::Index j = i; j < x.size(); ++j) {
+        for (const auto& [a, b] : {std::pair{1, 0}, {-1, 0}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}) {
+          if ((b == 0) != (i == j)) continue;
+          const double change =
+              2 * (a * slope[i] + b * slope[j]) + form(i, i) + b * b * form(j, j) + 2 * a * b * form(i, j);
+          if (change >= -1e-9 * least) continue;
+          x[i] += a;
+          x[j] += b;
+          slope += a * form.col(i) + b * form.col(j);
+          least = (x - exact).dot(slope);
+          lowered = true;
+        }
+      }
+      checkpoint(10.0 * static_cast<double>(x.size()));
+    }
+  }
+  return x;
+}
+
+// By how much the loops about handles turn otherwise than in the metric, radians, for rotations that are multiples of a
+// unit and twist the frames least.
+Eigen::VectorXd choose_turning(const HarmonicOneForm& twist, const NodeGraph& nodes, const Eigen::VectorXd& natural,
+                               const Eigen::MatrixXd& loops, double unit) {
+  Eigen::VectorXd exact(loops.cols());
+  Eigen::Index k = 0;
+  for (Eigen::Index p = 0; p < natural.size(); ++p) {
+    if (!nodes.in_tree[p]) exact[k++] = natural[p] / unit;
+  }
+  return unit * (round_by_energy(twist.energy(loops), exact) - exact);
+}
+
+Eigen::VectorXd integrate(const CutSurface& surface, const Eigen::VectorXd& log_scale) {
+  if (surface.frame_tree != nullptr) return surface.frame_tree->integrate(log_scale);
+  return FrameTree(surface.mesh, surface.geometry, surface.cut_graph).integrate(log_scale);
+}
+
+// The better a root, the farther its curvature is from whole turns.
+NodeGraph nodes_of_cuts(const CutSurface& surface, const Curvature& curvature) {
+  return build_node_graph(surface.mesh, surface.cut_graph,
+                          [&](Index v) { return std::abs(std::sin(curvature.at_vertex[v] / 2)); });
+}
+
+// How the metric turns by itself.
+struct MetricConnection {
+  NodeGraph nodes;
+  Eigen::VectorXd node_curvature;  // (nodes)
+  Eigen::VectorXd frames;          // (m)
+  Eigen::VectorXd natural;         // (cuts) rotations, those about handles among them
+
+  MetricConnection(const CutSurface& surface, const Curvature& curvature)
+      : nodes(nodes_of_cuts(surface, curvature)),
+        node_curvature(curvature_of_nodes(surface.mesh, nodes, curvature.at_vertex)),
+        frames(integrate(surface, curvature.log_scale)),
+        natural(read_rotations(surface.mesh, surface.geometry, surface.cut_graph, curvature.log_scale, frames)) {}
+};
+
+}  // namespace
+
+ParallelTransportChoice::ParallelTransportChoice(const CutSurface& surface, const Curvature& curvature, int symmetry)
+    : surface_(surface), symmetry_(symmetry) {
+  if (surface.mesh.genus == 0) return;
+  const MetricConnection metric(surface, curvature);
+  // The holonomy of a flat torus without cones is trivial.
+  const bool flat =
+      surface.mesh.closed() && metric.node_curvature.size() > 0 && metric.node_curvature.cwiseAbs().maxCoeff() == 0;
+  if (symmetry == 0 && !flat) return;
+  const Eigen::MatrixXd loops = loop_changes(metric.nodes);
+  const HarmonicOneForm twist(surface.mesh, surface.geometry, surface.cut_graph);
+  change_ = loops * choose_turning(twist, metric.nodes, metric.natural, loops, 2 * M_PI / (flat ? 1 : symmetry));
+  twist_ = twist.spread(change_);
+}
+
+ParallelTransport ParallelTransportChoice::at(double share, const Curvature& curvature) const {
+  MetricConnection metric(surface_, curvature);
+  ParallelTransport out{
+      std::move(metric.frames), find_rotations(metric.nodes, metric.node_curvature, metric.natural), {}};
+  if (is_twisted()) {
+    out.frames += share * twist_;
+    out.rotation += share * change_;
+  }
+  if (symmetry_ > 0 && share == 1) {
+    for (double& rotation : out.rotation) rotation = angle_of_turns(turns_of(rotation, symmetry_), symmetry_);
+  }
+  out.reduction = impose_transitions(surface_.mesh, surface_.cut_graph, surface_.cut_mesh, metric.nodes,
+                                     metric.node_curvature, out.rotation);
+  return out;
+}
+
+ParallelTransport connection_of_map(const CutSurface& surface, const Curvature& curvature,
+                                    const Eigen::VectorXd& rotation, const Eigen::VectorXcd& position) {
+  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
+  const NodeGraph nodes = nodes_of_cuts(surface, curvature);
+  return {measure_jacobians(mesh, geometry, cut_mesh, position).f_z.array().arg(), rotation,
+          impose_transitions(mesh, cut_graph, cut_mesh, nodes, curvature_of_nodes(mesh, nodes, curvature.at_vertex),
+                             rotation)};
+}
+
+}  // namespace lsgp

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parallel transport of a map's frames across triangles and cuts: the flat connection that it realises.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "cut/cut_mesh.hpp"
+#include "cut/holonomy.hpp"
+#include "cut/transitions.hpp"
+#include "prescription/curvature.hpp"
+
+namespace lsgp {
+
+struct ParallelTransport {
+  Eigen::VectorXd frames;    // (m) turn of every triangle, radians
+  Eigen::VectorXd rotation;  // (cuts) radians
+  Reduction reduction;       // positions under these rotations
+};
+
+// The connection of the prescribed metric, and where a layout admits only some rotations about handles, those that
+// twist the metric's frames least.
+class ParallelTransportChoice {
+ public:
+  ParallelTransportChoice(const CutSurface& surface, const Curvature& curvature, int symmetry);
+
+  // Whether loops about handles turn otherwise than in the metric.
+  bool is_twisted() const { return twist_.size() > 0; }
+  const Eigen::VectorXd& twist() const { return twist_; }  // (m) what that adds to the frames
+
+  // share: of the twist, 1 for the rotations that were chosen.  curvature: that of a metric with the same cones.
+  ParallelTransport at(double share, const Curvature& curvature) const;
+
+ private:
+  const CutSurface surface_;
+  const int symmetry_;
+  Eigen::VectorXd twist_, change_;  // of frames and rotations, empty where none
+};
+
+// The connection that a map without flips realises: its rotations, and the turns of its own triangles as frames.
+ParallelTransport connection_of_map(const CutSurface& surface, const Curvature& curvature,
+                                    const Eigen::VectorXd& rotation, const Eigen::VectorXcd& position);
+
+// The imposed curvature of every node: a vertex' own, the sum along a loop.
+Eigen::VectorXd curvature_of_nodes(const HalfedgeMesh& mesh, const NodeGraph& nodes, const Eigen::VectorXd& at_vertex);
+
+}  // namespace lsgp

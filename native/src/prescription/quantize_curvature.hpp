@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rounds cone curvatures to multiples of a lattice's turn (the paper's section 8).
+#pragma once
+
+#include <Eigen/Core>
+
+#include "prescription/curvature.hpp"
+
+namespace lsgp {
+
+// The cone curvatures, multiples of 2 pi / symmetry, of small predicted distortion: from `wanted` rounded under
+// Gauss-Bonnet, pairs of cones exchange turns while that lowers the area-weighted variance of the log scale. Given
+// angles that are multiples stay. What an angle may be is bounded by the triangles around it.
+// scale: with the cones added, in the same order. Throws SEAMLESS_IMPOSSIBLE.
+Eigen::VectorXd quantize_curvature(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale,
+                                   const Eigen::VectorXd& wanted, int symmetry);
+
+// The multiple of 2 pi / symmetry nearest to an angle, and how many of them it is.
+int turns_of(double angle, int symmetry);
+inline double angle_of_turns(int turns, int symmetry) { return 2 * M_PI * turns / symmetry; }
+
+}  // namespace lsgp

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "prescription/straightness.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "base/checkpoint.hpp"
+#include "base/text.hpp"
+#include "unfold/unfold.hpp"
+
+namespace lsgp {
+
+namespace {
+
+// Gauss-Bonnet of the angles read off a simple polygon holds to rounding; a crossing breaks it by whole turns.
+constexpr double turn_tolerance = 1e-6;
+constexpr double operations_a_pair = 10;  // of segments
+
+// One side of a cut, straight between two node copies.
+struct Segment {
+  Index from, to;  // copies
+};
+
+bool share_end(const Segment& a, const Segment& b) {
+  return a.from == b.from || a.from == b.to || a.to == b.from || a.to == b.to;
+}
+
+double side_of(Complex a, Complex b, Complex p) { return std::imag(std::conj(b - a) * (p - a)); }
+
+// The straightened boundary as a polygon over the node copies' positions.
+class StraightBoundary {
+ public:
+  StraightBoundary(Array<Segment> segments, Eigen::VectorXcd positions)
+      : segments_(std::move(segments)), positions_(std::move(positions)) {}
+
+  const Eigen::VectorXcd& positions() const { return positions_; }
+
+  int count_crossings() const {
+    int total = 0;
+    for (const int crossings : crossings_by_segment()) total += crossings;
+    return total / 2;
+  }
+
+  // Takes the segment with most crossings, and among those crossing it the one with most, and swaps one end of each
+  // so that fewest crossings remain. False where no swap helps.
+  bool swap_worst() {
+    const Array<int> crossings = crossings_by_segment();
+    const auto most = [&](const auto& eligible) {
+      int best = -1;
+      for (int i = 0; i < static_cast<int>(segments_.size()); ++i) {
+        if (crossings[i] > 0 && eligible(i) && (best < 0 || crossings[i] > crossings[best])) best = i;
+      }
+      return best;
+    };
+    const int first = most([](int) { return true; });
+    if (first < 0) return false;
+    const int second = most([&](int i) { return i != first && cross(segments_[first], segments_[i]); });
+    const Segment a = segments_[first], b = segments_[second];
+    int fewest = count_crossings();
+    std::pair<Index, Index> chosen{none, none};
+    for (const auto& [x, y] : {std::pair{a.from, b.from}, {a.from, b.to}, {a.to, b.from}, {a.to, b.to}}) {
+      std::swap(positions_[x], positions_[y]);
+      const int remaining = count_crossings();
+      if (remaining < fewest) {
+        fewest = remaining;
+        chosen = {x, y};
+      }
+      std::swap(positions_[x], positions_[y]);
+    }
+    if (chosen.first == none) return false;
+    std::swap(positions_[chosen.first], positions_[chosen.second]);
+    return true;
+  }
+
+ private:
+  bool cross(const Segment& a, const Segment& b) const {
+    if (share_end(a, b)) return false;
+    const Complex p = positions_[a.from], q = positions_[a.to], r = positions_[b.from], s = positions_[b.to];
+    return side_of(p, q, r) * side_of(p, q, s) < 0 && side_of(r, s, p) * side_of(r, s, q) < 0;
+  }
+
+  Array<int> crossings_by_segment() const {
+    Array<int> crossings(segments_.size(), 0);
+    for (std::size_t i = 0; i < segments_.size(); ++i) {
+      for (std::size_t j = i + 1; j < segments_.size(); ++j) {
+        if (!cross(segments_[i], segments_[j])) continue;
+        ++crossings[i];
+        ++crossings[j];
+      }
+    }
+    checkpoint(operations_a_pair * static_cast<double>(segments_.size() * segments_.size()));
+    return crossings;
+  }
+
+  Array<Segment> segments_;
+  Eigen::VectorXcd positions_;  // (copies) those off the nodes stay where they were
+};
+
+// Copies inside a cut lie at their share of its length between the two node copies of their side.
+struct StraightSides {
+  Reduction reduction;
+  Array<Segment> segments;  // left and right side of every cut
+};
+
+StraightSides straighten_sides(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
+                               const CutMesh& cut_mesh) {
+  struct Place {
+    Index from = none, to = none;
+    double share = 0;
+  };
+  Array<Place> place(cut_mesh.copy_count());
+  StraightSides out;
+  for (const Cut& cut : cut_graph.cuts) {
+    const Sisters tail = origin_sisters(mesh, cut_mesh, cut.halfedges.front());
+    const Sisters head = target_sisters(mesh, cut_mesh, cut.halfedges.back());
+    out.segments.push_back({tail.left, head.left});
+    out.segments.push_back({tail.right, head.right});
+    double length = 0, walked = 0;
+    for (const Index h : cut.halfedges) length += geometry.length[h];
+    for (std::size_t i = 0; i + 1 < cut.halfedges.size(); ++i) {
+      walked += geometry.length[cut.halfedges[i]];
+      const Sisters here = target_sisters(mesh, cut_mesh, cut.halfedges[i]);
+      place[here.left] = {tail.left, head.left, walked / length};
+      place[here.right] = {tail.right, head.right, walked / length};
+    }
+  }
+  Array<Index> unknown(cut_mesh.copy_count(), none);
+  const Index origin = out.segments.front().from;
+  for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
+    if (place[copy].from == none && copy != origin) unknown[copy] = out.reduction.unknown_count++;
+  }
+  out.reduction.begin.assign(1, 0);
+  for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
+    const auto push = [&](Index of, double share) {
+      if (unknown[of] != none && share != 0) out.reduction.terms.push_back({unknown[of], share});
+    };
+    const Place& at = place[copy];
+    if (at.from == none) {
+      push(copy, 1);
+    } else if (at.from == at.to) {
+      push(at.from, 1);
+    } else {
+      push(at.from, 1 - at.share);
+      push(at.to, at.share);
+    }
+    out.reduction.begin.push_back(static_cast<Index>(out.reduction.terms.size()));
+  }
+  return out;
+}
+
+// The angle of a node's sector between the two straight cuts that bound it, in (0, 2 pi].
+double read_angle(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh,
+                  const Eigen::VectorXcd& position, Index copy, Index opened_by, Index closed_by) {
+  const auto far_end = [&](Index h, bool on_left) {
+    const Cut& cut = cut_graph.cuts[cut_graph.cut_of[h]];
+    const bool forward = cut_graph.runs_forward[h];
+    const Sisters end = forward ? target_sisters(mesh, cut_mesh, cut.halfedges.back())
+                                : origin_sisters(mesh, cut_mesh, cut.halfedges.front());
+    return position[forward == on_left ? end.left : end.right];
+  };
+  const Complex right = far_end(opened_by, true) - position[copy], left = far_end(closed_by, false) - position[copy];
+  const double angle = std::arg(left * std::conj(right));
+  return angle > 0 ? angle : angle + 2 * M_PI;
+}
+
+}  // namespace
+
+StraightenedLayout straighten(const CutSurface& surface) {
+  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
+  StraightSides sides = straighten_sides(mesh, geometry, cut_graph, cut_mesh);
+  StraightBoundary boundary(std::move(sides.segments), unfold_spectral(surface, sides.reduction));
+
+  StraightenedLayout layout;
+  layout.crossings = boundary.count_crossings();
+  // Each swap lowers the number of crossings.
+  while (boundary.count_crossings() > 0 && boundary.swap_worst()) ++layout.swaps;
+  const int left_over = boundary.count_crossings();
+
+  layout.curvature = Eigen::VectorXd::Zero(mesh.vertex_count());
+  Array<char> read(mesh.vertex_count(), 0);
+  for (const Cut& cut : cut_graph.cuts) {
+    for (const Index v : {cut.tail, cut.head}) {
+      if (read[v]) continue;
+      read[v] = 1;
+      const auto all = sectors(mesh, cut_graph, cut_mesh, v);
+      layout.curvature[v] = 2 * M_PI;
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        layout.curvature[v] -= read_angle(mesh, cut_graph, cut_mesh, boundary.positions(), all[i].copy,
+                                          all[i].opened_by, all[(i + 1) % all.size()].opened_by);
+      }
+    }
+  }
+  const double total = layout.curvature.sum(), required = 2 * M_PI * mesh.euler;
+  if (left_over > 0) {
+    layout.failure = concat(count(left_over, "pair of straight cuts crosses", "pairs of straight cuts cross"),
+                            " even after ", count(layout.swaps, "swap", "swaps"));
+  } else if (std::abs(total - required) > turn_tolerance) {
+    layout.failure = concat("the angles between the straight cuts leave a curvature of ", total / M_PI,
+                            " pi where the surface requires ", required / M_PI, " pi");
+  }
+  return layout;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cone angles read off a layout with straight cuts (the paper's section 5).
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "cut/cut_mesh.hpp"
+#include "mesh/geometry.hpp"
+
+namespace lsgp {
+
+struct StraightenedLayout {
+  Eigen::VectorXd curvature;  // (n) read at every node of the cut graph, 0 elsewhere
+  std::string failure;        // why the angles cannot be used, empty where they can
+  int crossings = 0;          // between straight cuts, before any swap
+  int swaps = 0;              // of cone positions that removed crossings
+};
+
+// Lays the opened surface, closed before, out with every side of every cut straight and least conformal distortion,
+// resolves crossing cuts by swapping the positions of their ends (the paper's Figure 6), and reads each node's angle
+// between its cuts.
+StraightenedLayout straighten(const CutSurface& surface);
+
+}  // namespace lsgp

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "repair/low_stretch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "unfold/distortion.hpp"
+#include "unfold/unfold.hpp"
+
+namespace lsgp {
+
+namespace {
+
+using Kind = DistortionEnergy::Kind;
+
+constexpr int most_steps = 30;
+constexpr double least_decrease = 1e-5;  // of the energy in a step
+constexpr double least_weight = 1e-3;    // of the mean, so that no vertex is without any
+
+}  // namespace
+
+Eigen::VectorXd importance_of_triangles(const HalfedgeMesh& mesh, const Geometry& geometry,
+                                        const Eigen::VectorXd& importance) {
+  Eigen::VectorXd out = Eigen::VectorXd::Ones(mesh.triangle_count());
+  if (importance.size() == 0) return out;
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    out[f] = 0;
+    for (int c = 0; c < 3; ++c) out[f] += importance[mesh.triangles(f, c)] / 3;
+  }
+  const double mean = out.dot(geometry.area) / geometry.total_area;
+  if (!(mean > 0)) return Eigen::VectorXd::Ones(out.size());
+  return (out / mean).cwiseMax(least_weight);
+}
+
+Eigen::VectorXd scale_at_rest(const CutSurface& surface, const Curvature& curvature, double stretch,
+                              const Eigen::VectorXcd& position) {
+  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
+  const Eigen::VectorXd rest = (1 - stretch) * curvature.log_scale;
+  const Jacobians jacobians = measure_jacobians(mesh, geometry, cut_mesh, position);
+  double area = 0, rest_area = 0;
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    double mean = 0;
+    for (int c = 0; c < 3; ++c) mean += rest[mesh.triangles(f, c)] / 3;
+    area += geometry.area[f] * (std::norm(jacobians.f_z[f]) - std::norm(jacobians.f_zbar[f]));
+    rest_area += geometry.area[f] * std::exp(2 * mean);
+  }
+  return rest.array() + std::log(area / rest_area) / 2;
+}
+
+Eigen::VectorXcd lower_stretch(const CutSurface& surface, const ParallelTransport& connection,
+                               const Curvature& curvature, double stretch, const Array<char>& fixed,
+                               const Eigen::VectorXd& importance, const StepHook& before_step,
+                               const Eigen::VectorXcd& position) {
+  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
+  const Eigen::VectorXd rest = scale_at_rest(surface, curvature, stretch, position);
+  Eigen::VectorXcd best = position;
+  // One linear step takes a map without fixed vertices almost there: frames stay, lengths are those wanted.
+  if (std::find(fixed.begin(), fixed.end(), 1) == fixed.end()) {
+    before_step();
+    Eigen::VectorXcd fitted =
+        PoissonSystem(surface, connection.reduction).fit(prescribed_jacobians(mesh, rest, connection.frames));
+    if (fitted.allFinite() &&
+        check_map(mesh, at_corners(cut_mesh, fitted), curvature.at_vertex, curvature.is_free).defects() == 0) {
+      best = std::move(fitted);
+    }
+  }
+  NewtonMinimizer relaxation(surface, rest, connection.frames, free_all(mesh, cut_mesh, connection.reduction, fixed),
+                             before_step, best);
+  relaxation.weigh(importance_of_triangles(mesh, geometry, importance));
+  relaxation.smooth(Kind::symmetric_dirichlet, most_steps, least_decrease);
+  return best;
+}
+
+}  // namespace lsgp

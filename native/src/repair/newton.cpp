@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "repair/newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "lsgp/errors.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr double smallest_epsilon = 1e-3;
+constexpr double ridge = 1e-9;         // of the diagonal
+constexpr double barrier_share = 0.9;  // of the step at which the first triangle would collapse
+
+}  // namespace
+
+DegreesOfFreedom free_vertices(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Eigen::VectorXcd& motion,
+                               const Array<char>& marked) {
+  DegreesOfFreedom out;
+  Array<Index> unknown(mesh.vertex_count(), none);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (marked[v]) unknown[v] = out.displacement.unknown_count++;
+  }
+  out.displacement.begin.assign(1, 0);
+  for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
+    const Index of_vertex = unknown[cut_mesh.source[copy]];
+    if (of_vertex != none) out.displacement.terms.push_back({of_vertex, motion[copy]});
+    out.displacement.begin.push_back(static_cast<Index>(out.displacement.terms.size()));
+  }
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    const auto moves = [&](int c) { return unknown[mesh.triangles(f, c)] != none; };
+    if (moves(0) || moves(1) || moves(2)) out.triangles.push_back(f);
+  }
+  return out;
+}
+
+DegreesOfFreedom free_all(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Reduction& reduction,
+                          const Array<char>& fixed) {
+  Array<Index> row(reduction.unknown_count, 0);
+  for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
+    if (!fixed[cut_mesh.source[copy]]) continue;
+    reduction.for_each_term(copy, [&](const Term& term) { row[term.unknown] = none; });
+  }
+  DegreesOfFreedom out;
+  for (Index& unknown : row) {
+    if (unknown != none) unknown = out.displacement.unknown_count++;
+  }
+  out.displacement.begin.assign(1, 0);
+  for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
+    reduction.for_each_term(copy, [&](const Term& term) {
+      if (row[term.unknown] != none) out.displacement.terms.push_back({row[term.unknown], term.coefficient});
+    });
+    out.displacement.begin.push_back(static_cast<Index>(out.displacement.terms.size()));
+  }
+  out.triangles.resize(mesh.triangle_count());
+  std::iota(out.triangles.begin(), out.triangles.end(), 0);
+  return out;
+}
+
+Array<char> mark_around(const HalfedgeMesh& mesh, const Array<Index>& triangles, int rings) {
+  Array<char> inside(mesh.vertex_count(), 0);
+  Array<Index> front;
+  const auto reach = [&](Index v, Array<Index>& reached) {
+    if (inside[v]) return;
+    inside[v] = 1;
+    reached.push_back(v);
+  };
+  for (const Index f : triangles) {
+    for (int c = 0; c < 3; ++c) reach(mesh.triangles(f, c), front);
+  }
+  for (int ring = 1; ring < rings; ++ring) {
+    Array<Index> reached;
+    for (const Index v : front) {
+      mesh.for_each_outgoing(v, [&](Index h) {
+        reach(mesh.target(h), reached);
+        reach(mesh.origin(prev(h)), reached);
+      });
+    }
+    front = std::move(reached);
+  }
+  return inside;
+}
+
+NewtonMinimizer::NewtonMinimizer(const CutSurface& surface, const Eigen::VectorXd& log_scale,
+                                 const Eigen::VectorXd& frames, DegreesOfFreedom freedom, StepHook before_step,
+                                 Eigen::VectorXcd& position)
+    : displacement_(std::move(freedom.displacement)),
+      before_step_(std::move(before_step)),
+      position_(position),
+      hessian_(2 * displacement_.unknown_count) {
+  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
+  shapes_.reserve(freedom.triangles.size());
+  for (const Index f : freedom.triangles) {
+    const double scale = std::exp(
+        (log_scale[mesh.triangles(f, 0)] + log_scale[mesh.triangles(f, 1)] + log_scale[mesh.triangles(f, 2)]) / 3);
+    Shape shape;
+    shape.triangle = f;
+    shape.weight = geometry.area[f];
+    shape.begin = static_cast<Index>(slopes_.size());
+    for (int c = 0; c < 3; ++c) {
+      // f_z = sum g_j z_j and f_zbar = sum h_j z_j with g = -i conj(e) / (4 A), h = i e / (4 A), e opposite corner j;
+      // a turn of f_zbar changes no energy.
+      const Complex edge = edge_vector(geometry, next(3 * f + c)) / (4 * geometry.area[f] * scale);
+      shape.g[c] = std::polar(1.0, -frames[f]) * Complex(0, -1) * std::conj(edge);
+      shape.h[c] = Complex(0, 1) * edge;
+      shape.copy[c] = cut_mesh.copy_of_corner[3 * f + c];
+      displacement_.for_each_term(shape.copy[c], [&](const Term& term) {
+        add_slope(shape.begin, {term.unknown, shape.g[c] * term.coefficient, shape.h[c] * term.coefficient});
+      });
+    }
+    shape.end = static_cast<Index>(slopes_.size());
+    shapes_.push_back(shape);
+  }
+}
+
+void NewtonMinimizer::weigh(const Eigen::VectorXd& factors) {
+  for (Shape& shape : shapes_) shape.weight *= factors[shape.triangle];
+}
+
+bool NewtonMinimizer::unfold(DistortionEnergy::Kind kind, int most_steps) {
+  DistortionEnergy energy{kind};
+  double lowest = smallest_determinant(energy);
+  energy.epsilon = std::max(smallest_epsilon, -lowest);
+  for (int step = 0; step < most_steps && !(lowest > 0); ++step) {
+    before_step_();
+    const double before = total(energy);
+    const auto direction = newton_direction(energy);
+    double after = before;
+    if (!direction || !search(energy, *direction, 1, before, after)) return false;
+    lowest = smallest_determinant(energy);
+    // Garanzha et al. 2021, equation (7): epsilon falls as fast as the energy does, but here at least by half.
+    const double decrease = std::max(0.5, 1 - after / before);
+    const double mu = (1 - decrease) * foldover_chi(lowest, energy.epsilon);
+    if (lowest < mu) energy.epsilon = std::max(2 * std::sqrt(mu * (mu - lowest)), std::numeric_limits<double>::min());
+  }
+  return lowest > 0;
+}
+
+void NewtonMinimizer::smooth(DistortionEnergy::Kind barrier, int steps, double least_share) {
+  const DistortionEnergy energy{barrier};
+  for (int step = 0; step < steps; ++step) {
+    before_step_();
+    const double before = total(energy);
+    const auto direction = newton_direction(energy);
+    if (!direction) return;
+    double after = before;
+    if (!search(energy, *direction, std::min(1.0, barrier_share * collapse_step(*direction)), before, after)) return;
+    if (before - after < least_share * before) return;
+  }
+}
+
+void NewtonMinimizer::add_slope(Index begin, const Slope& slope) {
+  for (Eigen::Index i = begin; i < ssize(slopes_); ++i) {
+    if (slopes_[i].unknown != slope.unknown) continue;
+    slopes_[i].f_z += slope.f_z;
+    slopes_[i].f_zbar += slope.f_zbar;
+    return;
+  }
+  slopes_.push_back(slope);
+}
+
+NewtonMinimizer::Jacobian NewtonMinimizer::jacobian(const Shape& shape) const {
+  Jacobian out{0, 0};
+  for (int c = 0; c < 3; ++c) {
+    out.f_z += shape.g[c] * position_[shape.copy[c]];
+    out.f_zbar += shape.h[c] * position_[shape.copy[c]];
+  }
+  return out;
+}
+
+NewtonMinimizer::Jacobian NewtonMinimizer::change(const Shape& shape, const Eigen::VectorXcd& direction) const {
+  Jacobian out{0, 0};
+  for (Index i = shape.begin; i < shape.end; ++i) {
+    out.f_z += slopes_[i].f_z * direction[slopes_[i].unknown];
+    out.f_zbar += slopes_[i].f_zbar * direction[slopes_[i].unknown];
+  }
+  return out;
+}
+
+double NewtonMinimizer::smallest_determinant(const DistortionEnergy& energy) const {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Shape& shape : shapes_) {
+    const Jacobian at = jacobian(shape);
+    lowest = std::min(lowest, energy.determinant(at.f_z, at.f_zbar));
+  }
+  return lowest;
+}
+
+double NewtonMinimizer::total(const DistortionEnergy& energy) const {
+  double sum = 0;
+  for (const Shape& shape : shapes_) {
+    const Jacobian at = jacobian(shape);
+    sum += shape.weight * energy.value(at.f_z, at.f_zbar);
+  }
+  return sum;
+}
+
+std::optional<Eigen::VectorXcd> NewtonMinimizer::newton_direction(const DistortionEnergy& energy) {
+  const Index count = displacement_.unknown_count;
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(2 * count);
+  Array<Eigen::Matrix<double, 4, 2>> maps;
+  const auto add_up = [&](const auto& add) {
+    for (const Shape& shape : shapes_) {
+      const Jacobian at = jacobian(shape);
+      const EnergyExpansion expansion = energy.expand(at.f_z, at.f_zbar);
+      // Real form of (f_z, f_zbar) as functions of each unknown.
+      maps.clear();
+      for (Index i = shape.begin; i < shape.end; ++i) {
+        const Complex a = slopes_[i].f_z, b = slopes_[i].f_zbar;
+        maps.emplace_back();
+        maps.back() << a.real(), -a.imag(), a.imag(), a.real(), b.real(), -b.imag(), b.imag(), b.real();
+      }
+      for (Index i = 0; i < ssize(maps); ++i) {
+        const int row = 2 * slopes_[shape.begin + i].unknown;
+        gradient.segment<2>(row) += shape.weight * maps[i].transpose() * expansion.gradient;
+        const Eigen::Matrix<double, 2, 4> left = shape.weight * maps[i].transpose() * expansion.hessian;
+        for (Index j = 0; j <= i; ++j) {
+          const int column = 2 * slopes_[shape.begin + j].unknown;
+          const Eigen::Matrix2d bend = left * maps[j];
+          if (i == j) {
+            add(row, row, (1 + ridge) * bend(0, 0));
+            add(row + 1, row, bend(1, 0));
+            add(row + 1, row + 1, (1 + ridge) * bend(1, 1));
+          } else {
+            for (int k = 0; k < 4; ++k) add(row + k / 2, column + k % 2, bend(k / 2, k % 2));
+          }
+        }
+      }
+    }
+  };
+  Eigen::VectorXd step;
+  try {
+    const Eigen::SparseMatrix<double>& hessian = hessian_.build(add_up);
+    if (factor_)
+      factor_->refactor(hessian);
+    else
+      factor_.emplace(hessian);
+    step = factor_->solve(Eigen::VectorXd(-gradient));
+  } catch (const Error& error) {
+    if (error.code() != Code::solver_failed) throw;
+    return std::nullopt;
+  }
+  Eigen::VectorXcd out(count);
+  for (Index i = 0; i < count; ++i) out[i] = {step[2 * i], step[2 * i + 1]};
+  return out;
+}
+
+bool NewtonMinimizer::search(const DistortionEnergy& energy, const Eigen::VectorXcd& direction, double longest,
+                             double before, double& after) {
+  const Eigen::VectorXcd start = position_, displaced = expand(displacement_, direction);
+  for (double length = longest; length > 1e-8; length /= 2) {
+    position_ = start + length * displaced;
+    after = total(energy);
+    if (after < before) return true;
+  }
+  position_ = start;
+  after = before;
+  return false;
+}
+
+double NewtonMinimizer::collapse_step(const Eigen::VectorXcd& direction) const {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const Shape& shape : shapes_) {
+    const Jacobian at = jacobian(shape), moved = change(shape, direction);
+    const double a = std::norm(moved.f_z) - std::norm(moved.f_zbar);
+    const double b = 2 * (std::real(std::conj(at.f_z) * moved.f_z) - std::real(std::conj(at.f_zbar) * moved.f_zbar));
+    const double c = std::norm(at.f_z) - std::norm(at.f_zbar), discriminant = b * b - 4 * a * c;
+    if (discriminant < 0) continue;
+    const double q = -(b + std::copysign(std::sqrt(discriminant), b)) / 2;
+    for (const double root : {q / a, c / q}) {
+      if (root > 0) shortest = std::min(shortest, root);
+    }
+  }
+  return shortest;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Newton's method on distortion energies of a map, with all transitions fixed.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+
+#include "base/array.hpp"
+#include "cut/cut_mesh.hpp"
+#include "cut/transitions.hpp"
+#include "mesh/geometry.hpp"
+#include "solvers/cholesky.hpp"
+#include "solvers/sparse_assembly.hpp"
+#include "systems/distortion_energy.hpp"
+
+namespace lsgp {
+
+// What may move: displacements of all copies as functions of a few unknowns, and the triangles that move.
+struct DegreesOfFreedom {
+  Reduction displacement;
+  Array<Index> triangles;
+};
+
+// The vertices marked, (n); translations stay.  motion: (copies) as from motion_of_copies.
+DegreesOfFreedom free_vertices(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Eigen::VectorXcd& motion,
+                               const Array<char>& marked);
+
+// All positions and translations but those that vertices marked as fixed, (n), depend on.
+DegreesOfFreedom free_all(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Reduction& reduction,
+                          const Array<char>& fixed);
+
+// The vertices within some rings of triangles, those of the triangles themselves being the first ring; (n).
+Array<char> mark_around(const HalfedgeMesh& mesh, const Array<Index>& triangles, int rings);
+
+// Called before every step of Newton's method; what it throws ends the method.
+using StepHook = std::function<void()>;
+
+class NewtonMinimizer {
+ public:
+  // Rest shapes are the surface's triangles scaled by e^{log_scale}, (n), and turned by frames, (m) radians.
+  // Every triangle weighs as much as its area.  position: (copies) u + iv, which is moved.
+  NewtonMinimizer(const CutSurface& surface, const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames,
+                  DegreesOfFreedom freedom, StepHook before_step, Eigen::VectorXcd& position);
+
+  // Multiplies the weights of triangles, (m).
+  void weigh(const Eigen::VectorXd& factors);
+
+  // Newton steps on a foldover-free energy (Garanzha et al. 2021) until every moving triangle is upright, and with the
+  // framed one within 90 degrees of its frame. Returns whether that was reached.
+  bool unfold(DistortionEnergy::Kind kind, int most_steps);
+
+  // Newton steps on a barrier from a map without flips; none arises on the way. At most `steps`, fewer where the
+  // energy falls by less than a share of itself or where a step cannot be computed.
+  void smooth(DistortionEnergy::Kind barrier, int steps, double least_share = 0);
+
+ private:
+  struct Shape {
+    Complex g[3], h[3];
+    Index triangle, copy[3];
+    Index begin, end;  // of its slopes
+    double weight;
+  };
+
+  // How f_z and f_zbar of a triangle change with one unknown.
+  struct Slope {
+    Index unknown;
+    Complex f_z, f_zbar;
+  };
+
+  void add_slope(Index begin, const Slope& slope);
+
+  struct Jacobian {
+    Complex f_z, f_zbar;
+  };
+  Jacobian jacobian(const Shape& shape) const;
+  Jacobian change(const Shape& shape, const Eigen::VectorXcd& direction) const;
+  double smallest_determinant(const DistortionEnergy& energy) const;
+
+  double total(const DistortionEnergy& energy) const;
+  // None where the Hessian cannot be factored.
+  std::optional<Eigen::VectorXcd> newton_direction(const DistortionEnergy& energy);
+
+  // Halves the step until the energy falls; leaves the positions as they were where it never does.
+  bool search(const DistortionEnergy& energy, const Eigen::VectorXcd& direction, double longest, double before,
+              double& after);
+
+  // The step along a direction at which the first triangle has no area any more.
+  double collapse_step(const Eigen::VectorXcd& direction) const;
+
+  const Reduction displacement_;
+  const StepHook before_step_;
+  Eigen::VectorXcd& position_;
+  Array<Shape> shapes_;
+  Array<Slope> slopes_;
+  RepeatedAssembly<double> hessian_;
+  std::optional<Cholesky<double>> factor_;
+};
+
+}  // namespace lsgp

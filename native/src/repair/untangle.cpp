@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "repair/untangle.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "cut/transitions.hpp"
+#include "repair/newton.hpp"
+#include "unfold/distortion.hpp"
+#include "unfold/unfold.hpp"
+
+namespace lsgp {
+
+namespace {
+
+using Kind = DistortionEnergy::Kind;
+
+constexpr std::array<int, 3> neighbourhoods{2, 5, 10};  // rings of vertices around flipped triangles
+constexpr double hopeless_share = 0.005;                // of the triangles flipped: not a place is tangled but the map
+// Of Newton's method, which takes a few where little is wrong, and of smoothing afterwards.
+struct Steps {
+  int unfolding, smoothing;
+};
+constexpr Steps local_steps{30, 3}, global_steps{25, 10};
+constexpr double least_decrease = 1e-3;  // of the energy in a step of smoothing
+
+// How a map is turned as a whole against frames.
+double turn_against(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+                    const Eigen::VectorXd& frames, const Eigen::VectorXcd& position) {
+  const Jacobians jacobians = measure_jacobians(mesh, geometry, cut_mesh, position);
+  Complex along = 0;
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    along += geometry.area[f] * jacobians.f_z[f] * std::polar(1.0, -frames[f]);
+  }
+  return std::arg(along);
+}
+
+// Those that are flipped, and those around vertices whose angles are wrong.
+Array<Index> defective_triangles(const HalfedgeMesh& mesh, const Validity& validity) {
+  Array<Index> out = validity.flipped;
+  for (const Index v : validity.wrong_angle_sums) mesh.for_each_outgoing(v, [&](Index h) { out.push_back(h / 3); });
+  return out;
+}
+
+}  // namespace
+
+Eigen::VectorXcd untangle(const CutSurface& surface, const ParallelTransport& connection, const Curvature& curvature,
+                          const Array<char>& fixed, Effort effort, Kind first, const StepHook& before_step,
+                          const Eigen::VectorXcd& position) {
+  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
+  const Eigen::VectorXcd motion = motion_of_copies(mesh, cut_graph, cut_mesh, connection.rotation);
+  const auto check = [&, &mesh = mesh, &cut_mesh = cut_mesh](const Eigen::VectorXcd& tried) {
+    return check_map(mesh, at_corners(cut_mesh, tried), curvature.at_vertex, curvature.is_free);
+  };
+  Eigen::VectorXcd best = position;
+  Validity left = check(best);
+  const Eigen::VectorXd frames =
+      connection.frames.array() + turn_against(mesh, geometry, cut_mesh, connection.frames, position);
+  const auto try_out = [&](DegreesOfFreedom freedom, Kind energy, const Steps& most) {
+    if (left.defects() == 0 || freedom.displacement.unknown_count == 0) return;
+    Eigen::VectorXcd tried = best;
+    NewtonMinimizer relaxation(surface, curvature.log_scale, frames, std::move(freedom), before_step, tried);
+    if (relaxation.unfold(energy, most.unfolding)) {
+      relaxation.smooth(Kind::conformal_barrier, most.smoothing, least_decrease);
+    }
+    Validity after = check(tried);
+    if (after.defects() >= left.defects()) return;
+    left = std::move(after);
+    best = std::move(tried);
+  };
+  const auto free_around = [&, &mesh = mesh, &cut_mesh = cut_mesh](int rings) {
+    Array<char> marked = mark_around(mesh, defective_triangles(mesh, left), rings);
+    for (Index v = 0; v < mesh.vertex_count(); ++v) {
+      const bool is_cone = mesh.loop_of_vertex[v] == none && curvature.at_vertex[v] != 0;
+      if (fixed[v] || is_cone) marked[v] = 0;
+    }
+    return free_vertices(mesh, cut_mesh, motion, marked);
+  };
+  const Kind second = first == Kind::foldover_free ? Kind::framed_foldover_free : Kind::foldover_free;
+  if (static_cast<double>(left.flipped.size()) <= hopeless_share * mesh.triangle_count()) {
+    for (const int rings : neighbourhoods) {
+      for (const Kind energy : {first, second}) try_out(free_around(rings), energy, local_steps);
+    }
+  }
+  if (effort == Effort::local) return best;
+  // The framed energy knows the angles; the plain one gets out where no map keeps to the frames.
+  for (const Kind energy : {Kind::framed_foldover_free, Kind::foldover_free}) {
+    try_out(free_all(mesh, cut_mesh, connection.reduction, fixed), energy, global_steps);
+  }
+  return best;
+}
+
+}  // namespace lsgp

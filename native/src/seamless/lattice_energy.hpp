@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The displacement of least Dirichlet energy that brings a layout to given lattice points, and its cost.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "cut/cut_mesh.hpp"
+#include "cut/transitions.hpp"
+
+namespace lsgp {
+
+class LatticeEnergy {
+ public:
+  virtual ~LatticeEnergy() = default;
+  // The Schur complement of the Dirichlet form on the integers, (d, d), Hermitian: change^H schur change is the energy.
+  const Eigen::MatrixXcd& schur() const { return schur_; }
+  // The displacement of all copies, (copies), where the integers change by that much, (d).
+  virtual Eigen::VectorXcd displacement(const Eigen::VectorXcd& change) const = 0;
+
+ protected:
+  Eigen::MatrixXcd schur_;
+};
+
+// One complex factorization and a back-substitution for every integer.  lattice has to outlive the response.
+std::unique_ptr<LatticeEnergy> sparse_response(const CutSurface& surface, const LatticeReduction& lattice);
+// On a factor that is there already, of cuts that those of the cut mesh are among: dense problems alone. All but the
+// cut mesh have to outlive the response.
+std::unique_ptr<LatticeEnergy> response_on_cut(const HalfedgeMesh& mesh, const CutMesh& cut_mesh,
+                                               const CutFactor& factor, const LatticeReduction& lattice);
+
+}  // namespace lsgp

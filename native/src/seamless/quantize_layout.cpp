@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "seamless/quantize_layout.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "base/memory.hpp"
+#include "cut/cone_triangulation.hpp"
+#include "plane/layout.hpp"
+#include "prescription/parallel_transport.hpp"
+#include "prescription/quantize_curvature.hpp"
+#include "repair/low_stretch.hpp"
+#include "repair/newton.hpp"
+#include "repair/untangle.hpp"
+#include "systems/stiffness.hpp"
+#include "unfold/unfold.hpp"
+
+namespace lsgp {
+
+namespace {
+
+// Matrices of the lattice's unknowns at once: the response, its restriction, reduced bases and moves along them.
+constexpr double lattice_blocks = 8;
+// Choices of lattice points.
+constexpr int tried_angles = 16;          // of the layout, within one turn of the lattice
+constexpr int few_angles = 4;             // of those that are searched from on an automatic grid
+constexpr std::size_t tried_targets = 4;  // that are worth a repair
+constexpr std::size_t few_targets = 2;    // that are worth following, and all that are tried on an automatic grid
+// Following them.
+constexpr int most_moves = 20;
+constexpr double shortest_step = 0.01;  // of the way
+// Smoothing by the symmetric Dirichlet energy, 1 for an isometry.
+constexpr double stretched_energy = 1.5;  // of a triangle, or of a layout beside its start, that calls for it
+constexpr int smoothed_rings = 4;         // around stretched triangles
+constexpr int smoothing_steps = 4;
+constexpr int relaxing_steps = 30;
+constexpr double poor_energy = 1.5;  // of a start that is smoothed first
+constexpr int poor_steps = 20;
+constexpr double least_decrease = 1e-3;  // of the energy, for which a further step is taken
+// Automatic grids.
+constexpr double mendable_share = 0.1;  // of the triangles, stretched, that are smoothed
+constexpr double easy_share = 2e-4;     // of the triangles, flipped, that are repaired
+
+Array<int> turns_of_cuts(const Eigen::VectorXd& rotation, int symmetry) {
+  Array<int> out;
+  for (const double r : rotation) out.push_back(turns_of(r, symmetry));
+  return out;
+}
+
+// Roots from which all cones come out on the lattice: the nearer 1 - e^{i curvature} is to a unit the better.
+double rank_of_root(double curvature) {
+  const double gap = std::abs(1.0 - std::polar(1.0, curvature));
+  return gap < 1e-6 ? 0 : 1 / (1 + gap);
+}
+
+}  // namespace
+
+double symmetric_dirichlet_energy(const Geometry& geometry, const Jacobians& jacobians) {
+  double grown = 0, shrunk = 0;
+  for (Eigen::Index f = 0; f < geometry.area.size(); ++f) {
+    const double p = std::norm(jacobians.f_z[f]), q = std::norm(jacobians.f_zbar[f]);
+    grown += geometry.area[f] * (p + q);
+    shrunk += geometry.area[f] * (p + q) / ((p - q) * (p - q));
+  }
+  return std::sqrt(grown * shrunk) / geometry.area.sum();
+}
+
+LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, const ComponentMap& map, const PointLattice& lattice,
+                                 bool parity, const Array<Index>& relaxed, StepHook before_step)
+    : mesh_(system.mesh()),
+      geometry_(system.geometry()),
+      cut_graph_(map.cut_graph),
+      cut_mesh_(map.cut_mesh),
+      curvature_(map.curvature),
+      lattice_(lattice),
+      before_step_(std::move(before_step)),
+      rotation_(*map.rotation),
+      relaxed_(!relaxed.empty()) {
+  // With relaxed cones the root leaves the lattice too: best it is one of a pair that is too close.
+  const NodeGraph nodes = build_node_graph(mesh_, map.cut_graph, [&](Index v) {
+    return !relaxed.empty() && v == relaxed.front() ? 1 : rank_of_root(map.curvature.at_vertex[v]);
+  });
+  reduction_ = impose_on_lattice(mesh_, map.cut_graph, map.cut_mesh, nodes,
+                                 curvature_of_nodes(mesh_, nodes, map.curvature.at_vertex),
+                                 turns_of_cuts(rotation_, lattice.symmetry()), lattice, parity, relaxed);
+  motion_of_copies_ = motion_of_copies(mesh_, map.cut_graph, map.cut_mesh, rotation_);
+  set_start(map);
+  integers_ = integers_of(start_);
+
+  const double integers = static_cast<double>(integers_.size());
+  require_memory(lattice_blocks * sizeof(Complex) * integers * integers, fewer_cones);
+  if (const CutFactor* factor = system.stiff_factor(map.cones, map.cut_graph)) {
+    response_ = response_on_cut(mesh_, cut_mesh_, *factor, reduction_);
+  } else {
+    const Geometry stiffened = stiffen_around(mesh_, geometry_, map.cones);
+    response_ = sparse_response({mesh_, stiffened, cut_graph_, cut_mesh_}, reduction_);
+  }
+  const Eigen::MatrixXcd restricted = reduction_.basis.adjoint() * response_->schur() * reduction_.basis;
+  search_.emplace((restricted + restricted.adjoint()) / 2, moving_triangles(map, relaxed), lattice);
+}
+
+void LayoutQuantizer::set_start(const ComponentMap& map) {
+  start_ = std::sqrt(geometry_.total_area / map.uv_area) * map.position * std::conj(upright(map.position));
+  energy_ = measure_energy(start_);
+  if (energy_ > poor_energy) {
+    DegreesOfFreedom all{reduction_.reduction, Array<Index>(mesh_.triangle_count())};
+    std::iota(all.triangles.begin(), all.triangles.end(), 0);
+    NewtonMinimizer(surface(), Eigen::VectorXd::Zero(mesh_.vertex_count()),
+                    Eigen::VectorXd::Zero(mesh_.triangle_count()), std::move(all), before_step_, start_)
+        .smooth(DistortionEnergy::Kind::symmetric_dirichlet, poor_steps, least_decrease);
+  }
+  const Jacobians jacobians = measure_jacobians(mesh_, geometry_, cut_mesh_, start_);
+  energy_ = symmetric_dirichlet_energy(geometry_, jacobians);
+  extent_ = start_.real().maxCoeff() - start_.real().minCoeff();
+  if (reduction_.origin != none) start_.array() -= start_[reduction_.origin];
+  // Its scale at the vertices is the mean over the triangles around.
+  rest_ = Eigen::VectorXd::Zero(mesh_.vertex_count());
+  for (Index f = 0; f < mesh_.triangle_count(); ++f) {
+    const double determinant = std::norm(jacobians.f_z[f]) - std::norm(jacobians.f_zbar[f]);
+    for (int c = 0; c < 3; ++c) {
+      const Index v = mesh_.triangles(f, c);
+      rest_[v] += geometry_.area[f] / 3 * std::log(determinant) / 2 / geometry_.vertex_area[v];
+    }
+  }
+  strain_ = triangle_energies(1, jacobians);
+}
+
+// Also lists the pairs of cones that share an edge of their triangulation.
+Array<MovingTriangle> LayoutQuantizer::moving_triangles(const ComponentMap& map, const Array<Index>& relaxed) {
+  Array<MovingTriangle> out;
+  if (!mesh_.closed() || map.cones.empty()) return out;
+  Array<Complex> turn;
+  for (const int t : turns_of_cuts(rotation_, lattice_.symmetry())) turn.push_back(lattice_.unit(t));
+  const auto triangulation = triangulate_cones(mesh_, cut_graph_, cut_mesh_, turn, map.cones, start_);
+  if (!triangulation) return out;
+  const auto translation_at_start = [&](Index cut) {
+    const Sisters sisters = origin_sisters(mesh_, cut_mesh_, cut_graph_.cuts[cut].halfedges.front());
+    return start_[sisters.right] - turn[cut] * start_[sisters.left];
+  };
+  const Eigen::Index count = static_cast<Eigen::Index>(reduction_.integers.size());
+  std::map<std::pair<Index, Index>, double> nearest;
+  for (const auto& corners : triangulation->triangles) {
+    MovingTriangle triangle;
+    std::array<Complex, 3> at_start;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const ConeCorner& corner = corners[c];
+      Eigen::RowVectorXcd slope = Eigen::RowVectorXcd::Zero(count);
+      if (corner.cone == reduction_.root) slope = corner.turn * reduction_.root_position;
+      const auto found = std::find(reduction_.cones.begin(), reduction_.cones.end(), corner.cone);
+      if (found != reduction_.cones.end()) slope[found - reduction_.cones.begin()] = corner.turn;
+      at_start[c] = corner.turn * start_[corner.cone];
+      for (const auto& [cut, coefficient] : corner.translations) {
+        slope += coefficient * reduction_.translation.row(cut);
+        at_start[c] += coefficient * translation_at_start(cut);
+      }
+      triangle.slope[c] = slope * reduction_.basis;
+    }
+    // Relaxed cones may be anywhere, so no triangle can be told to collapse.
+    if (relaxed.empty()) out.push_back(std::move(triangle));
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto [first, second] = std::minmax(corners[c].cone, corners[(c + 1) % 3].cone);
+      if (first == second) continue;
+      const double distance = std::abs(at_start[(c + 1) % 3] - at_start[c]);
+      const auto [entry, added] = nearest.try_emplace({first, second}, distance);
+      if (!added) entry->second = std::min(entry->second, distance);
+    }
+  }
+  for (const auto& [pair, distance] : nearest) cone_pairs_.push_back({distance, pair.first, pair.second});
+  std::stable_sort(cone_pairs_.begin(), cone_pairs_.end(),
+                   [](const ConePair& a, const ConePair& b) { return a.distance < b.distance; });
+  return out;
+}
+
+// The values that the integers have in a layout.
+Eigen::VectorXcd LayoutQuantizer::integers_of(const Eigen::VectorXcd& position) const {
+  Eigen::VectorXcd out(reduction_.integers.size());
+  Eigen::Index k = 0;
+  for (const Index v : reduction_.cones) out[k++] = position[v];
+  for (const Index p : reduction_.cuts) {
+    const Index h = cut_graph_.cuts[p].halfedges.front();
+    const Sisters sisters = origin_sisters(mesh_, cut_mesh_, h);
+    out[k++] = position[sisters.right] - std::polar(1.0, rotation_[p]) * position[sisters.left];
+  }
+  return out;
+}
+
+Array<LayoutQuantizer::Target> LayoutQuantizer::find_targets(double density, int searched_angles) const {
+  if (integers_.size() == 0) return {{density, integers_, 0}};
+  Array<Target> out;
+  const Eigen::VectorXcd wanted = reduction_.basis.partialPivLu().solve(integers_);
+  const Eigen::VectorXcd pull = response_->schur() * integers_;
+  struct Candidate {
+    Complex motion;
+    LatticeSearch::Choice choice;
+  };
+  Array<Candidate> candidates;
+  for (int i = 0; i < tried_angles; ++i) {
+    const Complex motion = std::polar(density, 2 * M_PI / lattice_.symmetry() * i / tried_angles);
+    candidates.push_back({motion, search_->nearest(motion * wanted)});
+  }
+  // The cheapest are taken as they are where they are valid; where few are, they are worth a search.
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.choice.cost < b.choice.cost; });
+  for (Candidate& candidate : candidates) {
+    if (!candidate.choice.valid() && searched_angles-- > 0) {
+      candidate.choice = search_->improve(candidate.motion * wanted, candidate.choice);
+    }
+    if (!candidate.choice.valid()) continue;
+    // What a similarity of the whole layout does costs nothing.
+    Target target{0, reduction_.basis * candidate.choice.x, candidate.choice.cost};
+    target.motion = pull.dot(target.integers) / pull.dot(integers_);
+    const double growth = std::abs(target.motion) / density;
+    if (!(growth > 0.5 && growth < 2)) target.motion = candidate.motion;  // only the layout's place is rounded
+    out.push_back(std::move(target));
+    if (out.size() == tried_targets) break;
+  }
+  std::stable_sort(out.begin(), out.end(), [](const Target& a, const Target& b) { return a.cost < b.cost; });
+  return out;
+}
+
+Validity LayoutQuantizer::check(const Eigen::VectorXcd& position) const {
+  return check_map(mesh_, at_corners(cut_mesh_, position), curvature_.at_vertex, curvature_.is_free);
+}
+
+// before: a valid map from which the present one was moved.
+bool LayoutQuantizer::repair(double scale, const Eigen::VectorXcd& before, Eigen::VectorXcd& position) const {
+  Curvature target = curvature_;
+  target.log_scale = rest_.array() + std::log(scale);
+  const ParallelTransport connection{
+      measure_jacobians(mesh_, geometry_, cut_mesh_, before).f_z.array().arg(), rotation_, {}};
+  position = untangle(surface(), connection, target, Array<char>(mesh_.vertex_count(), 0), Effort::local,
+                      DistortionEnergy::Kind::framed_foldover_free, before_step_, position);
+  return check(position).defects() == 0;
+}
+
+// Newton steps on the symmetric Dirichlet energy over the marked vertices.
+void LayoutQuantizer::smooth(double scale, Array<char> marked, int steps, Eigen::VectorXcd& position) const {
+  NewtonMinimizer(surface(), rest_.array() + std::log(scale), Eigen::VectorXd::Zero(mesh_.triangle_count()),
+                  free_vertices(mesh_, cut_mesh_, motion_of_copies_, without_cones(std::move(marked))), before_step_,
+                  position)
+      .smooth(DistortionEnergy::Kind::symmetric_dirichlet, steps, least_decrease);
+}
+
+// Against the scale at rest, 4 for an isometry.
+Eigen::VectorXd LayoutQuantizer::triangle_energies(double scale, const Jacobians& jacobians) const {
+  constexpr DistortionEnergy energy{DistortionEnergy::Kind::symmetric_dirichlet};
+  Eigen::VectorXd out(mesh_.triangle_count());
+  for (Index f = 0; f < mesh_.triangle_count(); ++f) {
+    double rest = 0;
+    for (int c = 0; c < 3; ++c) rest += rest_[mesh_.triangles(f, c)] / 3;
+    const double unit = scale * std::exp(rest);
+    out[f] = energy.value(jacobians.f_z[f] / unit, jacobians.f_zbar[f] / unit);
+  }
+  return out;
+}
+
+// Triangles that are much more distorted than the start, whose own may be: coarse meshes have no conformal maps.
+Array<Index> LayoutQuantizer::find_stretched(double scale, const Jacobians& jacobians) const {
+  const Eigen::VectorXd energies = triangle_energies(scale, jacobians);
+  Array<Index> out;
+  for (Index f = 0; f < mesh_.triangle_count(); ++f) {
+    if (!(energies[f] < stretched_energy * strain_[f])) out.push_back(f);
+  }
+  return out;
+}
+
+// Whether a little smoothing may bring a layout to that energy, which tells early that a grid is too coarse.
+bool LayoutQuantizer::looks_easy(double scale, double most_energy, const Validity& validity,
+                                 const Eigen::VectorXcd& position) const {
+  if (static_cast<double>(validity.flipped.size()) > 1 + easy_share * mesh_.triangle_count()) return false;
+  Jacobians jacobians = measure_jacobians(mesh_, geometry_, cut_mesh_, position);
+  const Array<Index> stretched = find_stretched(scale, jacobians);
+  if (static_cast<double>(stretched.size()) > mendable_share * mesh_.triangle_count()) return false;
+  for (const Index f : stretched) {
+    jacobians.f_z[f] = scale;
+    jacobians.f_zbar[f] = 0;
+  }
+  return symmetric_dirichlet_energy(geometry_, jacobians) <= most_energy;
+}
+
+// Moves the integers of a valid map by `change` at once.
+bool LayoutQuantizer::move(double scale, const LayoutEffort& effort, const Eigen::VectorXcd& change,
+                           Eigen::VectorXcd& position) const {
+  const Eigen::VectorXcd before = position;
+  position += response_->displacement(change);
+  const Validity validity = check(position);
+  if (effort.quick && !looks_easy(scale, effort.most_growth * energy_, validity, position)) return false;
+  if (validity.defects() > 0 && !repair(scale, before, position)) return false;
+  const Array<Index> stretched = find_stretched(scale, measure_jacobians(mesh_, geometry_, cut_mesh_, position));
+  if (!stretched.empty()) smooth(scale, mark_around(mesh_, stretched, smoothed_rings), smoothing_steps, position);
+  return true;
+}
+
+// The same in steps over which the map stays valid.
+bool LayoutQuantizer::follow(double scale, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const {
+  double reached = 0;
+  double step = 0.5;
+  for (int moves = 0; reached < 1 && step > shortest_step && moves < most_moves; ++moves) {
+    const double share = std::min(step, 1 - reached);
+    Eigen::VectorXcd tried = position;
+    if (!move(scale, {}, share * change, tried)) {
+      step /= 2;
+      continue;
+    }
+    reached = share == 1 - reached ? 1 : reached + share;
+    step *= 1.7;
+    position = std::move(tried);
+  }
+  return reached == 1;
+}
+
+void LayoutQuantizer::lower_stretch(double stretch, const Eigen::VectorXd& importance, QuantizedLayout& layout) const {
+  const Eigen::VectorXd rest = scale_at_rest(surface(), curvature_, stretch, layout.position);
+  NewtonMinimizer relaxation(
+      surface(), rest, Eigen::VectorXd::Zero(mesh_.triangle_count()),
+      free_vertices(mesh_, cut_mesh_, motion_of_copies_, without_cones(Array<char>(mesh_.vertex_count(), 1))),
+      before_step_, layout.position);
+  relaxation.weigh(importance_of_triangles(mesh_, geometry_, importance));
+  relaxation.smooth(DistortionEnergy::Kind::symmetric_dirichlet, relaxing_steps, least_decrease);
+  layout.energy = measure_energy(layout.position);
+}
+
+Array<char> LayoutQuantizer::without_cones(Array<char> marked) const {
+  for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+    if (mesh_.loop_of_vertex[v] == none && curvature_.at_vertex[v] != 0) marked[v] = 0;
+  }
+  return marked;
+}
+
+double LayoutQuantizer::measure_energy(const Eigen::VectorXcd& position) const {
+  return symmetric_dirichlet_energy(geometry_, measure_jacobians(mesh_, geometry_, cut_mesh_, position));
+}
+
+std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, const LayoutEffort& effort) const {
+  const bool quick = effort.quick;
+  const Array<Target> targets = find_targets(density, quick ? few_angles : tried_angles);
+  // Beside relaxed cones nothing tells whether the points can be reached, and following them would take too long.
+  const int ways = relaxed_ || quick ? 1 : 2;
+  for (int in_steps = 0; in_steps < ways; ++in_steps) {
+    const std::size_t count = std::min(targets.size(), in_steps || quick ? few_targets : tried_targets);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Target& target = targets[i];
+      const double scale = std::abs(target.motion);
+      const Eigen::VectorXcd change = target.integers - target.motion * integers_;
+      QuantizedLayout out{target.motion * start_, 1};
+      if (!(in_steps ? follow(scale, change, out.position) : move(scale, effort, change, out.position))) continue;
+      out.energy = measure_energy(out.position);
+      if (!quick && out.energy > stretched_energy * energy_) {
+        smooth(scale, Array<char>(mesh_.vertex_count(), 1), smoothing_steps, out.position);
+        out.energy = measure_energy(out.position);
+      }
+      if (out.energy <= effort.most_growth * energy_) return out;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Snaps cones and translations to a lattice (the paper's section 8).
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "base/array.hpp"
+#include "pipeline/component_map.hpp"
+#include "plane/point_lattice.hpp"
+#include "repair/newton.hpp"
+#include "seamless/lattice_energy.hpp"
+#include "seamless/lattice_search.hpp"
+#include "unfold/unfold.hpp"
+
+namespace lsgp {
+
+// A layout whose transitions are a lattice's, 1 being the side of a cell.
+struct QuantizedLayout {
+  Eigen::VectorXcd position;  // (copies)
+  double energy = 1;          // symmetric Dirichlet energy, 1 is isometric
+};
+
+// What a layout on some grid is worth.
+struct LayoutEffort {
+  double most_growth = std::numeric_limits<double>::infinity();  // of the energy by rounding
+  bool quick = false;  // only layouts are wanted that need little repair; otherwise they are also followed in steps
+};
+
+// Two cones next to each other.
+struct ConePair {
+  double distance;  // in the flat metric, where it has the surface's area
+  Index first, second;
+};
+
+// The layouts of one map on grids of any size. What does not depend on the size is computed once.
+class LayoutQuantizer {
+ public:
+  // system: of the map's cones, and others that are flat. Both have to outlive it.
+  // map: without flips and with the right angles, its rotations multiples of the lattice's turn.
+  // relaxed: cones that need not lie on the lattice. Throws SEAMLESS_IMPOSSIBLE.
+  LayoutQuantizer(ComponentSystem& system, const ComponentMap& map, const PointLattice& lattice, bool parity,
+                  const Array<Index>& relaxed, StepHook before_step);
+
+  // The layout's longer side, where it has the surface's area.
+  double extent() const { return extent_; }
+  double energy() const { return energy_; }
+
+  // The nearest first; closed surfaces.
+  const Array<ConePair>& cone_pairs() const { return cone_pairs_; }
+
+  // The layout with `density` cells a unit of length, rounded to lattice points: by the displacement of least Dirichlet
+  // energy, then repaired. None where no choice of points keeps it valid and its energy within bounds.
+  std::optional<QuantizedLayout> quantize(double density, const LayoutEffort& effort) const;
+
+  // Symmetric Dirichlet energy of positions of the copies.
+  double measure_energy(const Eigen::VectorXcd& position) const;
+
+  // Moves what lies between the lattice points to where it stretches least; see low_stretch.hpp.
+  void lower_stretch(double stretch, const Eigen::VectorXd& importance, QuantizedLayout& layout) const;
+
+ private:
+  struct Target {
+    Complex motion;             // turn and scale of the start
+    Eigen::VectorXcd integers;  // (d)
+    double cost;
+  };
+
+  CutSurface surface() const { return {mesh_, geometry_, cut_graph_, cut_mesh_}; }
+  Array<char> without_cones(Array<char> marked) const;
+  void set_start(const ComponentMap& map);
+  Array<MovingTriangle> moving_triangles(const ComponentMap& map, const Array<Index>& relaxed);
+  Eigen::VectorXcd integers_of(const Eigen::VectorXcd& position) const;
+  Array<Target> find_targets(double density, int searched_angles) const;
+  Validity check(const Eigen::VectorXcd& position) const;
+  bool repair(double scale, const Eigen::VectorXcd& before, Eigen::VectorXcd& position) const;
+  void smooth(double scale, Array<char> marked, int steps, Eigen::VectorXcd& position) const;
+  Eigen::VectorXd triangle_energies(double scale, const Jacobians& jacobians) const;
+  Array<Index> find_stretched(double scale, const Jacobians& jacobians) const;
+  bool looks_easy(double scale, double most_energy, const Validity& validity, const Eigen::VectorXcd& position) const;
+  bool move(double scale, const LayoutEffort& effort, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const;
+  bool follow(double scale, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const;
+
+  const HalfedgeMesh& mesh_;
+  const Geometry& geometry_;
+  const CutGraph& cut_graph_;
+  const CutMesh& cut_mesh_;
+  const Curvature& curvature_;
+  const PointLattice lattice_;
+  const StepHook before_step_;
+  Eigen::VectorXd rotation_;
+  const bool relaxed_;      // some cones are
+  Eigen::VectorXcd start_;  // (copies) with the surface's area, the origin cone at 0
+  Eigen::VectorXd rest_;    // (n) log of its scale
+  Eigen::VectorXd strain_;  // (m) its triangles' energies against that scale, 4 for isometries
+  Eigen::VectorXcd motion_of_copies_;
+  double extent_ = 0, energy_ = 1;
+  LatticeReduction reduction_;
+  Eigen::VectorXcd integers_;                // (d) at the start
+  std::unique_ptr<LatticeEnergy> response_;  // of the Dirichlet form, stiffened around cones
+  Array<ConePair> cone_pairs_;
+  std::optional<LatticeSearch> search_;
+};
+
+// Symmetric Dirichlet energy of a map, area-weighted, at its best scale; 1 is isometric.
+double symmetric_dirichlet_energy(const Geometry& geometry, const Jacobians& jacobians);
+
+}  // namespace lsgp

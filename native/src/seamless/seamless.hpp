@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Seamless layouts (the paper's section 8): every component on one grid, exact in the precision that is stored.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "base/array.hpp"
+#include "base/progress_monitor.hpp"
+#include "lsgp/options.hpp"
+#include "lsgp/result.hpp"
+#include "pipeline/component_map.hpp"
+#include "pipeline/components.hpp"
+
+namespace lsgp {
+
+// A component's map, its angles multiples of the lattice's turn, and what it was made from.
+struct SeamlessPart {
+  const Component* component;
+  ComponentTask* task;
+  ComponentMap* map;
+  ComponentSystem* system;  // of the map
+  // Cones given up for others, the caller's vertices, and the system of those that are left.
+  Array<Index> merged{};
+  std::unique_ptr<ComponentSystem> merged_system{};
+};
+
+// As single precision stores it.
+Complex as_stored(Complex z);
+
+// Throws WRONG_PARAMETER.
+void require_valid(const Seamless& seamless, const Options& options, const Pins& pins);
+
+// Throws SEAMLESS_IMPOSSIBLE for a map that has flipped triangles or wrong angles.
+void require_quantizable(const HalfedgeMesh& mesh, const ComponentMap& map);
+
+// Brings the cuts of all maps onto one grid and the maps into texture coordinates: side by side, cut vertices on
+// binary fractions, so that transitions hold exactly in float32 (on triangular lattices, whose points are irrational,
+// to its last digit). Maps are made again where cones are merged.  unit_scale: of the components' positions to the
+// caller's. Parts that have no layout on any grid, or so small a one beside the others that single precision cannot
+// hold its cuts, are taken out of `parts` and reported as COMPONENT_SKIPPED; where that are all, the first error is
+// thrown in the caller's numbering: GRID_TOO_COARSE, SEAMLESS_IMPOSSIBLE.
+SeamlessReport make_seamless(const Options& options, double unit_scale, Array<SeamlessPart>& parts,
+                             std::vector<Finding>& findings, ProgressMonitor& monitor);
+
+}  // namespace lsgp

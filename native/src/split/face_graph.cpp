@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "split/face_graph.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace lsgp {
+
+namespace {
+
+constexpr double seam_discount = 0.2, sharp_discount = 0.5;
+const double sharp_angle = M_PI / 6;
+constexpr double units_of_mean_edge = 1e4;
+
+double discount(const HalfedgeMesh& mesh, Index h) {
+  if (mesh.seam[h]) return seam_discount;
+  const auto normal = [&](Index f) {
+    const Eigen::Vector3d a = mesh.positions.row(mesh.triangles(f, 0)), b = mesh.positions.row(mesh.triangles(f, 1)),
+                          c = mesh.positions.row(mesh.triangles(f, 2));
+    return Eigen::Vector3d((b - a).cross(c - a));
+  };
+  const Eigen::Vector3d here = normal(h / 3), there = normal(mesh.twin[h] / 3);
+  return std::atan2(here.cross(there).norm(), here.dot(there)) > sharp_angle ? sharp_discount : 1.0;
+}
+
+}  // namespace
+
+FaceGraph build_face_graph(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& open) {
+  FaceGraph graph;
+  Array<char> is_side(mesh.halfedge_count());
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) is_side[h] = open[h] || mesh.cuttable[h];
+  graph.area.assign(label_parts(mesh, is_side, graph.face_of), 0);
+  for (Index f = 0; f < mesh.triangle_count(); ++f) graph.area[graph.face_of[f]] += geometry.area[f];
+  graph.total_area = geometry.total_area;
+  const double unit = geometry.length.mean() / units_of_mean_edge;
+  graph.link_begin.assign(graph.face_count() + 1, 0);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    const Index twin = mesh.twin[h];
+    if (twin < h || open[h] || graph.face_of[h / 3] == graph.face_of[twin / 3]) continue;
+    const double units = geometry.length[h] * discount(mesh, h) / unit;
+    graph.links.push_back(
+        {{graph.face_of[h / 3], graph.face_of[twin / 3]}, h, std::max<FaceGraph::Units>(1, std::llround(units))});
+    for (const Index face : graph.links.back().faces) ++graph.link_begin[face + 1];
+  }
+  std::partial_sum(graph.link_begin.begin(), graph.link_begin.end(), graph.link_begin.begin());
+  graph.link_of_face.resize(2 * graph.links.size());
+  Array<Index> cursor(graph.link_begin.begin(), graph.link_begin.end() - 1);
+  for (std::size_t i = 0; i < graph.links.size(); ++i) {
+    for (const Index face : graph.links[i].faces) graph.link_of_face[cursor[face]++] = static_cast<Index>(i);
+  }
+  return graph;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The dual graph of a layout: its faces, and the edges that may be opened between them.
+#pragma once
+
+#include "base/array.hpp"
+#include "mesh/geometry.hpp"
+#include "mesh/topology.hpp"
+#include "solvers/max_flow.hpp"
+
+namespace lsgp {
+
+struct FaceGraph {
+  using Units = FlowNetwork::Units;
+
+  struct Link {
+    Index faces[2];
+    Index halfedge;  // in the first of them
+    Units cost;      // the edge's length, less along marked seams and sharp edges
+  };
+
+  Array<Index> face_of;  // (triangles) those that no cut may part are one face
+  Array<double> area;    // (faces)
+  double total_area = 0;
+  Array<Link> links;
+  Array<Index> link_begin, link_of_face;  // (faces + 1), (2 links)
+
+  Index face_count() const { return static_cast<Index>(area.size()); }
+
+  // Calls visit(other face, link).
+  template <typename Visit>
+  void for_each_link(Index face, Visit visit) const {
+    for (Index i = link_begin[face]; i < link_begin[face + 1]; ++i) {
+      const Link& link = links[link_of_face[i]];
+      visit(link.faces[link.faces[0] == face], link);
+    }
+  }
+};
+
+// open: (3m) halfedges at which the layout ends, on both sides of an edge.
+FaceGraph build_face_graph(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& open);
+
+}  // namespace lsgp

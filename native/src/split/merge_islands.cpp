@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "split/merge_islands.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+#include "base/checkpoint.hpp"
+#include "plane/overlaps.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr double same_place = 1e-9;            // of the layout's size
+constexpr double operations_a_triangle = 200;  // to find out whether it lies on another
+constexpr double narrowest_joint = 0.25;       // of the square root of the smaller part's area
+
+class Joiner {
+ public:
+  Joiner(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, const Array<Index>& part,
+         const Array<char>& kept, Array<char>& open);
+
+  void join() {
+    while (join_next()) continue;  // each makes two groups one
+  }
+  const Array<Motion>& motion() const { return motion_; }
+
+ private:
+  // Open edges along one cut between two parts: where the left one has to go to meet the right one.
+  struct Border {
+    Index left, right;  // parts
+    Motion across;
+    Array<Index> halfedges;
+    double length = 0;
+    Array<Index> tried;  // its groups and their states when they could not be joined
+  };
+
+  bool join_next();
+  bool try_to_join(const Border& border);
+  // Two groups that could not be joined cannot be before either has grown.
+  Array<Index> state_of(const Border& border) const {
+    const Index left = group_[border.left], right = group_[border.right];
+    return {left, joins_[left], right, joins_[right]};
+  }
+  Motion to_meet(const Border& border) const {
+    return motion_[border.right] * border.across * motion_[border.left].inverse();
+  }
+  bool overlaps(Index left, Index right, const Motion& motion, const Array<Index>& closed);
+
+  const HalfedgeMesh& mesh_;
+  const Array<Index>& part_;
+  Array<char>& open_;
+  Eigen::VectorXcd corners_;
+  double size_;
+  Array<Border> borders_;
+  Array<Motion> motion_;           // (parts)
+  Array<Index> group_;             // (parts) joined ones share one
+  Array<Array<Index>> triangles_;  // (groups)
+  Array<double> area_;             // (groups)
+  Array<Index> joins_;             // (groups) how many others they have taken up
+
+  // Scratch, as it is here between calls.
+  Array<char> is_closed_;  // (3m) 0
+  Array<Index> place_;     // (m) none
+};
+
+Joiner::Joiner(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, const Array<Index>& part,
+               const Array<char>& kept, Array<char>& open)
+    : mesh_(mesh),
+      part_(part),
+      open_(open),
+      corners_(at_corners(map.cut_mesh, map.position)),
+      is_closed_(mesh.halfedge_count(), 0),
+      place_(mesh.triangle_count(), none) {
+  const Index part_count = 1 + *std::max_element(part.begin(), part.end());
+  motion_.resize(part_count);
+  group_.resize(part_count);
+  std::iota(group_.begin(), group_.end(), 0);
+  triangles_.resize(part_count);
+  area_.assign(part_count, 0);
+  joins_.assign(part_count, 0);
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    triangles_[part[f]].push_back(f);
+    area_[part[f]] += geometry.area[f];
+  }
+  size_ = std::max(corners_.real().maxCoeff() - corners_.real().minCoeff(),
+                   corners_.imag().maxCoeff() - corners_.imag().minCoeff());
+
+  std::map<std::tuple<Index, Index, Index>, Border> borders;  // by cut, left and right part
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    const Index twin = mesh.twin[h], cut = map.cut_graph.cut_of[h];
+    if (twin == none || !open[h] || kept[h] || part[h / 3] == part[twin / 3]) continue;
+    if (cut == none ? h > twin : !map.cut_graph.runs_forward[h]) continue;
+    Border& border = borders[{cut, part[h / 3], part[twin / 3]}];
+    if (border.halfedges.empty()) {
+      border.left = part[h / 3];
+      border.right = part[twin / 3];
+      if (cut != none) {
+        const double angle = (*map.rotation)[cut];
+        border.across = {angle, corners_[next(twin)] - std::polar(1.0, angle) * corners_[h]};
+      }
+    }
+    border.halfedges.push_back(h);
+    border.length += geometry.length[h];
+  }
+  for (auto& [key, border] : borders) borders_.push_back(std::move(border));
+  std::stable_sort(borders_.begin(), borders_.end(),
+                   [](const Border& a, const Border& b) { return a.length > b.length; });
+}
+
+bool Joiner::join_next() {
+  for (Border& border : borders_) {
+    if (group_[border.left] == group_[border.right]) continue;
+    Array<Index> state = state_of(border);
+    if (border.tried == state) continue;
+    if (try_to_join(border)) return true;
+    border.tried = std::move(state);
+  }
+  return false;
+}
+
+bool Joiner::try_to_join(const Border& border) {
+  const Index left = group_[border.left], right = group_[border.right];
+  const Motion motion = to_meet(border);
+  // Whatever else meets then is closed as well.
+  Array<Index> closed;
+  double length = 0;
+  for (const Border& other : borders_) {
+    const bool runs_along = group_[other.left] == left && group_[other.right] == right;
+    if (!runs_along && !(group_[other.left] == right && group_[other.right] == left)) continue;
+    const Motion rest = runs_along ? motion.inverse() * to_meet(other) : motion * to_meet(other);
+    if (std::abs(std::polar(1.0, rest.angle) - 1.0) > same_place || std::abs(rest.shift) > same_place * size_) continue;
+    for (const Index h : other.halfedges) closed.insert(closed.end(), {h, mesh_.twin[h]});
+    length += other.length;
+  }
+  if (length < narrowest_joint * std::sqrt(std::min(area_[left], area_[right]))) return false;
+  if (overlaps(left, right, motion, closed)) return false;
+  for (const Index h : closed) open_[h] = 0;
+  for (std::size_t p = 0; p < group_.size(); ++p) {
+    if (group_[p] != left) continue;
+    group_[p] = right;
+    motion_[p] = motion * motion_[p];
+  }
+  triangles_[right].insert(triangles_[right].end(), triangles_[left].begin(), triangles_[left].end());
+  triangles_[left].clear();
+  area_[right] += area_[left];
+  ++joins_[right];
+  return true;
+}
+
+// closed: halfedges that are open now.
+bool Joiner::overlaps(Index left, Index right, const Motion& motion, const Array<Index>& closed) {
+  Array<Index> triangles = triangles_[right];
+  triangles.insert(triangles.end(), triangles_[left].begin(), triangles_[left].end());
+  for (std::size_t i = 0; i < triangles.size(); ++i) place_[triangles[i]] = static_cast<Index>(i);
+  for (const Index h : closed) is_closed_[h] = 1;
+  Eigen::VectorXcd position(3 * ssize(triangles));
+  Array<Index> twin(3 * triangles.size(), none);
+  Index part = none;
+  Motion moved;
+  Complex turn = 1;
+  for (Index i = 0; i < ssize(triangles); ++i) {
+    const Index f = triangles[i];
+    if (part_[f] != part) {
+      part = part_[f];
+      moved = group_[part] == left ? motion * motion_[part] : motion_[part];
+      turn = std::polar(1.0, moved.angle);
+    }
+    for (Index c = 0; c < 3; ++c) {
+      const Index h = 3 * f + c, other = mesh_.twin[h];
+      position[3 * i + c] = turn * corners_[h] + moved.shift;
+      if (other == none || place_[other / 3] == none || (open_[h] && !is_closed_[h])) continue;
+      twin[3 * i + c] = 3 * place_[other / 3] + other % 3;
+    }
+  }
+  for (const Index f : triangles) place_[f] = none;
+  for (const Index h : closed) is_closed_[h] = 0;
+  checkpoint(operations_a_triangle * static_cast<double>(triangles.size()));
+  return has_overlap(position, twin);
+}
+
+}  // namespace
+
+Array<Motion> merge_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
+                            const Array<Index>& part, const Array<char>& kept, Array<char>& open) {
+  Joiner joiner(mesh, geometry, map, part, kept, open);
+  joiner.join();
+  return joiner.motion();
+}
+
+}  // namespace lsgp

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Straightens the cuts between parts.
+#pragma once
+
+#include <functional>
+
+#include "base/array.hpp"
+#include "split/face_graph.hpp"
+
+namespace lsgp {
+
+// Whether a face may not change over to another part.
+using IsHeld = std::function<bool(Index face, Index other)>;
+
+// Replaces each cut between two parts by one nearby that turns less, if it is hardly longer; its ends may slide along
+// what bounds the parts.
+// open: (3m) halfedges at which the layout ends, besides the cuts between parts.  part: (faces), connected.
+void straighten_cuts(const HalfedgeMesh& mesh, const Geometry& geometry, const FaceGraph& graph,
+                     const Array<char>& open, const IsHeld& is_held, Array<Index>& part);
+
+}  // namespace lsgp

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Unfolding into the plane (the paper's sections 4.2 and 6).
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "base/array.hpp"
+#include "cut/cut_mesh.hpp"
+#include "cut/transitions.hpp"
+#include "mesh/geometry.hpp"
+#include "solvers/cholesky.hpp"
+#include "systems/poisson_system.hpp"
+
+namespace lsgp {
+
+// How far the flat metric e^{2y} turns every triangle's frame: the connection
+//   phi_g = phi_f + theta_f - theta_g - w (y_j - y_i)
+// across the edge from i to j with f on its left and g on its right (theta: its direction in each frame), integrated
+// along a spanning tree of the triangles that crosses no cut.
+class FrameTree {
+ public:
+  FrameTree(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph);
+
+  // Radians, (m).
+  Eigen::VectorXd integrate(const Eigen::VectorXd& log_scale) const;
+
+ private:
+  struct Step {
+    Index from, to;    // triangles
+    Index tail, head;  // of the edge between them, `from` on its left
+    double turn;       // theta_from - theta_to
+    double weight;
+  };
+  const Index triangle_count_;
+  Array<Step> steps_;  // outwards from the first triangle
+};
+
+// The rotation of every cut that those frames imply, radians modulo 2 pi: curvature fixes it but for the loops about
+// handles, where this is the rotation with least distortion.
+Eigen::VectorXd read_rotations(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
+                               const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames);
+
+// Turns the frames so that the rotations of the cuts change: the smoothest way there is, a harmonic form.
+class HarmonicOneForm {
+ public:
+  HarmonicOneForm(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph);
+
+  // What to add to the frames, (m).  change: (cuts) of the rotations, radians; it closes around every node.
+  Eigen::VectorXd spread(const Eigen::VectorXd& change) const;
+
+  // How much the frames are twisted by each of several changes, (cuts, k): their products in the Dirichlet energy.
+  Eigen::MatrixXd energy(const Eigen::MatrixXd& changes) const;
+
+ private:
+  // Across the cuts: from the triangle on the left to the one on the right.
+  template <typename Visit>
+  void for_each_crossing(Visit visit) const;
+  double weight(Index h) const;
+
+  const HalfedgeMesh& mesh_;
+  const Geometry& geometry_;
+  const CutGraph& cut_graph_;
+  std::optional<Cholesky<double>> factor_;
+};
+
+// The Jacobians of the flat metric: e^{y + i phi}, and no shear.
+Jacobians prescribed_jacobians(const HalfedgeMesh& mesh, const Eigen::VectorXd& log_scale,
+                               const Eigen::VectorXd& frames);
+Jacobians measure_jacobians(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
+                            const Eigen::VectorXcd& position);
+
+// Each returns the positions u + iv of all copies.
+
+// The direction the metric gives to border edges (halfedges with the surface on their left), radians.
+Eigen::VectorXd metric_directions(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& log_scale,
+                                  const Eigen::VectorXd& frames, const Array<Index>& edges);
+
+// The same fit with border edges exactly aligned: each of `edges` has the direction given, radians. A real problem of
+// twice the size.
+Eigen::VectorXcd unfold_aligned(const CutSurface& surface, const Reduction& reduction, const Eigen::VectorXd& log_scale,
+                                const Eigen::VectorXd& frames, const Array<Index>& edges,
+                                const Eigen::VectorXd& directions);
+
+// The map of least conformal energy at a given Dirichlet energy (Mullen et al. 2008, with a norm that transitions
+// leave invariant). Solved on the cut where the surface comes with a factor, sparse otherwise.
+Eigen::VectorXcd unfold_spectral(const CutSurface& surface, const Reduction& reduction);
+
+// Least squares conformal map of the opened surface with two pinned copies, no transitions (Levy et al. 2002).
+// The pins are the first copy on the open border with the lowest number and the one half the border's edges away.
+Eigen::VectorXcd unfold_lscm(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh);
+
+}  // namespace lsgp

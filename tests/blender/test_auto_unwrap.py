@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Auto Unwrap: what one press makes of objects, what it keeps and what it leaves alone."""
+
+import bpy
+import numpy as np
+import pytest
+from installed import addon
+from scenes import (
+    UV_ROUNDING,
+    UvMap,
+    add_ball,
+    add_cone_cube,
+    add_cube,
+    add_grid,
+    add_ramp,
+    add_sphere,
+    changed,
+    corners,
+    covered_twice,
+    edit,
+    mark,
+    pin,
+    select_elements,
+    snapshot,
+    uv_key,
+)
+
+PRESETS = ("PAINT", "TILE", "BAKE")
+
+
+def unwrap(**options):
+    assert bpy.ops.uv.cone_auto_unwrap(**options) == {"FINISHED"}
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+@pytest.mark.parametrize("in_edit_mode", [True, False])
+def test_only_the_active_uv_layer_changes(in_edit_mode, preset):
+    sphere = add_sphere()
+    if in_edit_mode:
+        edit(sphere)
+    before = snapshot(sphere)
+    unwrap(preset=preset)
+    assert changed(before, snapshot(sphere)) == {uv_key()}
+    once = snapshot(sphere)
+    unwrap(preset=preset)
+    assert changed(once, snapshot(sphere)) == set()
+
+
+@pytest.mark.parametrize("add", [add_sphere, add_cube, add_ramp, add_grid, add_ball])
+@pytest.mark.parametrize("preset", PRESETS)
+def test_nothing_overlaps_and_all_is_even_or_seamless(preset, add):
+    obj = add()
+    unwrap(preset=preset)
+    uv_map = UvMap(obj)
+    assert uv_map.overlapping() == set() and uv_map.flipped() == set()
+    assert uv_map.sister_difference() <= UV_ROUNDING * max(1.0, np.abs(uv_map.uv).max())
+    if preset == "TILE":
+        assert uv_map.tile_error() == 0
+    else:
+        assert uv_map.l2_stretch() < 1.05
+        assert uv_map.uv.min() >= 0 and uv_map.uv.max() <= 1
+
+
+def test_marked_cones_and_seams_are_kept(reports):
+    cube = add_cone_cube()
+    reports()
+    unwrap()
+    assert "1 island through 8 cones" in reports()
+    assert UvMap(cube).scale_spread() < 1 + 1e-5
+    one = add_sphere("One")
+    bpy.ops.object.select_all(action="DESELECT")
+    one.select_set(True)
+    mark(one, [0])
+    before = snapshot(one)
+    unwrap()
+    assert changed(before, snapshot(one)) == {uv_key()}
+    assert 0 in {v for edge in UvMap(one).split_edges() for v in edge}
+
+
+def test_placed_cones_are_marked_where_that_is_asked_for(reports):
+    ball = add_ball()
+    ball.vertex_groups.clear()
+    reports()
+    unwrap(mark=True)
+    first = reports()
+    placed = UvMap(ball)
+    marked = [v.index for v in ball.data.vertices if v.groups]
+    assert f"through {len(marked)} cones" in first
+    # They and their angles are the ones that the map was made from.
+    unwrap()
+    again = UvMap(ball)
+    assert again.split_edges() == placed.split_edges()
+    assert again.l2_stretch() == pytest.approx(placed.l2_stretch(), abs=1e-5)
+
+
+def test_pinned_islands_stay():
+    grid = add_grid()
+    unwrap()
+    uv = UvMap(grid).uv
+    loops = [0, len(uv) - 1]
+    pin(grid, loops, uv[loops] * 0.5)
+    unwrap()
+    assert np.array_equal(UvMap(grid).uv[loops], (uv[loops] * 0.5).astype(np.float32))
+
+
+def test_objects_are_packed_together_at_one_density():
+    objects = [add_cube("Small"), add_cube("Scaled"), add_sphere("Sphere")]
+    objects[1].scale = (3.0, 3.0, 3.0)
+    objects[2].location.x = 9.0
+    bpy.context.view_layer.update()
+    unwrap()
+    maps = [UvMap(obj) for obj in objects]
+    densities = [
+        np.sqrt(area_of(uv_map) / (obj.scale.x**2 * sum(face.area for face in obj.data.polygons)))
+        for obj, uv_map in zip(objects, maps, strict=True)
+    ]
+    assert max(densities) / min(densities) < 1.01
+    boxes = [(uv_map.uv.min(axis=0), uv_map.uv.max(axis=0)) for uv_map in maps]
+    assert min(low.min() for low, _ in boxes) >= 0 and max(high.max() for _, high in boxes) <= 1
+    assert covered_twice(maps) == 0
+
+
+def area_of(uv_map):
+    a, b, c = (uv_map.uv[uv_map.triangles[:, i]] @ (1, 1j) for i in range(3))
+    return np.abs(((b - a).conj() * (c - a)).imag).sum() / 2
+
+
+@pytest.mark.parametrize("margin", [4, 32])
+@pytest.mark.parametrize("preset", ["PAINT", "BAKE"])
+def test_the_margin_is_that_many_texels(preset, margin):
+    for number in range(4):
+        add_cube(f"Cube {number}", cuts=1)
+    unwrap(preset=preset, margin=margin, texture_size="512")
+    maps = [UvMap(obj) for obj in bpy.context.selected_objects]
+    low, high = min(uv_map.uv.min() for uv_map in maps), max(uv_map.uv.max() for uv_map in maps)
+    around = 512 * min(low, 1 - high)
+    between = 512 * min(distance(first, second) for i, first in enumerate(maps) for second in maps[:i])
+    if preset == "BAKE":
+        assert around == pytest.approx(margin, rel=0.02)
+    assert 0.6 * margin < around < 1.5 * margin
+    # Both have theirs.
+    assert between > 1.2 * margin
+
+
+def distance(first, second):
+    """The least one of the edges of two maps, by samples along them."""
+    places = []
+    for uv_map in (first, second):
+        ends = uv_map.uv[np.array(list(uv_map.sides.values())).reshape(-1, 2)] @ (1, 1j)
+        places.append((ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * np.linspace(0, 1, 20)).ravel())
+    return np.abs(places[0][:, None] - places[1]).min()
+
+
+def test_selected_faces_only_are_unwrapped():
+    grid = add_grid(segments=6)
+    chosen = [face.index for face in grid.data.polygons if face.center.x < 0]
+    loops = np.isin(np.arange(len(grid.data.loops)), [i for f in chosen for i in grid.data.polygons[f].loop_indices])
+    before = UvMap(grid).uv
+    edit(grid)
+    select_elements(grid, "faces", chosen)
+    unwrap()
+    assert np.array_equal(UvMap(grid).uv[~loops], before[~loops])
+    assert not np.array_equal(UvMap(grid).uv[loops], before[loops])
+
+
+def test_tiles_are_as_many_as_asked_for(reports):
+    add_cone_cube()
+    reports()
+    unwrap(preset="TILE", tile_fit="TILES", tiles=12.0)
+    assert "12 tiles across" in reports()
+
+
+def test_a_seam_is_an_open_border_where_that_is_asked_for():
+    cube = add_cube()
+    for edge in cube.data.edges:
+        edge.use_seam = all(abs(cube.data.vertices[v].co.z) < 1e-6 for v in edge.vertices)
+    seams = {tuple(sorted(edge.vertices)) for edge in cube.data.edges if edge.use_seam}
+    unwrap(seams="BOUNDARY")
+    assert seams and seams <= UvMap(cube).split_edges()
+
+
+def test_cones_come_from_the_group_that_is_named(reports):
+    cube = add_cube()
+    mark(cube, corners(cube), group="points")
+    reports()
+    unwrap(vertex_group="points")
+    assert "through 8 cones" in reports()
+
+
+def test_a_stretched_map_through_no_cones_is_told_with_a_remedy(reports):
+    bpy.ops.mesh.primitive_monkey_add()
+    reports()
+    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    said = reports()
+    assert UvMap(bpy.context.object).l2_stretch() > 1.5
+    (warning,) = (line for line in said.splitlines() if line.startswith("Warning"))
+    assert "No cones are marked" in warning and "Auto Unwrap" in warning
+    # The number is the one of the map.
+    assert f"{UvMap(bpy.context.object).l2_stretch():.3g}, 1 being none" in warning
+    unwrap()
+    said = reports()
+    assert UvMap(bpy.context.object).l2_stretch() < 1.1
+    assert "Warning" not in said
+
+
+def test_a_flat_surface_needs_no_cones_and_nothing_is_said(reports):
+    add_grid()
+    reports()
+    assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
+    assert "Warning" not in reports()
+
+
+def test_an_island_that_is_alone_is_as_large_as_it_can_be():
+    cube = add_cone_cube()
+    unwrap(margin=16, texture_size="1024")
+    uv_map = UvMap(cube)
+    # Six squares, four of them in a row in some nets.
+    side = (1 - 2 * 16 / 1024) / 4
+    assert area_of(uv_map) >= 6 * side**2 * (1 - 1e-3)
+    assert uv_map.uv.min() == pytest.approx(16 / 1024, abs=1e-6)
+    # Turned, it comes to lie as before.
+    turn = np.array([[np.cos(0.7), np.sin(0.7)], [-np.sin(0.7), np.cos(0.7)]])
+    islands = addon.core.islands.Islands(
+        uv_map.vertex[uv_map.triangles].astype(np.int32),
+        uv_map.uv[uv_map.triangles] @ turn,
+        np.zeros(len(uv_map.triangles), np.int32),
+        np.zeros((len(uv_map.triangles), 3), bool),
+        1.0,
+    )
+    (packed,) = addon.jobs.packing.pack([islands], "ADD", 16 / 1024)
+    assert np.ptp(packed.reshape(-1, 2), axis=0).max() == pytest.approx(1 - 32 / 1024, abs=1e-6)
+    first, second = packed[:, 1] - packed[:, 0], packed[:, 2] - packed[:, 0]
+    area = np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]).sum() / 2
+    assert area == pytest.approx(area_of(uv_map), rel=5e-3)
+
+
+def test_an_island_that_is_alone_is_turned_on_its_image():
+    grid = add_grid()
+    for vertex in grid.data.vertices:
+        vertex.co.x *= 4
+    image = bpy.data.images.new("Tall", 64, 256)
+    material = bpy.data.materials.new("Textured")
+    if bpy.app.version < (5, 0):
+        material.use_nodes = True
+    node = material.node_tree.nodes.new("ShaderNodeTexImage")
+    node.image = image
+    material.node_tree.nodes.active = node
+    grid.data.materials.append(material)
+    unwrap(margin=0)
+    # The strip stands upright in the tall image, which it fills.
+    assert np.ptp(UvMap(grid).uv, axis=0) == pytest.approx([1.0, 1.0], abs=1e-3)
+
+
+def test_cuts_keep_out_of_sight_from_the_front():
+    bpy.ops.mesh.primitive_monkey_add()
+    monkey = bpy.context.object
+    monkey.modifiers.new("Subdivision", "SUBSURF").levels = 1
+    bpy.ops.object.modifier_apply(modifier="Subdivision")
+    face = []
+    for turn, cuts in ((0.0, "FRONT"), (np.pi, "FRONT"), (0.0, "SHORTEST")):
+        monkey.rotation_euler = (0.0, 0.0, turn)
+        bpy.context.view_layer.update()
+        unwrap(cuts=cuts)
+        uv_map = UvMap(monkey)
+        edges = np.array(sorted(uv_map.split_edges()))
+        ends = uv_map.positions[edges]
+        lengths = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+        normals = np.array([vertex.normal[:] for vertex in monkey.data.vertices])[edges].mean(axis=1)
+        # Suzanne looks along -Y, to who looks at the front.
+        face.append(lengths[normals[:, 1] < -0.5].sum())
+    # Cones on the face need cuts there, too.
+    assert face[0] < 0.9 * face[2]
+    # Turned round, it is the back of the head that is seen.
+    assert face[0] < 0.9 * face[1]

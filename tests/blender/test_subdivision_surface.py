@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Use Subdivision Surface: the map is that of the surface that the modifier makes."""
+
+import bpy
+import numpy as np
+import pytest
+from scenes import UvMap, add_cone_cube, add_cube, changed, edit, snapshot, uv_key
+
+
+def swollen(name="Swollen"):
+    """A box that the modifier rounds, most at its ends."""
+    cube = add_cone_cube(name, cuts=1)
+    for vertex in cube.data.vertices:
+        vertex.co.z *= 3
+    cube.modifiers.new("Subdivision", "SUBSURF").levels = 2
+    return cube
+
+
+def applied(obj):
+    """The same cage with its vertices where the modifier puts them, without it."""
+    bpy.context.view_layer.update()
+    evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    places = [tuple(vertex.co) for vertex in evaluated.vertices]
+    copy = swollen("Applied")
+    for vertex, place in zip(copy.data.vertices, places[: len(copy.data.vertices)], strict=True):
+        vertex.co = place
+    copy.modifiers.clear()
+    return copy
+
+
+def unwrapped_alone(obj, call, **options):
+    """As `shares`, of a map of this object alone."""
+    bpy.ops.object.select_all(action="DESELECT")
+    obj.select_set(True)
+    assert call(**options) == {"FINISHED"}
+    return shares(obj)
+
+
+def shares(obj):
+    """Lengths of the edges in the map by the mean one; cuts of one length may be others and make it fit otherwise."""
+    uv_map = UvMap(obj)
+    ends = uv_map.uv[np.array([uv_map.sides[edge][0] for edge in sorted(uv_map.sides)])]
+    lengths = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+    return lengths / lengths.mean()
+
+
+@pytest.mark.parametrize("in_edit_mode", [True, False])
+def test_the_map_is_that_of_the_subdivided_surface(in_edit_mode):
+    cube = swollen()
+    twin = applied(cube)
+    wanted = unwrapped_alone(twin, bpy.ops.uv.cone_unwrap)
+    bpy.ops.object.select_all(action="DESELECT")
+    cube.select_set(True)
+    bpy.context.view_layer.objects.active = cube
+    if in_edit_mode:
+        edit(cube)
+    before = snapshot(cube)
+    found = {}
+    for use in (False, True):
+        assert bpy.ops.uv.cone_unwrap(use_subsurf_data=use) == {"FINISHED"}
+        found[use] = shares(cube)
+    assert changed(before, snapshot(cube)) == {uv_key()}
+    assert found[True] == pytest.approx(wanted, abs=1e-4)
+    assert np.abs(found[False] - wanted).max() > 0.01
+
+
+def test_auto_unwrap_takes_the_modifier_that_is_shown():
+    cube, hidden, plain = swollen(), swollen("Hidden"), swollen("Plain")
+    hidden.modifiers[0].show_viewport = False
+    plain.modifiers.clear()
+    twin = applied(cube)
+    lengths = {obj: unwrapped_alone(obj, bpy.ops.uv.cone_auto_unwrap) for obj in (cube, hidden, plain, twin)}
+    assert np.array_equal(lengths[hidden], lengths[plain])
+    assert lengths[cube] == pytest.approx(lengths[twin], abs=1e-4)
+    assert np.abs(lengths[cube] - lengths[plain]).max() > 0.01
+
+
+def test_other_modifiers_and_shape_keys_have_no_say():
+    first, second = swollen("First"), swollen("Second")
+    second.modifiers.new("Mirror", "MIRROR")
+    second.modifiers.new("Array", "ARRAY").count = 3
+    second.shape_key_add(name="Basis")
+    bent = second.shape_key_add(name="Bent")
+    bent.data[0].co.z += 0.5
+    bent.value = 0.7
+    assert bpy.ops.uv.cone_unwrap(use_subsurf_data=True, pack=False) == {"FINISHED"}
+    assert UvMap(first).uv.tobytes() == UvMap(second).uv.tobytes()
+
+
+def test_without_the_modifier_nothing_differs():
+    cube = add_cube()
+    assert bpy.ops.uv.cone_auto_unwrap(use_subsurf_data=False) == {"FINISHED"}
+    without = UvMap(cube).uv
+    assert bpy.ops.uv.cone_auto_unwrap() == {"FINISHED"}
+    assert np.array_equal(UvMap(cube).uv, without)

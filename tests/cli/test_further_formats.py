@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What other packages read and write for lsgp, PLY with texture coordinates and STL; and what is said without them."""
+
+from __future__ import annotations
+
+import struct
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from lsgp.cli import main
+from lsgp.errors import InputError
+from lsgp.io import mesh_formats
+from lsgp.io.mesh_files import read_mesh, read_mesh_file, write_mesh_file
+from lsgp.io.mesh_formats import formats_table
+from lsgp.io.mesh_ply import read_ply
+from lsgp.io.welding import weld
+from polygon_meshes import PLY_FORMS, bumpy_ball, cube, faces_of, obj_text, off_text, patch, ply_bytes
+
+
+def split_uv(file) -> np.ndarray:
+    """Coordinates of the triangles' corners with a cut, no short decimals."""
+    uv = file.mesh.positions[file.triangulation.triangles][..., :2] / 7
+    uv[: len(uv) // 2] += 100
+    return uv
+
+
+# --- PLY ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("form", PLY_FORMS)
+@pytest.mark.parametrize("made", [patch, lambda: cube(2)], ids=["mixed", "quads"])
+def test_a_ply_keeps_polygons_properties_and_what_refers_to_vertices(tmp_path: Path, form: str, made) -> None:
+    plyfile = pytest.importorskip("plyfile")
+    positions, faces = made()
+    (tmp_path / "in.ply").write_bytes(ply_bytes(positions, faces, form, extras=True))
+    file = read_mesh_file(tmp_path / "in.ply")
+    uv = split_uv(file)
+    assert write_mesh_file(tmp_path / "out.ply", file, uv) == []
+    old, new = (plyfile.PlyData.read(tmp_path / f"{name}.ply") for name in ("in", "out"))
+    assert (new.text, new.comments) == (old.text, old.comments)
+    assert [element.name for element in new] == [element.name for element in old]
+    assert [row["shutter"] for row in new["camera"]] == [7]
+    assert new["camera"]["view"][0].tolist() == [0.5, 1.5]
+    count = len(positions)
+    for name in old["vertex"].data.dtype.names:
+        assert (new["vertex"][name][:count] == old["vertex"][name]).all()
+    assert (new["face"]["flags"] == -1).all() and "texcoord" not in new["face"].data.dtype.names
+
+    again = read_mesh(tmp_path / "out.ply")
+    assert len(again.positions) > count
+    assert (again.positions[again.corners] == file.mesh.positions[file.mesh.corners]).all()
+    assert (again.sizes == file.mesh.sizes).all()
+    stored = np.stack([new["vertex"]["s"], new["vertex"]["t"]], axis=1)[again.corners]
+    assert (stored == file.triangulation.to_polygon_corners(uv, len(again.corners))).all()
+
+
+def test_faces_without_coordinates_are_at_the_origin_of_a_ply_or_keep_theirs(tmp_path: Path) -> None:
+    plyfile = pytest.importorskip("plyfile")
+    (tmp_path / "in.obj").write_text(obj_text(*cube(2)))
+    file = read_mesh_file(tmp_path / "in.obj")
+    uv = split_uv(file)
+    write_mesh_file(tmp_path / "solved.ply", file, uv)
+    uv[-1] = np.nan
+    (finding,) = write_mesh_file(tmp_path / "out.ply", file, uv)
+    assert (finding.code, finding.message[:7]) == ("UNSOLVED_AT_ORIGIN", "1 faces")
+    assert write_mesh_file(tmp_path / "kept.ply", read_mesh_file(tmp_path / "solved.ply"), uv) == []
+    for name, expected in (("out", [0, 0]), ("kept", None)):
+        data = plyfile.PlyData.read(tmp_path / f"{name}.ply")
+        last = data["face"]["vertex_indices"][-1]
+        stored = np.stack([data["vertex"]["s"], data["vertex"]["t"]], axis=1)[last]
+        old = np.array(cube(2)[0])[cube(2)[1][-1]][:, :2] / 7
+        assert (stored == (old if expected is None else expected)).all()
+
+
+def test_unwrap_writes_ply_to_a_file_and_a_stream(tmp_path: Path, lsgp) -> None:
+    pytest.importorskip("plyfile")
+    (tmp_path / "in.ply").write_bytes(ply_bytes(*bumpy_ball(3), "binary_little_endian"))
+    assert lsgp("unwrap", "in.ply", "-o", "out.ply").code == 0
+    assert b"property double s" in (tmp_path / "out.ply").read_bytes()
+
+
+# --- STL ------------------------------------------------------------------------------------------------------------
+
+
+def stl_files(positions: np.ndarray, triangles: np.ndarray) -> dict[str, bytes]:
+    corners = positions[triangles].astype("<f4")
+    facets = b"".join(bytes(12) + corner.tobytes() + bytes(2) for corner in corners)
+    lines = ["solid ball"]
+    for corner in corners.tolist():
+        places = [f"vertex {x!r} {y!r} {z!r}" for x, y, z in corner]
+        lines += ["facet normal 0 0 0", "outer loop", *places, "endloop", "endfacet"]
+    return {
+        "binary": bytes(80) + struct.pack("<I", len(corners)) + facets,
+        "text": "\n".join([*lines, "endsolid ball", ""]).encode(),
+    }
+
+
+@pytest.mark.parametrize("kind", ["binary", "text"])
+def test_an_stl_is_welded_where_its_corners_are_at_the_same_place(tmp_path: Path, lsgp, kind: str) -> None:
+    pytest.importorskip("trimesh")
+    positions, faces = bumpy_ball(4)
+    triangles = np.array([half for a, b, c, d in faces for half in ((a, b, c), (a, c, d))])
+    (tmp_path / "in.stl").write_bytes(stl_files(positions, triangles)[kind])
+    mesh = read_mesh(tmp_path / "in.stl")
+    assert len(mesh.positions) == len(positions)
+    assert (mesh.positions[mesh.corners] == positions[triangles].astype("f4").reshape(-1, 3)).all()
+    assert lsgp("unwrap", "in.stl", "-o", "out.obj").code == 0
+
+
+def test_an_stl_that_is_none_is_refused(tmp_path: Path) -> None:
+    pytest.importorskip("trimesh")
+    (tmp_path / "in.stl").write_bytes(b"\x01\x02")
+    with pytest.raises(InputError) as caught:
+        read_mesh(tmp_path / "in.stl")
+    assert caught.value.code == "MALFORMED_FILE"
+
+
+def test_only_places_that_are_exactly_the_same_are_one() -> None:
+    near = np.nextafter(1.0, 2.0)
+    places = np.array([[1, 0, 0], [near, 0, 0], [1, -0.0, 0], [np.nan, 0, 0], [np.nan, 0, 0], [0, 0, 0], [near, 0, 0]])
+    welded, index = weld(places)
+    assert index.tolist() == [0, 1, 0, 2, 3, 4, 1]
+    assert np.array_equal(welded, places[[0, 1, 3, 4, 5]] + 0.0, equal_nan=True)
+
+
+# --- what is not installed, and what does not fit -------------------------------------------------------------------
+
+
+def test_what_a_format_takes_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(mesh_formats, "find_spec", lambda name: None)
+    Path("in.stl").write_bytes(b"solid\n")
+    Path("in.obj").write_text(obj_text(*patch()))
+    assert main(["unwrap", "in.stl", "-o", "out.obj"]) == 3
+    assert "FORMAT_NOT_INSTALLED: Reading STL takes the package trimesh: pip install 'lsgp[formats]'" in (
+        capsys.readouterr().err
+    )
+    assert main(["unwrap", "in.obj", "-o", "out.ply"]) == 2
+    assert "'out.ply' takes the package plyfile; pip install 'lsgp[formats]'" in capsys.readouterr().err
+    assert main(["--formats"]) == 0
+    table = capsys.readouterr().out
+    assert table == formats_table() + "\n"
+    assert [line.split()[:2] for line in table.splitlines()[1:]] == [
+        *[["OBJ", "yes"], ["OFF", "yes"], ["PLY", "yes"], ["glTF", "yes"], ["GLB", "yes"], ["STL", "no,"]]
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "said"),
+    [
+        ("a.ply", ply_bytes(*patch(), extras=True), ["vertex red", "vertex quality", "face flags", "element camera"]),
+        ("a.off", off_text(*patch()).replace("OFF", "COFF", 1).encode(), ["vertex colours"]),
+        ("b.off", (off_text(*patch()).rstrip() + " 255 0 0\n").encode(), ["face colours"]),
+    ],
+)
+def test_what_an_obj_cannot_hold_is_said(tmp_path: Path, lsgp, name: str, data: bytes, said: list[str]) -> None:
+    (tmp_path / name).write_bytes(data)
+    done = lsgp("unwrap", name, "-o", "out.obj", "--report", "report.json")
+    (warning,) = [w for w in done.report()["warnings"] if w["code"] == "CONTENT_NOT_KEPT"]
+    assert all(what in warning["message"] for what in said)
+    assert warning["message"] in done.err
+    assert done.code == 0
+
+
+def test_files_are_not_written_over_or_with_other_shapes(tmp_path: Path) -> None:
+    (tmp_path / "in.obj").write_text(obj_text(*patch()))
+    before = (tmp_path / "in.obj").read_bytes()
+    file = read_mesh_file(tmp_path / "in.obj")
+    uv = split_uv(file)
+    for path, coordinates, code in (
+        ("in.obj", uv, "WRONG_PARAMETER"),
+        ("out.fbx", uv, "WRONG_PARAMETER"),
+        ("out.obj", uv[1:], "WRONG_SHAPE"),
+    ):
+        with pytest.raises(InputError) as caught:
+            write_mesh_file(tmp_path / path, file, coordinates)
+        assert caught.value.code == code
+    assert (tmp_path / "in.obj").read_bytes() == before
+    write_mesh_file(tmp_path / "in.obj", file, uv, in_place=True)
+    again = read_mesh_file(tmp_path / "in.obj", with_uv=True)
+    assert (again.triangle_uv == uv).all()
+    assert faces_of(again.mesh) == faces_of(file.mesh)
+
+
+# --- PLY headers ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("form", PLY_FORMS)
+def test_a_header_line_that_lacks_its_keyword_comment_is_passed_over(form: str) -> None:
+    data = ply_bytes(*patch(), form)
+    mesh = read_ply(data.replace(b"comment made for a test", b"made for a test\nby hand: 1 2\nTextureFile a.png"))
+    assert faces_of(mesh) == patch()[1]
+
+
+@pytest.mark.parametrize("form", PLY_FORMS)
+def test_reading_a_header_takes_time_in_proportion_to_its_properties(form: str) -> None:
+    def seconds(count: int) -> float:
+        more = b"".join(b"property uchar p%d\n" % i for i in range(count))
+        header, end, body = ply_bytes(np.eye(3), [[0, 1, 2]], form).partition(b"end_header\n")
+        where = header.index(b"element face")
+        rows = (
+            body.splitlines(keepends=True) if form == "ascii" else [body[i : i + 24] for i in (0, 24, 48)] + [body[72:]]
+        )
+        value = b" 0" * count if form == "ascii" else bytes(count)
+        rows = [row.rstrip(b"\n") + value + b"\n" * (form == "ascii") for row in rows[:3]] + rows[3:]
+        data = header[:where] + more + header[where:] + end + b"".join(rows)
+        best = []
+        for _ in range(3):
+            begin = time.process_time()
+            assert len(read_ply(data).positions) == 3
+            best.append(time.process_time() - begin)
+        return min(best)
+
+    assert seconds(40_000) < 16 * seconds(5_000)

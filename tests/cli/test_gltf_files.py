@@ -1,0 +1,269 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""glTF and GLB: read as one mesh, written with new texture coordinates and all else as it was."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from gltf_files import Builder, content_of, corners_of, values_of
+from lsgp.errors import InputError
+from lsgp.io.mesh_files import read_mesh_file, write_mesh_file
+from polygon_meshes import bumpy_ball, obj_text
+
+QUARTER_TURN = [0.0, 0.0, np.sqrt(0.5), np.sqrt(0.5)]
+
+
+def soup(n: int = 3) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Places of the corners of a closed surface's triangles, each repeated as for flat shading; normals; triangles."""
+    positions, faces = bumpy_ball(n)
+    triangles = np.array([half for a, b, c, d in faces for half in ((a, b, c), (a, c, d))])
+    corners = positions[triangles].astype(np.float32)
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    return corners, np.repeat(normal[:, None], 3, axis=1).astype(np.float32), triangles
+
+
+def scene(*, with_uv: bool = False) -> Builder:
+    """Two meshes, the first of two primitives with materials, under nodes that turn, scale, move and mirror it; with an
+    animation, a camera, colours, a morph target, extensions, and keys of no version of the format."""
+    corners, normals, _ = soup()
+    half = len(corners) // 2
+    b = Builder()
+    primitives = []
+    for part in (slice(None, half), slice(half, None)):
+        points = corners[part].reshape(-1, 3)
+        attributes = {
+            "POSITION": b.add(points, min=points.min(axis=0).tolist(), max=points.max(axis=0).tolist()),
+            "NORMAL": b.add(normals[part].reshape(-1, 3)),
+            "COLOR_0": b.add(np.arange(4 * len(points), dtype=np.uint8).reshape(-1, 4), normalized=True),
+            "TANGENT": b.add(np.ones((len(points), 4), np.float32)),
+        }
+        if with_uv:
+            attributes["TEXCOORD_0"] = b.add(np.full((len(points), 2), 0.25, np.float32))
+        attributes["TEXCOORD_1"] = b.add(np.arange(2.0 * len(points), dtype=np.float32).reshape(-1, 2))
+        primitives.append(
+            {
+                "attributes": attributes,
+                "material": len(primitives),
+                "targets": [{"POSITION": b.add(points * 2, min=[0] * 3, max=[1] * 3)}],
+                "extras": {"part": len(primitives)},
+            }
+        )
+    shared = b.add(np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "<f4"), min=[0, 0, 0], max=[1, 1, 0])
+    quad = [
+        {"attributes": {"POSITION": shared}, "indices": b.add(np.array(indices, "<u2"))}
+        for indices in ([0, 1, 2], [0, 2, 3])
+    ]
+    lines = {"mode": 1, "attributes": {"POSITION": shared}}
+    b.content |= {
+        "scene": 0,
+        "scenes": [{"nodes": [0, 2]}],
+        "nodes": [
+            {"children": [1], "rotation": QUARTER_TURN, "scale": [2, 3, 4], "name": "würfel 立"},
+            {"mesh": 0, "translation": [5, 0, 0]},
+            {"mesh": 1, "matrix": [-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 7, 8, 9, 1]},
+        ],
+        "meshes": [{"name": "ball", "primitives": primitives}, {"primitives": [*quad, lines]}],
+        "materials": [{"name": "a", "extensions": {"KHR_materials_unlit": {}}}, {"name": "b"}],
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}],
+        "animations": [
+            {
+                "channels": [{"sampler": 0, "target": {"node": 1, "path": "translation"}}],
+                "samplers": [
+                    {"input": b.add(np.array([0.0, 1.0], "<f4")), "output": b.add(np.ones((2, 3), np.float32))}
+                ],
+            }
+        ],
+        "extensionsUsed": ["KHR_materials_unlit"],
+        "extras": {"kept": [None, 1.5, "ü"]},
+        "later": {"than": "version 2"},
+    }
+    return b
+
+
+def in_file(folder: Path, data: bytes, name: str) -> Path:
+    path = folder / name
+    path.write_bytes(data)
+    return path
+
+
+def some_uv(count: int) -> np.ndarray:
+    """A coordinate for every corner, different at every one, that single precision holds."""
+    return np.arange(6.0 * count).reshape(count, 3, 2) / 1024
+
+
+@pytest.mark.parametrize("form", ["gltf", "glb"])
+def test_meshes_are_read_where_their_nodes_put_them_and_welded(tmp_path: Path, form: str) -> None:
+    b = scene()
+    file = read_mesh_file(in_file(tmp_path, getattr(b, form)(), f"a.{form}"))
+    corners, _, triangles = soup()
+    places = file.mesh.positions[file.triangulation.triangles]
+    count = len(corners)
+    moved = corners.astype(float) + np.array([5, 0, 0])
+    expected = np.stack([-3 * moved[..., 1], 2 * moved[..., 0], 4 * moved[..., 2]], axis=-1)
+    assert np.abs(places[:count] - expected).max() < 1e-12
+    assert len(np.unique(file.triangulation.triangles[:count])) == len(np.unique(triangles))
+    assert len(file.mesh.positions) == len(np.unique(triangles)) + 4
+    normal = np.cross(places[count:, 1] - places[count:, 0], places[count:, 2] - places[count:, 0])
+    assert (normal[:, 2] > 0).all()  # a mirrored mesh does not turn over
+
+
+@pytest.mark.parametrize("form", ["gltf", "glb"])
+@pytest.mark.parametrize("written", ["gltf", "glb"])
+def test_everything_but_texture_coordinates_stays(tmp_path: Path, form: str, written: str) -> None:
+    b = scene()
+    before = getattr(b, form)()
+    file = read_mesh_file(in_file(tmp_path, before, f"a.{form}"))
+    uv = some_uv(len(file.triangulation.triangles))
+    findings = write_mesh_file(tmp_path / f"out.{written}", file, uv)
+    after = (tmp_path / f"out.{written}").read_bytes()
+    assert [finding.code for finding in findings] == ["CONTENT_NOT_KEPT"]
+    assert "Tangents" in findings[0].message
+
+    old, new = b.content, content_of(after)[0]
+    assert old.keys() - {"buffers"} == new.keys() - {"buffers"}
+    for key in old.keys() - {"accessors", "bufferViews", "buffers", "meshes"}:
+        assert new[key] == old[key], key
+    assert new["meshes"][1]["primitives"][2] == old["meshes"][1]["primitives"][2]
+    for sampler in new["animations"][0]["samplers"]:
+        for accessor in sampler.values():
+            assert (values_of(after, accessor) == values_of(b.glb(), accessor)).all()
+
+    for mesh, primitive, part in ((0, 0, slice(0, 54)), (0, 1, slice(54, 108)), (1, 0, [108]), (1, 1, [109])):
+        was, now = (content["meshes"][mesh]["primitives"][primitive] for content in (old, new))
+        assert now.keys() == was.keys() | {"indices"}
+        assert [now[key] for key in ("material", "extras") if key in now] == [
+            was[key] for key in ("material", "extras") if key in was
+        ]
+        assert now["attributes"].keys() == (was["attributes"].keys() - {"TANGENT"}) | {"TEXCOORD_0"}
+        stored = corners_of(after, mesh, primitive, "TEXCOORD_0")
+        assert (stored == np.stack([uv[part][..., 0], 1 - uv[part][..., 1]], axis=-1).astype("<f4")).all()
+        source = b.glb()
+        index = values_of(source, was["indices"])[:, 0] if "indices" in was else slice(None)
+        for name in now["attributes"].keys() - {"TEXCOORD_0"}:
+            values = values_of(source, was["attributes"][name])[index]
+            assert (corners_of(after, mesh, primitive, name).reshape(values.shape) == values).all(), name
+        accessor = new["accessors"][now["attributes"]["POSITION"]]
+        points = values_of(after, now["attributes"]["POSITION"])
+        assert (accessor["min"], accessor["max"]) == (points.min(axis=0).tolist(), points.max(axis=0).tolist())
+    targets = new["meshes"][0]["primitives"][0]["targets"][0]["POSITION"]
+    indices = values_of(after, new["meshes"][0]["primitives"][0]["indices"])[:, 0]
+    assert (values_of(after, targets)[indices].reshape(-1, 3, 3) == 2 * soup()[0][:54]).all()
+    assert len(after) < 3 * len(before)
+
+
+def test_vertices_are_split_at_cuts_only(tmp_path: Path) -> None:
+    b = Builder()
+    points = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "<f4")
+    position = b.add(points, min=[0, 0, 0], max=[1, 1, 0])
+    indices = b.add(np.array([0, 1, 2, 0, 2, 3], np.uint8))
+    b.content["meshes"] = [{"primitives": [{"attributes": {"POSITION": position}, "indices": indices}]}]
+    file = read_mesh_file(in_file(tmp_path, b.glb(), "a.glb"))
+    uv = points[[[0, 1, 2], [0, 2, 3]]][..., :2].astype(float)
+    write_mesh_file(tmp_path / "whole.glb", file, uv)
+    uv[1, 0] += 1
+    write_mesh_file(tmp_path / "cut.glb", file, uv)
+    counts = [content_of((tmp_path / f"{n}.glb").read_bytes())[0]["accessors"][0]["count"] for n in ("whole", "cut")]
+    assert counts == [4, 5]
+
+
+def test_triangles_that_are_not_solved_keep_what_they_have(tmp_path: Path) -> None:
+    for with_uv in (True, False):
+        file = read_mesh_file(in_file(tmp_path, scene(with_uv=with_uv).glb(), "a.glb"), with_uv=True)
+        uv = some_uv(len(file.triangulation.triangles))
+        uv[3, 1] = np.nan
+        findings = write_mesh_file(tmp_path / "out.glb", file, uv)
+        stored = corners_of((tmp_path / "out.glb").read_bytes(), 0, 0, "TEXCOORD_0")
+        assert (stored[3] == ([0.25, 0.25] if with_uv else [0, 1])).all()
+        assert ("UNSOLVED_AT_ORIGIN" in [finding.code for finding in findings]) == (not with_uv)
+        again = read_mesh_file(tmp_path / "out.glb", with_uv=True).triangle_uv
+        assert np.abs(again[3] - ([0.25, 0.75] if with_uv else [0, 0])).max() == 0
+        assert np.abs(np.delete(again, 3, axis=0) - np.delete(uv, 3, axis=0)).max() < 1e-6
+
+
+def test_files_beside_a_document_are_found_and_taken_along(tmp_path: Path) -> None:
+    b = scene()
+    (tmp_path / "in").mkdir()
+    (tmp_path / "in" / "data 1.bin").write_bytes(b.buffer)
+    (tmp_path / "in" / "stone.png").write_bytes(b"\x89PNG")
+    b.content |= {
+        "buffers": [{"byteLength": len(b.buffer), "uri": "data%201.bin"}],
+        "images": [{"uri": "stone.png"}, {"uri": "missing.png"}],
+    }
+    file = read_mesh_file(in_file(tmp_path / "in", json.dumps(b.content).encode(), "a.gltf"))
+    uv = some_uv(len(file.triangulation.triangles))
+    write_mesh_file(tmp_path / "in" / "near.gltf", file, uv)
+    write_mesh_file(tmp_path / "far.gltf", file, uv)
+    near, far = (json.loads((tmp_path / name).read_text())["images"] for name in ("in/near.gltf", "far.gltf"))
+    assert near == [{"uri": "stone.png"}, {"uri": "missing.png"}]
+    assert far == [{"uri": "data:image/png;base64,iVBORw=="}, {"uri": "missing.png"}]
+
+
+def test_other_formats_become_glb_and_what_is_lost_is_said(tmp_path: Path, lsgp) -> None:
+    positions, faces = bumpy_ball(3)
+    text = "mtllib a.mtl\nvn 0 0 1\n" + obj_text(positions, faces)
+    (tmp_path / "in.obj").write_text(text)
+    done = lsgp("unwrap", "in.obj", "-o", "out.glb", "--report", "report.json")
+    assert done.code == 0
+    (warning,) = done.report()["warnings"]
+    assert warning["code"] == "CONTENT_NOT_KEPT"
+    assert all(what in warning["message"] for what in ("mtllib", "vn", "more than three corners"))
+    assert lsgp("unwrap", "in.obj", "-o", "out.obj").code == 0
+    there, expected = (read_mesh_file(tmp_path / f"out.{kind}", with_uv=True) for kind in ("glb", "obj"))
+    assert np.abs(there.triangle_uv - expected.triangle_uv).max() < 1e-6
+    assert lsgp("measure", "out.glb").code == 0
+
+
+def broken(change) -> bytes:
+    b = scene()
+    change(b.content)
+    return b.gltf()
+
+
+MALFORMED = {
+    "no JSON": b"{",
+    "no object": b"[]",
+    "version 1": b'{"asset": {"version": "1.0"}}',
+    "GLB cut short": scene().glb()[:100],
+    "GLB without content": b"glTF\x02\0\0\0\x0c\0\0\0",
+    "view beyond the buffer": broken(lambda c: c["bufferViews"][0].update(byteLength=10**9)),
+    "accessor beyond its view": broken(lambda c: c["accessors"][0].update(count=10**9)),
+    "negative offset": broken(lambda c: c["accessors"][0].update(byteOffset=-12)),
+    "unknown component": broken(lambda c: c["accessors"][0].update(componentType=1)),
+    "index beyond the vertices": broken(lambda c: c["accessors"][-4].update(count=3, byteOffset=2)),
+    "strips": broken(lambda c: c["meshes"][0]["primitives"][0].update(mode=5)),
+    "sparse": broken(lambda c: c["accessors"][0].update(sparse={})),
+    "compressed": broken(lambda c: c.update(extensionsRequired=["KHR_draco_mesh_compression"])),
+    "attributes that are missing": broken(lambda c: c["meshes"][0]["primitives"][0].pop("attributes")),
+    "nodes of text": broken(lambda c: c.update(nodes="x")),
+    "matrix too short": broken(lambda c: c["nodes"][2].update(matrix=[1])),
+    "accessor without data": broken(
+        lambda c: (c["accessors"][0].pop("bufferView"), c["accessors"][0].update(count=9**9))
+    ),
+}
+
+
+@pytest.mark.parametrize("name", MALFORMED)
+def test_malformed_documents_are_refused(tmp_path: Path, name: str) -> None:
+    path = in_file(tmp_path, MALFORMED[name], "a.glb" if name.startswith("GLB") else "a.gltf")
+    with pytest.raises(InputError) as caught:
+        read_mesh_file(path)
+    assert caught.value.code == "MALFORMED_FILE"
+
+
+def test_nodes_that_are_their_own_children_end(tmp_path: Path) -> None:
+    data = broken(lambda c: c["nodes"][1].update(children=[0]))
+    assert len(read_mesh_file(in_file(tmp_path, data, "a.gltf")).mesh.positions) > 4
+
+
+def test_trimesh_reads_what_is_written(tmp_path: Path) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    file = read_mesh_file(in_file(tmp_path, scene().glb(), "a.glb"))
+    uv = some_uv(len(file.triangulation.triangles))
+    write_mesh_file(tmp_path / "out.glb", file, uv)
+    loaded = trimesh.load(tmp_path / "out.glb", process=False)
+    faces = [mesh.faces for mesh in loaded.geometry.values() if isinstance(mesh, trimesh.Trimesh)]
+    assert sum(map(len, faces)) == len(uv)

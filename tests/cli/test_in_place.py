@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The input is written over only where that was asked for, and is never lost then."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from lsgp.cli import main
+from lsgp.io.whole_files import write_whole
+
+RUN = ["unwrap", "cube.obj", "--cones", "corners.json"]
+
+
+def spelled(folder: Path, kind: str) -> str:
+    """Another path to cube.obj."""
+    other = folder / "other.obj"
+    if kind == "hard link":
+        os.link(folder / "cube.obj", other)
+    elif kind == "symbolic link":
+        other.symlink_to("cube.obj")
+    elif kind == "link to the folder":
+        (folder / "here").symlink_to(folder)
+        return "here/cube.obj"
+    else:
+        return f"../{folder.name}/cube.obj"
+    return "other.obj"
+
+
+@pytest.mark.parametrize("kind", ["hard link", "symbolic link", "link to the folder", "another spelling"])
+def test_the_input_by_any_path_is_refused_as_output(
+    cube_files: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], kind: str
+) -> None:
+    monkeypatch.chdir(cube_files)
+    before = Path("cube.obj").read_bytes()
+    path = spelled(cube_files, kind)
+    assert main([*RUN, "-o", path]) == 2
+    said = capsys.readouterr().err
+    assert f"'{path}'" in said and "'cube.obj'" in said and "--in-place" in said
+    assert Path("cube.obj").read_bytes() == before
+    assert main([*RUN, "-o", path, "--in-place"]) == 0
+    assert Path(path).read_bytes() != before
+
+
+def test_the_report_is_not_written_over_a_link_to_the_input(
+    cube_files: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(cube_files)
+    os.link("cube.obj", "report.json")
+    assert main([*RUN, "-o", "out.obj", "--report", "report.json"]) == 2
+    assert "same file" in capsys.readouterr().err
+
+
+def test_a_backup_is_there_until_the_result_is_in_its_place(cube_files: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(cube_files)
+    before = Path("cube.obj").read_bytes()
+    seen = []
+    replace = os.replace
+
+    def watch(source: Path, target: Path) -> None:
+        seen.append(Path("cube.obj.lsgp-backup").read_bytes())
+        replace(source, target)
+        seen.append(Path("cube.obj.lsgp-backup").read_bytes())
+
+    monkeypatch.setattr(os, "replace", watch)
+    assert main([*RUN, "--in-place"]) == 0
+    assert seen == [before, before]
+    assert b"vt" in Path("cube.obj").read_bytes()
+    assert sorted(os.listdir()) == ["corners.json", "cube.obj"]
+
+
+@pytest.mark.parametrize("fails", ["replace", "link"])
+def test_the_input_survives_what_fails(
+    cube_files: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], fails: str
+) -> None:
+    """Without hard links the backup is a copy."""
+    monkeypatch.chdir(cube_files)
+    before = Path("cube.obj").read_bytes()
+
+    def fail(*arguments: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, fails, fail)
+    assert main([*RUN, "--in-place"]) == (2 if fails == "replace" else 0)
+    assert (Path("cube.obj").read_bytes() == before) == (fails == "replace")
+    assert sorted(os.listdir()) == ["corners.json", "cube.obj"]
+
+
+def test_the_backup_of_a_killed_run_is_not_written_over(
+    cube_files: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(cube_files)
+    Path("cube.obj.lsgp-backup").write_text("the original")
+    before = Path("cube.obj").read_bytes()
+    assert main([*RUN, "--in-place"]) == 2
+    assert "cube.obj.lsgp-backup" in capsys.readouterr().err
+    with pytest.raises(FileExistsError):
+        write_whole(Path("cube.obj"), b"new", keep_backup=True)
+    assert Path("cube.obj").read_bytes() == before
+    assert Path("cube.obj.lsgp-backup").read_text() == "the original"
+    assert sorted(os.listdir()) == ["corners.json", "cube.obj", "cube.obj.lsgp-backup"]

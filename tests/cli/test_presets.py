@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`lsgp unwrap --preset`: what each preset makes, and that options given besides win."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+UNWRAP = ("unwrap", "ball.obj", "-o", "out.obj", "--report", "report.json")
+
+
+def report_of(lsgp, *options: object) -> dict:
+    done = lsgp(*UNWRAP, *options)
+    assert done.code == 0, done.err
+    return done.report()
+
+
+def test_without_a_preset_the_map_is_the_conformal_one_with_its_overlaps(lsgp, ball_files: Path) -> None:
+    report_of(lsgp)
+    plain = (ball_files / "out.obj").read_bytes()
+    report_of(lsgp, "--mode", "conformal", "--overlaps", "keep")
+    assert (ball_files / "out.obj").read_bytes() == plain
+    report_of(lsgp, "--preset", "paint", "--mode", "conformal", "--overlaps", "keep")
+    assert (ball_files / "out.obj").read_bytes() == plain
+
+
+@pytest.mark.parametrize("preset", ["paint", "bake"])
+def test_paint_and_bake_keep_lengths(lsgp, ball_files: Path, preset: str) -> None:
+    conformal, chosen = report_of(lsgp), report_of(lsgp, "--preset", preset)
+    by_hand = report_of(lsgp, "--mode", "low-stretch", "--overlaps", "split")
+    assert chosen["distortion"] == by_hand["distortion"]
+    assert chosen["distortion"]["l2_stretch"] < conformal["distortion"]["l2_stretch"]
+
+
+def test_tile_is_seamless_and_takes_the_options_of_seamless_layouts(lsgp, ball_files: Path) -> None:
+    seamless = report_of(lsgp, "--preset", "tile", "--tiles", 24)["seamless"]
+    assert seamless == report_of(lsgp, "--seamless", "--tiles", 24, "--overlaps", "split")["seamless"]
+    assert report_of(lsgp, "--preset", "tile", "--lattice", "hexagon")["seamless"]["symmetry"] == 6
+    assert report_of(lsgp, "--preset", "paint", "--seamless")["seamless"]["symmetry"] == 4
+    refused = lsgp(*UNWRAP, "--preset", "bake", "--tiles", 24)
+    assert refused.code == 2 and "add --seamless" in refused.err
+
+
+def test_a_stretch_goes_with_presets_that_keep_lengths(lsgp, ball_files: Path) -> None:
+    half, full = (report_of(lsgp, "--preset", "paint", *options) for options in (("--stretch", 0.3), ()))
+    assert half["distortion"]["l2_stretch"] > full["distortion"]["l2_stretch"]
+    refused = lsgp(*UNWRAP, "--preset", "tile", "--stretch", 0.3)
+    assert refused.code == 2 and "add --mode low-stretch" in refused.err
+
+
+def test_cones_of_a_file_are_completed_with_a_preset_alone(lsgp, ball_files: Path) -> None:
+    (ball_files / "one.json").write_text(json.dumps({"cones": [0]}))
+    assert lsgp(*UNWRAP, "--cones", "one.json").code == 3
+    report = report_of(lsgp, "--cones", "one.json", "--preset", "paint")
+    assert 0 in report["cones"] and len(report["cones"]) > 1
+    assert report["placement"] is not None
+    enough = report_of(lsgp, "--cones", "cones.json", "--preset", "paint")
+    assert enough["cones"] == json.loads((ball_files / "cones.json").read_text())["cones"]
+    assert enough["placement"] is None
+
+
+def test_a_batch_takes_presets_and_makes_the_bytes_of_single_runs(lsgp, ball_files: Path) -> None:
+    done = lsgp("batch", "ball.obj", "--out", "many", "--preset", "bake", "--no-pictures")
+    assert done.code == 0, done.err
+    report_of(lsgp, "--preset", "bake")
+    assert (ball_files / "many" / "ball.obj").read_bytes() == (ball_files / "out.obj").read_bytes()
+    (line,) = (json.loads(text) for text in (ball_files / "many" / "journal.jsonl").read_text().splitlines())
+    assert line["overlapping"] == 0

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Keeps the child process in which steps are performed, so that a crash or a hang is an end of a step like others."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import select
+import signal
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass, field
+from types import TracebackType
+
+from .steps import Step
+
+SECONDS = 60.0  # that a step may take
+SANITIZED_MEMORY = 6000  # megabytes
+SHOWN = 4000  # characters of what a process that died has said
+
+
+@dataclass
+class Ended:
+    """How a step ended: in a word, and what was wrong with that."""
+
+    told: str
+    faults: list[str] = field(default_factory=list)
+
+
+class Host:
+    """A context manager: the child process lives as long as it, and is started anew where it has died."""
+
+    def __init__(self, seconds: float = SECONDS) -> None:
+        self._seconds = seconds
+        self._child: subprocess.Popen[str] | None = None
+        self._open = contextlib.ExitStack()
+
+    def __enter__(self) -> Host:
+        self._errors = self._open.enter_context(tempfile.TemporaryFile("w+"))
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self._end()
+        self._open.close()
+
+    def begin(self) -> None:
+        """A new session, in the child process there is."""
+        self.perform({"do": "begin"})
+
+    def perform(self, step: Step) -> Ended:
+        if self._child is None:
+            self._start()
+        child = self._child
+        assert child is not None and child.stdin is not None and child.stdout is not None
+        with contextlib.suppress(BrokenPipeError):
+            child.stdin.write(json.dumps(step) + "\n")
+            child.stdin.flush()
+        if not select.select([child.stdout], [], [], self._seconds)[0]:
+            os.kill(child.pid, signal.SIGABRT)  # faulthandler tells where it was
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                child.wait(5)
+            where = self._last_words()
+            self._end()
+            return Ended("hang", [f"no answer within {self._seconds:g} s\n{where}"])
+        line = child.stdout.readline()
+        if not line:
+            code = child.wait()
+            where = self._last_words()
+            self._end()
+            return Ended("crash", [f"the process died with {_name(code)}\n{where}"])
+        return Ended(*json.loads(line))
+
+    def _start(self) -> None:
+        environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "OPENBLAS_NUM_THREADS": "1"}
+        if "ASAN_OPTIONS" in environment:  # the child limits its address space, but not with this sanitizer's in it
+            environment["ASAN_OPTIONS"] += f":hard_rss_limit_mb={SANITIZED_MEMORY}"
+        self._errors.seek(0)
+        self._errors.truncate()
+        self._child = subprocess.Popen(
+            [sys.executable, "-m", "explorer.child"],
+            env=environment,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._errors,
+            text=True,
+        )
+
+    def _last_words(self) -> str:
+        """What the process wrote to stderr: the beginning, where a sanitizer or the interpreter says why."""
+        self._errors.seek(0)
+        return self._errors.read().split("Extension modules:")[0][:SHOWN]
+
+    def _end(self) -> None:
+        if self._child is None:
+            return
+        self._child.kill()
+        self._child.wait()
+        for pipe in (self._child.stdin, self._child.stdout):
+            with contextlib.suppress(BrokenPipeError):
+                pipe.close()
+        self._child = None
+
+
+def _name(code: int) -> str:
+    with contextlib.suppress(ValueError):
+        return signal.Signals(-code).name
+    return f"exit code {code}"

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Any bytes as the files that a command line reads, led by coverage (Atheris).
+
+The first byte chooses the command, the second its options and the suffix of the mesh; the files follow, with SEPARATOR
+between them. Every command must end with an exit code of its own and without a traceback, and what it wrote must be
+read back as the same mesh. tools/fuzz runs this, and replays what it found.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import atheris
+
+with atheris.instrument_imports(include=["lsgp"]):
+    from lsgp.batch import command
+    from lsgp.batch.records import Record, ending
+    from lsgp.cli import main
+    from lsgp.io.mesh_files import read_mesh
+
+import numpy as np
+
+SEPARATOR = b"\n%%\n"
+SUFFIXES = [".obj", ".ply", ".off", ""]
+
+# What beside the mesh is given to `unwrap`, and how.
+OPTIONS = [
+    ["--cones", "auto:4"],
+    ["--cones", "auto", "--seams", "boundary", "--overlaps", "split"],
+    ["--cones", "auto:2", "--mode", "low-stretch", "--importance", "importance"],
+    ["--cones", "auto:4", "--seamless", "--tiles", "8"],
+    ["--cones", "cones", "--seam-edges", "seams"],
+    ["--cones", "cones", "--prescription", "manual"],
+    ["--cones", "cones", "--importance", "importance", "--report", "report"],
+    ["--cones", "cones", "--seam-edges", "seams", "--border", "straight"],
+]
+
+
+class NoWorkers:
+    """In place of the processes of a batch: every asset fails at once."""
+
+    def __init__(self, *_: Any) -> None:
+        pass
+
+    def run(self, assets: Iterable[Any]) -> Iterator[Record]:
+        for asset in assets:
+            yield ending("failed", "WORKER_DIED", "No asset is worked on here.", asset=asset.name, options="")
+
+
+command.Pool = NoWorkers
+
+
+def run(argv: list[str], exit_codes: tuple[int, ...]) -> int:
+    said = io.TextIOWrapper(io.BytesIO())
+    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+        code = main(argv)
+    said.flush()
+    told = said.buffer.getvalue()
+    assert code in exit_codes, f"{argv} ended with {code}: {told!r}"
+    assert code == 0 or told.strip(), f"{argv} ended with {code} without a word"
+    return code
+
+
+def unwrap(folder: Path, how: int, mesh: Path) -> None:
+    options = [str(folder / word) if (folder / word).is_file() else word for word in OPTIONS[how % len(OPTIONS)]]
+    out = folder / "out.obj"
+    if run(["unwrap", str(mesh), "-o", str(out), *options], (0, 2, 3)) == 0:
+        before, after = read_mesh(mesh), read_mesh(out, with_uv=True)
+        assert np.array_equal(before.positions, after.positions, equal_nan=True)
+        assert np.array_equal(before.corners, after.corners) and np.array_equal(before.sizes, after.sizes)
+        assert np.isfinite(after.corner_uv).any()
+
+
+def cones(folder: Path, how: int, mesh: Path) -> None:
+    options = ["--count", "3"] if how % 2 else []
+    options += ["--keep", str(folder / "cones")] if how & 2 else []
+    options += ["--seam-edges", str(folder / "seams")] if how & 4 else []
+    run(["cones", str(mesh), "-o", str(folder / "out.json"), *options], (0, 2, 3))
+
+
+def measure(folder: Path, how: int, mesh: Path) -> None:
+    run(["measure", str(mesh), *(["--report", str(folder / "report")] if how % 2 else [])], (0, 2, 3))
+
+
+def batch(folder: Path, how: int, mesh: Path) -> None:
+    """The first file is the list, the second a journal of before."""
+    options = ["--only-missing"] if how % 2 else []
+    options += ["--shard", "1/2"] if how & 2 else []
+    journal = "journal-1-of-2.jsonl" if how & 2 else "journal.jsonl"
+    (folder / "results").mkdir()
+    (folder / "cones").rename(folder / "results" / journal)
+    run(["batch", str(mesh), "--out", str(folder / "results"), *options], (0, 2, 3, 4))
+
+
+COMMANDS = [unwrap, unwrap, measure, measure, cones, batch]
+
+
+def one_input(raw: bytes) -> None:
+    if len(raw) < 2:
+        return
+    files = raw[2:].split(SEPARATOR) + [b""] * 4
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        mesh = folder / f"mesh{SUFFIXES[raw[1] // 8 % len(SUFFIXES)]}"
+        mesh.write_bytes(files[0])
+        for side_file, data in zip(("cones", "seams", "importance"), files[1:], strict=False):
+            (folder / side_file).write_bytes(data)
+        COMMANDS[raw[0] % len(COMMANDS)](folder, raw[1], mesh)
+
+
+if __name__ == "__main__":
+    np.seterr(all="ignore")
+    atheris.Setup(sys.argv, one_input)
+    atheris.Fuzz()

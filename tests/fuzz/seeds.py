@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Writes what the fuzzers begin with: small inputs of every verb and every kind of file, one file each.
+
+python tests/fuzz/seeds.py FOLDER      into FOLDER/surface, FOLDER/arrays and FOLDER/files; the same ones every time
+"""
+
+from __future__ import annotations
+
+import random
+import struct
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+VERBS = 8  # of fuzz_surface and fuzz_arrays
+SHAPES = 6  # of fuzz_surface
+OPTIONS = 8  # of fuzz_files
+SEPARATOR = b"\n%%\n"
+UNWRAP, MEASURE, CONES, BATCH = 0, 2, 4, 5  # commands of fuzz_files
+OBJ, PLY, OFF, NONE = range(4)  # suffixes of fuzz_files
+
+CUBE = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+SIDES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+
+
+def surfaces() -> Iterator[bytes]:
+    """A verb, one or two sound parts of some shape, nothing moved or changed, then any options."""
+    numbers = random.Random(1)
+    for verb in range(VERBS):
+        for shape in range(SHAPES):
+            for parts in range(2):
+                part = bytes([shape, 2, 2])
+                sound = bytes([0, 0, 0, 0, 0, 0])  # moved, changed, scale, seams, edges, importance
+                yield bytes([verb, parts]) + part * (parts + 1) + sound + numbers.randbytes(60)
+        yield bytes([verb]) + numbers.randbytes(200)
+
+
+def arrays() -> Iterator[bytes]:
+    numbers = random.Random(2)
+    for length in range(16, 400, 4):
+        yield numbers.randbytes(length)
+
+
+def obj(sides: list[tuple[int, ...]], uv: bool = False) -> bytes:
+    lines = ["# a cube", "o cube", *(f"v {x} {y} {z}" for x, y, z in CUBE)]
+    lines += [f"vt {x} {y}" for x, y, _ in CUBE] if uv else []
+    lines += ["usemtl red", "s 1"]
+    lines += ["f " + " ".join(f"{v + 1}/{v + 1}" if uv else str(v + 1) for v in side) for side in sides]
+    return "\n".join(lines).encode()
+
+
+def off(header: str) -> bytes:
+    rows = [" ".join(map(str, point)) for point in CUBE] + [" ".join(map(str, (4, *side))) for side in SIDES]
+    return "\n".join([header, "8 6 12", *rows]).encode()
+
+
+def ply(form: str, per_vertex: str = "") -> bytes:
+    header = (
+        f"ply\nformat {form} 1.0\ncomment a cube\nelement vertex 8\nproperty float x\nproperty float y\n"
+        f"property float z\n{per_vertex}element face 6\nproperty list uchar int vertex_indices\nend_header\n"
+    ).encode()
+    if form == "ascii":
+        extra = " 1" if per_vertex else ""
+        rows = [" ".join(map(str, point)) + extra for point in CUBE]
+        return header + "\n".join(rows + [" ".join(map(str, (4, *side))) for side in SIDES]).encode()
+    order = "<" if form == "binary_little_endian" else ">"
+    extra = struct.pack("B", 1) if per_vertex else b""
+    points = b"".join(struct.pack(order + "3f", *point) + extra for point in CUBE)
+    return header + points + b"".join(struct.pack(order + "B4i", 4, *side) for side in SIDES)
+
+
+def meshes() -> Iterator[tuple[int, bytes]]:
+    yield OBJ, obj(SIDES)
+    yield OBJ, obj(SIDES[:5])
+    yield OBJ, obj(SIDES, uv=True)
+    yield OBJ, b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n"
+    yield OBJ, b"v 0 0 0 1 0 0\r\nv 1 0 0\r\nv 0 1 \\\n0\nvn 0 0 1\ng a b\nf 1//1 2//1 3//1\nl 1 2\n"
+    yield OFF, off("OFF")
+    yield NONE, off("COFF")
+    for form in ("ascii", "binary_little_endian", "binary_big_endian"):
+        yield PLY, ply(form)
+        yield NONE, ply(form, "property uchar red\n")
+
+
+def files() -> Iterator[bytes]:
+    cones = [b'{"cones": [0, 1, 2, 3, 4, 5, 6, 7]}', b'{"cones": [0, 7, 3], "cone_angles": [3.1, null, 4.7]}']
+    cones.append(b'{"cones": [0, 7], "angles_over_pi_2": [3, 1e2]}')
+    seams = [b"[[0, 1], [1, 3]]", b"[]"]
+    importance = [b"1 2 0 1 1 0.5 1 1", b"[1, 2, 0, 1, 1, 0.5, 1, 1]"]
+    for i, (suffix, mesh) in enumerate(meshes()):
+        sides = SEPARATOR.join([mesh, cones[i % 3], seams[i % 2], importance[i % 2]])
+        for command in (UNWRAP, MEASURE, CONES):
+            for how in range(OPTIONS if command == UNWRAP else 2):
+                yield bytes([command, 8 * suffix + how]) + sides
+    journal = b'{"asset": "a.obj", "status": "ok", "output": "a.obj", "options": ""}\n{"asset": "b.ply", "status": "ref'
+    record = b'{"asset": "a.obj", "status": "refused", "code": "BAD_FACE", "message": "?", "options": "", "seconds": 9}'
+    for how in range(4):
+        for lines in (journal, record, b""):
+            yield bytes([BATCH, 8 * NONE + how]) + SEPARATOR.join([b"a.obj\nsub/b.ply\r\n\n../c.off", lines])
+
+
+def main(folder: Path) -> None:
+    for name, inputs in (("surface", surfaces()), ("arrays", arrays()), ("files", files())):
+        (folder / name).mkdir(parents=True, exist_ok=True)
+        for i, data in enumerate(inputs):
+            (folder / name / f"seed-{i:03}").write_bytes(data)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

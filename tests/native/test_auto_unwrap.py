@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Unwrapping in one call: what presets promise, and where cones are added to those that are given."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import lsgp
+import meshes
+import numpy as np
+import pytest
+from lsgp import Surface, auto_unwrap
+from lsgp.auto_unwrap import TARGET, complete_cones
+from map_checks import codes, only
+from meshes import Mesh
+from result_check import undeclared_faults
+
+PRESETS = ("paint", "tile", "bake")
+SHAPES = {
+    "ball": meshes.bumpy_sphere(3),
+    "cube": meshes.cube(4),
+    "torus": meshes.torus(),
+    "hill": meshes.hill(),
+    "cylinder": meshes.cylinder(),
+    "two balls": meshes.merge([meshes.bumpy_sphere(2), meshes.bumpy_sphere(2)]),
+}
+
+
+def surface(mesh: Mesh, **more: object) -> Surface:
+    return Surface(mesh.positions, mesh.triangles, **more)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("preset", PRESETS)
+def test_a_surface_alone_gives_a_map_without_overlaps_that_keeps_what_it_promises(preset: str, name: str) -> None:
+    given = surface(SHAPES[name])
+    result = auto_unwrap(given, preset=preset)
+    assert result.solved.all() and not len(result.overlapping) and not len(result.flipped)
+    assert undeclared_faults(given, result, lsgp.preset_options(preset)) == []
+    if preset == "tile":
+        assert result.seamless.error == 0
+    else:
+        assert result.distortion.l2_stretch <= TARGET
+        assert result.corner_uv.min() >= -1e-12 and result.corner_uv.max() <= 1 + 1e-12
+
+
+def test_painting_stretches_less_than_the_conformal_map_through_the_same_cones() -> None:
+    given = surface(meshes.bumpy_sphere(3))
+    painted = auto_unwrap(given)
+    conformal = lsgp.parameterize(given, painted.cones, painted.cone_angles)
+    assert painted.distortion.l2_stretch < conformal.distortion.l2_stretch - 1e-3
+
+
+def test_options_take_the_place_of_the_presets() -> None:
+    given = surface(meshes.bumpy_sphere(3))
+    hexagons = replace(lsgp.preset_options("tile"), seamless=lsgp.Seamless(lattice="hexagon"))
+    assert auto_unwrap(given, preset="tile", options=hexagons).seamless.symmetry == 6
+    plain = auto_unwrap(given, options=lsgp.Options())
+    placed = lsgp.place_cones(given)
+    assert plain == lsgp.parameterize(given, placed.cones, placed.cone_angles)
+
+
+def test_cones_that_suffice_are_kept_and_none_is_added() -> None:
+    ball = meshes.bumpy_sphere(3)
+    cones = ball.cones[:5]
+    angles = [4.0] + [None] * 4
+    result = auto_unwrap(surface(ball), cones, angles)
+    assert result.cones.tolist() == cones.tolist()
+    assert result.cone_angles[0] == pytest.approx(4.0, abs=1e-12)
+
+
+def test_cones_that_cannot_take_up_the_curvature_are_completed() -> None:
+    ball = meshes.bumpy_sphere(3)
+    with pytest.raises(lsgp.TopologyError):
+        lsgp.parameterize(surface(ball), ball.cones[:1])
+    result = auto_unwrap(surface(ball), ball.cones[:1], [4.0])
+    assert len(result.cones) > 1 and result.cones[0] == ball.cones[0]
+    assert result.cone_angles[0] == pytest.approx(4.0, abs=1e-12)
+    assert result.distortion.l2_stretch <= TARGET
+
+
+def test_parts_without_cones_get_some_and_the_others_keep_theirs() -> None:
+    ball = meshes.bumpy_sphere(2)
+    both = surface(meshes.merge([ball, ball]))
+    result = auto_unwrap(both, ball.cones)
+    first = len(ball.positions)
+    assert result.cones[result.cones < first].tolist() == ball.cones.tolist()
+    alone = lsgp.place_cones(surface(ball))
+    assert (result.cones[result.cones >= first] - first).tolist() == alone.cones.tolist()
+    assert result.cone_angles[result.cones >= first] == pytest.approx(alone.cone_angles, abs=1e-6)
+    assert codes(result.warnings) == []
+
+
+def test_what_is_said_of_a_part_names_elements_of_the_whole_surface() -> None:
+    ball = meshes.bumpy_sphere(2)
+    count = len(ball.triangles)
+    broken = meshes.with_zero_area(ball, 7)
+    whole = surface(meshes.merge([ball, broken]))
+    completed = complete_cones(whole, ball.cones, None, lsgp.Options())
+    (alone,) = only(lsgp.place_cones(surface(broken)).warnings, "DEGENERATE_FACES").elements.indices
+    assert only(completed.placement.warnings, "DEGENERATE_FACES").elements.indices.tolist() == [count + alone]
+    # Vertices of the other part are not in the one that cones are placed on, and yet no isolated ones.
+    assert "ISOLATED_VERTICES" not in codes(completed.placement.warnings)
+
+
+def test_a_part_for_which_no_cones_are_found_does_not_refuse_the_others() -> None:
+    ball, strip = meshes.bumpy_sphere(2), meshes.moebius_strip()
+    result = auto_unwrap(surface(meshes.merge([ball, strip])), ball.cones)
+    assert result.solved.tolist() == [True] * len(ball.triangles) + [False] * len(strip.triangles)
+    assert "COMPONENT_SKIPPED" in codes(result.warnings)
+    with pytest.raises(lsgp.TopologyError):
+        auto_unwrap(surface(strip))
+
+
+def test_open_surfaces_that_lie_flat_get_no_cones() -> None:
+    assert len(auto_unwrap(surface(meshes.grid())).cones) == 0
+
+
+def test_count_is_that_of_placing() -> None:
+    given = surface(meshes.bumpy_sphere(3))
+    assert len(auto_unwrap(given, count=9).cones) == 9
+    with pytest.raises(lsgp.InputError, match="count is -1"):
+        auto_unwrap(given, count=-1)
+
+
+def test_a_target_that_only_the_conformal_map_misses_is_not_reported() -> None:
+    given = surface(meshes.bumpy_sphere(2))
+    missed = lsgp.Finding("PLACEMENT_NOT_REACHED", "The target is not reached.")
+    paint = lsgp.preset_options("paint")
+
+    def told(options: lsgp.Options, l2_stretch: float, count: int | None = None) -> list[str]:
+        completed = complete_cones(given, (), None, options, count)
+        completed = replace(completed, placement=replace(completed.placement, warnings=[missed]))
+        result = lsgp.parameterize(given, completed.cones, completed.angles, options)
+        measured = replace(result, distortion=replace(result.distortion, l2_stretch=l2_stretch))
+        return codes(completed.told(measured, options).warnings)
+
+    assert told(paint, TARGET) == []
+    assert told(paint, TARGET + 1e-3) == ["PLACEMENT_NOT_REACHED"]
+    assert told(lsgp.Options(), TARGET) == ["PLACEMENT_NOT_REACHED"]
+    # A number of cones is missed whatever the stretch is.
+    assert told(paint, TARGET, count=8) == ["PLACEMENT_NOT_REACHED"]
+
+
+@pytest.mark.parametrize("preset", ["PAINT", "", None, 1])
+def test_unknown_presets_are_refused(preset: object) -> None:
+    with pytest.raises(lsgp.InputError, match="choose one of paint, tile, bake"):
+        auto_unwrap(surface(meshes.cube()), preset=preset)
+
+
+def test_progress_is_that_of_placing_and_of_the_map_and_stops_both() -> None:
+    given = surface(meshes.bumpy_sphere(4))
+    told: list[float] = []
+    auto_unwrap(given, progress=told.append)
+    assert told == sorted(told) and told[0] < 0.3 and told[-1] == pytest.approx(1.0)
+    for limit in (0.2, 0.8):
+        with pytest.raises(lsgp.Cancelled):
+            auto_unwrap(given, progress=lambda done, limit=limit: done < limit)
+
+
+def test_edges_that_may_not_be_cut_are_not_cut() -> None:
+    cube = meshes.cube(4)
+    lengths = np.linalg.norm(np.diff(cube.positions[meshes.edges_of(cube.triangles)], axis=1)[:, 0], axis=1)
+    straight = meshes.edges_of(cube.triangles)[lengths < 1.2 * lengths.min()]
+    both = meshes.merge([cube, cube])
+    edges = np.concatenate([straight, straight + len(cube.positions)])
+    result = auto_unwrap(surface(both, edges=edges), cube.cones)
+    allowed = {tuple(edge) for edge in np.sort(edges, axis=1).tolist()}
+    assert {tuple(edge) for edge in np.sort(result.cut_edges, axis=1).tolist()} <= allowed

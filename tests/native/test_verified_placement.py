@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Automatic cones are judged by their map: what placement promises is what unwrapping gives, or a finding says so."""
+
+from __future__ import annotations
+
+import lsgp
+import meshes
+import numpy as np
+import pytest
+import zoo
+from map_checks import codes, only, surface
+from meshes import Mesh
+from placement_checks import place
+from shared_meshes import hard_mesh
+from zoo import closed, swept, tunnels
+
+TARGET = 1.05
+ISOMETRIC = 1.0005
+
+
+def unwrapped(mesh: Mesh, placed: lsgp.Placement) -> lsgp.Result:
+    return lsgp.parameterize(surface(mesh), placed.cones, placed.cone_angles)
+
+
+def assert_keeps_its_word(mesh: Mesh, placed: lsgp.Placement) -> None:
+    result = unwrapped(mesh, placed)
+    assert np.isfinite(placed.mapped_l2) and placed.maps > 0
+    assert len(result.flipped) == len(result.wrong_angle_sums) == 0
+    assert result.distortion.l2_stretch == pytest.approx(placed.mapped_l2, rel=1e-6)
+    assert placed.reached == (placed.mapped_l2 <= TARGET) == ("PLACEMENT_NOT_REACHED" not in codes(placed.warnings))
+
+
+# --- bodies with flat faces -----------------------------------------------------------------------------------------
+
+# Each with the number of its corners.
+POLYHEDRA = {
+    **{f"box {size} in {n}": (closed.box(n, size), 8) for n in (1, 3) for size in ((1, 1, 1), (1, 30, 0.2))},
+    **{f"prism of {n}": (closed.prism(n, 2, 1.5), 2 * n) for n in (3, 5, 12)},
+    **{f"pyramid on {n}": (closed.pyramid(n, h), n + 1) for n, h in ((3, 1.0), (4, 8.0), (9, 0.5))},
+    **{f"capped cylinder of {n}": (closed.cylinder(n, 4, 3.0, 2), 2 * n) for n in (8, 16)},
+    **{f"cup of {n}": (closed.cylinder(n, 3, 2.0, 1), n) for n in (6, 12)},
+    "cone with a base": (closed.cone(16, 4, 2.0, True), 17),
+    "bar of L": (meshes.voxels(np.array([[[1], [1], [1]], [[1], [0], [0]]], bool)), 12),
+    "stairs": (meshes.voxels(np.tril(np.ones((3, 3), bool))[:, :, None]), 16),
+    "tetrahedron": (meshes.tetrahedron(), 4),
+}
+
+
+@pytest.mark.parametrize("name", POLYHEDRA)
+def test_a_polyhedron_unfolds_as_it_is(name: str) -> None:
+    mesh, corners = POLYHEDRA[name]
+    placed = place(mesh)
+    assert len(placed.cones) == corners
+    assert placed.mapped_l2 <= ISOMETRIC and placed.predicted_l2 <= ISOMETRIC
+    assert_keeps_its_word(mesh, placed)
+
+
+@pytest.mark.parametrize("levels", [0, 1, 2])
+def test_subdividing_a_box_does_not_change_its_cones(levels: int) -> None:
+    mesh = closed.box(1, (1, 2, 3))
+    for _ in range(levels):
+        mesh = meshes.subdivide(mesh)
+    placed = place(mesh)
+    assert sorted(placed.cones.tolist()) == list(range(8))
+    assert placed.cone_angles == pytest.approx(1.5 * np.pi, abs=1e-9)
+
+
+@pytest.mark.parametrize("options", [{"count": 8}, {"lattice": "square"}, {"symmetric": True}, {"prefer_sharp": True}])
+def test_other_ways_to_ask_for_the_corners_of_a_cube(options: dict[str, object]) -> None:
+    mesh = closed.box(1, (1, 1, 1))
+    placed = place(mesh, **options)
+    assert sorted(placed.cones.tolist()) == list(range(8))
+    assert placed.cone_angles == pytest.approx(1.5 * np.pi, abs=1e-12)
+
+
+def test_corners_that_the_lattice_has_no_angles_for_are_rounded() -> None:
+    placed = place(closed.prism(5, 2, 1.5), lattice="square")
+    turns = placed.cone_angles / (np.pi / 2)
+    assert turns == pytest.approx(turns.round(), abs=1e-9)
+
+
+def test_given_angles_stay_where_corners_would_want_others() -> None:
+    mesh = closed.box(3, (1, 1, 1))
+    corner = int(np.argmin(mesh.positions.sum(axis=1)))
+    placed = place(mesh, [corner], [5.0])
+    assert placed.cones[0] == corner and placed.cone_angles[0] == 5.0
+
+
+def test_no_corner_is_marked_where_the_sheet_is_nearly_flat() -> None:
+    """All 36 inner vertices are bent, none of them is a corner."""
+    placed = place(meshes.saddle(7, 0.05))
+    assert len(placed.cones) == 0 and placed.reached
+
+
+# --- coarse and curved ones -----------------------------------------------------------------------------------------
+
+COARSE = {
+    "ball": meshes.icosphere(1),
+    "flower": meshes.flower(2),
+    "flat ellipsoid": meshes.ellipsoid(2, (1, 8, 0.1)),
+    "pipe": swept.pipe(8, 10, 3.0, True),
+    "spring": swept.spring(3, 6, True),
+    "screw": swept.screw(5, 12, 0.3),
+    "gear": closed.gear(12, 0.15, 1),
+    "star": closed.star(8, 0.3, 2.0),
+    "bevelled box": closed.bevelled_box(6, 0.3, (1, 4, 0.5)),
+    "handles": tunnels.box_with_handles(6, 3, 0),
+    "plate": tunnels.tunnelled_plate(2, 3, 1),
+    "bent plate": tunnels.smooth_tunnelled_plate(2, 2),
+    "sponge": tunnels.sponge(2),
+}
+
+
+@pytest.mark.parametrize("name", COARSE)
+def test_the_map_of_a_coarse_surface_reaches_the_target(name: str) -> None:
+    placed = place(COARSE[name])
+    assert placed.reached and placed.mapped_l2 <= TARGET
+    assert_keeps_its_word(COARSE[name], placed)
+
+
+@pytest.mark.parametrize("name", [member.name for member in zoo.members("small", "noise-ball")])
+def test_spiky_balls_say_what_they_miss(name: str) -> None:
+    mesh = zoo.member(name).mesh()
+    assert_keeps_its_word(mesh, place(mesh))
+
+
+@pytest.mark.parametrize("count", [4, 6, 8, 12])
+@pytest.mark.parametrize("name", ["flower", "pipe", "bevelled box", "flat ellipsoid"])
+def test_a_number_of_cones_stays_and_its_map_is_measured(name: str, count: int) -> None:
+    placed = place(COARSE[name], count=count)
+    assert len(placed.cones) == count
+    result = unwrapped(COARSE[name], placed)
+    assert len(result.wrong_angle_sums) == 0
+    assert result.distortion.l2_stretch == pytest.approx(placed.mapped_l2, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "name", ["beam", "pyramid", "pipe", "joint", "spool", "anchor", "couplingdown", "pinion", "femur"]
+)
+def test_meshes_whose_maps_were_stretched_more_than_predicted(name: str) -> None:
+    mesh = hard_mesh(name)
+    placed = place(mesh)
+    assert placed.reached and placed.mapped_l2 <= TARGET
+    assert_keeps_its_word(mesh, placed)
+
+
+# --- what is told ---------------------------------------------------------------------------------------------------
+
+
+def test_one_map_will_do_where_it_is_as_predicted() -> None:
+    assert place(meshes.bumpy_sphere(3)).maps == 1
+    assert place(meshes.bumpy_sphere(3), count=9).maps == 1
+
+
+def test_what_choosing_takes_does_not_count_the_maps() -> None:
+    placed = place(meshes.flower(3))
+    assert placed.factorizations == 1 and placed.maps >= 1
+
+
+def test_no_map_is_made_of_many_cones_that_were_asked_for() -> None:
+    placed = place(meshes.bumpy_sphere(3), count=61)
+    assert placed.mapped_l2 is None and placed.maps == 0
+
+
+def test_one_finding_names_all_parts_that_miss_the_target() -> None:
+    ball = meshes.bumpy_sphere(2)
+    placed = place(meshes.merge([ball] * 3), target=1.000001)
+    finding = only(placed.warnings, "PLACEMENT_NOT_REACHED")
+    assert finding.message.startswith("On 3 parts of the surface")
+    assert finding.elements.indices.tolist() == sorted(placed.cones.tolist())
+
+
+def test_one_finding_names_all_parts_without_room() -> None:
+    triangle = meshes.make([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    placed = place(meshes.merge([triangle] * 50), count=8)
+    finding = only(placed.warnings, "PLACEMENT_NOT_REACHED")
+    assert finding.message.startswith("0 cones were placed on 50 parts of the surface instead of 8 on each")
+    assert finding.elements.indices.tolist() == list(range(50))
+
+
+def test_vertices_around_a_hub_are_all_room() -> None:
+    """Two vertices of 20,000 triangles each; all others have both of them beside themselves."""
+    placed = place(closed.bipyramid(20_000, 1.0))
+    assert placed.reached and len(placed.cones) > 2
+
+
+# --- as few as will do ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["joint", "spool", "couplingdown"])
+def test_half_as_many_cones_would_not_reach_the_target(name: str) -> None:
+    mesh = hard_mesh(name)
+    placed = place(mesh)
+    assert placed.reached
+    assert not place(mesh, count=len(placed.cones) // 2).mapped_l2 <= TARGET

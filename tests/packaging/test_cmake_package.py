@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The CMake package: a program outside of the source tree finds the installed library, and runs with it."""
+
+import os
+import shutil
+import subprocess
+import sys
+import tomllib
+from math import pi
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+CONSUMER = Path(__file__).parent / "consumer"
+BUILD = ROOT / "build" / "units"  # that of the C++ tests, and kept: compiling the library takes minutes
+PATH = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+
+
+def cmake(*arguments: object) -> subprocess.CompletedProcess[str]:
+    program = shutil.which("cmake", path=PATH)
+    assert program is not None
+    command = [program, *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=1500, check=False)
+
+
+def require(done: subprocess.CompletedProcess[str]) -> None:
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def configure_consumer(prefix: Path, build: Path, version: str) -> subprocess.CompletedProcess[str]:
+    prefixes = ";".join(filter(None, [str(prefix), os.environ.get("CMEEL_PREFIX")]))
+    return cmake("-S", CONSUMER, "-B", build, f"-DCMAKE_PREFIX_PATH={prefixes}", f"-DWANTED_VERSION={version}")
+
+
+@pytest.fixture(scope="module")
+def version() -> str:
+    return tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))["version"]
+
+
+@pytest.fixture(scope="module")
+def prefix(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where the library is installed."""
+    if shutil.which("cmake", path=PATH) is None:
+        pytest.skip("no cmake; install it here, as with: pip install cmake")
+    if not any(map(shutil.which, ("make", "ninja"))):
+        pytest.skip("neither make nor ninja, which cmake builds with")
+    folder = tmp_path_factory.mktemp("prefix")
+    require(cmake("-S", ROOT, "-B", BUILD, "-DLSGP_PYTHON=OFF"))
+    require(cmake("--build", BUILD, "--target", "lsgp", "--parallel", os.cpu_count() or 1))
+    require(cmake("--install", BUILD, "--prefix", folder))
+    return folder
+
+
+def test_a_program_builds_against_the_installed_library_and_runs(prefix, tmp_path, version):
+    require(configure_consumer(prefix, tmp_path, version))
+    require(cmake("--build", tmp_path))
+    done = subprocess.run([tmp_path / "consumer"], capture_output=True, text=True, timeout=60, check=True)
+    # The four corners of a regular tetrahedron share its curvature of 4 pi.
+    assert [float(line) for line in done.stdout.split()] == pytest.approx([pi] * 4, abs=1e-8)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names of shared libraries are the system's")
+def test_the_library_is_named_by_the_versions_that_share_its_interface(prefix, version):
+    (library,) = prefix.rglob("liblsgp.so")
+    name = f"liblsgp.so.{version.rpartition('.')[0]}"
+    assert os.readlink(library) == name
+    assert os.readlink(library.with_name(name)) == f"liblsgp.so.{version}"
+    assert name.encode() in library.read_bytes()
+
+
+def test_another_minor_version_is_refused(prefix, tmp_path, version):
+    major, minor, _ = version.split(".")
+    done = configure_consumer(prefix, tmp_path, f"{major}.{int(minor) + 1}")
+    assert done.returncode != 0
+    assert "lsgp" in done.stderr and f"version: {version}" in done.stderr

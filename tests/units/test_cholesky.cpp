@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solvers/cholesky.hpp"
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Cholesky>
+
+#include "lsgp/errors.hpp"
+#include "random_matrices.hpp"
+#include "solvers/linear_algebra_counter.hpp"
+
+namespace {
+
+constexpr double rounding = 1e-10;
+constexpr int sizes[]{1, 2, 7, 40, 150, 400};
+
+// Of the whole system, by Eigen's dense factorization.
+template <typename Scalar, typename Sides>
+Sides oracle(const Eigen::SparseMatrix<Scalar>& lower, const Sides& right_sides) {
+  return full(lower).llt().solve(right_sides);
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("a factor solves", Scalar, double, std::complex<double>) {
+  Random random(1);
+  for (const int size : sizes) {
+    for (const int neighbours : {0, 2, 6, 20}) {
+      for (const int sides : {1, 2, 3, 8, 19}) {
+        CAPTURE(size);
+        CAPTURE(neighbours);
+        CAPTURE(sides);
+        const auto lower = random_definite<Scalar>(random, size, neighbours);
+        const auto right = random_matrix<Scalar>(random, size, sides);
+        const lsgp::Cholesky<Scalar> factor(lower);
+        REQUIRE(factor.size() == size);
+        CHECK((factor.solve(right) - oracle(lower, right)).norm() < rounding * right.norm() * size);
+      }
+    }
+  }
+}
+
+TEST_CASE_TEMPLATE("retained rows keep their Schur complement", Scalar, double, std::complex<double>) {
+  Random random(2);
+  for (const int size : sizes) {
+    for (const int retained : {0, 1, size / 3, size}) {
+      CAPTURE(size);
+      CAPTURE(retained);
+      const int rest = size - retained;
+      const auto lower = random_definite<Scalar>(random, size, 6);
+      const auto matrix = full(lower);
+      const lsgp::Cholesky<Scalar> factor(lower, retained);
+      const auto corner = matrix.bottomRightCorner(retained, retained);
+      auto expected = corner.eval();
+      if (rest > 0 && retained > 0) {
+        expected -= matrix.bottomLeftCorner(retained, rest) *
+                    matrix.topLeftCorner(rest, rest).llt().solve(matrix.topRightCorner(rest, retained));
+      }
+      CHECK((factor.schur() - expected).norm() <= rounding * matrix.norm());
+    }
+  }
+}
+
+TEST_CASE_TEMPLATE("two half solves about the Schur complement's own make a whole one", Scalar, double,
+                   std::complex<double>) {
+  using Matrix = typename lsgp::Cholesky<Scalar>::Matrix;
+  using Rows = typename lsgp::Cholesky<Scalar>::Rows;
+  Random random(3);
+  for (const int sides : {1, 2, 5, 8}) {
+    const int size = 120, retained = 30;
+    CAPTURE(sides);
+    const auto lower = random_definite<Scalar>(random, size, 5);
+    const Matrix right = random_matrix<Scalar>(random, size, sides);
+    const lsgp::Cholesky<Scalar> factor(lower, retained);
+    Rows half = Rows::Zero(size, lsgp::Cholesky<Scalar>::width_for(sides));
+    for (int row = 0; row < size; ++row) half.row(factor.place(row)).head(sides) = right.row(row);
+    factor.eliminate(half);
+    const Matrix reduced = half.bottomRows(retained);
+    half.bottomRows(retained) = factor.schur().llt().solve(reduced);
+    factor.substitute(half, sides);
+    Matrix solution(size, sides);
+    for (int row = 0; row < size; ++row) solution.row(row) = half.row(factor.place(row)).head(sides);
+    CHECK((solution - oracle(lower, right)).norm() < rounding * right.norm() * size);
+  }
+}
+
+TEST_CASE("retained rows come last, in their own order") {
+  Random random(4);
+  const lsgp::Cholesky<double> factor(random_definite<double>(random, 50, 4), 10);
+  for (int row = 40; row < 50; ++row) CHECK(factor.place(row) == row);
+}
+
+TEST_CASE_TEMPLATE("other values in the same places are factored anew", Scalar, double, std::complex<double>) {
+  Random random(5);
+  auto lower = random_definite<Scalar>(random, 90, 6);
+  lsgp::Cholesky<Scalar> factor(lower);
+  lower.coeffs() *= Scalar(3);
+  lower.diagonal().array() += Scalar(2);
+  factor.refactor(lower);
+  const auto right = random_matrix<Scalar>(random, 90, 4);
+  CHECK((factor.solve(right) - oracle(lower, right)).norm() < rounding * right.norm());
+}
+
+TEST_CASE_TEMPLATE("a matrix that is not positive definite is refused", Scalar, double, std::complex<double>) {
+  Random random(6);
+  for (const int bad : {0, 33, 79}) {
+    CAPTURE(bad);
+    auto lower = random_definite<Scalar>(random, 80, 6);
+    lower.coeffRef(bad, bad) = Scalar(-1);
+    CHECK_THROWS_AS(lsgp::Cholesky<Scalar>(lower, 0), const lsgp::Error&);
+  }
+  // What is retained is not factored.
+  auto lower = random_definite<Scalar>(random, 80, 6);
+  lower.coeffRef(79, 79) = Scalar(-1);
+  CHECK_NOTHROW(lsgp::Cholesky<Scalar>(lower, 1));
+}
+
+TEST_CASE("factorizations and back-substitutions are counted by the innermost counter") {
+  Random random(7);
+  const auto lower = random_definite<double>(random, 20, 4);
+  const lsgp::LinearAlgebraCounter outer;
+  lsgp::Cholesky<double> factor(lower);
+  {
+    const lsgp::LinearAlgebraCounter inner;
+    factor.refactor(lower);
+    factor.solve(random_matrix<double>(random, 20, 3));
+    CHECK(inner.counted().factorizations == 1);
+    CHECK(inner.counted().back_substitutions == 3);
+  }
+  CHECK(outer.counted().factorizations == 1);
+  CHECK(outer.counted().back_substitutions == 0);
+}
+
+TEST_CASE("a factor takes another one's memory") {
+  Random random(8);
+  const auto first = random_definite<double>(random, 60, 4), second = random_definite<double>(random, 50, 4);
+  lsgp::Cholesky<double> factor(first);
+  const lsgp::Cholesky<double> next(second, 0, factor.take_memory());
+  const auto right = random_matrix<double>(random, 50, 2);
+  CHECK((next.solve(right) - oracle(second, right)).norm() < rounding * right.norm());
+}

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Time of `lsgp.parameterize` as Markdown tables.
+
+speed: the whole map on growing meshes beside libigl's LSCM on the same cut, Blender's methods with that cut marked as
+seams, and one factorization of the bare Laplacian; edits through `lsgp.Solver`, memory and growth. rounding: what
+seamless layouts add. shares: checks and repair. stretch: low stretch beside Blender's Minimum Stretch.
+
+All get arrays and give texture coordinates. lsgp also finds the cut, prescribes the cone angles and measures the map.
+Times are CPU seconds of all threads together, one thread being asked for; medians over repetitions in which the methods
+take turns, so that a busy machine hurts all alike: compare ratios within one run. Needs numpy, scipy and libigl beside
+lsgp; for Blender a Python with bpy, named by BPY_PYTHON or where tools/test puts it; for the Laplacian CMake, a
+compiler and Eigen, and libsuitesparse-dev for CHOLMOD; for --write matplotlib. What is not there is left out.
+
+    python tools/benchmark/benchmark.py [--tables speed ...] [--largest 1000000] [--repetitions 5] [--write] [mesh ...]
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Iterable
+
+from benchmark_cases import MESHES, ROOT, SHARED, dense_cases, growing_cases, small_cases
+from benchmark_options import measure_low_stretch, measure_rounding, measure_shares
+from benchmark_speed import Measured, measure, plot, ratio_rows, stage_rows, time_rows
+from benchmark_workers import ONE_THREAD, build_laplacian_program, find_blender
+
+TABLES = ("speed", "rounding", "shares", "stretch")
+PAGE = ROOT / "docs" / "reference" / "benchmark.md"
+PLOT = ROOT / "docs" / "images" / "benchmark.svg"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("meshes", nargs="*", metavar="mesh", help=f"for rounding and shares: of {', '.join(MESHES)}")
+    parser.add_argument("--tables", nargs="+", choices=TABLES, default=TABLES)
+    parser.add_argument("--largest", type=int, default=1_000_000, help="triangles of the largest mesh for speed")
+    parser.add_argument("--repetitions", type=int, default=5, help="at 60,000 triangles; more below, fewer above")
+    parser.add_argument("--write", action="store_true", help=f"the tables of speed to {PAGE.relative_to(ROOT)}")
+    arguments = parser.parse_args()
+    os.environ.update(ONE_THREAD)  # libigl reads its own at its first parallel loop
+    if not SHARED.is_dir():
+        print(f"{SHARED} is not there: made surfaces instead.", file=sys.stderr)
+    blender = find_blender()
+    if blender is None:
+        print(
+            "Blender is left out: no Python with bpy. Run tools/test once or name one in BPY_PYTHON.", file=sys.stderr
+        )
+    repetitions = arguments.repetitions
+    if "speed" in arguments.tables:
+        print(measure_speed(arguments.largest, repetitions, blender, arguments.write))
+    small = small_cases(arguments.meshes)
+    if "rounding" in arguments.tables:
+        print("\nRounding angles and translations, repair included, as a multiple of the whole unwrap without it:\n")
+        print(as_table(measure_rounding(case, repetitions) for case in small))
+    if "shares" in arguments.tables:
+        print(
+            "\nChecks, the search for overlaps and repair, by wall-clock time, and their shares of the whole unwrap:\n"
+        )
+        print(as_table(measure_shares(case, repetitions) for case in small))
+    if "stretch" in arguments.tables:
+        print(
+            "\nLow stretch beside Blender's Minimum Stretch with 10 iterations, on the same cut; sisters: largest "
+            "ratio of the two sides of a cut edge:\n"
+        )
+        print(as_table(measure_low_stretch(case, min(3, repetitions), blender) for case in dense_cases()))
+
+
+def measure_speed(largest: int, repetitions: int, blender: str | None, writes: bool) -> str:
+    """The page, written after every surface, so that a long run can be ended early."""
+    laplacian = build_laplacian_program()
+    if laplacian is None:
+        print("The Laplacian is left out: CMake, a C++ compiler or Eigen is missing.", file=sys.stderr)
+    rows: list[Measured] = []
+    for case in growing_cases(largest):
+        rows.append(measure(case, repetitions, laplacian, blender))
+        print(f"{case.name}, {len(case.cones)} cones: {rows[-1].seconds}", file=sys.stderr)
+        if writes:
+            plot(rows, PLOT)
+            PAGE.write_text(speed_page(rows), encoding="utf-8")
+    return speed_page(rows)
+
+
+def speed_page(rows: list[Measured]) -> str:
+    return f"""# Speed
+
+Written by `python tools/benchmark/benchmark.py --tables speed --write`. All methods get arrays and give texture
+coordinates, in processes of their own that take turns; figures are CPU seconds of all threads, medians of repetitions,
+and hold beside each other, not beside those of another machine.
+
+- **lsgp**: cones given, angles of least distortion, the Poisson map, its check and the search for overlaps, no repair.
+- **angle edited**, **cone moved**: the same again through `lsgp.Solver`, which keeps what does not change.
+- **LSCM**: libigl's, on the surface cut open along lsgp's cut, without continuity across it.
+- **Blender**: with that cut marked as seams; Minimum Stretch with 10 iterations.
+- **Laplacian**: analysis, factorization and one solve of the bare real cotangent Laplacian with one vertex held, the
+  least that any method with one Poisson solve takes.
+
+The larger meshes are decimated and subdivided from `max-planck-25k`. What would take too long is left out.
+
+![CPU seconds by triangles](../images/benchmark.svg)
+
+{as_table(time_rows(rows))}
+
+Ratios, the most memory the processes took, Python and libraries included, and what is wrong with lsgp's unrepaired map:
+
+{as_table(ratio_rows(rows))}
+
+lsgp stage by stage, its CPU time divided as the wall-clock time of its stages. The factorization counts as
+prescription, which needs it first. Where an angle is edited there is none, and what is left are passes over the whole
+surface, each linear: the frames and the solve for the two coordinates (unfold), and what is measured of the map that is
+returned (check, layout, overlaps).
+
+{as_table(stage_rows(rows))}
+"""
+
+
+def as_table(rows: Iterable[dict[str, object]]) -> str:
+    rows = list(rows)
+    columns = list(dict.fromkeys(column for row in rows for column in row))
+    lines = ["| " + " | ".join(columns) + " |", "|---" + "|--:" * (len(columns) - 1) + "|"]
+    lines += ["| " + " | ".join(str(row.get(column, "")) for column in columns) + " |" for row in rows]
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    main()

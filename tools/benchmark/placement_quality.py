@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What automatic cones promise and what their maps keep, as a Markdown table.
+
+    PYTHONPATH=tests python tools/benchmark/placement_quality.py [--zoo N] [--limit SECONDS] [FOLDER ...]
+
+FOLDER holds OBJ or OFF files (default: ../shared/meshes and its folder hard). N ordinary members of the zoo follow, one
+of each family as far as there are so many. Every mesh is unwrapped in a process of its own, which is ended after
+SECONDS. Needs the lsgp wheel.
+"""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import time
+from collections.abc import Callable, Iterator
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+import lsgp
+import zoo
+from lsgp.io.mesh_files import parse_mesh
+from lsgp.io.polygons import triangulate
+
+SHARED = Path(__file__).resolve().parents[3] / "shared" / "meshes"
+COLUMNS = ("mesh", "triangles", "cones", "predicted L2", "map L2", "defects", "maps", "place s", "told")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folders", nargs="*", metavar="FOLDER", type=Path, default=[SHARED, SHARED / "hard"])
+    parser.add_argument("--zoo", metavar="N", type=int, default=40, help="members of the zoo (default: 40)")
+    parser.add_argument("--limit", metavar="SECONDS", type=float, default=120, help="for each mesh (default: 120)")
+    arguments = parser.parse_args()
+    print(f"| {' | '.join(COLUMNS)} |")
+    print("|---|--:|--:|--:|--:|--:|--:|--:|---|")
+    for name, read in [*of_folders(arguments.folders), *of_zoo(arguments.zoo)]:
+        print(f"| {name} | {' | '.join(within(arguments.limit, read))} |", flush=True)
+
+
+def of_folders(folders: list[Path]) -> Iterator[tuple[str, Callable[[], lsgp.Surface]]]:
+    for folder in folders:
+        for path in sorted([*folder.glob("*.obj"), *folder.glob("*.off")]):
+            yield path.stem, lambda path=path: read_surface(path)
+
+
+def of_zoo(count: int) -> Iterator[tuple[str, Callable[[], lsgp.Surface]]]:
+    """The last ordinary small member of each family, evenly over all families."""
+    last = {one.family: one for one in zoo.members("small") if one.ordinary}
+    chosen = list(last.values())
+    for i in range(min(count, len(chosen))):
+        member = chosen[i * len(chosen) // count] if count < len(chosen) else chosen[i]
+        yield member.name, lambda member=member: of_member(member)
+
+
+def read_surface(path: Path) -> lsgp.Surface:
+    _, mesh = parse_mesh(path, path.read_bytes(), None, with_uv=False)
+    split = triangulate(mesh)
+    return lsgp.Surface(mesh.positions, split.triangles, split.edges)
+
+
+def of_member(member: zoo.Member) -> lsgp.Surface:
+    mesh = member.mesh()
+    return lsgp.Surface(mesh.positions, mesh.triangles, member.edges())
+
+
+def within(limit: float, read: Callable[[], lsgp.Surface]) -> list[str]:
+    """The figures of a mesh, or that it took too long."""
+    context = multiprocessing.get_context("fork")
+    ours, theirs = context.Pipe(duplex=False)
+    child = context.Process(target=lambda: tell(theirs, read))
+    child.start()
+    theirs.close()
+    try:
+        return ours.recv() if ours.poll(limit) else ["", "", "", "", "", "", f"> {limit:g}", ""]
+    except EOFError:
+        return ["", "", "", "", "", "", "", "crash"]
+    finally:
+        child.kill()
+        child.join()
+
+
+def tell(told: Connection, read: Callable[[], lsgp.Surface]) -> None:
+    surface = read()
+    begin = time.perf_counter()
+    try:
+        placed = lsgp.place_cones(surface)
+        seconds = time.perf_counter() - begin
+        result = lsgp.parameterize(surface, placed.cones, placed.cone_angles)
+    except lsgp.LsgpError as error:
+        told.send([str(len(surface.triangles)), "", "", "", "", "", f"{time.perf_counter() - begin:.2f}", error.code])
+        return
+    defects = len(result.flipped) + len(result.wrong_angle_sums)
+    told.send(
+        [
+            str(len(surface.triangles)),
+            str(len(placed.cones)),
+            f"{placed.predicted_l2:.3f}",
+            f"{result.distortion.l2_stretch:.3f}",
+            str(defects),
+            str(placed.maps),
+            f"{seconds:.2f}",
+            ", ".join(sorted({finding.code for finding in [*placed.warnings, *result.warnings]})),
+        ]
+    )
+
+
+if __name__ == "__main__":
+    main()

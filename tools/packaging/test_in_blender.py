@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Run the add-on's tests inside a Blender, with the built extension installed from its zip.
+
+    python tools/packaging/test_in_blender.py ...
+        --python PYTHON                    a Python that has bpy
+        --python PYTHON --blender BLENDER  an executable and the Python of its version
+        --chroot FOLDER                    an installation of ../shared/tools/real-blender
+
+Builds the wheel with that Python (or takes --wheel), stages and zips the extension, installs the zip into a throw-away
+profile, runs tests/blender there and prints the counts. With --window, what needs events is tried as well, in a window
+on a virtual screen, and then the first session of a new user, from an empty profile; that takes an executable and
+xvfb-run. Where ImageMagick is installed there, the folders pictures and newcomer/pictures of --out have the screen
+at the end of every such test and at every step of the session. Exit code 0 only when tests passed, none failed and none
+was skipped. Arguments after "--" go to pytest.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+ROOT = Path(__file__).resolve().parents[2]
+REAL_BLENDER = ROOT.parent / "shared" / "tools" / "real-blender"
+TEST_SECONDS = 900
+
+
+@dataclass(frozen=True)
+class Command:
+    """A program as a list of arguments, and what its environment needs beside ours."""
+
+    arguments: list[str]
+    environment: dict[str, str]
+
+    def run(self, *arguments: str | Path, timeout: float | None = None, **environment: str) -> None:
+        """Run in the repository's root; raises CalledProcessError or TimeoutExpired."""
+        subprocess.run(
+            [*self.arguments, *map(str, arguments)],
+            cwd=ROOT,
+            env={**os.environ, **self.environment, **environment},
+            timeout=timeout,
+            check=True,
+        )
+
+
+def build_wheel(python: Command, folder: Path) -> Path:
+    """Build the wheel of this repository for the Python of the Blender under test."""
+    python.run("-m", "pip", "wheel", ".", "--no-deps", "--quiet", "--wheel-dir", folder)
+    return next(folder.glob("lsgp-*.whl"))
+
+
+def in_window(program: Command) -> Command:
+    """The same program on a virtual screen, with rendering by software."""
+    screen = ["--auto-servernum", "--server-args=-screen 0 1280x900x24"]
+    environment = {"LIBGL_ALWAYS_SOFTWARE": "1"}
+    if program.arguments[0] == str(REAL_BLENDER):
+        inside = {**program.environment, **environment, "BLENDER_EXE": "xvfb-run"}
+        return Command([*program.arguments, *screen, "blender"], inside)
+    return Command(["xvfb-run", *screen, *program.arguments], {**program.environment, **environment})
+
+
+def counts(report: Path) -> dict[str, int]:
+    """Numbers of tests in a junit report: tests, failures, errors, skipped."""
+    suites = ElementTree.parse(report).getroot().iter("testsuite")
+    totals = dict.fromkeys(("tests", "failures", "errors", "skipped"), 0)
+    for suite in suites:
+        for key in totals:
+            totals[key] += int(suite.get(key, "0"))
+    return totals
+
+
+def require_all(report: Path, what: str) -> None:
+    """Print the counts of a report; ends the program where there is no test, or one that did not pass."""
+    found = counts(report)
+    numbers = ", ".join(f"{found[key]} {key}" for key in ("failures", "errors", "skipped"))
+    print(f"test_in_blender: {found['tests']} {what}, {numbers}")
+    if found["tests"] == 0 or any(found[key] for key in ("failures", "errors", "skipped")):
+        raise SystemExit("test_in_blender: every test has to run and pass inside Blender")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--python", help="the Blender's Python; it runs the tests itself unless --blender is given")
+    parser.add_argument("--blender", help="Blender executable")
+    parser.add_argument("--chroot", type=Path, help="folder of a Blender installed by ../shared/tools/real-blender")
+    parser.add_argument("--window", action="store_true", help="run the tests that need a window as well")
+    parser.add_argument(
+        "--validate",
+        metavar="ZIP",
+        type=Path,
+        action="append",
+        default=[],
+        help="let the executable check this as well",
+    )
+    parser.add_argument("--wheel", type=Path, help="take this wheel instead of building one")
+    parser.add_argument(
+        "--out", type=Path, default=ROOT / "build" / "in_blender", help="folder for wheel, zip, profile and report"
+    )
+    parser.add_argument("pytest", nargs="*", help="arguments for pytest, after --")
+    arguments = parser.parse_args()
+    if (arguments.python is None) == (arguments.chroot is None):
+        parser.error("give either --python or --chroot")
+    if arguments.window and arguments.blender is None and arguments.chroot is None:
+        parser.error("--window takes a Blender executable, by --blender or --chroot")
+    if arguments.validate and arguments.blender is None and arguments.chroot is None:
+        parser.error("--validate takes a Blender executable, by --blender or --chroot")
+
+    out = arguments.out.resolve()
+    shutil.rmtree(out, ignore_errors=True)
+    profile = out / "profile"
+    profile.mkdir(parents=True)
+
+    blender = None
+    if arguments.chroot is not None:
+        inside = [str(REAL_BLENDER), "run", str(arguments.chroot)]
+        environment = {"BLENDER_EXE": "python3"}
+        if "SSL_CERT_FILE" in os.environ:
+            # The certificates we are told to trust are not in the chroot; the output folder is.
+            environment["SSL_CERT_FILE"] = str(shutil.copy(os.environ["SSL_CERT_FILE"], out / "certificates.pem"))
+        python, blender = Command(inside, environment), Command(inside, {})
+    else:
+        python = Command([arguments.python], {})
+        if arguments.blender is not None:
+            blender = Command([arguments.blender], {})
+
+    wheel = arguments.wheel or build_wheel(python, out)
+    # Executables here mostly come from a distribution, with a Python of its own.
+    blenders = [] if blender is None else ["--any-blender"]
+    python.run(ROOT / "tools" / "packaging" / "stage_extension.py", "--wheel", wheel, "--out", out, *blenders)
+    package = next(out.glob("cone_unwrap-*.zip"))
+    if blender is not None:
+        for checked in (package, *arguments.validate):
+            blender.run("--command", "extension", "validate", checked, timeout=TEST_SECONDS)
+
+    tests = ROOT / "tests" / "blender"
+    # PYTHONPATH could put another build of the native module before the one in the extension.
+    isolation = {"BLENDER_USER_RESOURCES": str(profile), "PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": ""}
+    report = out / "report.xml"
+    options = [tests / "run_in_blender.py", "--", package, report, *arguments.pytest]
+    try:
+        if blender is not None:
+            start = ["--background", "--python-exit-code", "1", "--python"]
+            blender.run(*start, *options, timeout=TEST_SECONDS, **isolation)
+        else:
+            python.run(*options, timeout=TEST_SECONDS, **isolation)
+        require_all(report, "tests")
+        if arguments.window:
+            start = ["--factory-startup", "--enable-event-simulate", "--python-exit-code", "1", "--python"]
+            report = out / "window_report.xml"
+            options = [tests / "run_in_window.py", "--", package, report]
+            in_window(blender).run(*start, *options, timeout=TEST_SECONDS, **isolation)
+            require_all(report, "tests in a window")
+            newcomer = out / "newcomer"
+            isolation["BLENDER_USER_RESOURCES"] = str(newcomer / "profile")
+            (newcomer / "profile").mkdir(parents=True)
+            options = [tests / "run_as_newcomer.py", "--", package, newcomer / "report.xml"]
+            in_window(blender).run(*start, *options, timeout=TEST_SECONDS, **isolation)
+            require_all(newcomer / "report.xml", "first session of a new user")
+    except (subprocess.CalledProcessError, subprocess.TimeoutExpired) as error:
+        raise SystemExit(f"test_in_blender: {error}") from None
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The demo's job inside Blender: unwrap subdivided Suzanne through automatic cones, measure, save, draw.
+
+Run by tools/demo, in the bpy module (python demo_scene.py ...) or in a Blender (blender -b --python demo_scene.py --
+...). BLENDER_USER_RESOURCES must name a throw-away profile: the extension is installed there.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import sys
+import traceback
+from collections.abc import Callable
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parent))
+import demo_picture
+
+ADDON = "bl_ext.user_default.cone_unwrap"
+CONE_GROUP = "uv_cones"
+BLENDER_METHODS = {"CONFORMAL": "Conformal", "ANGLE_BASED": "Angle Based", "MINIMUM_STRETCH": "Minimum Stretch"}
+COLUMNS = ("QC", "area", "p10", "p90", "L2", "sister ratio", "flips")
+
+
+def main() -> None:
+    arguments = parse_arguments()
+    lsgp = install_extension(arguments.extension)
+    suzanne = add_suzanne(subdivisions=2)
+    run_in_edit_mode(suzanne, bpy.ops.mesh.cone_place)
+    run_in_edit_mode(suzanne, bpy.ops.uv.cone_unwrap)
+    surface, measured = measure(lsgp, suzanne)
+    cones = marked_cones(suzanne)
+
+    rows = [("Unwrap from Cones", measured)]
+    for method, label in BLENDER_METHODS.items():
+        if method in bpy.ops.uv.unwrap.get_rna_type().properties["method"].enum_items:
+            rows.append((f"Blender {label}", unwrapped_by_blender(lsgp, suzanne, measured.cut_edges, method)))
+    islands = len(np.unique(measured.island))
+    print(
+        f"\nSuzanne, {len(surface.triangles):,} triangles, {islands} islands, {len(cones)} cones, "
+        f"{len(measured.cut_edges)} cut edges, the same cuts for all (Blender {bpy.app.version_string})\n"
+    )
+    print_table(rows)
+
+    demo_picture.add_checker(suzanne)
+    bpy.ops.wm.save_as_mainfile(filepath=str(arguments.out / "suzanne.blend"))
+    demo_picture.render_picture(suzanne, measured.cut_edges, cones, arguments.out / "suzanne.png", arguments.samples)
+
+
+def parse_arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--extension", type=Path, required=True, help="the extension's zip")
+    parser.add_argument("--out", type=Path, required=True, help="folder for the scene and the picture")
+    parser.add_argument("--samples", type=int, default=64, help="samples a pixel of the picture")
+    own = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
+    return parser.parse_args(own)
+
+
+def install_extension(archive: Path):
+    """Install the zip as a user would, leave an empty scene with it enabled, and return the lsgp it brought."""
+    bpy.ops.extensions.package_install_files(filepath=str(archive), repo="user_default", enable_on_install=True)
+    if ADDON not in bpy.context.preferences.addons:
+        raise SystemExit(f"demo: Blender did not enable {archive}; the lines above say why")
+    lsgp = importlib.import_module("lsgp")
+    if not Path(lsgp.__file__).is_relative_to(os.environ["BLENDER_USER_RESOURCES"]):
+        raise SystemExit(
+            f"demo: lsgp came from {lsgp.__file__} and not from the extension; remove it from Python's path"
+        )
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    bpy.ops.preferences.addon_enable(module=ADDON)  # the factory settings have dropped it
+    return lsgp
+
+
+def add_suzanne(subdivisions: int) -> bpy.types.Object:
+    bpy.ops.mesh.primitive_monkey_add()
+    suzanne = bpy.context.object
+    suzanne.modifiers.new("Subdivision", "SUBSURF").levels = subdivisions
+    bpy.ops.object.modifier_apply(modifier="Subdivision")
+    return suzanne
+
+
+def run_in_edit_mode(obj: bpy.types.Object, operator, **properties: object) -> None:
+    """Run an operator on the whole mesh as from edit mode; one that does not finish is an error."""
+    bpy.context.view_layer.objects.active = obj
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    answer = operator(**properties)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    if answer != {"FINISHED"}:
+        raise SystemExit(f"demo: {operator.idname()} did not finish; the lines above say why")
+
+
+def marked_cones(obj: bpy.types.Object) -> np.ndarray:
+    """Vertices with a weight above 0.5 in the group of the cones."""
+    group = obj.vertex_groups[CONE_GROUP].index
+    return np.array(
+        [v.index for v in obj.data.vertices if any(g.group == group and g.weight > 0.5 for g in v.groups)], np.int32
+    )
+
+
+def measure(lsgp, obj: bpy.types.Object):
+    """The mesh as a surface of the library, and its active UV layer measured by it."""
+    mesh = obj.data
+    mesh.calc_loop_triangles()
+    positions = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("co", positions)
+    triangles, loops = (np.empty(3 * len(mesh.loop_triangles), np.int32) for _ in range(2))
+    mesh.loop_triangles.foreach_get("vertices", triangles)
+    mesh.loop_triangles.foreach_get("loops", loops)
+    uv = np.empty(2 * len(mesh.loops), np.float32)
+    mesh.uv_layers.active.uv.foreach_get("vector", uv)
+    surface = lsgp.Surface(positions.reshape(-1, 3).astype(np.float64), triangles.reshape(-1, 3))
+    corner_uv = uv.reshape(-1, 2)[loops].reshape(-1, 3, 2).astype(np.float64)
+    return surface, lsgp.measure_distortion(surface, corner_uv)
+
+
+def unwrapped_by_blender(lsgp, obj: bpy.types.Object, cut_edges: np.ndarray, method: str):
+    """What Blender makes of the mesh with seams on the given cuts, measured."""
+    copy = add_copy_unwrapped_by_blender(obj, cut_edges, method)
+    measured = measure(lsgp, copy)[1]
+    bpy.data.meshes.remove(copy.data)
+    bpy.context.view_layer.objects.active = obj
+    return measured
+
+
+def add_copy_unwrapped_by_blender(obj: bpy.types.Object, cut_edges: np.ndarray, method: str) -> bpy.types.Object:
+    """A copy of the object with seams on the given cuts, unwrapped by Blender."""
+    copy = obj.copy()
+    copy.data = obj.data.copy()
+    bpy.context.collection.objects.link(copy)
+    cuts = {frozenset(edge) for edge in cut_edges.tolist()}
+    for edge in copy.data.edges:
+        edge.use_seam = frozenset(edge.vertices) in cuts
+    bpy.ops.object.select_all(action="DESELECT")
+    run_in_edit_mode(copy, bpy.ops.uv.unwrap, method=method)
+    return copy
+
+
+def print_table(rows: list[tuple[str, object]]) -> None:
+    """Per-triangle means; the sister ratio is the worst over all cut edges."""
+    print("| " + f"{'method':24}" + "".join(f"| {column:>12} " for column in COLUMNS) + "|")
+    print("|" + "-" * 25 + ("|" + "-" * 13 + ":") * len(COLUMNS) + "|")
+    for label, measured in rows:
+        d = measured.distortion
+        values = (d.quasi_conformal, d.area, d.area_p10, d.area_p90, d.l2_stretch, measured.seams.sister_ratio_max)
+        cells = [f"{value:.3f}" for value in values] + [str(len(measured.flipped))]
+        print(f"| {label:24}" + "".join(f"| {cell:>12} " for cell in cells) + "|")
+    print(flush=True)
+
+
+def run_as_program(job: Callable[[], None]) -> None:
+    """Run the job and end the process with its exit code."""
+    status = 0
+    try:
+        job()
+    except SystemExit as ending:
+        status = ending.code if isinstance(ending.code, int) else 1
+        if isinstance(ending.code, str):
+            print(ending.code, file=sys.stderr)
+    except Exception:
+        traceback.print_exc()
+        status = 1
+    sys.stdout.flush()
+    sys.stderr.flush()
+    # The bpy module hangs at exit while classes of an add-on are registered.
+    os._exit(status)
+
+
+if __name__ == "__main__":
+    run_as_program(main)

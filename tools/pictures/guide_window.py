@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The picture of the guide that shows Blender's window: a rounded cube with its overlay, its UV map and the sidebar.
+
+    export LIBGL_ALWAYS_SOFTWARE=1
+    xvfb-run --auto-servernum "--server-args=-screen 0 1500x860x24" blender --factory-startup \
+        --window-geometry 0 0 1500 860 --python tools/pictures/guide_window.py -- --extension ZIP --out OUT
+
+BLENDER_USER_RESOURCES must name a throw-away profile, and ImageMagick has to be installed. Leaves OUT/guide-window.png.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import bpy
+from mathutils import Vector
+
+sys.path.insert(0, str(Path(__file__).parent))
+import demo_scene
+from blender_window import WAIT, areas, arrange, inside, run
+
+OPEN = ("VIEW3D_PT_cone_angles", "VIEW3D_PT_cone_unwrap_quality")
+
+
+def open_panels() -> None:
+    """Have the panels that the page speaks of open, as after a click on each."""
+    for name in OPEN:
+        panel = getattr(bpy.types, name)
+        bpy.utils.unregister_class(panel)
+        panel.bl_options = set()
+        bpy.utils.register_class(panel)
+
+
+def show(out: Path) -> Iterator[float]:
+    """Unwrap, arrange the window, write the picture; yields seconds to wait."""
+    for area in areas("PROPERTIES") + areas("OUTLINER"):
+        with inside(area):
+            bpy.ops.screen.area_close()
+    yield WAIT
+    yield from arrange(0.38)
+    view, editor = areas("VIEW_3D")[0], areas("IMAGE_EDITOR")[0]
+    with inside(view):
+        bpy.ops.mesh.primitive_cube_add()
+        cube = bpy.context.object
+        corners = range(len(cube.data.vertices))
+        demo_scene.run_in_edit_mode(cube, bpy.ops.mesh.subdivide, number_cuts=7)
+        demo_scene.run_in_edit_mode(cube, bpy.ops.transform.tosphere, value=0.4)
+        cube.vertex_groups.new(name=demo_scene.CONE_GROUP).add(corners, 1.0, "REPLACE")
+        demo_scene.run_in_edit_mode(cube, bpy.ops.uv.cone_unwrap)
+        bpy.ops.object.mode_set(mode="EDIT")
+        # So that the UV editor shows what is not selected.
+        bpy.context.tool_settings.use_uv_select_sync = True
+    for space in view.spaces:
+        space.show_region_ui, space.show_region_toolbar, space.overlay.show_floor = True, False, False
+    yield WAIT
+    for region in view.regions:
+        if region.type == "UI":
+            region.active_panel_category = "Cone Unwrap"
+    with inside(view):
+        bpy.ops.mesh.select_all(action="DESELECT")
+        bpy.ops.view3d.view_axis(type="FRONT")
+        bpy.ops.view3d.view_orbit(angle=0.5, type="ORBITRIGHT")
+        bpy.ops.view3d.view_orbit(angle=0.4, type="ORBITUP")
+        bpy.ops.view3d.view_all()
+    for space in editor.spaces:
+        space.show_region_toolbar = False
+    with inside(editor):
+        bpy.ops.image.view_all(fit_view=True)
+    yield WAIT
+    # Out from under the sidebar.
+    seen = view.spaces.active.region_3d
+    seen.view_distance *= 1.45
+    seen.view_location = seen.view_rotation @ Vector((0.75, 0, 0))
+    yield 2 * WAIT
+    # Blender's own screenshot is black on a virtual screen. A palette makes a third of the file.
+    palette = ["+dither", "-colors", "255"]
+    subprocess.run(["import", "-window", "root", *palette, f"PNG8:{out / 'guide-window.png'}"], check=True)
+
+
+def main() -> None:
+    arguments = demo_scene.parse_arguments()
+    bpy.context.preferences.view.show_splash = False
+    demo_scene.install_extension(arguments.extension)
+    open_panels()
+    run(show(arguments.out))
+
+
+if __name__ == "__main__":
+    main()
