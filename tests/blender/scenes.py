@@ -55,6 +55,19 @@ def add_cube(name: str = "Cube", cuts: int = 3) -> bpy.types.Object:
     return add_object(name, build)
 
 
+def add_texture(obj: bpy.types.Object, width: int, height: int) -> bpy.types.Image:
+    """Gives ``obj`` a material whose active node is an image of ``width`` by ``height`` pixels; returns the image."""
+    image = bpy.data.images.new("Texture", width, height)
+    material = bpy.data.materials.new("Textured")
+    if bpy.app.version < (5, 0):
+        material.use_nodes = True
+    node = material.node_tree.nodes.new("ShaderNodeTexImage")
+    node.image = image
+    material.node_tree.nodes.active = node
+    obj.data.materials.append(material)
+    return image
+
+
 def add_sphere(name: str = "Sphere") -> bpy.types.Object:
     """A closed sphere of triangles and quads, with one UV layer."""
 

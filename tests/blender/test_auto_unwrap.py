@@ -14,6 +14,7 @@ from scenes import (
     add_grid,
     add_ramp,
     add_sphere,
+    add_texture,
     changed,
     corners,
     covered_twice,
@@ -238,14 +239,7 @@ def test_an_island_that_is_alone_is_turned_on_its_image():
     grid = add_grid()
     for vertex in grid.data.vertices:
         vertex.co.x *= 4
-    image = bpy.data.images.new("Tall", 64, 256)
-    material = bpy.data.materials.new("Textured")
-    if bpy.app.version < (5, 0):
-        material.use_nodes = True
-    node = material.node_tree.nodes.new("ShaderNodeTexImage")
-    node.image = image
-    material.node_tree.nodes.active = node
-    grid.data.materials.append(material)
+    add_texture(grid, 64, 256)
     unwrap(margin=0)
     # The strip stands upright in the tall image, which it fills.
     assert np.ptp(UvMap(grid).uv, axis=0) == pytest.approx([1.0, 1.0], abs=1e-3)

@@ -13,6 +13,7 @@ from scenes import (
     add_cone_cube,
     add_grid,
     add_sphere,
+    add_texture,
     add_tube,
     changed,
     covered_twice,
@@ -278,18 +279,6 @@ def test_pins_go_before_the_old_place():
 # --- aspect ---------------------------------------------------------------------------------------------------------
 
 
-def texture(obj, width, height):
-    image = bpy.data.images.new("Texture", width, height)
-    material = bpy.data.materials.new("Textured")
-    if bpy.app.version < (5, 0):
-        material.use_nodes = True
-    node = material.node_tree.nodes.new("ShaderNodeTexImage")
-    node.image = image
-    material.node_tree.nodes.active = node
-    obj.data.materials.append(material)
-    return image
-
-
 def side_ratio(obj):
     """Width over height of a map of a square."""
     width, height = np.ptp(active_uv(obj), axis=0)
@@ -300,7 +289,7 @@ def side_ratio(obj):
 @pytest.mark.parametrize(("width", "height"), [(64, 32), (16, 64)])
 def test_square_is_square_on_its_image_as_in_blenders_own_unwrap(width, height, in_edit_mode):
     square = add_grid()
-    texture(square, width, height)
+    add_texture(square, width, height)
     edit(square)
     bpy.ops.uv.unwrap(correct_aspect=True, margin=0.0)
     own = side_ratio(square)
@@ -317,8 +306,8 @@ def test_square_is_square_on_its_image_as_in_blenders_own_unwrap(width, height, 
 
 def test_aspect_comes_from_the_active_face_in_edit_mode():
     square = add_grid()
-    texture(square, 64, 32)
-    texture(square, 16, 64)
+    add_texture(square, 64, 32)
+    add_texture(square, 16, 64)
     edit(square)
     for face, material, expected in ((5, 1, 4.0), (6, 0, 0.5), (7, 1, 4.0)):
         bm = bmesh.from_edit_mesh(square.data)
@@ -334,8 +323,8 @@ def test_aspect_comes_from_the_active_face_in_edit_mode():
 
 def test_aspect_comes_from_the_active_face_its_shown_texture_and_its_pixels():
     square = add_grid()
-    texture(square, 64, 32)
-    second = texture(square, 32, 32)
+    add_texture(square, 64, 32)
+    second = add_texture(square, 32, 32)
     second.display_aspect = (3.0, 1.0)
     square.data.polygons.active = 5
     square.data.polygons[5].material_index = 1
@@ -362,7 +351,7 @@ def test_aspect_comes_from_the_active_face_its_shown_texture_and_its_pixels():
 
 def test_pins_and_place_hold_on_an_image_that_is_not_square():
     ball = add_ball()
-    texture(ball, 64, 32)
+    add_texture(ball, 64, 32)
     bpy.ops.uv.cone_unwrap()
     uv = (turned(active_uv(ball) * [2.0, 1.0], 0.8, 0.7, [1.0, 0.4]) * [0.5, 1.0]).astype(np.float32)
     set_uv(ball, uv)
@@ -480,7 +469,7 @@ def test_nothing_is_packed_where_every_island_is_pinned():
 @pytest.mark.parametrize("correct_aspect", [True, False])
 def test_packing_turns_islands_on_their_image(correct_aspect):
     obj = parts_to_pack()
-    texture(obj, 64, 16)
+    add_texture(obj, 64, 16)
     bpy.ops.uv.cone_unwrap(correct_aspect=correct_aspect, pack=False)
     plain, islands = active_uv(obj), island_loops(obj)
     bpy.ops.uv.cone_unwrap(correct_aspect=correct_aspect, pack=True)

@@ -10,6 +10,7 @@ from scenes import (
     add_ball,
     add_cone_cube,
     add_sphere,
+    add_texture,
     changed,
     edit,
     pin,
@@ -56,16 +57,6 @@ def apart(first, second):
 
 def extent(obj):
     return float(np.ptp(active_uv(obj), axis=0).max())
-
-
-def texture(obj, width, height):
-    material = bpy.data.materials.new("Textured")
-    if bpy.app.version < (5, 0):
-        material.use_nodes = True
-    node = material.node_tree.nodes.new("ShaderNodeTexImage")
-    node.image = bpy.data.images.new("Texture", width, height)
-    material.node_tree.nodes.active = node
-    obj.data.materials.append(material)
 
 
 def unwrap(**options):
@@ -255,7 +246,7 @@ def test_checker_stays_as_it_is_where_an_island_is_moved():
 def test_aspect_of_the_image_has_no_say(solid):
     unwrap()
     plain = active_uv(solid)
-    texture(solid, 64, 16)
+    add_texture(solid, 64, 16)
     unwrap(correct_aspect=True)
     assert active_uv(solid).tobytes() == plain.tobytes()
 

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 from installed import addon
-from scenes import add_cone_cube, changed, edit, snapshot
+from scenes import add_cone_cube, add_texture, changed, edit, snapshot
 
 texture, image_aspect, tile_pictures = addon.mesh.texture, addon.mesh.image_aspect, addon.core.tile_pictures
 
@@ -120,11 +120,7 @@ def test_the_material_stays_while_another_object_shows_it(reports):
 
 def test_the_image_the_mesh_had_still_decides_its_aspect():
     cube = add_cone_cube()
-    material = bpy.data.materials.new("Wide")
-    material.use_nodes = True
-    node = material.node_tree.nodes.new("ShaderNodeTexImage")
-    node.image = bpy.data.images.new("Wide", 64, 32)
-    cube.data.materials.append(material)
+    add_texture(cube, 64, 32)
     assert image_aspect.image_aspect(cube) == 2
     bpy.ops.uv.cone_texture()
     assert image_aspect.image_aspect(cube) == 2
