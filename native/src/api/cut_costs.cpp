@@ -4,41 +4,18 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
 #include "base/text.hpp"
 #include "lsgp/lsgp.hpp"
+#include "mesh/edge_table.hpp"
 #include "mesh/visibility.hpp"
 #include "pipeline/validation.hpp"
 
 namespace lsgp {
 
 namespace {
-
-// Rows of `edges` by their vertices.
-class EdgeRows {
- public:
-  explicit EdgeRows(const VertexPairs& edges) {
-    for (Index row = 0; row < edges.rows(); ++row) rows_.push_back({key(edges(row, 0), edges(row, 1)), row});
-    std::sort(rows_.begin(), rows_.end());
-  }
-  // Calls visit(row) for every row with these vertices.
-  template <typename Visit>
-  void for_each(Index a, Index b, Visit visit) const {
-    const Key wanted = key(a, b);
-    for (auto at = std::lower_bound(rows_.begin(), rows_.end(), std::pair(wanted, Index{0}));
-         at != rows_.end() && at->first == wanted; ++at) {
-      visit(at->second);
-    }
-  }
-
- private:
-  using Key = std::pair<Index, Index>;
-  static Key key(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
-  Array<std::pair<Key, Index>> rows_;
-};
 
 // The factor of a crease: 1 up to the smaller angle, the least from the larger one on.
 double crease_factor(double angle) {
@@ -47,32 +24,42 @@ double crease_factor(double angle) {
   return 1 - (1 - least) * bend * bend * (3 - 2 * bend);
 }
 
-// The largest angle between the normals of two triangles at each edge, radians; pi at edges marked sharp.
-Eigen::VectorXd crease_angles(const Surface& surface, const VertexPairs& sharp) {
-  const VertexPairs& edges = *surface.edges;
-  const EdgeRows rows(edges);
-  Eigen::VectorXd angle = Eigen::VectorXd::Zero(edges.rows());
-  Positions first = Positions::Zero(edges.rows(), 3);  // the normal of the first triangle at the edge
+// The largest angle between the normals of two triangles at each edge, radians.
+Eigen::VectorXd crease_angles(const Surface& surface, const EdgeTable& edges) {
+  Positions normal(surface.triangles.rows(), 3);
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
     const Index* v = surface.triangles.data() + 3 * f;
     const Eigen::Vector3d a = surface.positions.row(v[0]), b = surface.positions.row(v[1]);
     const Eigen::Vector3d c = surface.positions.row(v[2]);
-    const Eigen::Vector3d normal = (b - a).cross(c - a).stableNormalized();
-    for (int corner = 0; corner < 3; ++corner) {
-      rows.for_each(v[corner], v[(corner + 1) % 3], [&](Index row) {
-        if (first.row(row).isZero()) {
-          first.row(row) = normal;
-          return;
-        }
-        const Eigen::Vector3d other = first.row(row);
-        angle[row] = std::max(angle[row], std::atan2(other.cross(normal).norm(), other.dot(normal)));
-      });
+    normal.row(f) = (b - a).cross(c - a).stableNormalized();
+  }
+  Eigen::VectorXd angle = Eigen::VectorXd::Zero(edges.count());
+  for (Index edge = 0; edge < edges.count(); ++edge) {
+    const Eigen::Vector3d first = normal.row(edges.halfedge(edge, 0) / 3);
+    for (Index i = 1; i < edges.halfedge_count(edge); ++i) {
+      const Eigen::Vector3d other = normal.row(edges.halfedge(edge, i) / 3);
+      angle[edge] = std::max(angle[edge], std::atan2(other.cross(first).norm(), other.dot(first)));
     }
   }
-  for (Index i = 0; i < sharp.rows(); ++i) {
-    rows.for_each(sharp(i, 0), sharp(i, 1), [&](Index row) { angle[row] = M_PI; });
-  }
   return angle;
+}
+
+// The factor that being a crease, or marked sharp, gives each row of the surface's edges.
+Eigen::VectorXd crease_factors(const Surface& surface, const CutPreferences& preferences) {
+  const EdgeTable edges(surface, Array<char>(surface.triangles.rows(), 0));
+  Eigen::VectorXd angle = Eigen::VectorXd::Zero(edges.count());
+  if (preferences.creases) angle = crease_angles(surface, edges);
+  const VertexPairs& sharp = preferences.sharp;
+  for (Index i = 0; i < sharp.rows(); ++i) {
+    const Index edge = edges.find(sharp(i, 0), sharp(i, 1));
+    if (edge != none) angle[edge] = M_PI;
+  }
+  Eigen::VectorXd out = Eigen::VectorXd::Ones(surface.edges->rows());
+  for (Index row = 0; row < out.size(); ++row) {
+    const Index edge = edges.find((*surface.edges)(row, 0), (*surface.edges)(row, 1));
+    if (edge != none) out[row] = crease_factor(angle[edge]);
+  }
+  return out;
 }
 
 void require_preferences(const Surface& surface, const CutPreferences& preferences) {
@@ -120,9 +107,7 @@ Eigen::VectorXd cut_costs(const Surface& surface, const CutPreferences& preferen
     out = visible_share(surface, middle, *preferences.front).array() + least_visible;
   }
   if (preferences.creases || preferences.sharp.rows() > 0) {
-    Eigen::VectorXd angle = crease_angles(surface, preferences.sharp);
-    if (!preferences.creases) angle = (angle.array() < M_PI).select(0, angle);
-    for (Index row = 0; row < edges.rows(); ++row) out[row] *= crease_factor(angle[row]);
+    out.array() *= crease_factors(surface, preferences).array();
   }
   if (preferences.paint.size() > 0) {
     for (Index row = 0; row < edges.rows(); ++row) {
