@@ -52,6 +52,15 @@ def test_a_tube_pinched_far_away() -> None:
     honest(tube._replace(positions=positions), prescription="straightness")
 
 
+def test_a_scale_beyond_all_numbers() -> None:
+    """The same without cones: the scale would be e^30000 in one place and e^-60000 in another."""
+    mesh = meshes.torus(3, 3)
+    mesh.positions[:] = np.random.default_rng(4).integers(-7, 8, mesh.positions.shape)
+    mesh.positions[8, 2] = 3.85e8
+    with pytest.raises(lsgp.SolverError, match="by a factor of 10\\^[0-9]{5}, more than numbers can hold"):
+        lsgp.parameterize(surface(mesh), [])
+
+
 def test_a_stretch_that_overflows() -> None:
     """A torus with one vertex far away: triangles so thin that the smaller singular value cancels to nothing."""
     mesh = meshes.torus(6, 4)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/text.hpp"
 #include "mesh/border.hpp"
@@ -86,13 +87,13 @@ Eigen::VectorXcd unfold_relatively(const CutSurface& surface, const Curvature& c
   return PoissonSystem(weighted_surface, connection.reduction).fit(jacobians);
 }
 
-// Where lengths differ so much that the small triangles vanish in the last digit of the large ones, no repair helps.
-void require_representable(const ComponentMap& map) {
-  constexpr double widest = 36;  // 1 / epsilon as a power of e
-  const double range = map.curvature.log_scale.maxCoeff() - map.curvature.log_scale.minCoeff();
-  if (map.validity.defects() == 0 || range < widest) return;
+// Lengths in the layout may differ by no more than e^widest.
+void require_range(const Curvature& curvature, double widest) {
+  const double range = curvature.log_scale.maxCoeff() - curvature.log_scale.minCoeff();
+  if (range < widest) return;
   throw Error(Code::solver_failed,
-              concat("With these cones and angles lengths in the layout would differ by a factor of ", std::exp(range),
+              concat("With these cones and angles lengths in the layout would differ by a factor of 10^",
+                     std::round(range / std::log(10.0)),
                      ", more than numbers can hold. Add cones where the texture becomes too small, or let angles that "
                      "were given be chosen."));
 }
@@ -129,6 +130,7 @@ ComponentMap Mapping::attempt(const ComponentCones& cones, Effort effort, std::v
   map.rotation = connection.rotation;
   const Array<Index> aligned = aligned_edges();
   const bool spectral = usable_unfold(mesh_, cones, options_.unfold, findings) == UnfoldMethod::spectral;
+  if (!spectral) require_range(map.curvature, std::log(std::numeric_limits<double>::max()));
   if (spectral) {
     map.position = unfold_spectral(surface, connection.reduction);
   } else if (!aligned.empty()) {
@@ -145,7 +147,8 @@ ComponentMap Mapping::attempt(const ComponentCones& cones, Effort effort, std::v
     target.log_scale.array() += std::log(pinned.scale);
   }
   check(map);
-  require_representable(map);
+  // Where small triangles vanish in the last digit of the large ones, no repair helps.
+  if (map.validity.defects() > 0) require_range(map.curvature, -std::log(std::numeric_limits<double>::epsilon()));
   if (!repair_) {
     repair_ = {static_cast<Index>(map.validity.flipped.size()),
                static_cast<Index>(map.validity.wrong_angle_sums.size()), 0};
