@@ -139,3 +139,21 @@ def test_lines_of_an_obj_that_hold_a_backslash_alone(tmp_path: Path, line: bytes
     (tmp_path / "in.obj").write_bytes(text)
     command = [sys.executable, "-m", "lsgp", "unwrap", "in.obj", "-o", "out.obj"]
     assert subprocess.run(command, cwd=tmp_path, capture_output=True, timeout=60).returncode == 0
+
+
+@pytest.mark.parametrize("length", [1e-200, 1e200])
+def test_directions_of_any_length(length: float) -> None:
+    """A mirror plane and a front are given by directions; the squares of these are no numbers."""
+    ball = surface(meshes.bumpy_sphere(2))
+    axis = np.array([0.0, 0.0, 1.0])
+    placed, expected = (lsgp.place_cones(ball, symmetric=True, mirror=([0, 0, 0], n)) for n in (length * axis, axis))
+    assert np.array_equal(placed.cones, expected.cones)
+    ball = lsgp.Surface(ball.positions, ball.triangles, meshes.edges_of(ball.triangles))
+    assert np.array_equal(lsgp.cut_costs(ball, length * axis), lsgp.cut_costs(ball, axis))
+
+
+def test_a_mirror_plane_that_is_too_far_away() -> None:
+    """Mirror images would be no numbers: there are none, which is said."""
+    ball = surface(meshes.bumpy_sphere(2))
+    placed = lsgp.place_cones(ball, symmetric=True, mirror=([1.7e308, -1.7e308, 1.7e308], [1, -1, 1]))
+    assert codes(placed.warnings) == ["NOT_SYMMETRIC"]

@@ -68,7 +68,7 @@ void require_preferences(const Surface& surface, const CutPreferences& preferenc
         Code::wrong_parameter,
         "Costs are those of the edges that a cut may follow, and these are not named. Name the surface's edges.");
   }
-  if (preferences.front && !(preferences.front->allFinite() && preferences.front->norm() > 0)) {
+  if (preferences.front && !(preferences.front->allFinite() && preferences.front->cwiseAbs().maxCoeff() > 0)) {
     throw Error(Code::wrong_parameter, "The front is no direction. Give three numbers that are not all 0.");
   }
   const Eigen::VectorXd& paint = preferences.paint;

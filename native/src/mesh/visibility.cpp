@@ -107,7 +107,7 @@ Eigen::VectorXd visible_share(const Surface& surface, const Positions& points, c
   DepthBuffer buffer(buffer_size(surface.triangles.rows()), diameter > 0 ? diameter : 1);
   Positions projected(surface.positions.rows(), 3);
   Eigen::VectorXd seen = Eigen::VectorXd::Zero(points.rows());
-  for (const Eigen::Vector3d& view : views_around(front.normalized())) {
+  for (const Eigen::Vector3d& view : views_around(front.stableNormalized())) {
     buffer.look(view, (low + high) / 2);
     for (Eigen::Index v = 0; v < projected.rows(); ++v) projected.row(v) = buffer.project(surface.positions.row(v));
     for (Eigen::Index f = 0; f < surface.triangles.rows(); ++f) {

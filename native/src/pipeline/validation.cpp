@@ -261,7 +261,7 @@ void require_valid(const PlacementOptions& options) {
                 "out.");
   }
   const bool finite = options.mirror->point.allFinite() && options.mirror->normal.allFinite();
-  if (!finite || !(options.mirror->normal.norm() > 0)) {
+  if (!finite || !(options.mirror->normal.cwiseAbs().maxCoeff() > 0)) {
     throw Error(Code::wrong_parameter,
                 "The mirror plane has no usable point and normal. Give finite numbers, and a "
                 "normal that is not zero.");

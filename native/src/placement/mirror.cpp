@@ -25,6 +25,7 @@ class PointGrid {
 
   // The nearest point within a cell's side; none: there is none.
   Index nearest(const Eigen::RowVector3d& at) const {
+    if (!at.allFinite()) return none;  // mirrored at a plane too far away
     const std::array<std::int64_t, 3> center = cell_of(at);
     Index best = none;
     double least = cell_;
@@ -72,7 +73,7 @@ Array<MirrorPlane> likely_planes(const HalfedgeMesh& mesh, const Geometry& geome
 }
 
 Array<Index> images_in(const MirrorPlane& plane, const HalfedgeMesh& mesh, const PointGrid& grid) {
-  const Eigen::RowVector3d normal = plane.normal.normalized().transpose(), point = plane.point.transpose();
+  const Eigen::RowVector3d normal = plane.normal.stableNormalized().transpose(), point = plane.point.transpose();
   Array<Index> image(mesh.vertex_count());
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     const Eigen::RowVector3d at = mesh.positions.row(v);
