@@ -89,7 +89,7 @@ def open_surface(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Optio
     # Triangles without a map count: with them more than two may meet, and then the edge is open.
     everyone = surface.triangles[single]
     keys, meeting = np.unique(edge_keys(everyone.ravel(), everyone[:, [1, 2, 0]].ravel()), return_counts=True)
-    borders = np.union1d(_border_seams(surface, result, options), keys[meeting > 2])
+    borders = np.union1d(_borders_inside(surface, result, options), keys[meeting > 2])
     by_edge = np.argsort(key, kind="stable")
     first, count = np.unique(key[by_edge], return_index=True, return_counts=True)[1:]
     one, other = by_edge[first[count == 2]], by_edge[first[count == 2] + 1]
@@ -105,10 +105,10 @@ def open_surface(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Optio
     return Opened(triangle, (uv[..., 0] + 1j * uv[..., 1]).ravel(), vertex, twin, fan, closed, component)
 
 
-def _border_seams(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Options) -> NDArray[np.int64]:
-    """The keys of the seams that are open borders and not cuts."""
-    keys = edge_keys(*surface.seams.T)
+def _borders_inside(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Options) -> NDArray[np.int64]:
+    """The keys of the edges that are open and no cuts: borders, and seams that are such."""
+    borders, keys = edge_keys(*surface.borders.T), edge_keys(*surface.seams.T)
     if options.seams == "boundary":
-        return keys
+        return np.union1d(borders, keys)
     opened = surface.triangles[named_by(result, "SEAMS_OPENED")]
-    return np.intersect1d(keys, edge_keys(opened.ravel(), opened[:, [1, 2, 0]].ravel()))
+    return np.union1d(borders, np.intersect1d(keys, edge_keys(opened.ravel(), opened[:, [1, 2, 0]].ravel())))

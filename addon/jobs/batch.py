@@ -122,7 +122,8 @@ def _unwrap_task(obj: bpy.types.Object, args: argparse.Namespace) -> UnwrapTask:
     task = unwrap_task(region, settings)
     if len(task.cones.cones) and args.preset is None:
         return task
-    return replace(task, completes=True, count=unwrap_options.cone_count(args))
+    creases_of = args.preset if args.creases else None
+    return replace(task, completes=True, count=unwrap_options.cone_count(args), creases_of=creases_of)
 
 
 def _layouts(solved: Sequence[Unwrapped], args: argparse.Namespace) -> list[NDArray[np.float64]]:

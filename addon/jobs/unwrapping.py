@@ -61,7 +61,7 @@ class UnwrapTask:
     whether islands stay where the old UVs of the region are. aspect: of the image that the coordinates are for; 1 where
     they are not corrected for one. cuts: where they should run. completes: whether cones are placed where those of the
     region do not suffice; count: how many on each connected part that gets some, None for as few as keep the stretch
-    low.
+    low. creases_of: the preset of `lsgp.auto_unwrap` in whose way hard surfaces then end at creases; None: in no way.
     """
 
     region: Region
@@ -73,6 +73,7 @@ class UnwrapTask:
     cuts: CutChoice
     completes: bool = False
     count: int | None = None
+    creases_of: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,8 +168,11 @@ def _completed(task: UnwrapTask, cones: ConeAngles, pins: lsgp.Pins | None, prog
         task.region.surface,
         cones.cones,
         cones.angles,
+        preset=task.creases_of or "paint",
         options=task.options,
         count=task.count,
+        creases=task.creases_of is not None,
+        sharp=task.region.sharp,
         pins=pins,
         progress=progress,
     )

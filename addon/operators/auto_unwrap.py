@@ -69,6 +69,13 @@ class UV_OT_cone_auto_unwrap(
         description="Map UVs taking vertex position after Subdivision Surface modifier has been applied",
         default=True,
     )
+    creases: bpy.props.BoolProperty(
+        name="Creases as Borders",
+        description="Let hard surfaces end at their creases and at edges marked sharp, where that takes stretch out; "
+        "Paint does so only where many cones would be needed otherwise, Tile never. Parts with marked cones or seams "
+        "are left alone",
+        default=True,
+    )
     mark: bpy.props.BoolProperty(
         name="Mark Cones",
         description="Mark the cones that are placed, so that they can be edited and are kept by the next run",
@@ -88,6 +95,8 @@ class UV_OT_cone_auto_unwrap(
         if body is not None:
             body.prop(self, "cuts")
             body.prop(self, "seams")
+            if self.preset != "TILE":
+                body.prop(self, "creases")
             body.prop(self, "use_subsurf_data")
             body.prop(self, "mark")
             self.draw_vertex_group(body, context)
@@ -109,7 +118,8 @@ class UV_OT_cone_auto_unwrap(
         def make_task(obj: bpy.types.Object, region: Region) -> UnwrapTask:
             if self.mark:
                 require_attributes(obj.data)
-            return replace(unwrap_task(region, settings), completes=True)
+            creases_of = PRESETS[self.preset][0] if self.creases else None
+            return replace(unwrap_task(region, settings), completes=True, creases_of=creases_of)
 
         return Groups(settings.cone_group), make_task
 

@@ -39,16 +39,18 @@ Eigen::VectorXd to_vector_of_numbers(const FloatArray& array) {
   return Eigen::Map<const Eigen::VectorXd>(array.data(), array.size());
 }
 
-// Positions, triangles, edges, seams, importance, and costs of cuts along the edges.
-using SurfaceArrays = std::tuple<FloatArray, IndexArray, std::optional<IndexArray>, IndexArray, FloatArray, FloatArray>;
+// Positions, triangles, edges, seams, importance, costs of cuts along the edges, and borders.
+using SurfaceArrays =
+    std::tuple<FloatArray, IndexArray, std::optional<IndexArray>, IndexArray, FloatArray, FloatArray, IndexArray>;
 
 lsgp::Surface to_surface(const SurfaceArrays& arrays) {
-  const auto& [positions, triangles, edges, seams, importance, cut_costs] = arrays;
+  const auto& [positions, triangles, edges, seams, importance, cut_costs, borders] = arrays;
   lsgp::Surface surface;
   surface.positions = to_matrix<lsgp::Positions>(positions);
   surface.triangles = to_matrix<lsgp::Triangles>(triangles);
   if (edges) surface.edges = to_matrix<lsgp::VertexPairs>(*edges);
   surface.seams = to_matrix<lsgp::VertexPairs>(seams);
+  surface.borders = to_matrix<lsgp::VertexPairs>(borders);
   surface.importance = to_vector_of_numbers(importance);
   surface.cut_costs = to_vector_of_numbers(cut_costs);
   return surface;
@@ -371,6 +373,15 @@ py::array_t<double> cut_costs(const SurfaceArrays& surface_arrays, const std::op
   return to_array(without_gil([&] { return lsgp::cut_costs(surface, preferences, tell); }));
 }
 
+py::array_t<Index> crease_borders(const SurfaceArrays& surface_arrays, const IndexArray& cones, double angle,
+                                  const IndexArray& sharp, Index most_corners, const py::object& progress) {
+  const lsgp::Surface surface = to_surface(surface_arrays);
+  const std::vector<Index> marked = to_vector(cones);
+  const lsgp::CreaseOptions options{angle, to_matrix<lsgp::VertexPairs>(sharp), most_corners};
+  const lsgp::Progress tell = to_progress(progress);
+  return to_array(without_gil([&] { return lsgp::crease_borders(surface, marked, options, tell); }));
+}
+
 py::dict prescribe_curvature(const SurfaceArrays& surface_arrays, const ConeArrays& cones,
                              const py::dict& option_values, const py::object& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
@@ -500,6 +511,8 @@ PYBIND11_MODULE(_lsgp, module) {
       .def("parameterize", &parameterize_again, "cones"_a, "options"_a, "pinned_corners"_a, "pinned_uv"_a,
            "progress"_a);
   module.def("find_cuts", &find_cuts, "surface"_a, "cones"_a, "options"_a, "progress"_a);
+  module.def("crease_borders", &crease_borders, "surface"_a, "cones"_a, "angle"_a, "sharp"_a, "most_corners"_a,
+             "progress"_a);
   module.def("cut_costs", &cut_costs, "surface"_a, "front"_a, "creases"_a, "sharp"_a, "paint"_a, "progress"_a);
   module.def("prescribe_curvature", &prescribe_curvature, "surface"_a, "cones"_a, "options"_a, "progress"_a);
   module.def("build_ledger", &build_ledger, "surface"_a, "cones"_a, "options"_a, "gets_cones"_a);

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 _Floats = NDArray[np.float64]
 _Indices = NDArray[np.int32]
 _Flags = NDArray[np.bool_]
-_Surface = tuple[_Floats, _Indices, _Indices | None, _Indices, _Floats, _Floats]
-"""Positions, triangles, edges, seams, importance, and costs of cuts along the edges."""
+_Surface = tuple[_Floats, _Indices, _Indices | None, _Indices, _Floats, _Floats, _Indices]
+"""Positions, triangles, edges, seams, importance, costs of cuts along the edges, and borders."""
 _Cones = tuple[_Indices, _Floats, _Flags]
 """Vertices, angles, and which of them are given."""
 
@@ -44,6 +44,14 @@ def find_cuts(
     options: dict[str, Any],
     progress: Callable[[float], bool | None] | None,
 ) -> dict[str, Any]: ...
+def crease_borders(
+    surface: _Surface,
+    cones: _Indices,
+    angle: float,
+    sharp: _Indices,
+    most_corners: int,
+    progress: Callable[[float], bool | None] | None,
+) -> _Indices: ...
 def cut_costs(
     surface: _Surface,
     front: tuple[float, float, float] | None,

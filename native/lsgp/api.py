@@ -47,6 +47,7 @@ class Surface(EqualByContent):
         vertices alike.
     cut_costs: (e,) float64, 0 to 1e6: what a cut along each of `edges` costs for its length; None: 1. Costs decide
         where cuts run, and leave the map as it is.
+    borders: (b, 2) int32, edges where the surface ends and its texture too, whatever seams mean.
     """
 
     positions: FloatArray
@@ -55,14 +56,16 @@ class Surface(EqualByContent):
     seams: IndexArray | None = None
     importance: FloatArray | None = None
     cut_costs: FloatArray | None = None
+    borders: IndexArray | None = None
 
     def __post_init__(self) -> None:
-        seams = np.empty((0, 2), np.int32) if self.seams is None else self.seams
         _set(self, "positions", arguments.float_rows("positions", self.positions, 3))
         _set(self, "triangles", arguments.index_rows("triangles", self.triangles, 3))
         if self.edges is not None:
             _set(self, "edges", arguments.index_rows("edges", self.edges, 2))
-        _set(self, "seams", arguments.index_rows("seams", seams, 2))
+        for name in ("seams", "borders"):
+            marked = getattr(self, name)
+            _set(self, name, arguments.index_rows(name, np.empty((0, 2), np.int32) if marked is None else marked, 2))
         if self.importance is not None:
             shape = (len(self.positions),)
             _set(self, "importance", arguments.floats_of_shape("importance", self.importance, shape))
@@ -509,6 +512,34 @@ def find_cuts(
     return CutPaths(**_lsgp.find_cuts(surface_arrays(surface), vertices, values, progress))
 
 
+def crease_borders(
+    surface: Surface,
+    cones: ArrayLike = (),
+    *,
+    angle: float = 0.7,
+    sharp: ArrayLike | None = None,
+    most_corners: int = 0,
+    progress: Progress | None = None,
+) -> IndexArray:
+    """Edges for `Surface.borders`, (b, 2) int32, with which hard surfaces unfold without stretch and without cones.
+
+    What lies between creases is a patch. Patches are unfolded together across what they share of a border where that
+    is straight and not short, and a tube is opened from end to end: a cylinder becomes a rectangle and two disks.
+    Parts with cones or marked seams have no such borders, nor have those where a fifth of the curvature lies off the
+    creases.
+    angle: radians between the normals of the two triangles, from which on an edge is a crease.
+    sharp: (s, 2) int32, edges that are creases whatever their angle.
+    most_corners: parts whose curvature sits at no more vertices than this have none, since cones there do as well.
+    progress: as for `parameterize`.  Raises InputError, TopologyError, Cancelled.
+    """
+    arguments.require_callable(progress)
+    marked = np.empty((0, 2), np.int32) if sharp is None else arguments.index_rows("sharp", sharp, 2)
+    start = arguments.positive("angle", angle, "pass an angle above 0, at most pi")
+    corners = arguments.whole_number("most_corners", most_corners, 0, "pass a whole number from 0")
+    vertices = arguments.index_vector("cones", cones)
+    return _lsgp.crease_borders(surface_arrays(surface), vertices, start, marked, corners, progress)
+
+
 def cut_costs(
     surface: Surface,
     front: ArrayLike | None = None,
@@ -633,7 +664,8 @@ def measure_distortion(
 def surface_arrays(surface: Surface) -> tuple[Any, ...]:
     arguments.require_type("surface", surface, Surface)
     importance, cut_costs = (np.empty(0) if a is None else a for a in (surface.importance, surface.cut_costs))
-    return surface.positions, surface.triangles, surface.edges, surface.seams, importance, cut_costs
+    seams, borders = surface.seams, surface.borders
+    return surface.positions, surface.triangles, surface.edges, seams, importance, cut_costs, borders
 
 
 def _given_cones(

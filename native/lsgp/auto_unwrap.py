@@ -11,7 +11,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import arguments
-from .api import Options, Pins, Placement, Progress, Result, Seamless, Surface, parameterize, place_cones
+from .api import (
+    Options,
+    Pins,
+    Placement,
+    Progress,
+    Result,
+    Seamless,
+    Surface,
+    crease_borders,
+    parameterize,
+    place_cones,
+)
 from .arguments import IndexArray
 from .errors import Cancelled, Finding, LsgpError
 from .ledger import LedgerPart, build_ledger, surface_of_triangles
@@ -22,6 +33,9 @@ Preset = Literal["paint", "tile", "bake"]
 TARGET = 1.05
 # Fraction of an unwrap's time that placing cones takes.
 PLACING = 0.6
+# Hard surfaces end at their creases where their curvature sits at more corners than these, at which cones serve as
+# well and the texture runs on; None: it has to run on everywhere.
+_MOST_CORNERS: dict[Preset, int | None] = {"paint": 24, "tile": None, "bake": 0}
 
 # Islands are split in all of them: what lies on itself can neither be painted nor baked, and the cuts of a seamless
 # layout show nowhere.
@@ -36,7 +50,8 @@ def preset_options(preset: Preset) -> Options:
     """The options of a preset of `auto_unwrap`; `dataclasses.replace` changes some of them.
 
     preset: "paint" keeps lengths, for texture painting; "tile" makes a tileable texture of squares show no seam; "bake"
-        is for textures that are computed, and has the options of "paint": what differs is how a packer places islands.
+        is for textures that are computed, and has the options of "paint": what differs is where hard surfaces end, as
+        in `with_crease_borders`, and how a packer places islands.
     No island of theirs overlaps itself.  Raises InputError.
     """
     arguments.require_choice("preset", preset, get_args(Preset))
@@ -51,6 +66,8 @@ def auto_unwrap(
     preset: Preset = "paint",
     options: Options | None = None,
     count: int | None = None,
+    creases: bool = True,
+    sharp: ArrayLike | None = None,
     pins: Pins | None = None,
     progress: Progress | None = None,
 ) -> Result:
@@ -60,6 +77,7 @@ def auto_unwrap(
         which may be none; one whose cones cannot take up its curvature gets more.
     options: in place of `preset_options(preset)`. count: cones on each component that gets some, as of `place_cones`;
         None: as few as bring the L2 stretch to 1.05.
+    creases: whether hard surfaces may end at their creases, as in `with_crease_borders`, to which `sharp` belongs.
     pins, progress, errors and the result as of `parameterize`; `Result.cones` has the placed ones too, warnings those
         of placing them.
     """
@@ -68,9 +86,31 @@ def auto_unwrap(
         arguments.require_type("options", options, Options)
         chosen = options
     arguments.require_callable(progress)
+    if arguments.flag("creases", creases):
+        surface = with_crease_borders(surface, cones, preset, chosen, sharp)
     completed = complete_cones(surface, cones, angles, chosen, count, part_of(progress, 0.0, PLACING))
     rest = part_of(progress, PLACING, 1.0)
     return completed.told(parameterize(surface, completed.cones, completed.angles, chosen, pins, rest), chosen)
+
+
+def with_crease_borders(
+    surface: Surface,
+    cones: ArrayLike,
+    preset: Preset,
+    options: Options,
+    sharp: ArrayLike | None = None,
+) -> Surface:
+    """The surface with the borders of `crease_borders` that a preset wants besides its own.
+
+    "bake": all; "paint": those of parts whose curvature sits at more than 24 vertices, since cones there do as well and
+    let the texture run on; "tile", and with options for seamless layouts, straight borders or turning that is given:
+    none. sharp, errors: as of `crease_borders`.
+    """
+    most_corners = _MOST_CORNERS[preset]
+    if most_corners is None or options.seamless is not None or options.border != "free" or options.loop_turning:
+        return surface
+    borders = crease_borders(surface, cones, sharp=sharp, most_corners=most_corners)
+    return replace(surface, borders=np.concatenate([surface.borders, borders]))
 
 
 @dataclass(frozen=True, slots=True)

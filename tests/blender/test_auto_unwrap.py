@@ -20,6 +20,7 @@ from scenes import (
     covered_twice,
     edit,
     mark,
+    marked,
     pin,
     select_elements,
     snapshot,
@@ -266,3 +267,17 @@ def test_cuts_keep_out_of_sight_from_the_front():
     assert face[0] < 0.9 * face[2]
     # Turned round, it is the back of the head that is seen.
     assert face[0] < 0.9 * face[1]
+
+
+@pytest.mark.parametrize(("creases", "islands"), [(True, 3), (False, 1)])
+def test_a_cylinder_ends_at_its_rims(creases, islands):
+    """A rectangle and two disks without stretch; to run on over the rims takes a cone at each vertex there."""
+    bpy.ops.mesh.primitive_cylinder_add(vertices=32)
+    cylinder = bpy.context.active_object
+    unwrap(creases=creases, mark=True)
+    uv = UvMap(cylinder)
+    assert uv.islands() == islands
+    assert bool(marked(cylinder)) != creases
+    assert covered_twice([uv]) == 0
+    if creases:
+        assert uv.l2_stretch() == pytest.approx(1, abs=1e-5)

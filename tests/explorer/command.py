@@ -33,7 +33,7 @@ def command_faults(
 ) -> tuple[str, list[str]]:
     """What the command has no option for is left at its default, in the call it is compared with as well."""
     options = replace(options, loop_turning={}, factorization="automatic")
-    surface = replace(surface, edges=None, cut_costs=None)
+    surface = replace(surface, edges=None, cut_costs=None, borders=None)
     if options.mode != "low-stretch":
         options = replace(options, stretch=1.0)
     if options.mode != "low-stretch" or step["command"] == "cones":

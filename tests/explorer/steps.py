@@ -21,6 +21,7 @@ RARELY = 12
 # What may be asked for, and, drawn rarely, what is refused.
 KINDS: dict[str, tuple[list[str], list[str]]] = {
     "seams": (["none", "none", "edges", "path", "loop", "around a part", "all"], ["no edge", "outside"]),
+    "borders": (["none", "none", "edges", "path", "loop", "around a part", "creases"], ["no edge", "outside"]),
     "importance": (["none", "ones", "random", "spikes", "enormous", "zeros"], ["negative", "nan"]),
     "cut costs": (["none", "ones", "random", "spikes", "zeros", "some zeros", "seen"], ["negative", "nan", "enormous"]),
     "cuttable": (["all", "all", "most", "few", "none"], ["no edge"]),
@@ -107,6 +108,7 @@ def _plain(choices: Choices, meshes: Sequence[str]) -> Step:
 RULES: dict[str, tuple[int, Callable[[Choices, Sequence[str]], Step]]] = {
     "take mesh": (3, _mesh),
     "mark seams": (3, _of_kind("seams")),
+    "end at borders": (2, _of_kind("borders")),
     "weigh": (2, _of_kind("importance")),
     "allow cuts": (1, _of_kind("cuttable")),
     "cost cuts": (2, _of_kind("cut costs")),

@@ -148,6 +148,16 @@ class World:
             seams=places.seams_of_kind(step["kind"], step["seed"], step["count"], self._triangles, self._total)
         )
 
+    def _end_at_borders(self, step: Step) -> tuple[str, list[str]]:
+        if step["kind"] != "creases":
+            return self._change_surface(
+                borders=places.seams_of_kind(step["kind"], step["seed"], step["count"], self._triangles, self._total)
+            )
+        found = outcome(lambda: lsgp.crease_borders(self.surface, self.cones))
+        if found.error is None:
+            self._change_surface(borders=found.value)
+        return found.told, []
+
     def _weigh(self, step: Step) -> tuple[str, list[str]]:
         return self._change_surface(importance=places.importance_of_kind(step["kind"], step["seed"], self._total))
 

@@ -72,6 +72,7 @@ def surface(data: Data) -> lsgp.Surface:
         array(data, 2, triangles[:, :2]) if data.ConsumeBool() else None,
         array(data, 2, seams),
         array(data, 1, np.ones(len(x))) if data.ConsumeBool() else None,
+        borders=array(data, 2, triangles[:2, 1:]) if data.ConsumeBool() else None,
     )
 
 
@@ -155,6 +156,12 @@ def find_cuts(data: Data, on: lsgp.Surface) -> None:
     lsgp.find_cuts(on, cones(data, on)[0], options(data))
 
 
+def creases(data: Data, on: lsgp.Surface) -> None:
+    angle, corners = number(data, 0.2), number(data, 0)
+    found = lsgp.crease_borders(on, cones(data, on)[0], angle=angle, most_corners=corners, sharp=on.seams)
+    assert len(np.unique(np.sort(found, axis=1), axis=0)) == len(found)
+
+
 def prescribe(data: Data, on: lsgp.Surface) -> None:
     chosen = lsgp.prescribe_curvature(on, *cones(data, on), options(data))
     assert len(chosen.cones) == len(chosen.cone_angles) and (chosen.cone_angles > 0).all()
@@ -190,7 +197,7 @@ def measure(data: Data, on: lsgp.Surface) -> None:
     lsgp.measure_distortion(on, uv, cones(data, on)[0] if data.ConsumeBool() else None)
 
 
-VERBS = [parameterize, parameterize, solve, find_cuts, prescribe, place, gains, measure]
+VERBS = [parameterize, parameterize, solve, find_cuts, creases, prescribe, place, gains, measure]
 
 
 def one_input(raw: bytes) -> None:

@@ -108,6 +108,13 @@ void ask_parts(Bytes& bytes, const lsgp::Surface& surface) {
     }
   });
   error_of(surface, [&] {
+    const double angle = bytes.below(8) / 2.0;
+    lsgp::Surface ending = surface;
+    ending.borders = lsgp::crease_borders(surface, call.cones.vertices, {angle, surface.seams, bytes.below(3)});
+    const lsgp::Pins no_pins;
+    require_honest(ending, call.options, lsgp::parameterize(ending, call.cones, call.options, no_pins));
+  });
+  error_of(surface, [&] {
     const lsgp::Prescription chosen =
         lsgp::prescribe_curvature(surface, call.cones, call.options, with_angles.progress());
     require_elements(chosen.warnings, surface);

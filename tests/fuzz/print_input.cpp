@@ -48,6 +48,7 @@ void print(const lsgp::Surface& surface) {
   print_rows("positions", surface.positions);
   print_rows("triangles", surface.triangles);
   print_rows("seams", surface.seams);
+  print_rows("borders", surface.borders);
   if (surface.edges) print_rows("edges", *surface.edges);
   if (surface.importance.size() > 0) print_rows("importance", surface.importance.transpose());
 }

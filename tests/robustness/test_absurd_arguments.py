@@ -38,6 +38,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             "seams": WHOLE.seams,
             "importance": np.ones(len(BALL.positions)),
             "cut_costs": WHOLE.cut_costs,
+            "borders": EDGES[:3],
         },
     ),
     "Pins": (lsgp.Pins, {"corners": [0, 5], "uv": [[0, 0], [1, 0]]}),
@@ -53,11 +54,18 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         lsgp.auto_unwrap,
         {
             **{"surface": WHOLE, "cones": BALL.cones, "angles": None, "preset": "paint", "options": None},
-            **{"count": 4, "pins": None, "progress": None},
+            **{"count": 4, "creases": True, "sharp": EDGES[:3], "pins": None, "progress": None},
         },
     ),
     "preset_options": (lsgp.preset_options, {"preset": "bake"}),
     "find_cuts": (lsgp.find_cuts, {name: CALL[name] for name in CALL if name != "angles"}),
+    "crease_borders": (
+        lsgp.crease_borders,
+        {
+            **{"surface": WHOLE, "cones": BALL.cones, "angle": 0.3, "sharp": EDGES[:3], "most_corners": 2},
+            **{"progress": None},
+        },
+    ),
     "cut_costs": (
         lsgp.cut_costs,
         {

@@ -57,7 +57,7 @@ def test_a_scale_beyond_all_numbers() -> None:
     mesh = meshes.torus(3, 3)
     mesh.positions[:] = np.random.default_rng(4).integers(-7, 8, mesh.positions.shape)
     mesh.positions[8, 2] = 3.85e8
-    with pytest.raises(lsgp.SolverError, match="by a factor of 10\\^[0-9]{5}, more than numbers can hold"):
+    with pytest.raises(lsgp.SolverError, match=r"by a factor of 10\^[0-9]{5}, more than numbers can hold"):
         lsgp.parameterize(surface(mesh), [])
 
 

@@ -5,6 +5,7 @@
 // All verbs throw Error and leave their arguments untouched; all are deterministic and safe to call from any thread.
 #pragma once
 
+#include "lsgp/crease_borders.hpp"
 #include "lsgp/cut_costs.hpp"
 #include "lsgp/errors.hpp"
 #include "lsgp/export.hpp"
@@ -36,6 +37,12 @@ LSGP_API CutPaths find_cuts(const Surface& surface, const std::vector<Index>& co
 // runs along a crease or is wanted. WRONG_PARAMETER without edges, or with preferences that are none.
 LSGP_API Eigen::VectorXd cut_costs(const Surface& surface, const CutPreferences& preferences,
                                    const Progress& progress = {});
+
+// Edges for `Surface::borders`, so that hard surfaces unfold with hardly any stretch and without cones: their creases, as
+// far as parts cannot be unfolded together across them, and one edge path along every tube. Components with cones or
+// seams have none, nor have those whose curvature lies off their creases. WRONG_PARAMETER.
+LSGP_API VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& cones = {},
+                                    const CreaseOptions& options = {}, const Progress& progress = {});
 
 // The cone angles alone (section 5) and the scale they imply.
 LSGP_API Prescription prescribe_curvature(const Surface& surface, const Cones& cones, const Options& options = {},

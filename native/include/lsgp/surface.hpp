@@ -26,6 +26,7 @@ struct Surface {
   VertexPairs seams;                 // (s, 2) marked edges; cuts are drawn to them
   Eigen::VectorXd importance;        // (n) weights of stretch at vertices, or empty: all weigh alike
   Eigen::VectorXd cut_costs;         // (e) cost of a cut along each of `edges` per length, or empty: 1
+  VertexPairs borders;               // (b, 2) edges where the surface ends, whatever seams mean
 };
 
 struct Cones {

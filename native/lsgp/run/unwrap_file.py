@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from ..api import Options, Placement, Progress, Result, Surface, parameterize
-from ..auto_unwrap import PLACING, complete_cones, part_of
+from ..auto_unwrap import PLACING, complete_cones, part_of, with_crease_borders
 from ..errors import Finding, InputError, LsgpError
 from ..io.mesh_files import MeshFile, format_mesh, parse_mesh, triangulated
 from ..io.mesh_formats import output_format
@@ -120,6 +120,9 @@ def _map(
     with run.stage("cut_costs"):
         surface = run.surface = replace(surface, cut_costs=cut_costs_of(args, surface))
     given = ((), None) if cones_path is None else cones_in(cones_json, cones_path, args.prescription)
+    if args.preset is not None and args.creases:
+        with run.stage("creases"):
+            surface = run.surface = with_crease_borders(surface, given[0], args.preset, options)
     if cones_path is not None and args.preset is None:
         result = parameterize(surface, *given, options, progress=progress)
         run.stage_seconds.update(result.stage_seconds)

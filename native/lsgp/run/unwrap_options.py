@@ -63,6 +63,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
         "(default: follow)",
     )
     add_cut_options(unwrap)
+    _add_crease_option(unwrap)
     unwrap.add_argument(
         "--border",
         choices=["free", "straight"],
@@ -93,6 +94,16 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
     add_strict_option(unwrap, "layout")
     _add_low_stretch_options(unwrap)
     _add_seamless_options(unwrap)
+
+
+def _add_crease_option(unwrap: argparse.ArgumentParser) -> None:
+    unwrap.add_argument(
+        "--no-creases",
+        dest="creases",
+        action="store_false",
+        help="with --preset: let the texture of hard surfaces run on across their creases; without this they end there "
+        "where paint and bake have hardly any stretch by it (default: with them)",
+    )
 
 
 def add_cut_options(command: argparse.ArgumentParser) -> None:
@@ -232,6 +243,8 @@ def library_options(args: argparse.Namespace) -> Options:
     if args.prescription == "manual" and cones_file(args) is None:
         raise UsageError("--prescription manual needs a cones file with angles; give one with --cones FILE.json")
     require_cut_options(args)
+    if args.preset is None and not args.creases:
+        raise UsageError("--no-creases is for presets; add --preset paint or bake")
     base = Options() if args.preset is None else preset_options(args.preset)
     mode = base.mode if args.mode is None else args.mode
     if mode != "low-stretch":

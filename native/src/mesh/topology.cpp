@@ -76,13 +76,13 @@ struct Orientation {
   Array<char> orientable;  // per component
 };
 
-// The other halfedge of every edge across which the surface goes on, those of two triangles that are no open seam;
-// none at others, (3m).
-Array<Index> join_halfedges(const EdgeTable& edges, const Array<char>& seam, const OpenSeams& open_seams,
-                            Index halfedge_count) {
+// The other halfedge of every edge across which the surface goes on, those of two triangles that are neither a border
+// nor an open seam; none at others, (3m).
+Array<Index> join_halfedges(const EdgeTable& edges, const Array<char>& border, const Array<char>& seam,
+                            const OpenSeams& open_seams, Index halfedge_count) {
   Array<Index> twin(halfedge_count, none);
   for (Index edge = 0; edge < edges.count(); ++edge) {
-    if (edges.halfedge_count(edge) != 2) continue;
+    if (edges.halfedge_count(edge) != 2 || border[edge]) continue;
     const Index a = edges.halfedge(edge, 0), b = edges.halfedge(edge, 1);
     if (seam[edge] && !open_seams.empty() && (open_seams[a / 3] || open_seams[b / 3])) continue;
     twin[a] = b;
@@ -279,7 +279,10 @@ Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std
   const Array<double> factor = cut_factors(edges, surface);
   const Array<char> seam = mark_edges(edges, surface.seams, Code::seam_not_an_edge,
                                       "are marked as a seam but name no edge. Mark edges of this mesh.");
-  const Array<Index> twin = join_halfedges(edges, seam, open_seams, static_cast<Index>(3 * surface.triangles.rows()));
+  const Array<char> border = mark_edges(edges, surface.borders, Code::edge_not_in_mesh,
+                                        "are named as a border but are no edge. Name edges of this mesh.");
+  const Array<Index> twin =
+      join_halfedges(edges, border, seam, open_seams, static_cast<Index>(3 * surface.triangles.rows()));
   const Orientation orientation = orient(surface, skip, twin);
 
   Array<Component>& components = topology.components;

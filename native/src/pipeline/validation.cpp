@@ -152,6 +152,7 @@ void require_connectivity(const Surface& surface) {
   if (surface.edges) require_indices(*surface.edges, n, "edges");
   require_cut_costs(surface);
   require_indices(surface.seams, n, "seams");
+  require_indices(surface.borders, n, "borders");
 }
 
 void require_valid(const Surface& surface) {

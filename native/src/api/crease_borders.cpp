@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lsgp/crease_borders.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "base/array.hpp"
+#include "base/progress_monitor.hpp"
+#include "base/text.hpp"
+#include "cut/crease_borders.hpp"
+#include "lsgp/lsgp.hpp"
+#include "pipeline/components.hpp"
+
+namespace lsgp {
+
+namespace {
+
+// The angle between the normals of the triangles at each edge, radians, 0 on borders, (3m).
+Eigen::VectorXd bends(const HalfedgeMesh& mesh) {
+  Positions normal(mesh.triangle_count(), 3);
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    const Eigen::Vector3d a = mesh.positions.row(mesh.triangles(f, 0)), b = mesh.positions.row(mesh.triangles(f, 1));
+    const Eigen::Vector3d c = mesh.positions.row(mesh.triangles(f, 2));
+    normal.row(f) = (b - a).cross(c - a).stableNormalized();
+  }
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(mesh.halfedge_count());
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (mesh.twin[h] == none) continue;
+    const Eigen::Vector3d here = normal.row(h / 3), there = normal.row(mesh.twin[h] / 3);
+    out[h] = std::atan2(here.cross(there).norm(), here.dot(there));
+  }
+  return out;
+}
+
+// Whether the artist has said something about a component's cuts, which is to hold then.
+bool is_marked(const HalfedgeMesh& mesh, const ComponentTask& task) {
+  return !task.cones.vertices.empty() || !task.border_cones.empty() ||
+         std::find(mesh.seam.begin(), mesh.seam.end(), 1) != mesh.seam.end();
+}
+
+}  // namespace
+
+VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& cones, const CreaseOptions& options,
+                           const Progress& progress) {
+  if (!(options.angle > 0 && options.angle <= M_PI) || options.most_corners < 0) {
+    throw Error(Code::wrong_parameter,
+                concat("Creases begin at an angle of ", options.angle, " and more than ", options.most_corners,
+                       " corners. Give an angle above 0, at most pi, and a number of corners that is not negative."));
+  }
+  StageSeconds seconds;
+  ProgressMonitor monitor(progress, seconds);
+  std::set<std::pair<Index, Index>> sharp;
+  for (Index i = 0; i < options.sharp.rows(); ++i) sharp.insert(std::minmax(options.sharp(i, 0), options.sharp(i, 1)));
+  const Cones given{cones, Array<std::optional<double>>(cones.size())};
+  std::vector<Finding> findings;
+  const Work work = prepare(surface, given, Options{}, findings);
+  const Array<Component>& components = work.topology.components;
+  Array<Index> edges;
+  for_each_component(components, findings, monitor, [&](std::size_t i) {
+    const Component& component = components[i];
+    const HalfedgeMesh& mesh = component.mesh;
+    if (!component.orientable || is_marked(mesh, work.tasks[i])) return;
+    const Geometry geometry = require_geometry(component, findings);
+    const Eigen::VectorXd bend = bends(mesh);
+    const auto source_edge = [&](Index h) {
+      return std::pair(component.source_vertex[mesh.origin(h)], component.source_vertex[mesh.target(h)]);
+    };
+    Array<char> crease(mesh.halfedge_count(), 0);
+    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+      if (!mesh.cuttable[h] || mesh.twin[h] == none) continue;
+      const auto [a, b] = source_edge(h);
+      crease[h] = bend[h] >= options.angle || (!sharp.empty() && sharp.count(std::minmax(a, b)) > 0);
+    }
+    const Array<char> open = find_crease_borders(mesh, geometry, crease, bend, options.most_corners);
+    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+      if (!open[h] || h > mesh.twin[h]) continue;
+      const auto [a, b] = source_edge(h);
+      edges.insert(edges.end(), {a, b});
+    }
+  });
+  monitor.advance(1);
+  return Eigen::Map<VertexPairs>(edges.data(), static_cast<Eigen::Index>(edges.size() / 2), 2);
+}
+
+}  // namespace lsgp

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cut/crease_borders.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <queue>
+#include <tuple>
+#include <utility>
+
+#include "base/checkpoint.hpp"
+#include "base/union_find.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr double least_patch = 0.002;     // of the area: smaller ones are no islands
+constexpr double least_on_creases = 0.8;  // of the curvature
+constexpr double is_curved = 0.06;        // radians at a vertex
+constexpr double is_bent = 0.25;          // radians along a border that two patches share
+constexpr double least_shared = 0.08;     // of the smaller patch's perimeter, to be unfolded with it
+constexpr double is_no_hole = 0.35;       // radians that a border's turning is off that of a hole in the plane
+
+bool is_inside(const HalfedgeMesh& mesh, Index v) { return mesh.loop_of_vertex[v] == none; }
+
+// The patch of every triangle, (m), the smallest ones added to the neighbour they meet along the longest and flattest
+// border.
+Array<Index> find_patches(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& crease,
+                          const Eigen::VectorXd& bend) {
+  Array<Index> patch;
+  const Index count = label_parts(mesh, crease, patch);
+  Array<double> area(count, 0);
+  for (Index f = 0; f < mesh.triangle_count(); ++f) area[patch[f]] += geometry.area[f];
+  Array<std::map<Index, double>> shared(count);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (mesh.twin[h] == none) continue;
+    const Index here = patch[h / 3], there = patch[mesh.twin[h] / 3];
+    if (here != there) shared[here][there] += geometry.length[h] * std::cos(bend[h] / 2);
+  }
+  UnionFind joined(count);
+  Array<Index> home(count);  // of the patch that a set has become
+  for (Index p = 0; p < count; ++p) home[p] = p;
+  using Entry = std::pair<double, Index>;
+  std::priority_queue<Entry, Array<Entry>, std::greater<>> smallest;
+  for (Index p = 0; p < count; ++p) smallest.emplace(area[p], p);
+  while (!smallest.empty() && smallest.top().first < least_patch * geometry.total_area) {
+    const auto [size, p] = smallest.top();
+    smallest.pop();
+    if (home[joined.find(p)] != p || size != area[p] || shared[p].empty()) continue;
+    const Index q = std::max_element(shared[p].begin(), shared[p].end(), [](const auto& a, const auto& b) {
+                      return a.second < b.second;
+                    })->first;
+    for (const auto& [r, length] : shared[p]) {
+      shared[r].erase(p);
+      if (r == q) continue;
+      shared[q][r] += length;
+      shared[r][q] += length;
+    }
+    joined.unite(p, q);
+    home[joined.find(q)] = q;
+    area[q] += area[p];
+    smallest.emplace(area[q], q);
+  }
+  for (Index& p : patch) p = home[joined.find(p)];
+  return patch;
+}
+
+// What two patches share of a border, from one vertex of curvature or of other borders to the next.
+struct SharedBorder {
+  Array<Index> halfedges;
+  Index here, there;  // the patches
+  double length = 0;
+  double curvature = 0;  // of the vertices between its ends, without signs
+  bool closed = false;
+};
+
+class Patches {
+ public:
+  Patches(const HalfedgeMesh& mesh, const Geometry& geometry, Array<Index> patch)
+      : mesh_(mesh), geometry_(geometry), patch_(std::move(patch)), is_border_(mesh.halfedge_count(), 0) {
+    degree_.assign(mesh.vertex_count(), 0);
+    perimeter_.assign(mesh.triangle_count(), 0);
+    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+      is_border_[h] = mesh.twin[h] == none || patch_[h / 3] != patch_[mesh.twin[h] / 3];
+      if (!is_border_[h]) continue;
+      perimeter_[patch_[h / 3]] += geometry.length[h];
+      if (mesh.twin[h] < h) ++degree_[mesh.origin(h)], ++degree_[mesh.target(h)];
+    }
+  }
+
+  // Whether most of the curvature lies where patches meet, at more vertices than most_corners.
+  bool carry_curvature(Index most_corners) const {
+    constexpr double least = 0.1;  // radians: below, there is nothing to take out
+    double all = 0, own = 0, squares = 0;
+    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+      if (!is_inside(mesh_, v)) continue;
+      const double curvature = std::abs(geometry_.angle_defect[v]);
+      all += curvature;
+      if (degree_[v] > 0) own += curvature;
+      squares += curvature * curvature;
+    }
+    const double corners = all * all / squares;  // were all alike
+    return all > least && own >= least_on_creases * all && std::round(corners) > most_corners;
+  }
+
+  // Where patches end that are unfolded together, the longest shares of a perimeter first.
+  Array<char> unfold_together() const {
+    Array<SharedBorder> borders = trace();
+    const auto share = [&](const SharedBorder& border) {
+      return border.length / std::min(perimeter_[border.here], perimeter_[border.there]);
+    };
+    std::stable_sort(borders.begin(), borders.end(),
+                     [&](const SharedBorder& a, const SharedBorder& b) { return share(a) > share(b); });
+    UnionFind islands(mesh_.triangle_count());
+    Array<char> out = is_border_;
+    for (Index h = 0; h < mesh_.halfedge_count(); ++h) out[h] = out[h] && mesh_.twin[h] != none;
+    for (const SharedBorder& border : borders) {
+      if (border.closed || border.curvature > is_bent || share(border) < least_shared) continue;
+      if (!islands.unite(border.here, border.there)) continue;
+      for (const Index h : border.halfedges) out[h] = out[mesh_.twin[h]] = 0;
+    }
+    return out;
+  }
+
+ private:
+  bool is_node(Index v) const {
+    return degree_[v] != 2 || !is_inside(mesh_, v) || std::abs(geometry_.angle_defect[v]) > is_curved;
+  }
+
+  // The border's halfedge that goes on where h ends, at a vertex that is no node.
+  Index after(Index h) const {
+    Index g = next(h);
+    while (!is_border_[g]) g = next(mesh_.twin[g]);
+    return g;
+  }
+
+  SharedBorder follow(Index first) const {
+    SharedBorder out{{}, patch_[first / 3], patch_[mesh_.twin[first] / 3]};
+    Index h = first;
+    while (true) {
+      out.halfedges.push_back(h);
+      out.length += geometry_.length[h];
+      const Index v = mesh_.target(h);
+      if (is_node(v)) return out;
+      out.curvature += std::abs(geometry_.angle_defect[v]);
+      h = after(h);
+      out.closed = h == first;
+      if (out.closed) return out;
+    }
+  }
+
+  // Every shared border once.
+  Array<SharedBorder> trace() const {
+    Array<SharedBorder> out;
+    Array<char> done(mesh_.halfedge_count(), 0);
+    const auto add = [&](Index h) {
+      if (done[h] || !is_border_[h] || mesh_.twin[h] == none) return;
+      out.push_back(follow(h));
+      for (const Index g : out.back().halfedges) done[g] = done[mesh_.twin[g]] = 1;
+    };
+    for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
+      if (is_node(mesh_.origin(h))) add(h);
+    }
+    for (Index h = 0; h < mesh_.halfedge_count(); ++h) add(h);  // those without a node
+    return out;
+  }
+
+  const HalfedgeMesh& mesh_;
+  const Geometry& geometry_;
+  Array<Index> patch_;       // (m)
+  Array<char> is_border_;    // (3m) of patches, the mesh's own borders among them
+  Array<Index> degree_;      // (n) borders between patches at each vertex
+  Array<double> perimeter_;  // of patches
+};
+
+// The borders of the islands that open edges make.
+struct Loops {
+  Array<Index> island;     // (m)
+  Array<Index> at_corner;  // (3m) the loop through a corner, none inside
+  Array<double> turning;   // of each loop, radians: 2 pi around a disk, -2 pi around a hole in the plane
+  Array<Index> of;         // the island of each loop
+};
+
+Loops find_loops(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& open) {
+  const auto ends = [&](Index h) { return open[h] || mesh.twin[h] == none; };
+  Loops out;
+  label_parts(mesh, open, out.island);
+  out.at_corner.assign(mesh.halfedge_count(), none);
+  for (Index first = 0; first < mesh.halfedge_count(); ++first) {
+    if (!ends(first) || out.at_corner[first] != none) continue;
+    const Index loop = static_cast<Index>(out.turning.size());
+    double turning = 0;
+    Index h = first;
+    do {
+      turning += M_PI;
+      Index g = next(h);
+      for (;; g = next(mesh.twin[g])) {
+        out.at_corner[g] = loop;
+        turning -= geometry.angle[g];
+        if (ends(g)) break;
+      }
+      h = g;
+    } while (h != first);
+    out.turning.push_back(turning);
+    out.of.push_back(out.island[first / 3]);
+  }
+  return out;
+}
+
+// Loops that go around no hole in the plane, one for each island that has any: a tube has to be opened from end to end.
+Array<Index> find_tubes(const Loops& loops) {
+  Array<Index> outer(loops.island.size(), none), tube(loops.island.size(), none), out;
+  for (Index l = 0; l < static_cast<Index>(loops.of.size()); ++l) {
+    Index& largest = outer[loops.of[l]];
+    if (largest == none || loops.turning[l] > loops.turning[largest]) largest = l;
+  }
+  for (Index l = 0; l < static_cast<Index>(loops.of.size()); ++l) {
+    const Index i = loops.of[l];
+    if (l == outer[i] || std::abs(loops.turning[l] + 2 * M_PI) <= is_no_hole || tube[i] != none) continue;
+    tube[i] = l;
+    out.push_back(l);
+  }
+  return out;
+}
+
+// The shortest path from a loop to another one of its island, halfedges; empty where no cut can run.
+Array<Index> shortest_path_across(const HalfedgeMesh& mesh, const Geometry& geometry, const Loops& loops, Index loop,
+                                  const Array<Index>& corners) {
+  std::map<Index, double> distance;                // of vertices inside
+  std::map<Index, Index> from;                     // the halfedge by which
+  using Entry = std::tuple<double, Index, Index>;  // distance, vertex, and the halfedge where it is on another loop
+  std::priority_queue<Entry, Array<Entry>, std::greater<>> queue;
+  const auto step = [&](double before, Index h) {
+    if (!mesh.cuttable[h]) return;
+    const double after = before + geometry.length[h];
+    const Index v = mesh.target(h), met = loops.at_corner[next(h)];
+    if (met == loop) return;
+    if (met != none) {
+      queue.emplace(after, v, h);
+      return;
+    }
+    const auto at = distance.try_emplace(v, std::numeric_limits<double>::infinity()).first;
+    if (!(after < at->second)) return;
+    at->second = after;
+    from[v] = h;
+    queue.emplace(after, v, none);
+  };
+  for (const Index c : corners) step(0, c);
+  while (!queue.empty()) {
+    const auto [length, v, last] = queue.top();
+    queue.pop();
+    if (last != none) {
+      Array<Index> path{last};
+      for (auto at = from.find(mesh.origin(last)); at != from.end(); at = from.find(mesh.origin(path.back()))) {
+        path.push_back(at->second);
+      }
+      return path;
+    }
+    if (length > distance[v]) continue;
+    mesh.for_each_outgoing(v, [&, before = length](Index h) { step(before, h); });
+  }
+  return {};
+}
+
+void open_tubes(const HalfedgeMesh& mesh, const Geometry& geometry, Array<char>& open) {
+  bool found = true;
+  while (found) {
+    checkpoint(static_cast<double>(mesh.halfedge_count()));
+    found = false;
+    const Loops loops = find_loops(mesh, geometry, open);
+    const Array<Index> tubes = find_tubes(loops);
+    Array<Array<Index>> corners(loops.of.size());
+    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+      const bool ends = open[h] || mesh.twin[h] == none;
+      if (loops.at_corner[h] != none && !ends) corners[loops.at_corner[h]].push_back(h);
+    }
+    for (const Index tube : tubes) {
+      for (const Index h : shortest_path_across(mesh, geometry, loops, tube, corners[tube])) {
+        open[h] = open[mesh.twin[h]] = 1;
+        found = true;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Array<char> find_crease_borders(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& crease,
+                                const Eigen::VectorXd& bend, Index most_corners) {
+  const Patches patches(mesh, geometry, find_patches(mesh, geometry, crease, bend));
+  if (!patches.carry_curvature(most_corners)) return Array<char>(mesh.halfedge_count(), 0);
+  Array<char> open = patches.unfold_together();
+  open_tubes(mesh, geometry, open);
+  return open;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Borders along the creases of a hard surface.
+//
+// A cylinder with its caps has no curvature but along its rims: cut along these, its parts unfold without any stretch,
+// where cones would have to stand on every vertex of a rim. What lies between creases is a patch; patches are unfolded
+// together across what they share of a border where that is straight, as the faces of a cube are.
+#pragma once
+
+#include "base/array.hpp"
+#include "mesh/geometry.hpp"
+
+namespace lsgp {
+
+// Marks the halfedges, (3m) and both of an edge, along which a component should end; none where most of its curvature
+// lies off its creases, or at no more than most_corners vertices.  crease: (3m) on both halfedges; bend: (3m) radians
+// between the normals at an edge.
+Array<char> find_crease_borders(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& crease,
+                                const Eigen::VectorXd& bend, Index most_corners);
+
+}  // namespace lsgp

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hard surfaces end at their creases: parts unfold without stretch, and nothing else is opened."""
+
+from __future__ import annotations
+
+import lsgp
+import meshes
+import numpy as np
+import pytest
+from map_checks import pairs, surface
+from meshes import Mesh
+from result_check import undeclared_faults
+from zoo import closed, swept, tunnels
+
+SOLIDS = {
+    "cylinder": closed.cylinder(32, 4, 3.0, 2),
+    "fine cylinder": closed.cylinder(150, 2, 1.0, 2),
+    "prism": closed.prism(6, 2, 2.0),
+    "star": closed.star(5, 0.5, 0.4),
+    "gear": closed.gear(12, 0.3, 2),
+    "cube": meshes.cube(3),
+    "pipe": swept.pipe(24, 8, 0.0, True),
+    "hollow pipe": swept.hollow_pipe(40, 4, 0.3),
+    "plate with tunnels": tunnels.tunnelled_plate(4, 3, 1),
+    "slab of genus 2": meshes.double_torus(),
+}
+
+
+def in_space(mesh: Mesh) -> np.ndarray:
+    """Edge lengths of triangles, (m, 3)."""
+    corners = mesh.positions[mesh.triangles]
+    return np.linalg.norm(corners[:, [1, 2, 0]] - corners, axis=2)
+
+
+def angle_between_normals(mesh: Mesh, edges: np.ndarray) -> np.ndarray:
+    """At each of these edges between two triangles, radians."""
+    a, b, c = mesh.positions[mesh.triangles].transpose(1, 0, 2)
+    normal = np.cross(b - a, c - a)
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    out = []
+    for edge in edges:
+        one, other = normal[np.isin(mesh.triangles, edge).sum(axis=1) == 2]
+        out.append(np.arccos(np.clip(one @ other, -1, 1)))
+    return np.array(out)
+
+
+@pytest.mark.parametrize("name", SOLIDS)
+def test_a_hard_surface_unfolds_without_stretch_and_without_cones(name: str) -> None:
+    mesh = SOLIDS[name]
+    result = lsgp.auto_unwrap(surface(mesh), preset="bake")
+    assert len(result.cones) == 0 and len(result.overlapping) == 0
+    flat = np.linalg.norm(result.corner_uv[:, [1, 2, 0]] - result.corner_uv, axis=2)
+    ratio = flat / in_space(mesh)
+    assert ratio / np.median(ratio) == pytest.approx(1, abs=1e-5)
+
+
+def test_a_cylinder_becomes_a_rectangle_and_two_disks() -> None:
+    around, length, mesh = 32, 3.0, SOLIDS["cylinder"]
+    result = lsgp.auto_unwrap(surface(mesh), preset="paint")
+    assert result.island.max() == 2
+    is_upright = np.ptp(mesh.positions[mesh.triangles][:, :, 2], axis=1) > 0
+    (side,) = np.unique(result.island[is_upright])
+    z = result.corner_uv[..., 0] + 1j * result.corner_uv[..., 1]
+    edges = np.roll(z, -1, axis=1) - z
+    along = np.isclose(in_space(mesh), length / 4) & (result.island == side)[:, None]
+    upright = z[result.island == side] / edges[along][0]  # in units of a quarter of the length
+    perimeter = around * 2 * np.sin(np.pi / around)
+    assert np.ptp(upright.real) == pytest.approx(4, rel=1e-5)
+    assert np.ptp(upright.imag) == pytest.approx(perimeter / (length / 4), rel=1e-5)
+    for disk in {0, 1, 2} - {side}:
+        size = np.ptp(z[result.island == disk].view(float).reshape(-1, 2), axis=0) / abs(edges[along][0])
+        assert size == pytest.approx(2 / (length / 4), rel=0.01)
+
+
+@pytest.mark.parametrize("name", SOLIDS)
+def test_borders_are_creases_but_for_a_path_along_each_tube(name: str) -> None:
+    mesh = SOLIDS[name]
+    borders = lsgp.crease_borders(surface(mesh))
+    assert pairs(borders) <= pairs(meshes.edges_of(mesh.triangles))
+    flat = borders[angle_between_normals(mesh, borders) < 0.7]
+    paths = {"cylinder": 4, "fine cylinder": 2, "pipe": 8, "hollow pipe": 4 + 4}
+    assert len(flat) == paths.get(name, 0)
+
+
+@pytest.mark.parametrize(
+    "mesh",
+    [meshes.icosphere(3), meshes.torus(), meshes.bumpy_sphere(3), meshes.flower(3), meshes.saddle(), meshes.grid()],
+)
+def test_smooth_and_flat_surfaces_have_none(mesh: Mesh) -> None:
+    assert len(lsgp.crease_borders(surface(mesh))) == 0
+
+
+def test_what_the_artist_has_marked_is_left_alone() -> None:
+    cylinder = SOLIDS["cylinder"]
+    both = meshes.merge([cylinder, cylinder])
+    alone = pairs(lsgp.crease_borders(surface(both)))
+    second = {edge for edge in alone if min(edge) >= len(cylinder.positions)}
+    assert len(second) == len(alone) / 2
+    seamed = lsgp.crease_borders(surface(both, seams=cylinder.triangles[:1, :2]))
+    assert pairs(seamed) == second
+    assert pairs(lsgp.crease_borders(surface(both), [0])) == second
+
+
+def test_few_corners_are_left_to_cones() -> None:
+    cube = surface(meshes.cube(3))
+    assert len(lsgp.crease_borders(cube, most_corners=8)) == 0
+    assert len(lsgp.crease_borders(cube, most_corners=7)) == 7 * 3  # as many edges of a cube, of three edges each
+    assert len(lsgp.auto_unwrap(cube, preset="paint").cones) == 8
+    assert len(lsgp.auto_unwrap(cube, preset="bake").cones) == 0
+    assert len(lsgp.auto_unwrap(cube, preset="bake", creases=False).cones) == 8
+
+
+def test_edges_marked_sharp_are_creases() -> None:
+    """A blunt cone on a tube: its rim bends by less than a crease does."""
+    profile, height = np.array([1.0, 1.0, 0.0]), np.array([0.0, 2.0, 2.4])
+    tower = closed.lathe(profile, height, 32, caps=(True, False))
+    rim = 32 + np.arange(32)
+    sharp = np.stack([rim, np.roll(rim, -1)], axis=1)
+    assert angle_between_normals(tower, sharp).max() < 1.3
+    without = pairs(lsgp.crease_borders(surface(tower), angle=1.3))
+    marked = pairs(lsgp.crease_borders(surface(tower), angle=1.3, sharp=sharp))
+    assert not pairs(sharp) & without and pairs(sharp) <= marked
+
+
+def test_a_border_is_where_the_surface_ends() -> None:
+    """The map is that of the surface torn there, whatever seams mean."""
+    sheet = meshes.hill(8)
+    middle = np.flatnonzero(np.isclose(sheet.positions[:, 0], np.median(sheet.positions[:, 0])))
+    across = np.array([e for e in meshes.edges_of(sheet.triangles) if np.isin(e, middle).all()])
+    torn = lsgp.Surface(sheet.positions, sheet.triangles, borders=across)
+    for seams in ("follow", "ignore"):
+        options = lsgp.Options(seams=seams)
+        result = lsgp.parameterize(torn, [], options=options)
+        assert result.island.max() == 1 and undeclared_faults(torn, result, options) == []
+        assert not pairs(result.cut_edges) & pairs(across)
+        seamed = surface(sheet, seams=across)
+        same = lsgp.parameterize(seamed, [], options=lsgp.Options(seams="boundary"))
+        assert np.array_equal(result.corner_uv, same.corner_uv)
+
+
+@pytest.mark.parametrize(
+    ("given", "code", "words"),
+    [
+        ({"angle": 0.0}, "WRONG_PARAMETER", "above 0"),
+        ({"angle": 3.2}, "WRONG_PARAMETER", "at most pi"),
+        ({"most_corners": -1}, "WRONG_PARAMETER", "whole number from 0"),
+        ({"cones": [99]}, "CONE_INDEX", "99"),
+    ],
+)
+def test_refusals(given: dict, code: str, words: str) -> None:
+    with pytest.raises(lsgp.InputError, match=words) as refused:
+        lsgp.crease_borders(surface(meshes.cube(2)), **given)
+    assert refused.value.code == code
+
+
+@pytest.mark.parametrize(
+    ("borders", "code"),
+    [([[0, 0]], "EDGE_NOT_IN_MESH"), ([[0, 25]], "EDGE_NOT_IN_MESH"), ([[0, 26]], "INDEX_OUT_OF_RANGE")],
+)
+def test_borders_that_are_no_edges(borders: list, code: str) -> None:
+    cube = meshes.cube(2)
+    with pytest.raises(lsgp.InputError) as refused:
+        lsgp.parameterize(lsgp.Surface(cube.positions, cube.triangles, borders=borders), cube.cones)
+    assert refused.value.code == code
