@@ -17,7 +17,7 @@ namespace lsgp {
 
 namespace {
 
-constexpr double least_patch = 0.002;     // of the area: smaller ones are no islands
+constexpr double least_patch = 0.0002;    // of the area: smaller ones are no islands
 constexpr double least_on_creases = 0.8;  // of the curvature
 constexpr double is_curved = 0.06;        // radians at a vertex
 constexpr double is_bent = 0.25;          // radians along a border that two patches share
