@@ -97,11 +97,12 @@ def write_map(obj: bpy.types.Object, unwrapped: Unwrapped, corner_uv: NDArray[np
 def report_on(unwrapped: Unwrapped) -> reports.Report:
     """What is kept of a finished map."""
     result, region = unwrapped.result, unwrapped.region
+    opened = np.concatenate([result.cut_edges, result.borders])
     certificate = None
     if result.seamless is not None:
         certificate = native.lsgp.certificate.certificate(result.seamless, TEXTURE_SIZE)
     return reports.Report(
-        paths=[path.tolist() for path in native.lsgp.split_into_paths(result.cut_edges, result.cones)],
+        paths=[path.tolist() for path in native.lsgp.split_into_paths(opened, result.cones)],
         cones=result.cones.tolist(),
         cone_angles=result.cone_angles.tolist(),
         flipped=np.unique(region.triangle_faces[result.flipped]).tolist(),

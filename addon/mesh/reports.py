@@ -24,9 +24,9 @@ from .uv_digest import uv_digest
 class Report:
     """What is kept of a map, as lists and numbers that fit into JSON. Indices are those of the mesh.
 
-    paths: the cuts, each as the vertices from node to node. cones, cone_angles: as imposed, in radians. flipped,
-    overlapping: faces. faces: how many were unwrapped. islands, distortion, seams, overlap_area, certificate: as in the
-    library's result of the last unwrap; certificate is None for layouts that are not seamless.
+    paths: the cuts and the borders inside, each as the vertices from node to node. cones, cone_angles: as imposed, in
+    radians. flipped, overlapping: faces. faces: how many were unwrapped. islands, distortion, seams, overlap_area,
+    certificate: as in the library's result of the last unwrap; certificate is None for layouts that are not seamless.
     """
 
     paths: list[list[int]]

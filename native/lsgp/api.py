@@ -303,6 +303,7 @@ class Result(EqualByContent):
     island: (m,) int32, the island of each triangle, -1 where not solved.
     cut_edges: (c, 2) int32 vertex pairs along which the layout is open, mesh boundaries and the seams of "boundary" not
         included; of parts with cones, seams that end inside are, whose two sides lie on each other.
+    borders: (b, 2) int32 vertex pairs, those of `Surface.borders`.
     cones, cone_angles: (k,) int32 and (k,) float64, radians, the angles that were imposed.
     flipped: indices of triangles with UV area <= 0. wrong_angle_sums: vertices whose UV angles, those of flipped
         triangles counted below 0, miss what was imposed by more than a degree: by whole turns, or by anything where the
@@ -324,6 +325,7 @@ class Result(EqualByContent):
     solved: NDArray[np.bool_]
     island: IndexArray
     cut_edges: IndexArray
+    borders: IndexArray
     cones: IndexArray
     cone_angles: FloatArray
     distortion: Distortion
@@ -448,7 +450,9 @@ def parameterize(
         exceptions propagate.
     Raises InputError, TopologyError, CurvatureError, SolverError, Cancelled.
     """
-    return _to_result(_lsgp.parameterize(surface_arrays(surface), *_call(cones, angles, options, pins, progress)))
+    arrays = surface_arrays(surface)
+    out = _lsgp.parameterize(arrays, *_call(cones, angles, options, pins, progress))
+    return _to_result(out, surface.borders)
 
 
 class Solver:
@@ -463,6 +467,7 @@ class Solver:
 
     def __init__(self, surface: Surface) -> None:
         self._solver = _lsgp.Solver(surface_arrays(surface))
+        self._borders = surface.borders
 
     def parameterize(
         self,
@@ -473,7 +478,8 @@ class Solver:
         progress: Progress | None = None,
     ) -> Result:
         """Arguments, result and errors as of `lsgp.parameterize`."""
-        return _to_result(self._solver.parameterize(*_call(cones, angles, options, pins, progress)))
+        out = self._solver.parameterize(*_call(cones, angles, options, pins, progress))
+        return _to_result(out, self._borders)
 
 
 def _call(
@@ -490,12 +496,12 @@ def _call(
     return *cone_arrays(cones, angles, options), corners, uv, progress
 
 
-def _to_result(out: dict[str, Any]) -> Result:
+def _to_result(out: dict[str, Any], borders: IndexArray) -> Result:
     out["repair"] = RepairReport(**out["repair"])
     out["distortion"] = Distortion(**out["distortion"])
     out["seams"] = SeamQuality(**out["seams"])
     out["seamless"] = None if out["seamless"] is None else SeamlessReport(**out["seamless"])
-    return Result(**out)
+    return Result(borders=borders, **out)
 
 
 def find_cuts(

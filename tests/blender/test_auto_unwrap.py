@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Auto Unwrap: what one press makes of objects, what it keeps and what it leaves alone."""
 
+from itertools import pairwise
+
 import bpy
 import numpy as np
 import pytest
@@ -278,6 +280,8 @@ def test_a_cylinder_ends_at_its_rims(creases, islands):
     uv = UvMap(cylinder)
     assert uv.islands() == islands
     assert bool(marked(cylinder)) != creases
+    shown = {tuple(sorted(edge)) for path in addon.mesh.reports.find(cylinder.data).paths for edge in pairwise(path)}
+    assert shown == uv.split_edges()
     assert covered_twice([uv]) == 0
     if creases:
         assert uv.l2_stretch() == pytest.approx(1, abs=1e-5)

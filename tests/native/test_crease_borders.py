@@ -132,7 +132,7 @@ def test_a_border_is_where_the_surface_ends() -> None:
         options = lsgp.Options(seams=seams)
         result = lsgp.parameterize(torn, [], options=options)
         assert result.island.max() == 1 and undeclared_faults(torn, result, options) == []
-        assert not pairs(result.cut_edges) & pairs(across)
+        assert not pairs(result.cut_edges) & pairs(across) and pairs(result.borders) == pairs(across)
         seamed = surface(sheet, seams=across)
         same = lsgp.parameterize(seamed, [], options=lsgp.Options(seams="boundary"))
         assert np.array_equal(result.corner_uv, same.corner_uv)
