@@ -11,9 +11,6 @@
 
 namespace lsgp {
 
-StripSearch::StripSearch(const CutNetwork& network)
-    : network_(network), mark_(network.mesh.halfedge_count(), 0), reached_(network.mesh.vertex_count(), {0, none, 0}) {}
-
 // The next border halfedge of the opened surface, from the target of h; visits those in between, which leave there.
 template <typename Visit>
 Index StripSearch::follow_border(Index h, Visit visit) const {
@@ -66,6 +63,10 @@ bool StripSearch::arrives(const Side& side, Index h) const {
 
 CutPath StripSearch::find(const CutPath& path, const Ends& ends, double below) {
   const HalfedgeMesh& mesh = network_.mesh;
+  if (mark_.empty()) {  // few surfaces have strips
+    mark_.assign(mesh.halfedge_count(), 0);
+    reached_.assign(mesh.vertex_count(), {0, none, 0});
+  }
   const bool lone_head = ends.after_head == mesh.twin[path.back()], lone_tail = ends.after_tail == path.front();
   const Side head = mark_side(ends.after_head, lone_head ? mesh.target(path.back()) : none);
   // The path may have separated two pieces, which are one now.

@@ -10,7 +10,7 @@ namespace lsgp {
 // more; where they meet in other vertices, as around a handle, as well.
 class StripSearch {
  public:
-  explicit StripSearch(const CutNetwork& network);
+  explicit StripSearch(const CutNetwork& network) : network_(network) {}
 
   // What followed both ends of a path on the border of the opened surface, before it was closed.
   struct Ends {
@@ -43,8 +43,9 @@ class StripSearch {
   CutPath cross(const Side& from, const Side& to, const Array<Index>& starts, double below);
 
   const CutNetwork& network_;
-  Array<Index> mark_;  // (3m) the last one given
-  Array<Reached> reached_;
+  // From the first search on:
+  Array<Index> mark_;       // (3m) the last one given
+  Array<Reached> reached_;  // (n)
   Index marks_ = 0, searches_ = 0;
 };
 
