@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The pictures of the guide: paper with darts, cubes, and heads unwrapped in several ways. Runs inside Blender.
+"""The pictures of the guide: paper with darts; cubes, heads and machine parts unwrapped. Runs inside Blender.
 
 Run by tools/demo --guide, like demo_scene.py; leaves guide-NAME-NUMBER.png, to be put together by guide_sheet.py.
 """
@@ -7,8 +7,9 @@ Run by tools/demo --guide, like demo_scene.py; leaves guide-NAME-NUMBER.png, to 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from types import ModuleType
 
 import bpy
 import numpy as np
@@ -28,6 +29,10 @@ FLAT_PLACE, FLAT_TILT = (-2.1, -2.0, 0.0), np.radians(62)  # towards the camera
 BENT_PLACE, BENT_TILT = (1.8, -2.0, 0.3), np.radians(32)
 SEEN_FROM_A_CORNER = (Euler((np.radians(25), 0, 0)).to_matrix() @ Euler((0, 0, np.radians(20))).to_matrix()).to_4x4()
 EDGE_COLOUR = "#d6336c"
+TEETH = 12
+GEAR = ((0.4, -0.25), (1.3, -0.25), (1.3, 0.25), (0.4, 0.25))  # profiles: radius and height
+FLANGE = ((0.35, -0.6), (1.2, -0.6), (1.2, -0.35), (0.6, -0.35), (0.6, 0.8), (0.35, 0.8))
+SEEN_FROM_ABOVE = (Euler((np.radians(50), 0, 0)).to_matrix() @ Euler((0, 0, np.radians(20))).to_matrix()).to_4x4()
 
 
 def main() -> None:
@@ -49,13 +54,21 @@ def main() -> None:
             obj = add()
             demo_scene.run_in_edit_mode(obj, bpy.ops.mesh.cone_place, automatic=False, **place)
             demo_scene.run_in_edit_mode(obj, bpy.ops.uv.cone_unwrap, **options)
-            _, measured = demo_scene.measure(lsgp, obj)
-            distortion = measured.distortion
-            print(f"{name} {number}: L2 {distortion.l2_stretch:.3f}, QC {distortion.quasi_conformal:.3f}", flush=True)
-            demo_picture.add_checker(obj)
-            cones = demo_scene.marked_cones(obj)
-            path = arguments.out / f"guide-{name}-{number}.png"
-            demo_picture.render_picture(obj, measured.cut_edges, cones, path, arguments.samples, WIDTH)
+            take_picture(lsgp, obj, arguments.out / f"guide-{name}-{number}.png", arguments.samples)
+    for number, add in enumerate((add_gear, add_flange)):
+        empty_scene()
+        obj = add()
+        demo_scene.run_in_edit_mode(obj, bpy.ops.uv.cone_auto_unwrap, mark=True)
+        take_picture(lsgp, obj, arguments.out / f"guide-hard-{number}.png", arguments.samples)
+
+
+def take_picture(lsgp: ModuleType, obj: bpy.types.Object, path: Path, samples: int) -> None:
+    """Of an object and its map."""
+    _, measured = demo_scene.measure(lsgp, obj)
+    distortion = measured.distortion
+    print(f"{path.stem}: L2 {distortion.l2_stretch:.3f}, QC {distortion.quasi_conformal:.3f}", flush=True)
+    demo_picture.add_checker(obj)
+    demo_picture.render_picture(obj, measured.cut_edges, demo_scene.marked_cones(obj), path, samples, WIDTH)
 
 
 def empty_scene() -> None:
@@ -104,6 +117,38 @@ def add_rounded_cube() -> bpy.types.Object:
     bpy.ops.object.modifier_apply(modifier="Subdivision")
     cube.data.transform(SEEN_FROM_A_CORNER)
     return cube
+
+
+def add_gear() -> bpy.types.Object:
+    """A wheel with square teeth and a bore."""
+    is_gap = np.arange(4 * TEETH) % 4 >= 2
+    return add_turned("gear", GEAR, 4 * TEETH, lambda radius: np.where(is_gap & (radius > 1), 0.78, 1.0))
+
+
+def add_flange() -> bpy.types.Object:
+    """A pipe with a collar at its foot."""
+    return add_turned("flange", FLANGE, 64, lambda _: np.ones(64))
+
+
+def add_turned(
+    name: str, profile: Sequence[tuple[float, float]], around: int, factor: Callable[[float], FloatArray]
+) -> bpy.types.Object:
+    """A closed profile turned about an axis.  factor: of a radius at each of the angles."""
+    turn = 2 * np.pi * np.arange(around) / around
+    rings = [
+        np.stack(
+            [radius * factor(radius) * np.cos(turn), radius * factor(radius) * np.sin(turn), 0 * turn + z], axis=-1
+        )
+        for radius, z in profile
+    ]
+    index = np.arange(len(profile) * around).reshape(len(profile), around)
+    right, up = np.roll(index, -1, axis=1), np.roll(index, -1, axis=0)
+    quads = np.stack([index, right, np.roll(up, -1, axis=1), up], axis=-1).reshape(-1, 4)
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(np.concatenate(rings).tolist(), [], quads.tolist())
+    mesh.transform(SEEN_FROM_ABOVE)
+    demo_picture.add_object(name, mesh)
+    return bpy.data.objects[name]
 
 
 def dart() -> None:
