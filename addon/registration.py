@@ -19,8 +19,10 @@ from .operators.cone_place import MESH_OT_cone_place
 from .operators.cone_select import MESH_OT_cone_select
 from .operators.cone_select_reported import MESH_OT_cone_select_reported
 from .operators.cone_unwrap import UV_OT_cone_unwrap
+from .operators.cut_select import MESH_OT_cone_select_cuts
 from .operators.measure import UV_OT_cone_measure
 from .operators.scale_preview import MESH_OT_cone_preview
+from .operators.seams_from_cuts import MESH_OT_cone_seams_from_cuts
 from .operators.texture import UV_OT_cone_texture
 from .overlay import handlers
 from .ui import menus
@@ -34,6 +36,8 @@ CLASSES = (
     MESH_OT_cone_edit,
     MESH_OT_cone_select,
     MESH_OT_cone_place,
+    MESH_OT_cone_select_cuts,
+    MESH_OT_cone_seams_from_cuts,
     MESH_OT_cone_select_reported,
     MESH_OT_cone_clear_data,
     UV_OT_cone_auto_unwrap,
