@@ -155,8 +155,8 @@ def _outside(uv: FloatArray, island: IndexArray) -> list[Finding]:
     if not count:
         return []
     message = (
-        f"{_of_islands(count, len(boxes))} outside the unit square: the layout reaches up to {np.nanmax(uv):.4g} at this "
-        "texel density. Lower it, take a larger texture, or spread the islands over UDIM tiles."
+        f"{_of_islands(count, len(boxes))} outside the unit square: at this texel density the layout reaches "
+        f"up to {np.nanmax(uv):.4g}. Lower it, take a larger texture, or spread the islands over UDIM tiles."
     )
     return [Finding("ISLANDS_OUTSIDE", message, _triangles_of(np.flatnonzero(outside), island))]
 

@@ -27,6 +27,9 @@ OPERATORS = {
     "uv.cone_measure",
     "uv.cone_texture",
     "mesh.cone_clear_data",
+    "uv.cone_texel_get",
+    "uv.cone_texel_set",
+    "mesh.cone_texel_select",
 }
 SUBMENU = ("VIEW3D_MT_cone_unwrap", None)
 
@@ -107,6 +110,7 @@ def test_everything_is_in_the_submenu_and_auto_unwrap_comes_first():
         ("mesh.cone_seams_from_cuts", None),
         ("mesh.cone_select_reported", None),
         ("VIEW3D_MT_cone_seeing", None),
+        ("VIEW3D_MT_cone_texels", None),
         ("mesh.cone_clear_data", None),
     ]
 
