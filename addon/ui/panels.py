@@ -189,10 +189,10 @@ class VIEW3D_PT_cone_unwrap_texels(ConeUnwrapSubPanel, bpy.types.Panel):
         layout.operator_context = "INVOKE_DEFAULT"
         layout.prop(kept, "use_image")
         image = active_image(context.object) if kept.use_image else None
-        if image is None:
-            layout.prop(kept, "texture_size")
-        else:
+        if image is not None:
             layout.label(text=f"{image.name}: {image.size[0]} x {image.size[1]} px", icon="IMAGE_DATA")
+        # Further selected objects may have no image.
+        layout.prop(kept, "texture_size", text="Texture Size" if image is None else "Without Image")
         layout.prop(kept, "density", text=f"Density ({density_unit(context.scene)})")
         row = layout.row(align=True)
         row.operator(identifiers.TEXEL_GET, text="Get")
