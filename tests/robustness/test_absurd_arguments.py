@@ -234,6 +234,7 @@ def test_absurd_values_are_refused_by_name(name: str, parameter: str) -> None:
 @example(("lattice.shift_islands", "triangles"), 0, 7)
 @example(("lattice.shift_islands", "cut_edges"), 0, 7)
 @example(("lattice.shift_islands", "corner_uv"), 0, 6)
+@example(("lattice.shift_islands", "shifts"), 0, 6)
 @example(("fit_placement", "island"), 0, 7)
 @example(("singular_values", "surface"), 0, 0)
 @example(("place_cones", "mirror"), 10**400, 2)
