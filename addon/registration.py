@@ -4,7 +4,7 @@
 import bpy
 
 from .jobs import command
-from .mesh import changes, distortion, reports, texture
+from .mesh import changes, distortion, reports, texel_settings, texture
 from .operators.angle_select import MESH_OT_cone_select_one
 from .operators.angle_set import MESH_OT_cone_set_angle
 from .operators.angle_snap import MESH_OT_cone_snap_angles
@@ -19,8 +19,13 @@ from .operators.cone_place import MESH_OT_cone_place
 from .operators.cone_select import MESH_OT_cone_select
 from .operators.cone_select_reported import MESH_OT_cone_select_reported
 from .operators.cone_unwrap import UV_OT_cone_unwrap
+from .operators.cut_select import MESH_OT_cone_select_cuts
 from .operators.measure import UV_OT_cone_measure
 from .operators.scale_preview import MESH_OT_cone_preview
+from .operators.seams_from_cuts import MESH_OT_cone_seams_from_cuts
+from .operators.texel_get import UV_OT_cone_texel_get
+from .operators.texel_select import MESH_OT_cone_texel_select
+from .operators.texel_set import UV_OT_cone_texel_set
 from .operators.texture import UV_OT_cone_texture
 from .overlay import handlers
 from .ui import menus
@@ -34,12 +39,17 @@ CLASSES = (
     MESH_OT_cone_edit,
     MESH_OT_cone_select,
     MESH_OT_cone_place,
+    MESH_OT_cone_select_cuts,
+    MESH_OT_cone_seams_from_cuts,
     MESH_OT_cone_select_reported,
     MESH_OT_cone_clear_data,
     UV_OT_cone_auto_unwrap,
     UV_OT_cone_unwrap,
     UV_OT_cone_measure,
     UV_OT_cone_texture,
+    UV_OT_cone_texel_get,
+    UV_OT_cone_texel_set,
+    MESH_OT_cone_texel_select,
     MESH_OT_cone_set_angle,
     MESH_OT_cone_spread_rest,
     MESH_OT_cone_snap_angles,
@@ -49,11 +59,12 @@ CLASSES = (
     MESH_OT_cone_preview,
     menus.VIEW3D_MT_cone_angles,
     menus.VIEW3D_MT_cone_seeing,
+    menus.VIEW3D_MT_cone_texels,
     menus.VIEW3D_MT_cone_unwrap,
     *PANELS,
     VIEW3D_PT_cone_angles,
 )
-MODULES = (changes, reports, distortion, texture, handlers, command)
+MODULES = (changes, reports, distortion, texture, texel_settings, handlers, command)
 
 
 def register() -> None:

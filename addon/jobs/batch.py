@@ -54,7 +54,7 @@ def _unwrap(task: Task, settings: Settings) -> Record:
     with open(task.input, "rb"):
         pass  # Blender does not tell a missing file from other failures
     args = argparse.Namespace(**settings.options_for(task))
-    _require_no_files(args)
+    _require_fitting(args)
     open_file(task.input)
     gathered: list[tuple[bpy.types.Object, UnwrapTask]] = []
     failures: dict[str, Exception] = {}
@@ -91,14 +91,19 @@ def _unwrap(task: Task, settings: Settings) -> Record:
     return record
 
 
-def _require_no_files(args: argparse.Namespace) -> None:
-    """Raise UsageError where options name files with vertices or edges, which can only belong to a single mesh."""
+def _require_fitting(args: argparse.Namespace) -> None:
+    """Raise UsageError where options name files with vertices or edges, which can only belong to a single mesh, and
+    where they are for mesh files."""
     named = {"cones": native.part("run.unwrap_options").cones_file(args), "seam-edges": args.seam_edges}
     for name, value in (named | {"importance": args.importance}).items():
         if value is not None:
             raise native.part("io.side_files").UsageError(
                 f"--{name} with a file is for lsgp batch; here cones, seams and importance are those of the meshes"
             )
+    if args.texel_density is not None:
+        raise native.part("io.side_files").UsageError(
+            "--texel-density is for lsgp batch; in Blender set it in the files, by Set Texel Density"
+        )
 
 
 def _unwrap_task(obj: bpy.types.Object, args: argparse.Namespace) -> UnwrapTask:

@@ -15,6 +15,7 @@ from ..core.islands import Islands
 from ..mesh import reports
 from ..mesh.uv_write import write_uv
 from . import cells, packing
+from .texels import map_density
 from .unwrapping import Unwrapped
 
 TEXTURE_SIZE = 1024
@@ -89,7 +90,8 @@ def _area(corners: NDArray[np.float64]) -> float:
 
 def write_map(obj: bpy.types.Object, unwrapped: Unwrapped, corner_uv: NDArray[np.float64]) -> None:
     """Write the coordinates, (m, 3, 2), and store the report on them."""
-    report = reports.joined(reports.find(obj.data), report_on(unwrapped), unwrapped.region)
+    found = replace(report_on(unwrapped), texel_density=map_density(unwrapped.region, corner_uv))
+    report = reports.joined(reports.find(obj.data), found, unwrapped.region)
     write_uv(obj, unwrapped.region, unwrapped.result.solved, corner_uv)
     reports.store(obj.data, report)
 

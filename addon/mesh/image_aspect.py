@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The aspect ratio of a mesh's image texture, determined as in Blender's own unwrap."""
+"""A mesh's image texture and its aspect ratio, determined as in Blender's own unwrap."""
 
 from __future__ import annotations
 
@@ -11,18 +11,26 @@ from .texture import material_of
 
 def image_aspect(obj: bpy.types.Object) -> float:
     """Width over height of the image in the material of the active face; 1 where there is none."""
+    image = active_image(obj)
+    if image is None:
+        return 1.0
+    width, height = (size * aspect for size, aspect in zip(image.size, image.display_aspect, strict=True))
+    return width / height
+
+
+def active_image(obj: bpy.types.Object) -> bpy.types.Image | None:
+    """The image in the material of the active face; None where there is none, or it has no pixels."""
     faces = obj.data.polygons
     # As in Blender, the first face stands in where none is active.
+    if not faces:
+        return None
     face = faces[faces.active if 0 <= faces.active < len(faces) else 0]
     slots = len(obj.material_slots)
     material = material_of(obj, min(face.material_index, slots - 1)) if slots else None
     if material is None or not has_nodes(material):
-        return 1.0
+        return None
     image = getattr(_active_texture(material.node_tree), "image", None)
-    if image is None or not all(image.size):
-        return 1.0
-    width, height = (size * aspect for size, aspect in zip(image.size, image.display_aspect, strict=True))
-    return width / height
+    return None if image is None or not all(image.size) else image
 
 
 def _active_texture(tree: bpy.types.NodeTree) -> bpy.types.Node | None:

@@ -27,6 +27,9 @@ class Report:
     paths: the cuts and the borders inside, each as the vertices from node to node. cones, cone_angles: as imposed, in
     radians. flipped, overlapping: faces. faces: how many were unwrapped. islands, distortion, seams, overlap_area,
     certificate: as in the library's result of the last unwrap; certificate is None for layouts that are not seamless.
+    texel_density: of the last unwrap in its final place the least, the median and the largest length in the map of a
+    unit in the world; None before it has that place. overlaps_known: False once islands were scaled, which may have put
+    them onto each other.
     """
 
     paths: list[list[int]]
@@ -40,6 +43,8 @@ class Report:
     seams: dict[str, float]
     overlap_area: float
     certificate: dict[str, Any] | None
+    texel_density: list[float] | None = None
+    overlaps_known: bool = True
 
 
 # Reports since Blender was started, by digest; undo in edit mode restores UVs, but no properties of the mesh.

@@ -13,6 +13,8 @@ from ..core.findings import Severity, in_groups
 
 T = TypeVar("T")
 
+NO_CUTS = "No visible edge is cut in the UV map; unwrap the mesh first"
+
 
 def for_each(
     objects: Iterable[bpy.types.Object], work: Callable[[bpy.types.Object], T]

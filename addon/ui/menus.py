@@ -35,6 +35,18 @@ class VIEW3D_MT_cone_seeing(bpy.types.Menu):
         layout.operator(identifiers.TEXTURE_SHOW, text="Remove Texture").clear = True
 
 
+class VIEW3D_MT_cone_texels(bpy.types.Menu):
+    bl_idname = "VIEW3D_MT_cone_texels"
+    bl_label = "Texel Density"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.operator_context = "INVOKE_DEFAULT"
+        layout.operator(identifiers.TEXEL_GET)
+        layout.operator(identifiers.TEXEL_SET)
+        layout.operator(identifiers.TEXEL_SELECT)
+
+
 class VIEW3D_MT_cone_unwrap(bpy.types.Menu):
     bl_idname = "VIEW3D_MT_cone_unwrap"
     bl_label = "Cone Unwrap"
@@ -53,8 +65,12 @@ class VIEW3D_MT_cone_unwrap(bpy.types.Menu):
         layout.operator(identifiers.PLACE)
         layout.menu(VIEW3D_MT_cone_angles.bl_idname)
         layout.separator()
+        layout.operator(identifiers.SELECT_CUTS)
+        layout.operator(identifiers.SEAMS_FROM_CUTS)
+        layout.separator()
         layout.operator(identifiers.SELECT_REPORTED)
         layout.menu(VIEW3D_MT_cone_seeing.bl_idname)
+        layout.menu(VIEW3D_MT_cone_texels.bl_idname)
         layout.operator(identifiers.CLEAR_DATA)
 
 

@@ -8,6 +8,8 @@ import bpy
 from ..core import findings, identifiers, native
 from ..core.text import counted
 from ..mesh import distortion, reports, texture
+from ..mesh.image_aspect import active_image
+from ..mesh.texel_settings import density_unit, texel_settings, texture_size
 from ..overlay.heat import SCALES
 from ..overlay.settings import settings
 from . import tables
@@ -108,7 +110,10 @@ class VIEW3D_PT_cone_unwrap_quality(ConeUnwrapSubPanel, bpy.types.Panel):
             return
         islands, cones = counted(report.islands, "island"), counted(len(report.cones), "cone")
         draw_wrapped(self.layout, context, f"{counted(report.faces, 'face')}, {islands}, {cones}")
-        draw_table(self.layout, tables.QUALITY_HEADER, tables.quality_rows(report))
+        kept = texel_settings(context.scene)
+        size = texture_size(context.object, use_image=kept.use_image, typed=kept.texture_size)
+        rows = [*tables.quality_rows(report), *tables.texel_rows(report, context.scene, size)]
+        draw_table(self.layout, tables.QUALITY_HEADER, rows)
 
 
 class VIEW3D_PT_cone_unwrap_seams(ConeUnwrapSubPanel, bpy.types.Panel):
@@ -174,6 +179,27 @@ class VIEW3D_PT_cone_unwrap_distortion(ConeUnwrapSubPanel, bpy.types.Panel):
             draw_wrapped(layout, context, f"{scale.label}: {', '.join(scale.ends)}")
 
 
+class VIEW3D_PT_cone_unwrap_texels(ConeUnwrapSubPanel, bpy.types.Panel):
+    bl_label = "Texel Density"
+    bl_order = 65
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout, kept = self.layout, texel_settings(context.scene)
+        layout.operator_context = "INVOKE_DEFAULT"
+        layout.prop(kept, "use_image")
+        image = active_image(context.object) if kept.use_image else None
+        if image is not None:
+            layout.label(text=f"{image.name}: {image.size[0]} x {image.size[1]} px", icon="IMAGE_DATA")
+        # Further selected objects may have no image.
+        layout.prop(kept, "texture_size", text="Texture Size" if image is None else "Without Image")
+        layout.prop(kept, "density", text=f"Density ({density_unit(context.scene)})")
+        row = layout.row(align=True)
+        row.operator(identifiers.TEXEL_GET, text="Get")
+        row.operator(identifiers.TEXEL_SET, text="Set")
+        row.operator(identifiers.TEXEL_SELECT, text="Select")
+
+
 class VIEW3D_PT_cone_unwrap_texture(ConeUnwrapSubPanel, bpy.types.Panel):
     bl_label = "Texture"
     bl_order = 70
@@ -197,5 +223,6 @@ PANELS = (
     VIEW3D_PT_cone_unwrap_seams,
     VIEW3D_PT_cone_unwrap_overlay,
     VIEW3D_PT_cone_unwrap_distortion,
+    VIEW3D_PT_cone_unwrap_texels,
     VIEW3D_PT_cone_unwrap_texture,
 )

@@ -6,6 +6,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import bpy
+
+from ..core.length_units import length_unit
 from ..mesh.reports import Report
 
 Row = tuple[str, ...]
@@ -34,8 +37,18 @@ def quality_rows(report: Report) -> list[Row]:
         ("Turns of Cuts", _small(math.degrees(seams["rotation_residual"]), "°"), EXACT),
         ("Shifts of Cuts", _small(seams["translation_residual"]), EXACT),
         ("Flipped Faces", str(len(report.flipped)), "0"),
-        ("Overlapping Faces", str(len(report.overlapping)), "0"),
+        ("Overlapping Faces", str(len(report.overlapping)) if report.overlaps_known else "?", "0"),
     ]
+
+
+def texel_rows(report: Report, scene: bpy.types.Scene, size: tuple[int, int]) -> list[Row]:
+    """The texel density of a map, (label, value, ""), in the scene's unit.  size: of the texture, in pixels."""
+    if report.texel_density is None:
+        return []
+    unit = length_unit(scene)
+    pixels = math.sqrt(size[0] * size[1]) * unit.size
+    labels = (f"px/{unit.name}, {name}" for name in ("Least", "Median", "Most"))
+    return [(label, f"{value * pixels:.4g}", "") for label, value in zip(labels, report.texel_density, strict=True)]
 
 
 def seam_summary(certificate: dict[str, Any]) -> str:

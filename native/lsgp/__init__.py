@@ -48,6 +48,7 @@ from .indexed_uv import index_uv
 from .io.mesh_files import MeshFile, read_mesh_file, write_mesh_file
 from .islands import correct_aspect, fit_placement
 from .ledger import LedgerPart, build_ledger, hold_complete, part_surface
+from .texels import TexelDensity, TexelLayout, at_texel_density, texel_density, triangle_texel_density
 from .triangles import TriangleDistortion, singular_values, triangle_distortion
 
 __version__ = version("lsgp")
@@ -77,8 +78,11 @@ __all__ = [
     "Solver",
     "SolverError",
     "Surface",
+    "TexelDensity",
+    "TexelLayout",
     "TopologyError",
     "TriangleDistortion",
+    "at_texel_density",
     "auto_unwrap",
     "build_ledger",
     "certificate",
@@ -100,6 +104,8 @@ __all__ = [
     "read_mesh_file",
     "singular_values",
     "split_into_paths",
+    "texel_density",
     "triangle_distortion",
+    "triangle_texel_density",
     "write_mesh_file",
 ]

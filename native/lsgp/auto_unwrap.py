@@ -24,8 +24,9 @@ from .api import (
     place_cones,
 )
 from .arguments import IndexArray
-from .errors import Cancelled, Finding, LsgpError
+from .errors import Cancelled, Finding, InputError, LsgpError
 from .ledger import LedgerPart, build_ledger, surface_of_triangles
+from .texels import TexelLayout, at_texel_density
 
 Preset = Literal["paint", "tile", "bake"]
 
@@ -69,6 +70,7 @@ def auto_unwrap(
     creases: bool = True,
     sharp: ArrayLike | None = None,
     pins: Pins | None = None,
+    texels: TexelLayout | None = None,
     progress: Progress | None = None,
 ) -> Result:
     """Unwrap a surface ready for use: cones are placed where they are missing, and what a preset asks for is done.
@@ -78,6 +80,7 @@ def auto_unwrap(
     options: in place of `preset_options(preset)`. count: cones on each component that gets some, as of `place_cones`;
         None: as few as bring the L2 stretch to 1.05.
     creases: whether hard surfaces may end at their creases, as in `with_crease_borders`, to which `sharp` belongs.
+    texels: the layout at a texel density, as by `at_texel_density`; None: it fills the unit square. Not with pins.
     pins, progress, errors and the result as of `parameterize`; `Result.cones` has the placed ones too, warnings those
         of placing them.
     """
@@ -88,9 +91,14 @@ def auto_unwrap(
     arguments.require_callable(progress)
     if arguments.flag("creases", creases):
         surface = with_crease_borders(surface, cones, preset, chosen, sharp)
+    if texels is not None:
+        arguments.require_type("texels", texels, TexelLayout)
+        if pins is not None:
+            raise InputError("WRONG_PARAMETER", "pins and texels both say how large islands are; pass one of them.")
     completed = complete_cones(surface, cones, angles, chosen, count, part_of(progress, 0.0, PLACING))
     rest = part_of(progress, PLACING, 1.0)
-    return completed.told(parameterize(surface, completed.cones, completed.angles, chosen, pins, rest), chosen)
+    result = completed.told(parameterize(surface, completed.cones, completed.angles, chosen, pins, rest), chosen)
+    return result if texels is None else at_texel_density(surface, result, texels)
 
 
 def with_crease_borders(

@@ -119,6 +119,8 @@ def shift_islands(
             f"There are {len(triangles)} triangles, {len(island)} islands of triangles and {len(shifts)} shifts; pass "
             "an island for each triangle and a shift for each island.",
         )
+    if not np.isfinite(shifts).all():
+        raise InputError("WRONG_PARAMETER", "shifts are not all finite; pass whole cells for each island.")
     arguments.require_indices("triangles", triangles, np.iinfo(np.int32).max)
     arguments.require_indices("cut_edges", cut_edges, int(triangles.max(initial=-1)) + 1)
     lost = np.flatnonzero((island >= 0) & ~np.isfinite(corner_uv).all(axis=(1, 2)))

@@ -71,6 +71,11 @@ def triangle_distortion(surface: Surface, corner_uv: ArrayLike) -> TriangleDisto
         )
 
 
+def triangle_areas(surface: Surface) -> FloatArray:
+    """(m,) area of each triangle on the surface."""
+    return _doubled_areas(surface) / 2
+
+
 def _doubled_areas(surface: Surface) -> NDArray[np.float64]:
     place = surface.positions[surface.triangles]
     return np.linalg.norm(np.cross(place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]), axis=1)

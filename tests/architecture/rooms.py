@@ -161,6 +161,7 @@ API = (
     "islands",
     "lattice",
     "ledger",
+    "texels",
     "triangles",
 )
 # Folders of native/src, each of which may use those before it, but for those it has to do without.

@@ -158,6 +158,16 @@ def test_options_that_name_files_of_one_mesh_are_refused(library, tmp_path):
     assert "cones, seams and importance are those of the meshes" in line["message"]
 
 
+def test_a_texel_density_is_for_mesh_files(library, tmp_path):
+    (library / "list.txt").write_text("two.blend\n")
+    out = tmp_path / "out"
+    assert run(library / "list.txt", "--out", out, "--texel-density", 100, "--texture-size", 1024) == 3
+    (line,) = lines_of(out)
+    assert (line["status"], line["code"]) == ("refused", "WRONG_USAGE")
+    assert "by Set Texel Density" in line["message"]
+    assert not list(out.rglob("*.blend"))
+
+
 def test_wrong_usage(tmp_path):
     assert run(tmp_path / "nowhere", "--out", tmp_path / "out") == 2
     assert run("--no-such-option") == 2

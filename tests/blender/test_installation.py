@@ -17,6 +17,8 @@ OPERATORS = {
     "mesh.cone_select",
     "mesh.cone_place",
     "mesh.cone_select_reported",
+    "mesh.cone_select_cuts",
+    "mesh.cone_seams_from_cuts",
     "mesh.cone_set_angle",
     "mesh.cone_spread_rest",
     "mesh.cone_snap_angles",
@@ -25,6 +27,9 @@ OPERATORS = {
     "uv.cone_measure",
     "uv.cone_texture",
     "mesh.cone_clear_data",
+    "uv.cone_texel_get",
+    "uv.cone_texel_set",
+    "mesh.cone_texel_select",
 }
 SUBMENU = ("VIEW3D_MT_cone_unwrap", None)
 
@@ -101,8 +106,11 @@ def test_everything_is_in_the_submenu_and_auto_unwrap_comes_first():
         ("mesh.cone_edit", None),
         ("mesh.cone_place", None),
         ("VIEW3D_MT_cone_angles", None),
+        ("mesh.cone_select_cuts", None),
+        ("mesh.cone_seams_from_cuts", None),
         ("mesh.cone_select_reported", None),
         ("VIEW3D_MT_cone_seeing", None),
+        ("VIEW3D_MT_cone_texels", None),
         ("mesh.cone_clear_data", None),
     ]
 

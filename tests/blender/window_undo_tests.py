@@ -148,3 +148,13 @@ def test_marks_are_undone_and_redone_exactly():
     bpy.ops.ed.undo_push(message="before")
     for options in ({}, {"clear": True}):
         yield from run_undo_redo([name], partial(bpy.ops.mesh.cone_mark, "EXEC_DEFAULT", True, **options))
+
+
+def test_seams_from_cuts_and_their_selection_are_undone_and_redone_exactly():
+    name = add_ball().name
+    bpy.ops.uv.cone_unwrap("EXEC_DEFAULT", True)
+    edit(bpy.data.objects[name])
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.ops.ed.undo_push(message="before")
+    for operator in (bpy.ops.mesh.cone_select_cuts, bpy.ops.mesh.cone_seams_from_cuts):
+        assert (yield from run_undo_redo([name], partial(operator, "EXEC_DEFAULT", True)))

@@ -21,10 +21,12 @@ BALL = meshes.bumpy_sphere(1)
 EDGES = meshes.edges_of(BALL.triangles)
 WHOLE = surface(BALL, seams=BALL.triangles[:3, :2], edges=EDGES, cut_costs=np.linspace(0.5, 2, len(EDGES)))
 RESULT = lsgp.parameterize(WHOLE, BALL.cones, None, lsgp.Options(seamless=lsgp.Seamless()))
+FREE_RESULT = lsgp.parameterize(WHOLE, BALL.cones)
 ANGLES = list(RESULT.cone_angles)
 PARTS = lsgp.build_ledger(WHOLE, BALL.cones)
 MAP = {"corner_uv": RESULT.corner_uv, "old_uv": RESULT.corner_uv, "island": RESULT.island}
 CALL = {"surface": WHOLE, "cones": BALL.cones, "angles": ANGLES, "options": lsgp.Options(), "progress": None}
+TEXELS = {"surface": WHOLE, "corner_uv": RESULT.corner_uv, "texture_size": (1024, 512)}
 CELLS = {"symmetry": 4, "cell": 1.0}
 
 # By name the function and arguments it accepts; all parameters are among them.
@@ -54,7 +56,8 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         lsgp.auto_unwrap,
         {
             **{"surface": WHOLE, "cones": BALL.cones, "angles": None, "preset": "paint", "options": None},
-            **{"count": 4, "creases": True, "sharp": EDGES[:3], "pins": None, "progress": None},
+            **{"count": 4, "creases": True, "sharp": EDGES[:3], "pins": None},
+            **{"texels": lsgp.TexelLayout(100.0, 1024), "progress": None},
         },
     ),
     "preset_options": (lsgp.preset_options, {"preset": "bake"}),
@@ -92,6 +95,12 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     ),
     "singular_values": (lsgp.singular_values, {"surface": WHOLE, "corner_uv": RESULT.corner_uv}),
     "triangle_distortion": (lsgp.triangle_distortion, {"surface": WHOLE, "corner_uv": RESULT.corner_uv}),
+    "texel_density": (lsgp.texel_density, TEXELS),
+    "triangle_texel_density": (lsgp.triangle_texel_density, TEXELS),
+    "at_texel_density": (
+        lsgp.at_texel_density,
+        {"surface": WHOLE, "result": FREE_RESULT, "layout": lsgp.TexelLayout(100.0, 1024, 4)},
+    ),
     "build_ledger": (
         lsgp.build_ledger,
         {name: CALL[name] for name in CALL if name != "progress"} | {"gets_cones": False},
@@ -234,6 +243,7 @@ def test_absurd_values_are_refused_by_name(name: str, parameter: str) -> None:
 @example(("lattice.shift_islands", "triangles"), 0, 7)
 @example(("lattice.shift_islands", "cut_edges"), 0, 7)
 @example(("lattice.shift_islands", "corner_uv"), 0, 6)
+@example(("lattice.shift_islands", "shifts"), 0, 6)
 @example(("fit_placement", "island"), 0, 7)
 @example(("singular_values", "surface"), 0, 0)
 @example(("place_cones", "mirror"), 10**400, 2)

@@ -54,7 +54,9 @@ def _unwrap(task: Task, settings: Settings, run: Run) -> Record:
     output.parent.mkdir(parents=True, exist_ok=True)
     args = argparse.Namespace(input=Path(task.input), output=output, **settings.options_for(task))
     result = unwrap_file(args, run)
-    report = reports.unwrap_report(result, run.placement, run.triangulation, run.stage_seconds, texture_size(args))
+    report = reports.unwrap_report(
+        result, run.placement, run.triangulation, run.stage_seconds, texture_size(args), run.texels
+    )
     if settings.reports:
         write_whole(output.with_name(f"{output.name}.report.json"), reports.to_json(report))
     record = record_of(report) | {"output": task.output}

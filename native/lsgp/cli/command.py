@@ -29,7 +29,8 @@ from ..run.exit_codes import OF_A_RUN, OK, REFUSED, USAGE, ended, flushed, liste
 from ..run.place_file import add_placement_options, place_file, summary
 from ..run.terminal import ProgressLine
 from ..run.unwrap_file import Run, out_of_memory, read_file, unwrap_file
-from ..run.unwrap_options import add_unwrap_options, texture_size
+from ..run.unwrap_options import add_unwrap_options, texture_size, texture_size_option
+from ..texels import texel_density
 from .output_paths import require_usable_paths
 
 INPUT = "OBJ, OFF, PLY, glTF, GLB or STL, or - for standard input; polygons of any size"
@@ -126,6 +127,12 @@ def _parser() -> argparse.ArgumentParser:
         description="Print the quality of the texture coordinates of an OBJ, glTF or GLB file.",
     )
     measure.add_argument("input", metavar="FILE", type=Path, help="OBJ, glTF or GLB, or - for standard input")
+    measure.add_argument(
+        "--texture-size",
+        metavar="T",
+        type=texture_size_option,
+        help="texels of the texture's side, a power of two, to measure the texel density as well",
+    )
     measure.set_defaults(run=_reported, make=_measure, output=None)
     for command in (unwrap, cones, measure):
         command.add_argument(
@@ -173,11 +180,13 @@ def _unwrap(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
     lines = [
         f"{args.output}: {int(result.solved.sum())} of {len(result.solved)} triangles unwrapped, "
         f"{len(result.cones)} cones, {islands} {'island' if islands == 1 else 'islands'}",
-        reports.quality_table(result),
+        reports.quality_table(result, run.texels),
     ]
     if result.seamless is not None:
         lines.append(certificate_table(result.seamless, texture_size(args)))
-    report = reports.unwrap_report(result, run.placement, run.triangulation, run.stage_seconds, texture_size(args))
+    report = reports.unwrap_report(
+        result, run.placement, run.triangulation, run.stage_seconds, texture_size(args), run.texels
+    )
     return report, "\n".join(lines)
 
 
@@ -203,10 +212,13 @@ def _measure(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
         warnings.append(Finding("FACES_WITHOUT_UV", message, faces))
     with run.stage("measure_distortion"):
         measurement = measure_distortion(file.surface(), corner_uv)
+    texels = None if args.texture_size is None else texel_density(file.surface(), corner_uv, args.texture_size)
     _warn(warnings, triangulation)
     total = len(triangulation.triangles)
-    text = f"{args.input}: {total - len(without)} of {total} triangles measured\n{reports.quality_table(measurement)}"
-    return reports.measure_report(measurement, warnings, triangulation, run.stage_seconds), text
+    text = f"{args.input}: {total - len(without)} of {total} triangles measured\n"
+    text += reports.quality_table(measurement, texels)
+    stages = run.stage_seconds
+    return reports.measure_report(measurement, warnings, triangulation, stages, args.texture_size, texels), text
 
 
 def _warn(findings: Sequence[Finding], triangulation: Triangulation) -> None:

@@ -16,6 +16,7 @@ from ..api import Measurement, Placement, Result
 from ..certificate import certificate
 from ..errors import Elements, Finding, LsgpError
 from ..io.polygons import Triangulation
+from ..texels import TexelDensity
 
 Report = dict[str, Any]
 
@@ -39,6 +40,7 @@ EMPTY: Report = {
     "repair": None,
     "overlapping": None,
     "overlap_area": None,
+    "texel_density": None,
     "stage_seconds": {},
 }
 
@@ -83,12 +85,13 @@ def unwrap_report(
     triangulation: Triangulation,
     stage_seconds: Mapping[str, float],
     texture_size: int,
+    texels: TexelDensity | None = None,
 ) -> Report:
     """The report of a map. "flipped", "wrong_angle_sums" and "overlapping" are counts; the warnings name the faces and
     vertices. "cones" and "cone_angles" are those that were imposed, so that a report serves as a cones file too.
 
     placement: of its cones, None where they were given. texture_size: side of the texture in whose texels the errors of
-    a seamless layout are given."""
+    a seamless layout are given, and the texel density. texels: that density, None where it was not asked for."""
     return EMPTY | {
         "warnings": _warnings(result.warnings, triangulation),
         "triangles": len(triangulation.triangles),
@@ -104,6 +107,7 @@ def unwrap_report(
         "repair": asdict(result.repair),
         "overlapping": len(result.overlapping),
         "overlap_area": result.overlap_area,
+        "texel_density": _texel_figures(texels, texture_size),
         "stage_seconds": dict(stage_seconds),
     }
 
@@ -125,6 +129,8 @@ def measure_report(
     warnings: Iterable[Finding],
     triangulation: Triangulation,
     stage_seconds: Mapping[str, float],
+    texture_size: int | None = None,
+    texels: TexelDensity | None = None,
 ) -> Report:
     """The report on given texture coordinates, which tell nothing of cones or the angles they should have."""
     return EMPTY | {
@@ -134,6 +140,7 @@ def measure_report(
         "seams": asdict(measurement.seams),
         "islands": island_count(measurement.island),
         "flipped": len(measurement.flipped),
+        "texel_density": _texel_figures(texels, texture_size),
         "stage_seconds": dict(stage_seconds),
     }
 
@@ -157,8 +164,10 @@ def island_count(island: NDArray[np.int32]) -> int:
     return len(np.unique(island[island >= 0]))
 
 
-def quality_table(measured: Result | Measurement) -> str:
-    """The quality of a map as lines of text, the ideal value beside each figure that has one."""
+def quality_table(measured: Result | Measurement, texels: TexelDensity | None = None) -> str:
+    """The quality of a map as lines of text, the ideal value beside each figure that has one.
+
+    texels: its texel density, None where it is not known."""
     d, s = measured.distortion, measured.seams
     rows = [
         ("quasi-conformal", f"{d.quasi_conformal:.4f}", "1", f"area-weighted {d.quasi_conformal_area_weighted:.4f}"),
@@ -180,9 +189,16 @@ def quality_table(measured: Result | Measurement) -> str:
             ("overlapping triangles", f"{len(measured.overlapping)}", "0", f"{overlap:.3g} % of the layout"),
         ]
     rows += [("flipped triangles", f"{len(measured.flipped)}", "0", flips), *further]
+    if texels is not None:
+        spread = f"texels per unit, from {texels.minimum:.4g} to {texels.maximum:.4g}"
+        rows.append(("texel density", f"{texels.median:.4g}", "", spread))
     lines = [f"{'':<22}{'value':>10}{'ideal':>7}"]
     lines += [f"{label:<22}{value:>10}{ideal:>7}  {note}".rstrip() for label, value, ideal, note in rows]
     return "\n".join(lines)
+
+
+def _texel_figures(texels: TexelDensity | None, texture_size: int | None) -> Report | None:
+    return None if texels is None else {"texture_size": texture_size} | asdict(texels)
 
 
 def _warnings(findings: Iterable[Finding], triangulation: Triangulation) -> list[Report]:

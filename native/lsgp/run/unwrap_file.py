@@ -19,7 +19,8 @@ from ..io.polygons import Triangulation
 from ..io.safe_files import is_standard_stream, read_input, require_separate
 from ..io.side_files import cones_in, load_importance, load_json, seam_edges_in
 from ..io.whole_files import write_output
-from .unwrap_options import cone_count, cones_file, cut_costs_of, library_options
+from ..texels import TexelDensity, at_texel_density, texel_density
+from .unwrap_options import cone_count, cones_file, cut_costs_of, library_options, texel_layout
 
 # Warnings of results that are not what was asked for, which --strict refuses.
 FLAWS = frozenset(
@@ -41,6 +42,7 @@ class Run:
     triangulation: Triangulation | None = None
     surface: Surface | None = None
     placement: Placement | None = None
+    texels: TexelDensity | None = None
     stage_seconds: dict[str, float] = field(default_factory=dict)
 
     @contextmanager
@@ -65,6 +67,10 @@ def unwrap_file(
     form = output_format(target, given_format)
     require_separate(args.input, args.output, in_place=args.in_place)
     file, result = _map(args, options, run, progress, given_format)
+    layout = texel_layout(args)
+    if layout is not None:
+        result = at_texel_density(run.surface, result, layout)
+        run.texels = texel_density(run.surface, result.corner_uv, layout.texture_size)
     if args.strict:
         require_flawless(result.warnings)
     with run.stage("write_file"):

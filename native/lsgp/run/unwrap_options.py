@@ -7,6 +7,7 @@ Their values are plain text, numbers and truth values, so that they can be hande
 from __future__ import annotations
 
 import argparse
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import get_args
@@ -15,6 +16,7 @@ from ..api import Options, Progress, Seamless, Surface, cut_costs
 from ..arguments import FloatArray
 from ..auto_unwrap import Preset, preset_options
 from ..io.side_files import UsageError
+from ..texels import DEFAULT_MARGIN, MOST_TILES, TexelLayout
 
 DEFAULT_TEXTURE_SIZE = 1024
 LARGEST_TEXTURE_SIZE = 65536
@@ -94,6 +96,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
     add_strict_option(unwrap, "layout")
     _add_low_stretch_options(unwrap)
     _add_seamless_options(unwrap)
+    _add_texel_options(unwrap)
 
 
 def _add_crease_option(unwrap: argparse.ArgumentParser) -> None:
@@ -195,9 +198,9 @@ def _add_seamless_options(unwrap: argparse.ArgumentParser) -> None:
     seamless.add_argument(
         "--texture-size",
         metavar="T",
-        type=_texture_size_option,
+        type=texture_size_option,
         help=f"texels of the texture's side, a power of two; errors are given in them "
-        f"(default: {DEFAULT_TEXTURE_SIZE})",
+        f"(default: {DEFAULT_TEXTURE_SIZE}); also of --texel-density",
     )
     seamless.add_argument(
         "--mip-levels",
@@ -208,11 +211,64 @@ def _add_seamless_options(unwrap: argparse.ArgumentParser) -> None:
     )
 
 
-def _texture_size_option(text: str) -> int:
+def _add_texel_options(unwrap: argparse.ArgumentParser) -> None:
+    texels = unwrap.add_argument_group("texel density")
+    texels.add_argument(
+        "--texel-density",
+        metavar="D",
+        type=_density_option,
+        help="texels per unit of length on the surface, with --texture-size: the layout gets this scale instead of "
+        "filling the unit square",
+    )
+    texels.add_argument(
+        "--udim",
+        metavar="N",
+        type=_tiles_option,
+        help="spread the islands over the UDIM tiles 1001, 1002, ..., each inside one tile of the texture's size "
+        "(default: they stay beside each other, and those outside the unit square are reported)",
+    )
+    texels.add_argument(
+        "--margin",
+        metavar="M",
+        type=_margin_option,
+        help=f"with --udim: texels around each island (default: {DEFAULT_MARGIN:.0f})",
+    )
+
+
+def texture_size_option(text: str) -> int:
     size = int(text) if text.isascii() and text.isdigit() and len(text) < 10 else 0
     if not (1 <= size <= LARGEST_TEXTURE_SIZE and size.bit_count() == 1):
         raise argparse.ArgumentTypeError(f"'{text}': T is a power of two, at most {LARGEST_TEXTURE_SIZE}")
     return size
+
+
+def _density_option(text: str) -> float:
+    density = _number(text)
+    if not 0 < density < math.inf:
+        raise argparse.ArgumentTypeError(f"'{text}': D is a number of texels above 0")
+    return density
+
+
+def _margin_option(text: str) -> float:
+    margin = _number(text)
+    if not 0 <= margin < math.inf:
+        raise argparse.ArgumentTypeError(f"'{text}': M is a number of texels, 0 or more")
+    return margin
+
+
+def _tiles_option(text: str) -> int:
+    tiles = int(text) if text.isascii() and text.isdigit() and len(text) < 10 else 0
+    if not 1 <= tiles <= MOST_TILES:
+        raise argparse.ArgumentTypeError(f"'{text}': N is a number of tiles from 1 to {MOST_TILES}")
+    return tiles
+
+
+def _number(text: str) -> float:
+    """NaN where the text is none."""
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
 
 
 def _cones_option(text: str) -> str:
@@ -238,6 +294,28 @@ def texture_size(args: argparse.Namespace) -> int:
     return DEFAULT_TEXTURE_SIZE if args.texture_size is None else args.texture_size
 
 
+def texel_layout(args: argparse.Namespace) -> TexelLayout | None:
+    """The layout at a texel density; None where none is asked for.  Raises UsageError where options do not fit."""
+    if args.texel_density is None:
+        for name in ("udim", "margin"):
+            if getattr(args, name) is not None:
+                raise UsageError(f"--{name} is for layouts at a texel density; add --texel-density")
+        return None
+    if args.seamless or args.preset == "tile":
+        raise UsageError(
+            "--texel-density is for layouts that are not seamless; choose the size of their tiles by --tiles or "
+            "--tile-size"
+        )
+    if args.texture_size is None:
+        raise UsageError("--texel-density needs the size of the texture; add --texture-size")
+    if args.margin is not None and args.udim is None:
+        raise UsageError("--margin is for islands in UDIM tiles; add --udim")
+    margin = DEFAULT_MARGIN if args.margin is None else args.margin
+    if args.udim is not None and 2 * margin >= args.texture_size:
+        raise UsageError(f"--margin {margin:g}: a tile of {args.texture_size} texels has no room between its margins")
+    return TexelLayout(args.texel_density, args.texture_size, args.udim, margin)
+
+
 def library_options(args: argparse.Namespace) -> Options:
     """The options as the library takes them.  Raises UsageError where they do not go together; InputError."""
     if args.prescription == "manual" and cones_file(args) is None:
@@ -245,6 +323,7 @@ def library_options(args: argparse.Namespace) -> Options:
     require_cut_options(args)
     if args.preset is None and not args.creases:
         raise UsageError("--no-creases is for presets; add --preset paint or bake")
+    texel_layout(args)
     base = Options() if args.preset is None else preset_options(args.preset)
     mode = base.mode if args.mode is None else args.mode
     if mode != "low-stretch":
@@ -271,7 +350,7 @@ def _seamless(args: argparse.Namespace, preset: Seamless | None) -> Seamless | N
     base = Seamless() if args.seamless else preset
     if base is None:
         for name in ("tiles", "tile_size", "lattice", "parity", "coarse_grid", "texture_size", "mip_levels"):
-            if getattr(args, name) is not None:
+            if getattr(args, name) is not None and not (name == "texture_size" and args.texel_density is not None):
                 raise UsageError(f"--{name.replace('_', '-')} is for seamless layouts; add --seamless")
         return None
     wanted = {name: getattr(args, name) for name in ("lattice", "tiles", "tile_size", "parity", "coarse_grid")}

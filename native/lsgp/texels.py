@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Texel density: how many texels of a texture a unit of length on the surface gets; and layouts of a given density."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import arguments
+from .api import Result, Surface
+from .arguments import FloatArray, IndexArray
+from .errors import Elements, Finding, InputError
+from .lattice import island_boxes
+from .triangles import singular_values, triangle_areas
+
+MOST_TILES = 100
+"""A UDIM number counts tiles in rows of ten; more rows than ten are not in use."""
+TILES_IN_ROW = 10
+DEFAULT_MARGIN = 4.0
+"""Texels around each island."""
+
+# Rounding of sums of sizes, in tiles.
+_ROUNDING = 1e-12
+
+
+@dataclass(frozen=True, slots=True)
+class TexelDensity:
+    """Texels per unit of length of a map: the square root of texels per area.
+
+    minimum, median, maximum: over the triangles with an area, the median by area on the surface. mean: of the map as a
+    whole, all its texels over the whole area.
+    """
+
+    minimum: float
+    median: float
+    maximum: float
+    mean: float
+
+
+@dataclass(frozen=True, slots=True)
+class TexelLayout:
+    """A layout of a given texel density, in place of one that fills the unit square.
+
+    density: `TexelDensity.mean` of the whole layout, texels per unit of length. texture_size: side of the texture, of
+    each UDIM tile, in texels. udim: over how many UDIM tiles islands are spread, from 1001 on, each inside one tile;
+    None: they stay beside each other as they are. margin: texels around each island, with udim.
+    """
+
+    density: float
+    texture_size: int
+    udim: int | None = None
+    margin: float = DEFAULT_MARGIN
+
+
+def triangle_texel_density(surface: Surface, corner_uv: ArrayLike, texture_size: float | Sequence[float]) -> FloatArray:
+    """(m,) texels per unit of length of each triangle; NaN where it has no area on the surface or no coordinates.
+
+    corner_uv: (m, 3, 2). texture_size: side of the texture in texels, or its width and its height.
+    Raises InputError.
+    """
+    unit, surface = _of_unit_size(surface)
+    largest, smallest = singular_values(surface, corner_uv)
+    with np.errstate(over="ignore"):
+        return np.sqrt(largest) * np.sqrt(smallest) * _side(texture_size) / unit
+
+
+def texel_density(surface: Surface, corner_uv: ArrayLike, texture_size: float | Sequence[float]) -> TexelDensity:
+    """The texel density of a map.  Arguments and errors as of `triangle_texel_density`; NO_UV where nothing is mapped.
+
+    Triangles without area on the surface or without coordinates do not count.
+    """
+    densities = triangle_texel_density(surface, corner_uv, texture_size)
+    counted = ~np.isnan(densities)
+    if not counted.any():
+        raise InputError("NO_UV", "No triangle has an area and texture coordinates. Unwrap the surface first.")
+    areas, densities = triangle_areas(_of_unit_size(surface)[1])[counted], densities[counted]
+    order = np.argsort(densities, kind="stable")
+    below = np.cumsum(areas[order])
+    middle = order[np.searchsorted(below, below[-1] / 2)]
+    largest = densities.max()
+    share = densities / largest if largest > 0 else densities
+    return TexelDensity(
+        minimum=float(densities.min()),
+        median=float(densities[middle]),
+        maximum=float(largest),
+        mean=float(largest * math.sqrt((areas * share**2).sum() / areas.sum())),
+    )
+
+
+def at_texel_density(surface: Surface, result: Result, layout: TexelLayout) -> Result:
+    """The result with its layout at a texel density: one scale for all islands, so that cuts still match.
+
+    Without `layout.udim` the layout keeps its order and its corner at the origin; where it is larger than the square,
+    ISLANDS_OUTSIDE is among the warnings. With it, islands lie in rows in tiles 1001, 1002, ...; nothing is turned.
+    Raises InputError: WRONG_PARAMETER, also of seamless layouts, whose size is that of their tiles; ISLAND_TOO_LARGE
+    where one does not fit a tile; TOO_FEW_TILES.
+    """
+    arguments.require_type("result", result, Result)
+    arguments.require_type("layout", layout, TexelLayout)
+    density = arguments.positive("density", layout.density, "pass texels per unit of length, above 0")
+    size = arguments.whole_number("texture_size", layout.texture_size, 1, "pass how many texels a side has")
+    if result.seamless is not None:
+        raise InputError(
+            "WRONG_PARAMETER",
+            "A seamless layout has the size of its tiles. Choose that by tiles or tile_size, or leave the texel "
+            "density out.",
+        )
+    with np.errstate(over="ignore", invalid="ignore"):
+        uv = result.corner_uv * np.divide(density, texel_density(surface, result.corner_uv, size).mean)
+    if not np.isfinite(uv[result.solved]).all():
+        arguments.refuse("density", layout.density, "pass fewer texels per unit, which is more than numbers can hold")
+    if layout.udim is None:
+        return replace(result, corner_uv=uv, warnings=[*result.warnings, *_outside(uv, result.island)])
+    tiles = arguments.whole_number("udim", layout.udim, 1, f"pass a number of tiles from 1 to {MOST_TILES}")
+    if tiles > MOST_TILES:
+        arguments.refuse("udim", tiles, f"pass a number of tiles from 1 to {MOST_TILES}")
+    margin = arguments.number("margin", layout.margin, "pass texels around each island")
+    if not 0 <= margin < size / 2:
+        arguments.refuse("margin", layout.margin, "pass texels around each island, less than half a tile")
+    boxes = island_boxes(uv, result.island)
+    shifts = _tile_places(boxes, result.island, tiles, margin, size, density)
+    solved = result.island >= 0
+    uv[solved] += shifts[result.island[solved], None]
+    return replace(result, corner_uv=uv)
+
+
+def _of_unit_size(surface: Surface) -> tuple[float, Surface]:
+    """The largest coordinate and the surface in this unit, whose areas can be computed whatever its size is."""
+    arguments.require_type("surface", surface, Surface)
+    unit = float(np.abs(surface.positions).max(initial=0.0))
+    return (unit, replace(surface, positions=surface.positions / unit)) if 0 < unit < math.inf else (1.0, surface)
+
+
+def _side(texture_size: float | Sequence[float]) -> float:
+    """Side of a square with as many texels."""
+    remedy = "pass texels of a side, above 0, or of width and height"
+    if arguments.is_number(texture_size):
+        return arguments.positive("texture_size", texture_size, remedy)
+    try:
+        width, height = texture_size
+    except (TypeError, ValueError):
+        arguments.refuse("texture_size", texture_size, remedy)
+    sides = (arguments.positive("texture_size", side, remedy) for side in (width, height))
+    return math.prod(map(math.sqrt, sides))
+
+
+def _outside(uv: FloatArray, island: IndexArray) -> list[Finding]:
+    boxes = island_boxes(uv, island)
+    outside = (boxes[:, :2] < -_ROUNDING).any(axis=1) | (boxes[:, 2:] > 1 + _ROUNDING).any(axis=1)
+    count = int(outside.sum())
+    if not count:
+        return []
+    message = (
+        f"{_of_islands(count, len(boxes))} outside the unit square: at this texel density the layout reaches "
+        f"up to {np.nanmax(uv):.4g}. Lower it, take a larger texture, or spread the islands over UDIM tiles."
+    )
+    return [Finding("ISLANDS_OUTSIDE", message, _triangles_of(np.flatnonzero(outside), island))]
+
+
+def _tile_places(
+    boxes: FloatArray, island: IndexArray, tiles: int, margin: float, texture_size: int, density: float
+) -> FloatArray:
+    """(islands, 2), moves of islands into rows in UDIM tiles, the highest first.  Raises InputError."""
+    free = margin / texture_size
+    sizes = boxes[:, 2:] - boxes[:, :2] + 2 * free
+    large = np.flatnonzero((sizes > 1 + _ROUNDING).any(axis=1))
+    if len(large):
+        width, height = sizes[large[np.argmax(sizes[large].max(axis=1))]] * texture_size
+        most = density * (texture_size - 2 * margin) / (max(width, height) - 2 * margin)
+        raise InputError(
+            "ISLAND_TOO_LARGE",
+            f"{_of_islands(len(large), len(boxes))} larger than a tile: the largest is {width:.0f} x {height:.0f} "
+            f"texels with its margin, a tile {texture_size} x {texture_size}. Lower the texel density to "
+            f"{_rounded_down(most)}, take a larger texture, or cut it by seams.",
+            _triangles_of(large, island),
+        )
+    places, tile_of = np.empty((len(boxes), 2)), np.empty(len(boxes), np.int64)
+    # Of each row: its tile, its lower end, its height, and where it is free from.
+    rows = np.empty((len(boxes), 4))
+    count = 0
+    tops: list[float] = []
+    for i in np.argsort(-sizes[:, 1], kind="stable").tolist():
+        width, height = sizes[i]
+        fits = np.flatnonzero(rows[:count, 3] + width <= 1 + _ROUNDING)
+        if len(fits):
+            row = fits[0]
+        else:
+            tile = next((k for k, top in enumerate(tops) if top + height <= 1 + _ROUNDING), len(tops))
+            if tile == len(tops):
+                tops.append(0.0)
+            row, count = count, count + 1
+            rows[row] = tile, tops[tile], height, 0.0
+            tops[tile] += height
+        tile_of[i], places[i] = rows[row, 0], (rows[row, 3], rows[row, 1])
+        rows[row, 3] += width
+    if len(tops) > tiles:
+        raise InputError(
+            "TOO_FEW_TILES",
+            f"At this texel density the islands take {len(tops)} tiles of {texture_size} x {texture_size} texels, and "
+            f"there {'is 1' if tiles == 1 else f'are {tiles}'}. Take {len(tops)} tiles or a larger texture, or lower "
+            "the texel density.",
+            _triangles_of(np.flatnonzero(tile_of >= tiles), island),
+        )
+    return places + free + np.stack([tile_of % TILES_IN_ROW, tile_of // TILES_IN_ROW], axis=1) - boxes[:, :2]
+
+
+def _of_islands(count: int, total: int) -> str:
+    return f"{count} of {total} islands {'is' if count == 1 else 'are'}"
+
+
+def _rounded_down(value: float) -> str:
+    """With four digits, never more than the value."""
+    unit = 10.0 ** (math.floor(math.log10(value)) - 3)
+    return f"{math.floor(value / unit) * unit:.4g}"
+
+
+def _triangles_of(islands: NDArray[np.integer], island: IndexArray) -> Elements:
+    return Elements("triangles", np.flatnonzero(np.isin(island, islands)).astype(np.int32))
