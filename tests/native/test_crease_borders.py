@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import lsgp
 import meshes
 import numpy as np
@@ -80,6 +82,15 @@ def test_borders_are_creases_but_for_a_path_along_each_tube(name: str) -> None:
     flat = borders[angle_between_normals(mesh, borders) < 0.7]
     paths = {"cylinder": 4, "fine cylinder": 2, "pipe": 8, "hollow pipe": 4 + 4}
     assert len(flat) == paths.get(name, 0)
+
+
+@pytest.mark.parametrize("front", [(0, -1, 0), (1, 1, 0)])
+def test_tubes_are_opened_out_of_sight(front: tuple[int, int, int]) -> None:
+    mesh = SOLIDS["cylinder"]
+    whole = surface(mesh, edges=meshes.edges_of(mesh.triangles))
+    borders = lsgp.crease_borders(replace(whole, cut_costs=lsgp.cut_costs(whole, front)))
+    path = borders[np.ptp(mesh.positions[borders][:, :, 2], axis=1) > 0]
+    assert len(path) == 4 and (mesh.positions[path] @ np.array(front) < 0).all()
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@
 
 #include "base/checkpoint.hpp"
 #include "base/union_find.hpp"
+#include "cut/cut_cost.hpp"
 
 namespace lsgp {
 
@@ -226,8 +227,8 @@ Array<Index> find_tubes(const Loops& loops) {
   return out;
 }
 
-// The shortest path from a loop to another one of its island, halfedges; empty where no cut can run.
-Array<Index> shortest_path_across(const HalfedgeMesh& mesh, const Geometry& geometry, const Loops& loops, Index loop,
+// The cheapest path from a loop to another one of its island, halfedges; empty where no cut can run.
+Array<Index> cheapest_path_across(const HalfedgeMesh& mesh, const Geometry& geometry, const Loops& loops, Index loop,
                                   const Array<Index>& corners) {
   std::map<Index, double> distance;                // of vertices inside
   std::map<Index, Index> from;                     // the halfedge by which
@@ -235,7 +236,7 @@ Array<Index> shortest_path_across(const HalfedgeMesh& mesh, const Geometry& geom
   std::priority_queue<Entry, Array<Entry>, std::greater<>> queue;
   const auto step = [&](double before, Index h) {
     if (!mesh.cuttable[h]) return;
-    const double after = before + geometry.length[h];
+    const double after = before + cut_cost(mesh, geometry, h);
     const Index v = mesh.target(h), met = loops.at_corner[next(h)];
     if (met == loop) return;
     if (met != none) {
@@ -278,7 +279,7 @@ void open_tubes(const HalfedgeMesh& mesh, const Geometry& geometry, Array<char>&
       if (loops.at_corner[h] != none && !ends) corners[loops.at_corner[h]].push_back(h);
     }
     for (const Index tube : tubes) {
-      for (const Index h : shortest_path_across(mesh, geometry, loops, tube, corners[tube])) {
+      for (const Index h : cheapest_path_across(mesh, geometry, loops, tube, corners[tube])) {
         open[h] = open[mesh.twin[h]] = 1;
         found = true;
       }
