@@ -58,6 +58,24 @@ REVIEWED = {
         ),
         ("while (true)", "edges of the cut, each once, to an end or back to the start", SHORT),
     ],
+    "cut/crease_borders.cpp": [
+        (
+            "while (!smallest.empty() && smallest.top().first < least_patch * geometry.total_area)",
+            "an entry for each patch and each time two become one",
+            OWN,
+        ),
+        ("while (!is_border_[g])", AROUND_A_VERTEX, SHORT),
+        ("while (true)", "edges of a border, each once, to a node or back to the start", SHORT),
+        ("for (;; g = next(mesh.twin[g]))", AROUND_A_VERTEX, SHORT),
+        ("while (h != first)", SIDES, SHORT),
+        ("while (!queue.empty())", NEAREST, OWN),
+        (
+            "for (auto at = from.find(mesh.origin(last)); at != from.end(); at = from.find(mesh.origin(path.back())))",
+            LINKED,
+            SHORT,
+        ),
+        ("while (found)", "each round but the last opens a tube, which joins two borders", OWN),
+    ],
     "cut/cut_network.cpp": [
         ("while (!is_node(mesh.origin(h)))", "edges of the cuts, each once, to a node or back to the start", SHORT),
         (

@@ -185,6 +185,7 @@ NATIVE = {
     "seams": SEAMS,
     "importance": np.empty(0),
     "cut_costs": np.empty(0),
+    "borders": np.empty((0, 2), np.int32),
     "cones": MESH.cones,
     "angles": np.zeros(6),
     "has_angle": np.zeros(6, bool),
@@ -212,7 +213,7 @@ ODD = {
 def _parameterize(arguments: dict[str, object]) -> dict[str, object]:
     """The native verb; it takes the arrays of the surface together, and those of the cones."""
     surface_arrays = tuple(
-        arguments[name] for name in ("positions", "triangles", "edges", "seams", "importance", "cut_costs")
+        arguments[name] for name in ("positions", "triangles", "edges", "seams", "importance", "cut_costs", "borders")
     )
     return _lsgp.parameterize(
         surface=surface_arrays,

@@ -18,12 +18,13 @@ namespace lsgp {
 
 namespace {
 
-constexpr double least_patch = 0.0002;    // of the area: smaller ones are no islands
-constexpr double least_on_creases = 0.8;  // of the curvature
-constexpr double is_curved = 0.06;        // radians at a vertex
-constexpr double is_bent = 0.25;          // radians along a border that two patches share
-constexpr double least_shared = 0.08;     // of the smaller patch's perimeter, to be unfolded with it
-constexpr double is_no_hole = 0.35;       // radians that a border's turning is off that of a hole in the plane
+constexpr double least_patch = 0.0002;       // of the area: smaller ones are no islands
+constexpr double least_on_creases = 0.8;     // of the curvature
+constexpr double is_curved = 0.06;           // radians at a vertex
+constexpr double is_bent = 0.25;             // radians along a border that two patches share
+constexpr double least_shared = 0.08;        // of the smaller patch's perimeter, to be unfolded with it
+constexpr double is_no_hole = 0.35;          // radians that a border's turning is off that of a hole in the plane
+constexpr double operations_an_entry = 100;  // of a queue
 
 bool is_inside(const HalfedgeMesh& mesh, Index v) { return mesh.loop_of_vertex[v] == none; }
 
@@ -48,6 +49,7 @@ Array<Index> find_patches(const HalfedgeMesh& mesh, const Geometry& geometry, co
   std::priority_queue<Entry, Array<Entry>, std::greater<>> smallest;
   for (Index p = 0; p < count; ++p) smallest.emplace(area[p], p);
   while (!smallest.empty() && smallest.top().first < least_patch * geometry.total_area) {
+    checkpoint(operations_an_entry);
     const auto [size, p] = smallest.top();
     smallest.pop();
     if (home[joined.find(p)] != p || size != area[p] || shared[p].empty()) continue;
@@ -251,6 +253,7 @@ Array<Index> cheapest_path_across(const HalfedgeMesh& mesh, const Geometry& geom
   };
   for (const Index c : corners) step(0, c);
   while (!queue.empty()) {
+    checkpoint(operations_an_entry);
     const auto [length, v, last] = queue.top();
     queue.pop();
     if (last != none) {
