@@ -38,8 +38,8 @@ LSGP_API CutPaths find_cuts(const Surface& surface, const std::vector<Index>& co
 LSGP_API Eigen::VectorXd cut_costs(const Surface& surface, const CutPreferences& preferences,
                                    const Progress& progress = {});
 
-// Edges for `Surface::borders`, so that hard surfaces unfold with hardly any stretch and without cones: their creases, as
-// far as parts cannot be unfolded together across them, and one edge path along every tube. Components with cones or
+// Edges for `Surface::borders`, so that hard surfaces unfold with hardly any stretch and without cones: their creases,
+// as far as parts cannot be unfolded together across them, and one edge path along every tube. Components with cones or
 // seams have none, nor have those whose curvature lies off their creases. WRONG_PARAMETER.
 LSGP_API VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& cones = {},
                                     const CreaseOptions& options = {}, const Progress& progress = {});
