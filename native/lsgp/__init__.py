@@ -44,6 +44,7 @@ from .errors import (
     SolverError,
     TopologyError,
 )
+from .gutters import pad_image
 from .indexed_uv import index_uv
 from .io.mesh_files import MeshFile, read_mesh_file, write_mesh_file
 from .islands import correct_aspect, fit_placement
@@ -96,6 +97,7 @@ __all__ = [
     "index_uv",
     "lattice",
     "measure_distortion",
+    "pad_image",
     "parameterize",
     "part_surface",
     "place_cones",

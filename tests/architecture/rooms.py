@@ -157,12 +157,15 @@ API = (
     "cut_paths",
     "equality",
     "errors",
+    "gutters",
     "indexed_uv",
     "islands",
     "lattice",
     "ledger",
+    "texel_raster",
     "texels",
     "triangles",
+    "unfolded_walk",
 )
 # Folders of native/src, each of which may use those before it, but for those it has to do without.
 SOURCES = {

@@ -101,6 +101,13 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         lsgp.at_texel_density,
         {"surface": WHOLE, "result": FREE_RESULT, "layout": lsgp.TexelLayout(100.0, 1024, 4)},
     ),
+    "pad_image": (
+        lsgp.pad_image,
+        {
+            **{"image": np.ones((8, 8, 3), np.uint8), "surface": WHOLE, "corner_uv": FREE_RESULT.corner_uv},
+            **{"margin": 2, "normal_map": True},
+        },
+    ),
     "build_ledger": (
         lsgp.build_ledger,
         {name: CALL[name] for name in CALL if name != "progress"} | {"gets_cones": False},
