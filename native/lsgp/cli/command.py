@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The command line: `lsgp unwrap`, `lsgp cones`, `lsgp batch` and `lsgp measure`.
+"""The command line: `lsgp unwrap`, `lsgp cones`, `lsgp batch`, `lsgp measure` and `lsgp pad`.
 
 `run.exit_codes` has how they end. Files are written at the end, each as a whole or not at all.
 """
@@ -17,7 +17,7 @@ from .. import __version__
 from ..api import measure_distortion
 from ..batch.command import EXIT_CODES, add_batch_options, add_scheduler_options, expand_options, run_batch
 from ..certificate import certificate_table
-from ..errors import Elements, Finding, InputError, LsgpError
+from ..errors import Elements, Finding, LsgpError
 from ..io.mesh_formats import BY_KEY, formats_table
 from ..io.polygons import Triangulation
 from ..io.safe_files import is_standard_stream
@@ -26,9 +26,10 @@ from ..io.standard_streams import complain, hold_standard_descriptors, say
 from ..io.whole_files import write_whole
 from ..run import report as reports
 from ..run.exit_codes import OF_A_RUN, OK, REFUSED, USAGE, ended, flushed, listed
+from ..run.pad_file import add_pad_options, pad_file
 from ..run.place_file import add_placement_options, place_file, summary
 from ..run.terminal import ProgressLine
-from ..run.unwrap_file import Run, out_of_memory, read_file, unwrap_file
+from ..run.unwrap_file import Run, out_of_memory, read_file, unwrap_file, uv_of
 from ..run.unwrap_options import add_unwrap_options, texture_size, texture_size_option
 from ..texels import texel_density
 from .output_paths import require_usable_paths
@@ -46,7 +47,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         if args.version or args.formats:
             return ended(lambda: _say_about(args))
         if args.command is None:
-            parser.error("a command is needed: unwrap, cones, batch or measure")
+            parser.error("a command is needed: unwrap, cones, batch, measure or pad")
     except UsageError as error:
         complain(f"lsgp: error: {error}")
         return USAGE
@@ -134,7 +135,17 @@ def _parser() -> argparse.ArgumentParser:
         help="texels of the texture's side, a power of two, to measure the texel density as well",
     )
     measure.set_defaults(run=_reported, make=_measure, output=None)
-    for command in (unwrap, cones, measure):
+
+    pad = commands.add_parser(
+        "pad",
+        allow_abbrev=False,
+        help="fill the gutters of a texture",
+        description="Fill the texels beside the islands of a texture with what lies beyond the cuts, so that filtered "
+        "lookups match there. Texels whose centre is in an island stay as they are.",
+    )
+    add_pad_options(pad)
+    pad.set_defaults(run=_reported, make=_pad, report=None)
+    for command in (unwrap, cones, measure, pad):
         command.add_argument(
             "--format",
             metavar="F",
@@ -142,6 +153,7 @@ def _parser() -> argparse.ArgumentParser:
             help="format of standard input and output and of files without a suffix: "
             f"{', '.join(BY_KEY)} (default: by the first bytes, otherwise obj)",
         )
+    for command in (unwrap, cones, measure):
         command.add_argument("--report", metavar="FILE.json", type=Path, help="write a report, also when refused")
     return parser
 
@@ -199,10 +211,8 @@ def _cones(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
 
 def _measure(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
     file = read_file(args.input, run, args.format, with_uv=True)
-    triangulation, corner_uv = file.triangulation, file.triangle_uv
+    triangulation, corner_uv = file.triangulation, uv_of(file, "measure")
     without = np.flatnonzero(np.isnan(corner_uv).any(axis=(1, 2))).astype(np.int32)
-    if len(file.mesh.sizes) and len(without) == len(triangulation.triangles):
-        raise InputError("NO_UV", "The file has no texture coordinates to measure. Unwrap it first: lsgp unwrap.")
     warnings = list(file.findings)
     if len(without):
         faces = Elements("faces", triangulation.polygons_of(without))
@@ -219,6 +229,10 @@ def _measure(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
     text += reports.quality_table(measurement, texels)
     stages = run.stage_seconds
     return reports.measure_report(measurement, warnings, triangulation, stages, args.texture_size, texels), text
+
+
+def _pad(args: argparse.Namespace, run: Run) -> tuple[None, str]:
+    return None, pad_file(args, run)
 
 
 def _warn(findings: Sequence[Finding], triangulation: Triangulation) -> None:

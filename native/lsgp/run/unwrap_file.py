@@ -10,6 +10,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..api import Options, Placement, Progress, Result, Surface, parameterize
 from ..auto_unwrap import PLACING, complete_cones, part_of, with_crease_borders
 from ..errors import Finding, InputError, LsgpError
@@ -104,6 +107,14 @@ def read_file(path: Path, run: Run, given_format: str | None = None, *, with_uv:
     with run.stage("triangulate"):
         run.triangulation, findings = triangulated(mesh)
     return MeshFile(source, form, data, mesh, run.triangulation, findings)
+
+
+def uv_of(file: MeshFile, purpose: str) -> NDArray[np.float64]:
+    """(m, 3, 2), the texture coordinates of a file read with them.  purpose: a verb.  Raises InputError: NO_UV."""
+    corner_uv = file.triangle_uv
+    if corner_uv is None or (len(file.mesh.sizes) and np.isnan(corner_uv).any(axis=(1, 2)).all()):
+        raise InputError("NO_UV", f"The file has no texture coordinates to {purpose}. Unwrap it first: lsgp unwrap.")
+    return corner_uv
 
 
 def _map(

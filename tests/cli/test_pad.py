@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`lsgp pad`: what it writes is what the library makes of the file, and what it refuses leaves nothing behind."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import lsgp as library
+import numpy as np
+import pytest
+from lsgp.cli import main
+
+cv2 = pytest.importorskip("cv2")
+SIZE = 96
+
+
+@pytest.fixture
+def folder(lsgp, ball_files: Path) -> Path:
+    """mapped.obj, and images of it full of noise."""
+    assert lsgp("unwrap", "ball.obj", "-o", "mapped.obj", "--preset", "bake").code == 0
+    noise = np.random.default_rng(4).random((SIZE, SIZE, 4))
+    for name, kind, channels in [
+        *[("grey8.png", "uint8", 1), ("rgb8.png", "uint8", 3), ("rgba16.png", "uint16", 4), ("rgb16.png", "uint16", 3)],
+        *[("grey16.tif", "uint16", 1), ("rgb32.tif", "float32", 3), ("grey64.tiff", "float64", 1)],
+    ]:
+        scale = np.iinfo(kind).max if kind[0] == "u" else 1
+        pixels = (noise[..., :channels] * scale).astype(kind)
+        assert cv2.imwrite(str(ball_files / name), pixels[..., 0] if channels == 1 else pixels)
+    return ball_files
+
+
+def padded(folder: Path, name: str, margin: float, *, normal_map: bool = False) -> np.ndarray:
+    """By the library, in OpenCV's order of channels."""
+    file = library.read_mesh_file(folder / "mapped.obj", with_uv=True)
+    pixels = cv2.imread(str(folder / name), cv2.IMREAD_UNCHANGED)
+    swap = (lambda p: p[..., [2, 1, 0, 3][: p.shape[2]]]) if pixels.ndim == 3 else (lambda p: p)
+    return swap(library.pad_image(swap(pixels), file.surface(), file.triangle_uv, margin, normal_map=normal_map))
+
+
+@pytest.mark.parametrize(
+    "name", ["grey8.png", "rgb8.png", "rgba16.png", "rgb16.png", "grey16.tif", "rgb32.tif", "grey64.tiff"]
+)
+def test_the_file_is_what_the_library_makes(lsgp, folder: Path, name: str) -> None:
+    output = f"out{Path(name).suffix}"
+    done = lsgp("pad", name, "--uv", "mapped.obj", "--margin", 4, "-o", output)
+    assert (done.code, done.err) == (0, "")
+    before = cv2.imread(str(folder / name), cv2.IMREAD_UNCHANGED)
+    after = cv2.imread(str(folder / output), cv2.IMREAD_UNCHANGED)
+    assert (after.dtype, after.shape) == (before.dtype, before.shape)
+    assert (after == padded(folder, name, 4)).all()
+    changed = int((after != before).reshape(SIZE * SIZE, -1).any(axis=1).sum())
+    assert changed > 0 and f"{changed} of them changed" in done.out
+
+
+def test_normals_are_turned_on_request(lsgp, folder: Path) -> None:
+    call = ("pad", "rgb8.png", "--uv", "mapped.obj", "--margin", 4)
+    assert lsgp(*call, "-o", "plain.png").code == lsgp(*call, "--normal-map", "-o", "turned.png").code == 0
+    plain, turned = (cv2.imread(str(folder / f"{name}.png"), cv2.IMREAD_UNCHANGED) for name in ("plain", "turned"))
+    assert (turned == padded(folder, "rgb8.png", 4, normal_map=True)).all()
+    # Blue is the first channel here.
+    assert (turned[..., 0] == plain[..., 0]).all() and (turned[..., 1] != plain[..., 1]).any()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "told"),
+    [
+        (("rgb8.png", "--uv", "ball.obj", "--margin", 4, "-o", "out.png"), 3, "NO_UV"),
+        (("rgb8.png", "--uv", "mapped.obj", "--margin", -1, "-o", "out.png"), 3, "WRONG_PARAMETER: margin"),
+        (("rgb32.tif", "--uv", "mapped.obj", "--margin", 4, "-o", "out.png"), 3, "PNG has no float32"),
+        (("grey8.png", "--uv", "mapped.obj", "--margin", 4, "--normal-map", "-o", "out.png"), 3, "WRONG_SHAPE"),
+        (("text.png", "--uv", "mapped.obj", "--margin", 4, "-o", "out.png"), 3, "MALFORMED_FILE: 'text.png'"),
+        (("empty.png", "--uv", "mapped.obj", "--margin", 4, "-o", "out.png"), 3, "MALFORMED_FILE: 'empty.png'"),
+        (("rgb8.png", "--uv", "tiled.obj", "--margin", 4, "-o", "out.png"), 3, "ISLANDS_OUTSIDE"),
+        (("none.png", "--uv", "mapped.obj", "--margin", 4, "-o", "out.png"), 2, "'none.png'"),
+        (("rgb8.png", "--uv", "none.obj", "--margin", 4, "-o", "out.png"), 2, "'none.obj'"),
+        (("rgb8.png", "--uv", "mapped.obj", "--margin", 4, "-o", "out.jpg"), 2, ".png or .tif"),
+        (("mapped.obj", "--uv", "mapped.obj", "--margin", 4, "-o", "out.png"), 2, ".png or .tif"),
+        (("rgb8.png", "--uv", "mapped.obj", "--margin", 4, "-o", "rgb8.png"), 2, "is the image"),
+        (("rgb8.png", "--uv", "mapped.obj", "--margin", 4, "-o", "no/out.png"), 2, "there is no folder"),
+        (("rgb8.png", "--uv", "mapped.obj", "-o", "out.png"), 2, "--margin"),
+        (("rgb8.png", "--margin", 4, "-o", "out.png"), 2, "--uv"),
+    ],
+)
+def test_refusals_write_nothing(lsgp, folder: Path, arguments: tuple, code: int, told: str) -> None:
+    (folder / "text.png").write_text("no image")
+    (folder / "empty.png").touch()
+    if "tiled.obj" in arguments:
+        lsgp("unwrap", "ball.obj", "-o", "tiled.obj", "--preset", "tile")
+    before = {path: path.read_bytes() for path in folder.iterdir()}
+    done = lsgp("pad", *arguments)
+    assert done.code == code and told in done.err
+    assert {path: path.read_bytes() for path in folder.iterdir()} == before
+
+
+def test_without_opencv_the_refusal_says_how_to_install_it(folder: Path, monkeypatch, capsys) -> None:
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr("lsgp.io.image_files.find_spec", lambda name: None)
+    assert main(["pad", "rgb8.png", "--uv", "mapped.obj", "--margin", "4", "-o", "out.png"]) == 3
+    assert "FORMAT_NOT_INSTALLED" in (said := capsys.readouterr().err) and "pip install 'lsgp[images]'" in said
+    assert not (folder / "out.png").exists()
