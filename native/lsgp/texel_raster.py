@@ -107,24 +107,26 @@ def nearest_covered(texels: Indices, covered: NDArray[np.bool_], reach: int) -> 
 
     covered: (height, width). Exact: the nearest of each column is found first, the nearest column after it.
     """
+    if not len(texels):
+        return texels
     width = covered.shape[1]
     in_column = _nearest_in_columns(covered)
     row, column = texels // width, texels % width
     least, found = np.full(len(texels), np.inf), np.full(len(texels), -1, np.int64)
     for step in sorted(range(-reach, reach + 1), key=abs):
         there = np.clip(column + step, 0, width - 1)
-        above = in_column[row, there]
+        above = in_column[row, there].astype(np.int64)
         distance = np.where(above < 0, np.inf, (there - column) ** 2.0 + (above - row) ** 2.0)
         nearer = (distance < least) & (np.abs(above - row) <= reach)
         least[nearer], found[nearer] = distance[nearer], (above * width + there)[nearer]
     return found
 
 
-def _nearest_in_columns(covered: NDArray[np.bool_]) -> Indices:
+def _nearest_in_columns(covered: NDArray[np.bool_]) -> NDArray[np.int32]:
     """(height, width), the row of the nearest covered texel of the same column; -1: there is none."""
-    height = len(covered)
-    rows = np.arange(height)[:, None]
-    above = np.maximum.accumulate(np.where(covered, rows, -1), axis=0)
+    height = np.int32(len(covered))
+    rows = np.arange(height, dtype=np.int32)[:, None]
+    above = np.maximum.accumulate(np.where(covered, rows, np.int32(-1)), axis=0)
     below = np.minimum.accumulate(np.where(covered, rows, height)[::-1], axis=0)[::-1]
     takes_below = (below < height) & ((above < 0) | (below - rows < rows - above))
     return np.where(takes_below, below, above)
