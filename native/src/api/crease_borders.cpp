@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lsgp/crease_borders.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -11,6 +10,7 @@
 #include "base/progress_monitor.hpp"
 #include "base/text.hpp"
 #include "cut/crease_borders.hpp"
+#include "cut/cut_cost.hpp"
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
 
@@ -22,15 +22,12 @@ namespace {
 Eigen::VectorXd bends(const HalfedgeMesh& mesh) {
   Positions normal(mesh.triangle_count(), 3);
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
-    const Eigen::Vector3d a = mesh.positions.row(mesh.triangles(f, 0)), b = mesh.positions.row(mesh.triangles(f, 1));
-    const Eigen::Vector3d c = mesh.positions.row(mesh.triangles(f, 2));
-    normal.row(f) = (b - a).cross(c - a).stableNormalized();
+    normal.row(f) = area_normal(mesh.positions, mesh.triangles, f).stableNormalized();
   }
   Eigen::VectorXd out = Eigen::VectorXd::Zero(mesh.halfedge_count());
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (mesh.twin[h] == none) continue;
-    const Eigen::Vector3d here = normal.row(h / 3), there = normal.row(mesh.twin[h] / 3);
-    out[h] = std::atan2(here.cross(there).norm(), here.dot(there));
+    out[h] = angle_between(normal.row(h / 3), normal.row(mesh.twin[h] / 3));
   }
   return out;
 }
@@ -70,7 +67,7 @@ VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& con
     };
     Array<char> crease(mesh.halfedge_count(), 0);
     for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-      if (!mesh.cuttable[h] || mesh.twin[h] == none) continue;
+      if (!may_cut(mesh, h)) continue;
       const auto [a, b] = source_edge(h);
       crease[h] = bend[h] >= options.angle || (!sharp.empty() && sharp.count(std::minmax(a, b)) > 0);
     }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lsgp/cut_costs.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +9,7 @@
 #include "base/text.hpp"
 #include "lsgp/lsgp.hpp"
 #include "mesh/edge_table.hpp"
+#include "mesh/geometry.hpp"
 #include "mesh/visibility.hpp"
 #include "pipeline/validation.hpp"
 
@@ -28,17 +28,14 @@ double crease_factor(double angle) {
 Eigen::VectorXd crease_angles(const Surface& surface, const EdgeTable& edges) {
   Positions normal(surface.triangles.rows(), 3);
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
-    const Index* v = surface.triangles.data() + 3 * f;
-    const Eigen::Vector3d a = surface.positions.row(v[0]), b = surface.positions.row(v[1]);
-    const Eigen::Vector3d c = surface.positions.row(v[2]);
-    normal.row(f) = (b - a).cross(c - a).stableNormalized();
+    normal.row(f) = area_normal(surface.positions, surface.triangles, f).stableNormalized();
   }
   Eigen::VectorXd angle = Eigen::VectorXd::Zero(edges.count());
   for (Index edge = 0; edge < edges.count(); ++edge) {
     const Eigen::Vector3d first = normal.row(edges.halfedge(edge, 0) / 3);
     for (Index i = 1; i < edges.halfedge_count(edge); ++i) {
       const Eigen::Vector3d other = normal.row(edges.halfedge(edge, i) / 3);
-      angle[edge] = std::max(angle[edge], std::atan2(other.cross(first).norm(), other.dot(first)));
+      angle[edge] = std::max(angle[edge], angle_between(other, first));
     }
   }
   return angle;

@@ -237,7 +237,7 @@ Array<Index> cheapest_path_across(const HalfedgeMesh& mesh, const Geometry& geom
   using Entry = std::tuple<double, Index, Index>;  // distance, vertex, and the halfedge where it is on another loop
   std::priority_queue<Entry, Array<Entry>, std::greater<>> queue;
   const auto step = [&](double before, Index h) {
-    if (!mesh.cuttable[h]) return;
+    if (!may_cut(mesh, h)) return;
     const double after = before + cut_cost(mesh, geometry, h);
     const Index v = mesh.target(h), met = loops.at_corner[next(h)];
     if (met == loop) return;

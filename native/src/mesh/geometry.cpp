@@ -102,4 +102,14 @@ Geometry mollified(const HalfedgeMesh& mesh, Geometry geometry, double margin) {
   return geometry;
 }
 
+Eigen::Vector3d area_normal(const Positions& positions, const Triangles& triangles, Index f) {
+  const Eigen::Vector3d a = positions.row(triangles(f, 0)), b = positions.row(triangles(f, 1));
+  const Eigen::Vector3d c = positions.row(triangles(f, 2));
+  return (b - a).cross(c - a);
+}
+
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
 }  // namespace lsgp

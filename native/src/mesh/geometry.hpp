@@ -28,6 +28,12 @@ Geometry build_geometry(const HalfedgeMesh& mesh);
 // The same with a margin given, in mean edge lengths: fatter triangles, for which more maps are valid.
 Geometry mollified(const HalfedgeMesh& mesh, Geometry geometry, double margin);
 
+// The normal of a triangle in space, as long as twice its area.
+Eigen::Vector3d area_normal(const Positions& positions, const Triangles& triangles, Index f);
+
+// Between two directions, radians; 0 where one is none.
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
 // The edge vector of halfedge h in its triangle's own frame, in which the triangle's first halfedge is real.
 inline Complex edge_vector(const Geometry& geometry, Index h) {
   const Index f = h / 3;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "split/face_graph.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -16,13 +15,8 @@ constexpr double units_of_mean_edge = 1e4;
 
 double discount(const HalfedgeMesh& mesh, Index h) {
   if (mesh.seam[h]) return seam_discount;
-  const auto normal = [&](Index f) {
-    const Eigen::Vector3d a = mesh.positions.row(mesh.triangles(f, 0)), b = mesh.positions.row(mesh.triangles(f, 1)),
-                          c = mesh.positions.row(mesh.triangles(f, 2));
-    return Eigen::Vector3d((b - a).cross(c - a));
-  };
-  const Eigen::Vector3d here = normal(h / 3), there = normal(mesh.twin[h] / 3);
-  return std::atan2(here.cross(there).norm(), here.dot(there)) > sharp_angle ? sharp_discount : 1.0;
+  const auto normal = [&](Index f) { return area_normal(mesh.positions, mesh.triangles, f); };
+  return angle_between(normal(h / 3), normal(mesh.twin[h] / 3)) > sharp_angle ? sharp_discount : 1.0;
 }
 
 }  // namespace
