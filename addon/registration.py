@@ -20,6 +20,7 @@ from .operators.cone_select import MESH_OT_cone_select
 from .operators.cone_select_reported import MESH_OT_cone_select_reported
 from .operators.cone_unwrap import UV_OT_cone_unwrap
 from .operators.cut_select import MESH_OT_cone_select_cuts
+from .operators.image_extend import UV_OT_cone_extend_image
 from .operators.measure import UV_OT_cone_measure
 from .operators.scale_preview import MESH_OT_cone_preview
 from .operators.seams_from_cuts import MESH_OT_cone_seams_from_cuts
@@ -47,6 +48,7 @@ CLASSES = (
     UV_OT_cone_unwrap,
     UV_OT_cone_measure,
     UV_OT_cone_texture,
+    UV_OT_cone_extend_image,
     UV_OT_cone_texel_get,
     UV_OT_cone_texel_set,
     MESH_OT_cone_texel_select,

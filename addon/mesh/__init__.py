@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reading and writing Blender's meshes: geometry, UVs, cones and their angles, attributes, selection, materials."""
+"""Reading and writing meshes and images of Blender: geometry, UVs, cones, attributes, selection, materials, pixels."""

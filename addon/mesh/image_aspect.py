@@ -4,8 +4,11 @@
 from __future__ import annotations
 
 import bpy
+import numpy as np
+from numpy.typing import NDArray
 
 from ..core.versions import has_nodes
+from .arrays import read_array
 from .texture import material_of
 
 
@@ -26,7 +29,16 @@ def active_image(obj: bpy.types.Object) -> bpy.types.Image | None:
         return None
     face = faces[faces.active if 0 <= faces.active < len(faces) else 0]
     slots = len(obj.material_slots)
-    material = material_of(obj, min(face.material_index, slots - 1)) if slots else None
+    return _image_in(material_of(obj, min(face.material_index, slots - 1))) if slots else None
+
+
+def faces_showing(obj: bpy.types.Object, image: bpy.types.Image) -> NDArray[np.bool_]:
+    """(f,), the faces whose material has this image; the mesh has a material.  In edit mode as last read."""
+    slots = np.array([_image_in(material_of(obj, slot)) == image for slot in range(len(obj.material_slots))])
+    return slots[np.minimum(read_array(obj.data.polygons, "material_index", np.int32), len(slots) - 1)]
+
+
+def _image_in(material: bpy.types.Material | None) -> bpy.types.Image | None:
     if material is None or not has_nodes(material):
         return None
     image = getattr(_active_texture(material.node_tree), "image", None)

@@ -71,6 +71,7 @@ class VIEW3D_MT_cone_unwrap(bpy.types.Menu):
         layout.operator(identifiers.SELECT_REPORTED)
         layout.menu(VIEW3D_MT_cone_seeing.bl_idname)
         layout.menu(VIEW3D_MT_cone_texels.bl_idname)
+        layout.operator(identifiers.EXTEND_IMAGE)
         layout.operator(identifiers.CLEAR_DATA)
 
 

@@ -213,6 +213,7 @@ class VIEW3D_PT_cone_unwrap_texture(ConeUnwrapSubPanel, bpy.types.Panel):
         row.operator(identifiers.TEXTURE_SHOW, text="Asymmetric").pattern = "ASYMMETRIC"
         if texture.is_shown(context.object):
             layout.operator(identifiers.TEXTURE_SHOW, text="Remove").clear = True
+        layout.operator(identifiers.EXTEND_IMAGE)
 
 
 PANELS = (

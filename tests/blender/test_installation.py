@@ -111,6 +111,7 @@ def test_everything_is_in_the_submenu_and_auto_unwrap_comes_first():
         ("mesh.cone_select_reported", None),
         ("VIEW3D_MT_cone_seeing", None),
         ("VIEW3D_MT_cone_texels", None),
+        ("uv.cone_extend_image", None),
         ("mesh.cone_clear_data", None),
     ]
 
