@@ -9,12 +9,15 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from batch_meshes import off_text
 from lsgp.batch.assets import find_assets
-from lsgp.io.mesh_files import MESH_SUFFIXES, READABLE
+from lsgp.io.mesh_files import MESH_SUFFIXES, read_mesh_file, write_mesh_file
+from lsgp.io.mesh_formats import readable_suffixes
 from meshes import grid
 
+READABLE = readable_suffixes()
 UNREADABLE = sorted(MESH_SUFFIXES - set(READABLE))
 posix = pytest.mark.skipif(os.name != "posix", reason="pipes and descriptors as on POSIX")
 
@@ -40,6 +43,21 @@ def test_a_mesh_of_another_kind_is_no_list(tmp_path: Path, batch, suffix: str) -
     assert (done.returncode, done.stdout) == (2, "")
     assert "is a mesh of a kind that is not read" in done.stderr and READABLE[0] in done.stderr
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("suffix", READABLE)
+def test_a_folder_may_hold_every_kind_that_is_read(tmp_path: Path, batch, lines_in, suffix: str) -> None:
+    plain = write_mesh(tmp_path / "in" / "a.off")
+    if suffix == ".stl":
+        trimesh = pytest.importorskip("trimesh")
+        trimesh.load(plain, process=False).export(tmp_path / "in" / "b.stl")
+    elif suffix != ".off":
+        file = read_mesh_file(plain)
+        write_mesh_file(tmp_path / "in" / f"b{suffix}", file, np.zeros((len(file.triangulation.triangles), 3, 2)))
+    done = batch("in", "--out", "out")
+    assert done.returncode == 0, done.stderr
+    expected = {"a.off"} | ({f"b{suffix}"} if suffix != ".off" else set())
+    assert {line["asset"] for line in lines_in(tmp_path / "out" / "journal.jsonl")} == expected
 
 
 def test_other_kinds_in_a_folder_are_counted(tmp_path: Path, batch, lines_in) -> None:

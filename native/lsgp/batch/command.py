@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..io.mesh_files import READABLE
+from ..io.mesh_formats import readable_suffixes
 from ..io.safe_files import require_inputs_kept
 from ..io.side_files import UsageError
 from ..io.standard_streams import complain, say
@@ -54,7 +54,7 @@ class Kind:
     worker: Sequence[str]
 
 
-MESH_FILES = Kind(READABLE, output_name, PYTHON_WORKER)
+MESH_FILES = Kind(readable_suffixes(), output_name, PYTHON_WORKER)
 
 FURTHER_OPTIONS = "--options"
 

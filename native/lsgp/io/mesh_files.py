@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..api import Surface
 from ..errors import Finding, InputError
-from .mesh_formats import GLB, GLTF, OBJ, OFF, PLY, STL, Format, input_format, output_format
+from .mesh_formats import FORMATS, GLB, GLTF, OBJ, OFF, PLY, STL, Format, input_format, output_format
 from .mesh_gltf import edit_gltf, new_gltf, read_gltf
 from .mesh_obj import format_obj, read_obj
 from .mesh_obj_edit import edit_obj
@@ -27,12 +27,10 @@ from .safe_files import is_same_file, require_separate
 from .side_files import UsageError, read_regular
 from .whole_files import write_whole
 
-# By lower-case suffix: the files of a folder that batches take, and other files that hold meshes.
-READABLE = (".obj", ".off", ".ply")
-MESH_SUFFIXES = frozenset(READABLE) | {
-    *(".3ds", ".3mf", ".abc", ".blend", ".c4d", ".ctm", ".dae", ".dxf", ".fbx", ".glb", ".gltf", ".iges", ".igs"),
-    *(".lwo", ".ma", ".max", ".mb", ".mesh", ".msh", ".step", ".stl", ".stp", ".usd", ".usda", ".usdc", ".usdz"),
-    *(".vtk", ".vtp", ".vtu", ".wrl", ".x3d"),
+# By lower-case suffix: files that hold meshes, whether they can be read or not.
+MESH_SUFFIXES = frozenset(form.suffix for form in FORMATS) | {
+    *(".3ds", ".3mf", ".abc", ".blend", ".c4d", ".ctm", ".dae", ".dxf", ".fbx", ".iges", ".igs", ".lwo", ".ma", ".max"),
+    *(".mb", ".mesh", ".msh", ".step", ".stp", ".usd", ".usda", ".usdc", ".usdz", ".vtk", ".vtp", ".vtu", ".wrl", ".x3d"),
 }
 GLTF_FORMS = (GLTF, GLB)
 NAMED_EXTRAS = 8

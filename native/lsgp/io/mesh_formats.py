@@ -84,6 +84,11 @@ def output_format(path: str | os.PathLike[str] | None, given: str | None = None)
     return found
 
 
+def readable_suffixes() -> tuple[str, ...]:
+    """The suffixes of the formats that can be read here."""
+    return tuple(form.suffix for form in _at_hand("reader"))
+
+
 def formats_table() -> str:
     """Which formats are read and written here, and how to get the others, as lines of text."""
     rows = [f"{'':6}{'read':34}write"]
@@ -102,9 +107,12 @@ def _is_there(package: str) -> bool:
     return not package or find_spec(package) is not None
 
 
+def _at_hand(use: str) -> list[Format]:
+    return [form for form in FORMATS if (package := getattr(form, use)) is not None and _is_there(package)]
+
+
 def _names_at_hand(use: str, *, suffixes: bool = False) -> list[str]:
-    forms = [form for form in FORMATS if (package := getattr(form, use)) is not None and _is_there(package)]
-    return [f"{form.name} ({form.suffix})" if suffixes else form.name for form in forms]
+    return [f"{form.name} ({form.suffix})" if suffixes else form.name for form in _at_hand(use)]
 
 
 def _one_of(names: list[str]) -> str:
