@@ -29,8 +29,9 @@ from .whole_files import write_whole
 
 # By lower-case suffix: files that hold meshes, whether they can be read or not.
 MESH_SUFFIXES = frozenset(form.suffix for form in FORMATS) | {
-    *(".3ds", ".3mf", ".abc", ".blend", ".c4d", ".ctm", ".dae", ".dxf", ".fbx", ".iges", ".igs", ".lwo", ".ma", ".max"),
-    *(".mb", ".mesh", ".msh", ".step", ".stp", ".usd", ".usda", ".usdc", ".usdz", ".vtk", ".vtp", ".vtu", ".wrl", ".x3d"),
+    *(".3ds", ".3mf", ".abc", ".blend", ".c4d", ".ctm", ".dae", ".dxf", ".fbx", ".iges", ".igs", ".lwo", ".ma"),
+    *(".max", ".mb", ".mesh", ".msh", ".step", ".stp", ".usd", ".usda", ".usdc", ".usdz", ".vtk", ".vtp", ".vtu"),
+    *(".wrl", ".x3d"),
 }
 GLTF_FORMS = (GLTF, GLB)
 NAMED_EXTRAS = 8
