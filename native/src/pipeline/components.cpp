@@ -95,6 +95,16 @@ void hand_out_importance(const Eigen::VectorXd& importance, Work& work) {
   }
 }
 
+void hand_out_directions(const Positions& directions, Work& work) {
+  if (directions.rows() == 0) return;
+  for (std::size_t c = 0; c < work.tasks.size(); ++c) {
+    const Component& component = work.topology.components[c];
+    Positions own(static_cast<Index>(component.source_triangle.size()), 3);
+    for (Index f = 0; f < own.rows(); ++f) own.row(f) = directions.row(component.source_triangle[f]);
+    work.tasks[c].directions = directions_in_triangles(component.mesh, own);
+  }
+}
+
 // The power of two that brings the surface to about unit size: exact, and areas can neither overflow nor vanish.
 double unit_scale(const Surface& surface) {
   double largest = 0;
@@ -226,6 +236,7 @@ Work prepare(const Surface& surface, const Cones& cones, const Options& options,
   divide(surface, cones, options, MoreCones::none, findings, work);
   hand_out_pins(surface, pins, work);
   hand_out_importance(surface.importance, work);
+  hand_out_directions(surface.directions, work);
   hand_out_turning(work.topology.components, options, surface.positions.rows(), work.tasks);
   findings.insert(findings.end(), work.found.begin(), work.found.end());
   return work;

@@ -189,8 +189,8 @@ class GridSearch {
 
   void prepare(std::size_t part) {
     const SeamlessPart& of = parts_[part];
-    quantizers_[part] =
-        std::make_unique<LayoutQuantizer>(*of.system, *of.map, lattice_, parity_, relaxed_[part], step_);
+    const LatticeDemands demands{lattice_, parity_, relaxed_[part], of.task->directions};
+    quantizers_[part] = std::make_unique<LayoutQuantizer>(*of.system, *of.map, demands, step_);
   }
 
   // One of the cones takes up the curvature of both: the one whose own is nearer to that.
