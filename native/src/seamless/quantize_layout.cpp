@@ -116,6 +116,7 @@ void LayoutQuantizer::set_start(const ComponentMap& map) {
                     Eigen::VectorXd::Zero(mesh_.triangle_count()), std::move(all), before_step_, start_)
         .smooth(DistortionEnergy::Kind::symmetric_dirichlet, poor_steps, least_decrease);
   }
+  misalignment_ = measure_misalignment(start_);
   const Jacobians jacobians = measure_jacobians(mesh_, geometry_, cut_mesh_, start_);
   energy_ = symmetric_dirichlet_energy(geometry_, jacobians);
   extent_ = std::max(start_.real().maxCoeff() - start_.real().minCoeff(),
@@ -142,6 +143,12 @@ std::optional<Complex> LayoutQuantizer::find_upward_turn(const Eigen::VectorXcd&
 void LayoutQuantizer::turn_upwards(Eigen::VectorXcd& position) const {
   const std::optional<Complex> turn = find_upward_turn(position, 1);
   if (turn) position *= lattice_.unit(turns_of(std::arg(*turn), lattice_.symmetry()));
+}
+
+// The mean angle between directions and v, up to the lattice's turns, radians; 0 where there are none.
+double LayoutQuantizer::measure_misalignment(const Eigen::VectorXcd& position) const {
+  if (!is_turned_) return 0;
+  return mean_angle_to_v(demands_.directions, at_corners(cut_mesh_, position), lattice_.symmetry());
 }
 
 // Also lists the pairs of cones that share an edge of their triangulation.
@@ -369,6 +376,7 @@ std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, const L
         out.energy = measure_energy(out.position);
       }
       if (!(out.energy <= effort.most_growth * energy_)) continue;
+      if (measure_misalignment(out.position) > misalignment_ + effort.most_turned) continue;
       turn_upwards(out.position);
       return out;
     }

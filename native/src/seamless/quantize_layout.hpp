@@ -27,6 +27,7 @@ struct QuantizedLayout {
 // What a layout on some grid is worth.
 struct LayoutEffort {
   double most_growth = std::numeric_limits<double>::infinity();  // of the energy by rounding
+  double most_turned = std::numeric_limits<double>::infinity();  // radians, of directions by rounding, on average
   bool quick = false;  // only layouts are wanted that need little repair; otherwise they are also followed in steps
 };
 
@@ -84,6 +85,7 @@ class LayoutQuantizer {
   // The turn of a layout that brings the directions to v, up to rotations by 2 pi / symmetry.
   std::optional<Complex> find_upward_turn(const Eigen::VectorXcd& position, int symmetry) const;
   void turn_upwards(Eigen::VectorXcd& position) const;
+  double measure_misalignment(const Eigen::VectorXcd& position) const;
   Eigen::VectorXcd integers_of(const Eigen::VectorXcd& position) const;
   Array<Target> find_targets(double density, int searched_angles) const;
   Validity check(const Eigen::VectorXcd& position) const;
@@ -104,10 +106,11 @@ class LayoutQuantizer {
   const PointLattice& lattice_ = demands_.lattice;
   const StepHook before_step_;
   Eigen::VectorXd rotation_;
-  bool is_turned_ = false;  // so that directions run along the lattice
-  Eigen::VectorXcd start_;  // (copies) with the surface's area, the origin cone at 0
-  Eigen::VectorXd rest_;    // (n) log of its scale
-  Eigen::VectorXd strain_;  // (m) its triangles' energies against that scale, 4 for isometries
+  bool is_turned_ = false;   // so that directions run along the lattice
+  double misalignment_ = 0;  // of the start
+  Eigen::VectorXcd start_;   // (copies) with the surface's area, the origin cone at 0
+  Eigen::VectorXd rest_;     // (n) log of its scale
+  Eigen::VectorXd strain_;   // (m) its triangles' energies against that scale, 4 for isometries
   Eigen::VectorXcd motion_of_copies_;
   double extent_ = 0, energy_ = 1;
   LatticeReduction reduction_;

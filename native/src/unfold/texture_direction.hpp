@@ -24,6 +24,11 @@ struct TextureDirections {
 // vectors: (m, 3) in space, of the triangles of this mesh; the part of each that lies in its triangle counts.
 TextureDirections directions_in_triangles(const HalfedgeMesh& mesh, const Positions& vectors);
 
+// How much the borders of a surface without cones turn in a layout in which directions, up to rotations by
+// 2 pi / symmetry, are parallel: (loops) radians. None along a border without directions or where they vary too much to
+// tell, and for all borders where they could not turn so without cones.
+Array<std::optional<double>> turning_beside(const HalfedgeMesh& mesh, const Positions& vectors, int symmetry);
+
 // The images of directions as one, up to rotations by 2 pi / symmetry.
 class UpwardTurn {
  public:
@@ -43,7 +48,8 @@ class UpwardTurn {
 // The same for the images of all directions of a map.
 std::optional<Complex> upward_turn(const TextureDirections& directions, const CornerPositions& position, int symmetry);
 
-// The angle between an image and v, up to rotations by 2 pi / symmetry, radians.
+// The angle between an image and v, up to rotations by 2 pi / symmetry, radians; the mean of all where there are some.
 double angle_to_v(Complex image, int symmetry);
+double mean_angle_to_v(const TextureDirections& directions, const CornerPositions& position, int symmetry);
 
 }  // namespace lsgp
