@@ -311,6 +311,7 @@ py::dict to_dict(const lsgp::Result& result) {
   out["log_scale"] = to_array(result.log_scale);
   out["direction_errors"] =
       result.direction_errors.size() > 0 ? py::object(to_array(result.direction_errors)) : py::none();
+  out["direction_error"] = result.direction_error;
   out["seamless"] = result.seamless ? py::object(to_dict(*result.seamless)) : py::none();
   out["warnings"] = to_findings(result.warnings);
   out["stage_seconds"] = seconds;

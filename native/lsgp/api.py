@@ -329,7 +329,8 @@ class Result(EqualByContent):
     cone_angle_error: largest deviation of a cone's UV angle sum from its imposed angle, radians.
     log_scale: (n,) float64, predicted logarithm of the length scale at each vertex, area-weighted mean 0 on an island.
     direction_errors: (m,) float64, angle between v and the direction of each triangle, radians, in a seamless layout up
-        to the lattice's turns; NaN where there is none. None where `Surface.directions` is.
+        to the lattice's turns; NaN where there is none. None where `Surface.directions` is. direction_error: their
+        mean, weighted by area and by the directions' length; None where no triangle has one.
     seamless: the certificate of a seamless layout; None where none was asked for. Such a layout is not scaled into the
         unit square: one cell has the side `cell`.
     warnings: findings that leave the result usable.
@@ -354,6 +355,7 @@ class Result(EqualByContent):
     cone_angle_error: float
     log_scale: FloatArray
     direction_errors: FloatArray | None
+    direction_error: float | None
     seamless: SeamlessReport | None
     warnings: list[Finding]
     stage_seconds: dict[str, float] = field(compare=False)

@@ -100,6 +100,7 @@ struct Result {
   // (m) angle between a triangle's direction and v, up to a seamless layout's turns, radians, NaN where there is none;
   // empty where none are given.
   Eigen::VectorXd direction_errors;
+  std::optional<double> direction_error;  // their mean by area and length of the directions
   std::optional<SeamlessReport> seamless;
   std::vector<Finding> warnings;
   StageSeconds stage_seconds;

@@ -113,6 +113,7 @@ void Assembly::finish(const Cones& cones, const Array<std::pair<Index, Index>>& 
   name_unmapped(duplicates);
   add_opened_seams();
   report_flat_cones();
+  if (directed_ > 0) result_.direction_error = misalignment_ / directed_;
   added_cuts_.report(result_.warnings);
   result_.cut_edges = Eigen::Map<VertexPairs>(cut_edges_.data(), static_cast<Eigen::Index>(cut_edges_.size() / 2), 2);
   for (const Index v : cones.vertices) {
@@ -183,7 +184,11 @@ void Assembly::measure_directions(const Solved& solved) {
   const int turns = result_.seamless ? result_.seamless->symmetry : 1;
   for (Index f = 0; f < solved.directions->weight.size(); ++f) {
     const Complex image = solved.directions->image(corners(solved), f);
-    if (image != 0.0) result_.direction_errors[solved.component->source_triangle[f]] = angle_to_v(image, turns);
+    if (image == 0.0) continue;
+    const double error = angle_to_v(image, turns);
+    result_.direction_errors[solved.component->source_triangle[f]] = error;
+    misalignment_ += std::abs(image) * error;
+    directed_ += std::abs(image);
   }
 }
 

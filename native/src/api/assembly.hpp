@@ -89,6 +89,7 @@ class Assembly {
   Array<Island> islands_;    // those to be arranged
   Eigen::VectorXcd layout_;  // u + iv at the corners of all solved components, one after the other
   Index island_count_ = 0;
+  double misalignment_ = 0, directed_ = 0;  // sums over directions: of their errors by weight, of their weights
 };
 
 }  // namespace lsgp

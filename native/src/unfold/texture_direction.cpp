@@ -105,7 +105,7 @@ void UpwardTurn::add(Complex image) {
 }
 
 std::optional<Complex> UpwardTurn::turn() const {
-  constexpr double least_share = 1e-6;  // of the images that may be left of them
+  constexpr double least_share = 0.2;  // of the images that has to be left of them
   if (!(std::abs(sum_) > least_share * weight_)) return std::nullopt;
   return std::polar(1.0, -std::arg(sum_) / symmetry_);
 }
