@@ -23,8 +23,8 @@ UP = (0.0, 0.0, 1.0)
 
 @dataclass(frozen=True, slots=True)
 class DirectionChoice:
-    """What v is to run along. axis: (3,) in the world; None: nothing. by_edge: the region's active edge instead, on the
-    faces beside it."""
+    """What v is to run along. axis: (3,) in the world; None: nothing. by_edge: the region's active edge instead, on a
+    face beside it."""
 
     axis: tuple[float, float, float] | None = None
     by_edge: bool = False
@@ -57,4 +57,7 @@ def with_directions(region: Region, choice: DirectionChoice) -> Region:
     world = region.axes @ along
     sign = next((np.sign(part) for part in world[::-1] if abs(part) > 1e-6 * np.abs(world).max()), 1.0)
     beside = (surface.triangles == first).any(axis=1) & (surface.triangles == last).any(axis=1)
-    return replace(region, surface=replace(surface, directions=np.where(beside[:, None], sign * along, 0.0)))
+    directions = np.zeros(surface.triangles.shape)
+    # On one side alone: should a cut run along the edge, both sides cannot be met.
+    directions[np.flatnonzero(beside)[0]] = sign * along
+    return replace(region, surface=replace(surface, directions=directions))

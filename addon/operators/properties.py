@@ -29,7 +29,7 @@ DIRECTIONS: Choices = {
     "X": (None, "World X", "The texture's upward direction is the world's X axis where the surface lets it"),
     "Y": (None, "World Y", "The texture's upward direction is the world's Y axis where the surface lets it"),
     "Z": (None, "World Z", "The texture's upward direction is the world's Z axis: bricks lie level"),
-    "EDGE": (None, "Active Edge", "The texture's upward direction is that of the active edge on the faces beside it"),
+    "EDGE": (None, "Active Edge", "The texture's upward direction is that of the active edge, on the island beside it"),
 }
 BORDERS: Choices = {
     "FREE": (
