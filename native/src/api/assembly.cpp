@@ -217,7 +217,7 @@ void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
   if (solved.is_in_place) return;
   solved.scale = scale_to_surface(mesh, geometry, map);
   solved.first_island = ssize(islands_);
-  Array<UpwardTurn> upward(solved.part_count, UpwardTurn(1));
+  Array<UpwardTurn> upward(solved.part_count);
   if (!solved.directions->empty()) {
     const Eigen::VectorXcd position = at_corners(map.cut_mesh, map.position);
     for (Index f = 0; f < mesh.triangle_count(); ++f) upward[solved.part[f]].add(solved.directions->image(position, f));

@@ -12,6 +12,7 @@
 #include "pipeline/components.hpp"
 #include "pipeline/validation.hpp"
 #include "placement/component_placement.hpp"
+#include "placement/directed_placement.hpp"
 #include "solvers/linear_algebra_counter.hpp"
 
 namespace lsgp {
@@ -119,6 +120,11 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
     const Array<Index> mirrored = mirror_images(component, geometry, options, work.unit_scale(), findings);
     const PlacementTask task{component.mesh, geometry, cones, allowed, mirrored};
     PlacedCones found = place_component(task, options, findings, work.monitor());
+    if (surface.directions.rows() > 0 && options.lattice && !options.count) {
+      const Positions directions = directions_on(component, surface.directions);
+      auto beside = place_beside_directions(task, directions, options, found, work.monitor());
+      if (beside) found = std::move(*beside);
+    }
     if (is_opened(component, found, options)) describe_opened(component, options, work.monitor(), found);
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
       out.log_scale[component.source_vertex[v]] = found.curvature.log_scale[v];

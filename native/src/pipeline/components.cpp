@@ -95,19 +95,27 @@ void hand_out_importance(const Eigen::VectorXd& importance, Work& work) {
   }
 }
 
-// In a seamless layout without cones borders turn so that the texture can run along them: a sleeve becomes a strip.
+// The sum of the curvatures of a component's cones; none where it is not given.
+std::optional<double> given_curvature(const HalfedgeMesh& mesh, const ComponentCones& cones) {
+  double sum = 0;
+  for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
+    if (!cones.angles[i] || mesh.loop_of_vertex[cones.vertices[i]] != none) return std::nullopt;
+    sum += 2 * M_PI - *cones.angles[i];
+  }
+  return sum;
+}
+
 void hand_out_directions(const Positions& directions, const Options& options, Work& work) {
   if (directions.rows() == 0) return;
   for (std::size_t c = 0; c < work.tasks.size(); ++c) {
     const Component& component = work.topology.components[c];
-    Positions own(static_cast<Index>(component.source_triangle.size()), 3);
-    for (Index f = 0; f < own.rows(); ++f) own.row(f) = directions.row(component.source_triangle[f]);
     ComponentTask& task = work.tasks[c];
+    const Positions own = directions_on(component, directions);
     task.directions = directions_in_triangles(component.mesh, own);
-    const auto& given = task.cones.loop_turning;
-    const bool is_free = std::none_of(given.begin(), given.end(), [](const auto& turning) { return turning; });
-    if (!options.seamless || !task.cones.vertices.empty() || !is_free) continue;
-    task.cones.loop_turning = turning_beside(component.mesh, own, task.cones.symmetry);
+    const std::optional<double> curvature = given_curvature(component.mesh, task.cones);
+    if (options.seamless && curvature) {
+      let_borders_run_along(component.mesh, own, task.cones.symmetry, curvature, task.cones);
+    }
   }
 }
 
@@ -255,6 +263,25 @@ Work prepare_topology(const Surface& surface, const Cones& cones, const Options&
   Work work;
   divide(surface, cones, options, more, findings, work);
   return work;
+}
+
+Positions directions_on(const Component& component, const Positions& directions) {
+  Positions out(static_cast<Index>(component.source_triangle.size()), 3);
+  for (Index f = 0; f < out.rows(); ++f) out.row(f) = directions.row(component.source_triangle[f]);
+  return out;
+}
+
+bool let_borders_run_along(const HalfedgeMesh& mesh, const Positions& directions, int symmetry,
+                           std::optional<double> curvature, ComponentCones& cones) {
+  const auto is_given = [](const std::optional<double>& turning) { return turning.has_value(); };
+  if (mesh.closed() || std::any_of(cones.loop_turning.begin(), cones.loop_turning.end(), is_given)) return false;
+  const Array<std::optional<double>> wanted = turning_beside(mesh, directions, symmetry);
+  if (!std::all_of(wanted.begin(), wanted.end(), is_given)) return false;
+  double missing = 2 * M_PI * mesh.euler - curvature.value_or(0);
+  for (const auto& turning : wanted) missing -= *turning;
+  if (curvature && std::abs(missing) > M_PI / symmetry) return false;
+  cones.loop_turning = wanted;
+  return true;
 }
 
 bool opens_along_seams(const Component& component, const ComponentCones& cones, const Options& options) {

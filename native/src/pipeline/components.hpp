@@ -58,6 +58,15 @@ Work prepare_placement(const Surface& surface, const Cones& existing, SeamMode s
 // The same for what needs no positions: these are not looked at.
 Work prepare_topology(const Surface& surface, const Cones& cones, const Options& options, MoreCones more);
 
+// (m, 3) those of a component's triangles.
+Positions directions_on(const Component& component, const Positions& directions);
+
+// Has borders of a component turn so that a seamless layout runs along directions: a sleeve becomes a strip. Only where
+// nothing else is asked for and they all can, with this sum of the cones' curvatures; none: which can follow from it.
+// Returns whether it does.
+bool let_borders_run_along(const HalfedgeMesh& mesh, const Positions& directions, int symmetry,
+                           std::optional<double> curvature, ComponentCones& cones);
+
 // Whether seams that are followed are borders of this component, for want of cones.
 bool opens_along_seams(const Component& component, const ComponentCones& cones, const Options& options);
 

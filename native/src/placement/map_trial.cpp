@@ -44,7 +44,7 @@ Eigen::VectorXd stretch_at_vertices(const HalfedgeMesh& mesh, const Geometry& ge
 
 }  // namespace
 
-TriedMap MapTrial::make(const ComponentCones& cones, Repairs repairs) {
+std::optional<ComponentMap> MapTrial::map(const ComponentCones& cones, Repairs repairs) {
   const LinearAlgebraCounter apart;
   Options options;
   options.prescription = PrescriptionRule::manual;
@@ -54,17 +54,26 @@ TriedMap MapTrial::make(const ComponentCones& cones, Repairs repairs) {
   ++made_;
   try {
     ComponentSystem system(mesh_, geometry_, cones, options.factorization);
-    TriedMap out = measured(repairs == Repairs::easy ? attempt_component(system, task, options, unsaid, monitor_)
-                                                     : map_component(system, task, options, unsaid, monitor_),
-                            cones);
-    out.is_repaired = repairs == Repairs::all;
-    return out;
+    return repairs == Repairs::easy ? attempt_component(system, task, options, unsaid, monitor_)
+                                    : map_component(system, task, options, unsaid, monitor_);
   } catch (const Error& error) {
     if (error.code() == Code::cancelled || error.code() == Code::out_of_memory) throw;
-    TriedMap out;
-    out.is_repaired = repairs == Repairs::all;
-    return out;
+    return std::nullopt;
   }
+}
+
+TriedMap MapTrial::make(const ComponentCones& cones, Repairs repairs) {
+  std::optional<ComponentMap> made = map(cones, repairs);
+  TriedMap out;
+  if (made) out = measured(std::move(*made), cones);
+  out.is_repaired = repairs == Repairs::all;
+  return out;
+}
+
+std::optional<Eigen::VectorXcd> MapTrial::corners_of_map(const ComponentCones& cones) {
+  const std::optional<ComponentMap> made = map(cones, Repairs::easy);
+  if (!made) return std::nullopt;
+  return at_corners(made->cut_mesh, made->position);
 }
 
 TriedMap MapTrial::measured(ComponentMap map, const ComponentCones& cones) const {

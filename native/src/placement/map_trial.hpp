@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include "base/progress_monitor.hpp"
 #include "pipeline/component_map.hpp"
@@ -39,9 +40,14 @@ class MapTrial {
   // Throws CANCELLED and OUT_OF_MEMORY; other errors are failures of the map.
   TriedMap make(const ComponentCones& cones, Repairs repairs);
 
+  // u + iv at the corners, (3m), of the map with these angles; none where it fails.
+  std::optional<Eigen::VectorXcd> corners_of_map(const ComponentCones& cones);
+
   int made() const { return made_; }
 
  private:
+  // None where it fails.
+  std::optional<ComponentMap> map(const ComponentCones& cones, Repairs repairs);
   TriedMap measured(ComponentMap map, const ComponentCones& cones) const;
 
   const HalfedgeMesh& mesh_;

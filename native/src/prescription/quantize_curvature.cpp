@@ -344,6 +344,18 @@ void require_some_angle(const ComponentCones& cones, int symmetry, const TurnBou
               {ElementKind::vertices, cones.vertices});
 }
 
+// What the cones' turns have to add up to by Gauss-Bonnet; none where a border's turning is free.
+std::optional<int> required_turns(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale,
+                                  int symmetry) {
+  if (scale.balanced()) return turns_of(scale.required_sum(), symmetry);
+  double sum = 2 * M_PI * mesh.euler;
+  for (std::size_t loop = 0; loop < mesh.boundary_loops.size(); ++loop) {
+    if (loop >= cones.loop_turning.size() || !cones.loop_turning[loop]) return std::nullopt;
+    sum -= *cones.loop_turning[loop];
+  }
+  return turns_of(sum, symmetry);
+}
+
 }  // namespace
 
 int turns_of(double angle, int symmetry) { return static_cast<int>(std::lround(angle * symmetry / (2 * M_PI))); }
@@ -352,15 +364,19 @@ Eigen::VectorXd quantize_curvature(const HalfedgeMesh& mesh, const ComponentCone
                                    const Eigen::VectorXd& wanted, int symmetry) {
   const Eigen::Index k = wanted.size();
   if (k == 0) return wanted;
-  const bool balanced = scale.balanced();
-  const int sum = balanced ? turns_of(scale.required_sum(), symmetry) : 0;
   TurnBounds widest = widest_bounds(mesh, cones, symmetry);
   require_some_angle(cones, symmetry, widest);
   keep_given(mesh, cones, symmetry, widest);
-  const auto reachable = [&](const TurnBounds& bounds) {
-    return !balanced || (bounds.low.sum() <= sum && sum <= bounds.high.sum());
+  const auto reaches = [](const TurnBounds& bounds, int sum) {
+    return bounds.low.sum() <= sum && sum <= bounds.high.sum();
   };
-  if (!reachable(widest)) throw_out_of_reach(cones, symmetry, sum, widest);
+  std::optional<int> required = required_turns(mesh, cones, scale, symmetry);
+  if (required && !reaches(widest, *required)) {
+    if (scale.balanced()) throw_out_of_reach(cones, symmetry, *required, widest);
+    required.reset();  // borders give way
+  }
+  const bool keeps_sum = required.has_value();
+  const auto reachable = [&](const TurnBounds& bounds) { return !keeps_sum || reaches(bounds, *required); };
   const LogScale::Variance variance = scale.variance();
   std::optional<Exchange> best;
   double least = std::numeric_limits<double>::infinity();
@@ -370,9 +386,9 @@ Eigen::VectorXd quantize_curvature(const HalfedgeMesh& mesh, const ComponentCone
       turns[i] = std::clamp(turns_of(wanted[i], symmetry), bounds.low[i], bounds.high[i]);
     }
     Exchange exchange(mesh, variance, bounds, symmetry, std::move(turns));
-    if (balanced) exchange.reach(sum);
-    exchange.leave_impossible(balanced);
-    exchange.search(balanced);
+    if (keeps_sum) exchange.reach(*required);
+    exchange.leave_impossible(keeps_sum);
+    exchange.search(keeps_sum);
     const double stretch = scale.lumped_l2(scale.evaluate(exchange.curvature()));
     if (best && !(stretch < least)) return;
     least = stretch;
@@ -383,7 +399,7 @@ Eigen::VectorXd quantize_curvature(const HalfedgeMesh& mesh, const ComponentCone
     if (reachable(bounds)) search(bounds);
   }
   if (!best) search(widest);
-  best->refine(scale, balanced);
+  best->refine(scale, keeps_sum);
   if (is_torus(mesh) && is_impossible_on_torus(best->turns(), symmetry)) {
     throw Error(Code::seamless_impossible,
                 concat("No torus has just one cone of ", 360 - 360 / symmetry, " and one of ", 360 + 360 / symmetry,

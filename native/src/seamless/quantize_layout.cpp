@@ -104,10 +104,10 @@ LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, const ComponentMap& ma
 }
 
 void LayoutQuantizer::set_start(const ComponentMap& map) {
-  const std::optional<Complex> upward_turn = find_upward_turn(map.position, lattice_.symmetry());
-  is_turned_ = upward_turn.has_value();
-  start_ = std::sqrt(geometry_.total_area / map.uv_area) * map.position *
-           upward_turn.value_or(std::conj(upright(map.position)));
+  const std::optional<Complex> turn = find_upward_turn(map.position).turn_to_lattice();
+  is_turned_ = turn.has_value();
+  start_ =
+      std::sqrt(geometry_.total_area / map.uv_area) * map.position * turn.value_or(std::conj(upright(map.position)));
   energy_ = measure_energy(start_);
   if (energy_ > poor_energy) {
     DegreesOfFreedom all{reduction_.reduction, Array<Index>(mesh_.triangle_count())};
@@ -134,15 +134,13 @@ void LayoutQuantizer::set_start(const ComponentMap& map) {
   strain_ = triangle_energies(1, jacobians);
 }
 
-std::optional<Complex> LayoutQuantizer::find_upward_turn(const Eigen::VectorXcd& position, int symmetry) const {
-  if (demands_.directions.empty()) return std::nullopt;
-  return lsgp::upward_turn(demands_.directions, at_corners(cut_mesh_, position), symmetry);
+UpwardTurn LayoutQuantizer::find_upward_turn(const Eigen::VectorXcd& position) const {
+  return upward_turn(demands_.directions, at_corners(cut_mesh_, position), lattice_.symmetry());
 }
 
 // By a turn of the lattice, which leaves every point of it on it.
 void LayoutQuantizer::turn_upwards(Eigen::VectorXcd& position) const {
-  const std::optional<Complex> turn = find_upward_turn(position, 1);
-  if (turn) position *= lattice_.unit(turns_of(std::arg(*turn), lattice_.symmetry()));
+  if (is_turned_) position *= lattice_.unit(find_upward_turn(position).turns_on_lattice());
 }
 
 // The mean angle between directions and v, up to the lattice's turns, radians; 0 where there are none.

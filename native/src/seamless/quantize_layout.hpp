@@ -82,8 +82,7 @@ class LayoutQuantizer {
   Array<char> without_cones(Array<char> marked) const;
   void set_start(const ComponentMap& map);
   Array<MovingTriangle> moving_triangles(const ComponentMap& map);
-  // The turn of a layout that brings the directions to v, up to rotations by 2 pi / symmetry.
-  std::optional<Complex> find_upward_turn(const Eigen::VectorXcd& position, int symmetry) const;
+  UpwardTurn find_upward_turn(const Eigen::VectorXcd& position) const;
   void turn_upwards(Eigen::VectorXcd& position) const;
   double measure_misalignment(const Eigen::VectorXcd& position) const;
   Eigen::VectorXcd integers_of(const Eigen::VectorXcd& position) const;

@@ -2,8 +2,8 @@
 #include "unfold/texture_direction.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mesh/geometry.hpp"
 
@@ -12,6 +12,7 @@ namespace lsgp {
 namespace {
 
 const Complex upwards(0, 1);
+constexpr double rounding = 1e-9;
 
 Eigen::Vector3d edge_in_space(const HalfedgeMesh& mesh, Index h) {
   return mesh.positions.row(mesh.target(h)) - mesh.positions.row(mesh.origin(h));
@@ -24,6 +25,14 @@ std::optional<double> angle_from_direction(const HalfedgeMesh& mesh, const Posit
   const double along = vector.dot(edge), across = normal.dot(vector.cross(edge));
   if (!(std::abs(along) + std::abs(across) > 0)) return std::nullopt;
   return std::atan2(across, along);
+}
+
+// Whether a direction says where to go in its triangle, rather than away from it.
+bool lies_in_triangle(const HalfedgeMesh& mesh, const Positions& vectors, Index f) {
+  constexpr double least_part = 0.2;
+  const Eigen::Vector3d normal = area_normal(mesh.positions, mesh.triangles, f).normalized();
+  const Eigen::Vector3d vector = vectors.row(f).normalized();
+  return (vector - normal.dot(vector) * normal).norm() >= least_part;
 }
 
 double angle_sum(const HalfedgeMesh& mesh, Index v) {
@@ -87,33 +96,80 @@ TextureDirections directions_in_triangles(const HalfedgeMesh& mesh, const Positi
 
 Array<std::optional<double>> turning_beside(const HalfedgeMesh& mesh, const Positions& vectors, int symmetry) {
   Array<std::optional<double>> out;
-  double missing = 2 * M_PI * mesh.euler;
-  for (const Array<Index>& loop : mesh.boundary_loops) {
-    out.push_back(turning_beside(mesh, vectors, symmetry, loop));
-    missing -= out.back().value_or(0);
+  for (const Array<Index>& loop : mesh.boundary_loops) out.push_back(turning_beside(mesh, vectors, symmetry, loop));
+  return out;
+}
+
+Array<char> runs_straight_around(const HalfedgeMesh& mesh, const Positions& vectors, int symmetry) {
+  constexpr double largest_bend = M_PI / 8;  // between two triangles
+  Array<std::optional<double>> angle(mesh.halfedge_count());
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (lies_in_triangle(mesh, vectors, h / 3)) angle[h] = angle_from_direction(mesh, vectors, h);
   }
-  const bool all = std::all_of(out.begin(), out.end(), [](const auto& turning) { return turning.has_value(); });
-  if (all && std::abs(missing) > M_PI / symmetry) out.assign(out.size(), std::nullopt);
+  const auto is_parallel = [&](Index h) {
+    if (!angle[h]) return false;
+    const Index twin = mesh.twin[h];
+    if (twin == none) return true;
+    return angle[twin] &&
+           std::abs(std::remainder(*angle[twin] - *angle[h] - M_PI, 2 * M_PI / symmetry)) <= largest_bend;
+  };
+  Array<char> out(mesh.vertex_count(), 1);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (!is_parallel(h)) out[mesh.origin(h)] = out[mesh.target(h)] = 0;
+  }
   return out;
 }
 
 void UpwardTurn::add(Complex image) {
   const double weight = std::abs(image);
   if (!(weight > 0)) return;
-  sum_ += weight * std::polar(1.0, symmetry_ * std::arg(image / upwards));
+  const double angle = std::arg(image / upwards);
+  once_ += std::polar(weight, angle);
+  twice_ += std::polar(weight, 2 * angle);
+  by_symmetry_ += std::polar(weight, symmetry_ * angle);
   weight_ += weight;
 }
 
-std::optional<Complex> UpwardTurn::turn() const {
-  constexpr double least_share = 0.2;  // of the images that has to be left of them
-  if (!(std::abs(sum_) > least_share * weight_)) return std::nullopt;
-  return std::polar(1.0, -std::arg(sum_) / symmetry_);
+bool UpwardTurn::remains(Complex sum) const {
+  constexpr double least_share = 0.2;
+  return std::abs(sum) > least_share * weight_;
 }
 
-std::optional<Complex> upward_turn(const TextureDirections& directions, const CornerPositions& position, int symmetry) {
-  UpwardTurn sum(symmetry);
-  for (Index f = 0; f < directions.weight.size(); ++f) sum.add(directions.image(position, f));
-  return sum.turn();
+std::optional<Complex> UpwardTurn::turn() const {
+  if (std::abs(once_) >= std::abs(twice_)) {
+    if (!remains(once_)) return std::nullopt;
+    return std::polar(1.0, -std::arg(once_));
+  }
+  if (!remains(twice_)) return std::nullopt;
+  const Complex turn = std::polar(1.0, -std::arg(twice_) / 2);
+  return std::real(once_ * turn) < 0 ? -turn : turn;
+}
+
+std::optional<Complex> UpwardTurn::turn_to_lattice() const {
+  if (!remains(by_symmetry_)) return std::nullopt;
+  return std::polar(1.0, -std::arg(by_symmetry_) / symmetry_);
+}
+
+int UpwardTurn::turns_on_lattice() const {
+  // A texture upside down looks better than one on its side.
+  constexpr double share_of_once = 0.1;
+  int best = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (int turns = 0; turns < symmetry_; ++turns) {
+    const double angle = 2 * M_PI * turns / symmetry_;
+    const double upright =
+        std::real(twice_ * std::polar(1.0, 2 * angle) + share_of_once * once_ * std::polar(1.0, angle));
+    if (!(upright > most + rounding * weight_)) continue;
+    most = upright;
+    best = turns;
+  }
+  return best;
+}
+
+UpwardTurn upward_turn(const TextureDirections& directions, const CornerPositions& position, int symmetry) {
+  UpwardTurn out(symmetry);
+  for (Index f = 0; f < directions.weight.size(); ++f) out.add(directions.image(position, f));
+  return out;
 }
 
 double angle_to_v(Complex image, int symmetry) {
@@ -128,6 +184,11 @@ double mean_angle_to_v(const TextureDirections& directions, const CornerPosition
     weight += std::abs(image);
   }
   return weight > 0 ? sum / weight : 0;
+}
+
+double misalignment_on_lattice(const TextureDirections& directions, const CornerPositions& position, int symmetry) {
+  const Complex turn = upward_turn(directions, position, symmetry).turn_to_lattice().value_or(1);
+  return mean_angle_to_v(directions, position * turn, symmetry);
 }
 
 }  // namespace lsgp

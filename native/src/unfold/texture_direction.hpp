@@ -24,32 +24,41 @@ struct TextureDirections {
 // vectors: (m, 3) in space, of the triangles of this mesh; the part of each that lies in its triangle counts.
 TextureDirections directions_in_triangles(const HalfedgeMesh& mesh, const Positions& vectors);
 
-// How much the borders of a surface without cones turn in a layout in which directions, up to rotations by
-// 2 pi / symmetry, are parallel: (loops) radians. None along a border without directions or where they vary too much to
-// tell, and for all borders where they could not turn so without cones.
+// How much borders turn in a layout in which directions, up to rotations by 2 pi / symmetry, are parallel: (loops)
+// radians. None along a border without directions, or where they vary too much to tell.
 Array<std::optional<double>> turning_beside(const HalfedgeMesh& mesh, const Positions& vectors, int symmetry);
 
-// The images of directions as one, up to rotations by 2 pi / symmetry.
+// (n) vertices around which the same directions are nearly parallel, so that a cone there would bend the texture.
+Array<char> runs_straight_around(const HalfedgeMesh& mesh, const Positions& vectors, int symmetry);
+
+// Which turn of a layout brings the images of directions to v.
 class UpwardTurn {
  public:
-  explicit UpwardTurn(int symmetry) : symmetry_(symmetry) {}
+  // symmetry: of the lattice that the layout has to lie on.
+  explicit UpwardTurn(int symmetry = 1) : symmetry_(symmetry) {}
   void add(Complex image);
 
-  // The turn that brings the images to v as nearly as possible in the sense of least squares; none where there are none
-  // or they cancel.
+  // As nearly as possible in the sense of least squares, or where many images run against others, to v or its opposite.
+  // None without images, or where they cancel.
   std::optional<Complex> turn() const;
+  // The same up to rotations by 2 pi / symmetry, and then the best of these, in multiples of that.
+  std::optional<Complex> turn_to_lattice() const;
+  int turns_on_lattice() const;
 
  private:
+  bool remains(Complex sum) const;
+
   int symmetry_;
-  Complex sum_ = 0;
+  Complex once_ = 0, twice_ = 0, by_symmetry_ = 0;  // sums of e^{i k angle} over the angles from v, by weight
   double weight_ = 0;
 };
-
-// The same for the images of all directions of a map.
-std::optional<Complex> upward_turn(const TextureDirections& directions, const CornerPositions& position, int symmetry);
+UpwardTurn upward_turn(const TextureDirections& directions, const CornerPositions& position, int symmetry);
 
 // The angle between an image and v, up to rotations by 2 pi / symmetry, radians; the mean of all where there are some.
 double angle_to_v(Complex image, int symmetry);
 double mean_angle_to_v(const TextureDirections& directions, const CornerPositions& position, int symmetry);
+
+// What is left of that mean when the layout is turned for it.
+double misalignment_on_lattice(const TextureDirections& directions, const CornerPositions& position, int symmetry);
 
 }  // namespace lsgp
