@@ -14,6 +14,7 @@ namespace lsgp {
 namespace {
 
 constexpr double most_stretch = 1.2;  // that straight courses are worth
+constexpr double most_missed = 0.12;  // radians, by courses that are taken for straight
 constexpr double least_gain = 0.05;   // radians
 
 }  // namespace
@@ -40,7 +41,9 @@ std::optional<PlacedCones> place_beside_directions(const PlacementTask& task, co
     std::vector<Finding> unsaid;
     PlacedCones found =
         place_component({task.mesh, task.geometry, existing, allowed, task.mirrored}, generous, unsaid, monitor);
-    if (!found.reached || !(misalignment(found) < misalignment(usual) - least_gain)) return std::nullopt;
+    if (!found.reached) return std::nullopt;
+    const double missed = misalignment(found);
+    if (!(missed <= most_missed && missed < misalignment(usual) - least_gain)) return std::nullopt;
     found.maps += trial.made();
     return found;
   } catch (const Error& error) {
