@@ -65,7 +65,7 @@ def unwrap_file(
 
     The warnings of the result are also those of the files.
     """
-    options = library_options(args)
+    options = replace(library_options(args), threads=args.threads)
     target = None if is_standard_stream(args.output) else args.output
     form = output_format(target, given_format)
     require_separate(args.input, args.output, in_place=args.in_place)

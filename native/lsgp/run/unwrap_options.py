@@ -140,6 +140,17 @@ def cut_costs_of(args: argparse.Namespace, surface: Surface, progress: Progress 
     return cut_costs(surface, front, progress=progress)
 
 
+def add_threads_option(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--threads",
+        metavar="N",
+        type=int,
+        default=0,
+        help="threads for meshes of tens of thousands of triangles and more, up to 1024; the result is the same for any "
+        "number (default: as many as LSGP_THREADS in the environment says, or else as there are processors)",
+    )
+
+
 def add_strict_option(command: argparse.ArgumentParser, result: str) -> None:
     command.add_argument(
         "--strict",
