@@ -45,10 +45,10 @@ def test_any_number_of_threads_gives_the_same_bytes(name: str) -> None:
 def test_cones_are_placed_alike_and_a_solver_answers_alike() -> None:
     one, three = (lsgp.place_cones(surface(CUBE), count=8, threads=threads) for threads in (1, 3))
     assert one == three
-    solver = lsgp.Solver(surface(CUBE))
+    alone, solver = run(CUBE, threads=1), lsgp.Solver(surface(CUBE))
     for threads in (3, 1):
         again = solver.parameterize(CUBE.cones, None, lsgp.Options(threads=threads))
-        assert digest(again) == digest(run(CUBE, threads=2))
+        assert again.corner_uv.tobytes() == alone.corner_uv.tobytes()
 
 
 def test_progress_is_told_by_the_caller_alone_and_rises() -> None:

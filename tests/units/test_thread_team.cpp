@@ -3,7 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <numeric>
 #include <stdexcept>
 #include <thread>
@@ -113,6 +115,22 @@ TEST_CASE("the caller alone visits the checkpoints of all threads, and may stop 
     CHECK_THROWS_WITH_AS(team.run_forest(parent, work), "stopped", std::runtime_error);
     CHECK(runs < 64);
     CHECK_FALSE(elsewhere);
+  }
+}
+
+TEST_CASE("a team ends whose last task ends while the caller visits a checkpoint") {
+  const lsgp::CheckpointVisitor visitor([] { std::this_thread::sleep_for(std::chrono::microseconds(50)); });
+  for (const int threads : team_sizes) {
+    CAPTURE(threads);
+    lsgp::ThreadTeam team(threads);
+    std::atomic<int> runs = 0;
+    for (int round = 0; round < 500; ++round) {
+      team.run_forest({-1, -1, -1}, [&](int, int) {
+        lsgp::checkpoint(lsgp::operations_between_visits);
+        ++runs;
+      });
+    }
+    CHECK(runs == 1500);
   }
 }
 

@@ -70,8 +70,7 @@ void ThreadTeam::run_forest(const Array<int>& parent, const std::function<void(i
   forest_ = &forest;
   changed_.notify_all();
   while (forest.left > 0 && !failure_) {
-    visit(lock);
-    if (!failure_ && !take_work(lock, 0)) changed_.wait(lock);
+    if (!visit(lock) && !take_work(lock, 0)) changed_.wait(lock);
   }
   while (forest.running > 0) changed_.wait(lock);
   forest_ = nullptr;
@@ -177,9 +176,9 @@ void ThreadTeam::tell_caller() {
   changed_.notify_all();
 }
 
-// Theirs, by the caller.
-void ThreadTeam::visit(Lock& lock) {
-  if (visits_ == 0 || std::this_thread::get_id() != caller_) return;
+// Visits theirs, on the caller's thread; false where there are none. Meanwhile others may have changed anything.
+bool ThreadTeam::visit(Lock& lock) {
+  if (visits_ == 0 || std::this_thread::get_id() != caller_) return false;
   const int visits = std::exchange(visits_, 0);
   lock.unlock();
   try {
@@ -189,6 +188,7 @@ void ThreadTeam::visit(Lock& lock) {
     lock.lock();
     fail();
   }
+  return true;
 }
 
 }  // namespace lsgp

@@ -70,7 +70,7 @@ class ThreadTeam {
   void run_one(Lock& lock, Loop& loop);
   void fail();
   void tell_caller();
-  void visit(Lock& lock);
+  bool visit(Lock& lock);
 
   const std::thread::id caller_ = std::this_thread::get_id();
   std::mutex mutex_;  // of all that follows but the threads
