@@ -146,8 +146,8 @@ def add_threads_option(command: argparse.ArgumentParser) -> None:
         metavar="N",
         type=int,
         default=0,
-        help="threads for meshes of tens of thousands of triangles and more, up to 1024; the result is the same for any "
-        "number (default: as many as LSGP_THREADS in the environment says, or else as there are processors)",
+        help="threads for meshes of tens of thousands of triangles and more, up to 1024; the result is the same for "
+        "any number (default: as many as LSGP_THREADS in the environment says, or else as there are processors)",
     )
 
 
