@@ -110,7 +110,6 @@ void Cholesky<Scalar>::Factor::run_task(const Eigen::SparseMatrix<Scalar>& lower
     for (int c = 0; c < front.columns; ++c) local[first + c] = c;
     for (int r = 0; r < front.below; ++r) local[below[r]] = front.columns + r;
     fill(lower, i, local);
-    const int newest_child = i == last ? plan.last_child[task] : -1;
     const std::size_t top = update_end.empty() ? 0 : update_end.back(), update_size = plan.update_size(i);
     if (i == last) kept[task].resize(static_cast<Eigen::Index>(update_size));
     front.update = i == last ? kept[task].data() : work.stack.data() + top;
@@ -122,6 +121,7 @@ void Cholesky<Scalar>::Factor::run_task(const Eigen::SparseMatrix<Scalar>& lower
       take_in(waiting.back(), work.stack.data() + base, front, local);
       waiting.pop_back();
     }
+    const int newest_child = i == last ? plan.last_child[task] : -1;
     for (int child = newest_child; child != -1; child = plan.earlier_sibling[child]) {
       take_in(plan.task_begin[child + 1] - 1, kept[child].data(), front, local);
       kept[child].resize(0);
