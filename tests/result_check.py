@@ -58,6 +58,8 @@ def undeclared_faults(
         faults.append(f"{int(unlisted.sum())} sides of edges are apart that cut_edges does not list")
     if options.method == "lsgp":
         faults += _wrong_angles(result, opened, flipped) + _open_seams(result, opened)
+    if surface.directions is not None:
+        faults += _wrong_directions(surface, result)
     if options.seamless is not None:
         faults += seamless_faults(opened, result, options.seamless)
     return faults
@@ -101,6 +103,29 @@ def _changed_angles(result: lsgp.Result, options: lsgp.Options, given: Mapping[i
     if len(adjusted) and not len(other):
         faults.append("ANGLES_ADJUSTED where all angles are those asked for")
     return faults
+
+
+def _wrong_directions(surface: lsgp.Surface, result: lsgp.Result) -> list[str]:
+    """The errors of directions are those of their images, which are combinations of the images of two edges."""
+    place, z = surface.positions[surface.triangles], result.corner_uv @ [1, 1j]
+    first, last = place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]
+    normal = np.cross(first, last)
+    with np.errstate(all="ignore"):
+        area = np.linalg.norm(normal, axis=1)
+        unit = normal / area[:, None]
+        length = np.abs(surface.directions).max(axis=1)
+        inside = surface.directions / length[:, None]
+        inside -= (inside * unit).sum(axis=1)[:, None] * unit
+        along = [(np.cross(inside, last) * unit).sum(axis=1), (np.cross(first, inside) * unit).sum(axis=1)]
+        image = along[0] * (z[:, 1] - z[:, 0]) + along[1] * (z[:, 2] - z[:, 0])
+        # Needles and directions across the surface leave few digits.
+        sides = (first**2).sum(axis=1) + (last**2).sum(axis=1)
+        sure = (area > 1e-4 * sides) & (np.linalg.norm(inside, axis=1) > 1e-4) & (np.abs(image) > 0)
+    wrong = sure & ~np.isin(np.arange(len(z)), named_by(result, "DUPLICATE_FACE"))
+    turn = TURN / (1 if result.seamless is None else result.seamless.symmetry)
+    angle = np.angle(image[wrong] / 1j)
+    wrong[wrong] = ~(np.abs(np.abs(angle - turn * np.round(angle / turn)) - result.direction_errors[wrong]) <= ANGLE)
+    return [f"the directions of {np.flatnonzero(wrong)[:5].tolist()} are off by other angles"] if wrong.any() else []
 
 
 def _hidden_overlaps(result: lsgp.Result, opened: Opened) -> list[str]:
@@ -199,6 +224,8 @@ def _open_seams(result: lsgp.Result, opened: Opened) -> list[str]:
     residual = np.abs(right - turn[:, None] * left - mean(shift)[path][:, None]).max(axis=1)
     residual = residual[np.bincount(path, excused)[path] == 0].max(initial=0)
     size = max(float(np.ptp(z.real)), float(np.ptp(z.imag)))
-    if not residual <= RESIDUAL * size:
+    # Far from the origin coordinates have no more digits.
+    digits = 4 * np.finfo(float).eps * float(np.abs(z).max())
+    if not residual <= RESIDUAL * size + digits:
         faults.append(f"seam residual {residual / size:.1e} of the layout")
     return faults

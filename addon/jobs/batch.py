@@ -22,6 +22,7 @@ from ..mesh.region_read import Faces, Groups, read_region
 from ..mesh.uv_write import write_uv
 from .batch_files import Unreadable, mesh_objects, open_file, save_file
 from .cuts import cut_choice
+from .directions import direction_choice
 from .maps import final_layouts, packing_of_preset
 from .unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_all, unwrap_task
 
@@ -94,11 +95,12 @@ def _unwrap(task: Task, settings: Settings) -> Record:
 def _require_fitting(args: argparse.Namespace) -> None:
     """Raise UsageError where options name files with vertices or edges, which can only belong to a single mesh, and
     where they are for mesh files."""
-    named = {"cones": native.part("run.unwrap_options").cones_file(args), "seam-edges": args.seam_edges}
-    for name, value in (named | {"importance": args.importance}).items():
+    cones = native.part("run.unwrap_options").cones_file(args)
+    others = {"seam-edges": args.seam_edges, "directions": args.directions, "importance": args.importance}
+    for name, value in ({"cones": cones} | others).items():
         if value is not None:
             raise native.part("io.side_files").UsageError(
-                f"--{name} with a file is for lsgp batch; here cones, seams and importance are those of the meshes"
+                f"--{name} with a file is for lsgp batch; here cones, seams and weights are those of the meshes"
             )
     if args.texel_density is not None:
         raise native.part("io.side_files").UsageError(
@@ -122,6 +124,7 @@ def _unwrap_task(obj: bpy.types.Object, args: argparse.Namespace) -> UnwrapTask:
         keep_placement=False,
         correct_aspect=options.seamless is None,
         cuts=cut_choice(args),
+        direction=direction_choice(args),
     )
     region = read_region(obj, Faces.ALL, Groups(settings.cone_group, settings.weight_group))
     task = unwrap_task(region, settings)
@@ -135,8 +138,9 @@ def _layouts(solved: Sequence[Unwrapped], args: argparse.Namespace) -> list[NDAr
     """The coordinates of each map as they are written: packed together with a preset.  Raises Refused."""
     if args.preset is None:
         return [unwrapped.corner_uv for unwrapped in solved]
+    turned = not direction_choice(args).is_any
     by_cells = solved[0].result.seamless is not None
-    return final_layouts(solved, packing_of_preset(args.preset, MARGIN, by_cells=by_cells))
+    return final_layouts(solved, packing_of_preset(args.preset, MARGIN, by_cells=by_cells, turned=turned))
 
 
 def _nothing_solved(failures: dict[str, Exception]) -> Record:

@@ -29,19 +29,20 @@ FILLED = 0.6
 class PackSettings:
     """How islands are placed: packed, those of all objects together, or not; by whole cells or not.
 
-    margin_method, margin: as of `packing.pack`.
+    margin_method, margin, turned: as of `packing.pack`.
     """
 
     pack: bool
     by_cells: bool
     margin_method: str
     margin: float
+    turned: bool = True
 
 
-def packing_of_preset(preset: str, margin: float, *, by_cells: bool) -> PackSettings:
-    """How the islands of all objects are packed by a preset of `lsgp.auto_unwrap`.  margin, by_cells: as above."""
+def packing_of_preset(preset: str, margin: float, *, by_cells: bool, turned: bool) -> PackSettings:
+    """How the islands of all objects are packed by a preset of `lsgp.auto_unwrap`.  The others as above."""
     # The exact margin takes several passes, which are for textures that are computed to the texel.
-    return PackSettings(True, by_cells, packing.EXACT if preset == "bake" else "ADD", margin)
+    return PackSettings(True, by_cells, packing.EXACT if preset == "bake" else "ADD", margin, turned)
 
 
 def final_layouts(solved: Sequence[Unwrapped], settings: PackSettings) -> list[NDArray[np.float64]]:
@@ -50,7 +51,7 @@ def final_layouts(solved: Sequence[Unwrapped], settings: PackSettings) -> list[N
         return [unwrapped.corner_uv for unwrapped in solved]
     if settings.by_cells:
         return cells.pack(solved)
-    packed = packing.pack(_with_one_density(solved), settings.margin_method, settings.margin)
+    packed = packing.pack(_with_one_density(solved), settings.margin_method, settings.margin, turned=settings.turned)
     layouts = [unwrapped.corner_uv.copy() for unwrapped in solved]
     for unwrapped, layout, uv in zip(solved, layouts, packed, strict=True):
         layout[unwrapped.result.solved] = uv

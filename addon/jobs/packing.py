@@ -30,20 +30,22 @@ TURN_GAINS = 1e-3
 REMEDY = "switch Pack Islands off"
 
 
-def pack(parts: Sequence[Islands], margin_method: str, margin: float) -> list[NDArray[np.float64]]:
+def pack(
+    parts: Sequence[Islands], margin_method: str, margin: float, *, turned: bool = True
+) -> list[NDArray[np.float64]]:
     """Pack the islands of all parts together into the unit square; returns the new corner_uv of each part.
 
-    margin_method: of Blender's packer, or EXACT. margin: around each island.
+    margin_method: of Blender's packer, or EXACT. margin: around each island. turned: whether islands may be.
     Every island is moved by a single similarity. The packer computes in single precision, so only the placement is
     taken from its result.  Raises Refused where Blender does not pack.
     """
     if len(parts) == 1 and not parts[0].island.any() and not parts[0].pinned.any():
-        return [_alone(parts[0], margin)]
+        return [_alone(parts[0], margin, turned)]
     if margin_method != EXACT:
-        return _pack_once(parts, margin_method, margin)
+        return _pack_once(parts, margin_method, margin, turned)
     added = margin
     for _ in range(MOST_PASSES):
-        packed = _pack_once(parts, "ADD", added)
+        packed = _pack_once(parts, "ADD", added, turned)
         left = added * _scale(parts, packed)
         if abs(left - margin) <= EXACT_WITHIN * margin:
             break
@@ -51,26 +53,33 @@ def pack(parts: Sequence[Islands], margin_method: str, margin: float) -> list[ND
     return packed
 
 
-def _alone(part: Islands, margin: float) -> NDArray[np.float64]:
-    """One island by itself, turned so that it gets as large as it can; Blender's packer does not look for that."""
+def _alone(part: Islands, margin: float, turned: bool) -> NDArray[np.float64]:
+    """One island by itself, as large as it can be.  turned: whether it may be."""
     squeeze = native.lsgp.correct_aspect((1.0, 1.0), part.aspect)
     places = (part.corner_uv / squeeze).reshape(-1, 2)
+    if turned:
+        turn = _filling_turn(places, squeeze)
+        places = places @ np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    places = places * squeeze
+    low = places.min(axis=0)
+    scale = (1 - 2 * margin) / np.ptp(places, axis=0).max()
+    return (margin + scale * (places - low)).reshape(part.corner_uv.shape)
+
+
+def _filling_turn(places: NDArray[np.float64], squeeze: NDArray[np.float64]) -> float:
+    """The turn with which an island gets largest, radians; Blender's packer does not look for that."""
     angles = np.arange(DIRECTIONS) * (2 * np.pi / DIRECTIONS)
     reach = np.array([(places @ (np.cos(angle), np.sin(angle))).max() for angle in angles])
     quarter = DIRECTIONS // 4
     across, up = reach + np.roll(reach, -2 * quarter), np.roll(reach, -quarter) + np.roll(reach, -3 * quarter)
     side = np.maximum(across * squeeze[0], up * squeeze[1])
     # As it lies, where turning gains nothing.
-    turn = angles[np.flatnonzero(side <= side.min() * (1 + TURN_GAINS))[0]]
-    turned = places @ np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]) * squeeze
-    low = turned.min(axis=0)
-    scale = (1 - 2 * margin) / np.ptp(turned, axis=0).max()
-    return (margin + scale * (turned - low)).reshape(part.corner_uv.shape)
+    return float(angles[np.flatnonzero(side <= side.min() * (1 + TURN_GAINS))[0]])
 
 
-def _pack_once(parts: Sequence[Islands], margin_method: str, margin: float) -> list[NDArray[np.float64]]:
+def _pack_once(parts: Sequence[Islands], margin_method: str, margin: float, turned: bool) -> list[NDArray[np.float64]]:
     with _scratch_meshes(parts) as meshes:
-        _run_packer(margin_method, margin)
+        _run_packer(margin_method, margin, turned)
         bpy.ops.object.mode_set(mode="OBJECT")
         packed = [_read_uv(mesh) for mesh in meshes]
     return [_moved(part, uv) for part, uv in zip(parts, packed, strict=True)]
@@ -96,10 +105,10 @@ def _moved(part: Islands, packed: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.where(has_pins[part.island, None, None], part.corner_uv, placed)
 
 
-def _run_packer(margin_method: str, margin: float) -> None:
+def _run_packer(margin_method: str, margin: float, turned: bool) -> None:
     try:
         status = bpy.ops.uv.pack_islands(
-            rotate=True, scale=True, margin_method=margin_method, margin=margin, pin=True, pin_method="LOCKED"
+            rotate=turned, scale=True, margin_method=margin_method, margin=margin, pin=True, pin_method="LOCKED"
         )
     except RuntimeError as error:
         raise Refused(f"Blender's packer failed ({error}); {REMEDY}") from error

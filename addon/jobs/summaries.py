@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from ..core.text import counted
@@ -14,6 +15,10 @@ if TYPE_CHECKING:
     from .unwrapping import Unwrapped
 
 
+NOTICEABLE = math.radians(1.0)
+"""From which on a miss of the texture's direction is told."""
+
+
 def unwrap_summary(unwrapped: Unwrapped) -> str:
     """Islands, cones, stretch, overlaps, and how well the cuts of a seamless layout match."""
     result = unwrapped.result
@@ -23,6 +28,8 @@ def unwrap_summary(unwrapped: Unwrapped) -> str:
     ]
     if result.overlap_area > 0:
         parts.append(f"{100 * result.overlap_area:.2g} % overlapping")
+    if result.direction_error is not None and result.direction_error > NOTICEABLE:
+        parts.append(f"texture up missed by {math.degrees(result.direction_error):.0f}° on average")
     if result.seamless is not None:
         parts.append(_seam_summary(unwrapped))
     return ", ".join(parts)

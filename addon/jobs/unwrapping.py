@@ -19,6 +19,7 @@ from ..core.errors import Refused
 from ..core.islands import Islands
 from . import cells
 from .cuts import CutChoice, with_cut_costs
+from .directions import DirectionChoice, with_directions
 from .solving import solve_all
 
 if TYPE_CHECKING:
@@ -39,7 +40,8 @@ class UnwrapSettings:
 
     cone_group: the vertex group of the cones. weight_group: that of the importance weights, None where all vertices
     count alike. weight_factor: what a weight of 1 adds to an importance of 1. subdivided: whether regions are read with
-    the Subdivision Surface modifier. cuts: where cuts should run. The others as in the operator.
+    the Subdivision Surface modifier. cuts: where cuts should run. direction: where the texture
+    should. The others as in the operator.
     """
 
     options: lsgp.Options
@@ -50,6 +52,7 @@ class UnwrapSettings:
     keep_placement: bool
     correct_aspect: bool
     cuts: CutChoice
+    direction: DirectionChoice
     subdivided: bool = False
 
 
@@ -108,6 +111,7 @@ class Unwrapped:
 def unwrap_task(region: Region, settings: UnwrapSettings) -> UnwrapTask:
     """What the map of the region is computed from.  Raises Refused."""
     options = _options_for(region, settings.options)
+    region = with_directions(region, settings.direction)
     if region.weights is not None and settings.weight_factor:
         weighted = replace(region.surface, importance=1.0 + settings.weight_factor * region.weights)
         region = replace(region, surface=weighted)

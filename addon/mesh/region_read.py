@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum, auto
 
+import bmesh
 import bpy
 import numpy as np
 from numpy.typing import NDArray
@@ -107,12 +108,22 @@ def build_region(
         pinned=mesh.pinned[triangle_loops],
         cones=ConeAngles.none() if groups.cones is None else angles_in(obj, groups.cones, mesh),
         sharp=mesh.edges[edge_used & mesh.is_sharp],
+        active_edge=_active_edge(obj, mesh.edges[edge_used]),
         cut_paint=weights_in(obj, SEAM_COST_GROUP, mesh, outside=0.5),
         axes=axes,
         weights=None if groups.weights is None else weights_in(obj, groups.weights, mesh),
         image_aspect=image_aspect(obj),
         object_scale=size,
     )
+
+
+def _active_edge(obj: bpy.types.Object, edges: NDArray[np.int32]) -> tuple[int, int] | None:
+    """The vertices of the active edge; None outside edit mode, or where it is none of these."""
+    active = bmesh.from_edit_mesh(obj.data).select_history.active if obj.mode == "EDIT" else None
+    if not isinstance(active, bmesh.types.BMEdge):
+        return None
+    ends = sorted(vertex.index for vertex in active.verts)
+    return tuple(ends) if (np.sort(edges, axis=1) == ends).all(axis=1).any() else None
 
 
 def _in_object_shape(

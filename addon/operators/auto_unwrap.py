@@ -11,6 +11,7 @@ import bpy
 
 from ..core import identifiers, native
 from ..core.region import Region
+from ..jobs.directions import DirectionChoice
 from ..jobs.maps import final_layouts, packing_of_preset, write_map
 from ..jobs.placing import mark_placed
 from ..jobs.summaries import unwrap_summary
@@ -19,7 +20,8 @@ from ..mesh.angles import require_attributes
 from ..mesh.region_read import Groups
 from .background import BackgroundOperator, Solved
 from .cut_choices import chosen_cuts
-from .properties import SEAMS, Choices, ConeGroupProperty, CutsProperty, SeamsProperty, enum_items
+from .direction_choices import chosen_direction
+from .properties import SEAMS, Choices, ConeGroupProperty, CutsProperty, DirectionProperty, SeamsProperty, enum_items
 from .seamless import TEXTURE_SIZES, TileSizeProperties
 from .sections import section
 
@@ -36,7 +38,13 @@ PRESETS: Choices = {
 
 
 class UV_OT_cone_auto_unwrap(
-    ConeGroupProperty, SeamsProperty, CutsProperty, TileSizeProperties, BackgroundOperator, bpy.types.Operator
+    ConeGroupProperty,
+    SeamsProperty,
+    CutsProperty,
+    DirectionProperty,
+    TileSizeProperties,
+    BackgroundOperator,
+    bpy.types.Operator,
 ):
     """Auto Unwrap."""
 
@@ -91,6 +99,7 @@ class UV_OT_cone_auto_unwrap(
         else:
             layout.prop(self, "texture_size")
             layout.prop(self, "margin")
+        layout.prop(self, "direction")
         body = section(layout, "cone_auto_unwrap_cuts", "Cuts and Cones")
         if body is not None:
             body.prop(self, "cuts")
@@ -113,6 +122,7 @@ class UV_OT_cone_auto_unwrap(
             keep_placement=False,
             correct_aspect=options.seamless is None,
             cuts=chosen_cuts(self.cuts),
+            direction=self._direction(),
         )
 
         def make_task(obj: bpy.types.Object, region: Region) -> UnwrapTask:
@@ -129,13 +139,17 @@ class UV_OT_cone_auto_unwrap(
 
     def write(self, solved: Solved) -> list[str]:
         margin = self.margin / int(self.texture_size)
-        pack = packing_of_preset(PRESETS[self.preset][0], margin, by_cells=self.preset == "TILE")
+        by_cells, turned = self.preset == "TILE", not self._direction().is_any
+        pack = packing_of_preset(PRESETS[self.preset][0], margin, by_cells=by_cells, turned=turned)
         layouts = final_layouts([unwrapped for _, _, unwrapped in solved], pack)
         for (obj, task, unwrapped), corner_uv in zip(solved, layouts, strict=True):
             write_map(obj, unwrapped, corner_uv)
             if self.mark:
                 mark_placed(obj, self.vertex_group, task.cones, unwrapped.result)
         return [unwrap_summary(unwrapped) for _, _, unwrapped in solved]
+
+    def _direction(self) -> DirectionChoice:
+        return chosen_direction(self.direction, tiles=self.preset == "TILE")
 
     def _options(self) -> lsgp.Options:
         """Raises InputError."""

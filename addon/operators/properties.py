@@ -23,6 +23,14 @@ CUTS: Choices = {
     "SHARP": (None, "Creases", "Along creases and sharp edges"),
     "SHORTEST": (None, "Shortest", "The shortest way"),
 }
+DIRECTIONS: Choices = {
+    "AUTO": (None, "Automatic", "World Z where the UV map is for tiles, otherwise as the islands fit"),
+    "FIT": (None, "As It Fits", "Islands are rotated so that they take little room"),
+    "X": (None, "World X", "The texture's upward direction is the world's X axis where the surface lets it"),
+    "Y": (None, "World Y", "The texture's upward direction is the world's Y axis where the surface lets it"),
+    "Z": (None, "World Z", "The texture's upward direction is the world's Z axis: bricks lie level"),
+    "EDGE": (None, "Active Edge", "The texture's upward direction is that of the active edge, on the island beside it"),
+}
 BORDERS: Choices = {
     "FREE": (
         "free",
@@ -98,6 +106,16 @@ class CutsProperty:
         description="Where cuts run; the faces keep their shapes in the UV map. Weights in the vertex group "
         f'"{SEAM_COST_GROUP}" keep cuts away where they are above 0.5, and draw them near where they are below',
         items=enum_items(CUTS),
+    )
+
+
+class DirectionProperty:
+    """Mix-in: where the texture runs."""
+
+    direction: bpy.props.EnumProperty(
+        name="Texture Up",
+        description="What the texture's upward direction follows; islands are rotated for it, not deformed",
+        items=enum_items(DIRECTIONS),
     )
 
 

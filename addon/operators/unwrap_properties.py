@@ -7,8 +7,9 @@ from ..core import native
 from ..jobs.maps import PackSettings
 from ..jobs.unwrapping import UnwrapSettings
 from .cut_choices import chosen_cuts
+from .direction_choices import chosen_direction
 from .low_stretch import MODES
-from .properties import BORDERS, SEAMS, Choices, enum_items
+from .properties import BORDERS, SEAMS, Choices, DirectionProperty, enum_items
 from .seamless import SeamlessProperties
 
 # "Automatic" leaves the rule to the library.
@@ -37,7 +38,7 @@ MARGIN_METHODS = (
 )
 
 
-class UnwrapProperties:
+class UnwrapProperties(DirectionProperty):
     """Mix-in: how to unwrap and where to put the islands."""
 
     prescription: bpy.props.EnumProperty(
@@ -93,6 +94,7 @@ class UnwrapProperties:
 
     def draw_placement(self, layout: bpy.types.UILayout) -> None:
         """The properties that place islands, as far as they have an effect."""
+        layout.prop(self, "direction")
         layout.prop(self, "use_pins")
         if not self.seamless:
             layout.prop(self, "correct_aspect")
@@ -106,7 +108,8 @@ class UnwrapProperties:
 
     def pack_settings(self) -> PackSettings:
         pack = self.pack and not self.keep_placement
-        return PackSettings(pack, self.seamless, self.margin_method, self.margin)
+        turned = not chosen_direction(self.direction, tiles=self.seamless).is_any
+        return PackSettings(pack, self.seamless, self.margin_method, self.margin, turned)
 
 
 def unwrap_settings(chosen: bpy.types.OperatorProperties) -> UnwrapSettings:
@@ -131,5 +134,6 @@ def unwrap_settings(chosen: bpy.types.OperatorProperties) -> UnwrapSettings:
         keep_placement=chosen.keep_placement,
         correct_aspect=chosen.correct_aspect and not chosen.seamless,
         cuts=chosen_cuts(chosen.cuts),
+        direction=chosen_direction(chosen.direction, tiles=chosen.seamless),
         subdivided=chosen.use_subsurf_data,
     )

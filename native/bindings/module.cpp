@@ -39,12 +39,12 @@ Eigen::VectorXd to_vector_of_numbers(const FloatArray& array) {
   return Eigen::Map<const Eigen::VectorXd>(array.data(), array.size());
 }
 
-// Positions, triangles, edges, seams, importance, costs of cuts along the edges, and borders.
-using SurfaceArrays =
-    std::tuple<FloatArray, IndexArray, std::optional<IndexArray>, IndexArray, FloatArray, FloatArray, IndexArray>;
+// Positions, triangles, edges, seams, importance, costs of cuts along the edges, borders, and directions.
+using SurfaceArrays = std::tuple<FloatArray, IndexArray, std::optional<IndexArray>, IndexArray, FloatArray, FloatArray,
+                                 IndexArray, FloatArray>;
 
 lsgp::Surface to_surface(const SurfaceArrays& arrays) {
-  const auto& [positions, triangles, edges, seams, importance, cut_costs, borders] = arrays;
+  const auto& [positions, triangles, edges, seams, importance, cut_costs, borders, directions] = arrays;
   lsgp::Surface surface;
   surface.positions = to_matrix<lsgp::Positions>(positions);
   surface.triangles = to_matrix<lsgp::Triangles>(triangles);
@@ -53,6 +53,7 @@ lsgp::Surface to_surface(const SurfaceArrays& arrays) {
   surface.borders = to_matrix<lsgp::VertexPairs>(borders);
   surface.importance = to_vector_of_numbers(importance);
   surface.cut_costs = to_vector_of_numbers(cut_costs);
+  surface.directions = to_matrix<lsgp::Positions>(directions);
   return surface;
 }
 
@@ -309,6 +310,9 @@ py::dict to_dict(const lsgp::Result& result) {
   out["repair"] = to_dict(result.repair);
   out["cone_angle_error"] = result.cone_angle_error;
   out["log_scale"] = to_array(result.log_scale);
+  out["direction_errors"] =
+      result.direction_errors.size() > 0 ? py::object(to_array(result.direction_errors)) : py::none();
+  out["direction_error"] = result.direction_error;
   out["seamless"] = result.seamless ? py::object(to_dict(*result.seamless)) : py::none();
   out["warnings"] = to_findings(result.warnings);
   out["stage_seconds"] = seconds;

@@ -48,6 +48,10 @@ class Surface(EqualByContent):
     cut_costs: (e,) float64, 0 to 1e6: what a cut along each of `edges` costs for its length; None: 1. Costs decide
         where cuts run, and leave the map as it is.
     borders: (b, 2) int32, edges where the surface ends and its texture too, whatever seams mean.
+    directions: (m, 3) float64, what the texture's v is to run along at each triangle, in space: the part that lies in
+        the triangle counts, the longer the more, and (0, 0, 0) asks for nothing; or (3,), the same for all triangles;
+        None: no matter. Islands are turned for it, which leaves the map as it is; `Result.direction_errors` says by how
+        much it was missed.
     """
 
     positions: FloatArray
@@ -57,6 +61,7 @@ class Surface(EqualByContent):
     importance: FloatArray | None = None
     cut_costs: FloatArray | None = None
     borders: IndexArray | None = None
+    directions: FloatArray | None = None
 
     def __post_init__(self) -> None:
         _set(self, "positions", arguments.float_rows("positions", self.positions, 3))
@@ -72,6 +77,15 @@ class Surface(EqualByContent):
         if self.cut_costs is not None:
             shape = (0 if self.edges is None else len(self.edges),)
             _set(self, "cut_costs", arguments.floats_of_shape("cut_costs", self.cut_costs, shape))
+        if self.directions is not None:
+            _set(self, "directions", _directions(self.directions, len(self.triangles)))
+
+
+def _directions(directions: ArrayLike, triangle_count: int) -> FloatArray:
+    """One for each triangle."""
+    if arguments.as_array("directions", directions).ndim != 1:
+        return arguments.floats_of_shape("directions", directions, (triangle_count, 3))
+    return np.tile(arguments.floats_of_shape("directions", directions, (3,)), (triangle_count, 1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -322,6 +336,9 @@ class Result(EqualByContent):
     repair: defects of the first unfolding and the work of repairing them.
     cone_angle_error: largest deviation of a cone's UV angle sum from its imposed angle, radians.
     log_scale: (n,) float64, predicted logarithm of the length scale at each vertex, area-weighted mean 0 on an island.
+    direction_errors: (m,) float64, angle between v and the direction of each triangle, radians, in a seamless layout up
+        to the lattice's turns; NaN where there is none. None where `Surface.directions` is. direction_error: their
+        mean, weighted by area and by the directions' length; None where no triangle has one.
     seamless: the certificate of a seamless layout; None where none was asked for. Such a layout is not scaled into the
         unit square: one cell has the side `cell`.
     warnings: findings that leave the result usable.
@@ -345,6 +362,8 @@ class Result(EqualByContent):
     repair: RepairReport
     cone_angle_error: float
     log_scale: FloatArray
+    direction_errors: FloatArray | None
+    direction_error: float | None
     seamless: SeamlessReport | None
     warnings: list[Finding]
     stage_seconds: dict[str, float] = field(compare=False)
@@ -680,8 +699,9 @@ def measure_distortion(
 def surface_arrays(surface: Surface) -> tuple[Any, ...]:
     arguments.require_type("surface", surface, Surface)
     importance, cut_costs = (np.empty(0) if a is None else a for a in (surface.importance, surface.cut_costs))
+    directions = np.empty((0, 3)) if surface.directions is None else surface.directions
     seams, borders = surface.seams, surface.borders
-    return surface.positions, surface.triangles, surface.edges, seams, importance, cut_costs, borders
+    return surface.positions, surface.triangles, surface.edges, seams, importance, cut_costs, borders, directions
 
 
 def _given_cones(

@@ -146,6 +146,8 @@ def surface_of_triangles(surface: Surface, triangles: NDArray[np.integer]) -> Su
         own["edges"] = surface.edges[followed]
         if surface.cut_costs is not None:
             own["cut_costs"] = surface.cut_costs[followed]
+    if surface.directions is not None:
+        own["directions"] = surface.directions[triangles]
     return replace(surface, triangles=kept, **own)
 
 

@@ -155,7 +155,7 @@ def test_options_that_name_files_of_one_mesh_are_refused(library, tmp_path):
     assert run(library / "list.txt", "--out", out, "--cones", library / "cones.json") == 3
     (line,) = lines_of(out)
     assert (line["status"], line["code"]) == ("refused", "WRONG_USAGE")
-    assert "cones, seams and importance are those of the meshes" in line["message"]
+    assert "cones, seams and weights are those of the meshes" in line["message"]
 
 
 def test_a_texel_density_is_for_mesh_files(library, tmp_path):

@@ -23,6 +23,7 @@ REPORT_KEYS = [
         "repair",
         "overlapping",
         "overlap_area",
+        "direction_error",
         "texel_density",
         "stage_seconds",
     ],

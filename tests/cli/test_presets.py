@@ -36,7 +36,8 @@ def test_paint_and_bake_keep_lengths(lsgp, ball_files: Path, preset: str) -> Non
 
 def test_tile_is_seamless_and_takes_the_options_of_seamless_layouts(lsgp, ball_files: Path) -> None:
     seamless = report_of(lsgp, "--preset", "tile", "--tiles", 24)["seamless"]
-    assert seamless == report_of(lsgp, "--seamless", "--tiles", 24, "--overlaps", "split")["seamless"]
+    up = ("--up", 0, 1, 0)
+    assert seamless == report_of(lsgp, "--seamless", "--tiles", 24, "--overlaps", "split", *up)["seamless"]
     assert report_of(lsgp, "--preset", "tile", "--lattice", "hexagon")["seamless"]["symmetry"] == 6
     assert report_of(lsgp, "--preset", "paint", "--seamless")["seamless"]["symmetry"] == 4
     refused = lsgp(*UNWRAP, "--preset", "bake", "--tiles", 24)

@@ -83,6 +83,10 @@ def _files_and_arguments(
         value = getattr(options, name)
         arguments += [] if value is None else [f"--{name}", value]
     arguments += [] if options.repair else ["--no-repair"]
+    if surface.directions is not None:
+        strokes = [[f, *direction] for f, direction in enumerate(surface.directions.tolist())]
+        (folder / "directions.json").write_text(json.dumps(strokes))
+        arguments += ["--directions", "directions.json"]
     if options.mode == "low-stretch":
         arguments += ["--stretch", repr(options.stretch)]
         if surface.importance is not None:

@@ -86,6 +86,22 @@ def importance_of_kind(kind: str, seed: int, total: int) -> NDArray[np.float64] 
     return values.get(kind)
 
 
+def directions_of_kind(kind: str, seed: int, total: int) -> NDArray[np.float64] | None:
+    """total: triangles."""
+    rng = np.random.default_rng(seed)
+    noise = rng.normal(size=(total, 3))
+    values = {
+        "up": np.tile([0.0, 0.0, 1.0], (total, 1)),
+        "one stroke": np.where(np.arange(total)[:, None] == rng.integers(max(total, 1)), noise, 0.0),
+        "strokes": np.where(rng.random((total, 1)) < 0.1, noise, 0.0),
+        "noise": noise,
+        "enormous": 1e300 * noise,
+        "zeros": np.zeros((total, 3)),
+        "nan": np.where(rng.random((total, 1)) < 0.1, np.nan, noise),
+    }
+    return values.get(kind)
+
+
 def cut_costs_of_kind(kind: str, seed: int, total: int) -> NDArray[np.float64] | None:
     """total: edges that cuts may follow."""
     rng = np.random.default_rng(seed)

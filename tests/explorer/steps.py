@@ -23,6 +23,7 @@ KINDS: dict[str, tuple[list[str], list[str]]] = {
     "seams": (["none", "none", "edges", "path", "loop", "around a part", "all"], ["no edge", "outside"]),
     "borders": (["none", "none", "edges", "path", "loop", "around a part", "creases"], ["no edge", "outside"]),
     "importance": (["none", "ones", "random", "spikes", "enormous", "zeros"], ["negative", "nan"]),
+    "directions": (["none", "up", "up", "one stroke", "strokes", "noise", "enormous", "zeros"], ["nan"]),
     "cut costs": (["none", "ones", "random", "spikes", "zeros", "some zeros", "seen"], ["negative", "nan", "enormous"]),
     "cuttable": (["all", "all", "most", "few", "none"], ["no edge"]),
     "cones": (
@@ -110,6 +111,7 @@ RULES: dict[str, tuple[int, Callable[[Choices, Sequence[str]], Step]]] = {
     "mark seams": (3, _of_kind("seams")),
     "end at borders": (2, _of_kind("borders")),
     "weigh": (2, _of_kind("importance")),
+    "direct": (2, _of_kind("directions")),
     "allow cuts": (1, _of_kind("cuttable")),
     "cost cuts": (2, _of_kind("cut costs")),
     "choose cones": (5, _of_kind("cones")),

@@ -161,6 +161,10 @@ class World:
     def _weigh(self, step: Step) -> tuple[str, list[str]]:
         return self._change_surface(importance=places.importance_of_kind(step["kind"], step["seed"], self._total))
 
+    def _direct(self, step: Step) -> tuple[str, list[str]]:
+        directions = places.directions_of_kind(step["kind"], step["seed"], len(self._triangles))
+        return self._change_surface(directions=directions)
+
     def _allow_cuts(self, step: Step) -> tuple[str, list[str]]:
         return self._change_surface(
             edges=places.edges_of_kind(step["kind"], step["seed"], self._triangles, self._total), cut_costs=None

@@ -35,7 +35,7 @@ OPTIONS = [
     ["--cones", "auto", "--seams", "boundary", "--overlaps", "split"],
     ["--cones", "auto:2", "--mode", "low-stretch", "--importance", "importance"],
     ["--cones", "auto:4", "--seamless", "--tiles", "8"],
-    ["--cones", "cones", "--seam-edges", "seams"],
+    ["--cones", "cones", "--seam-edges", "seams", "--directions", "directions"],
     ["--cones", "cones", "--prescription", "manual"],
     ["--cones", "cones", "--importance", "importance", "--report", "report"],
     ["--cones", "cones", "--seam-edges", "seams", "--border", "straight"],
@@ -104,12 +104,12 @@ COMMANDS = [unwrap, unwrap, measure, measure, cones, batch]
 def one_input(raw: bytes) -> None:
     if len(raw) < 2:
         return
-    files = raw[2:].split(SEPARATOR) + [b""] * 4
+    files = raw[2:].split(SEPARATOR) + [b""] * 5
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         mesh = folder / f"mesh{SUFFIXES[raw[1] // 8 % len(SUFFIXES)]}"
         mesh.write_bytes(files[0])
-        for side_file, data in zip(("cones", "seams", "importance"), files[1:], strict=False):
+        for side_file, data in zip(("cones", "seams", "importance", "directions"), files[1:], strict=False):
             (folder / side_file).write_bytes(data)
         COMMANDS[raw[0] % len(COMMANDS)](folder, raw[1], mesh)
 

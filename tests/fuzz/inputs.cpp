@@ -95,6 +95,12 @@ lsgp::Surface make_surface(Bytes& bytes) {
     surface.importance.setOnes(bytes.once_in(8) ? bytes.below(4) : surface.positions.rows());
     for (double& weight : surface.importance) weight = bytes.once_in(4) ? bytes.number() : bytes.below(8);
   }
+  if (bytes.once_in(8)) {
+    surface.directions.setZero(bytes.once_in(8) ? bytes.below(4) : surface.triangles.rows(), 3);
+    for (Eigen::Index i = 0; i < surface.directions.size(); ++i) {
+      surface.directions.data()[i] = bytes.once_in(4) ? bytes.number() : bytes.below(3) - 1;
+    }
+  }
   return surface;
 }
 

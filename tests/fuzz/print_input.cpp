@@ -51,6 +51,7 @@ void print(const lsgp::Surface& surface) {
   print_rows("borders", surface.borders);
   if (surface.edges) print_rows("edges", *surface.edges);
   if (surface.importance.size() > 0) print_rows("importance", surface.importance.transpose());
+  if (surface.directions.size() > 0) print_rows("directions", surface.directions);
 }
 
 void print(const lsgp::Cones& cones) {

@@ -30,7 +30,8 @@ def surfaces() -> Iterator[bytes]:
         for shape in range(SHAPES):
             for parts in range(2):
                 part = bytes([shape, 2, 2])
-                sound = bytes([0, 0, 0, 0, 0, 0])  # moved, changed, scale, seams, edges, importance
+                # Moved, changed, scale, seams, borders, edges, importance, directions.
+                sound = bytes(8)
                 yield bytes([verb, parts]) + part * (parts + 1) + sound + numbers.randbytes(60)
         yield bytes([verb]) + numbers.randbytes(200)
 
@@ -87,8 +88,9 @@ def files() -> Iterator[bytes]:
     cones.append(b'{"cones": [0, 7], "angles_over_pi_2": [3, 1e2]}')
     seams = [b"[[0, 1], [1, 3]]", b"[]"]
     importance = [b"1 2 0 1 1 0.5 1 1", b"[1, 2, 0, 1, 1, 0.5, 1, 1]"]
+    directions = [b"[[0, 0, 0, 1]]", b"[[1, 0.5, 2e3, -1], [1, 0, 1, 0]]"]
     for i, (suffix, mesh) in enumerate(meshes()):
-        sides = SEPARATOR.join([mesh, cones[i % 3], seams[i % 2], importance[i % 2]])
+        sides = SEPARATOR.join([mesh, cones[i % 3], seams[i % 2], importance[i % 2], directions[i % 2]])
         for command in (UNWRAP, MEASURE, CONES):
             for how in range(OPTIONS if command == UNWRAP else 2):
                 yield bytes([command, 8 * suffix + how]) + sides

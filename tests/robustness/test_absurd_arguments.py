@@ -41,6 +41,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             "importance": np.ones(len(BALL.positions)),
             "cut_costs": WHOLE.cut_costs,
             "borders": EDGES[:3],
+            "directions": np.ones(BALL.triangles.shape),
         },
     ),
     "Pins": (lsgp.Pins, {"corners": [0, 5], "uv": [[0, 0], [1, 0]]}),

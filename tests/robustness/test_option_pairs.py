@@ -48,6 +48,7 @@ CHOSEN = {
     "seams marked": ["none", "path", "around a part"],
     "pins": ["none", "one", "many"],
     "importance": ["none", "random"],
+    "directions": ["none", "up", "strokes"],
     "edges": ["all", "most"],
     "call": ["parameterize", "Solver", "find_cuts", "prescribe_curvature"],
 }
@@ -109,6 +110,7 @@ def entered(row: dict[str, Any], seed: int) -> World:
         {"do": "mark seams", "kind": row["seams marked"], "count": 2, "seed": seed},
         {"do": "allow cuts", "kind": row["edges"], "count": 2, "seed": seed},
         {"do": "weigh", "kind": row.get("importance", "none"), "count": 2, "seed": seed},
+        {"do": "direct", "kind": row.get("directions", "none"), "count": 2, "seed": seed},
         {"do": "choose cones", "kind": row["cones"], "count": 4, "seed": seed},
         {"do": "choose angles", "kind": row["angles"], "count": 4, "seed": seed},
     ]

@@ -97,6 +97,10 @@ struct Result {
   RepairReport repair;
   double cone_angle_error = 0;  // largest deviation of a cone's UV angle sum, radians
   Eigen::VectorXd log_scale;    // (n) as in Prescription
+  // (m) angle between a triangle's direction and v, up to a seamless layout's turns, radians, NaN where there is none;
+  // empty where none are given.
+  Eigen::VectorXd direction_errors;
+  std::optional<double> direction_error;  // their mean by area and length of the directions
   std::optional<SeamlessReport> seamless;
   std::vector<Finding> warnings;
   StageSeconds stage_seconds;

@@ -27,6 +27,7 @@ struct Surface {
   Eigen::VectorXd importance;        // (n) weights of stretch at vertices, or empty: all weigh alike
   Eigen::VectorXd cut_costs;         // (e) cost of a cut along each of `edges` per length, or empty: 1
   VertexPairs borders;               // (b, 2) edges where the surface ends, whatever seams mean
+  Positions directions;              // (m, 3) what v is to run along at each triangle, as long as it weighs, or empty
 };
 
 struct Cones {

@@ -54,9 +54,7 @@ def _unwrap(task: Task, settings: Settings, run: Run) -> Record:
     output.parent.mkdir(parents=True, exist_ok=True)
     args = argparse.Namespace(input=Path(task.input), output=output, threads=0, **settings.options_for(task))
     result = unwrap_file(args, run)
-    report = reports.unwrap_report(
-        result, run.placement, run.triangulation, run.stage_seconds, texture_size(args), run.texels
-    )
+    report = reports.unwrap_report(result, run, texture_size(args))
     if settings.reports:
         write_whole(output.with_name(f"{output.name}.report.json"), reports.to_json(report))
     record = record_of(report) | {"output": task.output}

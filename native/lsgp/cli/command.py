@@ -114,8 +114,8 @@ def _parser() -> argparse.ArgumentParser:
         help="unwrap many meshes",
         description="Unwrap all meshes of a folder or a list, or a single one, each as `lsgp unwrap` does it. Every "
         "asset gets a line in DIR/journal.jsonl when it has ended; DIR/summary.txt and DIR/contact-sheet.html are "
-        "written at the end. In the names of files for --cones, --seam-edges and --importance, {} stands for a mesh's "
-        "path without its suffix.",
+        "written at the end. In the names of files for --cones, --seam-edges, --directions and --importance, {} "
+        "stands for a mesh's path without its suffix.",
         epilog=EXIT_CODES,
     )
     add_batch_options(batch)
@@ -198,9 +198,7 @@ def _unwrap(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
     ]
     if result.seamless is not None:
         lines.append(certificate_table(result.seamless, texture_size(args)))
-    report = reports.unwrap_report(
-        result, run.placement, run.triangulation, run.stage_seconds, texture_size(args), run.texels
-    )
+    report = reports.unwrap_report(result, run, texture_size(args))
     return report, "\n".join(lines)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The files beside a mesh on the command line: cones and their angles, seam edges, importance."""
+"""The files beside a mesh on the command line: cones and their angles, seam edges, directions, importance."""
 
 from __future__ import annotations
 
@@ -71,6 +71,23 @@ def seam_edges_in(content: Any, path: Path | None) -> NDArray[np.int32]:
     if not _is_list_of(content, lambda pair: _is_list_of(pair, _is_integer) and len(pair) == 2):
         raise _unlike(path, "[[a, b], ...] with vertices counted from 0")
     return _indices([vertex for pair in content for vertex in pair], "INDEX_OUT_OF_RANGE", "seam vertex").reshape(-1, 2)
+
+
+def directions_in(content: Any, path: Path, face_count: int) -> NDArray[np.float64]:
+    """(f, 3) the direction at each face by a directions file, those of one face added up.  Raises InputError."""
+    if not _is_list_of(content, lambda row: _is_list_of(row, _is_number) and len(row) == 4 and _is_integer(row[0])):
+        raise _unlike(path, "[[face, x, y, z], ...] with faces counted from 0")
+    faces = _indices([row[0] for row in content], "INDEX_OUT_OF_RANGE", "face of a direction")
+    outside = faces[(faces < 0) | (faces >= face_count)]
+    if len(outside):
+        raise InputError(
+            "INDEX_OUT_OF_RANGE",
+            f"'{path}' has a direction at face {outside[0]}, but the mesh has {face_count} faces. Use faces of the "
+            "file, counted from 0.",
+        )
+    directions = np.zeros((face_count, 3))
+    np.add.at(directions, faces, np.array([[_as_float(x) for x in row[1:]] for row in content]).reshape(-1, 3))
+    return directions
 
 
 def load_importance(path: Path) -> NDArray[np.float64]:

@@ -17,6 +17,7 @@ from ..certificate import certificate
 from ..errors import Elements, Finding, LsgpError
 from ..io.polygons import Triangulation
 from ..texels import TexelDensity
+from .unwrap_file import Run
 
 Report = dict[str, Any]
 
@@ -40,6 +41,7 @@ EMPTY: Report = {
     "repair": None,
     "overlapping": None,
     "overlap_area": None,
+    "direction_error": None,
     "texel_density": None,
     "stage_seconds": {},
 }
@@ -79,25 +81,18 @@ def placed_figures(placement: Placement) -> Report:
     }
 
 
-def unwrap_report(
-    result: Result,
-    placement: Placement | None,
-    triangulation: Triangulation,
-    stage_seconds: Mapping[str, float],
-    texture_size: int,
-    texels: TexelDensity | None = None,
-) -> Report:
+def unwrap_report(result: Result, run: Run, texture_size: int) -> Report:
     """The report of a map. "flipped", "wrong_angle_sums" and "overlapping" are counts; the warnings name the faces and
     vertices. "cones" and "cone_angles" are those that were imposed, so that a report serves as a cones file too.
 
-    placement: of its cones, None where they were given. texture_size: side of the texture in whose texels the errors of
-    a seamless layout are given, and the texel density. texels: that density, None where it was not asked for."""
+    texture_size: side of the texture in whose texels the errors of a seamless layout are given, and the texel density.
+    """
     return EMPTY | {
-        "warnings": _warnings(result.warnings, triangulation),
-        "triangles": len(triangulation.triangles),
+        "warnings": _warnings(result.warnings, run.triangulation),
+        "triangles": len(run.triangulation.triangles),
         "cones": result.cones.tolist(),
         "cone_angles": result.cone_angles.tolist(),
-        "placement": None if placement is None else placed_figures(placement),
+        "placement": None if run.placement is None else placed_figures(run.placement),
         "distortion": asdict(result.distortion),
         "seams": asdict(result.seams),
         "seamless": None if result.seamless is None else certificate(result.seamless, texture_size),
@@ -107,8 +102,9 @@ def unwrap_report(
         "repair": asdict(result.repair),
         "overlapping": len(result.overlapping),
         "overlap_area": result.overlap_area,
-        "texel_density": _texel_figures(texels, texture_size),
-        "stage_seconds": dict(stage_seconds),
+        "direction_error": _direction_figures(result, run),
+        "texel_density": _texel_figures(run.texels, texture_size),
+        "stage_seconds": dict(run.stage_seconds),
     }
 
 
@@ -188,6 +184,10 @@ def quality_table(measured: Result | Measurement, texels: TexelDensity | None = 
             ("Newton iterations", f"{repair.iterations}", "", ""),
             ("overlapping triangles", f"{len(measured.overlapping)}", "0", f"{overlap:.3g} % of the layout"),
         ]
+        if measured.direction_error is not None:
+            largest = math.degrees(float(np.nanmax(measured.direction_errors)))
+            mean = math.degrees(measured.direction_error)
+            further.append(("direction error", f"{mean:.2f}", "0", f"degrees, the mean; at most {largest:.2f}"))
     rows += [("flipped triangles", f"{len(measured.flipped)}", "0", flips), *further]
     if texels is not None:
         spread = f"texels per unit, from {texels.minimum:.4g} to {texels.maximum:.4g}"
@@ -199,6 +199,19 @@ def quality_table(measured: Result | Measurement, texels: TexelDensity | None = 
 
 def _texel_figures(texels: TexelDensity | None, texture_size: int | None) -> Report | None:
     return None if texels is None else {"texture_size": texture_size} | asdict(texels)
+
+
+def _direction_figures(result: Result, run: Run) -> Report | None:
+    """Radians; the mean as of `Result.direction_error`. faces, errors: of the faces of a directions file, the largest
+    of their triangles, NaN where a face has no map."""
+    if result.direction_error is None:
+        return None
+    figures = {"mean": result.direction_error, "largest": float(np.nanmax(result.direction_errors))}
+    if run.directed_faces is None:
+        return figures
+    errors = np.full(len(np.bincount(run.triangulation.polygon)), np.nan)
+    np.fmax.at(errors, run.triangulation.polygon, result.direction_errors)
+    return figures | {"faces": run.directed_faces.tolist(), "errors": errors[run.directed_faces].tolist()}
 
 
 def _warnings(findings: Iterable[Finding], triangulation: Triangulation) -> list[Report]:

@@ -20,10 +20,10 @@ from ..io.mesh_files import MeshFile, format_mesh, parse_mesh, triangulated
 from ..io.mesh_formats import output_format
 from ..io.polygons import Triangulation
 from ..io.safe_files import is_standard_stream, read_input, require_separate
-from ..io.side_files import cones_in, load_importance, load_json, seam_edges_in
+from ..io.side_files import cones_in, directions_in, load_importance, load_json, seam_edges_in
 from ..io.whole_files import write_output
 from ..texels import TexelDensity, at_texel_density, texel_density
-from .unwrap_options import cone_count, cones_file, cut_costs_of, library_options, texel_layout
+from .unwrap_options import cone_count, cones_file, cut_costs_of, library_options, texel_layout, up_of
 
 # Warnings of results that are not what was asked for, which --strict refuses.
 FLAWS = frozenset(
@@ -45,6 +45,7 @@ class Run:
     triangulation: Triangulation | None = None
     surface: Surface | None = None
     placement: Placement | None = None
+    directed_faces: NDArray[np.intp] | None = None
     texels: TexelDensity | None = None
     stage_seconds: dict[str, float] = field(default_factory=dict)
 
@@ -125,6 +126,8 @@ def _map(
     seams_path = None if args.seam_edges is None else Path(args.seam_edges)
     cones_json = None if cones_path is None else load_json(cones_path)
     seams_json = [] if seams_path is None else load_json(seams_path)
+    directions_path = None if args.directions is None else Path(args.directions)
+    directions_json = None if directions_path is None else load_json(directions_path)
     importance = None if args.importance is None else load_importance(Path(args.importance))
     file = read_file(args.input, run, given_format)
     if importance is not None and len(importance) != len(file.mesh.positions):
@@ -133,7 +136,12 @@ def _map(
             f"'{args.importance}' has {len(importance)} numbers for {len(file.mesh.positions)} vertices. "
             "Give one for each.",
         )
-    surface = file.surface(seam_edges_in(seams_json, seams_path), importance)
+    directions = up_of(args)
+    if directions_path is not None:
+        of_faces = directions_in(directions_json, directions_path, len(file.mesh.sizes))
+        directions = of_faces[file.triangulation.polygon]
+        run.directed_faces = np.flatnonzero(of_faces.any(axis=1))
+    surface = replace(file.surface(seam_edges_in(seams_json, seams_path), importance), directions=directions)
     with run.stage("cut_costs"):
         surface = run.surface = replace(surface, cut_costs=cut_costs_of(args, surface))
     given = ((), None) if cones_path is None else cones_in(cones_json, cones_path, args.prescription)

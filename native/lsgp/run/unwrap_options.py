@@ -12,6 +12,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import get_args
 
+import numpy as np
+
 from ..api import Options, Progress, Seamless, Surface, cut_costs
 from ..arguments import FloatArray
 from ..auto_unwrap import Preset, preset_options
@@ -26,6 +28,7 @@ LATTICES = ["square", "stripe", "translation", "triangle", "hexagon"]
 
 # Of most exporters of OBJ and of glTF.
 DEFAULT_FRONT = (0.0, 0.0, 1.0)
+DEFAULT_UP = (0.0, 1.0, 0.0)
 
 AUTO, AUTO_COUNT = "auto", "auto:"
 
@@ -65,6 +68,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
         "(default: follow)",
     )
     add_cut_options(unwrap)
+    _add_direction_options(unwrap)
     _add_crease_option(unwrap)
     unwrap.add_argument(
         "--border",
@@ -109,6 +113,23 @@ def _add_crease_option(unwrap: argparse.ArgumentParser) -> None:
     )
 
 
+def _add_direction_options(unwrap: argparse.ArgumentParser) -> None:
+    direction = unwrap.add_mutually_exclusive_group()
+    direction.add_argument(
+        "--up",
+        metavar=("X", "Y", "Z"),
+        nargs=3,
+        type=float,
+        help="turn islands so that the texture's v runs up the model, whose up this is; 0 0 0: turn them as it fits "
+        "(default: with --preset tile 0 1 0, otherwise 0 0 0)",
+    )
+    direction.add_argument(
+        "--directions",
+        metavar="FILE.json",
+        help="[[face, x, y, z], ...], faces counted from 0: what v is to run along there; longer ones count for more",
+    )
+
+
 def add_cut_options(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--cuts",
@@ -149,6 +170,13 @@ def add_threads_option(command: argparse.ArgumentParser) -> None:
         help="threads for meshes of tens of thousands of triangles and more, up to 1024; the result is the same for "
         "any number (default: as many as LSGP_THREADS in the environment says, or else as there are processors)",
     )
+
+
+def up_of(args: argparse.Namespace) -> FloatArray | None:
+    """The model's up, along which v is to run; None where it does not matter."""
+    default = DEFAULT_UP if args.preset == "tile" and args.directions is None else (0.0, 0.0, 0.0)
+    up = np.array(default if args.up is None else args.up)
+    return up if up.any() else None
 
 
 def add_strict_option(command: argparse.ArgumentParser, result: str) -> None:
@@ -332,6 +360,8 @@ def library_options(args: argparse.Namespace) -> Options:
     if args.prescription == "manual" and cones_file(args) is None:
         raise UsageError("--prescription manual needs a cones file with angles; give one with --cones FILE.json")
     require_cut_options(args)
+    if args.up is not None and not all(map(math.isfinite, args.up)):
+        raise UsageError("--up takes finite numbers; give the model's up, as 0 1 0")
     if args.preset is None and not args.creases:
         raise UsageError("--no-creases is for presets; add --preset paint or bake")
     texel_layout(args)

@@ -46,10 +46,12 @@ Assembly::Assembly(const Surface& surface, const Array<Component>& components, c
   result.corner_uv = CornerUv::Constant(3 * surface.triangles.rows(), 2, std::numeric_limits<double>::quiet_NaN());
   result.island.assign(static_cast<std::size_t>(surface.triangles.rows()), none);
   result.log_scale = Eigen::VectorXd::Zero(surface.positions.rows());
+  result.direction_errors =
+      Eigen::VectorXd::Constant(surface.directions.rows(), std::numeric_limits<double>::quiet_NaN());
   cone_angle_.assign(surface.positions.rows(), std::numeric_limits<double>::quiet_NaN());
 }
 
-void Assembly::add(std::size_t component_index, const ComponentCones& cones, const Geometry& geometry, ComponentMap map,
+void Assembly::add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, ComponentMap map,
                    std::vector<Finding> findings) {
   const Component& component = components_[component_index];
   // A seamless layout was split before its parts were put onto the lattice; pinned ones keep their place.
@@ -71,12 +73,13 @@ void Assembly::add(std::size_t component_index, const ComponentCones& cones, con
     is_flat[v] = 1;
     flat_cones_.push_back(component.source_vertex[v]);
   }
-  for (const Index v : cones.vertices) {
+  for (const Index v : task.cones.vertices) {
     if (is_flat[v]) continue;
     cone_angle_[component.source_vertex[v]] = component.mesh.flat_angle(v) - map.curvature.at_vertex[v];
   }
   Solved solved;
   solved.component = &component;
+  solved.directions = &task.directions;
   solved.map = std::move(map);
   add_islands(geometry, solved);
   solved_.push_back(std::move(solved));
@@ -94,6 +97,7 @@ void Assembly::finish(const Cones& cones, const Array<std::pair<Index, Index>>& 
     for (Solved& solved : solved_) {
       check_in_layout(solved);
       collect_checks(*solved.component, solved.map);
+      measure_directions(solved);
     }
   }
   {
@@ -109,6 +113,7 @@ void Assembly::finish(const Cones& cones, const Array<std::pair<Index, Index>>& 
   name_unmapped(duplicates);
   add_opened_seams();
   report_flat_cones();
+  if (directed_ > 0) result_.direction_error = misalignment_ / directed_;
   added_cuts_.report(result_.warnings);
   result_.cut_edges = Eigen::Map<VertexPairs>(cut_edges_.data(), static_cast<Eigen::Index>(cut_edges_.size() / 2), 2);
   for (const Index v : cones.vertices) {
@@ -175,6 +180,18 @@ void Assembly::collect_checks(const Component& component, const ComponentMap& ma
   }
 }
 
+void Assembly::measure_directions(const Solved& solved) {
+  const int turns = result_.seamless ? result_.seamless->symmetry : 1;
+  for (Index f = 0; f < solved.directions->weight.size(); ++f) {
+    const Complex image = solved.directions->image(corners(solved), f);
+    if (image == 0.0) continue;
+    const double error = angle_to_v(image, turns);
+    result_.direction_errors[solved.component->source_triangle[f]] = error;
+    misalignment_ += std::abs(image) * error;
+    directed_ += std::abs(image);
+  }
+}
+
 Array<char> Assembly::open_seams(const HalfedgeMesh& mesh) const {
   // A seamless layout runs on across seams that were not cut.
   return result_.seamless ? Array<char>(mesh.halfedge_count(), 0) : mesh.seam;
@@ -200,6 +217,11 @@ void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
   if (solved.is_in_place) return;
   solved.scale = scale_to_surface(mesh, geometry, map);
   solved.first_island = ssize(islands_);
+  Array<UpwardTurn> upward(solved.part_count, UpwardTurn(1));
+  if (!solved.directions->empty()) {
+    const Eigen::VectorXcd position = at_corners(map.cut_mesh, map.position);
+    for (Index f = 0; f < mesh.triangle_count(); ++f) upward[solved.part[f]].add(solved.directions->image(position, f));
+  }
   Array<Array<Index>> copies(solved.part_count);  // of every island
   Array<Index> listed_in(map.cut_mesh.copy_count(), none);
   for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
@@ -208,8 +230,9 @@ void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
     listed_in[copy] = part;
     copies[part].push_back(copy);
   }
-  for (const Array<Index>& own : copies) {
-    Island island{Eigen::VectorXcd(own.size()), std::nullopt, static_cast<Index>(solved_.size())};
+  for (Index part = 0; part < solved.part_count; ++part) {
+    const Array<Index>& own = copies[part];
+    Island island{Eigen::VectorXcd(own.size()), upward[part].turn(), std::nullopt, static_cast<Index>(solved_.size())};
     for (std::size_t k = 0; k < own.size(); ++k) {
       island.position[static_cast<Eigen::Index>(k)] = solved.scale * map.position[own[k]];
       if (!map.pins.empty() && own[k] == map.pins.front().copy) {
@@ -266,6 +289,9 @@ void Assembly::name_unmapped(const Array<std::pair<Index, Index>>& duplicates) {
 
 void Assembly::share_map(Index triangle, Index original) {
   element(result_.island, triangle) = element(result_.island, original);
+  if (result_.direction_errors.size() > 0) {
+    result_.direction_errors[triangle] = result_.direction_errors[original];
+  }
   for (Index corner = 3 * triangle; corner < 3 * triangle + 3; ++corner) {
     for (Index other = 3 * original; other < 3 * original + 3; ++other) {
       if (surface_.triangles.data()[corner] == surface_.triangles.data()[other]) {

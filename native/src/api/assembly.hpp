@@ -18,8 +18,9 @@ class Assembly {
   Assembly(const Surface& surface, const Array<Component>& components, const Options& options, ProgressMonitor& monitor,
            Result& result);
 
-  // A component whose map cannot be split is left out, with the findings about its map.
-  void add(std::size_t component_index, const ComponentCones& cones, const Geometry& geometry, ComponentMap map,
+  // task: has to stay until the end.  A component whose map cannot be split is left out, with the findings about its
+  // map.
+  void add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, ComponentMap map,
            std::vector<Finding> findings);
 
   // Reports components that were left out; throws the first one's error where no other is there.
@@ -31,6 +32,7 @@ class Assembly {
  private:
   struct Solved {
     const Component* component;
+    const TextureDirections* directions;
     ComponentMap map;
     Array<Index> part;  // (m) the island of every triangle, counted from the component's first
     Index part_count = 1;
@@ -49,6 +51,7 @@ class Assembly {
   // Checks the coordinates that are returned: a component much smaller than the others has lost digits to its place.
   void check_in_layout(Solved& solved) const;
   void collect_checks(const Component& component, const ComponentMap& map);
+  void measure_directions(const Solved& solved);
 
   // Halfedges at which a component's layout may end besides its cuts, (3m).
   Array<char> open_seams(const HalfedgeMesh& mesh) const;
@@ -86,6 +89,7 @@ class Assembly {
   Array<Island> islands_;    // those to be arranged
   Eigen::VectorXcd layout_;  // u + iv at the corners of all solved components, one after the other
   Index island_count_ = 0;
+  double misalignment_ = 0, directed_ = 0;  // sums over directions: of their errors by weight, of their weights
 };
 
 }  // namespace lsgp

@@ -155,7 +155,7 @@ Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& 
   const ProgressMonitor::Stage stage(monitor, "layout");
   Assembly assembly(surface, components, options, monitor, result);
   for (std::size_t i = 0; i < components.size(); ++i) {
-    if (maps[i]) assembly.add(i, tasks[i].cones, kept_[i]->geometry, std::move(*maps[i]), std::move(found[i]));
+    if (maps[i]) assembly.add(i, tasks[i], kept_[i]->geometry, std::move(*maps[i]), std::move(found[i]));
   }
   assembly.require_any();
   assembly.finish(cones, work_.topology.duplicates);

@@ -95,6 +95,22 @@ void hand_out_importance(const Eigen::VectorXd& importance, Work& work) {
   }
 }
 
+// In a seamless layout without cones borders turn so that the texture can run along them: a sleeve becomes a strip.
+void hand_out_directions(const Positions& directions, const Options& options, Work& work) {
+  if (directions.rows() == 0) return;
+  for (std::size_t c = 0; c < work.tasks.size(); ++c) {
+    const Component& component = work.topology.components[c];
+    Positions own(static_cast<Index>(component.source_triangle.size()), 3);
+    for (Index f = 0; f < own.rows(); ++f) own.row(f) = directions.row(component.source_triangle[f]);
+    ComponentTask& task = work.tasks[c];
+    task.directions = directions_in_triangles(component.mesh, own);
+    const auto& given = task.cones.loop_turning;
+    const bool is_free = std::none_of(given.begin(), given.end(), [](const auto& turning) { return turning; });
+    if (!options.seamless || !task.cones.vertices.empty() || !is_free) continue;
+    task.cones.loop_turning = turning_beside(component.mesh, own, task.cones.symmetry);
+  }
+}
+
 // The power of two that brings the surface to about unit size: exact, and areas can neither overflow nor vanish.
 double unit_scale(const Surface& surface) {
   double largest = 0;
@@ -227,6 +243,7 @@ Work prepare(const Surface& surface, const Cones& cones, const Options& options,
   hand_out_pins(surface, pins, work);
   hand_out_importance(surface.importance, work);
   hand_out_turning(work.topology.components, options, surface.positions.rows(), work.tasks);
+  hand_out_directions(surface.directions, options, work);
   findings.insert(findings.end(), work.found.begin(), work.found.end());
   return work;
 }

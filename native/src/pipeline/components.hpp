@@ -11,6 +11,7 @@
 #include "lsgp/result.hpp"
 #include "mesh/topology.hpp"
 #include "prescription/curvature.hpp"
+#include "unfold/texture_direction.hpp"
 
 namespace lsgp {
 
@@ -20,6 +21,7 @@ struct ComponentTask {
   Array<Index> border_cones;                        // vertices of cones on a free border that prescribe nothing
   Array<std::pair<Index, Complex>> pinned_corners;  // and their places
   Eigen::VectorXd importance;                       // (n) weights of stretch, or empty
+  TextureDirections directions;                     // or none
 };
 
 // A surface's components and what is asked of each.

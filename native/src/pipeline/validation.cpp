@@ -77,6 +77,25 @@ void require_importance(const Eigen::VectorXd& importance, Index vertex_count) {
   }
 }
 
+void require_directions(const Surface& surface) {
+  const Positions& directions = surface.directions;
+  if (directions.rows() == 0) return;
+  if (directions.rows() != surface.triangles.rows()) {
+    throw Error(Code::wrong_parameter, concat("There are ", directions.rows(), " directions for ",
+                                              surface.triangles.rows(), " triangles. Give one for each."));
+  }
+  Array<Index> bad;
+  for (Index f = 0; f < directions.rows(); ++f) {
+    if (!directions.row(f).allFinite()) bad.push_back(f);
+  }
+  if (!bad.empty()) {
+    throw Error(Code::wrong_parameter,
+                concat("The direction at ", count(bad.size(), "triangle", "triangles"),
+                       " is no finite vector. Give 0 0 0 where there is none."),
+                {ElementKind::triangles, bad});
+  }
+}
+
 void require_cut_costs(const Surface& surface) {
   const Eigen::VectorXd& costs = surface.cut_costs;
   if (costs.size() == 0) return;
@@ -179,6 +198,7 @@ void require_valid(const Surface& surface) {
   }
   require_extent(surface.positions, used);
   require_importance(surface.importance, n);
+  require_directions(surface);
 }
 
 void require_comparable(const Positions& positions) {

@@ -132,7 +132,7 @@ Array<Similarity> arrange(const Array<Island>& islands) {
   double total = 0;
   for (std::size_t i = 0; i < islands.size(); ++i) {
     const Array<Complex> hull = convex_hull(islands[i].position);
-    out[i].turn = std::conj(longer_side(hull));
+    out[i].turn = islands[i].turn.value_or(std::conj(longer_side(hull)));
     double left = infinity, right = -infinity, bottom = infinity, top = -infinity;
     for (const Complex point : hull) {
       const Complex turned = point * out[i].turn;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Islands turned upright, scaled to one texel density and placed side by side in the unit square.
+// Islands turned, scaled to one texel density and placed side by side in the unit square.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,9 +13,10 @@
 namespace lsgp {
 
 struct Island {
-  Eigen::VectorXcd position;  // u + iv of its points, at the texel density it is to have
+  Eigen::VectorXcd position;      // u + iv of its points, at the texel density it is to have
+  std::optional<Complex> turn{};  // none: the one that makes its bounding box smallest
   // Where a pinned point has to end up; only the place of the island follows, not its size or turn.
-  std::optional<std::pair<Eigen::Index, Complex>> pin;
+  std::optional<std::pair<Eigen::Index, Complex>> pin{};
   Index component = 0;
 };
 
@@ -27,7 +28,7 @@ struct Similarity {
   Complex operator()(Complex z) const { return (z * turn + shift) / divisor + move; }
 };
 
-// Turns every island so that its bounding box is smallest, puts the islands on shelves without overlap and scales all
+// Turns every island, puts the islands on shelves without overlap and scales all
 // of them alike into the unit square; then moves those with a pin to it, and the others of their component along.
 Array<Similarity> arrange(const Array<Island>& islands);
 

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "base/text.hpp"
@@ -126,27 +127,35 @@ Array<char> shiftable_loops(const HalfedgeMesh& mesh, const BorderConditions& bo
   return out;
 }
 
-// The turning of all borders rounded to multiples of 2 pi / symmetry, the sum kept: those that lose most by it give
-// way.
+// The turning of all borders rounded to multiples of 2 pi / symmetry, the sum kept: those whose turning is not
+// prescribed, or all where it is prescribed for all, make up for it, first those that lose most by rounding.
 void quantize_turning(const Eigen::VectorXd& turning, int symmetry, Turning& wanted) {
-  const Eigen::Index count = turning.size();
-  Eigen::VectorXd exact = turning * (symmetry / (2 * M_PI));
-  for (Eigen::Index i = 0; i < count; ++i) {
-    if (wanted[i]) exact[i] = *wanted[i] * symmetry / (2 * M_PI);
+  const double unit = 2 * M_PI / symmetry;
+  Eigen::VectorXd exact = turning / unit;
+  Array<Eigen::Index> adjustable;
+  for (Eigen::Index i = 0; i < turning.size(); ++i) {
+    if (wanted[i])
+      exact[i] = *wanted[i] / unit;
+    else
+      adjustable.push_back(i);
+  }
+  if (adjustable.empty()) {
+    adjustable.resize(turning.size());
+    std::iota(adjustable.begin(), adjustable.end(), 0);
   }
   Eigen::VectorXd rounded = exact.array().round();
-  double missing = std::round(turning.sum() * symmetry / (2 * M_PI)) - rounded.sum();
+  double missing = std::round(turning.sum() / unit) - rounded.sum();
   // What rounding leaves is less than a step for every border; prescribed turning may leave more, evenly shared.
-  const double whole = std::trunc(missing / static_cast<double>(count));
-  rounded.array() += whole;
-  missing -= whole * static_cast<double>(count);
+  const double count = static_cast<double>(adjustable.size()), whole = std::trunc(missing / count);
+  for (const Eigen::Index i : adjustable) rounded[i] += whole;
+  missing -= whole * count;
   const double step = missing > 0 ? 1 : -1;
-  for (Eigen::Index taken = 0; taken < count && static_cast<double>(taken) < std::abs(missing); ++taken) {
-    Eigen::Index at;
-    (step * (exact - rounded)).maxCoeff(&at);
-    rounded[at] += step;
+  for (double taken = 0; taken < std::abs(missing); ++taken) {
+    const auto lost = [&](Eigen::Index i) { return step * (exact[i] - rounded[i]); };
+    rounded[*std::max_element(adjustable.begin(), adjustable.end(),
+                              [&](Eigen::Index a, Eigen::Index b) { return lost(a) < lost(b); })] += step;
   }
-  for (Eigen::Index i = 0; i < count; ++i) wanted[i] = rounded[i] * 2 * M_PI / symmetry;
+  for (Eigen::Index i = 0; i < turning.size(); ++i) wanted[i] = rounded[i] * unit;
 }
 
 // Holes about which the metric turns almost exactly once are made to turn exactly once where that takes no more than

@@ -69,24 +69,24 @@ double symmetric_dirichlet_energy(const Geometry& geometry, const Jacobians& jac
   return std::sqrt(grown * shrunk) / geometry.area.sum();
 }
 
-LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, const ComponentMap& map, const PointLattice& lattice,
-                                 bool parity, const Array<Index>& relaxed, StepHook before_step)
+LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, const ComponentMap& map, const LatticeDemands& demands,
+                                 StepHook before_step)
     : mesh_(system.mesh()),
       geometry_(system.geometry()),
       cut_graph_(map.cut_graph),
       cut_mesh_(map.cut_mesh),
       curvature_(map.curvature),
-      lattice_(lattice),
+      demands_(demands),
       before_step_(std::move(before_step)),
-      rotation_(*map.rotation),
-      relaxed_(!relaxed.empty()) {
+      rotation_(*map.rotation) {
+  const Array<Index>& relaxed = demands.relaxed;
   // With relaxed cones the root leaves the lattice too: best it is one of a pair that is too close.
   const NodeGraph nodes = build_node_graph(mesh_, map.cut_graph, [&](Index v) {
     return !relaxed.empty() && v == relaxed.front() ? 1 : rank_of_root(map.curvature.at_vertex[v]);
   });
   reduction_ = impose_on_lattice(mesh_, map.cut_graph, map.cut_mesh, nodes,
                                  curvature_of_nodes(mesh_, nodes, map.curvature.at_vertex),
-                                 turns_of_cuts(rotation_, lattice.symmetry()), lattice, parity, relaxed);
+                                 turns_of_cuts(rotation_, lattice_.symmetry()), lattice_, demands.parity, relaxed);
   motion_of_copies_ = motion_of_copies(mesh_, map.cut_graph, map.cut_mesh, rotation_);
   set_start(map);
   integers_ = integers_of(start_);
@@ -100,11 +100,14 @@ LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, const ComponentMap& ma
     response_ = sparse_response({mesh_, stiffened, cut_graph_, cut_mesh_}, reduction_);
   }
   const Eigen::MatrixXcd restricted = reduction_.basis.adjoint() * response_->schur() * reduction_.basis;
-  search_.emplace((restricted + restricted.adjoint()) / 2, moving_triangles(map, relaxed), lattice);
+  search_.emplace((restricted + restricted.adjoint()) / 2, moving_triangles(map), lattice_);
 }
 
 void LayoutQuantizer::set_start(const ComponentMap& map) {
-  start_ = std::sqrt(geometry_.total_area / map.uv_area) * map.position * std::conj(upright(map.position));
+  const std::optional<Complex> upward_turn = find_upward_turn(map.position, lattice_.symmetry());
+  is_turned_ = upward_turn.has_value();
+  start_ = std::sqrt(geometry_.total_area / map.uv_area) * map.position *
+           upward_turn.value_or(std::conj(upright(map.position)));
   energy_ = measure_energy(start_);
   if (energy_ > poor_energy) {
     DegreesOfFreedom all{reduction_.reduction, Array<Index>(mesh_.triangle_count())};
@@ -113,9 +116,11 @@ void LayoutQuantizer::set_start(const ComponentMap& map) {
                     Eigen::VectorXd::Zero(mesh_.triangle_count()), std::move(all), before_step_, start_)
         .smooth(DistortionEnergy::Kind::symmetric_dirichlet, poor_steps, least_decrease);
   }
+  misalignment_ = measure_misalignment(start_);
   const Jacobians jacobians = measure_jacobians(mesh_, geometry_, cut_mesh_, start_);
   energy_ = symmetric_dirichlet_energy(geometry_, jacobians);
-  extent_ = start_.real().maxCoeff() - start_.real().minCoeff();
+  extent_ = std::max(start_.real().maxCoeff() - start_.real().minCoeff(),
+                     start_.imag().maxCoeff() - start_.imag().minCoeff());
   if (reduction_.origin != none) start_.array() -= start_[reduction_.origin];
   // Its scale at the vertices is the mean over the triangles around.
   rest_ = Eigen::VectorXd::Zero(mesh_.vertex_count());
@@ -129,8 +134,25 @@ void LayoutQuantizer::set_start(const ComponentMap& map) {
   strain_ = triangle_energies(1, jacobians);
 }
 
+std::optional<Complex> LayoutQuantizer::find_upward_turn(const Eigen::VectorXcd& position, int symmetry) const {
+  if (demands_.directions.empty()) return std::nullopt;
+  return lsgp::upward_turn(demands_.directions, at_corners(cut_mesh_, position), symmetry);
+}
+
+// By a turn of the lattice, which leaves every point of it on it.
+void LayoutQuantizer::turn_upwards(Eigen::VectorXcd& position) const {
+  const std::optional<Complex> turn = find_upward_turn(position, 1);
+  if (turn) position *= lattice_.unit(turns_of(std::arg(*turn), lattice_.symmetry()));
+}
+
+// The mean angle between directions and v, up to the lattice's turns, radians; 0 where there are none.
+double LayoutQuantizer::measure_misalignment(const Eigen::VectorXcd& position) const {
+  if (!is_turned_) return 0;
+  return mean_angle_to_v(demands_.directions, at_corners(cut_mesh_, position), lattice_.symmetry());
+}
+
 // Also lists the pairs of cones that share an edge of their triangulation.
-Array<MovingTriangle> LayoutQuantizer::moving_triangles(const ComponentMap& map, const Array<Index>& relaxed) {
+Array<MovingTriangle> LayoutQuantizer::moving_triangles(const ComponentMap& map) {
   Array<MovingTriangle> out;
   if (!mesh_.closed() || map.cones.empty()) return out;
   Array<Complex> turn;
@@ -160,7 +182,7 @@ Array<MovingTriangle> LayoutQuantizer::moving_triangles(const ComponentMap& map,
       triangle.slope[c] = slope * reduction_.basis;
     }
     // Relaxed cones may be anywhere, so no triangle can be told to collapse.
-    if (relaxed.empty()) out.push_back(std::move(triangle));
+    if (demands_.relaxed.empty()) out.push_back(std::move(triangle));
     for (std::size_t c = 0; c < 3; ++c) {
       const auto [first, second] = std::minmax(corners[c].cone, corners[(c + 1) % 3].cone);
       if (first == second) continue;
@@ -198,7 +220,7 @@ Array<LayoutQuantizer::Target> LayoutQuantizer::find_targets(double density, int
     LatticeSearch::Choice choice;
   };
   Array<Candidate> candidates;
-  for (int i = 0; i < tried_angles; ++i) {
+  for (int i = 0; i < (is_turned_ ? 1 : tried_angles); ++i) {
     const Complex motion = std::polar(density, 2 * M_PI / lattice_.symmetry() * i / tried_angles);
     candidates.push_back({motion, search_->nearest(motion * wanted)});
   }
@@ -339,7 +361,7 @@ std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, const L
   const bool quick = effort.quick;
   const Array<Target> targets = find_targets(density, quick ? few_angles : tried_angles);
   // Beside relaxed cones nothing tells whether the points can be reached, and following them would take too long.
-  const int ways = relaxed_ || quick ? 1 : 2;
+  const int ways = !demands_.relaxed.empty() || quick ? 1 : 2;
   for (int in_steps = 0; in_steps < ways; ++in_steps) {
     const std::size_t count = std::min(targets.size(), in_steps || quick ? few_targets : tried_targets);
     for (std::size_t i = 0; i < count; ++i) {
@@ -353,7 +375,10 @@ std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, const L
         smooth(scale, Array<char>(mesh_.vertex_count(), 1), smoothing_steps, out.position);
         out.energy = measure_energy(out.position);
       }
-      if (out.energy <= effort.most_growth * energy_) return out;
+      if (!(out.energy <= effort.most_growth * energy_)) continue;
+      if (measure_misalignment(out.position) > misalignment_ + effort.most_turned) continue;
+      turn_upwards(out.position);
+      return out;
     }
   }
   return std::nullopt;

@@ -13,6 +13,7 @@
 #include "repair/newton.hpp"
 #include "seamless/lattice_energy.hpp"
 #include "seamless/lattice_search.hpp"
+#include "unfold/texture_direction.hpp"
 #include "unfold/unfold.hpp"
 
 namespace lsgp {
@@ -26,6 +27,7 @@ struct QuantizedLayout {
 // What a layout on some grid is worth.
 struct LayoutEffort {
   double most_growth = std::numeric_limits<double>::infinity();  // of the energy by rounding
+  double most_turned = std::numeric_limits<double>::infinity();  // radians, of directions by rounding, on average
   bool quick = false;  // only layouts are wanted that need little repair; otherwise they are also followed in steps
 };
 
@@ -35,14 +37,22 @@ struct ConePair {
   Index first, second;
 };
 
+// How layouts are to lie on the lattice.
+struct LatticeDemands {
+  PointLattice lattice;
+  bool parity;                          // translations lead from white cells to white ones
+  const Array<Index>& relaxed;          // cones that need not lie on the lattice
+  const TextureDirections& directions;  // what v is to run along
+};
+
 // The layouts of one map on grids of any size. What does not depend on the size is computed once.
 class LayoutQuantizer {
  public:
-  // system: of the map's cones, and others that are flat. Both have to outlive it.
+  // system: of the map's cones, and others that are flat. All have to outlive it.
   // map: without flips and with the right angles, its rotations multiples of the lattice's turn.
-  // relaxed: cones that need not lie on the lattice. Throws SEAMLESS_IMPOSSIBLE.
-  LayoutQuantizer(ComponentSystem& system, const ComponentMap& map, const PointLattice& lattice, bool parity,
-                  const Array<Index>& relaxed, StepHook before_step);
+  // Throws SEAMLESS_IMPOSSIBLE.
+  LayoutQuantizer(ComponentSystem& system, const ComponentMap& map, const LatticeDemands& demands,
+                  StepHook before_step);
 
   // The layout's longer side, where it has the surface's area.
   double extent() const { return extent_; }
@@ -71,7 +81,11 @@ class LayoutQuantizer {
   CutSurface surface() const { return {mesh_, geometry_, cut_graph_, cut_mesh_}; }
   Array<char> without_cones(Array<char> marked) const;
   void set_start(const ComponentMap& map);
-  Array<MovingTriangle> moving_triangles(const ComponentMap& map, const Array<Index>& relaxed);
+  Array<MovingTriangle> moving_triangles(const ComponentMap& map);
+  // The turn of a layout that brings the directions to v, up to rotations by 2 pi / symmetry.
+  std::optional<Complex> find_upward_turn(const Eigen::VectorXcd& position, int symmetry) const;
+  void turn_upwards(Eigen::VectorXcd& position) const;
+  double measure_misalignment(const Eigen::VectorXcd& position) const;
   Eigen::VectorXcd integers_of(const Eigen::VectorXcd& position) const;
   Array<Target> find_targets(double density, int searched_angles) const;
   Validity check(const Eigen::VectorXcd& position) const;
@@ -88,13 +102,15 @@ class LayoutQuantizer {
   const CutGraph& cut_graph_;
   const CutMesh& cut_mesh_;
   const Curvature& curvature_;
-  const PointLattice lattice_;
+  const LatticeDemands demands_;
+  const PointLattice& lattice_ = demands_.lattice;
   const StepHook before_step_;
   Eigen::VectorXd rotation_;
-  const bool relaxed_;      // some cones are
-  Eigen::VectorXcd start_;  // (copies) with the surface's area, the origin cone at 0
-  Eigen::VectorXd rest_;    // (n) log of its scale
-  Eigen::VectorXd strain_;  // (m) its triangles' energies against that scale, 4 for isometries
+  bool is_turned_ = false;   // so that directions run along the lattice
+  double misalignment_ = 0;  // of the start
+  Eigen::VectorXcd start_;   // (copies) with the surface's area, the origin cone at 0
+  Eigen::VectorXd rest_;     // (n) log of its scale
+  Eigen::VectorXd strain_;   // (m) its triangles' energies against that scale, 4 for isometries
   Eigen::VectorXcd motion_of_copies_;
   double extent_ = 0, energy_ = 1;
   LatticeReduction reduction_;

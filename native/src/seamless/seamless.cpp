@@ -18,6 +18,7 @@ namespace {
 constexpr double most_tiles = 16384;       // beyond, float32 has too few digits left within a cell
 constexpr double coarsest_tiles = 4;       // tried for an automatic grid
 constexpr double acceptable_growth = 1.1;  // of the energy by an automatic grid
+constexpr double acceptable_turn = 0.02;   // radians, of directions by an automatic grid
 constexpr double near_finest = 1.02;       // of the growth that the finest grid has where that is more
 
 // The next finer size of 1, 1.5, 2, 3, 4, 6, ...
@@ -105,13 +106,13 @@ class GridSearch {
 
   // The coarsest grid that costs no more than is acceptable, or where none does, hardly more than the finest.
   std::optional<Grid> find_coarsest() {
-    if (auto grid = refine(coarsest_tiles, {acceptable_growth, true})) return grid;
+    if (auto grid = refine(coarsest_tiles, {acceptable_growth, acceptable_turn, true})) return grid;
     // What needs more repair takes longer: by halves between sizes, as finer grids cost less.
     Array<double> sizes;
     for (double tiles = coarsest_tiles; tiles <= most_tiles; tiles = next_size(tiles)) sizes.push_back(tiles);
     std::optional<Grid> best = lay_out(sizes.back(), {});
     if (!best) return refine(coarsest_tiles, {});
-    const LayoutEffort thorough{std::max(acceptable_growth, near_finest * growth(*best)), false};
+    const LayoutEffort thorough{std::max(acceptable_growth, near_finest * growth(*best)), acceptable_turn, false};
     std::size_t low = 0, high = sizes.size() - 1;
     while (low < high) {
       const std::size_t middle = (low + high) / 2;
@@ -189,8 +190,8 @@ class GridSearch {
 
   void prepare(std::size_t part) {
     const SeamlessPart& of = parts_[part];
-    quantizers_[part] =
-        std::make_unique<LayoutQuantizer>(*of.system, *of.map, lattice_, parity_, relaxed_[part], step_);
+    const LatticeDemands demands{lattice_, parity_, relaxed_[part], of.task->directions};
+    quantizers_[part] = std::make_unique<LayoutQuantizer>(*of.system, *of.map, demands, step_);
   }
 
   // One of the cones takes up the curvature of both: the one whose own is nearer to that.

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`lsgp unwrap --up` and `--directions`: which way the texture runs, and how far it is off."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from lsgp import read_mesh_file
+
+UNWRAP = ("unwrap", "cube.obj", "-o", "out.obj", "--cones", "corners.json", "--report", "report.json")
+
+
+def image_of(path: Path, face: int, direction: object) -> complex:
+    """What the map of a quad's first triangle makes of a direction in its plane."""
+    file = read_mesh_file(path, with_uv=True)
+    triangle = int(np.flatnonzero(file.triangulation.polygon == face)[0])
+    place = file.mesh.positions[file.triangulation.triangles[triangle]]
+    z = file.triangle_uv[triangle] @ [1, 1j]
+    edges = place[1:] - place[0]
+    return complex(np.linalg.lstsq(edges.T, np.array(direction, float), rcond=None)[0] @ (z[1:] - z[0]))
+
+
+def test_up_is_the_way_of_v_on_the_walls_of_a_cube(lsgp, cube_files: Path) -> None:
+    done = lsgp(*UNWRAP, "--seamless", "--up", 0, 1, 0)
+    assert done.code == 0, done.err
+    report = done.report()["direction_error"]
+    assert report["mean"] <= 1e-6 and report["largest"] <= 1e-6
+    assert "direction error" in done.out and "faces" not in report
+
+
+def test_faces_of_a_directions_file_are_told_one_by_one(lsgp, cube_files: Path) -> None:
+    strokes = [[7, 0.2, 0.5, 0.1], [3, 0.1, -0.3, 0.6]]
+    (cube_files / "strokes.json").write_text(json.dumps(strokes))
+    done = lsgp(*UNWRAP, "--directions", "strokes.json")
+    assert done.code == 0, done.err
+    told = done.report()["direction_error"]
+    assert told["faces"] == [3, 7]
+    for face, error in zip(told["faces"], told["errors"], strict=True):
+        direction = next(row[1:] for row in strokes if row[0] == face)
+        written = abs(np.angle(image_of(cube_files / "out.obj", face, direction) / 1j))
+        assert error == pytest.approx(written, abs=1e-6)
+    assert told["largest"] == max(told["errors"])
+    (cube_files / "strokes.json").write_text(json.dumps(strokes[:1]))
+    assert lsgp(*UNWRAP, "--directions", "strokes.json").report()["direction_error"]["largest"] <= 1e-9
+
+
+def test_the_preset_for_tiles_has_the_up_of_most_exporters(lsgp, cube_files: Path) -> None:
+    def written(*options: object) -> bytes:
+        assert lsgp(*UNWRAP, *options).code == 0
+        return (cube_files / "out.obj").read_bytes()
+
+    assert written("--preset", "tile") == written("--preset", "tile", "--up", 0, 1, 0)
+    assert written("--preset", "paint") == written("--preset", "paint", "--up", 0, 0, 0)
+    assert written("--preset", "paint") != written("--preset", "paint", "--up", 1, 2, 3)
+    none = lsgp(*UNWRAP, "--preset", "tile", "--up", 0, 0, 0)
+    assert none.report()["direction_error"] is None and "direction error" not in none.out
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("{}", "does not have the form [[face, x, y, z], ...]"),
+        ("[[0, 1, 2]]", "does not have the form"),
+        ("[[0.5, 1, 2, 3]]", "does not have the form"),
+        ("[[96, 0, 1, 0]]", "has a direction at face 96, but the mesh has 96 faces"),
+        ("[[-1, 0, 1, 0]]", "has a direction at face -1"),
+        ("[[0, NaN, 1, 0]]", "The direction at 2 triangles is no finite vector"),
+    ],
+)
+def test_a_wrong_directions_file_is_refused(lsgp, cube_files: Path, content: str, said: str) -> None:
+    (cube_files / "strokes.json").write_text(content)
+    refused = lsgp(*UNWRAP, "--directions", "strokes.json")
+    assert refused.code == 3 and said in refused.err
+    assert not (cube_files / "out.obj").exists()
+
+
+def test_options_that_contradict_each_other(lsgp, cube_files: Path) -> None:
+    (cube_files / "strokes.json").write_text("[]")
+    both = lsgp(*UNWRAP, "--up", 0, 1, 0, "--directions", "strokes.json")
+    assert both.code == 2 and "not allowed with" in both.err
+    for number in (math.nan, math.inf):
+        refused = lsgp(*UNWRAP, "--up", 0, number, 0)
+        assert refused.code == 2 and "--up takes finite numbers" in refused.err
+    missing = lsgp(*UNWRAP, "--directions", "none.json")
+    assert missing.code == 2 and "none.json" in missing.err
