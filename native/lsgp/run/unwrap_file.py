@@ -61,7 +61,7 @@ def unwrap_file(
 ) -> Result:
     """Unwrap args.input into args.output.  Raises OSError, UsageError, LsgpError.
 
-    args: these two, either of which may be "-", and the values of the options of an unwrap.
+    args: these two, either of which may be "-", threads, and the values of the options of an unwrap.
     given_format: of what has no suffix that tells it.
 
     The warnings of the result are also those of the files.
