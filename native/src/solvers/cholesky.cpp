@@ -210,7 +210,7 @@ void Cholesky<Scalar>::Factor::add_outer(int front, const Scalar* outer, int par
 
 template <typename Scalar>
 int Cholesky<Scalar>::Factor::threads() const {
-  return std::min(thread_count(), plan.task_count());
+  return std::clamp(thread_count(), 1, std::max(1, plan.task_count()));
 }
 
 template <typename Scalar>
