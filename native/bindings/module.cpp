@@ -250,6 +250,7 @@ lsgp::Options to_options(const py::dict& values) {
   options.factorization = choose<Factorization>(
       text("factorization"),
       {{"automatic", Factorization::automatic}, {"cut", Factorization::cut}, {"sparse", Factorization::sparse}});
+  options.threads = values["threads"].cast<int>();
   if (!values["seamless"].is_none()) options.seamless = to_seamless(values["seamless"].cast<py::dict>());
   return options;
 }
@@ -439,6 +440,7 @@ lsgp::PlacementOptions to_placement_options(const py::dict& values) {
     options.mirror = {{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};
   }
   options.seams = to_seam_mode(values["seams"].cast<std::string>());
+  options.threads = values["threads"].cast<int>();
   return options;
 }
 

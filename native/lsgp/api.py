@@ -179,6 +179,8 @@ class Options:
         stay exact.
     factorization: how linear systems are solved; maps differ by rounding only. "cut" factors once and
         leaves dense problems of the size of the cut, "sparse" factors for every step, "automatic" takes the cheaper.
+    threads: of large factorizations, up to 1024; the result is the same for any number. 0: as many as the environment
+        variable LSGP_THREADS says when the library first asks, or else as there are processors.
 
     Options that contradict each other are refused (WRONG_PARAMETER; PINS_CONFLICT where pins are concerned): the method
     "lscm" with "spectral", "low-stretch", "straight", loop_turning, seamless or pins; seamless with "straight" or pins.
@@ -197,6 +199,7 @@ class Options:
     repair: bool = True
     overlaps: Overlaps = "keep"
     factorization: Factorization = "automatic"
+    threads: int = 0
 
     def __post_init__(self) -> None:
         for name, choices in _CHOICES.items():
@@ -208,6 +211,11 @@ class Options:
         _set(self, "stretch", arguments.number("stretch", self.stretch, "pass a number from 0 to 1"))
         _set(self, "repair", arguments.flag("repair", self.repair))
         _set(self, "loop_turning", _loop_turning(self.loop_turning))
+        _set(self, "threads", _threads(self.threads))
+
+
+def _threads(count: int) -> int:
+    return arguments.whole_number("threads", count, 0, "pass a number from 1 to 1024, or 0 for the default")
 
 
 def _loop_turning(angles: Mapping[int, float]) -> dict[int, float]:
@@ -618,6 +626,7 @@ def place_cones(
     symmetric: bool = False,
     mirror: tuple[ArrayLike, ArrayLike] | None = None,
     seams: SeamMode = "follow",
+    threads: int = 0,
     progress: Progress | None = None,
 ) -> Placement:
     """Place cones where they lower the stretch most, with the angles that go with them.
@@ -629,7 +638,7 @@ def place_cones(
     prefer_sharp: sharp corners before smooth places where that costs little.
     symmetric: the same cones on both sides of a plane: of `mirror`, a point on it and its normal, or None: found.
     seams, progress: as for `parameterize`, which does with the cones and angles placed what is assumed here: with
-        "follow" a component that gets cones is not opened along its seams.
+        "follow" a component that gets cones is not opened along its seams. threads: as in `Options`.
     None is placed on a border, where no edge leads that cuts may follow, nor, where the mesh has room, within two rings
     of another.
     Raises InputError, TopologyError, CurvatureError, SolverError, Cancelled.
@@ -648,6 +657,7 @@ def place_cones(
         "symmetric": arguments.flag("symmetric", symmetric),
         "mirror": None if mirror is None else _mirror_numbers(mirror),
         "seams": seams,
+        "threads": _threads(threads),
     }
     out = _lsgp.place_cones(surface_arrays(surface), _given_cones(cones, angles), options, progress)
     return Placement(**out)

@@ -201,7 +201,15 @@ def _place(
 ) -> Placement:
     lattice = None if options.seamless is None else options.seamless.lattice
     return place_cones(
-        surface, cones, angles, count=count, target=TARGET, lattice=lattice, seams=options.seams, progress=progress
+        surface,
+        cones,
+        angles,
+        count=count,
+        target=TARGET,
+        lattice=lattice,
+        seams=options.seams,
+        threads=options.threads,
+        progress=progress,
     )
 
 

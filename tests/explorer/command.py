@@ -32,7 +32,7 @@ def command_faults(
     step: Step,
 ) -> tuple[str, list[str]]:
     """What the command has no option for is left at its default, in the call it is compared with as well."""
-    options = replace(options, loop_turning={}, factorization="automatic")
+    options = replace(options, loop_turning={}, factorization="automatic", threads=0)
     surface = replace(surface, edges=None, cut_costs=None, borders=None)
     if options.mode != "low-stretch":
         options = replace(options, stretch=1.0)

@@ -31,6 +31,13 @@ REVIEWED = {
         ("for (end = i + 1; same_edge(i, end);)", "passes a side each time", SHORT),
     ],
     "base/memory.cpp": [("while (!word.empty() && file >> read && read != word)", "words of a short file", SHORT)],
+    "base/thread_team.cpp": [
+        ("while (forest.left > 0 && !failure_)", "tasks, each once, or waits for those of other threads", WITHIN),
+        ("while (forest.running > 0)", "waits for tasks of other threads, which end", SHORT),
+        ("while (loop.next < loop.count && !failure_)", "rounds, each once", WITHIN),
+        ("while (loop.running > 0)", "waits for rounds of other threads, which end", SHORT),
+        ("while (!is_over_)", "waits for work until the call that started the thread ends", WITHIN),
+    ],
     "base/union_find.hpp": [("while (parent_[i] != i)", LINKED, SHORT)],
     "cut/cone_triangulation.cpp": [
         (
@@ -198,6 +205,8 @@ REVIEWED = {
     ],
     "solvers/cholesky.cpp": [
         ("while (!waiting.empty() && plan.parent[waiting.back()] == i)", "children in a tree, each once", SHORT),
+        ("for (int child = newest_child; child != -1; child = plan.earlier_sibling[child])", LINKED, SHORT),
+        ("for (int i = 0, end = 0; i < plan.front_count(); i = end)", "passes a front each time", OWN),
     ],
     "solvers/dense_kernels_for.cpp": [("for (; j % 4 != 0; --j)", "three rounds", SHORT)],
     "solvers/elimination.cpp": [

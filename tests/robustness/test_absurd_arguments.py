@@ -83,6 +83,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         {
             **{"surface": WHOLE, "cones": (), "angles": None, "count": 4, "target": 1.05, "lattice": None},
             **{"prefer_sharp": False, "symmetric": True, "mirror": ([0, 0, 0], [1, 0, 0]), "seams": "follow"},
+            "threads": 2,
             "progress": None,
         },
     ),

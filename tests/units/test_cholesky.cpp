@@ -4,7 +4,9 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/SparseCholesky>
 
+#include "base/thread_team.hpp"
 #include "lsgp/errors.hpp"
 #include "random_matrices.hpp"
 #include "solvers/linear_algebra_counter.hpp"
@@ -19,6 +21,31 @@ template <typename Scalar, typename Sides>
 Sides oracle(const Eigen::SparseMatrix<Scalar>& lower, const Sides& right_sides) {
   return full(lower).llt().solve(right_sides);
 }
+
+// Each point of a grid joined to those beside it, large enough for threads. The last row of points comes last.
+template <typename Scalar>
+Eigen::SparseMatrix<Scalar> grid_definite(Random& random, int width, int height) {
+  std::vector<Eigen::Triplet<Scalar>> entries;
+  Eigen::VectorXd sum = Eigen::VectorXd::Constant(width * height, 1e-3);
+  const auto join = [&](int i, int j) {
+    const Scalar value = random_scalar<Scalar>(random);
+    entries.emplace_back(j, i, value);
+    sum[i] += std::abs(value);
+    sum[j] += std::abs(value);
+  };
+  for (int i = 0; i < width * height; ++i) {
+    if (i % width + 1 < width) join(i, i + 1);
+    if (i + width < width * height) join(i, i + width);
+    if (i % width + 1 < width && i + width < width * height) join(i, i + width + 1);
+  }
+  for (int i = 0; i < width * height; ++i) entries.emplace_back(i, i, Scalar(sum[i]));
+  Eigen::SparseMatrix<Scalar> out(width * height, width * height);
+  out.setFromTriplets(entries.begin(), entries.end());
+  return out;
+}
+
+constexpr int grid_width = 150, grid_height = 140;
+constexpr int thread_counts[]{2, 3, 8, 64};
 
 }  // namespace
 
@@ -113,6 +140,51 @@ TEST_CASE_TEMPLATE("a matrix that is not positive definite is refused", Scalar, 
   auto lower = random_definite<Scalar>(random, 80, 6);
   lower.coeffRef(79, 79) = Scalar(-1);
   CHECK_NOTHROW(lsgp::Cholesky<Scalar>(lower, 1));
+}
+
+TEST_CASE_TEMPLATE("any number of threads gives the same bytes", Scalar, double, std::complex<double>) {
+  Random random(9);
+  const auto lower = grid_definite<Scalar>(random, grid_width, grid_height);
+  const auto right = random_matrix<Scalar>(random, lower.rows(), 2);
+  const auto factored = [&](int threads, int retained) {
+    const lsgp::ThreadCount count(threads);
+    return lsgp::Cholesky<Scalar>(lower, retained);
+  };
+  const auto whole = factored(1, 0).solve(right);
+  const auto product = (lower.template selfadjointView<Eigen::Lower>() * whole).eval();
+  CHECK((product - right).norm() < rounding * right.norm());
+
+  const int eliminated = static_cast<int>(lower.rows()) - grid_width;
+  const auto schur = factored(1, grid_width).schur();
+  const Eigen::SimplicialLLT<Eigen::SparseMatrix<Scalar>> rest(lower.topLeftCorner(eliminated, eliminated));
+  const auto across = full<Scalar>(lower.bottomRightCorner(grid_width + grid_width, grid_width + grid_width))
+                          .bottomLeftCorner(grid_width, grid_width)
+                          .eval();
+  auto sides = full<Scalar>(lower.bottomRightCorner(grid_width, grid_width));
+  sides.setZero(eliminated, grid_width);
+  sides.bottomRows(grid_width) = across.adjoint();
+  const auto solved = rest.solve(sides).eval();
+  const auto expected =
+      (full<Scalar>(lower.bottomRightCorner(grid_width, grid_width)) - across * solved.bottomRows(grid_width)).eval();
+  CHECK((schur - expected).norm() < rounding * expected.norm());
+
+  for (const int threads : thread_counts) {
+    CAPTURE(threads);
+    CHECK(factored(threads, 0).solve(right) == whole);
+    CHECK(factored(threads, grid_width).schur() == schur);
+  }
+}
+
+TEST_CASE("threads stop where a matrix is not positive definite") {
+  Random random(10);
+  const auto lower = grid_definite<double>(random, grid_width, grid_height);
+  const lsgp::ThreadCount count(3);
+  for (const int bad : {5, grid_width * grid_height / 2, grid_width * grid_height - 1}) {
+    CAPTURE(bad);
+    auto wrong = lower;
+    wrong.coeffRef(bad, bad) = -1;
+    CHECK_THROWS_AS(lsgp::Cholesky<double>(wrong, 0), const lsgp::Error&);
+  }
 }
 
 TEST_CASE("factorizations and back-substitutions are counted by the innermost counter") {

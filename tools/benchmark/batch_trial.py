@@ -190,7 +190,7 @@ def single_runs(library: Path, names: list[str], out: Path) -> tuple[dict[str, f
             begin = time.process_time()
             if label == WORK:
                 with contextlib.suppress(LsgpError):
-                    unwrap_file(argparse.Namespace(input=library / name, output=output, **options), Run())
+                    unwrap_file(argparse.Namespace(input=library / name, output=output, threads=0, **options), Run())
             else:
                 unwrap_asset(Task.of(Asset(name, library / name, 0), out, f"{name}.obj"), settings[label])
             seconds[label] += time.process_time() - begin

@@ -102,6 +102,9 @@ struct Options {
   bool repair = true;  // of flipped triangles and angles off by a turn
   Overlaps overlaps = Overlaps::keep;
   Factorization factorization = Factorization::automatic;
+  // Of large factorizations, up to 1024; the result does not depend on it. 0: as many as the environment variable
+  // LSGP_THREADS says, or else as there are processors.
+  int threads = 0;
 };
 
 }  // namespace lsgp

@@ -27,6 +27,7 @@ struct PlacementOptions {
   bool symmetric = false;             // the same cones on both sides of a mirror plane
   std::optional<MirrorPlane> mirror;  // none: found, every component its own
   SeamMode seams = SeamMode::follow;  // a component that gets cones is not opened along its seams
+  int threads = 0;                    // as in Options
 };
 
 struct Placement {

@@ -52,7 +52,7 @@ def _require_ordinary(path: Path) -> None:
 def _unwrap(task: Task, settings: Settings, run: Run) -> Record:
     output = Path(task.out, task.output)
     output.parent.mkdir(parents=True, exist_ok=True)
-    args = argparse.Namespace(input=Path(task.input), output=output, **settings.options_for(task))
+    args = argparse.Namespace(input=Path(task.input), output=output, threads=0, **settings.options_for(task))
     result = unwrap_file(args, run)
     report = reports.unwrap_report(result, run, texture_size(args))
     if settings.reports:

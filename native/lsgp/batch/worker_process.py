@@ -45,7 +45,8 @@ class WorkerProcess:
         self.answered = 0
         self._since = time.monotonic()
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115 - open as long as the process
-        environment = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"} | os.environ
+        # As many processes as there are cores leave none for threads.
+        environment = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"} | os.environ | {"LSGP_THREADS": "1"}
         try:
             self._process = subprocess.Popen(
                 command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors, env=environment

@@ -30,7 +30,7 @@ from ..run.pad_file import add_pad_options, pad_file
 from ..run.place_file import add_placement_options, place_file, summary
 from ..run.terminal import ProgressLine
 from ..run.unwrap_file import Run, out_of_memory, read_file, unwrap_file, uv_of
-from ..run.unwrap_options import add_unwrap_options, texture_size, texture_size_option
+from ..run.unwrap_options import add_threads_option, add_unwrap_options, texture_size, texture_size_option
 from ..texels import texel_density
 from .output_paths import require_usable_paths
 
@@ -90,6 +90,7 @@ def _parser() -> argparse.ArgumentParser:
         help="OBJ, PLY, glTF or GLB, by its suffix, or - for standard output; the messages then go to standard error",
     )
     add_unwrap_options(unwrap)
+    add_threads_option(unwrap)
     unwrap.set_defaults(run=_reported, make=_unwrap)
 
     cones = commands.add_parser(
@@ -104,6 +105,7 @@ def _parser() -> argparse.ArgumentParser:
         "-o", "--output", metavar="OUT.json", type=Path, required=True, help="the file, or - for standard output"
     )
     add_placement_options(cones)
+    add_threads_option(cones)
     cones.set_defaults(run=_reported, make=_cones, in_place=False)
 
     batch = commands.add_parser(

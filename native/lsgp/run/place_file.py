@@ -75,7 +75,7 @@ def place_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
     with run.stage("cut_costs"):
         surface = replace(surface, cut_costs=cut_costs_of(args, surface))
     with run.stage("place_cones"):
-        placement = place_cones(surface, kept, angles, seams=args.seams, **how, progress=progress)
+        placement = place_cones(surface, kept, angles, seams=args.seams, threads=args.threads, **how, progress=progress)
     if args.strict:
         require_flawless(placement.warnings)
     with run.stage("write_file"):

@@ -61,12 +61,12 @@ def unwrap_file(
 ) -> Result:
     """Unwrap args.input into args.output.  Raises OSError, UsageError, LsgpError.
 
-    args: these two, either of which may be "-", and the values of the options of an unwrap.
+    args: these two, either of which may be "-", threads, and the values of the options of an unwrap.
     given_format: of what has no suffix that tells it.
 
     The warnings of the result are also those of the files.
     """
-    options = library_options(args)
+    options = replace(library_options(args), threads=args.threads)
     target = None if is_standard_stream(args.output) else args.output
     form = output_format(target, given_format)
     require_separate(args.input, args.output, in_place=args.in_place)

@@ -161,6 +161,17 @@ def cut_costs_of(args: argparse.Namespace, surface: Surface, progress: Progress 
     return cut_costs(surface, front, progress=progress)
 
 
+def add_threads_option(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--threads",
+        metavar="N",
+        type=int,
+        default=0,
+        help="threads for meshes of tens of thousands of triangles and more, up to 1024; the result is the same for "
+        "any number (default: as many as LSGP_THREADS in the environment says, or else as there are processors)",
+    )
+
+
 def up_of(args: argparse.Namespace) -> FloatArray | None:
     """The model's up, along which v is to run; None where it does not matter."""
     default = DEFAULT_UP if args.preset == "tile" and args.directions is None else (0.0, 0.0, 0.0)

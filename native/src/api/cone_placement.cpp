@@ -8,6 +8,7 @@
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
 #include "base/text.hpp"
+#include "base/thread_team.hpp"
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
 #include "pipeline/validation.hpp"
@@ -107,6 +108,7 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
   require_valid(options);
   Placement out;
   const LinearAlgebraCounter counter;
+  const ThreadCount threads(options.threads);
   const MoreCones more = options.count == 0 ? MoreCones::none : MoreCones::some;
   PlacementWork work(surface, existing, options.seams, more, out.warnings, progress);
   out.log_scale = Eigen::VectorXd::Zero(surface.positions.rows());

@@ -4,6 +4,7 @@
 
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
+#include "base/thread_team.hpp"
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
 #include "prescription/component_system.hpp"
@@ -13,6 +14,7 @@ namespace lsgp {
 Prescription prescribe_curvature(const Surface& surface, const Cones& cones, const Options& options,
                                  const Progress& progress) {
   Prescription out;
+  const ThreadCount threads(options.threads);
   StageSeconds seconds;
   ProgressMonitor monitor(progress, seconds);
   const Work work = prepare(surface, cones, options, out.warnings);

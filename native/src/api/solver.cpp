@@ -10,6 +10,7 @@
 
 #include "api/assembly.hpp"
 #include "base/progress_monitor.hpp"
+#include "base/thread_team.hpp"
 #include "lsgp/lsgp.hpp"
 #include "pipeline/component_map.hpp"
 #include "pipeline/components.hpp"
@@ -97,6 +98,7 @@ Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& 
                      const Progress& progress) {
   Result result;
   const LinearAlgebraCounter counter;
+  const ThreadCount threads(options.threads);
   ProgressMonitor monitor(progress, result.stage_seconds);
   {
     const ProgressMonitor::Stage stage(monitor, "topology");

@@ -7,8 +7,6 @@ namespace lsgp {
 
 namespace {
 
-constexpr double operations_between_visits = 5e7;
-
 CheckpointVisitor*& visitor_of_this_thread() {
   thread_local CheckpointVisitor* visitor = nullptr;
   return visitor;

@@ -6,6 +6,8 @@
 
 namespace lsgp {
 
+constexpr double operations_between_visits = 5e7;
+
 // Told by long work of this thread: about so many multiplications have been done.
 void checkpoint(double operations);
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/text.hpp"
+#include "base/thread_team.hpp"
 
 namespace lsgp {
 
@@ -116,9 +117,16 @@ void require_cut_costs(const Surface& surface) {
               {ElementKind::edges, bad});
 }
 
+void require_threads(int threads) {
+  if (threads >= 0 && threads <= most_threads) return;
+  throw Error(Code::wrong_parameter, concat("The number of threads is ", threads, ". Give one from 1 to ", most_threads,
+                                            ", or 0 for the default."));
+}
+
 }  // namespace
 
 void require_valid(const Options& options) {
+  require_threads(options.threads);
   if (!(options.stretch >= 0 && options.stretch <= 1)) {
     throw Error(Code::wrong_parameter,
                 concat("The share of stretch to take away is ", options.stretch, ". Choose one from 0 to 1."));
@@ -268,6 +276,7 @@ void require_valid(const Surface& surface, const Cones& cones) {
 }
 
 void require_valid(const PlacementOptions& options) {
+  require_threads(options.threads);
   if (options.count && *options.count < 0) {
     throw Error(Code::wrong_parameter, concat("The number of cones is ", *options.count, ". Give 0 or more."));
   }

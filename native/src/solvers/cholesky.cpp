@@ -6,9 +6,11 @@
 
 #include "base/checkpoint.hpp"
 #include "base/memory.hpp"
+#include "base/thread_team.hpp"
 #include "solvers/dense_kernels.hpp"
 #include "solvers/elimination.hpp"
 #include "solvers/failure.hpp"
+#include "solvers/front_blocks.hpp"
 #include "solvers/linear_algebra_counter.hpp"
 
 namespace lsgp {
@@ -18,6 +20,11 @@ namespace {
 // Of numbers that are not negative, beyond the range of int.
 std::size_t product(int a, int b) { return static_cast<std::size_t>(a) * static_cast<std::size_t>(b); }
 
+// Numbers of outer products that are computed before they are added, and columns of the Schur complement that a thread
+// adds them to.
+constexpr std::size_t outer_at_once = 1 << 18;
+constexpr int schur_columns = 64;
+
 }  // namespace
 
 template <typename Scalar>
@@ -26,6 +33,7 @@ struct Cholesky<Scalar>::Factor {
   Elimination plan;
   Vector panels;
   Matrix schur;
+  const DenseKernels<Scalar>& kernels = dense_kernels<Scalar>();
 
   int size() const { return static_cast<int>(plan.position.size()); }
   int retained() const { return size() - plan.eliminated; }
@@ -35,7 +43,22 @@ struct Cholesky<Scalar>::Factor {
             plan.retained_rows[i], nullptr};
   }
 
+  // What a thread works with.
+  struct Workspace {
+    Vector stack;                   // of updates
+    Array<std::size_t> update_end;  // of the updates on it
+    Array<int> waiting;             // the fronts they are of
+    Array<int> local;               // (size) the place of every row of the front under way
+  };
+
+  int threads() const;
+  std::size_t outer_size() const;  // numbers of the outer products that are computed at once
   void factorize(const Eigen::SparseMatrix<Scalar>& lower);
+  void run_task(const Eigen::SparseMatrix<Scalar>& lower, int task, Workspace& work, Array<Vector>& kept,
+                ThreadTeam& team);
+  void take_in(int child, const Scalar* update, const Front<Scalar>& front, const Array<int>& local) const;
+  void complete_schur(ThreadTeam& team);
+  void add_outer(int front, const Scalar* outer, int part);
   void fill(const Eigen::SparseMatrix<Scalar>& lower, int front, const Array<int>& local);
   void start_schur(const Eigen::SparseMatrix<Scalar>& lower);
 
@@ -73,65 +96,152 @@ void Cholesky<Scalar>::Factor::fill(const Eigen::SparseMatrix<Scalar>& lower, in
   }
 }
 
+// The fronts of a task, from the first to the last.
 template <typename Scalar>
-void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lower) {
-  const DenseKernels<Scalar>& kernels = dense_kernels<Scalar>();
-  const int fronts = plan.front_count();
-  count_factorization();
-  start_schur(lower);
-  Vector stack(static_cast<Eigen::Index>(plan.stack_size));
-  prefer_huge_pages(stack.data(), plan.stack_size * sizeof(Scalar));
-  Vector outer(plan.outer_size);
-  Array<std::size_t> update_end;  // of the updates on the stack
-  Array<int> local(size()), waiting;
-  for (int i = 0; i < fronts; ++i) {
+void Cholesky<Scalar>::Factor::run_task(const Eigen::SparseMatrix<Scalar>& lower, int task, Workspace& work,
+                                        Array<Vector>& kept, ThreadTeam& team) {
+  const int last = plan.task_begin[task + 1] - 1;
+  Array<int>&local = work.local, &waiting = work.waiting;
+  Array<std::size_t>& update_end = work.update_end;
+  for (int i = plan.task_begin[task]; i <= last; ++i) {
     Front<Scalar> front = this->front(i);
-    const int first = plan.first[i], rows = front.columns + front.below, free = front.below - front.retained;
+    const int first = plan.first[i], rows = front.columns + front.below;
     const int* below = this->rows(i);
     for (int c = 0; c < front.columns; ++c) local[first + c] = c;
     for (int r = 0; r < front.below; ++r) local[below[r]] = front.columns + r;
     fill(lower, i, local);
-    const std::size_t top = update_end.empty() ? 0 : update_end.back();
-    const std::size_t update_size = product(front.below, free);
-    front.update = stack.data() + top;
+    const std::size_t top = update_end.empty() ? 0 : update_end.back(), update_size = plan.update_size(i);
+    if (i == last) kept[task].resize(static_cast<Eigen::Index>(update_size));
+    front.update = i == last ? kept[task].data() : work.stack.data() + top;
     std::fill_n(front.update, update_size, Scalar(0));
     std::size_t base = top;
     while (!waiting.empty() && plan.parent[waiting.back()] == i) {
-      const int child = waiting.back();
-      waiting.pop_back();
       update_end.pop_back();
       base = update_end.empty() ? 0 : update_end.back();
-      const int* child_rows = this->rows(child);
-      const int child_below = plan.below(child), child_free = child_below - plan.retained_rows[child];
-      for (int c = 0; c < child_free; ++c) {
-        const Scalar* from = stack.data() + base + product(c, child_below);
-        const int at = local[child_rows[c]];
-        Scalar* to = at < front.columns ? front.panel + product(at, rows)
-                                        : front.update + product(at - front.columns, front.below) - front.columns;
-        for (int r = c; r < child_below; ++r) to[local[child_rows[r]]] += from[r];
-      }
+      take_in(waiting.back(), work.stack.data() + base, front, local);
+      waiting.pop_back();
     }
-    if (!kernels.eliminate(front, outer.data())) throw_unsolvable();
-    for (int c = 0; c < front.retained; ++c) {
-      Scalar* column = schur.data() + product(below[free + c] - plan.eliminated, retained());
-      const Scalar* from = outer.data() + product(c, front.retained);
-      for (int r = c; r < front.retained; ++r) column[below[free + r] - plan.eliminated] += from[r];
+    const int newest_child = i == last ? plan.last_child[task] : -1;
+    for (int child = newest_child; child != -1; child = plan.earlier_sibling[child]) {
+      take_in(plan.task_begin[child + 1] - 1, kept[child].data(), front, local);
+      kept[child].resize(0);
     }
-    if (plan.parent[i] != -1) {
-      std::copy_n(front.update, update_size, stack.data() + base);
+    const bool by_blocks = has_blocks(front);
+    if (!(by_blocks ? eliminate_by_blocks(front, team) : kernels.eliminate(front))) throw_unsolvable();
+    if (i < last && plan.parent[i] != -1) {
+      std::copy_n(front.update, update_size, work.stack.data() + base);
       update_end.push_back(base + update_size);
       waiting.push_back(i);
     }
-    checkpoint(static_cast<double>(front.columns) * rows * rows);
+    if (!by_blocks) checkpoint(static_cast<double>(front.columns) * rows * rows);
+  }
+}
+
+// Adds a child's update to its parent.  local: the places of the parent's rows.
+template <typename Scalar>
+void Cholesky<Scalar>::Factor::take_in(int child, const Scalar* update, const Front<Scalar>& front,
+                                       const Array<int>& local) const {
+  const int* child_rows = rows(child);
+  const int below = plan.below(child), free = below - plan.retained_rows[child], rows = front.columns + front.below;
+  for (int c = 0; c < free; ++c) {
+    const Scalar* from = update + product(c, below);
+    const int at = local[child_rows[c]];
+    Scalar* to = at < front.columns ? front.panel + product(at, rows)
+                                    : front.update + product(at - front.columns, front.below) - front.columns;
+    for (int r = c; r < below; ++r) to[local[child_rows[r]]] += from[r];
+  }
+}
+
+// Subtracts the outer products of all fronts from the Schur complement, one front after the other at each of its
+// numbers. They are computed for some fronts at once.
+template <typename Scalar>
+void Cholesky<Scalar>::Factor::complete_schur(ThreadTeam& team) {
+  Vector outer(static_cast<Eigen::Index>(outer_size()));
+  Array<int> some;
+  Array<std::size_t> begin;
+  for (int i = 0, end = 0; i < plan.front_count(); i = end) {
+    some.clear();
+    begin.assign(1, 0);
+    for (end = i; end < plan.front_count(); ++end) {
+      const int retained_rows = plan.retained_rows[end];
+      if (retained_rows == 0) continue;
+      const std::size_t next = begin.back() + product(retained_rows, retained_rows);
+      if (!some.empty() && next > outer_at_once) break;
+      some.push_back(end);
+      begin.push_back(next);
+    }
+    const auto subtract_outer = [&](int k) {
+      const Front<Scalar> front = this->front(some[k]);
+      Scalar* to = outer.data() + begin[k];
+      if (has_blocks(front)) {
+        subtract_outer_by_blocks(front, to, team);
+      } else {
+        kernels.subtract_outer(front, to);
+        checkpoint(static_cast<double>(front.columns) * front.retained * front.retained / 2);
+      }
+    };
+    if (some.size() == 1) {
+      subtract_outer(0);
+    } else {
+      team.run_each(static_cast<int>(some.size()), subtract_outer);
+    }
+    const int parts = (retained() + schur_columns - 1) / schur_columns;
+    team.run_each(parts, [&](int part) {
+      for (int k = 0; k < ssize(some); ++k) add_outer(some[k], outer.data() + begin[k], part);
+    });
   }
   for (Eigen::Index column = 1; column < schur.cols(); ++column) {
     schur.col(column).head(column) = schur.row(column).head(column).adjoint();
   }
 }
 
+// Adds what a front's outer product has for a part of the columns.
+template <typename Scalar>
+void Cholesky<Scalar>::Factor::add_outer(int front, const Scalar* outer, int part) {
+  const int count = plan.retained_rows[front], first = plan.eliminated + part * schur_columns;
+  const int *end = rows(front) + plan.below(front), *begin = end - count;
+  const int* from = std::lower_bound(begin, end, first);
+  for (const int* at = from; at < end && *at < first + schur_columns; ++at) {
+    const Scalar* numbers = outer + product(static_cast<int>(at - begin), count);
+    Scalar* column = schur.data() + product(*at - plan.eliminated, retained());
+    for (int r = static_cast<int>(at - begin); r < count; ++r) column[begin[r] - plan.eliminated] += numbers[r];
+  }
+}
+
+template <typename Scalar>
+int Cholesky<Scalar>::Factor::threads() const {
+  return std::clamp(thread_count(), 1, std::max(1, plan.task_count()));
+}
+
+template <typename Scalar>
+std::size_t Cholesky<Scalar>::Factor::outer_size() const {
+  std::size_t all = 0, largest = 0;
+  for (const int count : plan.retained_rows) {
+    all += product(count, count);
+    largest = std::max(largest, product(count, count));
+  }
+  return std::max(largest, std::min(all, outer_at_once));
+}
+
+template <typename Scalar>
+void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lower) {
+  count_factorization();
+  start_schur(lower);
+  ThreadTeam team(threads());
+  Array<Workspace> work(team.size());
+  for (Workspace& own : work) {
+    own.stack.resize(static_cast<Eigen::Index>(plan.stack_size));
+    prefer_huge_pages(own.stack.data(), plan.stack_size * sizeof(Scalar));
+    own.local.resize(size());
+  }
+  Array<Vector> kept(plan.task_count());
+  team.run_forest(plan.task_parent, [&](int task, int thread) { run_task(lower, task, work[thread], kept, team); });
+  work.clear();
+  complete_schur(team);
+}
+
 template <typename Scalar>
 void Cholesky<Scalar>::Factor::eliminate(int width, Scalar* x) const {
-  const DenseKernels<Scalar>& kernels = dense_kernels<Scalar>();
   Array<Scalar> others;
   for (int i = 0; i < plan.front_count(); ++i) {
     const Front<Scalar> front = this->front(i);
@@ -151,7 +261,6 @@ void Cholesky<Scalar>::Factor::eliminate(int width, Scalar* x) const {
 
 template <typename Scalar>
 void Cholesky<Scalar>::Factor::substitute(int width, Scalar* x) const {
-  const DenseKernels<Scalar>& kernels = dense_kernels<Scalar>();
   Array<Scalar> others;
   for (int i = plan.front_count(); i-- > 0;) {
     const Front<Scalar> front = this->front(i);
@@ -176,7 +285,8 @@ Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retaine
   const std::size_t numbers = factor_->plan.panel_begin.back();
   const bool fits = numbers <= static_cast<std::size_t>(memory.size());
   if (!fits) memory.resize(0);
-  require_memory(static_cast<double>(((fits ? 0 : numbers) + factor_->plan.stack_size + dense) * sizeof(Scalar)));
+  const std::size_t updates = factor_->plan.kept_size + factor_->plan.stack_size * factor_->threads();
+  require_memory(static_cast<double>(((fits ? 0 : numbers) + updates + dense) * sizeof(Scalar)));
   if (!fits) {
     memory.resize(static_cast<Eigen::Index>(numbers));
     prefer_huge_pages(memory.data(), numbers * sizeof(Scalar));

@@ -5,13 +5,17 @@
 #include <utility>
 
 #include "base/checkpoint.hpp"
+#include "base/thread_team.hpp"
 #include "solvers/cholesky.hpp"
 #include "solvers/dense_kernels.hpp"
 #include "solvers/failure.hpp"
+#include "solvers/front_blocks.hpp"
 
 namespace lsgp {
 
 namespace {
+
+constexpr int least_rows_of_threads = 1000;  // which take time to start
 
 // A front that is the whole matrix.
 template <typename Scalar>
@@ -36,8 +40,13 @@ std::optional<DenseCholesky<Scalar>> DenseCholesky<Scalar>::factored(Matrix lowe
 
 template <typename Scalar>
 bool DenseCholesky<Scalar>::factorize() {
+  const Front<Scalar> front = whole(factor_);
+  if (has_blocks(front)) {
+    ThreadTeam team(front.columns < least_rows_of_threads ? 1 : thread_count());
+    return eliminate_by_blocks(front, team);
+  }
   const double size = static_cast<double>(factor_.rows());
-  const bool done = factor_.size() == 0 || dense_kernels<Scalar>().eliminate(whole(factor_), nullptr);
+  const bool done = factor_.size() == 0 || dense_kernels<Scalar>().eliminate(front);
   checkpoint(size * size * size / 6);
   return done;
 }

@@ -18,9 +18,24 @@ struct Front {
 // Vectors are rows of `width` numbers: one of each right side.
 template <typename Scalar>
 struct DenseKernels {
-  // Factors the panel, subtracts its outer product from the update and writes that of the retained rows, lower
-  // triangle, to `outer` (retained, retained). False where a pivot is not positive.
-  bool (*eliminate)(const Front<Scalar>& front, Scalar* outer);
+  // Factors the panel and subtracts its outer product from the update. False where a pivot is not positive.
+  bool (*eliminate)(const Front<Scalar>& front);
+  // Writes the outer product of a factored panel's retained rows, negative, lower triangle, to `outer` (retained,
+  // retained).
+  void (*subtract_outer)(const Front<Scalar>& front, Scalar* outer);
+
+  // The steps of both for a front of which blocks are worked on one by one. Blocks are column-major, their columns
+  // `stride` numbers apart.
+  // square = its Cholesky factor, lower triangle, (size, size). False where a pivot is not positive.
+  bool (*factor_square)(Scalar* square, int size, long stride);
+  // block = block * factor^-H, (rows, size).
+  void (*divide_rows)(const Scalar* factor, int size, Scalar* block, int rows, long stride);
+  // out -= left * right^H, (rows, columns), of matrices with `depth` columns.
+  void (*subtract_product)(const Scalar* left, int rows, const Scalar* right, int columns, int depth, long stride,
+                           Scalar* out, long out_stride);
+  // out -= left * left^H, lower triangle, (rows, rows).
+  void (*subtract_square)(const Scalar* left, int rows, int depth, long stride, Scalar* out, long out_stride);
+
   // own = L^-1 own, (columns, width);  others = panel below * own, (below, width).
   void (*substitute_forward)(const Front<Scalar>& front, int width, Scalar* own, Scalar* others);
   // own = L^-H (own - panel below^H * others).

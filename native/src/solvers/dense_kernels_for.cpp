@@ -15,6 +15,8 @@ template <typename Scalar>
 using Dense = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 template <typename Scalar>
 using Block = Eigen::Map<Dense<Scalar>, 0, Eigen::OuterStride<>>;
+template <typename Scalar>
+using ConstBlock = Eigen::Map<const Dense<Scalar>, 0, Eigen::OuterStride<>>;
 
 // Up to here plain loops are faster than kernels that pack their operands.
 constexpr int narrow_columns = 16;
@@ -60,54 +62,91 @@ bool factor_narrow(Scalar* panel, int rows, int columns) {
 }
 
 template <typename Scalar>
+bool is_positive(const Block<Scalar>& square) {
+  return (square.diagonal().real().array() > 0).all();
+}
+
+template <typename Scalar>
+void divide_rows(const Scalar* factor, int size, Scalar* block, int rows, long stride) {
+  Block<Scalar> out(block, rows, size, Eigen::OuterStride<>(stride));
+  const ConstBlock<Scalar> square(factor, size, size, Eigen::OuterStride<>(stride));
+  square.template triangularView<Eigen::Lower>().adjoint().template solveInPlace<Eigen::OnTheRight>(out);
+}
+
+template <typename Scalar>
 bool factor_wide(Scalar* panel, int rows, int columns) {
   Block<Scalar> square(panel, columns, columns, Eigen::OuterStride<>(rows));
   // What Eigen::LLT calls, without the norm it adds up besides.
   Eigen::internal::llt_inplace<Scalar, Eigen::Lower>::blocked(square);
-  if (!(square.diagonal().real().array() > 0).all()) return false;
-  Block<Scalar> below(panel + columns, rows - columns, columns, Eigen::OuterStride<>(rows));
-  square.template triangularView<Eigen::Lower>().adjoint().template solveInPlace<Eigen::OnTheRight>(below);
+  if (!is_positive(square)) return false;
+  divide_rows(panel, columns, panel + columns, rows - columns, rows);
   return true;
 }
 
 template <typename Scalar>
-bool eliminate(const Front<Scalar>& front, Scalar* outer) {
+bool factor_square(Scalar* square, int size, long stride) {
+  Block<Scalar> block(square, size, size, Eigen::OuterStride<>(stride));
+  Eigen::internal::llt_inplace<Scalar, Eigen::Lower>::unblocked(block);
+  return is_positive(block);
+}
+
+template <typename Scalar>
+void subtract_product(const Scalar* left, int rows, const Scalar* right, int columns, int depth, long stride,
+                      Scalar* out, long out_stride) {
+  const Eigen::OuterStride<> between(stride);
+  Block<Scalar>(out, rows, columns, Eigen::OuterStride<>(out_stride)).noalias() -=
+      ConstBlock<Scalar>(left, rows, depth, between) * ConstBlock<Scalar>(right, columns, depth, between).adjoint();
+}
+
+template <typename Scalar>
+void subtract_square(const Scalar* left, int rows, int depth, long stride, Scalar* out, long out_stride) {
+  Block<Scalar> square(out, rows, rows, Eigen::OuterStride<>(out_stride));
+  square.template selfadjointView<Eigen::Lower>().rankUpdate(
+      ConstBlock<Scalar>(left, rows, depth, Eigen::OuterStride<>(stride)), Scalar(-1));
+}
+
+inline bool has_plain_update(int columns, int below) { return columns <= narrow_columns || below <= short_below; }
+
+template <typename Scalar>
+bool eliminate(const Front<Scalar>& front) {
   const int rows = front.columns + front.below, free = front.below - front.retained;
   const bool narrow = front.columns <= narrow_columns;
   if (!(narrow ? factor_narrow(front.panel, rows, front.columns) : factor_wide(front.panel, rows, front.columns))) {
     return false;
   }
-  if (front.below == 0) return true;
   const Scalar* below = front.panel + front.columns;
   const long stride = rows;
-  if (narrow || front.below <= short_below) {
+  if (has_plain_update(front.columns, front.below)) {
     for (int c = 0; c < free; ++c) {
       Scalar* column = front.update + static_cast<long>(c) * front.below;
       subtract_columns(column + c, front.below - c, below + c, stride, below + c, stride, front.columns);
     }
-    for (int c = 0; c < front.retained; ++c) {
-      Scalar* column = outer + static_cast<long>(c) * front.retained;
-      for (int i = c; i < front.retained; ++i) column[i] = 0;
-      const Scalar* at = below + free + c;
-      subtract_columns(column + c, front.retained - c, at, stride, at, stride, front.columns);
-    }
-    return true;
-  }
-  const Block<Scalar> all(front.panel + front.columns, front.below, front.columns, Eigen::OuterStride<>(rows));
-  if (free > 0) {
-    Block<Scalar> update(front.update, front.below, free, Eigen::OuterStride<>(front.below));
-    Block<Scalar> square(front.update, free, free, Eigen::OuterStride<>(front.below));
-    square.template selfadjointView<Eigen::Lower>().rankUpdate(all.topRows(free), Scalar(-1));
+  } else if (free > 0) {
+    subtract_square(below, free, front.columns, stride, front.update, front.below);
     if (front.retained > 0) {
-      update.bottomRows(front.retained).noalias() -= all.bottomRows(front.retained) * all.topRows(free).adjoint();
+      subtract_product(below + free, front.retained, below, free, front.columns, stride, front.update + free,
+                       front.below);
     }
-  }
-  if (front.retained > 0) {
-    Block<Scalar> product(outer, front.retained, front.retained, Eigen::OuterStride<>(front.retained));
-    product.template triangularView<Eigen::Lower>().setZero();
-    product.template selfadjointView<Eigen::Lower>().rankUpdate(all.bottomRows(front.retained), Scalar(-1));
   }
   return true;
+}
+
+template <typename Scalar>
+void subtract_outer(const Front<Scalar>& front, Scalar* outer) {
+  const long stride = front.columns + front.below;
+  const Scalar* retained = front.panel + stride - front.retained;
+  for (int c = 0; c < front.retained; ++c) {
+    Scalar* column = outer + static_cast<long>(c) * front.retained;
+    for (int i = c; i < front.retained; ++i) column[i] = 0;
+  }
+  if (!has_plain_update(front.columns, front.below)) {
+    return subtract_square(retained, front.retained, front.columns, stride, outer, front.retained);
+  }
+  for (int c = 0; c < front.retained; ++c) {
+    Scalar* column = outer + static_cast<long>(c) * front.retained;
+    const Scalar* at = retained + c;
+    subtract_columns(column + c, front.retained - c, at, stride, at, stride, front.columns);
+  }
 }
 
 // One number of each right side.
@@ -233,8 +272,10 @@ void add_gram(const Scalar* matrix, int rows, int count, Scalar* sum) {
 }
 
 template <typename Scalar>
-constexpr DenseKernels<Scalar> table{&eliminate<Scalar>, &substitute_forward<Scalar>, &substitute_backward<Scalar>,
-                                     &add_gram<Scalar>};
+constexpr DenseKernels<Scalar> table{
+    &eliminate<Scalar>,          &subtract_outer<Scalar>,      &factor_square<Scalar>,
+    &divide_rows<Scalar>,        &subtract_product<Scalar>,    &subtract_square<Scalar>,
+    &substitute_forward<Scalar>, &substitute_backward<Scalar>, &add_gram<Scalar>};
 
 }  // namespace
 

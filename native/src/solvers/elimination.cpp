@@ -46,6 +46,11 @@ struct Merging {
 constexpr Merging merging[]{{4, 1.1}, {16, 0.8}, {48, 0.1}};
 constexpr double zeros_of_any = 0.05;
 
+// Smaller matrices are one task, since threads take time to start. Others are divided until no subtree has more than
+// this share of the work.
+constexpr int least_rows_of_tasks = 20000;
+constexpr double least_tasks = 64;
+
 class Ordering {
  public:
   Ordering(const Adjacency& adjacency, int retained)
@@ -58,6 +63,7 @@ class Ordering {
     count_rows();
     const Array<int> front_of = find_fronts();
     list_rows(front_of);
+    find_tasks();
     measure();
     return std::move(out_);
   }
@@ -263,21 +269,62 @@ class Ordering {
     }
   }
 
-  void measure() {
+  // Below a size all fronts are one task.
+  void find_tasks() {
     const int fronts = out_.front_count();
-    out_.panel_begin.assign(1, 0);
-    Array<std::size_t> held(fronts, 0);  // by the updates of a front's children
-    std::size_t in_use = 0;
+    Array<double> work(fronts, 0.0);  // of the subtree below each front, itself included
+    double total = 0;
     for (int front = 0; front < fronts; ++front) {
-      const auto columns = static_cast<std::size_t>(out_.columns(front)),
-                 below = static_cast<std::size_t>(out_.below(front)),
-                 retained = static_cast<std::size_t>(out_.retained_rows[front]);
-      const std::size_t update = below * (below - retained);
-      out_.panel_begin.push_back(out_.panel_begin.back() + columns * (columns + below));
-      out_.stack_size = std::max(out_.stack_size, in_use + update);
-      out_.outer_size = std::max(out_.outer_size, retained * retained);
-      in_use += update - held[front];
-      if (out_.parent[front] != -1) held[out_.parent[front]] += update;
+      const double columns = out_.columns(front), rows = columns + out_.below(front);
+      total += columns * rows * rows;
+      work[front] += columns * rows * rows;
+      if (out_.parent[front] != -1) work[out_.parent[front]] += work[front];
+    }
+    const double little = total / least_tasks;
+    Array<int> task_of(fronts);
+    out_.task_begin.assign(1, 0);
+    for (int front = 0; front < fronts; ++front) {
+      const int above = out_.parent[front];
+      task_of[front] = static_cast<int>(out_.task_begin.size()) - 1;
+      const bool is_last = size_ < least_rows_of_tasks ? front + 1 == fronts : above == -1 || work[above] > little;
+      if (is_last) out_.task_begin.push_back(front + 1);
+    }
+    const int tasks = static_cast<int>(out_.task_begin.size()) - 1;
+    out_.task_parent.resize(tasks);
+    out_.last_child.assign(tasks, -1);
+    out_.earlier_sibling.assign(tasks, -1);
+    for (int task = 0; task < tasks; ++task) {
+      const int above = out_.parent[out_.task_begin[task + 1] - 1];
+      out_.task_parent[task] = above == -1 ? -1 : task_of[above];
+      if (above != -1) out_.earlier_sibling[task] = std::exchange(out_.last_child[task_of[above]], task);
+    }
+  }
+
+  void measure() {
+    out_.panel_begin.assign(1, 0);
+    Array<std::size_t> held(out_.front_count(), 0);  // by the updates of a front's children within its task
+    Array<std::size_t> kept(out_.task_count(), 0),   // of each task's children, all at once
+        most(out_.task_count(), 0);                  // within each task's children, at any time
+    for (int task = 0; task < out_.task_count(); ++task) {
+      const int last = out_.task_begin[task + 1] - 1, above = out_.task_parent[task];
+      std::size_t in_use = 0;
+      for (int front = out_.task_begin[task]; front <= last; ++front) {
+        const auto columns = static_cast<std::size_t>(out_.columns(front)),
+                   below = static_cast<std::size_t>(out_.below(front));
+        out_.panel_begin.push_back(out_.panel_begin.back() + columns * (columns + below));
+        if (front == last) break;
+        out_.stack_size = std::max(out_.stack_size, in_use + out_.update_size(front));
+        in_use += out_.update_size(front) - held[front];
+        if (out_.parent[front] != -1) held[out_.parent[front]] += out_.update_size(front);
+      }
+      const std::size_t update = out_.update_size(last);
+      most[task] = std::max(most[task], kept[task] + update);
+      if (above == -1) {
+        out_.kept_size += most[task];
+      } else {
+        kept[above] += update;
+        most[above] += most[task];
+      }
     }
   }
 

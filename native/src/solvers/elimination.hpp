@@ -28,12 +28,23 @@ struct Elimination {
   Array<int> rows;                 // positions of the rows below each front's columns, ascending
   Array<int> retained_rows;        // (fronts) how many of them are retained
   Array<std::size_t> panel_begin;  // (fronts + 1) into the factor's numbers
-  std::size_t stack_size = 0;      // the most numbers that updates take up at once
-  std::size_t outer_size = 0;      // and that one front adds to the Schur complement
 
+  // Fronts that are eliminated together, tasks by the size of the matrix alone: whole subtrees with little work, and
+  // one by one the fronts above them. The last front's update is kept until the parent of the task takes it in.
+  Array<int> task_begin;       // (tasks + 1) its first front
+  Array<int> task_parent;      // (tasks) or -1
+  Array<int> last_child;       // (tasks) or -1
+  Array<int> earlier_sibling;  // (tasks) or -1
+  std::size_t stack_size = 0;  // the most numbers that updates within a task take up at once
+  std::size_t kept_size = 0;   // and those that are kept, whatever the order of the tasks
+
+  int task_count() const { return static_cast<int>(task_parent.size()); }
   int front_count() const { return static_cast<int>(parent.size()); }
   int columns(int front) const { return first[front + 1] - first[front]; }
   int below(int front) const { return static_cast<int>(rows_begin[front + 1] - rows_begin[front]); }
+  std::size_t update_size(int front) const {
+    return static_cast<std::size_t>(below(front)) * static_cast<std::size_t>(below(front) - retained_rows[front]);
+  }
 };
 
 // Minimum degree ordering of the rows but the last `retained`; supernodes of its elimination tree, merged where that

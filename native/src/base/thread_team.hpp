@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Threads for the long work of one call. What is computed must not depend on how many there are: whoever uses them
+// divides the work by its size alone, and leaves the order of every sum as it is.
+#pragma once
+
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+#include "base/array.hpp"
+
+namespace lsgp {
+
+constexpr int most_threads = 1024;
+
+// While it lives, long work of this thread takes that many threads, itself included; 0: as many as LSGP_THREADS says,
+// or else as there are processors.
+class ThreadCount {
+ public:
+  explicit ThreadCount(int count);
+  ~ThreadCount();
+  ThreadCount(const ThreadCount&) = delete;
+  ThreadCount& operator=(const ThreadCount&) = delete;
+
+ private:
+  const int around_;
+};
+
+int thread_count();
+
+// The thread that makes it, and others, which end with it. What work throws ends the rest of it and is thrown to the
+// caller. Checkpoints that others reach are those of the caller, who visits them as soon as it has a moment.
+class ThreadTeam {
+ public:
+  explicit ThreadTeam(int count);  // fewer where the system has no more
+  ~ThreadTeam();
+  ThreadTeam(const ThreadTeam&) = delete;
+  ThreadTeam& operator=(const ThreadTeam&) = delete;
+
+  int size() const { return 1 + static_cast<int>(others_.size()); }
+
+  // Calls work(task, thread) for every task of a forest after all children of it.  parent: of every task, later than
+  // itself, or -1.  thread: 0 to size() - 1, one task at a time.
+  void run_forest(const Array<int>& parent, const std::function<void(int task, int thread)>& work);
+
+  // Calls work(i) for 0 to count - 1 in any order and at the same time. Tasks of a forest may do so as well.
+  void run_each(int count, const std::function<void(int i)>& work);
+
+ private:
+  using Lock = std::unique_lock<std::mutex>;
+  struct Forest {
+    const Array<int>* parent;
+    const std::function<void(int, int)>* work;
+    Array<int> children;  // (tasks) that are not done
+    Array<int> ready;     // a heap, the first task on top
+    int left;             // tasks that are not done
+    int running = 0;
+  };
+  struct Loop {
+    const std::function<void(int)>* work;
+    int count;
+    int next = 0, running = 0;
+  };
+
+  void serve(int thread);
+  bool take_work(Lock& lock, int thread);
+  void run_task(Lock& lock, int thread);
+  void run_one(Lock& lock, Loop& loop);
+  void fail();
+  void tell_caller();
+  bool visit(Lock& lock);
+
+  const std::thread::id caller_ = std::this_thread::get_id();
+  std::mutex mutex_;  // of all that follows but the threads
+  std::condition_variable changed_;
+  Forest* forest_ = nullptr;
+  Array<Loop*> loops_;
+  std::exception_ptr failure_;
+  int visits_ = 0;  // of checkpoints, that the caller has not heard of
+  bool is_over_ = false;
+  Array<std::thread> others_;
+};
+
+}  // namespace lsgp
