@@ -5,12 +5,18 @@ PROBLEM is then one sentence for the artist and REASON Python's message. All oth
 that the add-on registers and can say what is wrong where the bundled wheel is for another Python or is damaged.
 """
 
+import os
 import platform
 import sys
 from importlib import import_module, metadata
 from types import ModuleType
 
 NATIVE_FILES = (".so", ".dylib", ".pyd")
+
+
+def _leave_one_core() -> None:
+    """To Blender while the library computes, unless the artist's environment says how many threads it takes."""
+    os.environ.setdefault("LSGP_THREADS", str(max(1, (os.cpu_count() or 1) - 1)))
 
 
 def _require_whole_native_files() -> None:
@@ -25,6 +31,7 @@ def _require_whole_native_files() -> None:
 
 try:
     _require_whole_native_files()
+    _leave_one_core()
     import lsgp
 except (ImportError, OSError) as error:
     lsgp = None

@@ -153,3 +153,7 @@ def test_disabling_removes_operators_and_menu_entries_and_enabling_restores_them
         addon.register()
     assert {menu: our_entries(menu) for menu in menus} == entries
     assert hasattr(bpy.types, "UV_OT_cone_unwrap")
+
+
+def test_one_core_is_left_to_blender():
+    assert os.environ["LSGP_THREADS"] == str(max(1, (os.cpu_count() or 1) - 1))

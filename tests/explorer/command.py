@@ -36,6 +36,8 @@ def command_faults(
     surface = replace(surface, edges=None, cut_costs=None, borders=None)
     if options.mode != "low-stretch":
         options = replace(options, stretch=1.0)
+    if step["command"] == "cones":
+        surface = replace(surface, directions=None)
     if options.mode != "low-stretch" or step["command"] == "cones":
         surface = replace(surface, importance=None)
     with tempfile.TemporaryDirectory() as name:

@@ -167,6 +167,62 @@ def test_a_sleeve_becomes_a_straight_strip() -> None:
     assert (np.pi - sums[oracle.boundary_loops(mesh.triangles)[0]]).sum() == pytest.approx(2 * np.pi, abs=1e-6)
 
 
+def lathe(radius: NDArray[np.float64], height: NDArray[np.float64], around: int = 36) -> meshes.Mesh:
+    """A profile turned about z, closed by a disk at its first ring."""
+    turn = 2 * np.pi * np.arange(around) / around
+    rings = [[r * np.cos(turn), r * np.sin(turn), np.full(around, h)] for r, h in zip(radius, height, strict=True)]
+    index = np.arange(len(radius) * around).reshape(len(radius), around)
+    a, b = index[:-1], np.roll(index[:-1], -1, axis=1)
+    c, d = np.roll(index[1:], -1, axis=1), index[1:]
+    bottom = np.stack([np.roll(index[0], -1), index[0], np.full(around, index.size)], axis=-1)
+    sides = [np.stack(corners, axis=-1).reshape(-1, 3) for corners in ((a, b, c), (a, c, d))]
+    places = np.concatenate([np.concatenate([np.stack(ring, axis=-1) for ring in rings]), [[0, 0, height[0]]]])
+    return meshes.make(places, np.concatenate([*sides, bottom]))
+
+
+def test_a_vase_has_its_cones_around_the_bottom_and_level_courses() -> None:
+    height = np.linspace(0, 2, 20)
+    vase = lathe(0.5 + 0.25 * np.sin(2.2 * height), height)
+    surface = lsgp.Surface(vase.positions, vase.triangles, directions=UP)
+    placed = lsgp.place_cones(surface, lattice="square")
+    assert placed.reached and placed.mapped_l2 <= 1.2
+    assert (vase.positions[placed.cones, 2] == 0).all()
+    assert (2 * np.pi - placed.cone_angles).sum() == pytest.approx(2 * np.pi, abs=1e-9)
+    result = lsgp.auto_unwrap(surface, preset="tile")
+    assert result.direction_error <= np.radians(7)
+    assert not undeclared_faults(surface, result, lsgp.preset_options("tile"))
+    # Without directions, or with a number of cones, they are where they lower the stretch most.
+    for other in (replace(surface, directions=None), surface):
+        count = None if other.directions is None else 6
+        usual = lsgp.place_cones(other, lattice="square", count=count)
+        assert (vase.positions[usual.cones, 2] > 0).any()
+        assert usual.mapped_l2 < placed.mapped_l2
+
+
+def test_a_sleeve_has_no_cones() -> None:
+    mesh = meshes.cylinder(24, 12, taper=0.5)
+    surface = lsgp.Surface(mesh.positions, mesh.triangles, directions=UP)
+    result = lsgp.auto_unwrap(surface, preset="tile")
+    assert len(result.cones) == 0 and result.direction_error <= np.radians(3)
+
+
+def test_cones_are_not_moved_for_courses_that_bend_all_the_same() -> None:
+    mesh = meshes.bumpy_sphere(3)
+    plain = lsgp.Surface(mesh.positions, mesh.triangles)
+    usual = lsgp.place_cones(plain, lattice="square")
+    assert lsgp.place_cones(replace(plain, directions=UP), lattice="square").cones.tolist() == usual.cones.tolist()
+
+
+def test_walls_are_upright_or_upside_down_rather_than_on_their_side() -> None:
+    """The large faces of a wall may be half a turn apart in the layout: both count for more than its narrow sides."""
+    mesh = meshes.cube(4, stretch=(2, 0.4, 1.2))
+    surface = lsgp.Surface(mesh.positions, mesh.triangles, directions=UP)
+    result = lsgp.auto_unwrap(surface, mesh.cones, preset="tile")
+    image = images(surface, result)
+    large = np.ptp(mesh.positions[mesh.triangles][:, :, 1], axis=1) < 1e-9
+    assert np.median(off_v(image[large], 2)) <= np.radians(2)
+
+
 def test_directions_that_cancel_turn_nothing() -> None:
     mesh = meshes.icosphere(2)
     surface = lsgp.Surface(mesh.positions, mesh.triangles)

@@ -145,10 +145,12 @@ double left_to_the_process() { return no_limit; }
 
 }  // namespace
 
+double memory_left() { return std::min({left_on_the_machine(), left_in_the_container(), left_to_the_process()}); }
+
 void require_memory(double bytes, const char* remedy) {
   constexpr double small = 16 << 20;  // not worth asking for
   if (bytes < small) return;
-  const double left = std::min({left_on_the_machine(), left_in_the_container(), left_to_the_process()});
+  const double left = memory_left();
   if (bytes <= left) return;
   constexpr double megabyte = 1e6;
   throw Error(Code::out_of_memory, concat("This surface needs ", std::ceil(bytes / megabyte), " MB of memory, and ",

@@ -10,6 +10,9 @@ namespace lsgp {
 constexpr const char* fewer_faces = "Unwrap fewer faces at once, or close other programs.";
 constexpr const char* fewer_cones = "Use fewer cones, unwrap fewer faces at once, or close other programs.";
 
+// Bytes that the process can still have.
+double memory_left();
+
 // Throws OUT_OF_MEMORY where the process cannot have that much more, bytes, before anything is spent on it. Linux
 // grants what it does not have and ends the process once it is used; others come to a standstill while they make room
 // on the disk.

@@ -25,6 +25,15 @@ std::size_t product(int a, int b) { return static_cast<std::size_t>(a) * static_
 constexpr std::size_t outer_at_once = 1 << 18;
 constexpr int schur_columns = 64;
 
+// Whether tasks may be worked on at once.  bytes: that a factorization takes with updates of that size.
+template <typename Bytes>
+bool has_room(const Elimination& plan, int threads, const Bytes& bytes) {
+  constexpr double of_a_thread = 80 << 20;  // its stack and its heap, as far as the system sets them aside
+  if (threads == 1 || plan.task_count() < 2) return false;
+  const double most = bytes(plan.most_kept + plan.stack_size * static_cast<std::size_t>(threads));
+  return most + threads * of_a_thread <= memory_left();
+}
+
 }  // namespace
 
 template <typename Scalar>
@@ -50,6 +59,8 @@ struct Cholesky<Scalar>::Factor {
     Array<int> waiting;             // the fronts they are of
     Array<int> local;               // (size) the place of every row of the front under way
   };
+
+  bool has_room_for_threads = false;
 
   int threads() const;
   std::size_t outer_size() const;  // numbers of the outer products that are computed at once
@@ -210,7 +221,7 @@ void Cholesky<Scalar>::Factor::add_outer(int front, const Scalar* outer, int par
 
 template <typename Scalar>
 int Cholesky<Scalar>::Factor::threads() const {
-  return std::clamp(thread_count(), 1, std::max(1, plan.task_count()));
+  return has_room_for_threads ? std::clamp(thread_count(), 1, std::max(1, plan.task_count())) : 1;
 }
 
 template <typename Scalar>
@@ -285,8 +296,12 @@ Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retaine
   const std::size_t numbers = factor_->plan.panel_begin.back();
   const bool fits = numbers <= static_cast<std::size_t>(memory.size());
   if (!fits) memory.resize(0);
-  const std::size_t updates = factor_->plan.kept_size + factor_->plan.stack_size * factor_->threads();
-  require_memory(static_cast<double>(((fits ? 0 : numbers) + updates + dense) * sizeof(Scalar)));
+  const Elimination& plan = factor_->plan;
+  const auto bytes = [&](std::size_t updates) {
+    return static_cast<double>(((fits ? 0 : numbers) + updates + dense) * sizeof(Scalar));
+  };
+  require_memory(bytes(plan.kept_size + plan.stack_size));
+  factor_->has_room_for_threads = has_room(plan, thread_count(), bytes);
   if (!fits) {
     memory.resize(static_cast<Eigen::Index>(numbers));
     prefer_huge_pages(memory.data(), numbers * sizeof(Scalar));

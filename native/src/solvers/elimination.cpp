@@ -305,6 +305,7 @@ class Ordering {
     Array<std::size_t> held(out_.front_count(), 0);  // by the updates of a front's children within its task
     Array<std::size_t> kept(out_.task_count(), 0),   // of each task's children, all at once
         most(out_.task_count(), 0);                  // within each task's children, at any time
+    std::size_t kept_now = 0;
     for (int task = 0; task < out_.task_count(); ++task) {
       const int last = out_.task_begin[task + 1] - 1, above = out_.task_parent[task];
       std::size_t in_use = 0;
@@ -318,9 +319,11 @@ class Ordering {
         if (out_.parent[front] != -1) held[out_.parent[front]] += out_.update_size(front);
       }
       const std::size_t update = out_.update_size(last);
+      out_.kept_size = std::max(out_.kept_size, kept_now + update);
+      kept_now += update - kept[task];
       most[task] = std::max(most[task], kept[task] + update);
       if (above == -1) {
-        out_.kept_size += most[task];
+        out_.most_kept += most[task];
       } else {
         kept[above] += update;
         most[above] += most[task];

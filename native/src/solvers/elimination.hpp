@@ -36,7 +36,8 @@ struct Elimination {
   Array<int> last_child;       // (tasks) or -1
   Array<int> earlier_sibling;  // (tasks) or -1
   std::size_t stack_size = 0;  // the most numbers that updates within a task take up at once
-  std::size_t kept_size = 0;   // and those that are kept, whatever the order of the tasks
+  std::size_t kept_size = 0;   // and those that are kept, with the tasks in their order
+  std::size_t most_kept = 0;   // or in any other
 
   int task_count() const { return static_cast<int>(task_parent.size()); }
   int front_count() const { return static_cast<int>(parent.size()); }
