@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import argparse
+import codecs
 import os
 import stat
 import zlib
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
-from pathlib import Path, PurePath
+from pathlib import Path, PurePath, PurePosixPath
 
 from ..io.mesh_files import MESH_SUFFIXES
 from ..io.side_files import UsageError
@@ -19,7 +20,6 @@ PICTURES = "pictures"
 
 # No system takes a longer path.
 _LONGEST_PATH = 1 << 15
-_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 _OF_A_DEVICE = "device or pipe"
 
 
@@ -152,16 +152,26 @@ def _would_block(path: Path) -> bool:
 
 def _in_list(source: Path) -> dict[str, Path]:
     found = {}
-    for number, line in enumerate(source.read_bytes().removeprefix(_BYTE_ORDER_MARK).splitlines(), 1):
-        if b"\0" in line or len(line) > _LONGEST_PATH:
+    for number, line in enumerate(_lines_of(source.read_bytes()), 1):
+        try:
+            text = os.fsdecode(line.strip())
+        except UnicodeDecodeError:  # on Windows, where paths are text
+            text = "\0"
+        if "\0" in text or len(line) > _LONGEST_PATH:
             raise UsageError(
                 f"'{source}' is no list of files: line {number} cannot be a path. Name a folder, a mesh, or a text "
                 "file in UTF-8 with a path on each line"
             )
-        text = os.fsdecode(line.strip())
         if text:
             found[_name_of(Path(text), source.parent)] = source.parent / text
     return found
+
+
+def _lines_of(data: bytes) -> list[bytes]:
+    """The lines of a list in UTF-8, or in UTF-16 as programs of Windows write it, with a byte order mark."""
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        data = data.decode("utf-16", "replace").encode()
+    return data.removeprefix(codecs.BOM_UTF8).splitlines()
 
 
 def _any_of(suffixes: tuple[str, ...]) -> str:
@@ -170,10 +180,15 @@ def _any_of(suffixes: tuple[str, ...]) -> str:
 
 def _name_of(path: Path, folder: Path) -> str:
     """A listed path as it is, if it stays in the list's folder, otherwise the whole path without its root."""
-    if path.is_absolute() or ".." in path.parts:
-        path = Path(os.path.abspath(folder / path))
-        return PurePath(*path.parts[1:]).as_posix()
+    if path.anchor or ".." in path.parts:
+        return rootless(Path(os.path.abspath(folder / path)))
     return path.as_posix()
+
+
+def rootless(path: PurePath) -> str:
+    """An absolute path as a relative one with slashes; drives and network shares of Windows become folders."""
+    drive = PurePosixPath(*path.drive.replace(":", "").replace("\\", "/").strip("/").split("/"))
+    return drive.joinpath(*path.parts[1:]).as_posix()
 
 
 def _size(path: Path) -> int:

@@ -19,10 +19,13 @@ from ..run.report import finite
 from .assets import Shard
 from .records import Record, is_record
 
-try:
+if os.name == "nt":
+    import msvcrt
+else:
     import fcntl
-except ImportError:  # Windows, where two runs are not kept out of one folder
-    fcntl = None
+
+# Windows keeps others from reading what is locked: far behind the end of any journal.
+_LOCKED_BYTE = 1 << 60
 
 
 def journal_path(out: Path, shard: Shard | None) -> Path:
@@ -87,16 +90,24 @@ class Journal:
 
 def _open_locked(path: Path) -> int:
     descriptor = os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o666)
-    if fcntl is None:
-        return descriptor
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError as error:
+        _lock(descriptor)
+    except (BlockingIOError, PermissionError) as error:
         os.close(descriptor)
         raise UsageError(f"another run is writing to '{path}'; wait for its end or name another folder") from error
     except OSError:
         pass  # storage that knows no locks
     return descriptor
+
+
+def _lock(descriptor: int) -> None:
+    """Raises BlockingIOError or, on Windows, PermissionError where another process has locked it; other OSError where
+    there are no locks."""
+    if os.name == "nt":
+        os.lseek(descriptor, _LOCKED_BYTE, os.SEEK_SET)
+        msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+    else:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def _end_of_whole_lines(descriptor: int) -> int:

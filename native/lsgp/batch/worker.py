@@ -95,12 +95,47 @@ def _forget_peak_memory() -> None:
 
 
 def _peak_memory_mb() -> float | None:
+    """None where the system does not tell."""
+    peak = _peak_on_windows() if sys.platform == "win32" else _peak_on_mac() if sys.platform == "darwin" else _peak()
+    return None if peak is None else round(peak / 1e6, 3)
+
+
+def _peak() -> int | None:
+    """In bytes, as the others."""
     try:
         status = Path("/proc/self/status").read_text()
     except OSError:
         return None
     peak = next((line for line in status.splitlines() if line.startswith("VmHWM:")), None)
-    return None if peak is None else round(int(peak.split()[1]) * 1024 / 1e6, 3)
+    return None if peak is None else int(peak.split()[1]) * 1024
+
+
+def _peak_on_mac() -> int:
+    import resource
+
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss  # elsewhere in kilobytes
+
+
+def _peak_on_windows() -> int | None:
+    import ctypes
+    from ctypes import wintypes
+
+    class Counters(ctypes.Structure):
+        """PROCESS_MEMORY_COUNTERS."""
+
+        _fields_ = (
+            ("size", wintypes.DWORD),
+            ("page_faults", wintypes.DWORD),
+            ("peak", ctypes.c_size_t),
+            ("others", ctypes.c_size_t * 7),
+        )
+
+    counters = Counters(size=ctypes.sizeof(Counters))
+    kernel = ctypes.WinDLL("kernel32")
+    kernel.GetCurrentProcess.restype = wintypes.HANDLE
+    ask = kernel.K32GetProcessMemoryInfo
+    ask.argtypes = (wintypes.HANDLE, ctypes.POINTER(Counters), wintypes.DWORD)
+    return counters.peak if ask(kernel.GetCurrentProcess(), ctypes.byref(counters), counters.size) else None
 
 
 def _size(path: str) -> int | None:

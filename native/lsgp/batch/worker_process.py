@@ -25,6 +25,16 @@ START_SECONDS = 120.0
 END_SECONDS = 10.0
 STDERR_SHOWN = 400
 
+WINDOWS_ENDINGS = {
+    0xC0000005: "access violation",
+    0xC0000017: "no memory",
+    0xC000001D: "illegal instruction",
+    0xC00000FD: "stack overflow",
+    0xC000013A: "Ctrl-C",
+    0xC0000374: "damaged heap",
+    0xC0000409: "abort",
+}
+
 
 class WorkersError(Exception):
     """Workers cannot be started."""
@@ -95,7 +105,7 @@ class WorkerProcess:
         with self._errors as errors:
             errors.seek(0)
             printed = errors.read().decode("utf-8", "replace")
-        return _way_of_ending(code), " ".join(printed.split())[-STDERR_SHOWN:]
+        return way_of_ending(code), " ".join(printed.split())[-STDERR_SHOWN:]
 
     def _send(self, value: object) -> None:
         with contextlib.suppress(OSError):  # it has died; the end of its output says so too
@@ -111,7 +121,10 @@ class WorkerProcess:
         said.put((self, None))
 
 
-def _way_of_ending(code: int) -> str:
+def way_of_ending(code: int) -> str:
+    """How a process ended, by its exit code; Windows has codes from 0xC0000000 on for what elsewhere are signals."""
+    if code >= 0xC0000000:
+        return f"was ended by Windows: {WINDOWS_ENDINGS.get(code, 'exception')} (0x{code:08X})"
     if code >= 0:
         return f"ended with exit code {code}"
     try:

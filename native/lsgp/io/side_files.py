@@ -26,7 +26,9 @@ class UsageError(Exception):
 def read_regular(path: Path) -> bytes:
     """The content of a regular file.  Raises OSError, for pipes and devices too: they may never begin or end."""
     mode = os.stat(path).st_mode
-    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+    if stat.S_ISDIR(mode):  # Windows would say that it is not permitted
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), path)
+    if not stat.S_ISREG(mode):
         raise OSError(
             errno.EINVAL, "Not a regular file (to read a mesh from a pipe, let the input be - and redirect it)", path
         )

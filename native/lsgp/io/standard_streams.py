@@ -20,11 +20,10 @@ def say(stream: TextIO | None, text: str) -> None:
     encoding = stream.encoding or "utf-8"
     try:
         print(text.encode(encoding, "backslashreplace").decode(encoding), file=stream, flush=True)
-    except BrokenPipeError:  # the command goes on, as it still has files to write
-        silence(stream)
     except OSError as error:
         silence(stream)
-        raise _not_written(error.strerror or str(error)) from error
+        if not has_no_reader(error):  # without one the command goes on, as it still has files to write
+            raise _not_written(error.strerror or str(error)) from error
 
 
 def complain(text: str) -> None:
@@ -43,6 +42,11 @@ def write_to_standard_output(data: bytes) -> None:
     except OSError as error:
         silence(sys.stdout)
         raise _not_written(error.strerror or str(error)) from error
+
+
+def has_no_reader(error: OSError) -> bool:
+    """Whether a stream could not be written because its reader has closed its end; Windows calls that EINVAL."""
+    return isinstance(error, BrokenPipeError) or (os.name == "nt" and error.errno == errno.EINVAL)
 
 
 def silence(stream: TextIO) -> None:

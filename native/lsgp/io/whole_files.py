@@ -18,6 +18,9 @@ from .standard_streams import write_to_standard_output
 # Pattern of temporary files, which remain where a process is killed. A suffix may follow.
 PARTIAL = ".lsgp-*.partial"
 ABANDONED_SECONDS = 3600.0
+# Windows does not replace a file that is open; programs that look for viruses or index files open new ones briefly.
+IS_WINDOWS = os.name == "nt"
+REPLACE_SECONDS = 2.0
 
 
 def write_output(path: Path, data: bytes, *, keep_backup: bool = False) -> None:
@@ -60,9 +63,10 @@ def whole_file(target: Path, suffix: str = "", *, keep_backup: bool = False) -> 
     try:
         yield partial
         if target.exists():
-            shutil.copymode(target, partial)
+            if not IS_WINDOWS:  # which has one bit there, read-only; such a file is not replaced
+                shutil.copymode(target, partial)
             backup = _make_backup(target, partial) if keep_backup else None
-        os.replace(partial, target)
+        _replace(partial, target)
     except BaseException:
         with contextlib.suppress(OSError):
             partial.unlink()
@@ -70,6 +74,22 @@ def whole_file(target: Path, suffix: str = "", *, keep_backup: bool = False) -> 
     finally:
         if backup is not None:  # the target is the old file or the new one, as a whole
             backup.unlink()
+
+
+def _replace(partial: Path, target: Path) -> None:
+    """Raises OSError."""
+    begin = time.monotonic()
+    while True:
+        try:
+            return os.replace(partial, target)
+        except PermissionError as error:
+            if not IS_WINDOWS:
+                raise
+            is_read_only = target.exists() and not os.access(target, os.W_OK)
+            if is_read_only or time.monotonic() - begin > REPLACE_SECONDS:
+                reason = "The file is read-only" if is_read_only else "The file may be open in another program"
+                raise PermissionError(error.errno, reason, os.fspath(target)) from error
+            time.sleep(0.1)
 
 
 def _make_backup(target: Path, partial: Path) -> Path:

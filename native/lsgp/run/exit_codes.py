@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable
 
 from ..io.side_files import UsageError
-from ..io.standard_streams import complain, silence
+from ..io.standard_streams import complain, has_no_reader, silence
 
 OK, USAGE, REFUSED, SOME, INTERRUPTED = 0, 2, 3, 4, 130
 
@@ -52,12 +52,11 @@ def flushed(code: int) -> int:
     try:
         if sys.stdout is not None:
             sys.stdout.flush()
-    except BrokenPipeError:
-        silence(sys.stdout)
     except OSError as error:
         silence(sys.stdout)
-        complain(f"lsgp: error: {describe(error)}: 'standard output'")
-        code = USAGE
+        if not has_no_reader(error):
+            complain(f"lsgp: error: {describe(error)}: 'standard output'")
+            code = USAGE
     try:
         if sys.stderr is not None:
             sys.stderr.flush()

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "base/checkpoint.hpp"
 
@@ -86,7 +87,7 @@ class IntrinsicTriangulation {
         outgoing_(mesh.outgoing),
         is_cone_(mesh.vertex_count(), 0),
         touched_in_(mesh.vertex_count(), 0),
-        flips_left_(100 * static_cast<long>(mesh.halfedge_count())) {
+        flips_left_(100 * std::int64_t{mesh.halfedge_count()}) {
     for (const Index v : cones) is_cone_[v] = 1;
     Array<Index> to_right, to_left;  // (cuts) motions
     for (std::size_t cut = 0; cut < turn.size(); ++cut) {
@@ -313,11 +314,11 @@ class IntrinsicTriangulation {
 
   Motions motions_;
   Array<Halfedge> halfedges_;
-  Array<Index> outgoing_;  // (n)
-  Array<char> is_cone_;    // (n)
-  Array<int> touched_in_;  // (n) pass
-  Array<Index> suspects_;  // halfedges that may not be Delaunay
-  long flips_left_;        // of those that only keep it Delaunay
+  Array<Index> outgoing_;    // (n)
+  Array<char> is_cone_;      // (n)
+  Array<int> touched_in_;    // (n) pass
+  Array<Index> suspects_;    // halfedges that may not be Delaunay
+  std::int64_t flips_left_;  // of those that only keep it Delaunay
 };
 
 }  // namespace

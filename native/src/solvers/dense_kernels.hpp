@@ -3,6 +3,8 @@
 // machine has is taken at run time.
 #pragma once
 
+#include <cstddef>
+
 namespace lsgp {
 
 // A front: the columns of one supernode, and the rows below them that they touch. Column-major.
@@ -27,14 +29,15 @@ struct DenseKernels {
   // The steps of both for a front of which blocks are worked on one by one. Blocks are column-major, their columns
   // `stride` numbers apart.
   // square = its Cholesky factor, lower triangle, (size, size). False where a pivot is not positive.
-  bool (*factor_square)(Scalar* square, int size, long stride);
+  bool (*factor_square)(Scalar* square, int size, std::ptrdiff_t stride);
   // block = block * factor^-H, (rows, size).
-  void (*divide_rows)(const Scalar* factor, int size, Scalar* block, int rows, long stride);
+  void (*divide_rows)(const Scalar* factor, int size, Scalar* block, int rows, std::ptrdiff_t stride);
   // out -= left * right^H, (rows, columns), of matrices with `depth` columns.
-  void (*subtract_product)(const Scalar* left, int rows, const Scalar* right, int columns, int depth, long stride,
-                           Scalar* out, long out_stride);
+  void (*subtract_product)(const Scalar* left, int rows, const Scalar* right, int columns, int depth,
+                           std::ptrdiff_t stride, Scalar* out, std::ptrdiff_t out_stride);
   // out -= left * left^H, lower triangle, (rows, rows).
-  void (*subtract_square)(const Scalar* left, int rows, int depth, long stride, Scalar* out, long out_stride);
+  void (*subtract_square)(const Scalar* left, int rows, int depth, std::ptrdiff_t stride, Scalar* out,
+                          std::ptrdiff_t out_stride);
 
   // own = L^-1 own, (columns, width);  others = panel below * own, (below, width).
   void (*substitute_forward)(const Front<Scalar>& front, int width, Scalar* own, Scalar* others);

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <complex>
+#include <cstddef>
 
 #include "solvers/dense_kernels.hpp"
 
@@ -29,8 +30,8 @@ inline double real_part(const std::complex<double>& x) { return x.real(); }
 
 // out (count) -= sum over columns of factor * column, four columns at a time.
 template <typename Scalar>
-inline void subtract_columns(Scalar* __restrict out, int count, const Scalar* columns, long stride,
-                             const Scalar* factors, long factor_stride, int column_count) {
+inline void subtract_columns(Scalar* __restrict out, int count, const Scalar* columns, std::ptrdiff_t stride,
+                             const Scalar* factors, std::ptrdiff_t factor_stride, int column_count) {
   int k = 0;
   for (; k + 4 <= column_count; k += 4) {
     const Scalar* __restrict a = columns + k * stride;
@@ -50,8 +51,8 @@ inline void subtract_columns(Scalar* __restrict out, int count, const Scalar* co
 template <typename Scalar>
 bool factor_narrow(Scalar* panel, int rows, int columns) {
   for (int j = 0; j < columns; ++j) {
-    Scalar* column = panel + static_cast<long>(j) * rows;
-    subtract_columns(column + j, rows - j, panel + j, static_cast<long>(rows), panel + j, static_cast<long>(rows), j);
+    Scalar* column = panel + static_cast<std::ptrdiff_t>(j) * rows;
+    subtract_columns(column + j, rows - j, panel + j, rows, panel + j, rows, j);
     const double pivot = real_part(column[j]);
     if (!(pivot > 0)) return false;
     const double root = std::sqrt(pivot), inverse = 1 / root;
@@ -67,7 +68,7 @@ bool is_positive(const Block<Scalar>& square) {
 }
 
 template <typename Scalar>
-void divide_rows(const Scalar* factor, int size, Scalar* block, int rows, long stride) {
+void divide_rows(const Scalar* factor, int size, Scalar* block, int rows, std::ptrdiff_t stride) {
   Block<Scalar> out(block, rows, size, Eigen::OuterStride<>(stride));
   const ConstBlock<Scalar> square(factor, size, size, Eigen::OuterStride<>(stride));
   square.template triangularView<Eigen::Lower>().adjoint().template solveInPlace<Eigen::OnTheRight>(out);
@@ -84,22 +85,23 @@ bool factor_wide(Scalar* panel, int rows, int columns) {
 }
 
 template <typename Scalar>
-bool factor_square(Scalar* square, int size, long stride) {
+bool factor_square(Scalar* square, int size, std::ptrdiff_t stride) {
   Block<Scalar> block(square, size, size, Eigen::OuterStride<>(stride));
   Eigen::internal::llt_inplace<Scalar, Eigen::Lower>::unblocked(block);
   return is_positive(block);
 }
 
 template <typename Scalar>
-void subtract_product(const Scalar* left, int rows, const Scalar* right, int columns, int depth, long stride,
-                      Scalar* out, long out_stride) {
+void subtract_product(const Scalar* left, int rows, const Scalar* right, int columns, int depth, std::ptrdiff_t stride,
+                      Scalar* out, std::ptrdiff_t out_stride) {
   const Eigen::OuterStride<> between(stride);
   Block<Scalar>(out, rows, columns, Eigen::OuterStride<>(out_stride)).noalias() -=
       ConstBlock<Scalar>(left, rows, depth, between) * ConstBlock<Scalar>(right, columns, depth, between).adjoint();
 }
 
 template <typename Scalar>
-void subtract_square(const Scalar* left, int rows, int depth, long stride, Scalar* out, long out_stride) {
+void subtract_square(const Scalar* left, int rows, int depth, std::ptrdiff_t stride, Scalar* out,
+                     std::ptrdiff_t out_stride) {
   Block<Scalar> square(out, rows, rows, Eigen::OuterStride<>(out_stride));
   square.template selfadjointView<Eigen::Lower>().rankUpdate(
       ConstBlock<Scalar>(left, rows, depth, Eigen::OuterStride<>(stride)), Scalar(-1));
@@ -115,10 +117,10 @@ bool eliminate(const Front<Scalar>& front) {
     return false;
   }
   const Scalar* below = front.panel + front.columns;
-  const long stride = rows;
+  const std::ptrdiff_t stride = rows;
   if (has_plain_update(front.columns, front.below)) {
     for (int c = 0; c < free; ++c) {
-      Scalar* column = front.update + static_cast<long>(c) * front.below;
+      Scalar* column = front.update + static_cast<std::ptrdiff_t>(c) * front.below;
       subtract_columns(column + c, front.below - c, below + c, stride, below + c, stride, front.columns);
     }
   } else if (free > 0) {
@@ -133,17 +135,17 @@ bool eliminate(const Front<Scalar>& front) {
 
 template <typename Scalar>
 void subtract_outer(const Front<Scalar>& front, Scalar* outer) {
-  const long stride = front.columns + front.below;
+  const std::ptrdiff_t stride = front.columns + front.below;
   const Scalar* retained = front.panel + stride - front.retained;
   for (int c = 0; c < front.retained; ++c) {
-    Scalar* column = outer + static_cast<long>(c) * front.retained;
+    Scalar* column = outer + static_cast<std::ptrdiff_t>(c) * front.retained;
     for (int i = c; i < front.retained; ++i) column[i] = 0;
   }
   if (!has_plain_update(front.columns, front.below)) {
     return subtract_square(retained, front.retained, front.columns, stride, outer, front.retained);
   }
   for (int c = 0; c < front.retained; ++c) {
-    Scalar* column = outer + static_cast<long>(c) * front.retained;
+    Scalar* column = outer + static_cast<std::ptrdiff_t>(c) * front.retained;
     const Scalar* at = retained + c;
     subtract_columns(column + c, front.retained - c, at, stride, at, stride, front.columns);
   }
@@ -154,18 +156,18 @@ template <typename Scalar, int width>
 using Sides = Eigen::Array<Scalar, width, 1>;
 template <typename Scalar, int width>
 inline Eigen::Map<Sides<Scalar, width>> sides(Scalar* first, int row) {
-  return Eigen::Map<Sides<Scalar, width>>(first + static_cast<long>(row) * width);
+  return Eigen::Map<Sides<Scalar, width>>(first + static_cast<std::ptrdiff_t>(row) * width);
 }
 template <typename Scalar, int width>
 inline Eigen::Map<const Sides<Scalar, width>> sides(const Scalar* first, int row) {
-  return Eigen::Map<const Sides<Scalar, width>>(first + static_cast<long>(row) * width);
+  return Eigen::Map<const Sides<Scalar, width>>(first + static_cast<std::ptrdiff_t>(row) * width);
 }
 
 // Columns are taken four at a time, so that what they act on is read and written once for all of them; in variables of
 // their own, so that they stay in registers.
 template <typename Scalar, int width>
 void forward_four(const Front<Scalar>& front, int j, Scalar* own, Scalar* others) {
-  const long rows = front.columns + front.below;
+  const std::ptrdiff_t rows = front.columns + front.below;
   const Scalar *a = front.panel + j * rows, *b = a + rows, *c = b + rows, *d = c + rows;
   using Values = Sides<Scalar, width>;
   const Values x = sides<Scalar, width>(own, j) * (1 / real_part(a[j]));
@@ -191,7 +193,7 @@ void forward_four(const Front<Scalar>& front, int j, Scalar* own, Scalar* others
 
 template <typename Scalar, int width>
 void forward_one(const Front<Scalar>& front, int j, Scalar* own, Scalar* others) {
-  const Scalar* a = front.panel + static_cast<long>(j) * (front.columns + front.below);
+  const Scalar* a = front.panel + static_cast<std::ptrdiff_t>(j) * (front.columns + front.below);
   const Sides<Scalar, width> x = sides<Scalar, width>(own, j) * (1 / real_part(a[j]));
   sides<Scalar, width>(own, j) = x;
   for (int i = j + 1; i < front.columns; ++i) sides<Scalar, width>(own, i) -= a[i] * x;
@@ -208,12 +210,12 @@ void substitute_forward_rows(const Front<Scalar>& front, Scalar* own, Scalar* ot
 
 template <typename Scalar, int width>
 void backward_four(const Front<Scalar>& front, int j, Scalar* own, const Scalar* others) {
-  const long rows = front.columns + front.below;
+  const std::ptrdiff_t rows = front.columns + front.below;
   const Scalar *a = front.panel + j * rows, *b = a + rows, *c = b + rows, *d = c + rows;
   using Values = Sides<Scalar, width>;
   Values x = sides<Scalar, width>(own, j), y = sides<Scalar, width>(own, j + 1), z = sides<Scalar, width>(own, j + 2),
          w = sides<Scalar, width>(own, j + 3);
-  const auto subtract = [&](long row, const Values& known) {
+  const auto subtract = [&](std::ptrdiff_t row, const Values& known) {
     x -= conjugate(a[row]) * known;
     y -= conjugate(b[row]) * known;
     z -= conjugate(c[row]) * known;
@@ -233,7 +235,7 @@ void backward_four(const Front<Scalar>& front, int j, Scalar* own, const Scalar*
 
 template <typename Scalar, int width>
 void backward_one(const Front<Scalar>& front, int j, Scalar* own, const Scalar* others) {
-  const Scalar* a = front.panel + static_cast<long>(j) * (front.columns + front.below);
+  const Scalar* a = front.panel + static_cast<std::ptrdiff_t>(j) * (front.columns + front.below);
   Sides<Scalar, width> x = sides<Scalar, width>(own, j);
   for (int i = j + 1; i < front.columns; ++i) x -= conjugate(a[i]) * sides<Scalar, width>(own, i);
   for (int i = 0; i < front.below; ++i) x -= conjugate(a[front.columns + i]) * sides<Scalar, width>(others, i);

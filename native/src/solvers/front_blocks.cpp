@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <complex>
+#include <cstddef>
 #include <utility>
 
 #include "base/checkpoint.hpp"
@@ -59,7 +60,7 @@ class FrontBlocks {
 
   void subtract_outer(Scalar* outer) {
     for (int c = 0; c < front_.retained; ++c) {
-      Scalar* column = outer + static_cast<long>(c) * front_.retained;
+      Scalar* column = outer + static_cast<std::ptrdiff_t>(c) * front_.retained;
       std::fill(column + c, column + front_.retained, Scalar(0));
     }
     const Scalar* retained = at(front_.columns + front_.below - front_.retained, 0);
@@ -78,7 +79,7 @@ class FrontBlocks {
     });
   }
 
-  void subtract_square(const Scalar* left, int rows, int depth, Scalar* out, long out_stride) {
+  void subtract_square(const Scalar* left, int rows, int depth, Scalar* out, std::ptrdiff_t out_stride) {
     if (rows == 0) return;
     const Blocks blocks(rows);
     Array<std::pair<int, int>> places;
@@ -105,8 +106,8 @@ class FrontBlocks {
     team_.run_each(lower.count * upper.count, [&](int i) {
       const int r = i % lower.count, c = i / lower.count;
       kernels_.subtract_product(left + lower.begin(r), lower.size(r), right + upper.begin(c), upper.size(c),
-                                front_.columns, stride_, out + lower.begin(r) + upper.begin(c) * long(front_.below),
-                                front_.below);
+                                front_.columns, stride_,
+                                out + lower.begin(r) + upper.begin(c) * std::ptrdiff_t{front_.below}, front_.below);
       checkpoint(static_cast<double>(front_.columns) * lower.size(r) * upper.size(c));
     });
   }
@@ -114,7 +115,7 @@ class FrontBlocks {
   const Front<Scalar>& front_;
   ThreadTeam& team_;
   const DenseKernels<Scalar>& kernels_;
-  const long stride_;
+  const std::ptrdiff_t stride_;
 };
 
 }  // namespace
