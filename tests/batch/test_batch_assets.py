@@ -6,7 +6,7 @@ from __future__ import annotations
 import argparse
 import os
 from collections import Counter
-from pathlib import Path
+from pathlib import Path, PurePath, PurePosixPath, PureWindowsPath
 
 import pytest
 from lsgp.batch.assets import (
@@ -15,6 +15,7 @@ from lsgp.batch.assets import (
     find_assets,
     output_name,
     require_distinct_results,
+    rootless,
     shard_option,
 )
 from lsgp.batch.chunks import MOST_ASSETS, Queue
@@ -48,11 +49,26 @@ def test_list_is_relative_to_its_folder_and_may_lead_anywhere(tmp_path: Path) ->
     lines = ["a.obj", "", "  deep/b b.ply  ", "../beside.off", str(absolute), "gone.obj", "model.stl"]
     (tmp_path / "in" / "list.txt").write_text("\r\n".join(lines))
     found = find_assets(tmp_path / "in" / "list.txt", tmp_path / "out", SUFFIXES).assets
-    outside = str(absolute).lstrip("/")
+    outside = rootless(absolute)
     assert names(found) == sorted(["a.obj", "deep/b b.ply", "gone.obj", "model.stl", outside])
     by_name = {asset.name: asset for asset in found}
     assert by_name["deep/b b.ply"].path.read_bytes() == b"x" * len("in/deep/b b.ply")
     assert (by_name["gone.obj"].size, by_name[outside].path.resolve()) == (0, absolute.resolve())
+
+
+@pytest.mark.parametrize(
+    ("path", "name"),
+    [
+        (PurePosixPath("/a/x.obj"), "a/x.obj"),
+        (PureWindowsPath(r"C:\a\x.obj"), "C/a/x.obj"),
+        (PureWindowsPath(r"D:\a\x.obj"), "D/a/x.obj"),
+        (PureWindowsPath(r"\\server\share\a\x.obj"), "server/share/a/x.obj"),
+        (PureWindowsPath(r"\\?\C:\a\x.obj"), "C/a/x.obj"),
+    ],
+)
+def test_names_of_assets_elsewhere_have_their_drive(path: PurePath, name: str) -> None:
+    assert rootless(path) == name
+    assert not (type(path)("out") / name).anchor
 
 
 def test_nothing_to_do_is_wrong_usage(tmp_path: Path) -> None:

@@ -127,9 +127,10 @@ def test_workers_end_with_the_run(tmp_path: Path) -> None:
         os.kill(int(host_and_pid[1]), 0)
 
 
-@pytest.mark.parametrize("sent", [signal.SIGKILL, signal.SIGINT])
-def test_workers_of_a_run_that_is_stopped_end_too(tmp_path: Path, sent: signal.Signals) -> None:
+@pytest.mark.parametrize("signal_name", ["SIGKILL", "SIGINT"])
+def test_workers_of_a_run_that_is_stopped_end_too(tmp_path: Path, signal_name: str) -> None:
     """Also in the middle of an asset: nobody waits for it any more."""
+    sent = signal.Signals[signal_name]  # Windows has no SIGKILL
     for name in ("hang 1", "hang 2"):
         (tmp_path / f"{name}.off").write_text(off_text(grid(3, 3)))
     script = f"""

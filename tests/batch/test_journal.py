@@ -62,7 +62,6 @@ def test_a_run_reads_all_journals_and_a_shard_its_own(tmp_path: Path) -> None:
 
 
 def test_two_runs_cannot_write_to_one_journal(tmp_path: Path) -> None:
-    pytest.importorskip("fcntl")
     with (
         Journal(tmp_path, Shard(1, 2), keep=False),
         pytest.raises(UsageError, match="another run is writing"),

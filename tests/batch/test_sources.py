@@ -79,7 +79,7 @@ def test_other_kinds_in_a_folder_are_counted(tmp_path: Path, batch, lines_in) ->
 
 @pytest.mark.parametrize(
     "content",
-    [b"a.off\n\0\0\0\n", "a.off\nb.off\n".encode("utf-16"), bytes(range(256)) * 200, b"a.off\n" + b"v" * 40_000],
+    [b"a.off\n\0\0\0\n", "a.off\nb.off\n".encode("utf-16-le"), bytes(range(256)) * 200, b"a.off\n" + b"v" * 40_000],
     ids=["NUL", "UTF-16", "binary", "endless line"],
 )
 def test_lists_that_are_none_are_refused_by_line(tmp_path: Path, batch, content: bytes) -> None:
@@ -95,6 +95,24 @@ def test_a_list_may_begin_with_a_byte_order_mark(tmp_path: Path) -> None:
     (tmp_path / "list.txt").write_text("a.off\n", encoding="utf-8-sig")
     (asset,) = find_assets(tmp_path / "list.txt", tmp_path / "out", READABLE).assets
     assert (asset.name, asset.size) == ("a.off", (tmp_path / "a.off").stat().st_size)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16-le", "utf-16-be"])
+@pytest.mark.parametrize("ending", ["\n", "\r\n"])
+def test_lists_in_every_encoding_of_unicode(tmp_path: Path, encoding: str, ending: str) -> None:
+    """UTF-16 with a byte order mark is what PowerShell writes."""
+    name = "würfel 立 🙂.off"
+    write_mesh(tmp_path / name)
+    text = ("\ufeff" if encoding.startswith("utf-16") else "") + ending.join([name, "", "gone.off", ""])
+    (tmp_path / "list.txt").write_bytes(text.encode(encoding))
+    found = find_assets(tmp_path / "list.txt", tmp_path / "out", READABLE).assets
+    assert {asset.name: asset.path.is_file() for asset in found} == {name: True, "gone.off": False}
+
+
+def test_a_list_that_ends_in_half_a_character_has_no_file_of_that_name(tmp_path: Path) -> None:
+    (tmp_path / "list.txt").write_bytes("\ufeffa.off\nb".encode("utf-16-le")[:-1])
+    found = find_assets(tmp_path / "list.txt", tmp_path / "out", READABLE).assets
+    assert [(asset.name, asset.size) for asset in found] == [("a.off", 0), ("\ufffd", 0)]
 
 
 @posix

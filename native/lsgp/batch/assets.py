@@ -187,8 +187,8 @@ def _name_of(path: Path, folder: Path) -> str:
 
 def rootless(path: PurePath) -> str:
     """An absolute path as a relative one with slashes; drives and network shares of Windows become folders."""
-    drive = PurePosixPath(*path.drive.replace(":", "").replace("\\", "/").strip("/").split("/"))
-    return drive.joinpath(*path.parts[1:]).as_posix()
+    drive = path.drive.replace("\\", "/").removeprefix("//?/").replace(":", "").strip("/")
+    return PurePosixPath(drive, *path.parts[1:]).as_posix()
 
 
 def _size(path: Path) -> int:

@@ -18,7 +18,6 @@ from .standard_streams import write_to_standard_output
 # Pattern of temporary files, which remain where a process is killed. A suffix may follow.
 PARTIAL = ".lsgp-*.partial"
 ABANDONED_SECONDS = 3600.0
-# Windows does not replace a file that is open; programs that look for viruses or index files open new ones briefly.
 IS_WINDOWS = os.name == "nt"
 REPLACE_SECONDS = 2.0
 
@@ -63,8 +62,9 @@ def whole_file(target: Path, suffix: str = "", *, keep_backup: bool = False) -> 
     try:
         yield partial
         if target.exists():
-            if not IS_WINDOWS:  # which has one bit there, read-only; such a file is not replaced
-                shutil.copymode(target, partial)
+            if IS_WINDOWS and not os.access(target, os.W_OK):  # it would keep the partial file from being removed too
+                raise PermissionError(errno.EACCES, "The file is read-only", os.fspath(target))
+            shutil.copymode(target, partial)
             backup = _make_backup(target, partial) if keep_backup else None
         _replace(partial, target)
     except BaseException:
@@ -77,19 +77,19 @@ def whole_file(target: Path, suffix: str = "", *, keep_backup: bool = False) -> 
 
 
 def _replace(partial: Path, target: Path) -> None:
-    """Raises OSError."""
-    begin = time.monotonic()
+    """Windows does not replace a file that is open; programs that index files or look for viruses open new ones
+    briefly.  Raises OSError."""
+    end = time.monotonic() + REPLACE_SECONDS
     while True:
         try:
             return os.replace(partial, target)
         except PermissionError as error:
             if not IS_WINDOWS:
                 raise
-            is_read_only = target.exists() and not os.access(target, os.W_OK)
-            if is_read_only or time.monotonic() - begin > REPLACE_SECONDS:
-                reason = "The file is read-only" if is_read_only else "The file may be open in another program"
+            if time.monotonic() >= end:
+                reason = "The file may be open in another program"
                 raise PermissionError(error.errno, reason, os.fspath(target)) from error
-            time.sleep(0.1)
+        time.sleep(0.1)
 
 
 def _make_backup(target: Path, partial: Path) -> Path:

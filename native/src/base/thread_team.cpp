@@ -19,7 +19,7 @@ int& count_of_this_thread() {
 
 int default_count() {
   const char* text = std::getenv("LSGP_THREADS");
-  const long given = text == nullptr ? 0 : std::strtol(text, nullptr, 10);
+  const auto given = text == nullptr ? 0 : std::strtol(text, nullptr, 10);
   if (given >= 1 && given <= most_threads) return static_cast<int>(given);
   return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, static_cast<unsigned>(most_threads)));
 }

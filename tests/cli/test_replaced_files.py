@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files that are replaced while others have them open, or that may not be: as on Windows."""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+import threading
+from pathlib import Path
+
+import pytest
+from lsgp.io import whole_files
+from lsgp.io.whole_files import write_whole
+
+windows = pytest.mark.skipif(os.name != "nt", reason="other systems replace files that are open or read-only")
+
+
+@pytest.fixture
+def target(tmp_path: Path) -> Path:
+    path = tmp_path / "out.obj"
+    path.write_bytes(b"before")
+    return path
+
+
+@pytest.mark.parametrize("held", [1, 3])
+def test_a_file_that_is_open_briefly_is_replaced(target: Path, monkeypatch: pytest.MonkeyPatch, held: int) -> None:
+    """By a system that refuses it as often."""
+    calls = []
+
+    def replace(source: Path, to: Path) -> None:
+        calls.append(source)
+        if len(calls) <= held:
+            raise PermissionError(errno.EACCES, "Permission denied", source, None, to)
+        source.rename(to) if os.name != "nt" else (to.unlink(), source.rename(to))
+
+    monkeypatch.setattr(whole_files, "IS_WINDOWS", True)
+    monkeypatch.setattr(whole_files.os, "replace", replace)
+    write_whole(target, b"after")
+    assert (target.read_bytes(), len(calls)) == (b"after", held + 1)
+
+
+def test_a_file_that_stays_open_is_named_and_kept(target: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def replace(source: Path, to: Path) -> None:
+        raise PermissionError(errno.EACCES, "Permission denied", source, None, to)
+
+    monkeypatch.setattr(whole_files, "IS_WINDOWS", True)
+    monkeypatch.setattr(whole_files, "REPLACE_SECONDS", 0.2)
+    monkeypatch.setattr(whole_files.os, "replace", replace)
+    with pytest.raises(PermissionError, match="open in another program") as caught:
+        write_whole(target, b"after")
+    assert caught.value.filename == os.path.realpath(target)
+    assert {path.name: path.read_bytes() for path in target.parent.iterdir()} == {"out.obj": b"before"}
+
+
+@windows
+def test_windows_waits_for_a_reader(target: Path) -> None:
+    reader = target.open("rb")
+    threading.Timer(0.5, reader.close).start()
+    write_whole(target, b"after")
+    assert target.read_bytes() == b"after"
+
+
+@windows
+def test_windows_keeps_a_file_that_is_read_only(target: Path) -> None:
+    target.chmod(stat.S_IREAD)
+    with pytest.raises(PermissionError, match="read-only"):
+        write_whole(target, b"after")
+    assert {path.name: path.read_bytes() for path in target.parent.iterdir()} == {"out.obj": b"before"}
+    target.chmod(stat.S_IREAD | stat.S_IWRITE)
+
+
+def test_long_paths(tmp_path: Path) -> None:
+    """Windows' old limit is 260 characters; where its setting LongPathsEnabled is off, it still is."""
+    target = tmp_path.joinpath(*(["folder of a library"] * 20), "würfel 立.obj")
+    assert len(os.fspath(target)) > 400
+    try:
+        target.parent.mkdir(parents=True)
+    except FileNotFoundError:
+        pytest.skip("this Windows takes no long paths")
+    write_whole(target, b"before")
+    write_whole(target, b"after", keep_backup=True)
+    assert {path.name: path.read_bytes() for path in target.parent.iterdir()} == {target.name: b"after"}
