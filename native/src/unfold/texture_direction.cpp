@@ -31,7 +31,7 @@ std::optional<double> angle_from_direction(const HalfedgeMesh& mesh, const Posit
 bool lies_in_triangle(const HalfedgeMesh& mesh, const Positions& vectors, Index f) {
   constexpr double least_part = 0.2;
   const Eigen::Vector3d normal = area_normal(mesh.positions, mesh.triangles, f).normalized();
-  const Eigen::Vector3d vector = vectors.row(f).normalized();
+  const Eigen::Vector3d vector = vectors.row(f).stableNormalized();
   return (vector - normal.dot(vector) * normal).norm() >= least_part;
 }
 
