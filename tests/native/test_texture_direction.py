@@ -254,6 +254,18 @@ def test_neither_length_nor_unit_of_directions_matters() -> None:
     assert all(np.array_equal(maps[0], other) for other in maps[1:])
 
 
+def test_a_direction_that_is_nothing_beside_others_still_has_an_error() -> None:
+    mesh = meshes.hill(6)
+    directions = np.ones(mesh.triangles.shape)
+    directions[3] = -1.7e308, 1, 1
+    surface = lsgp.Surface(mesh.positions, mesh.triangles, directions=directions)
+    result = lsgp.parameterize(surface, [])
+    assert result.direction_error <= EXACT and result.direction_errors[3] <= EXACT
+    others = replace(surface, directions=np.where(np.arange(len(directions))[:, None] == 3, 0.0, directions))
+    errors = off_v(images(others, result))
+    assert np.delete(result.direction_errors, 3) == pytest.approx(np.delete(errors, 3), abs=1e-9)
+
+
 def test_faces_turned_the_other_way_and_doubled_ones() -> None:
     mesh = meshes.with_flipped(meshes.hill(6), [3, 4, 10])
     triangles = np.concatenate([mesh.triangles, mesh.triangles[:2]])

@@ -2,6 +2,7 @@
 #include "unfold/texture_direction.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -13,6 +14,8 @@ namespace {
 
 const Complex upwards(0, 1);
 constexpr double rounding = 1e-9;
+constexpr double least_inside = 1e-9;  // of a direction in its triangle: less is rounding
+constexpr double least_weight = std::numeric_limits<double>::min();
 
 Eigen::Vector3d edge_in_space(const HalfedgeMesh& mesh, Index h) {
   return mesh.positions.row(mesh.target(h)) - mesh.positions.row(mesh.origin(h));
@@ -69,7 +72,7 @@ Complex TextureDirections::image(const CornerPositions& position, Index triangle
   const Complex image = along_first[triangle] * (position[3 * triangle + 1] - corner) +
                         along_last[triangle] * (position[3 * triangle + 2] - corner);
   const double length = std::abs(image);
-  return length > 0 && std::isfinite(length) ? weight[triangle] / length * image : 0;
+  return length > 0 && std::isfinite(length) ? weight[triangle] * (image / length) : 0;
 }
 
 TextureDirections directions_in_triangles(const HalfedgeMesh& mesh, const Positions& vectors) {
@@ -85,11 +88,15 @@ TextureDirections directions_in_triangles(const HalfedgeMesh& mesh, const Positi
     const double doubled_area = normal.norm();
     if (!(doubled_area > 0)) continue;
     const Eigen::Vector3d unit = normal / doubled_area;
-    const Eigen::Vector3d vector = vectors.row(f).transpose() / longest;
+    const double largest = vectors.row(f).cwiseAbs().maxCoeff();
+    if (!(largest > 0)) continue;
+    const Eigen::Vector3d vector = vectors.row(f).transpose() / largest;
     const Eigen::Vector3d inside = vector - unit.dot(vector) * unit;
+    if (!(inside.norm() > least_inside)) continue;
     out.along_first[f] = unit.dot(inside.cross(last)) / doubled_area;
     out.along_last[f] = unit.dot(first.cross(inside)) / doubled_area;
-    out.weight[f] = doubled_area / 2 * inside.norm();
+    // One that is nothing beside others still has an error.
+    out.weight[f] = std::max(doubled_area / 2 * inside.norm() * (largest / longest), least_weight);
   }
   return out;
 }
