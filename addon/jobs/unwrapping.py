@@ -7,7 +7,7 @@ Runs in a thread of its own while Blender continues, so nothing here touches Ble
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -52,7 +52,7 @@ class UnwrapSettings:
     keep_placement: bool
     correct_aspect: bool
     cuts: CutChoice
-    direction: DirectionChoice
+    direction: DirectionChoice = field(default_factory=DirectionChoice)
     subdivided: bool = False
 
 
