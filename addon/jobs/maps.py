@@ -15,6 +15,7 @@ from ..core.islands import Islands
 from ..mesh import reports
 from ..mesh.uv_write import write_uv
 from . import cells, packing
+from .areas import size_on_the_surface, total_area
 from .texels import map_density
 from .unwrapping import Unwrapped
 
@@ -64,29 +65,15 @@ def _with_one_density(solved: Sequence[Unwrapped]) -> list[Islands]:
     Together they have about the area that they will have, so that a margin that is added before the packer scales them
     is about what was asked for.
     """
-    sizes = np.array([_size_on_the_surface(unwrapped) for unwrapped in solved])
+    sizes = np.array([size_on_the_surface(unwrapped.region, unwrapped.result.solved) for unwrapped in solved])
     sizes *= np.sqrt(FILLED / (sizes**2).sum())
     parts = []
     for unwrapped, size in zip(solved, sizes, strict=True):
         part = unwrapped.islands()
-        scale = size / np.sqrt(_area(part.corner_uv))
+        scale = size / np.sqrt(total_area(part.corner_uv))
         moved = ~np.isin(part.island, part.island[part.pinned.any(axis=1)])
         parts.append(replace(part, corner_uv=np.where(moved[:, None, None], scale * part.corner_uv, part.corner_uv)))
     return parts
-
-
-def _size_on_the_surface(unwrapped: Unwrapped) -> float:
-    """Square root of the area of the triangles of a map, with the object's scale."""
-    surface = unwrapped.region.surface
-    corners = surface.positions[surface.triangles[unwrapped.result.solved]]
-    return float(np.sqrt(_area(corners))) * (unwrapped.region.object_scale or 1.0)
-
-
-def _area(corners: NDArray[np.float64]) -> float:
-    """Of triangles, (m, 3, 2) or (m, 3, 3)."""
-    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    squared = (first**2).sum(axis=1) * (second**2).sum(axis=1) - (first * second).sum(axis=1) ** 2
-    return float(np.sqrt(np.maximum(squared, 0.0)).sum()) / 2
 
 
 def write_map(obj: bpy.types.Object, unwrapped: Unwrapped, corner_uv: NDArray[np.float64]) -> None:

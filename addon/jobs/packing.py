@@ -22,8 +22,12 @@ LAYER = "UVMap"
 EXACT = "EXACT"
 """Method of margins: what is left of them after scaling is what was asked for. Blender's own "Fraction" searches for
 that too, and takes ten times as long."""
-EXACT_WITHIN = 0.01
+MOST_ABOVE = 0.05
+"""What is left of an exact margin may be so much wider; it is not narrower."""
 MOST_PASSES = 5
+ANY_TURN = "ANY"
+TURNS = (ANY_TURN, "CARDINAL")
+"""Ways to turn islands that are tried for the largest layout."""
 # Of a full turn, tried for an island that is alone, and what another of them has to gain.
 DIRECTIONS = 720
 TURN_GAINS = 1e-3
@@ -35,22 +39,38 @@ def pack(
 ) -> list[NDArray[np.float64]]:
     """Pack the islands of all parts together into the unit square; returns the new corner_uv of each part.
 
-    margin_method: of Blender's packer, or EXACT. margin: around each island. turned: whether islands may be.
+    margin_method: of Blender's packer, or EXACT, which takes several passes and looks for the largest layout.
+    margin: around each island. turned: whether islands may be.
     Every island is moved by a single similarity. The packer computes in single precision, so only the placement is
     taken from its result.  Raises Refused where Blender does not pack.
     """
     if len(parts) == 1 and not parts[0].island.any() and not parts[0].pinned.any():
         return [_alone(parts[0], margin, turned)]
     if margin_method != EXACT:
-        return _pack_once(parts, margin_method, margin, turned)
-    added = margin
+        return _pack_once(parts, margin_method, margin, ANY_TURN if turned else None)
+    tried = [(turn, _pack_once(parts, "ADD", margin, turn)) for turn in (TURNS if turned else (None,))]
+    turn, packed = max(tried, key=lambda one: _scale(parts, one[1]))
+    return _with_exact_margin(parts, margin, turn, packed)
+
+
+def _with_exact_margin(
+    parts: Sequence[Islands], margin: float, turn: str | None, packed: list[NDArray[np.float64]]
+) -> list[NDArray[np.float64]]:
+    """As packed, with what is left of the margin after scaling no less than asked for.
+
+    packed: with that margin before scaling.
+    """
+    added, kept, kept_scale = margin, packed, 0.0
     for _ in range(MOST_PASSES):
-        packed = _pack_once(parts, "ADD", added, turned)
-        left = added * _scale(parts, packed)
-        if abs(left - margin) <= EXACT_WITHIN * margin:
+        scale = _scale(parts, packed)
+        left = added * scale / margin if margin else 1.0
+        if left >= 1 and scale > kept_scale:
+            kept, kept_scale = packed, scale
+        if 1 <= left <= 1 + MOST_ABOVE:
             break
-        added *= margin / left
-    return packed
+        added *= (1 + MOST_ABOVE / 2) / left
+        packed = _pack_once(parts, "ADD", added, turn)
+    return kept
 
 
 def _alone(part: Islands, margin: float, turned: bool) -> NDArray[np.float64]:
@@ -77,9 +97,12 @@ def _filling_turn(places: NDArray[np.float64], squeeze: NDArray[np.float64]) -> 
     return float(angles[np.flatnonzero(side <= side.min() * (1 + TURN_GAINS))[0]])
 
 
-def _pack_once(parts: Sequence[Islands], margin_method: str, margin: float, turned: bool) -> list[NDArray[np.float64]]:
+def _pack_once(
+    parts: Sequence[Islands], margin_method: str, margin: float, turn: str | None
+) -> list[NDArray[np.float64]]:
+    """turn: how islands may be turned, as the packer calls it; None: not at all."""
     with _scratch_meshes(parts) as meshes:
-        _run_packer(margin_method, margin, turned)
+        _run_packer(margin_method, margin, turn)
         bpy.ops.object.mode_set(mode="OBJECT")
         packed = [_read_uv(mesh) for mesh in meshes]
     return [_moved(part, uv) for part, uv in zip(parts, packed, strict=True)]
@@ -105,10 +128,11 @@ def _moved(part: Islands, packed: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.where(has_pins[part.island, None, None], part.corner_uv, placed)
 
 
-def _run_packer(margin_method: str, margin: float, turned: bool) -> None:
+def _run_packer(margin_method: str, margin: float, turn: str | None) -> None:
+    turning = {"rotate": False} if turn is None else {"rotate": True, "rotate_method": turn}
     try:
         status = bpy.ops.uv.pack_islands(
-            rotate=turned, scale=True, margin_method=margin_method, margin=margin, pin=True, pin_method="LOCKED"
+            **turning, scale=True, margin_method=margin_method, margin=margin, pin=True, pin_method="LOCKED"
         )
     except RuntimeError as error:
         raise Refused(f"Blender's packer failed ({error}); {REMEDY}") from error

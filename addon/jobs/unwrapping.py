@@ -18,6 +18,7 @@ from ..core import native
 from ..core.errors import Refused
 from ..core.islands import Islands
 from . import cells
+from .areas import size_on_the_surface
 from .cuts import CutChoice, with_cut_costs
 from .directions import DirectionChoice, with_directions
 from .solving import solve_all
@@ -128,7 +129,17 @@ def unwrap_task(region: Region, settings: UnwrapSettings) -> UnwrapTask:
 
 def unwrap_all(tasks: Sequence[UnwrapTask], progress: Progress | None = None) -> list[Unwrapped | Exception]:
     """The maps of all tasks; an error in place of each that could not be computed.  Raises Cancelled."""
-    return solve_all(tasks, unwrap, progress)
+    return solve_all(_sharing_the_square(tasks), unwrap, progress)
+
+
+def _sharing_the_square(tasks: Sequence[UnwrapTask]) -> list[UnwrapTask]:
+    """Each with its share of the square that all are to be packed into, by area in the world."""
+    areas = np.array([size_on_the_surface(task.region) ** 2 for task in tasks])
+    shares = areas / areas.sum() if (areas > 0).all() and np.isfinite(areas).all() else np.ones(len(tasks))
+    return [
+        replace(task, options=replace(task.options, square_share=float(share)))
+        for task, share in zip(tasks, shares, strict=True)
+    ]
 
 
 def unwrap(task: UnwrapTask, progress: Progress | None, solver: lsgp.Solver | None = None) -> Unwrapped:

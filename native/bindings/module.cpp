@@ -247,6 +247,8 @@ lsgp::Options to_options(const py::dict& values) {
   options.stretch = values["stretch"].cast<double>();
   options.repair = values["repair"].cast<bool>();
   options.overlaps = choose<Overlaps>(text("overlaps"), {{"keep", Overlaps::keep}, {"split", Overlaps::split}});
+  options.compact = values["compact"].cast<bool>();
+  options.square_share = values["square_share"].cast<double>();
   options.factorization = choose<Factorization>(
       text("factorization"),
       {{"automatic", Factorization::automatic}, {"cut", Factorization::cut}, {"sparse", Factorization::sparse}});

@@ -177,13 +177,17 @@ class Options:
     repair: untangle flipped triangles and correct angles that are off by a full turn.
     overlaps: "keep" islands that overlap themselves, or "split" them along further cuts until none does; transitions
         stay exact.
+    compact: cut islands further where they would leave much of a square empty, such as long strips, rings and those
+        with arms; transitions stay exact. Components with pins keep their islands.
+    square_share: with compact, the part of the square's area that these islands get, above 0 and up to 1; less where
+        other surfaces are packed beside them, so that they are cut less.
     factorization: how linear systems are solved; maps differ by rounding only. "cut" factors once and
         leaves dense problems of the size of the cut, "sparse" factors for every step, "automatic" takes the cheaper.
     threads: of large factorizations, up to 1024; the result is the same for any number. 0: as many as the environment
         variable LSGP_THREADS says when the library first asks, or else as there are processors.
 
     Options that contradict each other are refused (WRONG_PARAMETER; PINS_CONFLICT where pins are concerned): the method
-    "lscm" with "spectral", "low-stretch", "straight", loop_turning, seamless or pins; seamless with "straight" or pins.
+    "lscm" with "spectral", "low-stretch", "straight", loop_turning, seamless or pins; seamless with "straight", compact or pins.
     Maps of "lscm" and "spectral" are not repaired.
     """
 
@@ -198,6 +202,8 @@ class Options:
     stretch: float = 1.0
     repair: bool = True
     overlaps: Overlaps = "keep"
+    compact: bool = False
+    square_share: float = 1.0
     factorization: Factorization = "automatic"
     threads: int = 0
 
@@ -210,6 +216,8 @@ class Options:
             arguments.refuse("seamless", self.seamless, "pass a Seamless, or None")
         _set(self, "stretch", arguments.number("stretch", self.stretch, "pass a number from 0 to 1"))
         _set(self, "repair", arguments.flag("repair", self.repair))
+        _set(self, "compact", arguments.flag("compact", self.compact))
+        _set(self, "square_share", arguments.number("square_share", self.square_share, "pass a number above 0, up to 1"))
         _set(self, "loop_turning", _loop_turning(self.loop_turning))
         _set(self, "threads", _threads(self.threads))
 

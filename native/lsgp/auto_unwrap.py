@@ -43,7 +43,7 @@ _MOST_CORNERS: dict[Preset, int | None] = {"paint": 24, "tile": None, "bake": 0}
 _PRESETS: dict[Preset, Options] = {
     "paint": Options(mode="low-stretch", overlaps="split"),
     "tile": Options(seamless=Seamless(lattice="square"), overlaps="split"),
-    "bake": Options(mode="low-stretch", overlaps="split"),
+    "bake": Options(mode="low-stretch", overlaps="split", compact=True),
 }
 
 
@@ -51,8 +51,8 @@ def preset_options(preset: Preset) -> Options:
     """The options of a preset of `auto_unwrap`; `dataclasses.replace` changes some of them.
 
     preset: "paint" keeps lengths, for texture painting; "tile" makes a tileable texture of squares show no seam; "bake"
-        is for textures that are computed, and has the options of "paint": what differs is where hard surfaces end, as
-        in `with_crease_borders`, and how a packer places islands.
+        is for textures that are computed: islands are cut so that they fill the square, hard surfaces at their creases,
+        as in `with_crease_borders`.
     No island of theirs overlaps itself.  Raises InputError.
     """
     arguments.require_choice("preset", preset, get_args(Preset))

@@ -101,6 +101,10 @@ struct Options {
   double stretch = 1;  // with low_stretch: from 0, the conformal map, to 1, that of least stretch
   bool repair = true;  // of flipped triangles and angles off by a turn
   Overlaps overlaps = Overlaps::keep;
+  // Whether islands are cut further where they would leave much of a square empty; transitions stay exact. Not in
+  // seamless layouts; components with pins keep their islands.
+  bool compact = false;
+  double square_share = 1;  // with compact: the part of the square's area that these islands get, above 0
   Factorization factorization = Factorization::automatic;
   // Of large factorizations, up to 1024; the result does not depend on it. 0: as many as the environment variable
   // LSGP_THREADS says, or else as there are processors.

@@ -93,6 +93,11 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
         help="keep islands that overlap themselves, or split them along further cuts (default: keep)",
     )
     unwrap.add_argument(
+        "--compact",
+        action=argparse.BooleanOptionalAction,
+        help="cut islands further where they would leave much of the square empty (default: with --preset bake)",
+    )
+    unwrap.add_argument(
         "--in-place",
         action="store_true",
         help="overwrite the input, which is kept as a backup until the result is complete",
@@ -371,6 +376,7 @@ def library_options(args: argparse.Namespace) -> Options:
         for name in ("stretch", "importance"):
             if getattr(args, name) is not None:
                 raise UsageError(f"--{name} is for maps of low stretch; add --mode low-stretch")
+    seamless = _seamless(args, base.seamless)
     return replace(
         base,
         prescription=args.prescription,
@@ -378,11 +384,12 @@ def library_options(args: argparse.Namespace) -> Options:
         method=args.method,
         seams=args.seams,
         border=args.border,
-        seamless=_seamless(args, base.seamless),
+        seamless=seamless,
         mode=mode,
         stretch=base.stretch if args.stretch is None else args.stretch,
         repair=args.repair,
         overlaps=base.overlaps if args.overlaps is None else args.overlaps,
+        compact=base.compact and seamless is None if args.compact is None else args.compact,
     )
 
 

@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "plane/overlaps.hpp"
 #include "seamless/seamless.hpp"
+#include "split/compact_islands.hpp"
 #include "split/split_map.hpp"
 #include "unfold/unfold.hpp"
 
@@ -49,6 +50,11 @@ Assembly::Assembly(const Surface& surface, const Array<Component>& components, c
   result.direction_errors =
       Eigen::VectorXd::Constant(surface.directions.rows(), std::numeric_limits<double>::quiet_NaN());
   cone_angle_.assign(surface.positions.rows(), std::numeric_limits<double>::quiet_NaN());
+  for (const Component& component : components) {
+    for (Index f = 0; f < component.mesh.triangle_count(); ++f) {
+      surface_area_ += area_normal(component.mesh.positions, component.mesh.triangles, f).norm() / 2;
+    }
+  }
 }
 
 void Assembly::add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, ComponentMap map,
@@ -62,6 +68,10 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
       failures_.push_back(failure_of(component, error));
       return;
     }
+  }
+  if (options_.compact && map.pins.empty()) {
+    const SharedSquare square{surface_area_ / options_.square_share, scale_to_surface(component.mesh, geometry, map)};
+    compact_islands(component.mesh, geometry, open_seams(component.mesh), square, map);
   }
   move_findings(component, findings, result_.warnings);
   added_cuts_.add(component, map);

@@ -80,6 +80,7 @@ class Assembly {
   const Options& options_;
   ProgressMonitor& monitor_;
   Result& result_;
+  double surface_area_ = 0;                 // of all components
   Array<double> cone_angle_;                // by the caller's vertex, NaN where none was imposed
   Array<Index> cut_edges_, inexact_seams_;  // vertex pairs
   AddedCuts added_cuts_;

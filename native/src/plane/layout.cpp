@@ -2,10 +2,11 @@
 #include "plane/layout.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
+
+#include "plane/convex_hull.hpp"
 
 namespace lsgp {
 
@@ -13,51 +14,6 @@ namespace {
 
 constexpr double margin = 0.01;  // between islands, of the unit square's side before scaling
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-double cross(Complex a, Complex b) { return std::imag(std::conj(a) * b); }
-
-// The points without those inside the polygon of the extreme ones (Akl and Toussaint 1978), hardly any of a layout's.
-Array<Complex> outer_points(const Eigen::VectorXcd& position) {
-  std::array<Complex, 8> extreme;  // counter-clockwise, in eight directions
-  extreme.fill(position[0]);
-  for (const Complex z : position) {
-    for (std::size_t i = 0; i < extreme.size(); ++i) {
-      constexpr int x[]{1, 1, 0, -1, -1, -1, 0, 1}, y[]{0, 1, 1, 1, 0, -1, -1, -1};
-      if (x[i] * (z.real() - extreme[i].real()) + y[i] * (z.imag() - extreme[i].imag()) > 0) extreme[i] = z;
-    }
-  }
-  Array<Complex> outer;
-  for (const Complex z : position) {
-    bool inside = true;
-    for (std::size_t i = 0; i < extreme.size() && inside; ++i) {
-      const Complex side = extreme[(i + 1) % extreme.size()] - extreme[i];
-      inside = side == 0.0 || cross(side, z - extreme[i]) > 0;
-    }
-    if (!inside) outer.push_back(z);
-  }
-  return outer;
-}
-
-// Counter-clockwise convex hull (Andrew's monotone chain).
-Array<Complex> convex_hull(const Eigen::VectorXcd& position) {
-  Array<Complex> points = outer_points(position);
-  std::sort(points.begin(), points.end(),
-            [](Complex a, Complex b) { return a.real() != b.real() ? a.real() < b.real() : a.imag() < b.imag(); });
-  Array<Complex> hull;
-  const auto add_chain = [&](const auto& begin, const auto& end) {
-    const std::size_t base = hull.size();
-    for (auto point = begin; point != end; ++point) {
-      while (hull.size() >= base + 2 && cross(hull.back() - hull[hull.size() - 2], *point - hull.back()) <= 0)
-        hull.pop_back();
-      hull.push_back(*point);
-    }
-    hull.pop_back();  // the other chain begins with it
-  };
-  add_chain(points.begin(), points.end());
-  add_chain(points.rbegin(), points.rend());
-  if (hull.empty()) hull.push_back(points.front());
-  return hull;
-}
 
 struct Box {
   double width, height;
@@ -92,34 +48,6 @@ Shelves shelve(const Array<Box>& boxes, double gap) {
   }
   out.size = std::max(right, y + shelf_height);
   return out;
-}
-
-// The unit vector along the longer side of the smallest box around a convex polygon. One side of that box lies on an
-// edge, and as edges turn, the points that touch the others only move on (rotating calipers, Toussaint 1983).
-Complex longer_side(const Array<Complex>& hull) {
-  Complex best(1, 0);
-  double smallest = infinity;
-  const std::size_t count = hull.size();
-  std::size_t right = 0, top = 0, left = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Complex edge = hull[(i + 1) % count] - hull[i];
-    if (!(std::abs(edge) > 0)) continue;
-    const Complex along = edge / std::abs(edge);
-    const auto at = [&](std::size_t j) { return (hull[j % count] - hull[i]) * std::conj(along); };
-    const auto move_on = [&](std::size_t from, std::size_t& point, const auto& height) {
-      point = std::max(point, from);
-      while (point < i + count && height(at(point + 1)) >= height(at(point))) ++point;
-    };
-    move_on(i + 1, right, [](Complex z) { return z.real(); });
-    move_on(right, top, [](Complex z) { return z.imag(); });
-    move_on(top, left, [](Complex z) { return -z.real(); });
-    const double width = at(right).real() - std::min(0.0, at(left).real()), height = at(top).imag();
-    if (width * height < smallest * (1 - 1e-9)) {
-      smallest = width * height;
-      best = width >= height ? along : along * Complex(0, 1);
-    }
-  }
-  return best;
 }
 
 }  // namespace

@@ -28,12 +28,12 @@ FaceGraph build_face_graph(const HalfedgeMesh& mesh, const Geometry& geometry, c
   graph.area.assign(label_parts(mesh, is_side, graph.face_of), 0);
   for (Index f = 0; f < mesh.triangle_count(); ++f) graph.area[graph.face_of[f]] += geometry.area[f];
   graph.total_area = geometry.total_area;
-  const double unit = geometry.length.mean() / units_of_mean_edge;
+  graph.unit = geometry.length.mean() / units_of_mean_edge;
   graph.link_begin.assign(graph.face_count() + 1, 0);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     const Index twin = mesh.twin[h];
     if (twin < h || open[h] || graph.face_of[h / 3] == graph.face_of[twin / 3]) continue;
-    const double units = geometry.length[h] * discount(mesh, h) / unit;
+    const double units = geometry.length[h] * discount(mesh, h) / graph.unit;
     graph.links.push_back(
         {{graph.face_of[h / 3], graph.face_of[twin / 3]}, h, std::max<FaceGraph::Units>(1, std::llround(units))});
     for (const Index face : graph.links.back().faces) ++graph.link_begin[face + 1];

@@ -21,6 +21,7 @@ struct FaceGraph {
   Array<Index> face_of;  // (triangles) those that no cut may part are one face
   Array<double> area;    // (faces)
   double total_area = 0;
+  double unit = 0;  // length of one unit of cost
   Array<Link> links;
   Array<Index> link_begin, link_of_face;  // (faces + 1), (2 links)
 

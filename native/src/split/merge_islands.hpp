@@ -2,22 +2,11 @@
 // Merges parts of a layout across its cuts where they do not overlap.
 #pragma once
 
-#include <complex>
-
 #include "base/array.hpp"
 #include "pipeline/component_map.hpp"
+#include "split/cut_apart.hpp"
 
 namespace lsgp {
-
-// z -> e^{i angle} z + shift.
-struct Motion {
-  double angle = 0;
-  Complex shift = 0;
-
-  Complex operator()(Complex z) const { return std::polar(1.0, angle) * z + shift; }
-  Motion operator*(const Motion& first) const { return {angle + first.angle, (*this)(first.shift)}; }
-  Motion inverse() const { return {-angle, -std::polar(1.0, -angle) * shift}; }
-};
 
 // Puts a layout that is divided into parts, each of which lies on itself nowhere, together to fewer: parts move across
 // a common cut, which closes, where that leaves them beside each other. Longer cuts are closed first; where parts

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Convex hulls of points, and the boxes around them.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "base/array.hpp"
+#include "lsgp/surface.hpp"
+
+namespace lsgp {
+
+// Counter-clockwise (Andrew's monotone chain); a point or two where all of them lie on a line.
+Array<Complex> convex_hull(const Eigen::VectorXcd& position);
+
+double area_of_hull(const Array<Complex>& hull);
+
+// The unit vector along the longer side of the smallest box around a convex polygon. One side of that box lies on an
+// edge, and as edges turn, the points that touch the others only move on (rotating calipers, Toussaint 1983).
+Complex longer_side(const Array<Complex>& hull);
+
+// Width and height of the box around points that has a side along a unit vector.
+Complex box_along(const Array<Complex>& points, Complex along);
+
+}  // namespace lsgp
