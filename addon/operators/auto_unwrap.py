@@ -33,7 +33,11 @@ if TYPE_CHECKING:
 PRESETS: Choices = {
     "PAINT": ("paint", "Paint", "For texture painting: even sizes, few islands, nothing overlaps"),
     "TILE": ("tile", "Tile", "For tileable textures: squares match across every cut, so that no seam shows"),
-    "BAKE": ("bake", "Bake", "For baking: even sizes, nothing overlaps, and the margin is exact"),
+    "BAKE": (
+        "bake",
+        "Bake",
+        "For baking: even sizes, nothing overlaps, islands fill the square, and the margin is exact",
+    ),
 }
 
 
@@ -84,6 +88,12 @@ class UV_OT_cone_auto_unwrap(
         "are left alone",
         default=True,
     )
+    compact: bpy.props.BoolProperty(
+        name="Compact Islands",
+        description="Bake: cut islands further where they would leave much of the square empty, such as long strips, "
+        "rings and those with arms",
+        default=True,
+    )
     mark: bpy.props.BoolProperty(
         name="Mark Cones",
         description="Mark the cones that are placed, so that they can be edited and are kept by the next run",
@@ -106,6 +116,8 @@ class UV_OT_cone_auto_unwrap(
             body.prop(self, "seams")
             if self.preset != "TILE":
                 body.prop(self, "creases")
+            if self.preset == "BAKE":
+                body.prop(self, "compact")
             body.prop(self, "use_subsurf_data")
             body.prop(self, "mark")
             self.draw_vertex_group(body, context)
@@ -153,7 +165,8 @@ class UV_OT_cone_auto_unwrap(
 
     def _options(self) -> lsgp.Options:
         """Raises InputError."""
-        options = replace(native.lsgp.preset_options(PRESETS[self.preset][0]), seams=SEAMS[self.seams][0])
+        options = native.lsgp.preset_options(PRESETS[self.preset][0])
+        options = replace(options, seams=SEAMS[self.seams][0], compact=options.compact and self.compact)
         if options.seamless is not None:
             options = replace(options, seamless=replace(options.seamless, **self.tile_size_options()))
         return options

@@ -187,8 +187,8 @@ class Options:
         variable LSGP_THREADS says when the library first asks, or else as there are processors.
 
     Options that contradict each other are refused (WRONG_PARAMETER; PINS_CONFLICT where pins are concerned): the method
-    "lscm" with "spectral", "low-stretch", "straight", loop_turning, seamless or pins; seamless with "straight", compact or pins.
-    Maps of "lscm" and "spectral" are not repaired.
+    "lscm" with "spectral", "low-stretch", "straight", loop_turning, seamless or pins; seamless with "straight", compact
+    or pins. Maps of "lscm" and "spectral" are not repaired.
     """
 
     prescription: PrescriptionRule | None = None
@@ -217,7 +217,8 @@ class Options:
         _set(self, "stretch", arguments.number("stretch", self.stretch, "pass a number from 0 to 1"))
         _set(self, "repair", arguments.flag("repair", self.repair))
         _set(self, "compact", arguments.flag("compact", self.compact))
-        _set(self, "square_share", arguments.number("square_share", self.square_share, "pass a number above 0, up to 1"))
+        share = arguments.number("square_share", self.square_share, "pass a number above 0, up to 1")
+        _set(self, "square_share", share)
         _set(self, "loop_turning", _loop_turning(self.loop_turning))
         _set(self, "threads", _threads(self.threads))
 

@@ -32,7 +32,7 @@ def command_faults(
     step: Step,
 ) -> tuple[str, list[str]]:
     """What the command has no option for is left at its default, in the call it is compared with as well."""
-    options = replace(options, loop_turning={}, factorization="automatic", threads=0)
+    options = replace(options, loop_turning={}, factorization="automatic", square_share=1.0, threads=0)
     surface = replace(surface, edges=None, cut_costs=None, borders=None)
     if options.mode != "low-stretch":
         options = replace(options, stretch=1.0)
@@ -85,6 +85,7 @@ def _files_and_arguments(
         value = getattr(options, name)
         arguments += [] if value is None else [f"--{name}", value]
     arguments += [] if options.repair else ["--no-repair"]
+    arguments += ["--compact"] if options.compact else []
     if surface.directions is not None:
         strokes = [[f, *direction] for f, direction in enumerate(surface.directions.tolist())]
         (folder / "directions.json").write_text(json.dumps(strokes))

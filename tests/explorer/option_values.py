@@ -34,12 +34,18 @@ OPTIONS: Values = {
     "stretch": [1.0, 0.5, 0.0],
     "repair": [True, False],
     "overlaps": ["keep", "split"],
+    "compact": [False, True],
+    "square_share": [1.0, 0.1],
     "factorization": ["automatic", "cut", "sparse"],
     "threads": [0, 1, 3],
 }
 
 # Now and then: numbers at the limits of what makes sense, and beyond.
-RARE_OPTIONS: Values = {"stretch": [-0.1, 1.5, float("nan"), float("inf"), 1e-300], "threads": [1024, 1025]}
+RARE_OPTIONS: Values = {
+    "stretch": [-0.1, 1.5, float("nan"), float("inf"), 1e-300],
+    "square_share": [0.0, -1.0, 1e-300, 1.5, float("nan")],
+    "threads": [1024, 1025],
+}
 RARE_SEAMLESS: Values = {
     "tiles": [0, -3, float("nan"), float("inf"), 0.01, 1e4, 1e9],
     "tile_size": [0.0, -1.0, float("nan"), 1e-9, 1e9],

@@ -163,7 +163,7 @@ REVIEWED = {
         ("for (Index h = first; !traced[h];)", ONCE_EACH, SHORT),
         ("while (!ends_at(h))", AROUND_A_VERTEX, SHORT),
     ],
-    "plane/layout.cpp": [
+    "plane/convex_hull.cpp": [
         (
             "while (hull.size() >= base + 2 && cross(hull.back() - hull[hull.size() - 2], *point - hull.back()) <= 0)",
             "takes out a point that was put in once",
@@ -244,6 +244,7 @@ REVIEWED = {
         ("while (column < entry.column)", "columns, each once", SHORT),
         ("while (column < size_)", "columns, each once", SHORT),
     ],
+    "split/compact_islands.cpp": [("while (!pending.empty())", "each division pays a price out of a sum", WITHIN)],
     "split/merge_islands.cpp": [("while (join_next())", "each round makes two groups one", WITHIN)],
     "split/minimum_cut.cpp": [
         ("while (!queue.empty())", NEAREST, SHORT),

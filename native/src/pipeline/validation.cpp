@@ -132,13 +132,14 @@ void require_valid(const Options& options) {
                 concat("The share of stretch to take away is ", options.stretch, ". Choose one from 0 to 1."));
   }
   if (!(options.square_share > 0 && options.square_share <= 1)) {
-    throw Error(Code::wrong_parameter, concat("The islands' share of the square is ", options.square_share,
-                                              ". Choose one above 0, up to 1."));
+    throw Error(Code::wrong_parameter,
+                concat("The islands' share of the square is ", options.square_share, ". Choose one above 0, up to 1."));
   }
   if (options.compact && options.seamless) {
-    throw Error(Code::wrong_parameter,
-                "A seamless layout fills no square, so its islands are not cut for that. Do without compact islands, or "
-                "without the seamless layout.");
+    throw Error(
+        Code::wrong_parameter,
+        "A seamless layout fills no square, so its islands are not cut for that. Do without compact islands, or "
+        "without the seamless layout.");
   }
   if (options.method != Method::lscm) return;
   // Its least squares are its own, and it has no transitions that others could keep.

@@ -28,7 +28,7 @@ constexpr double cost_of_cut = 0.15, cost_of_island = 0.01;
 constexpr double fill = 0.62, large = 0.7, cost_of_large = 0.5;
 // Of the area of all islands: what is smaller than the first is not cut, and nothing is cut off that is smaller than
 // the second.
-constexpr double least_island = 0.005, least_piece = 0.004;
+constexpr double least_island = 0.02, least_piece = 0.01;
 constexpr Index most_pieces = 8;  // of one division
 constexpr int directions = 12, positions = 12, cells_across = 40;
 constexpr double operations_a_point = 60;  // of finding hulls
@@ -53,9 +53,10 @@ class Compactor {
       : graph_(graph),
         position_(position),
         area_(area),
-        cutter_(graph, CutCost::no_slivers),
+        cutter_(graph, CutCost::shortest),
         center_(graph.face_count(), 0),
-        place_(graph.face_count(), none) {
+        place_(graph.face_count(), none),
+        is_near_cut_(graph.face_count(), 0) {
     Array<Index> triangles(graph.face_count() + 1, 0);
     for (const Index face : graph.face_of) ++triangles[face + 1];
     std::partial_sum(triangles.begin(), triangles.end(), triangles.begin());
@@ -64,13 +65,13 @@ class Compactor {
     for (Index f = 0; f < mesh.triangle_count(); ++f) {
       const Index face = graph.face_of[f];
       triangles_[triangles[face]++] = f;
-      center_[face] += position.segment<3>(3 * f).mean() /
-                       static_cast<double>(triangle_begin_[face + 1] - triangle_begin_[face]);
+      center_[face] +=
+          position.segment<3>(3 * f).mean() / static_cast<double>(triangle_begin_[face + 1] - triangle_begin_[face]);
     }
   }
 
   // Returns the part of every face.
-  Array<Index> run() {
+  Array<Index> divide_all() {
     Array<Index> part(graph_.face_count(), 0);
     Array<Index> all(graph_.face_count());
     std::iota(all.begin(), all.end(), 0);
@@ -89,6 +90,8 @@ class Compactor {
     }
     return part;
   }
+
+  bool is_near_cut(Index face) const { return is_near_cut_[face]; }
 
  private:
   // Faces taken together, to try divisions quickly.
@@ -116,6 +119,7 @@ class Compactor {
   double worth(double gain, double length, std::size_t pieces) const;
   Division find_division(const Cells& cells, const Array<Complex>& hull, Complex along) const;
   Array<Index> cut_along(const Array<Line>& lines, const Array<Index>& island, double band);
+  Array<Index> without_scraps(const Array<Index>& island, const Array<Index>& class_of);
   double length_between(const Array<Index>& faces, const Array<Index>& class_of);
   void set_places(const Array<Index>& faces) {
     for (std::size_t i = 0; i < faces.size(); ++i) place_[faces[i]] = static_cast<Index>(i);
@@ -131,6 +135,7 @@ class Compactor {
   Array<Index> triangle_begin_, triangles_;  // of every face
   Array<Complex> center_;                    // (faces)
   Array<Index> place_;                       // (faces) among those in hand, none elsewhere
+  Array<char> is_near_cut_;                  // (faces) may change sides
 };
 
 double Compactor::demand(const Array<Complex>& hull) const {
@@ -222,7 +227,8 @@ Compactor::Cells Compactor::cells_of(const Array<Index>& island, Complex along) 
 
 // Of a division into so many pieces: what it gains beside its price. 0: less than that.
 double Compactor::worth(double gain, double length, std::size_t pieces) const {
-  const double price = area_ * cost_of_island * static_cast<double>(pieces - 1) + std::sqrt(area_) * cost_of_cut * length;
+  const double price =
+      area_ * cost_of_island * static_cast<double>(pieces - 1) + std::sqrt(area_) * cost_of_cut * length;
   // Between the most gained and the most gained for its price.
   return gain > price ? gain / std::sqrt(price) : 0;
 }
@@ -302,8 +308,8 @@ Division Compactor::find_division(const Cells& cells, const Array<Complex>& hull
   return best;
 }
 
-// The side of every face, by its place in the island, after a cut near each of the lines, short and rather along seams
-// and sharp edges.
+// The side of every face, by its place in the island, after a cut near each of the lines, short and rather along sharp
+// edges.
 Array<Index> Compactor::cut_along(const Array<Line>& lines, const Array<Index>& island, double band) {
   Array<Index> class_of(island.size(), 0);
   Index classes = 1;
@@ -315,7 +321,10 @@ Array<Index> Compactor::cut_along(const Array<Line>& lines, const Array<Index>& 
         scope.push_back(island[i]);
         places.push_back(static_cast<Index>(i));
         const double distance = line.distance(center_[island[i]]);
-        if (std::abs(distance) > band) (distance > 0 ? first : second).push_back(island[i]);
+        if (std::abs(distance) > band)
+          (distance > 0 ? first : second).push_back(island[i]);
+        else
+          is_near_cut_[island[i]] = 1;
       }
       if (first.empty() || second.empty()) {
         for (std::size_t i = 0; i < scope.size(); ++i) {
@@ -331,6 +340,32 @@ Array<Index> Compactor::cut_along(const Array<Line>& lines, const Array<Index>& 
     classes *= 2;
   }
   return class_of;
+}
+
+// Pieces too small to be islands join the neighbour that they share the longest border with.
+Array<Index> Compactor::without_scraps(const Array<Index>& island, const Array<Index>& class_of) {
+  const Array<Array<Index>> pieces = pieces_of(island, class_of);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    for (const Index face : pieces[i]) place_[face] = static_cast<Index>(i);
+  }
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    double area = 0;
+    Array<double> border(pieces.size(), 0);
+    for (const Index face : pieces[i]) {
+      area += graph_.area[face];
+      graph_.for_each_link(face, [&](Index other, const FaceGraph::Link& link) {
+        const Index beside = place_[other];
+        if (beside != none && beside != place_[face]) border[beside] += static_cast<double>(link.cost);
+      });
+    }
+    if (pieces.size() < 2 || area >= least_piece * area_) continue;
+    const auto longest = std::max_element(border.begin(), border.end());
+    for (const Index face : pieces[i]) place_[face] = static_cast<Index>(longest - border.begin());
+  }
+  Array<Index> out;
+  for (const Index face : island) out.push_back(place_[face]);
+  clear_places(island);
+  return out;
 }
 
 double Compactor::length_between(const Array<Index>& faces, const Array<Index>& class_of) {
@@ -356,7 +391,8 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& island) {
   const Complex along = longer_side(hull);
   const Division division = find_division(cells_of(island, along), hull, along);
   if (division.lines.empty()) return {};
-  const Array<Index> class_of = cut_along(division.lines, island, box_along(hull, along).real() / (2 * positions));
+  const double band = box_along(hull, along).real() / positions;
+  const Array<Index> class_of = without_scraps(island, cut_along(division.lines, island, band));
   Array<Array<Index>> pieces = pieces_of(island, class_of);
   double after = 0;
   for (const Array<Index>& piece : pieces) after += demand(hull_of(piece));
@@ -373,8 +409,10 @@ void compact_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const A
   for (Index h = 0; h < mesh.halfedge_count(); ++h) ends[h] = ends[h] || is_cut[h];
   const FaceGraph graph = build_face_graph(mesh, geometry, ends);
   const Eigen::VectorXcd position = square.scale * at_corners(map.cut_mesh, map.position);
-  Array<Index> part = Compactor(mesh, graph, position, square.area).run();
-  straighten_cuts(mesh, geometry, graph, ends, [](Index, Index) { return false; }, part);
+  Compactor compactor(mesh, graph, position, square.area);
+  Array<Index> part = compactor.divide_all();
+  straighten_cuts(
+      mesh, geometry, graph, ends, [&](Index face, Index) { return !compactor.is_near_cut(face); }, part);
   bool has_opened = false;
   for (const FaceGraph::Link& link : graph.links) {
     if (part[link.faces[0]] == part[link.faces[1]]) continue;

@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Islands that are cut so that they fill a square: what that changes, what it leaves, and where it is left alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import lsgp
+import meshes
+import numpy as np
+import pytest
+import zoo
+from map_checks import pairs
+from meshes import Mesh
+from result_check import undeclared_faults
+from scipy.spatial import ConvexHull
+from test_overlaps import quads_of
+
+COMPACT = lsgp.Options(compact=True)
+FILL = 0.62  # of the square, what packed islands usually take
+
+
+def flat(cells: np.ndarray) -> Mesh:
+    """Unit squares of a plane, two triangles each, where cells, (rows, columns), are true."""
+    rows, columns = np.nonzero(cells)
+    width = cells.shape[1] + 1
+    first = rows * width + columns
+    quads = np.stack([first, first + 1, first + width + 1, first + width], axis=1)
+    used, inverse = np.unique(quads, return_inverse=True)
+    positions = np.stack([used % width, used // width, np.zeros(len(used))], axis=1)
+    return meshes.make(positions, inverse.reshape(-1, 4)[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3))
+
+
+def cells_of(shape: str, n: int = 12) -> np.ndarray:
+    cells = np.ones((n, n), bool)
+    y, x = np.mgrid[:n, :n]
+    match shape:
+        case "strip":
+            return np.ones((3, 60), bool)
+        case "corner":
+            cells[3:, 3:] = False
+        case "cross":
+            cells = (abs(2 * x - n + 1) < 4) | (abs(2 * y - n + 1) < 4)
+        case "ring":
+            cells[2:-2, 2:-2] = False
+        case "comb":
+            cells[2:, x[0] % 4 > 1] = False
+    return cells
+
+
+def unwrap(mesh: Mesh, options: lsgp.Options, **surface: object) -> lsgp.Result:
+    return lsgp.parameterize(lsgp.Surface(mesh.positions, mesh.triangles, **surface), mesh.cones, options=options)
+
+
+def island_points(result: lsgp.Result) -> list[np.ndarray]:
+    return [result.corner_uv[result.island == i].reshape(-1, 2) for i in range(result.island.max() + 1)]
+
+
+def uv_area(result: lsgp.Result) -> float:
+    first, second = (result.corner_uv[:, i] - result.corner_uv[:, 0] for i in (1, 2))
+    return float(abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]).sum()) / 2
+
+
+def sides_of_smallest_box(points: np.ndarray) -> np.ndarray:
+    hull = points[ConvexHull(points).vertices] @ [1, 1j]
+    turned = hull / np.exp(1j * np.angle(np.roll(hull, -1) - hull))[:, None]
+    sides = np.stack([np.ptp(turned.real, axis=1), np.ptp(turned.imag, axis=1)], axis=1)
+    return sides[sides.prod(axis=1).argmin()]
+
+
+def taken(result: lsgp.Result) -> float:
+    """What the islands take of a square for their own area, each halfway between its hull and its smallest box."""
+    of = [(ConvexHull(points).volume + sides_of_smallest_box(points).prod()) / 2 for points in island_points(result)]
+    return sum(of) / uv_area(result)
+
+
+def lengths(result: lsgp.Result) -> np.ndarray:
+    sides = np.linalg.norm(result.corner_uv - np.roll(result.corner_uv, 1, axis=1), axis=2)
+    return sides / np.sqrt(uv_area(result))
+
+
+@pytest.mark.parametrize(("shape", "most"), [("corner", 1.01), ("cross", 1.1), ("ring", 1.01), ("comb", 1.3)])
+@pytest.mark.parametrize("mode", ["conformal", "low-stretch"])
+def test_islands_with_arms_become_convex_ones(shape: str, most: float, mode: str) -> None:
+    mesh = flat(cells_of(shape))
+    # Without this, the border of a ring is opened to a strip.
+    options = lsgp.Options(mode=mode, loop_turning={0: 2 * np.pi}) if shape == "ring" else lsgp.Options(mode=mode)
+    plain, compact = unwrap(mesh, options), unwrap(mesh, replace(options, compact=True))
+    assert taken(plain) > 1.4
+    assert taken(compact) <= most
+    assert lengths(compact) == pytest.approx(lengths(plain), abs=1e-9)
+    assert compact.island.max() < 8
+    assert undeclared_faults(lsgp.Surface(mesh.positions, mesh.triangles), compact) == []
+
+
+def test_strips_become_no_longer_than_the_square() -> None:
+    compact = unwrap(flat(cells_of("strip")), COMPACT)
+    longest = max(sides_of_smallest_box(points).max() for points in island_points(compact))
+    assert longest < np.sqrt(uv_area(compact) / FILL)
+    # Straight across: each cut is as long as the strip is wide.
+    assert len(compact.cut_edges) == 3 * compact.island.max()
+
+
+def test_a_share_of_the_square_is_one_of_a_larger_one() -> None:
+    strip = flat(cells_of("strip"))
+    counts = [unwrap(strip, replace(COMPACT, square_share=share)).island.max() + 1 for share in (1, 0.2, 0.05)]
+    assert counts[0] > counts[1] > counts[2] == 1
+
+
+WHOLE = {
+    "square": flat(np.ones((8, 8), bool)),
+    "hill": meshes.hill(8, 1.0),
+    "triangle": meshes.grid(1, 1),
+}
+
+
+@pytest.mark.parametrize("name", WHOLE)
+def test_compact_islands_stay_whole(name: str) -> None:
+    mesh = WHOLE[name]
+    assert unwrap(mesh, COMPACT).corner_uv.tobytes() == unwrap(mesh, lsgp.Options()).corner_uv.tobytes()
+
+
+def test_cuts_run_along_sharp_edges() -> None:
+    mesh = flat(np.ones((3, 13), bool))
+    crease = mesh.positions[:, 0] == 7
+    assert not crease[unwrap(mesh, COMPACT).cut_edges].any()
+    bent = meshes.make(mesh.positions.copy(), mesh.triangles)
+    beyond = bent.positions[:, 0] > 7
+    bent.positions[beyond] = np.stack(
+        [np.full(beyond.sum(), 7.0), mesh.positions[beyond, 1], mesh.positions[beyond, 0] - 7], axis=1
+    )
+    assert crease[unwrap(bent, COMPACT).cut_edges].all()
+
+
+def test_faces_of_polygons_are_not_cut() -> None:
+    mesh = flat(cells_of("cross"))
+    quads = quads_of(mesh)
+    cut = unwrap(mesh, COMPACT, edges=quads).cut_edges
+    assert len(cut) > 0
+    assert pairs(cut) <= pairs(quads)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "gear-teeth=6-depth=0.15-layers=1",
+        "pipe-around=8-along=10-bend=1.5-caps=True",
+        "ring-around=14-along=8-major=2",
+        "tunnelled-plate-across=2-along=1-thickness=1",
+        "mixed-parts-count=5-spread=2-seed=0",
+        "scale-shape=ball-exponent=-6",
+        "bumpy-ball-levels=1-height=0.25",
+        "box-cells=3-size=1x10x1",
+        "holed-plate-across=2-along=1-bend=0.3",
+        "polygon-box-cells=3-size=1x1x1",
+    ],
+)
+@pytest.mark.parametrize("mode", ["conformal", "low-stretch"])
+def test_the_map_is_the_same_but_for_its_islands(name: str, mode: str) -> None:
+    member = zoo.member(name)
+    mesh = member.mesh()
+    surface = lsgp.Surface(mesh.positions, mesh.triangles)
+    options = lsgp.Options(mode=mode, overlaps="split")
+    plain = lsgp.auto_unwrap(surface, creases=False, options=options)
+    compact = lsgp.auto_unwrap(surface, creases=False, options=replace(options, compact=True))
+    assert undeclared_faults(surface, compact) == []
+    assert lengths(compact) == pytest.approx(lengths(plain), rel=1e-9, abs=1e-12)
+    assert pairs(plain.cut_edges) <= pairs(compact.cut_edges)
+    assert compact.overlapping.tolist() == []
+    assert taken(compact) <= taken(plain)
+    again = lsgp.auto_unwrap(surface, creases=False, options=replace(options, compact=True))
+    assert again.corner_uv.tobytes() == compact.corner_uv.tobytes()
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_components_with_pins_keep_their_islands(count: int) -> None:
+    mesh = flat(cells_of("strip"))
+    plain = unwrap(mesh, lsgp.Options())
+    pins = lsgp.Pins(np.arange(count), plain.corner_uv.reshape(-1, 2)[:count])
+    whole = lsgp.Surface(mesh.positions, mesh.triangles)
+    pinned, compact = (lsgp.parameterize(whole, (), None, options, pins) for options in (lsgp.Options(), COMPACT))
+    assert compact.corner_uv.tobytes() == pinned.corner_uv.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"square_share": 0.0}, "share of the square"),
+        ({"square_share": 1.5}, "share of the square"),
+        ({"square_share": float("nan")}, "share of the square"),
+        ({"compact": True, "seamless": lsgp.Seamless()}, "compact"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(options: dict[str, object], words: str) -> None:
+    with pytest.raises(lsgp.InputError, match=words) as refused:
+        unwrap(meshes.cube(2), lsgp.Options(**options))
+    assert refused.value.code == "WRONG_PARAMETER"
