@@ -10,6 +10,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 
@@ -37,32 +38,35 @@ from .output_paths import require_usable_paths
 INPUT = "OBJ, OFF, PLY, glTF, GLB or STL, or - for standard input; polygons of any size"
 
 
+class _Parser(argparse.ArgumentParser):
+    """Help that cannot be printed is an error; argparse itself ignores that of a help longer than a buffer."""
+
+    def print_help(self, file: TextIO | None = None) -> None:
+        say(sys.stdout if file is None else file, self.format_help().rstrip("\n"))
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command line, without the program's name, and return its exit code."""
     hold_standard_descriptors()
+    return ended(lambda: _run(list(sys.argv[1:] if argv is None else argv)))
+
+
+def _run(arguments: list[str]) -> int:
     parser = _parser()
-    arguments = list(sys.argv[1:] if argv is None else argv)
     try:
         args = parser.parse_args(expand_options(arguments) if arguments[:1] == ["batch"] else arguments)
-        if args.version or args.formats:
-            return ended(lambda: _say_about(args))
-        if args.command is None:
+        if args.command is None and not (args.version or args.formats):
             parser.error("a command is needed: unwrap, cones, batch, measure or pad")
-    except UsageError as error:
-        complain(f"lsgp: error: {error}")
-        return USAGE
     except SystemExit as end:  # argparse has said why
         return flushed(int(end.code or 0))
-    return ended(lambda: args.run(args))
+    if args.version or args.formats:
+        say(sys.stdout, f"lsgp {__version__}" if args.version else formats_table())
+        return OK
+    return args.run(args)
 
 
-def _say_about(args: argparse.Namespace) -> int:
-    say(sys.stdout, f"lsgp {__version__}" if args.version else formats_table())
-    return OK
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+def _parser() -> _Parser:
+    parser = _Parser(
         prog="lsgp",
         description="Unwrap triangle and polygon meshes through cones, continuous across every cut.",
         epilog=listed(OF_A_RUN),
