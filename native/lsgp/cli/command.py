@@ -22,11 +22,10 @@ from ..errors import Elements, Finding, LsgpError
 from ..io.mesh_formats import BY_KEY, formats_table
 from ..io.polygons import Triangulation
 from ..io.safe_files import is_standard_stream
-from ..io.side_files import UsageError
 from ..io.standard_streams import complain, hold_standard_descriptors, say
 from ..io.whole_files import write_whole
 from ..run import report as reports
-from ..run.exit_codes import OF_A_RUN, OK, REFUSED, USAGE, ended, flushed, listed
+from ..run.exit_codes import OF_A_RUN, OK, REFUSED, ended, flushed, listed
 from ..run.pad_file import add_pad_options, pad_file
 from ..run.place_file import add_placement_options, place_file, summary
 from ..run.terminal import ProgressLine
