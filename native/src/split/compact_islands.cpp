@@ -21,7 +21,8 @@ namespace lsgp {
 
 namespace {
 
-// Prices in areas of the square: of a cut as long as the square root of all islands' area, and of an island more.
+// Parts of the area of all islands that have to be saved: by a cut as long as the square root of that area, and by each
+// further island.
 constexpr double cost_of_cut = 0.15, cost_of_island = 0.01;
 // An island takes what is halfway between its convex hull and its smallest box. Where the smallest square around it is
 // larger than a part of the square that all share, it keeps others out of that square as well.
@@ -33,10 +34,10 @@ constexpr Index most_pieces = 8;  // of one division
 constexpr int directions = 12, positions = 12, cells_across = 40;
 constexpr double operations_a_point = 60;  // of finding hulls
 
-// Points on its left, at more than `offset` from the origin along `normal`.
 struct Line {
-  Complex normal;
+  Complex normal;  // of length 1
   double offset;
+  // Above 0 on the side that the normal points to.
   double distance(Complex z) const { return std::real(std::conj(normal) * z) - offset; }
 };
 
@@ -112,7 +113,7 @@ class Compactor {
   Array<Complex> hull_of(const Array<Index>& faces) const;
   // The connected faces of one class each.  faces: those that are divided.  class_of: by their place among them.
   Array<Array<Index>> pieces_of(const Array<Index>& faces, const Array<Index>& class_of);
-  // The faces of the pieces into which an island is best cut; itself alone where it is best left whole.
+  // The faces of the pieces into which an island is best cut; fewer than two pieces where it is best left whole.
   Array<Array<Index>> divide(const Array<Index>& island);
   Cells cells_of(const Array<Index>& island, Complex along);
   double worth(const Cells& cells, const Array<Index>& class_of, double demand_before) const;
@@ -225,11 +226,11 @@ Compactor::Cells Compactor::cells_of(const Array<Index>& island, Complex along) 
   return cells;
 }
 
-// Of a division into so many pieces: what it gains beside its price. 0: less than that.
+// Of a division into so many pieces; 0 where it does not gain its price.
 double Compactor::worth(double gain, double length, std::size_t pieces) const {
   const double price =
       area_ * cost_of_island * static_cast<double>(pieces - 1) + std::sqrt(area_) * cost_of_cut * length;
-  // Between the most gained and the most gained for its price.
+  // Between what gains most and what gains most for its price.
   return gain > price ? gain / std::sqrt(price) : 0;
 }
 
