@@ -22,7 +22,7 @@ LAYER = "UVMap"
 EXACT = "EXACT"
 """Method of margins: what is left of them after scaling is what was asked for. Blender's own "Fraction" searches for
 that too, and takes ten times as long."""
-MOST_ABOVE = 0.05
+MOST_ABOVE = 0.02
 """What is left of an exact margin may be so much wider; it is not narrower."""
 MOST_PASSES = 5
 ANY_TURN = "ANY"
@@ -61,7 +61,9 @@ def _with_exact_margin(
     packed: with that margin before scaling.
     """
     added, kept, kept_scale = margin, packed, 0.0
-    for _ in range(MOST_PASSES):
+    for number in range(MOST_PASSES):
+        if number > 0:
+            packed = _pack_once(parts, "ADD", added, turn)
         scale = _scale(parts, packed)
         left = added * scale / margin if margin else 1.0
         if left >= 1 and scale > kept_scale:
@@ -69,7 +71,6 @@ def _with_exact_margin(
         if 1 <= left <= 1 + MOST_ABOVE:
             break
         added *= (1 + MOST_ABOVE / 2) / left
-        packed = _pack_once(parts, "ADD", added, turn)
     return kept
 
 
