@@ -88,7 +88,7 @@ Complex longer_side(const Array<Complex>& hull) {
   return best;
 }
 
-Complex box_along(const Array<Complex>& points, Complex along) {
+Extent extent_along(const Array<Complex>& points, Complex along) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   double left = infinity, right = -infinity, bottom = infinity, top = -infinity;
   for (const Complex point : points) {
@@ -98,7 +98,7 @@ Complex box_along(const Array<Complex>& points, Complex along) {
     bottom = std::min(bottom, turned.imag());
     top = std::max(top, turned.imag());
   }
-  return {right - left, top - bottom};
+  return {{left, bottom}, {right, top}};
 }
 
 }  // namespace lsgp

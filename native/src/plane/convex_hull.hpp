@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Convex hulls of points, and the boxes around them.
+// Convex hulls of points, and how far points extend.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +18,12 @@ double area_of_hull(const Array<Complex>& hull);
 // edge, and as edges turn, the points that touch the others only move on (rotating calipers, Toussaint 1983).
 Complex longer_side(const Array<Complex>& hull);
 
-// Width and height of the box around points that has a side along a unit vector.
-Complex box_along(const Array<Complex>& points, Complex along);
+// The box around points that has a side along a unit vector, in coordinates along and across it.
+struct Extent {
+  Complex low, high;
+  double width() const { return high.real() - low.real(); }
+  double height() const { return high.imag() - low.imag(); }
+};
+Extent extent_along(const Array<Complex>& points, Complex along);
 
 }  // namespace lsgp

@@ -61,16 +61,9 @@ Array<Similarity> arrange(const Array<Island>& islands) {
   for (std::size_t i = 0; i < islands.size(); ++i) {
     const Array<Complex> hull = convex_hull(islands[i].position);
     out[i].turn = islands[i].turn.value_or(std::conj(longer_side(hull)));
-    double left = infinity, right = -infinity, bottom = infinity, top = -infinity;
-    for (const Complex point : hull) {
-      const Complex turned = point * out[i].turn;
-      left = std::min(left, turned.real());
-      right = std::max(right, turned.real());
-      bottom = std::min(bottom, turned.imag());
-      top = std::max(top, turned.imag());
-    }
-    out[i].shift = -Complex(left, bottom);
-    boxes.push_back({right - left, top - bottom});
+    const Extent extent = extent_along(hull, std::conj(out[i].turn));
+    out[i].shift = -extent.low;
+    boxes.push_back({extent.width(), extent.height()});
     total += boxes.back().width * boxes.back().height;
   }
   const Shelves shelves = shelve(boxes, islands.size() > 1 ? margin * std::sqrt(total) : 0.0);

@@ -143,9 +143,9 @@ double Compactor::demand(const Array<Complex>& hull) const {
   constexpr int turns = 45;  // of a quarter
   double box = std::numeric_limits<double>::infinity(), square = box;
   for (int i = 0; i < turns; ++i) {
-    const Complex sides = box_along(hull, std::polar(1.0, M_PI / 2 * i / turns));
-    box = std::min(box, sides.real() * sides.imag());
-    square = std::min(square, std::max(sides.real(), sides.imag()));
+    const Extent extent = extent_along(hull, std::polar(1.0, M_PI / 2 * i / turns));
+    box = std::min(box, extent.width() * extent.height());
+    square = std::min(square, std::max(extent.width(), extent.height()));
   }
   const double too_large = std::max(0.0, square * square - large * area_ / fill);
   return (area_of_hull(hull) + box) / 2 + cost_of_large * too_large;
@@ -188,18 +188,13 @@ Array<Array<Index>> Compactor::pieces_of(const Array<Index>& faces, const Array<
 
 // Faces of one square of a grid that are connected there.
 Compactor::Cells Compactor::cells_of(const Array<Index>& island, Complex along) {
-  const auto of_face = [&](Index face) { return center_[face] * std::conj(along); };
   Array<Complex> centers;
-  for (const Index face : island) centers.push_back(of_face(face));
-  Complex low = centers.front(), high = low;
-  for (const Complex z : centers) {
-    low = {std::min(low.real(), z.real()), std::min(low.imag(), z.imag())};
-    high = {std::max(high.real(), z.real()), std::max(high.imag(), z.imag())};
-  }
-  const double size = std::max(high.real() - low.real(), high.imag() - low.imag()) / cells_across;
+  for (const Index face : island) centers.push_back(center_[face]);
+  const Extent extent = extent_along(centers, along);
+  const double size = std::max(extent.width(), extent.height()) / cells_across;
   Array<Index> square_of;
   for (const Complex z : centers) {
-    const Complex at = size > 0 ? (z - low) / size : 0;
+    const Complex at = size > 0 ? (z * std::conj(along) - extent.low) / size : 0;
     square_of.push_back(static_cast<Index>(at.real()) + (cells_across + 1) * static_cast<Index>(at.imag()));
   }
   Cells cells;
@@ -295,13 +290,8 @@ Division Compactor::find_division(const Cells& cells, const Array<Complex>& hull
   for (Index cell = 0; cell < cells.count(); ++cell) center += cells.area[cell] / total * cells.center[cell];
   for (int i = 0; i < directions; ++i) {
     const Complex normal = along * std::polar(1.0, M_PI * i / directions);
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Complex z : hull) {
-      const double at = Line{normal, 0}.distance(z);
-      low = std::min(low, at);
-      high = std::max(high, at);
-    }
-    for (int k = 1; k < positions; ++k) consider({{normal, low + (high - low) * k / positions}});
+    const Extent extent = extent_along(hull, normal);
+    for (int k = 1; k < positions; ++k) consider({{normal, extent.low.real() + extent.width() * k / positions}});
     if (2 * i >= directions) continue;
     const Complex across = normal * Complex(0, 1);
     consider({{normal, Line{normal, 0}.distance(center)}, {across, Line{across, 0}.distance(center)}});
@@ -392,7 +382,7 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& island) {
   const Complex along = longer_side(hull);
   const Division division = find_division(cells_of(island, along), hull, along);
   if (division.lines.empty()) return {};
-  const double band = box_along(hull, along).real() / positions;
+  const double band = extent_along(hull, along).width() / positions;
   const Array<Index> class_of = without_scraps(island, cut_along(division.lines, island, band));
   Array<Array<Index>> pieces = pieces_of(island, class_of);
   double after = 0;
