@@ -118,6 +118,31 @@ TEST_CASE("the caller alone visits the checkpoints of all threads, and may stop 
   }
 }
 
+TEST_CASE("who has stopped the work at a checkpoint is not asked again") {
+  lsgp::ThreadTeam team(2);
+  REQUIRE(team.size() == 2);
+  int visits = 0;
+  std::atomic<bool> told = false, stopped = false;
+  const lsgp::CheckpointVisitor visitor([&] {
+    ++visits;
+    stopped = true;
+    throw std::runtime_error("stopped");
+  });
+  const auto pass_checkpoint = [&](int i) {  // 0: the caller, 1: the other thread, which ends well after it
+    if (i == 0) {
+      while (!told) std::this_thread::yield();
+      lsgp::checkpoint(lsgp::operations_between_visits);
+    } else {
+      lsgp::checkpoint(lsgp::operations_between_visits);
+      told = true;
+      while (!stopped) std::this_thread::yield();
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+  };
+  CHECK_THROWS_WITH_AS(team.run_each(2, pass_checkpoint), "stopped", std::runtime_error);
+  CHECK(visits == 1);
+}
+
 TEST_CASE("a team ends whose last task ends while the caller visits a checkpoint") {
   const lsgp::CheckpointVisitor visitor([] { std::this_thread::sleep_for(std::chrono::microseconds(50)); });
   for (const int threads : team_sizes) {

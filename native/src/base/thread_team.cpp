@@ -176,9 +176,10 @@ void ThreadTeam::tell_caller() {
   changed_.notify_all();
 }
 
-// Visits theirs, on the caller's thread; false where there are none. Meanwhile others may have changed anything.
+// Visits theirs, on the caller's thread; false where there are none, or where one has failed: what has stopped is not
+// asked again. Meanwhile others may have changed anything.
 bool ThreadTeam::visit(Lock& lock) {
-  if (visits_ == 0 || std::this_thread::get_id() != caller_) return false;
+  if (visits_ == 0 || failure_ || std::this_thread::get_id() != caller_) return false;
   const int visits = std::exchange(visits_, 0);
   lock.unlock();
   try {
