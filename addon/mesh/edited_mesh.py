@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .arrays import rows
+from .manifold_triangles import manifold_triangles
 from .mesh_reader import FloatArray, MeshReader, triangulated
 
 
@@ -47,7 +48,13 @@ class EditedMesh(MeshReader):
         return found
 
     def all_triangles(self) -> NDArray[np.int32]:
-        return self._vertices(self._bm.calc_loop_triangles())
+        loops = [loop for face in self._bm.faces for loop in face.loops]
+        place = {loop: i for i, loop in enumerate(loops)}
+        vertices = np.array([loop.vert.index for loop in loops], np.int32)
+        drawn = [[place[loop] for loop in triangle] for triangle in self._bm.calc_loop_triangles()]
+        sizes = np.array([len(face.loops) for face in self._bm.faces], np.int32)
+        edges = rows([[v.index for v in edge.verts] for edge in self._bm.edges], 2, np.int32)
+        return vertices[manifold_triangles(self.all_positions(), vertices, sizes, edges, rows(drawn, 3, np.int32))]
 
     def drawn_triangles(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
         self._bm.faces.index_update()

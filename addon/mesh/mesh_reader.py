@@ -35,7 +35,7 @@ class MeshReader(Protocol):
         """Vertices of triangles that cover these faces."""
 
     def all_triangles(self) -> NDArray[np.int32]:
-        """(m, 3) vertices of triangles that cover all faces."""
+        """(m, 3) vertices of the triangles of all faces that computations see."""
 
     def drawn_triangles(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
         """(t, 3) vertices and (t,) faces of triangles that cover what Blender draws: no hidden faces in edit mode."""

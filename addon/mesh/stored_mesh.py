@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..core import versions
 from .arrays import read_array
+from .manifold_triangles import manifold_triangles
 from .mesh_reader import FloatArray, MeshReader, triangulated
 
 
@@ -94,10 +95,15 @@ class StoredMesh(MeshReader):
         return following
 
     @cached_property
-    def triangle_loops(self) -> NDArray[np.int32]:
+    def drawn_loops(self) -> NDArray[np.int32]:
         """(m, 3) loops of the triangles that Blender draws the faces with."""
         self._mesh.calc_loop_triangles()
         return read_array(self._mesh.loop_triangles, "loops", np.int32, 3)
+
+    @cached_property
+    def triangle_loops(self) -> NDArray[np.int32]:
+        """(m, 3) loops of the triangles that computations see, as many of every face as are drawn."""
+        return manifold_triangles(self.places, self.loop_vertices, self.loop_total, self.edges, self.drawn_loops)
 
     @cached_property
     def triangle_faces(self) -> NDArray[np.int32]:
@@ -168,7 +174,7 @@ class StoredMesh(MeshReader):
         return self.loop_vertices[self.triangle_loops]
 
     def drawn_triangles(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-        return self.all_triangles(), self.triangle_faces
+        return self.loop_vertices[self.drawn_loops], self.triangle_faces
 
     def corners(self, faces: Sequence[int]) -> tuple[list[int], FloatArray]:
         # Only of these faces: to read all takes longer on large meshes.
@@ -240,7 +246,7 @@ class FrozenMesh(StoredMesh):
             if isinstance(member, cached_property):
                 getattr(self, name)
         drawn = ~self.is_hidden[self.triangle_faces]
-        self._drawn = self.all_triangles()[drawn], self.triangle_faces[drawn]
+        self._drawn = self.loop_vertices[self.drawn_loops[drawn]], self.triangle_faces[drawn]
 
     def drawn_triangles(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
         return self._drawn

@@ -145,15 +145,59 @@ def triangulate(mesh: PolygonMesh) -> Triangulation:
                 local = _clip_ears(_in_plane(mesh.positions[mesh.corners[rows]]))
             target = firsts[polygons][:, None] + np.arange(size - 2)
             corner[target] = rows[np.arange(len(rows))[:, None, None], local]
-        edges = _edge_keys(mesh)
-        _separate_diagonals(mesh, corner, firsts, edges)
-    n = len(mesh.positions)
+        edges = _polygon_edges(mesh)
+        separate_diagonals(mesh, corner, edges)
     return Triangulation(
         triangles=mesh.corners[corner],
         polygon=np.repeat(np.arange(len(mesh.sizes), dtype=np.int32), counts),
         corner=corner,
-        edges=np.stack(np.divmod(edges, max(n, 1)), axis=1).astype(np.int32),
+        edges=edges,
     )
+
+
+def separate_diagonals(mesh: PolygonMesh, corner: NDArray[np.int64], edges: NDArray[np.int32]) -> None:
+    """Triangulate anew, in `corner`, the polygons with a diagonal between vertices that an edge or another polygon's
+    diagonal joins already (two quads back to back, for example).
+
+    corner: (m, 3), as in `Triangulation`; of every polygon two triangles less than it has corners. edges: (e, 2).
+    """
+    if (mesh.sizes == 3).all():
+        return
+    n = len(mesh.positions)
+    counts = mesh.sizes - 2
+    firsts = np.cumsum(counts) - counts
+    # A diagonal is a side of two triangles, which run along it in opposite directions.
+    following = np.roll(corner, -1, axis=1)
+    step = following - corner
+    diagonal = (step > 1) & (step < np.repeat(mesh.sizes, counts)[:, None] - 1)
+    keys = _pair_keys(mesh.corners[corner[diagonal]], mesh.corners[following[diagonal]], n)
+    edge_keys = _pair_keys(edges[:, 0], edges[:, 1], n)
+    ordered = np.sort(np.concatenate([edge_keys, keys]))
+    doubled = np.isin(keys, ordered[1:][ordered[1:] == ordered[:-1]])
+    if not doubled.any():
+        return
+    polygon = np.repeat(np.arange(len(mesh.sizes)), counts)
+    owner = np.broadcast_to(polygon[:, None], corner.shape)[diagonal]
+    redo = np.unique(owner[doubled])
+    # Only edges and diagonals between vertices of these polygons can be in their way.
+    near = np.zeros(n, bool)
+    near[mesh.corners[ranges(mesh.starts[redo], mesh.sizes[redo])]] = True
+    joined = np.concatenate([edge_keys, keys[~np.isin(owner, redo)]])
+    joined = set(joined[near[joined // n] & near[joined % n]].tolist())
+    starts = mesh.starts
+    for chosen in redo.tolist():
+        count = int(mesh.sizes[chosen])
+        row = starts[chosen] + np.arange(count)
+        own = mesh.corners[row].tolist()
+
+        def is_taken(p: int, q: int, own: list[int] = own) -> bool:
+            a, b = own[p], own[q]
+            return (a * n + b if a < b else b * n + a) in joined
+
+        local = clip_ears_of_one(_in_plane(mesh.positions[mesh.corners[row]][None])[0], is_taken)
+        corner[firsts[chosen] : firsts[chosen] + count - 2] = row[local]
+        vertices = mesh.corners[row[local]]
+        joined.update(_pair_keys(vertices, np.roll(vertices, -1, axis=1), n).ravel().tolist())
 
 
 def _faces(faces: NDArray[np.int64], place: Callable[[int], str]) -> str:
@@ -306,57 +350,17 @@ def _occupied(
     return (inside & alive[row]).any(axis=1) & (leniency < ALLOWS_ANY)
 
 
-def _edge_keys(mesh: PolygonMesh) -> NDArray[np.int64]:
-    """Every polygon edge once, as smaller vertex * n + larger vertex, ascending."""
+def _polygon_edges(mesh: PolygonMesh) -> NDArray[np.int32]:
+    """Every polygon edge once, the smaller vertex first, in order."""
     following = np.arange(1, len(mesh.corners) + 1)
     following[mesh.starts + mesh.sizes - 1] = mesh.starts
-    return np.unique(_pair_keys(mesh.corners, mesh.corners[following], len(mesh.positions)))
+    n = len(mesh.positions)
+    keys = np.unique(_pair_keys(mesh.corners, mesh.corners[following], n))
+    return np.stack(np.divmod(keys, max(n, 1)), axis=1).astype(np.int32)
 
 
 def _pair_keys(a: NDArray[np.int32], b: NDArray[np.int32], vertex_count: int) -> NDArray[np.int64]:
     return np.minimum(a, b).astype(np.int64) * vertex_count + np.maximum(a, b)
-
-
-def _separate_diagonals(
-    mesh: PolygonMesh, corner: NDArray[np.int64], firsts: NDArray[np.int64], edges: NDArray[np.int64]
-) -> None:
-    """Triangulate anew, in `corner`, the polygons with a diagonal between vertices that an edge or another polygon's
-    diagonal joins already (two quads back to back, for example)."""
-    if (mesh.sizes == 3).all():
-        return
-    n = len(mesh.positions)
-    size = np.repeat(mesh.sizes, mesh.sizes - 2)
-    polygon = np.repeat(np.arange(len(mesh.sizes)), mesh.sizes - 2)
-    step = np.abs(corner - np.roll(corner, -1, axis=1))
-    diagonal = (step != 1) & (step != size[:, None] - 1)
-    vertices = mesh.corners[corner]
-    keys = _pair_keys(vertices, np.roll(vertices, -1, axis=1), n)[diagonal]
-    owner = np.broadcast_to(polygon[:, None], corner.shape)[diagonal]
-    unique, inverse, count = np.unique(keys, return_inverse=True, return_counts=True)
-    # A polygon's own diagonal occurs twice, once in each of its two triangles.
-    doubled = ((count > 2) | np.isin(unique, edges))[inverse]
-    if not doubled.any():
-        return
-    redo = np.unique(owner[doubled])
-    # Only edges and diagonals between vertices of these polygons can be in their way.
-    near = np.zeros(n, bool)
-    near[mesh.corners[ranges(mesh.starts[redo], mesh.sizes[redo])]] = True
-    joined = np.concatenate([edges, keys[~np.isin(owner, redo)]])
-    joined = set(joined[near[joined // n] & near[joined % n]].tolist())
-    starts = mesh.starts
-    for chosen in redo.tolist():
-        count = int(mesh.sizes[chosen])
-        row = starts[chosen] + np.arange(count)
-        own = mesh.corners[row].tolist()
-
-        def is_taken(p: int, q: int, own: list[int] = own) -> bool:
-            a, b = own[p], own[q]
-            return (a * n + b if a < b else b * n + a) in joined
-
-        local = clip_ears_of_one(_in_plane(mesh.positions[mesh.corners[row]][None])[0], is_taken)
-        corner[firsts[chosen] : firsts[chosen] + count - 2] = row[local]
-        vertices = mesh.corners[row[local]]
-        joined.update(_pair_keys(vertices, np.roll(vertices, -1, axis=1), n).ravel().tolist())
 
 
 def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
