@@ -134,7 +134,7 @@ def unwrap_all(tasks: Sequence[UnwrapTask], progress: Progress | None = None) ->
 
 def _sharing_the_square(tasks: Sequence[UnwrapTask]) -> list[UnwrapTask]:
     """Each with its share of the square that all are to be packed into, by area in the world, where that matters."""
-    if not any(task.options.compact for task in tasks):
+    if all(task.options.compact == "off" for task in tasks):
         return list(tasks)
     areas = np.array([size_on_the_surface(task.region) ** 2 for task in tasks])
     shares = areas / areas.sum() if (areas > 0).all() and np.isfinite(areas).all() else np.ones(len(tasks))

@@ -90,8 +90,9 @@ class UV_OT_cone_auto_unwrap(
     )
     compact: bpy.props.BoolProperty(
         name="Compact Islands",
-        description="Bake: cut islands further where they would leave much of the square empty, such as long strips, "
-        "rings and those with arms",
+        description="Cut islands further that would leave much of the square empty, such as long strips, rings and "
+        "those with arms: Bake wherever that is worth it, Paint only where a short cut fills much of the square and no "
+        "seams are marked",
         default=True,
     )
     mark: bpy.props.BoolProperty(
@@ -116,7 +117,6 @@ class UV_OT_cone_auto_unwrap(
             body.prop(self, "seams")
             if self.preset != "TILE":
                 body.prop(self, "creases")
-            if self.preset == "BAKE":
                 body.prop(self, "compact")
             body.prop(self, "use_subsurf_data")
             body.prop(self, "mark")
@@ -166,7 +166,7 @@ class UV_OT_cone_auto_unwrap(
     def _options(self) -> lsgp.Options:
         """Raises InputError."""
         options = native.lsgp.preset_options(PRESETS[self.preset][0])
-        options = replace(options, seams=SEAMS[self.seams][0], compact=options.compact and self.compact)
+        options = replace(options, seams=SEAMS[self.seams][0], compact=options.compact if self.compact else "off")
         if options.seamless is not None:
             options = replace(options, seamless=replace(options.seamless, **self.tile_size_options()))
         return options

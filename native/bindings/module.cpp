@@ -242,12 +242,13 @@ lsgp::Options to_options(const py::dict& values) {
   for (const auto& [vertex, turning] : values["loop_turning"].cast<py::dict>()) {
     options.loop_turning.emplace_back(vertex.cast<Index>(), turning.cast<double>());
   }
-  using lsgp::Factorization, lsgp::Mode, lsgp::Overlaps;
+  using lsgp::Compactness, lsgp::Factorization, lsgp::Mode, lsgp::Overlaps;
   options.mode = choose<Mode>(text("mode"), {{"conformal", Mode::conformal}, {"low-stretch", Mode::low_stretch}});
   options.stretch = values["stretch"].cast<double>();
   options.repair = values["repair"].cast<bool>();
   options.overlaps = choose<Overlaps>(text("overlaps"), {{"keep", Overlaps::keep}, {"split", Overlaps::split}});
-  options.compact = values["compact"].cast<bool>();
+  options.compact = choose<Compactness>(
+      text("compact"), {{"off", Compactness::off}, {"sparing", Compactness::sparing}, {"full", Compactness::full}});
   options.square_share = values["square_share"].cast<double>();
   options.factorization = choose<Factorization>(
       text("factorization"),

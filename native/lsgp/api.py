@@ -24,6 +24,7 @@ Lattice = Literal["square", "stripe", "translation", "triangle", "hexagon"]
 CoarseGrid = Literal["refine", "merge", "relax"]
 Mode = Literal["conformal", "low-stretch"]
 Overlaps = Literal["keep", "split"]
+Compactness = Literal["off", "sparing", "full"]
 Factorization = Literal["automatic", "cut", "sparse"]
 
 Progress = Callable[[float], bool | None]
@@ -111,6 +112,7 @@ _CHOICES = {
     "border": BorderMode,
     "mode": Mode,
     "overlaps": Overlaps,
+    "compact": Compactness,
     "factorization": Factorization,
 }
 
@@ -177,8 +179,10 @@ class Options:
     repair: untangle flipped triangles and correct angles that are off by a full turn.
     overlaps: "keep" islands that overlap themselves, or "split" them along further cuts until none does; transitions
         stay exact.
-    compact: cut islands further where they would leave much of a square empty, such as long strips, rings and those
-        with arms; transitions stay exact. Components with pins keep their islands.
+    compact: whether to cut islands further that would leave much of a square empty, such as long strips, rings and
+        those with arms: "off"; "sparing", only where a short cut fills much of it, and in no component with marked
+        seams; "full", wherever more of it is filled than the cut and the further island cost. Transitions stay exact.
+        Components with pins keep their islands.
     square_share: with compact, the part of the square's area that these islands get, above 0 and up to 1; less where
         other surfaces are packed beside them, so that they are cut less.
     factorization: how linear systems are solved; maps differ by rounding only. "cut" factors once and
@@ -202,7 +206,7 @@ class Options:
     stretch: float = 1.0
     repair: bool = True
     overlaps: Overlaps = "keep"
-    compact: bool = False
+    compact: Compactness = "off"
     square_share: float = 1.0
     factorization: Factorization = "automatic"
     threads: int = 0
@@ -216,7 +220,6 @@ class Options:
             arguments.refuse("seamless", self.seamless, "pass a Seamless, or None")
         _set(self, "stretch", arguments.number("stretch", self.stretch, "pass a number from 0 to 1"))
         _set(self, "repair", arguments.flag("repair", self.repair))
-        _set(self, "compact", arguments.flag("compact", self.compact))
         share = arguments.number("square_share", self.square_share, "pass a number above 0, up to 1")
         _set(self, "square_share", share)
         _set(self, "loop_turning", _loop_turning(self.loop_turning))

@@ -41,18 +41,18 @@ _MOST_CORNERS: dict[Preset, int | None] = {"paint": 24, "tile": None, "bake": 0}
 # Islands are split in all of them: what lies on itself can neither be painted nor baked, and the cuts of a seamless
 # layout show nowhere.
 _PRESETS: dict[Preset, Options] = {
-    "paint": Options(mode="low-stretch", overlaps="split"),
+    "paint": Options(mode="low-stretch", overlaps="split", compact="sparing"),
     "tile": Options(seamless=Seamless(lattice="square"), overlaps="split"),
-    "bake": Options(mode="low-stretch", overlaps="split", compact=True),
+    "bake": Options(mode="low-stretch", overlaps="split", compact="full"),
 }
 
 
 def preset_options(preset: Preset) -> Options:
     """The options of a preset of `auto_unwrap`; `dataclasses.replace` changes some of them.
 
-    preset: "paint" keeps lengths, for texture painting; "tile" makes a tileable texture of squares show no seam; "bake"
-        is for textures that are computed: islands are cut so that they fill the square, hard surfaces at their creases,
-        as in `with_crease_borders`.
+    preset: "paint" keeps lengths, for texture painting, and cuts islands where they would leave most of the square
+        empty; "tile" makes a tileable texture of squares show no seam; "bake" is for textures that are computed:
+        islands are cut so that they fill the square, hard surfaces at their creases, as in `with_crease_borders`.
     No island of theirs overlaps itself.  Raises InputError.
     """
     arguments.require_choice("preset", preset, get_args(Preset))

@@ -22,6 +22,7 @@ from scenes import (
     covered_twice,
     edit,
     mark,
+    mark_seams,
     marked,
     pin,
     select_elements,
@@ -68,7 +69,7 @@ def test_nothing_overlaps_and_all_is_even_or_seamless(preset, add):
 def test_marked_cones_and_seams_are_kept(reports):
     cube = add_cone_cube()
     reports()
-    unwrap()
+    unwrap(compact=False)
     assert "1 island through 8 cones" in reports()
     assert UvMap(cube).scale_spread() < 1 + 1e-5
     one = add_sphere("One")
@@ -167,6 +168,17 @@ def test_bake_cuts_a_strip_so_that_it_fills_the_square():
     assert uv_map.sister_difference() <= UV_ROUNDING
     assert covered_twice([uv_map]) == 0
     unwrap(preset="PAINT")
+    assert 1 < UvMap(strip).islands() < uv_map.islands()
+    unwrap(preset="PAINT", compact=False)
+    assert UvMap(strip).islands() == 1
+
+
+def test_paint_leaves_parts_with_marked_seams_whole():
+    strip = add_strip()
+    unwrap()
+    assert UvMap(strip).islands() > 1
+    mark_seams(strip, [next(iter(UvMap(strip).sides))])
+    unwrap()
     assert UvMap(strip).islands() == 1
 
 
@@ -248,7 +260,7 @@ def test_a_flat_surface_needs_no_cones_and_nothing_is_said(reports):
 
 def test_an_island_that_is_alone_is_as_large_as_it_can_be():
     cube = add_cone_cube()
-    unwrap(margin=16, texture_size="1024")
+    unwrap(margin=16, texture_size="1024", compact=False)
     uv_map = UvMap(cube)
     # Six squares, four of them in a row in some nets.
     side = (1 - 2 * 16 / 1024) / 4
@@ -308,7 +320,7 @@ def test_a_cylinder_ends_at_its_rims(creases, islands):
     """A rectangle and two disks without stretch; to run on over the rims takes a cone at each vertex there."""
     bpy.ops.mesh.primitive_cylinder_add(vertices=32)
     cylinder = bpy.context.active_object
-    unwrap(creases=creases, mark=True)
+    unwrap(creases=creases, mark=True, compact=False)
     uv = UvMap(cylinder)
     assert uv.islands() == islands
     assert bool(marked(cylinder)) != creases

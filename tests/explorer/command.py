@@ -81,11 +81,10 @@ def _files_and_arguments(
         return ["cones", "in.obj", "-o", "out.json", *keep, *shared]
     given = "cones.json" if step["cones"] == "given" else step["cones"]
     arguments = ["unwrap", "in.obj", "-o", "out.obj", "--cones", given, *shared]
-    for name in ("prescription", "unfold", "method", "border", "mode", "overlaps"):
+    for name in ("prescription", "unfold", "method", "border", "mode", "overlaps", "compact"):
         value = getattr(options, name)
         arguments += [] if value is None else [f"--{name}", value]
     arguments += [] if options.repair else ["--no-repair"]
-    arguments += ["--compact"] if options.compact else []
     if surface.directions is not None:
         strokes = [[f, *direction] for f, direction in enumerate(surface.directions.tolist())]
         (folder / "directions.json").write_text(json.dumps(strokes))

@@ -34,7 +34,7 @@ OPTIONS: Values = {
     "stretch": [1.0, 0.5, 0.0],
     "repair": [True, False],
     "overlaps": ["keep", "split"],
-    "compact": [False, True],
+    "compact": ["off", "sparing", "full"],
     "square_share": [1.0, 0.1],
     "factorization": ["automatic", "cut", "sparse"],
     "threads": [0, 1, 3],

@@ -138,8 +138,8 @@ lsgp::Options make_options(Bytes& bytes, const lsgp::Surface& surface) {
   }
   options.repair = !bytes.once_in(4);
   if (bytes.once_in(4)) options.overlaps = lsgp::Overlaps::split;
-  options.compact = bytes.once_in(4);
-  if (options.compact && bytes.once_in(4)) options.square_share = bytes.number();
+  if (bytes.once_in(4)) options.compact = bytes.choice<lsgp::Compactness>(3);
+  if (bytes.once_in(4)) options.square_share = bytes.number();
   options.factorization = bytes.choice<lsgp::Factorization>(3);
   return options;
 }

@@ -76,7 +76,7 @@ void print(const lsgp::Options& options) {
   print_value("stretch", options.stretch);
   print_choice("repair", options.repair);
   print_choice("overlaps", static_cast<int>(options.overlaps));
-  print_choice("compact", options.compact);
+  print_choice("compact", static_cast<int>(options.compact));
   print_value("square_share", options.square_share);
   print_choice("factorization", static_cast<int>(options.factorization));
 }

@@ -16,7 +16,7 @@ from result_check import undeclared_faults
 from scipy.spatial import ConvexHull
 from test_overlaps import quads_of
 
-COMPACT = lsgp.Options(compact=True)
+COMPACT = lsgp.Options(compact="full")
 FILL = 0.62  # of the square, what packed islands usually take
 
 
@@ -85,12 +85,41 @@ def test_islands_with_arms_become_convex_ones(shape: str, most: float, mode: str
     mesh = flat(cells_of(shape))
     # Without this, the border of a ring is opened to a strip.
     options = lsgp.Options(mode=mode, loop_turning={0: 2 * np.pi}) if shape == "ring" else lsgp.Options(mode=mode)
-    plain, compact = unwrap(mesh, options), unwrap(mesh, replace(options, compact=True))
+    plain, compact = unwrap(mesh, options), unwrap(mesh, replace(options, compact="full"))
     assert taken(plain) > 1.4
     assert taken(compact) <= most
     assert lengths(compact) == pytest.approx(lengths(plain), abs=1e-9)
     assert compact.island.max() < 8
     assert undeclared_faults(lsgp.Surface(mesh.positions, mesh.triangles), compact) == []
+
+
+@pytest.mark.parametrize(("shape", "cut"), [("strip", True), ("corner", True), ("cross", False), ("comb", False)])
+def test_sparing_cuts_only_what_wastes_most(shape: str, cut: bool) -> None:
+    mesh = flat(cells_of(shape))
+    plain, sparing, full = (unwrap(mesh, lsgp.Options(compact=compact)) for compact in ("off", "sparing", "full"))
+    islands = [int(result.island.max()) + 1 for result in (plain, sparing, full)]
+    assert islands == sorted(islands) and islands[0] < islands[2]
+    assert (islands[1] > islands[0]) == cut
+    assert lengths(sparing) == pytest.approx(lengths(plain), abs=1e-9)
+
+
+def test_sparing_leaves_no_strip_much_longer_than_the_square() -> None:
+    for length in (20, 50, 100, 200):
+        sparing = unwrap(flat(np.ones((3, length), bool)), lsgp.Options(compact="sparing"))
+        longest = max(sides_of_smallest_box(points).max() for points in island_points(sparing))
+        assert longest < 1.5 * np.sqrt(uv_area(sparing) / FILL)
+
+
+@pytest.mark.parametrize("compact", ["sparing", "full"])
+def test_sparing_leaves_components_with_marked_seams_whole(compact: str) -> None:
+    mesh = flat(np.ones((3, 40), bool))
+    both = meshes.make(
+        np.concatenate([mesh.positions, mesh.positions + np.array([0, 10, 0])]),
+        np.concatenate([mesh.triangles, mesh.triangles + len(mesh.positions)]),
+    )
+    result = unwrap(both, lsgp.Options(compact=compact), seams=[[41, 82]])
+    with_seam, without = (len(np.unique(islands)) for islands in np.split(result.island, 2))
+    assert (with_seam > 1) == (compact == "full") and without > 1
 
 
 def test_strips_become_no_longer_than_the_square() -> None:
@@ -162,13 +191,13 @@ def test_the_map_is_the_same_but_for_its_islands(name: str, mode: str) -> None:
     surface = lsgp.Surface(mesh.positions, mesh.triangles)
     options = lsgp.Options(mode=mode, overlaps="split")
     plain = lsgp.auto_unwrap(surface, creases=False, options=options)
-    compact = lsgp.auto_unwrap(surface, creases=False, options=replace(options, compact=True))
+    compact = lsgp.auto_unwrap(surface, creases=False, options=replace(options, compact="full"))
     assert undeclared_faults(surface, compact) == []
     assert lengths(compact) == pytest.approx(lengths(plain), rel=1e-9, abs=1e-12)
     assert pairs(plain.cut_edges) <= pairs(compact.cut_edges)
     assert compact.overlapping.tolist() == []
     assert taken(compact) <= taken(plain)
-    again = lsgp.auto_unwrap(surface, creases=False, options=replace(options, compact=True))
+    again = lsgp.auto_unwrap(surface, creases=False, options=replace(options, compact="full"))
     assert again.corner_uv.tobytes() == compact.corner_uv.tobytes()
 
 
@@ -188,7 +217,7 @@ def test_components_with_pins_keep_their_islands(count: int) -> None:
         ({"square_share": 0.0}, "share of the square"),
         ({"square_share": 1.5}, "share of the square"),
         ({"square_share": float("nan")}, "share of the square"),
-        ({"compact": True, "seamless": lsgp.Seamless()}, "compact"),
+        ({"compact": "full", "seamless": lsgp.Seamless()}, "compact"),
     ],
 )
 def test_what_makes_no_sense_is_refused(options: dict[str, object], words: str) -> None:

@@ -367,7 +367,7 @@ std::deque<Case> make_cases() {
   }
   add("low stretch", parameterize, sphere).options.mode = lsgp::Mode::low_stretch;
   add("split overlaps", parameterize, manual).options.overlaps = lsgp::Overlaps::split;
-  add("compact islands", parameterize, manual).options.compact = true;
+  add("compact islands", parameterize, manual).options.compact = lsgp::Compactness::full;
   Case& seams = add("seams to follow", parameterize, sphere);
   seams.surface.seams = seams.surface.triangles.topLeftCorner(12, 2);
   add("seams as borders", parameterize, seams).options.seams = lsgp::SeamMode::boundary;

@@ -71,7 +71,7 @@ std::vector<Verb> all_verbs() {
   low_stretch.mode = lsgp::Mode::low_stretch;
   spectral.unfold = lsgp::UnfoldMethod::spectral;
   split.overlaps = lsgp::Overlaps::split;
-  split.compact = true;
+  split.compact = lsgp::Compactness::full;
   std::vector<Verb> verbs;
   for (const lsgp::Options& options : {manual(), seamless, low_stretch, spectral, split}) {
     verbs.push_back([options](const lsgp::Surface& surface) { return unwrap(surface, options); });

@@ -61,7 +61,7 @@ SEAMLESS_IS = {False: "none", True: "asked for"}
 
 # What the library refuses to do together, in any row.
 LSCM_HAS_NO = {"unfold": "poisson", "mode": "conformal", "border": "free", "loop_turning": "none", "pins": "none"}
-SEAMLESS_HAS_NO = {"method": "lsgp", "border": "free", "pins": "none", "compact": False}
+SEAMLESS_HAS_NO = {"method": "lsgp", "border": "free", "pins": "none", "compact": "off"}
 
 
 def keeps(row: dict[str, Any], wanted: dict[str, Any]) -> bool:

@@ -41,6 +41,14 @@ enum class Overlaps {
   split,  // along further cuts, until no island does; transitions stay exact
 };
 
+// Whether islands are cut further where they would leave much of a square empty; transitions stay exact. Not in
+// seamless layouts; components with pins keep their islands.
+enum class Compactness {
+  off,
+  sparing,  // only where a short cut fills much of the square, and in no component with marked seams
+  full,     // wherever more of it is filled than the cut and the further island cost
+};
+
 // What a marked seam means.
 enum class SeamMode {
   follow,    // all seams are cut, and others where cones and handles need them; a part without cones is open there
@@ -101,9 +109,7 @@ struct Options {
   double stretch = 1;  // with low_stretch: from 0, the conformal map, to 1, that of least stretch
   bool repair = true;  // of flipped triangles and angles off by a turn
   Overlaps overlaps = Overlaps::keep;
-  // Whether islands are cut further where they would leave much of a square empty; transitions stay exact. Not in
-  // seamless layouts; components with pins keep their islands.
-  bool compact = false;
+  Compactness compact = Compactness::off;
   double square_share = 1;  // with compact: the part of the square's area that these islands get, above 0
   Factorization factorization = Factorization::automatic;
   // Of large factorizations, up to 1024; the result does not depend on it. 0: as many as the environment variable

@@ -14,7 +14,7 @@ from typing import get_args
 
 import numpy as np
 
-from ..api import Options, Progress, Seamless, Surface, cut_costs
+from ..api import Compactness, Options, Progress, Seamless, Surface, cut_costs
 from ..arguments import FloatArray
 from ..auto_unwrap import Preset, preset_options
 from ..io.side_files import UsageError
@@ -94,8 +94,10 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
     )
     unwrap.add_argument(
         "--compact",
-        action=argparse.BooleanOptionalAction,
-        help="cut islands further where they would leave much of the square empty (default: with --preset bake)",
+        choices=get_args(Compactness),
+        help="cut islands further that would leave much of the square empty: sparing, only where a short cut fills "
+        "much of it, or full, wherever that is worth it (default: full with --preset bake, sparing with paint, else "
+        "off)",
     )
     unwrap.add_argument(
         "--in-place",
@@ -389,7 +391,7 @@ def library_options(args: argparse.Namespace) -> Options:
         stretch=base.stretch if args.stretch is None else args.stretch,
         repair=args.repair,
         overlaps=base.overlaps if args.overlaps is None else args.overlaps,
-        compact=base.compact and seamless is None if args.compact is None else args.compact,
+        compact=(base.compact if seamless is None else "off") if args.compact is None else args.compact,
     )
 
 

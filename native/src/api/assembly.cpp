@@ -69,8 +69,12 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
       return;
     }
   }
-  if (options_.compact && map.pins.empty()) {
-    const SharedSquare square{surface_area_ / options_.square_share, scale_to_surface(component.mesh, geometry, map)};
+  const Array<char>& seam = component.mesh.seam;
+  const bool keeps_islands = options_.compact == Compactness::off || !map.pins.empty() ||
+                             (options_.compact == Compactness::sparing && std::count(seam.begin(), seam.end(), 1) > 0);
+  if (!keeps_islands) {
+    const SharedSquare square{surface_area_ / options_.square_share, scale_to_surface(component.mesh, geometry, map),
+                              options_.compact};
     compact_islands(component.mesh, geometry, open_seams(component.mesh), square, map);
   }
   move_findings(component, findings, result_.warnings);

@@ -135,7 +135,7 @@ void require_valid(const Options& options) {
     throw Error(Code::wrong_parameter,
                 concat("The islands' share of the square is ", options.square_share, ". Choose one above 0, up to 1."));
   }
-  if (options.compact && options.seamless) {
+  if (options.compact != Compactness::off && options.seamless) {
     throw Error(
         Code::wrong_parameter,
         "A seamless layout fills no square, so its islands are not cut for that. Do without compact islands, or "

@@ -24,6 +24,8 @@ namespace {
 // Parts of the area of all islands that have to be saved: by a cut as long as the square root of that area, and by each
 // further island.
 constexpr double cost_of_cut = 0.15, cost_of_island = 0.01;
+// Times as much for those who would rather have few cuts.
+constexpr double sparing_factor = 8;
 // An island takes what is halfway between its convex hull and its smallest box. Where the smallest square around it is
 // larger than a part of the square that all share, it keeps others out of that square as well.
 constexpr double fill = 0.62, large = 0.7, cost_of_large = 0.5;
@@ -50,10 +52,12 @@ struct Division {
 class Compactor {
  public:
   // position: at the corners, on the scale of the surface.
-  Compactor(const HalfedgeMesh& mesh, const FaceGraph& graph, const Eigen::VectorXcd& position, double area)
+  Compactor(const HalfedgeMesh& mesh, const FaceGraph& graph, const Eigen::VectorXcd& position,
+            const SharedSquare& square)
       : graph_(graph),
         position_(position),
-        area_(area),
+        area_(square.area),
+        price_factor_(square.filling == Compactness::sparing ? sparing_factor : 1),
         cutter_(graph, CutCost::shortest),
         center_(graph.face_count(), 0),
         place_(graph.face_count(), none),
@@ -131,7 +135,7 @@ class Compactor {
 
   const FaceGraph& graph_;
   const Eigen::VectorXcd& position_;
-  const double area_;
+  const double area_, price_factor_;
   MinimumCutter cutter_;
   Array<Index> triangle_begin_, triangles_;  // of every face
   Array<Complex> center_;                    // (faces)
@@ -223,8 +227,8 @@ Compactor::Cells Compactor::cells_of(const Array<Index>& island, Complex along) 
 
 // Of a division into so many pieces; 0 where it does not gain its price.
 double Compactor::worth(double gain, double length, std::size_t pieces) const {
-  const double price =
-      area_ * cost_of_island * static_cast<double>(pieces - 1) + std::sqrt(area_) * cost_of_cut * length;
+  const double price = price_factor_ * (area_ * cost_of_island * static_cast<double>(pieces - 1) +
+                                        std::sqrt(area_) * cost_of_cut * length);
   // Between what gains most and what gains most for its price.
   return gain > price ? gain / std::sqrt(price) : 0;
 }
@@ -378,7 +382,7 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& island) {
   if (island.size() < 2 || area < least_island * area_) return {};
   const Array<Complex> hull = hull_of(island);
   const double before = demand(hull);
-  if (before - area < cost_of_island * area_) return {};
+  if (before - area < price_factor_ * cost_of_island * area_) return {};
   const Complex along = longer_side(hull);
   const Division division = find_division(cells_of(island, along), hull, along);
   if (division.lines.empty()) return {};
@@ -400,7 +404,7 @@ void compact_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const A
   for (Index h = 0; h < mesh.halfedge_count(); ++h) ends[h] = ends[h] || is_cut[h];
   const FaceGraph graph = build_face_graph(mesh, geometry, ends);
   const Eigen::VectorXcd position = square.scale * at_corners(map.cut_mesh, map.position);
-  Compactor compactor(mesh, graph, position, square.area);
+  Compactor compactor(mesh, graph, position, square);
   Array<Index> part = compactor.divide_all();
   straighten_cuts(
       mesh, geometry, graph, ends, [&](Index face, Index) { return !compactor.is_near_cut(face); }, part);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/array.hpp"
+#include "lsgp/options.hpp"
 #include "pipeline/component_map.hpp"
 
 namespace lsgp {
@@ -11,6 +12,7 @@ namespace lsgp {
 struct SharedSquare {
   double area;   // of all islands, on the surface
   double scale;  // of the map to the surface
+  Compactness filling;
 };
 
 // Cuts islands that are far from convex, or long beside the square, where that saves more of its area than it costs in
