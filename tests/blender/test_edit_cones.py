@@ -32,7 +32,7 @@ from scenes import (
 
 cone_session, unwrapping, content = addon.jobs.cone_session, addon.jobs.unwrapping, addon.overlay.content
 following = addon.jobs.following
-reports, screens, typed_number = addon.mesh.reports, addon.core.screen, addon.operators.typed_number
+reports, screens, typed_number = addon.mesh.reports, addon.core.screen, addon.operators.cones.typed_number
 lsgp = addon.core.native.lsgp
 
 SIZE = 400
