@@ -7,7 +7,7 @@ from pathlib import Path
 import bpy
 import pytest
 
-sys.path.append(str(Path(__file__).resolve().parents[1]))
+sys.path.append(str(Path(__file__).resolve().parents[2]))
 from code_blocks import ROOT, blocks_of, documents
 
 BLOCKS = [

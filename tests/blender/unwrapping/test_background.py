@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The parts of a run in the background: reading, solving in a thread, finding what is to be written to again.
 
-What needs a window is in window_tests.py.
+What needs a window is in in_window/invoke_tests.py.
 """
 
 import threading
