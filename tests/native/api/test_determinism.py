@@ -42,7 +42,7 @@ def test_another_process_with_other_threads_gives_the_same_bytes(threads: str) -
     environment = os.environ | {
         "OMP_NUM_THREADS": threads,
         "PYTHONHASHSEED": threads,
-        "PYTHONPATH": os.pathsep.join([str(here), str(here.parent), *filter(None, [os.environ.get("PYTHONPATH")])]),
+        "PYTHONPATH": os.pathsep.join([str(here), str(here.parents[1]), *filter(None, [os.environ.get("PYTHONPATH")])]),
     }
     done = subprocess.run(
         [sys.executable, "-c", script], env=environment, capture_output=True, text=True, timeout=120, check=False

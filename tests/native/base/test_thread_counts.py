@@ -123,7 +123,7 @@ def test_the_environment_has_the_default(variable: str, option: int, expected: i
     here = Path(__file__).resolve().parent
     environment = os.environ | {
         "LSGP_THREADS": variable,
-        "PYTHONPATH": os.pathsep.join([str(here), str(here.parent), *filter(None, [os.environ.get("PYTHONPATH")])]),
+        "PYTHONPATH": os.pathsep.join([str(here), str(here.parents[1]), *filter(None, [os.environ.get("PYTHONPATH")])]),
     }
     done = subprocess.run(
         [sys.executable, "-c", script], env=environment, capture_output=True, text=True, timeout=120, check=False

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from loops import heads, is_counted, open_loops
 
-SOURCES = Path(__file__).parents[2] / "native" / "src"
+SOURCES = Path(__file__).parents[3] / "native" / "src"
 
 # Where they can be cancelled.
 SHORT = "not: linear in the surface at most, or small"
