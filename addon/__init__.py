@@ -7,7 +7,7 @@ core: arrays, names, errors and findings; nothing is read from meshes here.
 mesh: reading and writing Blender's meshes.
 jobs: computations on what was read: in the background, in batches, for the table of angles.
 overlay: what is drawn over meshes.
-operators: Blender's operators, one per file.
+operators: Blender's operators, one per file, in rooms by topic.
 ui: menus, panels and preferences.
 """
 

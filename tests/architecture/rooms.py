@@ -118,6 +118,8 @@ def python_references(folder: Path, path: Path) -> set[str]:
     package = path.relative_to(folder).parent.parts
     for level, module, names in python_imports(path):
         parts = tuple(part for part in module.split(".") if part)
+        if level > len(package) + 1:
+            continue  # from the packages around the tree
         if level:
             base = (*package[: len(package) - level + 1], *parts)
         elif parts[:1] == (folder.name,):
@@ -204,13 +206,27 @@ TREES = (
             Room("mesh", ("mesh/*",), ("core",)),
             Room("jobs", ("jobs/*",), ("core", "mesh")),
             Room("overlay", ("overlay/*",), ("core", "mesh", "jobs")),
-            Room("operators", ("operators/*",), ("core", "mesh", "jobs", "overlay")),
+            Room("operators", ("operators/*", "operators/*/*"), ("core", "mesh", "jobs", "overlay")),
             Room("ui", ("ui/*",), ("core", "mesh", "jobs", "overlay")),
             Room(
                 "registration",
                 ("__init__.py", "registration.py"),
                 ("core", "mesh", "jobs", "overlay", "operators", "ui"),
             ),
+        ),
+    ),
+    Tree(
+        "addon/operators",
+        "*.py",
+        python_references,
+        (
+            Room("shared", ("__init__.py", "shared/*")),
+            Room("unwrapping", ("unwrapping/*",), ("shared",)),
+            Room("cones", ("cones/*",), ("shared", "unwrapping")),
+            Room("angles", ("angles/*",), ("shared",)),
+            Room("cuts", ("cuts/*",), ("shared",)),
+            Room("inspection", ("inspection/*",), ("shared",)),
+            Room("texels", ("texels/*",), ("shared",)),
         ),
     ),
     Tree(

@@ -8,7 +8,7 @@ from rooms import ROOT, TREES, Tree
 
 PAGE = (ROOT / "docs" / "explanation" / "architecture.md").read_text(encoding="utf-8")
 DIAGRAM = re.compile(r"```mermaid\nflowchart BT\n  %% (\S+)\n(.*?)```", re.DOTALL)
-FOLDERS = {"addon": "addon", "native/lsgp": "native/lsgp", "native": "native/src"}
+FOLDERS = {tree.folder: tree.folder for tree in TREES} | {"native": "native/src"}
 OUTSIDE = {"public headers", "bindings"}
 
 trees = pytest.mark.parametrize("tree", TREES, ids=lambda tree: tree.folder)

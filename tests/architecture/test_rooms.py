@@ -70,6 +70,7 @@ def test_a_use_across_a_wall_is_found(tmp_path):
         "low/__init__.py": "",
         "low/thing.py": "def f():\n    from ..high import other\n",
         "low/named.py": f"import {tmp_path.name}.high.other\n",
+        "low/around.py": "from ...high import other\n",  # of the package around the tree
         "high/__init__.py": "",
         "high/other.py": "from ..low import thing\nfrom ..low.thing import f\n",
     }.items():

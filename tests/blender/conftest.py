@@ -9,7 +9,7 @@ import os
 import pytest
 
 if "CONE_UNWRAP_EXTENSION" not in os.environ:
-    collect_ignore_glob = ["test_*.py"]
+    collect_ignore_glob = ["test_*.py", "*/test_*.py"]
 else:
     import bpy
 

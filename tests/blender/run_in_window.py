@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Install a built extension into a throw-away profile and run the window_*.py beside this in this Blender's window.
+"""Install a built extension into a throw-away profile and run the tests of in_window in this Blender's window.
 
     export BLENDER_USER_RESOURCES=EMPTY_FOLDER
     blender --enable-event-simulate --python-exit-code 1 --python run_in_window.py -- ZIP REPORT.xml [PART OF A NAME]
@@ -86,8 +86,10 @@ def main() -> None:
     bpy.context.preferences.system.viewport_aa = "OFF"
     install(Path(package))
     require_bundled_library()
+    folder = Path(__file__).parent / "in_window"
+    sys.path.append(str(folder))
     tests = {}
-    for path in sorted(Path(__file__).parent.glob("window_*.py")):
+    for path in sorted(folder.glob("*_tests.py")):
         functions = vars(import_module(path.stem))
         wanted = [
             name for name in functions if name.startswith("test_") and (not only or only[0] in f"{path.stem}.{name}")

@@ -3,8 +3,8 @@
 
 The blocks of a document run one after the other in one folder, which has model.obj, a bumpy ball, to begin with, and a
 folder library with a small one; Python blocks share their variables and find `positions` and `triangles` of the ball.
-Blocks for Blender's Python are run by tests/blender/test_documented_scripts.py; those that import a package that is not
-installed are left out, and the test of their document then counts as skipped.
+Blocks for Blender's Python are run by tests/blender/extension/test_documented_scripts.py; those that import a package
+that is not installed are left out, and the test of their document then counts as skipped.
 """
 
 import contextlib

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The same input gives the same bytes: in the 50th run, after failures, among threads, in a locale with decimal commas.
 
-`native/test_determinism.py` compares two runs and two processes with other numbers of threads.
+`native/api/test_determinism.py` compares two runs and two processes with other numbers of threads.
 """
 
 from __future__ import annotations

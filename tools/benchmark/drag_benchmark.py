@@ -89,7 +89,7 @@ def watch_tool(watch: Stopwatch) -> None:
     lsgp = import_module("lsgp")
     session = import_module(f"{demo_scene.ADDON}.jobs.cone_session")
     write = import_module(f"{demo_scene.ADDON}.mesh.uv_write")
-    tool = import_module(f"{demo_scene.ADDON}.operators.cone_edit")
+    tool = import_module(f"{demo_scene.ADDON}.operators.cones.edit")
     watch.watch(session.ConeSession, "vertex_at", "pick")
     watch.watch(lsgp.Solver, "parameterize", "solve")
     watch.watch(session.Step, "solve", "place")

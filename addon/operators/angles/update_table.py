@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Update Table."""
+
+import bpy
+
+from ...core import identifiers
+from ...jobs.angle_table import current_table, last_settings
+from ..shared.polling import ComputingOperator
+
+
+class MESH_OT_cone_update_table(ComputingOperator, bpy.types.Operator):
+    """Update Table."""
+
+    bl_idname = identifiers.UPDATE_TABLE
+    bl_label = "Update Table"
+    bl_description = "Read the cone angles of this large mesh and update their table"
+    bl_options = {"INTERNAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        current_table(context.object, last_settings(context), on_request=True)
+        return {"FINISHED"}

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Show Texture and Remove Texture."""
+
+import bpy
+
+from ...core import identifiers
+from ...core.text import counted
+from ...mesh import reports, texture
+from ...mesh.targets import target_objects
+from ..shared.polling import poll_meshes
+
+PATTERNS = (
+    (
+        "CHECKER",
+        "Checker",
+        "Dark and light squares, which stay squares of one size where angles and areas are preserved",
+    ),
+    ("ASYMMETRIC", "Asymmetric", "Tiles that show how the UV map is rotated and whether it is mirrored"),
+)
+
+
+class UV_OT_cone_texture(bpy.types.Operator):
+    """Show Texture, or with ``clear`` Remove Texture."""
+
+    bl_idname = identifiers.TEXTURE_SHOW
+    bl_label = "Show Texture"
+    bl_description = (
+        "Show the UV map with a texture in place of all materials of the mesh, which are remembered and restored "
+        "when it is removed"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    pattern: bpy.props.EnumProperty(name="Pattern", description="What the texture shows", items=PATTERNS)
+    tiles: bpy.props.IntProperty(
+        name="Tiles", description="Tiles along a side of the UV square", default=8, min=1, max=32
+    )
+    clear: bpy.props.BoolProperty(
+        name="Remove", description="Remove the texture instead", default=False, options={"SKIP_SAVE"}
+    )
+
+    @classmethod
+    def description(cls, _context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        if properties.clear:
+            return "Remove the texture and restore the previous materials"
+        return cls.bl_description
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return poll_meshes(cls, context)
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        if not self.properties.is_property_set("tiles"):
+            found = [reports.current(obj.data) for obj in target_objects(context)]
+            # A tile of a seamless layout is one UV unit.
+            if any(report is not None and report.certificate is not None for report in found):
+                self.tiles = 1
+        return self.execute(context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        objects = [obj for obj in target_objects(context) if obj.data.is_editable and obj.is_editable]
+        if self.clear:
+            changed = [obj for obj in objects if texture.remove(obj)]
+            texture.remove_unused(context)
+        else:
+            changed = objects
+            material = texture.make_material(self.pattern, self.tiles)
+            for obj in objects:
+                texture.show(obj, material)
+            texture.show_in_view(context, material)
+        if not changed:
+            self.report(
+                {"WARNING"},
+                "These meshes do not show the texture; there is nothing to remove"
+                if self.clear
+                else "These meshes are linked from another file; make them local (Object > Relations)",
+            )
+            return {"CANCELLED"}
+        verb = "Removed the texture from" if self.clear else "Showing the texture on"
+        self.report({"INFO"}, f"{verb} {counted(len(changed), 'mesh', 'meshes')}")
+        return {"FINISHED"}

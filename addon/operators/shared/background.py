@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operators that compute in the background: Blender continues to draw, progress is shown, Esc stops them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import partial
+from typing import Any
+
+import bpy
+
+from ...core import findings
+from ...core.errors import Refused, object_errors
+from ...core.region import Region
+from ...jobs.computation import Computation
+from ...jobs.solving import Progress, Task
+from ...mesh.region_read import Faces, Groups, read_region
+from ...mesh.targets import selects_by_uv, target, target_objects
+from .conclusion import conclude, for_each
+from .polling import ComputingOperator
+
+# Seconds: faster computations show no progress, which would only flicker; and how often progress is shown.
+UNNOTICED = 0.2
+INTERVAL = 0.05
+
+Solved = list[tuple[bpy.types.Object, Task, Any]]
+"""Objects with their tasks and results."""
+
+
+class BackgroundOperator(ComputingOperator):
+    """Base of operators that read the selected faces of all target objects, compute, and then write.
+
+    Without a window all of it happens in one call. With one, the computation runs in a thread, and nothing else can be
+    done in the window meanwhile; stopped, the operator ends at once and changes nothing.
+    """
+
+    activity: str
+    """For the status bar, such as "Placing cones"."""
+    nothing_selected: str
+    """The error where no face is selected."""
+    use_subsurf_data = False
+    """Whether meshes are read with their Subdivision Surface modifier; operators may have it as a property."""
+
+    # To be defined by operators
+
+    def plan(self) -> tuple[Groups, Callable[[bpy.types.Object, Region], Task]]:
+        """The vertex groups to read, and what makes the task of an object; that may raise LsgpError and Refused."""
+        raise NotImplementedError
+
+    @staticmethod
+    def solve(tasks: list[Task], progress: Progress | None = None) -> list[Any | Exception]:
+        """The result of each task, which has ``warnings``, or its error.  Touches nothing in Blender."""
+        raise NotImplementedError
+
+    def write(self, solved: Solved) -> list[str]:
+        """Change the objects; returns what was done to each.  Raises Refused before anything is changed."""
+        raise NotImplementedError
+
+    # Running
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        # Without a window there are no events.
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        gathered, self._failures = self._gather(context)
+        self._targets = [target(obj) for obj, _ in gathered]
+        self._tasks = [task for _, task in gathered]
+        self._computation = Computation(partial(self.solve, self._tasks))
+        if self._computation.finished(UNNOTICED):
+            return self._conclude_computation()
+        manager = context.window_manager
+        self._timer = manager.event_timer_add(INTERVAL, window=context.window)
+        manager.progress_begin(0, 100)
+        manager.modal_handler_add(self)
+        self._percent = None
+        self._show_progress(context)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
+            self.cancel(context)
+            self.report({"INFO"}, f"{self.activity} was stopped; nothing was changed")
+            return {"CANCELLED"}
+        if event.type == "TIMER":
+            if self._computation.finished():
+                self._end_progress(context)
+                return self._conclude_computation()
+            self._show_progress(context)
+        return {"RUNNING_MODAL"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Also called by Blender where it ends the operator, for example before another file is opened."""
+        self._computation.stop()
+        self._end_progress(context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        gathered, failures = self._gather(context)
+        outcomes = self.solve([task for _, task in gathered])
+        found = [(obj, task, outcome) for (obj, task), outcome in zip(gathered, outcomes, strict=True)]
+        return self._conclude(found, failures)
+
+    def _gather(self, context: bpy.types.Context) -> tuple[list[tuple[bpy.types.Object, Task]], dict[str, Exception]]:
+        """What is to be computed for each object with selected faces, and the errors of the others by name."""
+        groups, make_task = self.plan()
+        faces = Faces.UV_SELECTED if selects_by_uv(context) else Faces.SELECTED
+        objects = target_objects(context)
+
+        def read(obj: bpy.types.Object) -> Task | None:
+            region = read_region(obj, faces, groups, subdivided=self.use_subsurf_data)
+            return None if region is None else make_task(obj, region)
+
+        gathered, failures = for_each(objects, read)
+        for obj in objects:
+            if obj.name in failures:
+                findings.keep(obj, None, [failures[obj.name]])
+        return [(obj, task) for obj, task in gathered if task is not None], failures
+
+    def _conclude_computation(self) -> set[str]:
+        """Conclude for the objects that are still as they were."""
+        found = []
+        for kept, task, outcome in zip(self._targets, self._tasks, self._computation.outcome(), strict=True):
+            try:
+                found.append((kept.find(), task, outcome))
+            except Refused as error:
+                self._failures[kept.name] = error
+        return self._conclude(found, self._failures)
+
+    def _conclude(
+        self, outcomes: Iterable[tuple[bpy.types.Object, Task, Any | Exception]], failures: dict[str, Exception]
+    ) -> set[str]:
+        """Write and report.  failures: by object name, of objects that are not among the outcomes."""
+        solved: Solved = []
+        warnings: dict[str, list[Any]] = {}
+        for obj, task, outcome in outcomes:
+            if isinstance(outcome, Exception):
+                failures[obj.name] = outcome
+                findings.keep(obj, task.region, [outcome])
+            else:
+                solved.append((obj, task, outcome))
+                warnings[obj.name] = findings.relevant(task.region, outcome.warnings)
+                findings.keep(obj, task.region, warnings[obj.name])
+        if not solved and not failures:
+            self.report({"ERROR"}, self.nothing_selected)
+            return {"CANCELLED"}
+        try:
+            done = self.write(solved)
+        except object_errors() as error:
+            failures |= {obj.name: error for obj, _, _ in solved}
+            solved, done, warnings = [], [], {}
+        said = [f"{obj.name}: {text}" for (obj, _, _), text in zip(solved, done, strict=True)]
+        return conclude(self, said, warnings, failures)
+
+    # Progress
+
+    def _show_progress(self, context: bpy.types.Context) -> None:
+        percent = int(100 * self._computation.done)
+        if percent != self._percent:
+            self._percent = percent
+            context.window_manager.progress_update(percent)
+            context.workspace.status_text_set(f"{self.activity}... {percent} %, Esc to cancel")
+
+    def _end_progress(self, context: bpy.types.Context) -> None:
+        context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.progress_end()
+        context.workspace.status_text_set(None)

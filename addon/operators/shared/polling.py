@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""When operators can run."""
+
+import bpy
+
+from ...core import native
+from ...mesh.targets import target_objects
+
+
+def poll_edit_mesh(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
+    """True where a mesh is in edit mode."""
+    if context.mode != "EDIT_MESH":
+        operator.poll_message_set("Enter edit mode on a mesh first")
+        return False
+    return True
+
+
+def poll_meshes(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
+    """True where meshes are in edit mode, or selected in object mode."""
+    if not target_objects(context):
+        operator.poll_message_set("Enter edit mode on a mesh, or select mesh objects in object mode")
+        return False
+    return True
+
+
+def poll_computation(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
+    """True where there are meshes to work on and the computing library is available."""
+    if native.PROBLEM:
+        operator.poll_message_set(native.PROBLEM)
+        return False
+    return poll_meshes(operator, context)
+
+
+class EditMeshOperator:
+    """Mix-in: runs in edit mode."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return poll_edit_mesh(cls, context)
+
+
+class ComputingOperator:
+    """Mix-in: works on meshes with the computing library."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return poll_computation(cls, context)

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Properties that several operators have."""
+
+import bpy
+
+from ...core.identifiers import CONE_GROUP, SEAM_COST_GROUP
+
+Choices = dict[str, tuple[str | None, str, str]]
+"""Value for the library, label and description by identifier."""
+
+SEAMS: Choices = {
+    "FOLLOW": (
+        "follow",
+        "Follow",
+        "All marked seams are cut, others only where cones need it; both sides match if there are cones",
+    ),
+    "BOUNDARY": ("boundary", "Boundary", "Marked seams are open borders, as in Blender's own unwrap; holes stay holes"),
+    "IGNORE": ("ignore", "Ignore", "Marked seams do not influence where cuts run"),
+}
+CUTS: Choices = {
+    "FRONT": (None, "Hidden from Front", "Out of sight from the scene's front, and along creases and sharp edges"),
+    "VIEW": (None, "Hidden from View", "Out of sight from the 3D view, and along creases and sharp edges"),
+    "SHARP": (None, "Creases", "Along creases and sharp edges"),
+    "SHORTEST": (None, "Shortest", "The shortest way"),
+}
+DIRECTIONS: Choices = {
+    "AUTO": (None, "Automatic", "World Z where the UV map is for tiles, otherwise as the islands fit"),
+    "FIT": (None, "As It Fits", "Islands are rotated so that they take little room"),
+    "X": (None, "World X", "The texture's upward direction is the world's X axis where the surface lets it"),
+    "Y": (None, "World Y", "The texture's upward direction is the world's Y axis where the surface lets it"),
+    "Z": (None, "World Z", "The texture's upward direction is the world's Z axis: bricks lie level"),
+    "EDGE": (None, "Active Edge", "The texture's upward direction is that of the active edge, on the island beside it"),
+}
+BORDERS: Choices = {
+    "FREE": (
+        "free",
+        "Free",
+        "Borders take the shape with the least distortion; cones with an angle are corners there",
+    ),
+    "STRAIGHT": ("straight", "Straight", "Borders run straight from cone to cone: a cylinder becomes a strip"),
+}
+LATTICES: Choices = {
+    "SQUARE": (
+        "square",
+        "Squares (quarter turns)",
+        "For textures that look the same after a quarter turn, such as checkers, dots or even grain",
+    ),
+    "STRIPE": (
+        "stripe",
+        "Stripes (half turns)",
+        "For textures that look the same upside down, such as stripes or a plain weave",
+    ),
+    "TRIANGLE": (
+        "triangle",
+        "Triangles",
+        "For textures of equilateral triangles that look the same after a third of a turn",
+    ),
+    "HEXAGON": (
+        "hexagon",
+        "Hexagons",
+        "For textures that look the same after a sixth of a turn, such as honeycombs, tiled by equilateral triangles",
+    ),
+    "TRANSLATION": (
+        "translation",
+        "No Turns",
+        "For every tileable texture, but only on surfaces that allow it, such as a torus or a tube",
+    ),
+}
+
+
+def enum_items(choices: Choices) -> list[tuple[str, str, str]]:
+    """The choices as items of an enum property."""
+    return [(identifier, label, description) for identifier, (_, label, description) in choices.items()]
+
+
+class ConeGroupProperty:
+    """Mix-in: the vertex group whose members are the cones."""
+
+    vertex_group: bpy.props.StringProperty(
+        name="Cone Group",
+        description="Vertex group that holds the cones; a weight above 0.5 marks a vertex as a cone",
+        default=CONE_GROUP,
+    )
+
+    def draw_vertex_group(self, layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+        """The field, with a list of the active object's groups if there is an active object."""
+        if context.object is None:
+            layout.prop(self, "vertex_group")
+        else:
+            layout.prop_search(self, "vertex_group", context.object, "vertex_groups")
+
+
+class SeamsProperty:
+    """Mix-in: what marked seams mean."""
+
+    seams: bpy.props.EnumProperty(
+        name="Seams", description="What edges marked as seams mean for the cuts", items=enum_items(SEAMS)
+    )
+
+
+class CutsProperty:
+    """Mix-in: where cuts run."""
+
+    cuts: bpy.props.EnumProperty(
+        name="Cuts",
+        description="Where cuts run; the faces keep their shapes in the UV map. Weights in the vertex group "
+        f'"{SEAM_COST_GROUP}" keep cuts away where they are above 0.5, and draw them near where they are below',
+        items=enum_items(CUTS),
+    )
+
+
+class DirectionProperty:
+    """Mix-in: where the texture runs."""
+
+    direction: bpy.props.EnumProperty(
+        name="Texture Up",
+        description="What the texture's upward direction follows; islands are rotated for it, not deformed",
+        items=enum_items(DIRECTIONS),
+    )
+
+
+class BorderProperty:
+    """Mix-in: the shape of the mesh's own borders."""
+
+    border: bpy.props.EnumProperty(
+        name="Borders", description="The shape of the mesh's own borders in the UV map", items=enum_items(BORDERS)
+    )
+
+
+class LatticeProperty:
+    """Mix-in: the pattern of the texture."""
+
+    lattice: bpy.props.EnumProperty(
+        name="Pattern", description="The turns that leave the texture unchanged", items=enum_items(LATTICES)
+    )

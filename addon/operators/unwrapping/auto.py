@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Auto Unwrap."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ...core import identifiers, native
+from ...core.region import Region
+from ...jobs.directions import DirectionChoice
+from ...jobs.maps import final_layouts, packing_of_preset, write_map
+from ...jobs.placing import mark_placed
+from ...jobs.summaries import unwrap_summary
+from ...jobs.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_all, unwrap_task
+from ...mesh.angles import require_attributes
+from ...mesh.region_read import Groups
+from ..shared.background import BackgroundOperator, Solved
+from ..shared.properties import (
+    SEAMS,
+    Choices,
+    ConeGroupProperty,
+    CutsProperty,
+    DirectionProperty,
+    SeamsProperty,
+    enum_items,
+)
+from .cut_choices import chosen_cuts
+from .direction_choices import chosen_direction
+from .seamless import TEXTURE_SIZES, TileSizeProperties
+from .sections import section
+
+if TYPE_CHECKING:
+    import lsgp
+
+    from ...jobs.solving import Progress
+
+PRESETS: Choices = {
+    "PAINT": ("paint", "Paint", "For texture painting: even sizes, few islands, nothing overlaps"),
+    "TILE": ("tile", "Tile", "For tileable textures: squares match across every cut, so that no seam shows"),
+    "BAKE": (
+        "bake",
+        "Bake",
+        "For baking: even sizes, nothing overlaps, islands fill the square, and the margin is exact",
+    ),
+}
+
+
+class UV_OT_cone_auto_unwrap(
+    ConeGroupProperty,
+    SeamsProperty,
+    CutsProperty,
+    DirectionProperty,
+    TileSizeProperties,
+    BackgroundOperator,
+    bpy.types.Operator,
+):
+    """Auto Unwrap."""
+
+    bl_idname = identifiers.AUTO_UNWRAP
+    bl_label = "Auto Unwrap"
+    bl_description = (
+        "Unwrap ready for use: marked cones and seams are kept, what is missing is placed, nothing overlaps, and the "
+        "islands of all objects are packed together. Works on the selected faces in edit mode, on all faces of the "
+        "selected objects in object mode"
+    )
+    bl_options = {"REGISTER", "UNDO", "PRESET"}
+    activity = "Unwrapping"
+    nothing_selected = "No face is selected; select the faces to unwrap"
+
+    preset: bpy.props.EnumProperty(name="Preset", description="What the UV map is for", items=enum_items(PRESETS))
+    texture_size: bpy.props.EnumProperty(
+        name="Texture Size", description="Side of the texture in texels", items=TEXTURE_SIZES, default="1024"
+    )
+    margin: bpy.props.IntProperty(
+        name="Margin",
+        description="Texels to keep free around each island in a texture of this size; about as many for Paint, whose "
+        "islands are packed faster",
+        default=4,
+        min=0,
+        soft_max=64,
+        subtype="PIXEL",
+    )
+    use_subsurf_data: bpy.props.BoolProperty(
+        name="Use Subdivision Surface",
+        description="Map UVs taking vertex position after Subdivision Surface modifier has been applied",
+        default=True,
+    )
+    creases: bpy.props.BoolProperty(
+        name="Creases as Borders",
+        description="Let hard surfaces end at their creases and at edges marked sharp, where that takes stretch out; "
+        "Paint does so only where many cones would be needed otherwise, Tile never. Parts with marked cones or seams "
+        "are left alone",
+        default=True,
+    )
+    compact: bpy.props.BoolProperty(
+        name="Compact Islands",
+        description="Cut islands further that would leave much of the square empty, such as long strips, rings and "
+        "those with arms: Bake wherever that is worth it, Paint only where a short cut fills much of the square and no "
+        "seams are marked",
+        default=True,
+    )
+    mark: bpy.props.BoolProperty(
+        name="Mark Cones",
+        description="Mark the cones that are placed, so that they can be edited and are kept by the next run",
+        default=False,
+    )
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.row().prop(self, "preset", expand=True)
+        if self.preset == "TILE":
+            self.draw_tile_size(layout)
+        else:
+            layout.prop(self, "texture_size")
+            layout.prop(self, "margin")
+        layout.prop(self, "direction")
+        body = section(layout, "cone_auto_unwrap_cuts", "Cuts and Cones")
+        if body is not None:
+            body.prop(self, "cuts")
+            body.prop(self, "seams")
+            if self.preset != "TILE":
+                body.prop(self, "creases")
+                body.prop(self, "compact")
+            body.prop(self, "use_subsurf_data")
+            body.prop(self, "mark")
+            self.draw_vertex_group(body, context)
+
+    def plan(self) -> tuple[Groups, Callable[[bpy.types.Object, Region], UnwrapTask]]:
+        options = self._options()
+        settings = UnwrapSettings(
+            options=options,
+            cone_group=self.vertex_group,
+            weight_group=None,
+            weight_factor=1.0,
+            # Pins and the shape of an image would tear a seamless layout.
+            use_pins=options.seamless is None,
+            keep_placement=False,
+            correct_aspect=options.seamless is None,
+            cuts=chosen_cuts(self.cuts),
+            direction=self._direction(),
+        )
+
+        def make_task(obj: bpy.types.Object, region: Region) -> UnwrapTask:
+            if self.mark:
+                require_attributes(obj.data)
+            creases_of = PRESETS[self.preset][0] if self.creases else None
+            return replace(unwrap_task(region, settings), completes=True, creases_of=creases_of)
+
+        return Groups(settings.cone_group), make_task
+
+    @staticmethod
+    def solve(tasks: list[UnwrapTask], progress: Progress | None = None) -> list[Unwrapped | Exception]:
+        return unwrap_all(tasks, progress)
+
+    def write(self, solved: Solved) -> list[str]:
+        margin = self.margin / int(self.texture_size)
+        by_cells, turned = self.preset == "TILE", not self._direction().is_any
+        pack = packing_of_preset(PRESETS[self.preset][0], margin, by_cells=by_cells, turned=turned)
+        layouts = final_layouts([unwrapped for _, _, unwrapped in solved], pack)
+        for (obj, task, unwrapped), corner_uv in zip(solved, layouts, strict=True):
+            write_map(obj, unwrapped, corner_uv)
+            if self.mark:
+                mark_placed(obj, self.vertex_group, task.cones, unwrapped.result)
+        return [unwrap_summary(unwrapped) for _, _, unwrapped in solved]
+
+    def _direction(self) -> DirectionChoice:
+        return chosen_direction(self.direction, tiles=self.preset == "TILE")
+
+    def _options(self) -> lsgp.Options:
+        """Raises InputError."""
+        options = native.lsgp.preset_options(PRESETS[self.preset][0])
+        options = replace(options, seams=SEAMS[self.seams][0], compact=options.compact if self.compact else "off")
+        if options.seamless is not None:
+            options = replace(options, seamless=replace(options.seamless, **self.tile_size_options()))
+        return options

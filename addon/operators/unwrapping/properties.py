@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The properties of Unwrap from Cones that belong to no other operator, and what is computed from all of them."""
+
+import bpy
+
+from ...core import native
+from ...jobs.maps import PackSettings
+from ...jobs.unwrapping import UnwrapSettings
+from ..shared.properties import BORDERS, SEAMS, Choices, DirectionProperty, enum_items
+from .cut_choices import chosen_cuts
+from .direction_choices import chosen_direction
+from .low_stretch import MODES
+from .seamless import SeamlessProperties
+
+# "Automatic" leaves the rule to the library.
+PRESCRIPTIONS: Choices = {
+    "AUTOMATIC": (None, "Automatic", "Keep the angles given to cones; choose the others for the least distortion"),
+    "LEAST_DISTORTION": ("least-distortion", "Least Distortion", "Choose all angles for the least distortion"),
+    "HARMONIC": ("harmonic", "Harmonic", "Choose all angles by how much curvature is nearest to each cone"),
+    "STRAIGHTNESS": ("straightness", "Straight Seams", "Choose all angles so that seams become straight lines"),
+}
+UNFOLDINGS: Choices = {
+    "POISSON": ("poisson", "Direct", "One linear solve; robust on every surface"),
+    "SPECTRAL": ("spectral", "Spectral", "The least conformal energy by an eigenvalue solve; slower"),
+}
+OVERLAPS: Choices = {
+    "KEEP": ("keep", "Keep", "Leave islands that overlap themselves as they are; where they do is reported"),
+    "SPLIT": (
+        "split",
+        "Split",
+        "Cut islands further until none overlaps itself; both sides of every cut still match",
+    ),
+}
+MARGIN_METHODS = (
+    ("SCALED", "Scaled", "Use scale of existing UVs to multiply margin"),
+    ("ADD", "Add", "Just add the margin, ignoring any UV scale"),
+    ("FRACTION", "Fraction", "Specify a precise fraction of final UV output"),
+)
+
+
+class UnwrapProperties(DirectionProperty):
+    """Mix-in: how to unwrap and where to put the islands."""
+
+    prescription: bpy.props.EnumProperty(
+        name="Cone Angles", description="How the angle of each cone is chosen", items=enum_items(PRESCRIPTIONS)
+    )
+    unfold: bpy.props.EnumProperty(
+        name="Unfold", description="How the surface is flattened", items=enum_items(UNFOLDINGS)
+    )
+    repair: bpy.props.BoolProperty(
+        name="Repair Flips",
+        description="Turn flipped faces over, and correct angles that are off by a full turn",
+        default=True,
+    )
+    overlaps: bpy.props.EnumProperty(
+        name="Overlaps",
+        description="What to do with islands that overlap themselves",
+        items=enum_items(OVERLAPS),
+        default="SPLIT",
+    )
+    use_subsurf_data: bpy.props.BoolProperty(
+        name="Use Subdivision Surface",
+        description="Map UVs taking vertex position after Subdivision Surface modifier has been applied",
+        default=False,
+    )
+    use_pins: bpy.props.BoolProperty(
+        name="Use Pins",
+        description="Pinned UVs of the active layer stay where they are; two or more determine the place, size and "
+        "rotation of their island",
+        default=True,
+    )
+    keep_placement: bpy.props.BoolProperty(
+        name="Keep Placement",
+        description="Move, rotate and scale each island to where its faces were, instead of into the UV square; "
+        "in a seamless layout islands are only moved by whole tiles",
+        default=False,
+    )
+    correct_aspect: bpy.props.BoolProperty(
+        name="Correct Aspect",
+        description="Map UVs taking aspect ratio of the image associated with the material into account; "
+        "not in a seamless layout, whose tiles would no longer match",
+        default=True,
+    )
+    pack: bpy.props.BoolProperty(
+        name="Pack Islands",
+        description="Pack the islands of all objects together with Blender's packer; islands with pins stay. "
+        "In a seamless layout islands are only moved side by side by whole tiles",
+        default=True,
+    )
+    margin_method: bpy.props.EnumProperty(name="Margin Method", items=MARGIN_METHODS)
+    margin: bpy.props.FloatProperty(
+        name="Margin", description="Space between islands", default=0.001, min=0.0, max=1.0, precision=3
+    )
+
+    def draw_placement(self, layout: bpy.types.UILayout) -> None:
+        """The properties that place islands, as far as they have an effect."""
+        layout.prop(self, "direction")
+        layout.prop(self, "use_pins")
+        if not self.seamless:
+            layout.prop(self, "correct_aspect")
+        layout.prop(self, "keep_placement")
+        if self.keep_placement:
+            return
+        layout.prop(self, "pack")
+        if self.pack and not self.seamless:
+            layout.prop(self, "margin_method")
+            layout.prop(self, "margin")
+
+    def pack_settings(self) -> PackSettings:
+        pack = self.pack and not self.keep_placement
+        turned = not chosen_direction(self.direction, tiles=self.seamless).is_any
+        return PackSettings(pack, self.seamless, self.margin_method, self.margin, turned)
+
+
+def unwrap_settings(chosen: bpy.types.OperatorProperties) -> UnwrapSettings:
+    """What these properties of the operator, present or last used, ask for.  Raises InputError."""
+    options = native.lsgp.Options(
+        prescription=PRESCRIPTIONS[chosen.prescription][0],
+        unfold=UNFOLDINGS[chosen.unfold][0],
+        seams=SEAMS[chosen.seams][0],
+        border=BORDERS[chosen.border][0],
+        seamless=SeamlessProperties.seamless_options(chosen),
+        mode=MODES[chosen.mode][0],
+        stretch=chosen.stretch,
+        repair=chosen.repair,
+        overlaps=OVERLAPS[chosen.overlaps][0],
+    )
+    return UnwrapSettings(
+        options=options,
+        cone_group=chosen.vertex_group,
+        weight_group=chosen.weight_group if chosen.use_weights else None,
+        weight_factor=chosen.weight_factor,
+        use_pins=chosen.use_pins,
+        keep_placement=chosen.keep_placement,
+        correct_aspect=chosen.correct_aspect and not chosen.seamless,
+        cuts=chosen_cuts(chosen.cuts),
+        direction=chosen_direction(chosen.direction, tiles=chosen.seamless),
+        subdivided=chosen.use_subsurf_data,
+    )

@@ -1,0 +1,419 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sessions of Edit Cones: picking, editing, what follows, and putting all of it back."""
+
+import math
+import time
+from dataclasses import replace
+
+import bpy
+import numpy as np
+import pytest
+from installed import addon
+from scenes import (
+    ANGLES,
+    UV_ROUNDING,
+    UvMap,
+    add_ball,
+    add_cone_cube,
+    add_cube,
+    add_grid,
+    add_sphere,
+    changed,
+    corners,
+    edit,
+    mark,
+    marked,
+    plain_copy,
+    select_elements,
+    selected,
+    snapshot,
+    uv_key,
+)
+
+cone_session, unwrapping, content = addon.jobs.cone_session, addon.jobs.unwrapping, addon.overlay.content
+following = addon.jobs.following
+reports, screens, typed_number = addon.mesh.reports, addon.core.screen, addon.operators.cones.typed_number
+lsgp = addon.core.native.lsgp
+
+SIZE = 400
+
+
+def begin(obj, **options):
+    """A session on an object, which is brought into edit mode."""
+    if obj.mode != "EDIT":
+        edit(obj, select="DESELECT")
+    cuts = addon.jobs.cuts.CutChoice()
+    settings = unwrapping.UnwrapSettings(lsgp.Options(**options), "uv_cones", None, 0.0, True, False, True, cuts)
+    return cone_session.ConeSession(obj, settings)
+
+
+def follow(session):
+    step = session.draft()
+    unwrapped = step.solve()
+    session.show(step, unwrapped)
+    return unwrapped
+
+
+def from_above():
+    """A parallel view along -z of what lies within 2 of the origin in x and y."""
+    return screens.Screen(np.diag([0.5, 0.5, -0.1, 1.0]), SIZE, SIZE)
+
+
+def pixel(x, y):
+    return (x / 2 + 1) * SIZE / 2, (y / 2 + 1) * SIZE / 2
+
+
+def vertex_near(obj, *place):
+    return min(obj.data.vertices, key=lambda v: (v.co - type(v.co)(place)).length).index
+
+
+def stored_angle(obj, vertex):
+    mesh = plain_copy(obj)
+    attribute = mesh.attributes.get(ANGLES)
+    angle = 0.0 if attribute is None else attribute.data[vertex].value
+    bpy.data.meshes.remove(mesh)
+    return angle
+
+
+def test_pixels_and_rays_are_inverse_in_perspective():
+    projection = np.array([(1.5, 0, 0, 0), (0, 2, 0, 0), (0, 0, -1.02, -0.2), (0, 0, -1, 0)])
+    view = np.eye(4)
+    view[:3, 3] = 0.3, -0.2, -4
+    screen = screens.Screen(projection @ view, 640, 480)
+    place = np.array([0.4, 0.7, -0.5])
+    x, y, _ = screen.pixels(place)[0]
+    origin, direction = screen.ray(x, y)
+    assert np.linalg.norm(np.cross(place - origin, direction)) < 1e-9
+    assert (place - origin) @ direction > 0
+    assert np.isnan(screen.pixels([0, 0, 5.0])).all()
+
+
+def test_the_vertex_under_the_cursor_is_the_nearest_of_the_face_there():
+    cube = add_cone_cube()
+    session = begin(cube)
+    expected = vertex_near(cube, 0.5, -0.5, 1.0)
+    assert session.vertex_at(from_above(), *pixel(0.5, -0.5)) == expected
+    assert session.vertex_at(from_above(), *pixel(0.3, -0.68)) == expected
+    assert session.vertex_at(from_above(), *pixel(1.5, 0.0)) is None
+    session.restore()
+
+
+def test_the_cone_under_the_cursor_is_seen_and_near():
+    cube = add_cone_cube()
+    mark(cube, [vertex_near(cube, 0.0, 0.0, -1.0)])
+    session = begin(cube)
+    x, y = pixel(1.0, 1.0)
+    # Right behind it is another one.
+    assert session.cone_at(from_above(), x + 5, y, 10) == vertex_near(cube, 1.0, 1.0, 1.0)
+    assert session.cone_at(from_above(), x + 15, y, 10) is None
+    assert session.cone_at(from_above(), *pixel(0.0, 0.0), 10) is None
+    session.restore()
+
+
+def test_hidden_faces_are_not_picked():
+    cube = add_cone_cube()
+    edit(cube)
+    bpy.ops.mesh.hide(unselected=False)
+    session = begin(cube)
+    assert session.vertex_at(from_above(), *pixel(0.5, 0.5)) is None
+    session.restore()
+
+
+def test_the_map_follows_a_cone_that_is_moved():
+    ball = add_ball(cuts=5)
+    session = begin(ball)
+    start = marked(ball)[0]
+    session.cones.add(start)
+    assert not session.cones.changed
+    target = neighbor(ball, start)
+    assert session.cones.move(target) and session.cones.vertices == sorted({*marked(ball)} - {start} | {target})
+    follow(session)
+    uv = UvMap(ball)
+    assert abs(uv.angle_sum(start) - 2 * math.pi) < 1e-3
+    assert abs(uv.angle_sum(target) - session.angle(target)) < 1e-3
+    assert abs(session.angle(target) - 2 * math.pi) > 0.1
+    assert uv.sister_difference() < UV_ROUNDING
+    # Only the map: the cones are stored at the end.
+    assert start in marked(ball) and target not in marked(ball)
+    session.restore()
+
+
+def neighbor(obj, vertex):
+    edge = next(edge for edge in obj.data.edges if vertex in edge.vertices[:])
+    return next(v for v in edge.vertices if v != vertex)
+
+
+def test_a_cone_does_not_move_onto_another():
+    ball = add_ball()
+    session = begin(ball)
+    first, second, *_ = session.cones.vertices
+    session.cones.add(first)
+    assert not session.cones.move(second) and not session.cones.changed
+    session.restore()
+
+
+@pytest.mark.parametrize("has_uv", [True, False])
+def test_putting_back_leaves_no_trace(has_uv):
+    ball = add_ball()
+    if not has_uv:
+        ball.data.uv_layers.remove(ball.data.uv_layers[0])
+    edit(ball, select="DESELECT")
+    before = snapshot(ball)
+    session = begin(ball)
+    session.cones.add(20)
+    follow(session)
+    session.cones.set_angle(math.pi)
+    follow(session)
+    session.cones.remove(session.cones.vertices[0])
+    follow(session)
+    session.restore()
+    assert changed(before, snapshot(ball)) == set()
+
+
+def test_finishing_changes_the_map_the_cones_and_their_angles_alone():
+    ball = add_ball()
+    bpy.ops.uv.cone_unwrap()
+    edit(ball, select="DESELECT")
+    before, start = snapshot(ball), marked(ball)
+    session = begin(ball)
+    session.cones.add(start[0])
+    session.cones.move(neighbor(ball, start[0]))
+    session.cones.set_angle(math.radians(300))
+    session.finish()
+    expected = sorted({*start[1:], session.cones.active})
+    assert marked(ball) == expected and selected(ball) == []
+    assert stored_angle(ball, session.cones.active) == np.float32(math.radians(300))
+    assert abs(UvMap(ball).angle_sum(session.cones.active) - math.radians(300)) < 1e-3
+    names = {f"attribute {ANGLES} POINT FLOAT", f"attribute {ANGLES}_kind POINT INT"}
+    assert changed(before, snapshot(ball)) == {uv_key(), "weights"} | names
+    report = reports.find(ball.data)
+    assert sorted(report.cones) == expected
+
+
+def test_the_finished_map_is_that_of_the_operator():
+    ball = add_ball()
+    bpy.ops.uv.cone_unwrap()
+    session = begin(ball)
+    session.cones.remove(session.cones.vertices[0])
+    session.finish()
+    edited = UvMap(ball)
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.uv.cone_unwrap()
+    direct = UvMap(ball)
+    assert edited.split_edges() == direct.split_edges()
+    assert abs(edited.l2_stretch() - direct.l2_stretch()) < 1e-4
+
+
+def test_the_stretch_told_is_that_of_the_map():
+    ball = add_ball()
+    session = begin(ball)
+    assert session.stretch is None
+    session.cones.add(session.cones.vertices[0])
+    session.cones.set_angle(math.pi)
+    follow(session)
+    sharp = session.stretch
+    assert abs(sharp - UvMap(ball).l2_stretch()) < 1e-4
+    session.cones.set_angle(None)
+    follow(session)
+    assert session.stretch < sharp
+    session.restore()
+
+
+def test_islands_stay_where_they_were():
+    ball = add_ball()
+    bpy.ops.uv.cone_unwrap()
+    uv = UvMap(ball).uv
+    moved = 0.5 * uv @ np.array([(0.6, 0.8), (-0.8, 0.6)]) + (2, 3)
+    ball.data.uv_layers.active.uv.foreach_set("vector", moved.astype(np.float32).ravel())
+    # The report is on the map that was; place the moved one by an unwrap of ours.
+    bpy.ops.uv.cone_unwrap(keep_placement=True)
+    before = UvMap(ball).uv
+    session = begin(ball)
+    first = session.cones.vertices[0]
+    session.cones.add(first)
+    session.cones.set_angle(session.angle(first) + math.radians(5))
+    follow(session)
+    after = UvMap(ball).uv
+    assert np.abs(after - before).max() < 0.2 * np.ptp(before, axis=0).max()
+    assert np.abs(after.mean(axis=0) - before.mean(axis=0)).max() < 0.02 * np.ptp(before, axis=0).max()
+    session.restore()
+
+
+def test_a_changed_angle_takes_no_factorization():
+    ball = add_ball(cuts=7)
+    session = begin(ball, factorization="cut")
+    session.cones.add(session.cones.vertices[0])
+    session.cones.set_angle(math.radians(280))
+    assert follow(session).result.factorizations > 0
+    session.turn_angle(math.radians(15), 1)
+    assert session.angle(session.cones.active) == pytest.approx(math.radians(300))
+    assert follow(session).result.factorizations == 0
+    session.restore()
+
+
+def test_angles_turn_by_multiples_and_return_to_automatic():
+    cube = add_cone_cube()
+    session = begin(cube)
+    session.cones.add(session.cones.vertices[0])
+    session.cones.set_angle(None)
+    assert session.cones.is_automatic(session.cones.active)
+    follow(session)
+    assert session.angle(session.cones.active) == pytest.approx(1.5 * math.pi, abs=1e-3)
+    session.turn_angle(math.radians(15), -1)
+    assert session.angle(session.cones.active) == pytest.approx(math.radians(255))
+    session.turn_angle(math.radians(15), -100)
+    assert session.angle(session.cones.active) == pytest.approx(math.radians(15))
+    session.restore()
+
+
+def test_what_cannot_be_unwrapped_leaves_the_map_and_keeps_the_cones():
+    sphere = add_sphere()
+    before = snapshot(sphere)
+    session = begin(sphere)
+    session.cones.add(30)
+    with pytest.raises(lsgp.LsgpError):
+        follow(session)
+    with pytest.raises(lsgp.LsgpError):
+        session.finish()
+    assert marked(sphere) == [30]
+    assert uv_key() not in changed(before, snapshot(sphere))
+
+
+def test_parts_whose_cones_are_not_edited_keep_their_map():
+    cube, other = add_cone_cube("Cube"), add_cube("Other")
+    mark(other, corners(other))
+    other.location.x = 5
+    bpy.ops.object.select_all(action="SELECT")
+    bpy.context.view_layer.objects.active = cube
+    bpy.ops.object.join()
+    before = UvMap(cube).uv
+    session = begin(cube)
+    first = session.cones.vertices[0]
+    session.cones.remove(first)
+    follow(session)
+    uv = UvMap(cube)
+    same = (uv.uv == before).all(axis=1)
+    near = uv.positions[uv.vertex][:, 0] < 2
+    assert same[~near].all() and not same[near].any()
+    session.restore()
+
+
+def test_found_angles_are_automatic_once_the_cones_of_their_part_are_others():
+    ball = add_ball()
+    bpy.ops.mesh.cone_place(automatic=False, count=8)
+    session = begin(ball)
+    first, second, *_ = session.cones.vertices
+    found = session.cones.current().angles
+    assert None not in found
+    session.cones.remove(first)
+    assert session.cones.current().angles == [None] * 7
+    session.finish()
+    assert stored_angle(ball, second) == 0.0
+
+
+def test_open_borders_need_no_cone():
+    grid = add_grid()
+    session = begin(grid)
+    middle = vertex_near(grid, 0.0, 0.0, 0.0)
+    session.cones.add(middle)
+    session.cones.set_angle(math.radians(330))
+    session.finish()
+    assert abs(UvMap(grid).angle_sum(middle) - math.radians(330)) < 1e-3
+
+
+def test_numbers_are_typed_key_by_key():
+    typed = typed_number.TypedNumber()
+    for key, character in (("TWO", "2"), ("SEVEN", "7"), ("COMMA", ","), ("FIVE", "5"), ("PERIOD", ".")):
+        typed.press(key, character)
+    assert typed.text == "27.5" and typed.value == 27.5
+    assert typed.press("BACK_SPACE", "") and typed.value == 27.0
+    assert not typed.press("X", "x")
+    typed.clear()
+    assert typed.value is None
+
+
+@pytest.mark.parametrize("build", [add_ball, add_grid])
+def test_a_session_shows_what_the_overlay_shows_of_the_same_map(build):
+    obj = build()
+    mark(obj, marked(obj) or [0, 24])
+    bpy.ops.uv.cone_unwrap()
+    edit(obj, select="DESELECT")
+    hidden = [face.index for face in obj.data.polygons][::16]
+    select_elements(obj, "faces", hidden)
+    bpy.ops.mesh.hide()
+    session = begin(obj)
+    for _ in range(2):
+        report = session.report()
+        report = replace(report, flipped=[1, 2], overlapping=[3]) if report else None
+        expected = content.build_content(obj, report, marked=session.cones.current())
+        found = content.build_content(obj, report, session.mesh, session.cones.current())
+        assert found.cones == expected.cones
+        for name in ("cone_places", "cut_lines", "cut_paths", "cut_uv", "flipped", "overlapping"):
+            np.testing.assert_allclose(getattr(found, name), getattr(expected, name), atol=1e-6)
+        session.cones.add(vertex_near(obj, 0.4, 0.3, 0.5))
+        follow(session)
+    assert len(found.cut_lines) and len(found.cut_lines) == len(content.session_content(obj, session).cut_lines)
+
+
+def until_idle(follower):
+    """How often something was shown, or failed, until the map is up to date."""
+    shown = 0
+    while follower.outdated or follower.is_busy:
+        shown += follower.follow()
+    return shown
+
+
+def test_the_map_follows_to_the_newest_state():
+    ball = add_ball(cuts=5)
+    session = begin(ball)
+    follower = following.Follower(session)
+    assert not follower.follow() and not follower.is_busy
+    session.cones.add(session.cones.vertices[0])
+    for degrees in (200, 220, 240):
+        session.cones.set_angle(math.radians(degrees))
+        follower.outdated = True
+        follower.follow()
+    until_idle(follower)
+    followed = UvMap(ball).uv
+    assert UvMap(ball).angle_sum(session.cones.active) == pytest.approx(math.radians(240), abs=1e-3)
+    follow(session)
+    np.testing.assert_array_equal(UvMap(ball).uv, followed)
+    session.restore()
+
+
+def test_a_step_that_fails_is_told_until_one_succeeds():
+    session = begin(add_cone_cube())
+    follower = following.Follower(session)
+    first = session.cones.vertices[0]
+    session.cones.add(first)
+    for cone in session.cones.vertices[1:]:
+        session.cones.remove(cone)
+    follower.outdated = True
+    assert until_idle(follower) == 1
+    assert "Mark more cones" in follower.problem
+    for cone in corners(session._obj)[1:]:
+        session.cones.add(cone)
+    follower.outdated = True
+    assert until_idle(follower) == 1
+    assert follower.problem == ""
+    session.restore()
+
+
+def test_stopping_leaves_no_computation_and_shows_nothing(monkeypatch):
+    def endless(_step, progress):
+        while progress(0.5):
+            time.sleep(0.01)
+        raise lsgp.Cancelled("CANCELLED", "Stopped.")
+
+    monkeypatch.setattr(cone_session.Step, "solve", endless)
+    ball = add_ball()
+    session = begin(ball)
+    follower = following.Follower(session)
+    before = UvMap(ball).uv
+    session.cones.remove(session.cones.vertices[0])
+    follower.outdated = True
+    assert not follower.follow() and follower.is_busy
+    follower.stop()
+    assert not follower.is_busy and not follower.follow()
+    np.testing.assert_array_equal(UvMap(ball).uv, before)
+    session.restore()

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The same input gives the same bytes, in this process and in others; the same surface gives the same map."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import lsgp
+import meshes
+import numpy as np
+import oracle
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from map_checks import digest, pairs, surface, unwrap
+
+SURFACES = {
+    "bumpy sphere": meshes.bumpy_sphere(3),
+    "cube, many equal paths": meshes.cube(4),
+    "parts": meshes.merge([meshes.flower(2), meshes.disk_with_holes(12, 2), meshes.cylinder(8, 3)]),
+}
+
+
+@pytest.mark.parametrize("unfold", ["poisson", "spectral"])
+@pytest.mark.parametrize("name", SURFACES)
+def test_twice_the_same_bytes(name: str, unfold: str) -> None:
+    one, two = unwrap(SURFACES[name], unfold=unfold), unwrap(SURFACES[name], unfold=unfold)
+    assert digest(one) == digest(two)
+
+
+@pytest.mark.parametrize("threads", ["1", "3"])
+def test_another_process_with_other_threads_gives_the_same_bytes(threads: str) -> None:
+    script = (
+        "import meshes, test_determinism as t\n"
+        "from map_checks import digest, unwrap\n"
+        "for mesh in t.SURFACES.values(): print(digest(unwrap(mesh)), digest(unwrap(mesh, unfold='spectral')))\n"
+    )
+    here = Path(__file__).resolve().parent
+    environment = os.environ | {
+        "OMP_NUM_THREADS": threads,
+        "PYTHONHASHSEED": threads,
+        "PYTHONPATH": os.pathsep.join([str(here), str(here.parents[1]), *filter(None, [os.environ.get("PYTHONPATH")])]),
+    }
+    done = subprocess.run(
+        [sys.executable, "-c", script], env=environment, capture_output=True, text=True, timeout=120, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    expected = [f"{digest(unwrap(m))} {digest(unwrap(m, unfold='spectral'))}" for m in SURFACES.values()]
+    assert done.stdout.split("\n")[:-1] == expected
+
+
+@settings(max_examples=6)
+@given(seed=st.integers(0, 2**32 - 1), exponent=st.floats(-6, 6))
+def test_motion_and_scale_change_nothing(seed: int, exponent: float) -> None:
+    mesh = meshes.bumpy_sphere(2)
+    moved = meshes.transform(mesh, seed, 10**exponent)
+    one, two = unwrap(mesh), unwrap(moved)
+    assert pairs(one.cut_edges) == pairs(two.cut_edges)
+    assert two.cone_angles == pytest.approx(one.cone_angles, abs=1e-7)
+    assert two.log_scale == pytest.approx(one.log_scale, abs=1e-7)
+    assert oracle.metric_gap(one.corner_uv, two.corner_uv) <= 1e-7
+
+
+@settings(max_examples=6)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_numbering_changes_nothing(seed: int) -> None:
+    mesh = meshes.bumpy_sphere(2)
+    shuffled, new_of_old, old_corner = meshes.renumber(mesh, seed)
+    one, two = unwrap(mesh), unwrap(shuffled)
+    assert {tuple(sorted(edge)) for edge in new_of_old[one.cut_edges].tolist()} == pairs(two.cut_edges)
+    order = np.argsort(two.cones)[np.argsort(np.argsort(new_of_old[one.cones]))]
+    assert two.cone_angles[order] == pytest.approx(one.cone_angles, abs=1e-7)
+    there = one.corner_uv.reshape(-1, 2)[old_corner].reshape(-1, 3, 2)
+    assert oracle.metric_gap(there, two.corner_uv) <= 1e-7
+
+
+@settings(max_examples=4)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_order_of_cones_changes_nothing(seed: int) -> None:
+    mesh = meshes.bumpy_sphere(2)
+    order = np.random.default_rng(seed).permutation(len(mesh.cones))
+    one = unwrap(mesh)
+    two = lsgp.parameterize(surface(mesh), mesh.cones[order])
+    angles = [dict(zip(r.cones.tolist(), r.cone_angles.tolist(), strict=True)) for r in (one, two)]
+    assert angles[1] == pytest.approx(angles[0], abs=1e-9)
+    assert oracle.metric_gap(one.corner_uv, two.corner_uv) <= 1e-9

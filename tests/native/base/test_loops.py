@@ -1,0 +1,317 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every loop ends, and long ones have cancellation points: those whose head does not tell the number of rounds are
+listed here with what bounds it and where they can be cancelled. A new one fails until it has been thought about."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from loops import heads, is_counted, open_loops
+
+SOURCES = Path(__file__).parents[3] / "native" / "src"
+
+# Where they can be cancelled.
+SHORT = "not: linear in the surface at most, or small"
+OWN = "a checkpoint or the monitor in each round"
+WITHIN = "by what a round does: factorizations, solves, flows"
+
+AROUND_A_VERTEX = "the triangles around a vertex, a cycle or ended by a border"
+LINKED = "a linked list or the way up in a forest, without cycles by construction"
+NEAREST = "every queue entry lowered a distance; as many as edges in the usual case"
+ONCE_EACH = "each element is put in once, when it is marked"
+SIDES = "the sides of a closed border, each once"
+
+# file: [(head, what bounds the rounds, where the caller is let in)]
+REVIEWED = {
+    "api/assembly.cpp": [("for (auto side = sides.begin(); side != sides.end();)", "passes an edge each time", SHORT)],
+    "api/measure_distortion.cpp": [
+        ("for (std::size_t i = 0, end = 0; i < sides.size(); i = end)", "passes a side each time", SHORT),
+        ("for (end = i + 1; same_edge(i, end);)", "passes a side each time", SHORT),
+    ],
+    "base/memory.cpp": [("while (!word.empty() && file >> read && read != word)", "words of a short file", SHORT)],
+    "base/thread_team.cpp": [
+        ("while (forest.left > 0 && !failure_)", "tasks, each once, or waits for those of other threads", WITHIN),
+        ("while (forest.running > 0)", "waits for tasks of other threads, which end", SHORT),
+        ("while (loop.next < loop.count && !failure_)", "rounds, each once", WITHIN),
+        ("while (loop.running > 0)", "waits for rounds of other threads, which end", SHORT),
+        ("while (!is_over_)", "waits for work until the call that started the thread ends", WITHIN),
+    ],
+    "base/union_find.hpp": [("while (parent_[i] != i)", LINKED, SHORT)],
+    "cut/cone_triangulation.cpp": [
+        (
+            "while (i != a.translations.end() || j != b.translations.end())",
+            "each round moves on one of two ends",
+            SHORT,
+        ),
+        ("for (const Index first = h;;)", AROUND_A_VERTEX, SHORT),
+        ("for (int pass = 1; !left.empty(); ++pass)", "a pass that removes no vertex ends it", OWN),
+        ("while (!suspects_.empty())", "a budget of flips", OWN),
+        ("while (h != outgoing_[v])", AROUND_A_VERTEX, SHORT),
+        ("while (h != outgoing_[v])", AROUND_A_VERTEX, SHORT),
+        ("for (int degree;;)", "each flip takes an edge away from the vertex", SHORT),
+    ],
+    "cut/cut_graph.cpp": [
+        (
+            "for (Index h = forest.reached[end].by; h != none && !is_cut[h]; h = forest.reached[mesh.origin(h)].by)",
+            LINKED,
+            SHORT,
+        ),
+        (
+            "for (Index at = v; degree[at] == 1 && !is_cone[at] && mesh.loop_of_vertex[at] == none;)",
+            "each round takes an edge off the cut",
+            SHORT,
+        ),
+        ("while (true)", "edges of the cut, each once, to an end or back to the start", SHORT),
+    ],
+    "cut/crease_borders.cpp": [
+        (
+            "while (!smallest.empty() && smallest.top().first < least_patch * geometry.total_area)",
+            "an entry for each patch and each time two become one",
+            OWN,
+        ),
+        ("while (!is_border_[g])", AROUND_A_VERTEX, SHORT),
+        ("while (true)", "edges of a border, each once, to a node or back to the start", SHORT),
+        ("for (;; g = next(mesh.twin[g]))", AROUND_A_VERTEX, SHORT),
+        ("while (h != first)", SIDES, SHORT),
+        ("while (!queue.empty())", NEAREST, OWN),
+        (
+            "for (auto at = from.find(mesh.origin(last)); at != from.end(); at = from.find(mesh.origin(path.back())))",
+            LINKED,
+            SHORT,
+        ),
+        ("while (found)", "each round but the last opens a tube, which joins two borders", OWN),
+    ],
+    "cut/cut_network.cpp": [
+        ("while (!is_node(mesh.origin(h)))", "edges of the cuts, each once, to a node or back to the start", SHORT),
+        (
+            "while (!is_node(mesh.target(h)) && mesh.target(h) != tail)",
+            "edges of the cuts, each once, to a node or back to the start",
+            SHORT,
+        ),
+    ],
+    "cut/cut_regions.cpp": [
+        ("for (Index h = at(mesh.origin(bridge)).by; h != none; h = at(mesh.origin(h)).by)", LINKED, SHORT),
+        ("for (Index h = at(mesh.target(bridge)).by; h != none; h = at(mesh.origin(h)).by)", LINKED, SHORT),
+    ],
+    "cut/key_path_exchange.cpp": [("while (true)", "each round takes a vertex of the cuts, each once", SHORT)],
+    "cut/shortest_paths.hpp": [("while (!queue.empty())", NEAREST, OWN)],
+    "cut/strip_search.cpp": [
+        ("while (!is_border(g))", AROUND_A_VERTEX, SHORT),
+        ("while (h != first)", SIDES, SHORT),
+        ("while (h != first)", SIDES, SHORT),
+        ("while (!queue.empty() && queue.top().first < below)", NEAREST, OWN),
+        ("for (Index h = last; h != none;)", LINKED, SHORT),
+    ],
+    "cut/cut_mesh.cpp": [
+        ("while (!cut_graph.is_cut[first])", AROUND_A_VERTEX, SHORT),
+        ("for (Index h = mesh.rotate(first); h != none && h != first; h = mesh.rotate(h))", AROUND_A_VERTEX, SHORT),
+        ("for (Index h = mesh.rotate(first); h != none && h != first; h = mesh.rotate(h))", AROUND_A_VERTEX, SHORT),
+    ],
+    "cut/parts.cpp": [
+        ("for (Index along = h; !is_traced[along];)", SIDES, SHORT),
+        ("while (!is_border[along])", AROUND_A_VERTEX, SHORT),
+    ],
+    "mesh/border.cpp": [("while (mesh.rotate(last) != none)", AROUND_A_VERTEX, SHORT)],
+    "mesh/topology.cpp": [
+        (
+            "for (Index at = v; mesh.loop_of_vertex[at] == none; at = mesh.target(mesh.outgoing[at]))",
+            SIDES,
+            SHORT,
+        ),
+        ("while (h != none && h != corner)", AROUND_A_VERTEX, SHORT),
+        ("while (h == none && mesh.twin[first] != none)", AROUND_A_VERTEX, SHORT),
+    ],
+    "mesh/topology.hpp": [("while (h != none && h != outgoing[v])", AROUND_A_VERTEX, SHORT)],
+    "placement/batch_placement.cpp": [
+        ("while (rings > 0 && cones * vertices_within() > vertices)", "rings fall from 2", SHORT),
+        ("while (!reached.empty())", NEAREST, SHORT),
+        ("while (cone_count() < cones)", "each round adds a cone, or ends it", OWN),
+    ],
+    "placement/cone_chooser.cpp": [
+        ("while (set.cone_count() < count)", "each round adds a cone, or ends it", OWN),
+    ],
+    "placement/cone_growth.cpp": [
+        (
+            "while (best_.predicted_l2 > target && advance(target))",
+            "each round adds cones, up to the stages or those that Gauss-Bonnet asks for, or ends it",
+            WITHIN,
+        ),
+        ("while (next_stage_ < std::size(cone_stages))", "stages, each once", WITHIN),
+        (
+            "while (search.can_drop(set) && chooser_.predicted_l2(set) > worth_all)",
+            "each round drops a cone",
+            WITHIN,
+        ),
+    ],
+    "placement/cone_search.cpp": [
+        ("while (set.cone_count() < cones)", "each round adds a cone, or ends it", OWN),
+    ],
+    "placement/cone_set.cpp": [
+        ("while (!reaches_sum() && out.used_reach <= widest_reach)", "the reach grows by a tenth up to 8", SHORT),
+    ],
+    "placement/cone_sites.cpp": [
+        (
+            "for (int rings = 1; static_cast<int>(spread.size()) > most; ++rings)",
+            "rings grow until they cover the component",
+            SHORT,
+        ),
+    ],
+    "plane/aabb_tree.hpp": [("while (!open.empty())", "pairs of nodes of a finite tree, each once", OWN)],
+    "plane/boundary_polygon.cpp": [
+        ("for (Index h = first; !traced[h];)", ONCE_EACH, SHORT),
+        ("while (!ends_at(h))", AROUND_A_VERTEX, SHORT),
+    ],
+    "plane/convex_hull.cpp": [
+        (
+            "while (hull.size() >= base + 2 && cross(hull.back() - hull[hull.size() - 2], *point - hull.back()) <= 0)",
+            "takes out a point that was put in once",
+            SHORT,
+        ),
+        (
+            "while (point < i + count && height(at(point + 1)) >= height(at(point)))",
+            "a point that only moves on, twice around at most",
+            SHORT,
+        ),
+    ],
+    "prescription/border_turning.cpp": [("while (true)", "each round lets go of a border, or ends it", WITHIN)],
+    "prescription/log_scale.cpp": [("for (; length > 1e-6; length /= 2)", "20 halvings", SHORT)],
+    "prescription/quantize_curvature.cpp": [
+        (
+            "for (int missing = sum - turns_.sum(); missing != 0; missing = sum - turns_.sum())",
+            "each round takes a turn off what is missing, and the bounds leave room for all",
+            SHORT,
+        ),
+        ("while (trials < most)", "a budget of trials, at least one a round", OWN),
+    ],
+    "prescription/straightness.cpp": [
+        ("while (boundary.count_crossings() > 0 && boundary.swap_worst())", "each swap lowers the crossings", OWN),
+    ],
+    "repair/newton.cpp": [("for (double length = longest; length > 1e-8; length /= 2)", "27 halvings", SHORT)],
+    "seamless/lattice_search.cpp": [
+        ("for (Eigen::Index k = 1; k < size;)", "a budget of exchanges", OWN),
+    ],
+    "seamless/seamless.cpp": [
+        ("for (; tiles <= most_tiles; tiles = next_size(tiles))", "27 sizes up to 16384", WITHIN),
+        (
+            "for (double tiles = coarsest_tiles; tiles <= most_tiles; tiles = next_size(tiles))",
+            "the same sizes, from 4 on",
+            SHORT,
+        ),
+        ("while (low < high)", "halvings of as many sizes", WITHIN),
+        ("for (;;)", "each round leaves out a part, or ends it", WITHIN),
+        ("while (!grid && give_up_cones())", "each round gives up a cone", WITHIN),
+    ],
+    "solvers/cholesky.cpp": [
+        ("while (!waiting.empty() && plan.parent[waiting.back()] == i)", "children in a tree, each once", SHORT),
+        ("for (int child = newest_child; child != -1; child = plan.earlier_sibling[child])", LINKED, SHORT),
+        ("for (int i = 0, end = 0; i < plan.front_count(); i = end)", "passes a front each time", OWN),
+    ],
+    "solvers/dense_kernels_for.cpp": [("for (; j % 4 != 0; --j)", "three rounds", SHORT)],
+    "solvers/elimination.cpp": [
+        ("while (other != at && other != size_)", LINKED, SHORT),
+        ("for (int root = child[eliminated_]; root != -1; root = sibling[root])", LINKED, SHORT),
+        ("while (!stack.empty())", ONCE_EACH, SHORT),
+        ("for (int node = at; node != size_ && first[node] == -1; node = parent_[node])", LINKED, SHORT),
+        ("while (root < at && ancestor[root] != size_)", LINKED, SHORT),
+        ("while (leaf < root)", LINKED, SHORT),
+        (
+            "for (int end = eliminated_ - 1, begin = end; end >= 0; end = begin - 1, begin = end)",
+            "columns, each once",
+            SHORT,
+        ),
+        (
+            "while (begin > 0 && parent_[begin - 1] == begin && count_[begin - 1] == count_[begin] + 1)",
+            "columns, each once",
+            SHORT,
+        ),
+        (
+            "for (int front = front_of[column]; front != -1 && mark[front] != at; front = out_.parent[front])",
+            LINKED,
+            SHORT,
+        ),
+    ],
+    "solvers/max_flow.cpp": [
+        ("while (find_distances(source, sink))", "the distance grows each time, up to the number of nodes", OWN),
+        ("while (!front.empty())", ONCE_EACH, SHORT),
+        ("for (int a = first_[node]; a >= 0; a = next_[a])", LINKED, SHORT),
+        ("for (int a = first_[queue[i]]; a >= 0; a = next_[a])", LINKED, SHORT),
+        ("for (;;)", "each walk blocks an arc or a node", OWN),
+        ("while (a >= 0 && (residual_[a] == 0 || distance_[to_[a]] != distance_[node] - 1))", LINKED, SHORT),
+    ],
+    "solvers/sparse_assembly.hpp": [
+        ("while (column < entry.column)", "columns, each once", SHORT),
+        ("while (column < size_)", "columns, each once", SHORT),
+    ],
+    "split/compact_islands.cpp": [("while (!pending.empty())", "each division pays a price out of a sum", WITHIN)],
+    "split/merge_islands.cpp": [("while (join_next())", "each round makes two groups one", WITHIN)],
+    "split/minimum_cut.cpp": [
+        ("while (!queue.empty())", NEAREST, SHORT),
+        ("for (;;)", "each round holds more cells, or ends it", WITHIN),
+        (
+            "for (; next[side] < nearest[side].size() && taken[side] < target; ++next[side])",
+            "cells, each once",
+            SHORT,
+        ),
+        ("while (cells.count() > most_cells)", "a round that leaves 0.9 of the cells ends it", SHORT),
+        ("while (!front.empty())", ONCE_EACH, SHORT),
+    ],
+    "split/split_overlaps.cpp": [
+        ("while (!front.empty())", ONCE_EACH, SHORT),
+        ("while (!front.empty())", ONCE_EACH, SHORT),
+        ("for (;;)", "each cut parts a pair of triangles that lay on each other", OWN),
+        ("while (!borders.empty())", "each round makes two parts one", OWN),
+        ("for (auto border = borders.begin(); border != borders.end();)", "erases what it does not step over", SHORT),
+    ],
+    "split/straight_cuts.cpp": [
+        ("while (mesh_.twin[g] != none && !open_[g] && !parts_differ(g))", AROUND_A_VERTEX, SHORT),
+        ("for (Index h = first; h != none; h = next_on[h])", LINKED, SHORT),
+        ("for (;; g = next(mesh_.twin[g]))", AROUND_A_VERTEX, SHORT),
+        ("for (g = next(h); mesh_.twin[g] != h; g = next(mesh_.twin[g]))", AROUND_A_VERTEX, SHORT),
+        ("for (Index g = next(h);; g = next(mesh_.twin[g]))", AROUND_A_VERTEX, SHORT),
+        ("while (!is_border(prev(g)))", AROUND_A_VERTEX, SHORT),
+        ("for (Index g = border; !is_border(prev(g));)", AROUND_A_VERTEX, SHORT),
+        ("while (!queue.empty())", NEAREST, OWN),
+        ("for (Index g = h; g != none; g = before_[g])", LINKED, SHORT),
+        ("while (!front.empty())", ONCE_EACH, SHORT),
+    ],
+    "systems/quadratic_forms.cpp": [
+        ("while (inner[at - 1] > row)", "entries of a column, its first one below", SHORT),
+    ],
+    "systems/stiffness.cpp": [("while (!queue.empty())", NEAREST, SHORT)],
+    "unfold/unfold.cpp": [("for (Index at = copy; border.empty() || at != copy; at = next_copy[at])", SIDES, SHORT)],
+}
+
+
+def test_every_open_loop_is_listed_with_its_bound() -> None:
+    listed = Counter((file, head) for file, loops in REVIEWED.items() for head, _, _ in loops)
+    found = Counter(open_loops(SOURCES))
+    assert found - listed == Counter(), "new loops: what bounds them, and where can they be cancelled?"
+    assert listed - found == Counter(), "loops that are gone"
+
+
+@pytest.mark.parametrize(
+    ("head", "counted"),
+    [
+        ("for (const Index v : vertices)", True),
+        ("for (int i = 0; i < count; ++i)", True),
+        ("for (int i = 0, used; i < count; i += used)", True),
+        ("for (int i = count; i-- > 0;)", True),
+        ("for (int round = 0; lowered && round < most_rounds; ++round)", True),
+        ("for (Matrix::InnerIterator it(form, j); it; ++it)", True),
+        ("for (int i = 0; i < count;)", False),
+        ("for (int i = 0; i < count || more; ++i)", False),
+        ("for (int pass = 1; !left.empty(); ++pass)", False),
+        ("for (bool lowered = true; lowered;)", False),
+        ("for (;;)", False),
+        ("while (i < count)", False),
+    ],
+)
+def test_what_counts_as_counted(head: str, counted: bool) -> None:
+    assert is_counted(head) == counted
+
+
+def test_heads_are_read_across_lines_and_without_comments() -> None:
+    source = 'while (a &&\n       b("(")) {} // while (not)\nfor (;;) {}'
+    assert list(heads(source)) == ['while (a && b(""))', "for (;;)"]
