@@ -25,9 +25,12 @@ that too, and takes ten times as long."""
 MOST_ABOVE = 0.02
 """What is left of an exact margin may be so much wider; it is not narrower."""
 MOST_PASSES = 5
+"""For each way to turn islands."""
 ANY_TURN = "ANY"
-TURNS = (ANY_TURN, "CARDINAL")
-"""Ways to turn islands that are tried for the largest layout."""
+TURNS = (None, "CARDINAL", ANY_TURN)
+"""Ways to turn islands that are tried for the largest layout, the faster ones first: the last takes seconds."""
+ENOUGH = 0.65
+"""Part of the square from which on a layout is large enough."""
 # Of a full turn, tried for an island that is alone, and what another of them has to gain.
 DIRECTIONS = 720
 TURN_GAINS = 1e-3
@@ -48,30 +51,34 @@ def pack(
         return [_alone(parts[0], margin, turned)]
     if margin_method != EXACT:
         return _pack_once(parts, margin_method, margin, ANY_TURN if turned else None)
-    tried = [(turn, _pack_once(parts, "ADD", margin, turn)) for turn in (TURNS if turned else (None,))]
-    turn, packed = max(tried, key=lambda one: _scale(parts, one[1]))
-    return _with_exact_margin(parts, margin, turn, packed)
+    return _with_exact_margin(parts, margin, TURNS if turned else (None,))
 
 
 def _with_exact_margin(
-    parts: Sequence[Islands], margin: float, turn: str | None, packed: list[NDArray[np.float64]]
+    parts: Sequence[Islands], margin: float, turns: Sequence[str | None]
 ) -> list[NDArray[np.float64]]:
-    """As packed, with what is left of the margin after scaling no less than asked for.
-
-    packed: with that margin before scaling.
-    """
-    added, kept, kept_scale = margin, packed, 0.0
-    for number in range(MOST_PASSES):
-        if number > 0:
+    """The largest layout that the ways to turn islands give, with what is left of the margin after scaling no less than
+    asked for."""
+    added, scale, kept = margin, 0.0, None
+    for turn in turns:
+        for _ in range(MOST_PASSES):
             packed = _pack_once(parts, "ADD", added, turn)
-        scale = _scale(parts, packed)
-        left = added * scale / margin if margin else 1.0
-        if left >= 1 and scale > kept_scale:
-            kept, kept_scale = packed, scale
-        if 1 <= left <= 1 + MOST_ABOVE:
+            now = _scale(parts, packed)
+            left = added * now / margin if margin else 1.0
+            if kept is None or (left >= 1 and now > scale):
+                kept, scale = packed, now if left >= 1 else 0.0
+            if 1 <= left <= 1 + MOST_ABOVE or now < scale:
+                break
+            added *= (1 + MOST_ABOVE / 2) / left
+        if _covered(kept) >= ENOUGH:
             break
-        added *= (1 + MOST_ABOVE / 2) / left
     return kept
+
+
+def _covered(packed: Sequence[NDArray[np.float64]]) -> float:
+    """The part of the unit square that islands cover."""
+    sides = (np.diff(uv, axis=1) for uv in packed)
+    return sum(float(np.abs(at[:, 0, 0] * at[:, 1, 1] - at[:, 0, 1] * at[:, 1, 0]).sum()) / 2 for at in sides)
 
 
 def _alone(part: Islands, margin: float, turned: bool) -> NDArray[np.float64]:
