@@ -30,7 +30,7 @@ _GAIN = 0.992
 # What of the square the first layout that is tried fills, and by how much the side grows until one is found.
 _FIRST_FILL = 0.6
 _GROWTH = 1.12
-_MOST_GROWTHS = 24
+_MOST_GROWTHS = 12
 # In texels of the raster: xatlas widens islands to whole ones, and by more only what it takes for several islands; one
 # that is larger than the square it makes smaller.
 _WIDENED = 2.5
@@ -122,7 +122,7 @@ class Packer:
 
     def _first(self, place: ComplexArray) -> Layout:
         least = self._estimated_side(place)
-        for _ in range(2):
+        for _ in range(2 if self._have_room() else 0):
             side = least
             for _ in range(_MOST_GROWTHS):
                 found = self._fitted(place, side)
@@ -136,6 +136,10 @@ class Packer:
             f"With a margin of {self._square.margin:.4g} the {self._islands.count} islands do not fit into a square. "
             "Pass a smaller margin.",
         )
+
+    def _have_room(self) -> bool:
+        """Whether margins alone leave any: disks around islands cover at most pi / sqrt(12) of a square."""
+        return not (self._square.fill and self._islands.count * math.sqrt(12) * self._square.margin**2 >= 1)
 
     def _estimated_side(self, place: ComplexArray) -> float:
         """Of the square that islands with their margins would fill well."""

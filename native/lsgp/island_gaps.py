@@ -23,7 +23,7 @@ _SHORTEST_PIECE = 1 / 512
 
 
 def border_edges(vertices: Indices) -> tuple[Indices, Indices]:
-    """The triangle and the corner at which each edge begins that one triangle alone has, (b,) each.
+    """The triangle and the corner at which each edge begins that one triangle alone has, or that is a point, (b,) each.
 
     vertices: (m, 3), of triangles that share them within an island alone.
     """
@@ -31,7 +31,7 @@ def border_edges(vertices: Indices) -> tuple[Indices, Indices]:
     count = int(vertices.max(initial=0)) + 1
     edges = np.minimum(tails, heads) * count + np.maximum(tails, heads)
     _, edge_of, uses = np.unique(edges, return_inverse=True, return_counts=True)
-    corners = np.flatnonzero(uses[edge_of.ravel()] == 1)
+    corners = np.flatnonzero((uses[edge_of.ravel()] == 1) | (tails == heads))
     return corners // 3, corners % 3
 
 
