@@ -191,6 +191,7 @@ def _completed(task: UnwrapTask, cones: ConeAngles, pins: lsgp.Pins | None, prog
         creases=task.creases_of is not None,
         sharp=task.region.sharp,
         pins=pins,
+        pack="shelves",  # the islands of all objects are packed together, afterwards
         progress=progress,
     )
 

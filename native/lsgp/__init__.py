@@ -49,6 +49,7 @@ from .indexed_uv import index_uv
 from .io.mesh_files import MeshFile, read_mesh_file, write_mesh_file
 from .islands import correct_aspect, fit_placement
 from .ledger import LedgerPart, build_ledger, hold_complete, part_surface
+from .packing import pack_islands, packer_name
 from .texels import TexelDensity, TexelLayout, at_texel_density, texel_density, triangle_texel_density
 from .triangles import TriangleDistortion, singular_values, triangle_distortion
 
@@ -97,6 +98,8 @@ __all__ = [
     "index_uv",
     "lattice",
     "measure_distortion",
+    "pack_islands",
+    "packer_name",
     "pad_image",
     "parameterize",
     "part_surface",

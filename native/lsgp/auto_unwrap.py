@@ -26,6 +26,7 @@ from .api import (
 from .arguments import IndexArray
 from .errors import Cancelled, Finding, InputError, LsgpError
 from .ledger import LedgerPart, build_ledger, surface_of_triangles
+from .packing import Pack, Packing, laid_out
 from .texels import TexelLayout, at_texel_density
 
 Preset = Literal["paint", "tile", "bake"]
@@ -34,6 +35,8 @@ Preset = Literal["paint", "tile", "bake"]
 TARGET = 1.05
 # Fraction of an unwrap's time that placing cones takes.
 PLACING = 0.6
+# And with making the map, where islands are packed afterwards.
+PACKING = 0.9
 # Hard surfaces end at their creases where their curvature sits at more corners than these, at which cones serve as
 # well and the texture runs on; None: it has to run on everywhere.
 _MOST_CORNERS: dict[Preset, int | None] = {"paint": 24, "tile": None, "bake": 0}
@@ -70,6 +73,8 @@ def auto_unwrap(
     creases: bool = True,
     sharp: ArrayLike | None = None,
     pins: Pins | None = None,
+    pack: Pack | None = None,
+    margin: float | None = None,
     texels: TexelLayout | None = None,
     progress: Progress | None = None,
 ) -> Result:
@@ -80,6 +85,10 @@ def auto_unwrap(
     options: in place of `preset_options(preset)`. count: cones on each component that gets some, as of `place_cones`;
         None: as few as bring the L2 stretch to 1.05.
     creases: whether hard surfaces may end at their creases, as in `with_crease_borders`, to which `sharp` belongs.
+    pack: "tight": islands lie as close together as by `pack_islands`; "shelves": side by side; None: tight where
+        `packer_name` has one, but for layouts that are seamless, pinned or in UDIM tiles, which are never packed.
+    margin: with "tight", around each island, of the square's side; None: 4 / 1024, before the layout gets a texel
+        density.
     texels: the layout at a texel density, as by `at_texel_density`; None: it fills the unit square. Not with pins.
     pins, progress, errors and the result as of `parameterize`; `Result.cones` has the placed ones too, warnings those
         of placing them.
@@ -95,10 +104,27 @@ def auto_unwrap(
         arguments.require_type("texels", texels, TexelLayout)
         if pins is not None:
             raise InputError("WRONG_PARAMETER", "pins and texels both say how large islands are; pass one of them.")
+    packing = Packing(pack, margin)
+    packs = _may_pack(packing, chosen, pins, texels)
     completed = complete_cones(surface, cones, angles, chosen, count, part_of(progress, 0.0, PLACING))
-    rest = part_of(progress, PLACING, 1.0)
+    rest = part_of(progress, PLACING, PACKING if packs else 1.0)
     result = completed.told(parameterize(surface, completed.cones, completed.angles, chosen, pins, rest), chosen)
+    if packs:
+        return laid_out(surface, result, packing, texels, part_of(progress, PACKING, 1.0))[0]
     return result if texels is None else at_texel_density(surface, result, texels)
+
+
+def _may_pack(packing: Packing, options: Options, pins: Pins | None, texels: TexelLayout | None) -> bool:
+    """Whether islands may be moved; raises InputError where they may not and packing is asked for."""
+    fixed = {
+        "seamless, on whole tiles": options.seamless is not None,
+        "pinned": pins is not None,
+        "in UDIM tiles": texels is not None and texels.udim is not None,
+    }
+    for why, is_so in fixed.items():
+        if is_so and packing.pack == "tight":
+            arguments.refuse("pack", packing.pack, f"leave it out, since this layout is {why}")
+    return not any(fixed.values())
 
 
 def with_crease_borders(

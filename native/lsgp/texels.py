@@ -114,7 +114,7 @@ def at_texel_density(surface: Surface, result: Result, layout: TexelLayout) -> R
     if not np.isfinite(uv[result.solved]).all():
         arguments.refuse("density", layout.density, "pass fewer texels per unit, which is more than numbers can hold")
     if layout.udim is None:
-        return replace(result, corner_uv=uv, warnings=[*result.warnings, *_outside(uv, result.island)])
+        return replace(result, corner_uv=uv, warnings=[*result.warnings, *outside_findings(uv, result.island)])
     tiles = arguments.whole_number("udim", layout.udim, 1, f"pass a number of tiles from 1 to {MOST_TILES}")
     if tiles > MOST_TILES:
         arguments.refuse("udim", tiles, f"pass a number of tiles from 1 to {MOST_TILES}")
@@ -148,7 +148,8 @@ def _side(texture_size: float | Sequence[float]) -> float:
     return math.prod(map(math.sqrt, sides))
 
 
-def _outside(uv: FloatArray, island: IndexArray) -> list[Finding]:
+def outside_findings(uv: FloatArray, island: IndexArray) -> list[Finding]:
+    """The warning of islands outside the unit square, where there are any."""
     boxes = island_boxes(uv, island)
     outside = (boxes[:, :2] < -_ROUNDING).any(axis=1) | (boxes[:, 2:] > 1 + _ROUNDING).any(axis=1)
     count = int(outside.sum())

@@ -79,3 +79,9 @@ def triangle_areas(surface: Surface) -> FloatArray:
 def _doubled_areas(surface: Surface) -> NDArray[np.float64]:
     place = surface.positions[surface.triangles]
     return np.linalg.norm(np.cross(place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]), axis=1)
+
+
+def uv_area(corner_uv: FloatArray) -> float:
+    """Of all triangles in the plane, flipped ones too, (m, 3, 2)."""
+    first, second = corner_uv[:, 1] - corner_uv[:, 0], corner_uv[:, 2] - corner_uv[:, 0]
+    return float(np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]).sum()) / 2

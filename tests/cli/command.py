@@ -25,6 +25,7 @@ REPORT_KEYS = [
         "overlap_area",
         "direction_error",
         "texel_density",
+        "packing",
         "stage_seconds",
     ],
 ]

@@ -22,7 +22,8 @@ def test_without_a_preset_the_map_is_the_conformal_one_with_its_overlaps(lsgp, b
     plain = (ball_files / "out.obj").read_bytes()
     report_of(lsgp, "--mode", "conformal", "--overlaps", "keep")
     assert (ball_files / "out.obj").read_bytes() == plain
-    report_of(lsgp, "--preset", "paint", "--mode", "conformal", "--overlaps", "keep", "--compact", "off")
+    plain_choices = ("--mode", "conformal", "--overlaps", "keep", "--compact", "off", "--pack", "shelves")
+    report_of(lsgp, "--preset", "paint", *plain_choices)
     assert (ball_files / "out.obj").read_bytes() == plain
 
 

@@ -58,7 +58,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         {
             **{"surface": WHOLE, "cones": BALL.cones, "angles": None, "preset": "paint", "options": None},
             **{"count": 4, "creases": True, "sharp": EDGES[:3], "pins": None},
-            **{"texels": lsgp.TexelLayout(100.0, 1024), "progress": None},
+            **{"pack": "shelves", "margin": None, "texels": lsgp.TexelLayout(100.0, 1024), "progress": None},
         },
     ),
     "preset_options": (lsgp.preset_options, {"preset": "bake"}),
@@ -103,6 +103,14 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         lsgp.at_texel_density,
         {"surface": WHOLE, "result": FREE_RESULT, "layout": lsgp.TexelLayout(100.0, 1024, 4)},
     ),
+    "pack_islands": (
+        lsgp.pack_islands,
+        {
+            **{"corner_uv": FREE_RESULT.corner_uv, "island": FREE_RESULT.island, "margin": 0.01, "fill": True},
+            **{"turned": True, "progress": None},
+        },
+    ),
+    "packer_name": (lsgp.packer_name, {}),
     "pad_image": (
         lsgp.pad_image,
         {
@@ -137,6 +145,8 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "certificate.certificate": (certificate.certificate, {"report": RESULT.seamless, "texture_size": 1024}),
     "certificate.certificate_table": (certificate.certificate_table, {"report": RESULT.seamless, "texture_size": 1024}),
 }
+if lsgp.packer_name() is None:
+    del FUNCTIONS["pack_islands"]  # it is refused whatever is passed
 FILES = {"read_mesh_file", "write_mesh_file"}  # what these refuse is in tests/cli
 PARAMETERS = [(name, parameter) for name, (_, known) in FUNCTIONS.items() for parameter in known]
 
@@ -226,6 +236,8 @@ def test_all_public_functions_and_parameters_are_listed() -> None:
         for name in lsgp.__all__
         if callable(getattr(lsgp, name)) and (not inspect.isclass(getattr(lsgp, name)) or name in FUNCTIONS)
     } - FILES
+    if lsgp.packer_name() is None:
+        public.remove("pack_islands")
     for module in (lattice, certificate):
         own = vars(module).items()
         short = module.__name__.rpartition(".")[2]

@@ -197,7 +197,7 @@ def _unwrap(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
     lines = [
         f"{args.output}: {int(result.solved.sum())} of {len(result.solved)} triangles unwrapped, "
         f"{len(result.cones)} cones, {islands} {'island' if islands == 1 else 'islands'}",
-        reports.quality_table(result, run.texels),
+        reports.quality_table(result, run.texels, run.packed),
     ]
     if result.seamless is not None:
         lines.append(certificate_table(result.seamless, texture_size(args)))

@@ -17,7 +17,7 @@ from ..certificate import certificate
 from ..errors import Elements, Finding, LsgpError
 from ..io.polygons import Triangulation
 from ..texels import TexelDensity
-from .unwrap_file import Run
+from .unwrap_file import Packed, Run
 
 Report = dict[str, Any]
 
@@ -43,6 +43,7 @@ EMPTY: Report = {
     "overlap_area": None,
     "direction_error": None,
     "texel_density": None,
+    "packing": None,
     "stage_seconds": {},
 }
 
@@ -104,6 +105,7 @@ def unwrap_report(result: Result, run: Run, texture_size: int) -> Report:
         "overlap_area": result.overlap_area,
         "direction_error": _direction_figures(result, run),
         "texel_density": _texel_figures(run.texels, texture_size),
+        "packing": None if run.packed is None else asdict(run.packed),
         "stage_seconds": dict(run.stage_seconds),
     }
 
@@ -160,10 +162,12 @@ def island_count(island: NDArray[np.int32]) -> int:
     return len(np.unique(island[island >= 0]))
 
 
-def quality_table(measured: Result | Measurement, texels: TexelDensity | None = None) -> str:
+def quality_table(
+    measured: Result | Measurement, texels: TexelDensity | None = None, packed: Packed | None = None
+) -> str:
     """The quality of a map as lines of text, the ideal value beside each figure that has one.
 
-    texels: its texel density, None where it is not known."""
+    texels: its texel density, packed: how its islands were, None where that is not known."""
     d, s = measured.distortion, measured.seams
     rows = [
         ("quasi-conformal", f"{d.quasi_conformal:.4f}", "1", f"area-weighted {d.quasi_conformal_area_weighted:.4f}"),
@@ -192,6 +196,8 @@ def quality_table(measured: Result | Measurement, texels: TexelDensity | None = 
     if texels is not None:
         spread = f"texels per unit, from {texels.minimum:.4g} to {texels.maximum:.4g}"
         rows.append(("texel density", f"{texels.median:.4g}", "", spread))
+    if packed is not None:
+        rows.append(("part of the square", f"{packed.coverage:.4f}", "1", f"packed by {packed.packer}"))
     lines = [f"{'':<22}{'value':>10}{'ideal':>7}"]
     lines += [f"{label:<22}{value:>10}{ideal:>7}  {note}".rstrip() for label, value, ideal, note in rows]
     return "\n".join(lines)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..api import Options, Placement, Progress, Result, Surface, parameterize
-from ..auto_unwrap import PLACING, complete_cones, part_of, with_crease_borders
+from ..auto_unwrap import PACKING, PLACING, complete_cones, part_of, with_crease_borders
 from ..errors import Finding, InputError, LsgpError
 from ..io.mesh_files import MeshFile, format_mesh, parse_mesh, triangulated
 from ..io.mesh_formats import output_format
@@ -22,8 +22,10 @@ from ..io.polygons import Triangulation
 from ..io.safe_files import is_standard_stream, read_input, require_separate
 from ..io.side_files import cones_in, directions_in, load_importance, load_json, seam_edges_in
 from ..io.whole_files import write_output
+from ..packing import laid_out
 from ..texels import TexelDensity, at_texel_density, texel_density
-from .unwrap_options import cone_count, cones_file, cut_costs_of, library_options, texel_layout, up_of
+from ..triangles import uv_area
+from .unwrap_options import cone_count, cones_file, cut_costs_of, library_options, packing_of, texel_layout, up_of
 
 # Warnings of results that are not what was asked for, which --strict refuses.
 FLAWS = frozenset(
@@ -38,6 +40,14 @@ FLAWS = frozenset(
 )
 
 
+@dataclass(frozen=True, slots=True)
+class Packed:
+    """By whom islands were packed, and the part of the unit square that they cover."""
+
+    packer: str
+    coverage: float
+
+
 @dataclass
 class Run:
     """The intermediate results of a command; enough to report on a refusal at any point."""
@@ -46,6 +56,7 @@ class Run:
     surface: Surface | None = None
     placement: Placement | None = None
     directed_faces: NDArray[np.intp] | None = None
+    packed: Packed | None = None
     texels: TexelDensity | None = None
     stage_seconds: dict[str, float] = field(default_factory=dict)
 
@@ -70,10 +81,17 @@ def unwrap_file(
     target = None if is_standard_stream(args.output) else args.output
     form = output_format(target, given_format)
     require_separate(args.input, args.output, in_place=args.in_place)
-    file, result = _map(args, options, run, progress, given_format)
-    layout = texel_layout(args)
-    if layout is not None:
+    packing, layout = packing_of(args), texel_layout(args)
+    file, result = _map(
+        args, options, run, progress if packing is None else part_of(progress, 0.0, PACKING), given_format
+    )
+    if packing is not None:
+        with run.stage("pack"):
+            result, packer = laid_out(run.surface, result, packing, layout, part_of(progress, PACKING, 1.0))
+        run.packed = Packed(packer, uv_area(result.corner_uv[result.solved]))
+    elif layout is not None:
         result = at_texel_density(run.surface, result, layout)
+    if layout is not None:
         run.texels = texel_density(run.surface, result.corner_uv, layout.texture_size)
     if args.strict:
         require_flawless(result.warnings)

@@ -18,6 +18,7 @@ from ..api import Compactness, Options, Progress, Seamless, Surface, cut_costs
 from ..arguments import FloatArray
 from ..auto_unwrap import Preset, preset_options
 from ..io.side_files import UsageError
+from ..packing import Pack, Packing
 from ..texels import DEFAULT_MARGIN, MOST_TILES, TexelLayout
 
 DEFAULT_TEXTURE_SIZE = 1024
@@ -108,6 +109,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
     _add_low_stretch_options(unwrap)
     _add_seamless_options(unwrap)
     _add_texel_options(unwrap)
+    _add_pack_option(unwrap)
 
 
 def _add_crease_option(unwrap: argparse.ArgumentParser) -> None:
@@ -246,7 +248,7 @@ def _add_seamless_options(unwrap: argparse.ArgumentParser) -> None:
         metavar="T",
         type=texture_size_option,
         help=f"texels of the texture's side, a power of two; errors are given in them "
-        f"(default: {DEFAULT_TEXTURE_SIZE}); also of --texel-density",
+        f"(default: {DEFAULT_TEXTURE_SIZE}); also of --texel-density and --pack tight",
     )
     seamless.add_argument(
         "--mip-levels",
@@ -277,7 +279,17 @@ def _add_texel_options(unwrap: argparse.ArgumentParser) -> None:
         "--margin",
         metavar="M",
         type=_margin_option,
-        help=f"with --udim: texels around each island (default: {DEFAULT_MARGIN:.0f})",
+        help="with --udim or --pack tight: texels around each island "
+        f"(default: {DEFAULT_MARGIN:.0f}, of {DEFAULT_TEXTURE_SIZE} without --texture-size)",
+    )
+
+
+def _add_pack_option(unwrap: argparse.ArgumentParser) -> None:
+    unwrap.add_argument(
+        "--pack",
+        choices=get_args(Pack),
+        help="lay islands close together, which takes pip install 'lsgp[pack]', or on shelves (default: with --preset "
+        "paint and bake tight if that is installed, otherwise shelves)",
     )
 
 
@@ -343,9 +355,12 @@ def texture_size(args: argparse.Namespace) -> int:
 def texel_layout(args: argparse.Namespace) -> TexelLayout | None:
     """The layout at a texel density; None where none is asked for.  Raises UsageError where options do not fit."""
     if args.texel_density is None:
-        for name in ("udim", "margin"):
-            if getattr(args, name) is not None:
-                raise UsageError(f"--{name} is for layouts at a texel density; add --texel-density")
+        if args.udim is not None:
+            raise UsageError("--udim is for layouts at a texel density; add --texel-density")
+        if args.margin is not None and args.pack != "tight":
+            raise UsageError(
+                "--margin is for UDIM tiles or tight layouts; add --texel-density and --udim or --pack tight"
+            )
         return None
     if args.seamless or args.preset == "tile":
         raise UsageError(
@@ -354,12 +369,35 @@ def texel_layout(args: argparse.Namespace) -> TexelLayout | None:
         )
     if args.texture_size is None:
         raise UsageError("--texel-density needs the size of the texture; add --texture-size")
-    if args.margin is not None and args.udim is None:
-        raise UsageError("--margin is for islands in UDIM tiles; add --udim")
+    if args.margin is not None and args.udim is None and args.pack != "tight":
+        raise UsageError("--margin is for UDIM tiles or tight layouts; add --udim or --pack tight")
     margin = DEFAULT_MARGIN if args.margin is None else args.margin
     if args.udim is not None and 2 * margin >= args.texture_size:
         raise UsageError(f"--margin {margin:g}: a tile of {args.texture_size} texels has no room between its margins")
     return TexelLayout(args.texel_density, args.texture_size, args.udim, margin)
+
+
+def packing_of(args: argparse.Namespace) -> Packing | None:
+    """How islands are packed; None where they have to stay as they come.
+
+    Raises UsageError where options do not fit; InputError where the packer is not installed.
+    """
+    seamless = args.seamless or args.preset == "tile"
+    if seamless or args.udim is not None:
+        if args.pack is not None:
+            kind = "layouts that are not seamless" if seamless else "layouts without UDIM tiles"
+            raise UsageError(f"--pack is for {kind}; leave it out")
+        return None
+    if args.pack is None and args.preset is None:
+        return None
+    margin = None if args.margin is None else args.margin / texture_size(args)
+    if args.pack == "tight" and margin is None and args.texture_size is not None:
+        margin = DEFAULT_MARGIN / args.texture_size
+    if margin is not None and margin >= 0.5:
+        raise UsageError(
+            f"--margin {margin * texture_size(args):g}: a texture of {texture_size(args)} texels has no room"
+        )
+    return Packing(args.pack, margin)
 
 
 def library_options(args: argparse.Namespace) -> Options:
@@ -372,6 +410,7 @@ def library_options(args: argparse.Namespace) -> Options:
     if args.preset is None and not args.creases:
         raise UsageError("--no-creases is for presets; add --preset paint or bake")
     texel_layout(args)
+    packing_of(args)
     base = Options() if args.preset is None else preset_options(args.preset)
     mode = base.mode if args.mode is None else args.mode
     if mode != "low-stretch":
@@ -400,7 +439,8 @@ def _seamless(args: argparse.Namespace, preset: Seamless | None) -> Seamless | N
     base = Seamless() if args.seamless else preset
     if base is None:
         for name in ("tiles", "tile_size", "lattice", "parity", "coarse_grid", "texture_size", "mip_levels"):
-            if getattr(args, name) is not None and not (name == "texture_size" and args.texel_density is not None):
+            elsewhere = name == "texture_size" and (args.texel_density is not None or args.pack == "tight")
+            if getattr(args, name) is not None and not elsewhere:
                 raise UsageError(f"--{name.replace('_', '-')} is for seamless layouts; add --seamless")
         return None
     wanted = {name: getattr(args, name) for name in ("lattice", "tiles", "tile_size", "parity", "coarse_grid")}

@@ -56,7 +56,7 @@ def test_options_take_the_place_of_the_presets() -> None:
     given = surface(meshes.bumpy_sphere(3))
     hexagons = replace(lsgp.preset_options("tile"), seamless=lsgp.Seamless(lattice="hexagon"))
     assert auto_unwrap(given, preset="tile", options=hexagons).seamless.symmetry == 6
-    plain = auto_unwrap(given, options=lsgp.Options())
+    plain = auto_unwrap(given, options=lsgp.Options(), pack="shelves")
     placed = lsgp.place_cones(given)
     assert plain == lsgp.parameterize(given, placed.cones, placed.cone_angles)
 

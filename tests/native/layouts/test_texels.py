@@ -16,7 +16,7 @@ from map_checks import codes, surface
 
 SIZE = 1024
 PARTS = surface(meshes.merge([*(meshes.bumpy_sphere(1) for _ in range(6)), *(meshes.cube(n) for n in range(1, 7))]))
-SPLIT = lsgp.auto_unwrap(PARTS, preset="bake")
+SPLIT = lsgp.auto_unwrap(PARTS, preset="bake", pack="shelves")
 
 
 def heron(corners: np.ndarray) -> np.ndarray:

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`--pack`: what is written with each of its values, what the report says, and what does not go together."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from layout_check import coverage, overlapping_islands, room
+from lsgp.io.mesh_files import read_mesh
+from lsgp.io.polygons import triangulate
+from polygon_meshes import bumpy_ball, cube, obj_text
+
+UNWRAP = ("unwrap", "parts.obj", "-o", "out.obj", "--report", "report.json")
+BAKE = (*UNWRAP, "--preset", "bake")
+# Coordinates are written with six digits.
+WRITTEN = 2e-6
+
+
+@pytest.fixture
+def parts(tmp_path: Path) -> Path:
+    """parts.obj: two bumpy balls and a cube, far from each other."""
+    positions, faces = np.empty((0, 3)), []
+    for i in range(3):
+        places, polygons = bumpy_ball() if i < 2 else cube(2)
+        faces += [[vertex + len(positions) for vertex in polygon] for polygon in polygons]
+        positions = np.concatenate([positions, np.asarray(places, float) + np.array([5.0 * i, 0, 0])])
+    (tmp_path / "parts.obj").write_text(obj_text(positions, faces))
+    return tmp_path
+
+
+@pytest.fixture
+def packer() -> None:
+    pytest.importorskip("xatlas", reason="tight layouts take pip install 'lsgp[pack]'")
+
+
+@pytest.fixture
+def without_packer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As if it were not installed: a module of that name that cannot be imported comes first."""
+    folder = tmp_path / "first"
+    folder.mkdir()
+    (folder / "xatlas.py").write_text("raise ImportError\n")
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(folder), *filter(None, [os.environ.get("PYTHONPATH")])]))
+
+
+def layout(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Triangles, coordinates of their corners and the island of each, of a file: what shares both ends of an edge."""
+    mesh = read_mesh(path, with_uv=True)
+    found = triangulate(mesh)
+    uv = mesh.corner_uv[found.corner]
+    island = np.arange(len(uv))
+    both = zip(found.triangles.tolist(), uv.tolist(), strict=True)
+    keys = [[(vertex, *place) for vertex, place in zip(*corners, strict=True)] for corners in both]
+    sides: dict[frozenset, int] = {}
+    for triangle, corners in enumerate(keys):
+        for k in range(3):
+            other = sides.setdefault(frozenset([corners[k], corners[k - 1]]), triangle)
+            island[island == island[triangle]] = island[other]
+    return found.triangles, uv, np.unique(island, return_inverse=True)[1]
+
+
+def test_bake_and_paint_are_packed_by_default_and_the_report_says_so(lsgp, parts: Path, packer) -> None:
+    for preset in ("paint", "bake"):
+        shelves = lsgp(*UNWRAP, "--preset", preset, "--pack", "shelves").report()
+        assert shelves["packing"]["packer"] == "shelves"
+        done = lsgp(*UNWRAP, "--preset", preset, "--strict")
+        assert (done.code, done.err) == (0, "")
+        report = done.report()
+        assert report["packing"]["packer"].startswith("xatlas 0.")
+        triangles, uv, island = layout(parts / "out.obj")
+        assert report["packing"]["coverage"] == pytest.approx(coverage(uv, island), rel=1e-4)
+        assert report["packing"]["coverage"] > shelves["packing"]["coverage"]
+        assert report["stage_seconds"]["pack"] > 0
+        (line,) = [line for line in done.out.splitlines() if line.startswith("part of the square")]
+        assert f"packed by {report['packing']['packer']}" in line
+        found = room(triangles, uv, island)
+        assert found.between >= 8 / 1024 - WRITTEN and found.border >= 4 / 1024 - WRITTEN
+        assert overlapping_islands(uv, island) == 0 == report["overlapping"]
+        kept = {"seams", "distortion", "islands", "cones", "overlapping", "warnings"}
+        assert {key: report[key] for key in kept} == {key: shelves[key] for key in kept}
+
+
+@pytest.mark.parametrize(("margin", "size"), [(4, None), (16, None), (1, 256), (0, 64), (None, 512)])
+def test_the_margin_is_in_texels_of_the_texture(lsgp, parts: Path, packer, margin, size) -> None:
+    options = [*(("--margin", margin) if margin is not None else ()), *(("--texture-size", size) if size else ())]
+    done = lsgp(*BAKE, "--pack", "tight", *options)
+    assert (done.code, done.err) == (0, "")
+    texel, wanted = 1 / (size or 1024), 4 if margin is None else margin
+    found = room(*layout(parts / "out.obj"))
+    assert found.between >= 2 * wanted * texel - WRITTEN and found.border >= wanted * texel - WRITTEN
+
+
+def test_a_texel_density_keeps_its_margin_and_warns_of_what_is_outside(lsgp, parts: Path, packer) -> None:
+    for density, outside in ((20, False), (200, True)):
+        options = ("--texel-density", density, "--texture-size", 512, "--margin", 6)
+        done = lsgp(*BAKE, "--pack", "tight", *options)
+        assert done.code == 0 and ("ISLANDS_OUTSIDE" in done.err) == outside
+        assert done.report()["texel_density"]["mean"] == pytest.approx(density)
+        triangles, uv, island = layout(parts / "out.obj")
+        assert room(triangles, uv, island).between >= 12 / 512 - WRITTEN
+        assert (uv.max() > 1) == outside and uv.min() == pytest.approx(6 / 512, abs=WRITTEN)
+
+
+def test_any_map_can_be_packed_and_without_a_preset_it_is_not(lsgp, parts: Path, packer) -> None:
+    assert lsgp(*UNWRAP).report()["packing"] is None
+    plain = (parts / "out.obj").read_bytes()
+    assert lsgp(*UNWRAP, "--pack", "shelves").report()["packing"]["packer"] == "shelves"
+    assert (parts / "out.obj").read_bytes() == plain
+    assert lsgp(*UNWRAP, "--overlaps", "split", "--pack", "tight").report()["packing"]["packer"] != "shelves"
+    assert room(*layout(parts / "out.obj")).between >= 8 / 1024 - WRITTEN
+
+
+def test_without_the_packer_the_default_is_shelves_and_tight_is_refused(lsgp, parts: Path, without_packer) -> None:
+    done = lsgp(*BAKE)
+    assert done.code == 0 and done.report()["packing"]["packer"] == "shelves"
+    written = (parts / "out.obj").read_bytes()
+    assert lsgp(*BAKE, "--pack", "shelves").code == 0
+    assert (parts / "out.obj").read_bytes() == written
+    (parts / "out.obj").unlink()
+    refused = lsgp(*BAKE, "--pack", "tight")
+    assert refused.code == 3 and "PACKER_NOT_INSTALLED" in refused.err and "pip install 'lsgp[pack]'" in refused.err
+    assert refused.report()["code"] == "PACKER_NOT_INSTALLED" and not (parts / "out.obj").exists()
+
+
+def test_seamless_and_udim_layouts_are_left_alone(lsgp, parts: Path) -> None:
+    assert lsgp(*UNWRAP, "--preset", "tile").report()["packing"] is None
+    udim = ("--texel-density", 40, "--texture-size", 512, "--udim", 9)
+    assert lsgp(*BAKE, *udim).report()["packing"] is None
+    for options, told in (
+        (("--preset", "tile", "--pack", "tight"), "not seamless"),
+        (("--seamless", "--pack", "shelves"), "not seamless"),
+        (("--preset", "bake", *udim, "--pack", "tight"), "without UDIM tiles"),
+        (("--preset", "bake", "--margin", 2), "or --pack tight"),
+        (("--preset", "bake", "--pack", "shelves", "--margin", 2), "--pack tight"),
+        (("--preset", "bake", "--pack", "shelves", "--texture-size", 512), "add --seamless"),
+        (("--preset", "bake", "--pack", "loose"), "invalid choice"),
+    ):
+        done = lsgp(*UNWRAP, *options)
+        assert done.code == 2 and told in done.err, options
+
+
+def test_a_margin_as_wide_as_the_texture_is_wrong_usage(lsgp, parts: Path, packer) -> None:
+    done = lsgp(*BAKE, "--pack", "tight", "--margin", 32, "--texture-size", 64)
+    assert done.code == 2 and "no room" in done.err
+    refused = lsgp(*BAKE, "--pack", "tight", "--margin", 30, "--texture-size", 64)
+    assert refused.code == 3 and "smaller margin" in refused.err
+
+
+def test_a_batch_makes_the_bytes_of_single_runs(lsgp, parts: Path, packer) -> None:
+    options = ("--preset", "bake", "--pack", "tight", "--margin", 8)
+    done = lsgp("batch", "parts.obj", "--out", "many", "--no-pictures", "--reports", *options)
+    assert done.code == 0, done.err
+    single = lsgp(*UNWRAP, *options)
+    assert (parts / "many" / "parts.obj").read_bytes() == (parts / "out.obj").read_bytes()
+    reported = json.loads((parts / "many" / "parts.obj.report.json").read_text())
+    assert reported["packing"] == single.report()["packing"]

@@ -1,0 +1,299 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tight layouts: margins, one scale, quarter turns, determinism; and when islands stay where they are."""
+
+from __future__ import annotations
+
+import math
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import lsgp
+import meshes
+import numpy as np
+import pytest
+from layout_check import coverage, moves, overlapping_islands, room
+from lsgp import TexelLayout
+from lsgp.island_gaps import least_gap
+from map_checks import codes, surface
+
+PARTS = surface(meshes.merge([*(meshes.bumpy_sphere(2) for _ in range(3)), *(meshes.cube(n) for n in range(1, 4))]))
+SHELVES = {preset: lsgp.auto_unwrap(PARTS, preset=preset, pack="shelves") for preset in ("paint", "bake")}
+# Rounding of coordinates in the unit square.
+ROUNDING = 1e-9
+
+
+@pytest.fixture
+def packer() -> str:
+    pytest.importorskip("xatlas", reason="tight layouts take pip install 'lsgp[pack]'")
+    return lsgp.packer_name()
+
+
+@pytest.fixture
+def without_packer(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "xatlas", None)  # which makes it an ImportError
+
+
+def squares(count: int, side: float = 0.1) -> tuple[np.ndarray, np.ndarray]:
+    """Coordinates and islands of squares of two triangles, one beside the other."""
+    corners = np.array([[0, 0], [side, 0], [side, side], [0, side]])
+    uv = np.concatenate([corners[[[0, 1, 2], [0, 2, 3]]] + [2 * side * i, 0] for i in range(count)])
+    return uv, np.repeat(np.arange(count), 2)
+
+
+def require_packed(old: np.ndarray, new: np.ndarray, island: np.ndarray, margin: float, triangles: np.ndarray) -> None:
+    """No overlap, margins, and every island moved by a quarter turn, a shift and the same scale."""
+    assert overlapping_islands(new, island) == 0
+    found = room(triangles, new, island)
+    assert found.between >= 2 * margin - ROUNDING and found.border >= margin - ROUNDING
+    factors = moves(old, new, island)
+    assert np.abs(factors) == pytest.approx(np.abs(factors[0, 0]), rel=1e-6)
+    quarters = np.angle(factors) / (math.pi / 2)
+    assert np.abs(quarters - np.round(quarters)).max() < 1e-6
+    for i in range(int(island.max()) + 1):
+        of_island = factors[island[island >= 0] == i]
+        assert np.abs(of_island - of_island[0, 0]).max() < 1e-6 * abs(of_island[0, 0])
+
+
+@pytest.mark.parametrize("margin", [0.0, 1 / 4096, 4 / 1024, 16 / 512])
+@pytest.mark.parametrize("preset", ["paint", "bake"])
+def test_islands_keep_their_margin_and_one_scale(packer, preset: str, margin: float) -> None:
+    given = SHELVES[preset]
+    uv = lsgp.pack_islands(given.corner_uv, given.island, margin)
+    require_packed(given.corner_uv, uv, given.island, margin, PARTS.triangles)
+    assert uv.max() == pytest.approx(1 - margin)  # it fills the square
+
+
+def test_more_is_covered_than_on_shelves(packer) -> None:
+    for given in SHELVES.values():
+        packed = lsgp.pack_islands(given.corner_uv, given.island)
+        assert coverage(packed, given.island) > 1.05 * coverage(given.corner_uv, given.island)
+
+
+@pytest.mark.parametrize("margin", [0.0, 0.01, 2.0])
+def test_islands_that_keep_their_size(packer, margin: float) -> None:
+    given = SHELVES["bake"]
+    uv = lsgp.pack_islands(given.corner_uv, given.island, margin, fill=False)
+    assert np.abs(moves(given.corner_uv, uv, given.island)) == pytest.approx(1.0, rel=1e-6)
+    assert uv.min() == pytest.approx(margin)
+    assert room(PARTS.triangles, uv, given.island).between >= 2 * margin - ROUNDING
+    assert overlapping_islands(uv, given.island) == 0
+
+
+def test_cuts_match_as_before(packer) -> None:
+    """Within islands each cut has one turn and one translation still, and along all cuts sides are as long."""
+    ball = meshes.bumpy_sphere(3)
+    both = surface(meshes.merge([ball, ball, meshes.cube(3)]))
+    result = lsgp.auto_unwrap(both, options=lsgp.Options(mode="low-stretch"), creases=False, pack="tight")
+    assert result.island.max() == 2 and len(result.cut_edges) > 20
+    measured = lsgp.measure_distortion(both, result.corner_uv, result.cones)
+    assert measured.seams.rotation_residual < 1e-9 and measured.seams.translation_residual < 1e-9
+    split = lsgp.auto_unwrap(PARTS, preset="bake", pack="tight")
+    for of, found in ((both, result), (PARTS, split)):
+        measured = lsgp.measure_distortion(of, found.corner_uv, found.cones)
+        assert measured.seams.sister_ratio_max - 1 < 1e-9 and len(measured.flipped) == 0
+        assert measured.distortion.l2_stretch == pytest.approx(found.distortion.l2_stretch, rel=1e-9)
+    assert replace(split, corner_uv=SHELVES["bake"].corner_uv) == SHELVES["bake"]
+
+
+def test_islands_that_may_not_be_turned_are_only_shifted(packer) -> None:
+    given = SHELVES["bake"]
+    uv = lsgp.pack_islands(given.corner_uv, given.island, turned=False)
+    require_packed(given.corner_uv, uv, given.island, 4 / 1024, PARTS.triangles)
+    assert np.abs(np.angle(moves(given.corner_uv, uv, given.island))).max() < 1e-6
+
+
+def test_a_direction_that_was_asked_for_stays(packer) -> None:
+    up = replace(PARTS, directions=np.array([0.0, 0.0, 1.0]))
+    shelves, tight = (lsgp.auto_unwrap(up, preset="bake", pack=pack) for pack in ("shelves", "tight"))
+    assert np.abs(np.angle(moves(shelves.corner_uv, tight.corner_uv, tight.island))).max() < 1e-6
+    assert coverage(tight.corner_uv, tight.island) > coverage(shelves.corner_uv, shelves.island)
+
+
+def digest() -> str:
+    """Of layouts that take several tries."""
+    packed = [lsgp.pack_islands(given.corner_uv, given.island).tobytes().hex() for given in SHELVES.values()]
+    return str(hash_of("".join(packed)))
+
+
+def hash_of(text: str) -> str:
+    import hashlib
+
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+@pytest.mark.parametrize("threads", ["1", "3"])
+def test_another_process_gives_the_same_bytes(packer, threads: str) -> None:
+    """Whatever the order of hashes and the number of processors."""
+    here = Path(__file__).resolve().parent
+    one_processor = "import os; os.sched_setaffinity(0, [min(os.sched_getaffinity(0))])\n"
+    script = (one_processor if threads == "1" and sys.platform == "linux" else "") + "import test_packing as t\n"
+    environment = os.environ | {
+        "LSGP_THREADS": threads,
+        "PYTHONHASHSEED": threads,
+        "PYTHONPATH": os.pathsep.join([str(here), str(here.parent), *filter(None, [os.environ.get("PYTHONPATH")])]),
+    }
+    done = subprocess.run(
+        [sys.executable, "-c", script + "print(t.digest())"],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip() == digest() == digest()
+
+
+@pytest.mark.parametrize("count", [1, 2, 100, 700])
+def test_few_and_many_islands(packer, count: int) -> None:
+    uv, island = squares(count)
+    margin = 1 / 1024
+    packed = lsgp.pack_islands(uv, island, margin)
+    middles = packed[::2, [0, 2]].mean(axis=1)
+    side = np.abs(packed[0, 0] - packed[0, 1]).max()
+    apart = np.abs(middles[:, None] - middles).max(axis=2)[np.triu_indices(count, 1)] - side
+    assert apart.min(initial=1) >= 2 * margin - ROUNDING and overlapping_islands(packed, island) == 0
+    assert packed.min() >= margin - ROUNDING and packed.max() <= 1 - margin + ROUNDING
+    # Squares with their margins, on a grid.
+    least = (1 - 2 * margin * (math.ceil(math.sqrt(count)) + 1)) ** 2 * count / math.ceil(math.sqrt(count)) ** 2
+    assert coverage(packed, island) > (0.99 if count == 1 else 0.7) * least
+
+
+def test_an_island_lies_in_the_hole_of_another(packer) -> None:
+    angle = np.arange(48) * (2 * math.pi / 48)
+    circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    inner, outer = 0.8 * circle, circle
+    around = np.arange(48), np.roll(np.arange(48), -1)
+    band = [[outer[i], outer[j], inner[i]] for i, j in zip(*around, strict=True)]
+    band += [[outer[j], inner[j], inner[i]] for i, j in zip(*around, strict=True)]
+    disk = [[[3, 0], 0.7 * circle[i] + [3, 0], 0.7 * circle[j] + [3, 0]] for i, j in zip(*around, strict=True)]
+    uv, island = np.array(band + disk), np.repeat([0, 1], [96, 48])
+    packed = lsgp.pack_islands(uv, island)
+    assert coverage(packed, island) > 0.6  # the ring alone would leave 0.28, both side by side 0.17
+    assert room(np.arange(3 * len(uv)).reshape(-1, 3), packed, island).border >= 4 / 1024 - ROUNDING
+
+
+def test_what_is_not_mapped_stays_and_what_has_no_area_is_moved_along(packer) -> None:
+    uv, island = squares(4)
+    line = [[[9.0, 0.0], [9.1, 0.0], [9.05, 0.0]], [[9.0, 1.0], [9.0, 1.0], [9.0, 1.0]]]
+    spike = [[[0.0, 0.0], [0.0, 0.3], [0.0, 0.1]]]  # without area, of the first square, and reaching out of it
+    uv = np.concatenate([uv, line, spike, np.full((1, 3, 2), np.nan)])
+    island = np.concatenate([island, [4, 5, 0, -1]])
+    packed = lsgp.pack_islands(uv, island, 0.01)
+    assert np.isnan(packed[-1]).all() and np.isfinite(packed[:-1]).all()
+    found = room(np.arange(3 * len(uv)).reshape(-1, 3), packed, island)
+    assert found.between >= 0.02 - ROUNDING and found.border >= 0.01 - ROUNDING
+    assert np.array_equal(lsgp.pack_islands(np.full((2, 3, 2), 5.0), [-1, -1]), np.full((2, 3, 2), 5.0))
+
+
+def test_margins_that_leave_no_room_are_refused(packer) -> None:
+    uv, island = squares(100)
+    with pytest.raises(lsgp.InputError, match="smaller margin") as caught:
+        lsgp.pack_islands(uv, island, 0.06)
+    assert caught.value.code == "WRONG_PARAMETER"
+    for margin in (-0.1, 0.5, math.nan):
+        with pytest.raises(lsgp.InputError, match="margin"):
+            lsgp.pack_islands(uv, island, margin)
+    uv[3] = np.inf
+    with pytest.raises(lsgp.InputError, match="triangle 3"):
+        lsgp.pack_islands(uv, island)
+
+
+def test_progress_is_told_and_stops_it(packer) -> None:
+    given = SHELVES["bake"]
+    told: list[float] = []
+    lsgp.pack_islands(given.corner_uv, given.island, progress=told.append)
+    assert told == sorted(told) and told[0] == 0 and told[-1] == 1 and len(told) > 5
+    with pytest.raises(lsgp.Cancelled):
+        lsgp.pack_islands(given.corner_uv, given.island, progress=lambda done: done < 0.5)
+    told.clear()
+    lsgp.auto_unwrap(PARTS, preset="bake", pack="tight", progress=told.append)
+    assert told == sorted(told) and told[-1] == 1
+
+
+def test_presets_are_packed_where_that_is_installed(packer) -> None:
+    for preset, shelves in SHELVES.items():
+        found = lsgp.auto_unwrap(PARTS, preset=preset)
+        assert found == lsgp.auto_unwrap(PARTS, preset=preset, pack="tight") != shelves
+        wide = lsgp.auto_unwrap(PARTS, preset=preset, pack="tight", margin=16 / 1024)
+        assert room(PARTS.triangles, wide.corner_uv, wide.island).between >= 32 / 1024 - ROUNDING
+
+
+def test_without_the_packer_islands_are_on_shelves(without_packer) -> None:
+    assert lsgp.packer_name() is None
+    assert lsgp.auto_unwrap(PARTS, preset="bake") == SHELVES["bake"]
+    for call in (
+        lambda: lsgp.auto_unwrap(PARTS, preset="bake", pack="tight"),
+        lambda: lsgp.pack_islands(SHELVES["bake"].corner_uv, SHELVES["bake"].island),
+    ):
+        with pytest.raises(lsgp.InputError, match=r"pip install 'lsgp\[pack\]'") as caught:
+            call()
+        assert caught.value.code == "PACKER_NOT_INSTALLED"
+
+
+def test_islands_that_may_not_be_moved_stay(packer) -> None:
+    ball = meshes.bumpy_sphere(2)
+    pins = lsgp.Pins([0, 5], [[0, 0], [1, 0]])
+    udim = TexelLayout(40.0, 512, udim=20)
+    for how in ({"preset": "tile"}, {"pins": pins}, {"preset": "bake", "texels": udim}):
+        left = lsgp.auto_unwrap(surface(ball), ball.cones, **how)
+        assert left == lsgp.auto_unwrap(surface(ball), ball.cones, pack="shelves", **how)
+        with pytest.raises(lsgp.InputError, match="pack is 'tight'"):
+            lsgp.auto_unwrap(surface(ball), ball.cones, pack="tight", **how)
+
+
+@pytest.mark.parametrize("times", [0.3, 1.0, 3.0])
+def test_a_texel_density_has_the_margin_that_is_asked_for(packer, times: float) -> None:
+    size, given = 512, SHELVES["bake"]
+    density = times * lsgp.texel_density(PARTS, given.corner_uv, size).mean
+    layout = TexelLayout(density, size)
+    found = lsgp.auto_unwrap(PARTS, preset="bake", pack="tight", margin=8 / size, texels=layout)
+    assert lsgp.texel_density(PARTS, found.corner_uv, size).mean == pytest.approx(density)
+    assert room(PARTS.triangles, found.corner_uv, found.island).between >= 16 / size - ROUNDING
+    assert found.corner_uv.min() == pytest.approx(8 / size)
+    assert ("ISLANDS_OUTSIDE" in codes(found.warnings)) == (found.corner_uv.max() > 1)
+    # Without one the layout is the usual one at that scale.
+    plain, usual = (lsgp.auto_unwrap(PARTS, preset="bake", texels=texels) for texels in (layout, None))
+    ratio = plain.corner_uv / usual.corner_uv
+    assert ratio == pytest.approx(ratio[0, 0, 0])
+
+
+def test_a_margin_takes_a_tight_layout(packer) -> None:
+    for pack in (None, "shelves"):
+        with pytest.raises(lsgp.InputError, match='pack="tight"'):
+            lsgp.auto_unwrap(PARTS, pack=pack, margin=0.01)
+
+
+@pytest.mark.parametrize("reach", [0.0, 0.01, 0.2, 3.0])
+def test_the_least_gap_is_that_of_all_pairs(reach: float) -> None:
+    random = np.random.RandomState(1)
+    for _ in range(20):
+        begin = random.uniform(size=(12, 2)) @ [1, 1j]
+        segments = np.stack([begin, begin + random.normal(0, 0.1, (12, 2)) @ [1, 1j]], axis=1)
+        owner = random.randint(0, 3, 12)
+        expected = min(
+            distance_of(segments[i], segments[j]) for i in range(12) for j in range(i) if owner[i] != owner[j]
+        )
+        found = least_gap(segments, owner, reach)
+        assert found == pytest.approx(expected, abs=1e-12) if expected <= reach else found == math.inf
+
+
+def distance_of(one: np.ndarray, other: np.ndarray) -> float:
+    """Of two segments, over a fine grid of the points of both; 0 where they cross."""
+    (a, b), (c, d) = one, other
+    shares = np.linalg.lstsq(
+        np.array([[(b - a).real, (c - d).real], [(b - a).imag, (c - d).imag]]),
+        np.array([(c - a).real, (c - a).imag]),
+        rcond=None,
+    )[0]
+    if ((shares >= 0) & (shares <= 1)).all():
+        return 0.0
+
+    def to(place: complex, begin: complex, end: complex) -> float:
+        share = np.clip(((place - begin) / (end - begin)).real, 0, 1)
+        return abs(place - begin - share * (end - begin))
+
+    return min(to(a, c, d), to(b, c, d), to(c, a, b), to(d, a, b))
