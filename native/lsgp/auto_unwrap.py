@@ -115,7 +115,7 @@ def auto_unwrap(
 
 
 def _may_pack(packing: Packing, options: Options, pins: Pins | None, texels: TexelLayout | None) -> bool:
-    """Whether islands may be moved; raises InputError where they may not and packing is asked for."""
+    """Whether islands are packed; raises InputError where they may not be and that is asked for."""
     fixed = {
         "seamless, on whole tiles": options.seamless is not None,
         "pinned": pins is not None,
@@ -124,7 +124,7 @@ def _may_pack(packing: Packing, options: Options, pins: Pins | None, texels: Tex
     for why, is_so in fixed.items():
         if is_so and packing.pack == "tight":
             arguments.refuse("pack", packing.pack, f"leave it out, since this layout is {why}")
-    return not any(fixed.values())
+    return packing.is_tight and not any(fixed.values())
 
 
 def with_crease_borders(

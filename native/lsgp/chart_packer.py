@@ -38,6 +38,7 @@ _NARROWED = 0.01
 # In texels: triangles of a smaller area it leaves where they are.
 _NO_AREA = 1e-5
 _LEAST_BOX = 0.01
+_MOST_AROUND = 2000
 _QUARTER_TURNS = np.array([1, 1j, -1, -1j])
 _TINY = np.finfo(float).tiny
 
@@ -105,8 +106,10 @@ class Packer:
     def __init__(self, islands: Islands, square: Square) -> None:
         self._islands, self._square = islands, square
         self._raster = _RASTER if islands.count <= _FEW_ISLANDS else 2 * _RASTER
-        # Islands that are packed as their boxes: those without an area and those that xatlas takes for several.
+        # Islands that are packed as their boxes: those without an area, those that xatlas takes for several, and those
+        # with a vertex of so many triangles that it would take minutes, as it compares all of them.
         self._boxed = np.zeros(islands.count, bool)
+        self._boxed[islands.island[np.bincount(islands.triangles.ravel()) > _MOST_AROUND]] = True
 
     def improved(self, turns: Indices, best: Layout | None) -> Layout | None:
         """The smallest layout found of islands so turned, if it is smaller than `best`.

@@ -6,6 +6,7 @@ Places are complex numbers, u + iv.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -18,8 +19,9 @@ Indices = NDArray[np.int64]
 
 # Pieces are looked at in pairs, so many at a time: bounds the memory.
 _PAIRS_AT_ONCE = 1 << 20
-# Of the layout's size: no piece is made shorter, so that there are not too many of them.
-_SHORTEST_PIECE = 1 / 512
+# Of the layout's size: no cell is made smaller, so that there are not too many pieces.
+_SMALLEST_CELL = 1 / 512
+_CELLS_IN_REACH = 8
 
 
 def border_edges(vertices: Indices) -> tuple[Indices, Indices]:
@@ -42,17 +44,16 @@ def least_gap(segments: ComplexArray, island: Indices, reach: float) -> float:
     """
     if not len(segments):
         return np.inf
-    low = segments.real.min() + 1j * segments.imag.min()
-    high = segments.real.max() + 1j * segments.imag.max()
-    longest = max(reach, _SHORTEST_PIECE * abs(high - low))
-    pieces, of_segment = _pieces(segments, longest)
-    owner = island[of_segment]
-    cell = longest + reach
+    low, high = (of(segments.real) + 1j * of(segments.imag) for of in (np.min, np.max))
+    # A piece is no longer than a cell, and cells are small beside the reach: what is in two that are farther apart
+    # need not be looked at, nor what is of one island.
+    cell = max(reach / _CELLS_IN_REACH, _SMALLEST_CELL * abs(high - low))
     if not cell > 0:
-        return np.inf
+        return 0.0 if len(np.unique(island)) > 1 else np.inf  # all of them are at one place
+    pieces, of_segment = _pieces(segments, cell)
     least = np.inf
-    for first, second in _neighbours(pieces.mean(axis=1) - low, owner, cell):
-        least = min(least, float(_distances(pieces[first], pieces[second]).min(initial=np.inf)))
+    for first, second in _near_pairs((pieces.mean(axis=1) - low) / cell, island[of_segment], reach / cell):
+        least = min(least, float(_distances(pieces[first], pieces[second]).min()))
     return least if least <= reach else np.inf
 
 
@@ -68,23 +69,50 @@ def _pieces(segments: ComplexArray, longest: float) -> tuple[ComplexArray, Indic
     return segments[of_segment, :1] + ends * along[of_segment, None], of_segment
 
 
-def _neighbours(middles: ComplexArray, owner: Indices, cell: float) -> Iterator[tuple[Indices, Indices]]:
-    """Pairs of different owners in the same or in adjacent cells of a grid, each pair once, chunk by chunk."""
-    column, row = np.floor(middles.real / cell).astype(np.int64), np.floor(middles.imag / cell).astype(np.int64)
-    width = int(column.max()) + 3
-    key = (row + 1) * width + column + 1
-    order = np.argsort(key, kind="stable")
-    sorted_keys = key[order]
-    # Half of the neighbourhood: the other half has the same pairs the other way round.
-    for step in (0, 1, width - 1, width, width + 1):
-        begin, end = (np.searchsorted(sorted_keys, key + step, side) for side in ("left", "right"))
-        counts = end - begin
-        for chunk in np.array_split(np.arange(len(key)), 1 + int(counts.sum()) // _PAIRS_AT_ONCE):
-            first = np.repeat(chunk, counts[chunk])
-            skipped = np.repeat(np.cumsum(counts[chunk]) - counts[chunk], counts[chunk])
-            second = order[np.repeat(begin[chunk], counts[chunk]) + np.arange(len(first)) - skipped]
-            apart = owner[first] != owner[second]
-            yield first[apart], second[apart]
+def _near_pairs(middles: ComplexArray, owner: Indices, reach: float) -> Iterator[tuple[Indices, Indices]]:
+    """Pairs of pieces of different owners that may be within reach, chunk by chunk; in units of the cells of a grid.
+
+    middles: (p,) of pieces that are no longer than a cell, none below 0.
+    """
+    column, row = np.floor(middles.real).astype(np.int64), np.floor(middles.imag).astype(np.int64)
+    # Steps to cells within reach stay on their row.
+    most = math.ceil(reach) + 2
+    width = int(column.max()) + 1 + 2 * most
+    key = row * width + column
+    order = np.lexsort([owner, key])
+    # What is of one owner in one cell is a group.
+    begins = np.ones(len(order), bool)
+    begins[1:] = (np.diff(key[order]) != 0) | (np.diff(owner[order]) != 0)
+    start = np.flatnonzero(begins)
+    size = np.diff(np.append(start, len(order)))
+    group_key, group_owner = key[order[start]], owner[order[start]]
+    for step in _steps(most, reach):
+        found = [np.searchsorted(group_key, group_key + step[0] + step[1] * width, side) for side in ("left", "right")]
+        first, second = _expanded(np.arange(len(start)), found[0], found[1] - found[0])
+        apart = group_owner[first] != group_owner[second]
+        first, second = first[apart], second[apart]
+        pairs = size[first] * size[second]
+        for chunk in np.array_split(np.arange(len(first)), 1 + int(pairs.sum()) // _PAIRS_AT_ONCE):
+            if not len(chunk):
+                continue
+            group, number = _expanded(chunk, np.zeros(len(chunk), np.int64), pairs[chunk])
+            one, other = first[group], second[group]
+            yield order[start[one] + number // size[other]], order[start[other] + number % size[other]]
+
+
+def _steps(most: int, reach: float) -> Iterator[tuple[int, int]]:
+    """(columns, rows) from a cell to those in which something may be within reach of what is in it; each pair once."""
+    for rows in range(most + 1):
+        for columns in range(-most if rows else 0, most + 1):
+            # A piece reaches half a cell beyond the one that its middle is in.
+            if math.hypot(max(abs(columns) - 1, 0), max(rows - 1, 0)) - 1 <= reach:
+                yield columns, rows
+
+
+def _expanded(values: Indices, begin: Indices, counts: Indices) -> tuple[Indices, Indices]:
+    """Each value so often, and beside it the numbers from its begin on."""
+    skipped = np.repeat(np.cumsum(counts) - counts, counts)
+    return np.repeat(values, counts), np.repeat(begin, counts) + np.arange(len(skipped)) - skipped
 
 
 def _distances(first: ComplexArray, second: ComplexArray) -> FloatArray:

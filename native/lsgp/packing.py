@@ -56,6 +56,11 @@ class Packing:
         if self.pack == "tight":
             require_packer()
 
+    @property
+    def is_tight(self) -> bool:
+        """Whether a tight layout is looked for."""
+        return self.pack != SHELVES and packer_name() is not None
+
 
 def packer_name() -> str | None:
     """Name and version of the packer of tight layouts, on which they depend; None where it is not installed."""
@@ -179,7 +184,7 @@ def laid_out(
     says, and are not turned where a direction was asked for.  Raises InputError, Cancelled.
     """
     name = packer_name()
-    if packing.pack == "shelves" or name is None or (texels is not None and texels.udim is not None):
+    if name is None or not packing.is_tight or (texels is not None and texels.udim is not None):
         return (result if texels is None else at_texel_density(surface, result, texels)), SHELVES
     turned = result.direction_error is None
     if texels is not None and packing.margin is not None:
@@ -194,5 +199,7 @@ def laid_out(
         if packing.pack == "tight":
             raise
         name, uv = SHELVES, result.corner_uv
+        if progress is not None:
+            progress(1.0)
     packed = replace(result, corner_uv=uv)
     return (packed if texels is None else at_texel_density(surface, packed, texels)), name

@@ -82,9 +82,9 @@ def unwrap_file(
     form = output_format(target, given_format)
     require_separate(args.input, args.output, in_place=args.in_place)
     packing, layout = packing_of(args), texel_layout(args)
-    file, result = _map(
-        args, options, run, progress if packing is None else part_of(progress, 0.0, PACKING), given_format
-    )
+    is_tight = packing is not None and packing.is_tight
+    mapping = part_of(progress, 0.0, PACKING) if is_tight else progress
+    file, result = _map(args, options, run, mapping, given_format)
     if packing is not None:
         with run.stage("pack"):
             result, packer = laid_out(run.surface, result, packing, layout, part_of(progress, PACKING, 1.0))
