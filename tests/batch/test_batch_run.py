@@ -180,15 +180,16 @@ class Sheet(HTMLParser):
 
 
 def test_contact_sheet_shows_every_asset(batch, library: Path) -> None:
-    (library / "a&b <i>#?.off").write_text(off_text(grid()))
+    odd = "a&b <i>#?.off" if os.name == "posix" else "a&b #%41.off"  # Windows has no names with the others
+    (library / odd).write_text(off_text(grid()))
     assert batch("library", "--out", "out").returncode == 4
     out = library.parent / "out"
     sheet = Sheet((out / "contact-sheet.html").read_text())
     assert all((out / place).is_file() for place in sheet.places)
     assert sorted(place for place in sheet.places if place.endswith(".png")) == sorted(
-        f"pictures/{name}.png" for name in [*RESULTS, "a&b <i>#?.off"]
+        f"pictures/{name}.png" for name in [*RESULTS, odd]
     )
-    assert all(name in sheet.text for name in [*ASSETS, "a&b <i>#?.off", "refused: NOT_ORIENTABLE"])
+    assert all(name in sheet.text for name in [*ASSETS, odd, "refused: NOT_ORIENTABLE"])
 
 
 @pytest.mark.skipif(os.name != "posix", reason="names that are no text are a POSIX matter")

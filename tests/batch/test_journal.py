@@ -61,6 +61,14 @@ def test_a_run_reads_all_journals_and_a_shard_its_own(tmp_path: Path) -> None:
         assert read_records(tmp_path).records == {}
 
 
+def test_a_journal_is_read_while_it_is_written(tmp_path: Path) -> None:
+    """Windows lets nobody read what is locked."""
+    with Journal(tmp_path, None, keep=False) as journal:
+        for name in "ab":
+            journal.write(record(name))
+        assert sorted(read_records(tmp_path).records) == ["a", "b"]
+
+
 def test_two_runs_cannot_write_to_one_journal(tmp_path: Path) -> None:
     with (
         Journal(tmp_path, Shard(1, 2), keep=False),

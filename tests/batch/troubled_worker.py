@@ -7,22 +7,29 @@ import os
 import signal
 import sys
 import time
+from pathlib import Path
 
 from lsgp.batch.records import Record
 from lsgp.batch.tasks import Settings, Task
 from lsgp.batch.work import unwrap_asset
 from lsgp.batch.worker import serve
 
+# The exit code of a process that Windows has ended for one, as a signed number.
+ACCESS_VIOLATION = 0xC0000005 - (1 << 32)
+
 
 def work(task: Task, settings: Settings) -> Record:
+    if "segfault" in task.asset and os.name == "nt":
+        os._exit(ACCESS_VIOLATION)
     if "segfault" in task.asset:
         os.kill(os.getpid(), signal.SIGSEGV)
     if "kill" in task.asset:
-        os.kill(os.getpid(), signal.SIGKILL)
+        os.kill(os.getpid(), 9)
     if "exit" in task.asset:
         print("the disk of dreams is full", file=sys.stderr, flush=True)
         os._exit(7)
     if "hang" in task.asset:
+        Path(f"{task.input}.pid").write_text(str(os.getpid()))
         time.sleep(600)
     if "fault" in task.asset:
         raise ZeroDivisionError("by nought")

@@ -13,6 +13,8 @@ from command import Ended
 from polygon_meshes import bumpy_ball, cube, cube_corners, obj_text
 
 SHARED = Path(os.environ.get("LSGP_SHARED") or Path(__file__).resolve().parents[3] / "shared")
+# On all systems: an OBJ file keeps its own, and one made of another format ends lines so.
+LINE_END = "\n"
 
 
 @pytest.fixture
@@ -39,7 +41,7 @@ def shared() -> Path:
 def cube_files(tmp_path: Path) -> Path:
     """cube.obj of quads, its corners in corners.json."""
     positions, faces = cube(4)
-    (tmp_path / "cube.obj").write_text(obj_text(positions / 3, faces))
+    (tmp_path / "cube.obj").write_text(obj_text(positions / 3, faces), newline=LINE_END)
     (tmp_path / "corners.json").write_text(json.dumps({"cones": cube_corners(positions)}))
     return tmp_path
 
@@ -48,6 +50,6 @@ def cube_files(tmp_path: Path) -> Path:
 def ball_files(tmp_path: Path) -> Path:
     """ball.obj, closed, curved everywhere, of quads; eight cones in cones.json."""
     positions, faces = bumpy_ball()
-    (tmp_path / "ball.obj").write_text(obj_text(positions, faces))
+    (tmp_path / "ball.obj").write_text(obj_text(positions, faces), newline=LINE_END)
     (tmp_path / "cones.json").write_text(json.dumps({"cones": cube_corners(cube(6)[0])}))
     return tmp_path

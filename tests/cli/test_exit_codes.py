@@ -281,11 +281,20 @@ def test_file_or_folder_that_cannot_be_written_ends_with_2(
 
 
 def test_full_disk_ends_with_2(lsgp, cube_files: Path) -> None:
-    if not Path("/dev/full").exists():
+    if os.name != "posix" or not Path("/dev/full").exists():  # Wine shows that of the system below it
         pytest.skip("no /dev/full here")
     done = lsgp("unwrap", "cube.obj", "-o", "out.obj", "--cones", "corners.json", "--report", "/dev/full")
     assert (done.code, "No space left" in done.err) == (2, True)
     assert "Traceback" not in done.err
+
+
+@pytest.mark.parametrize("what", ["out.obj", "report.json"])
+def test_the_null_device_is_written_to(cube_files: Path, monkeypatch: pytest.MonkeyPatch, what: str) -> None:
+    """By the name the system has for it."""
+    monkeypatch.chdir(cube_files)
+    out, report = (os.devnull if what == name else name for name in ("out.obj", "report.json"))
+    assert main(["unwrap", "cube.obj", "-o", out, "--format", "obj", "--report", report]) == 0
+    assert not Path(what).exists() and not Path(os.devnull).is_file()
 
 
 def test_same_codes_from_a_process(lsgp, cube_files: Path) -> None:

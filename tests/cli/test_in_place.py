@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from lsgp.cli import main
 from lsgp.io.whole_files import write_whole
+from systems import make_link
 
 RUN = ["unwrap", "cube.obj", "--cones", "corners.json"]
 
@@ -19,12 +20,12 @@ def spelled(folder: Path, kind: str) -> str:
     if kind == "hard link":
         os.link(folder / "cube.obj", other)
     elif kind == "symbolic link":
-        other.symlink_to("cube.obj")
+        make_link(other, "cube.obj")
     elif kind == "link to the folder":
-        (folder / "here").symlink_to(folder)
-        return "here/cube.obj"
+        make_link(folder / "here", folder)
+        return str(Path("here", "cube.obj"))
     else:
-        return f"../{folder.name}/cube.obj"
+        return str(Path("..", folder.name, "cube.obj"))
     return "other.obj"
 
 

@@ -30,6 +30,7 @@ from polygon_meshes import (
     ply_bytes,
     polygon_mesh,
 )
+from systems import make_link
 
 
 def read_text(text: str, with_uv: bool = False):
@@ -269,8 +270,8 @@ def test_a_file_is_replaced_as_a_whole_or_not_at_all(tmp_path: Path, monkeypatch
 def test_links_and_devices_are_written_to_not_replaced(tmp_path: Path) -> None:
     mesh = polygon_mesh(SQUARE, [[0, 1, 2, 3]])
     (tmp_path / "real.obj").write_text("before")
-    (tmp_path / "link.obj").symlink_to("real.obj")
-    (tmp_path / "null").symlink_to(os.devnull)
+    make_link(tmp_path / "link.obj", "real.obj")
+    make_link(tmp_path / "null", os.devnull)
     write_whole(tmp_path / "link.obj", format_obj(mesh, np.zeros((4, 2))))
     write_whole(tmp_path / "null", format_obj(mesh, np.zeros((4, 2))))
     assert (tmp_path / "link.obj").is_symlink()

@@ -24,8 +24,9 @@ if os.name == "nt":
 else:
     import fcntl
 
-# Windows keeps others from reading what is locked: far behind the end of any journal.
-_LOCKED_BYTE = 1 << 60
+# Windows keeps others from reading what is locked: far behind the end of any journal, and within what all file systems
+# have, which Wine asks for.
+_LOCKED_BYTE = 1 << 40
 
 
 def journal_path(out: Path, shard: Shard | None) -> Path:
@@ -92,12 +93,17 @@ def _open_locked(path: Path) -> int:
     descriptor = os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o666)
     try:
         _lock(descriptor)
-    except (BlockingIOError, PermissionError) as error:
+    except OSError as error:
+        if not _is_taken(error):
+            return descriptor  # storage that knows no locks
         os.close(descriptor)
         raise UsageError(f"another run is writing to '{path}'; wait for its end or name another folder") from error
-    except OSError:
-        pass  # storage that knows no locks
     return descriptor
+
+
+def _is_taken(error: OSError) -> bool:
+    """Whether there is no lock because another run has it; Wine 8 does not tell why."""
+    return isinstance(error, BlockingIOError | PermissionError) or (os.name == "nt" and error.errno == 0)
 
 
 def _lock(descriptor: int) -> None:

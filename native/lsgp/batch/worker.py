@@ -35,8 +35,13 @@ def serve(work: Callable[[Task, Settings], Record]) -> None:
     # Any other output is redirected to standard error.
     answers = os.dup(1)
     os.dup2(2, 1)
+    # Windows waits for the reader of a pipe when a DLL is loaded that asks for the kind of standard input.
+    tasks = os.dup(0)
+    nowhere = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nowhere, 0)
+    os.close(nowhere)
     lines: SimpleQueue[bytes] = SimpleQueue()
-    threading.Thread(target=_read_lines, args=(lines,), daemon=True).start()
+    threading.Thread(target=_read_lines, args=(tasks, lines), daemon=True).start()
     settings = Settings(**json.loads(lines.get()))
     name = f"{socket.gethostname()}:{os.getpid()}"
     if settings.memory_limit is not None:
@@ -64,9 +69,10 @@ def serve(work: Callable[[Task, Settings], Record]) -> None:
         _send(answers, record | figures)
 
 
-def _read_lines(lines: SimpleQueue[bytes]) -> None:
-    for line in sys.stdin.buffer:
-        lines.put(line)
+def _read_lines(descriptor: int, lines: SimpleQueue[bytes]) -> None:
+    with open(descriptor, "rb") as tasks:
+        for line in tasks:
+            lines.put(line)
     os._exit(0)
 
 

@@ -54,12 +54,15 @@ def _require_writable(path: Path) -> None:
     target = Path(os.path.realpath(path))
     if target.is_dir():
         raise UsageError(f"'{path}' is a folder")
-    if not target.parent.is_dir():
+    is_device = target.exists() and not target.is_file()
+    if not is_device and not target.parent.is_dir():  # devices of Windows are in no folder
         raise UsageError(f"there is no folder '{target.parent}' to write '{path.name}' to")
     require_writable_kind(target)
+    if is_device and os.name == "nt":
+        return  # Windows does not tell
     # A file is replaced through its folder; a device is written to.
     touched = [target] if target.exists() else []
-    if not touched or target.is_file():
+    if not is_device:
         touched.append(target.parent)
     if not all(os.access(place, os.W_OK) for place in touched):
         raise UsageError(f"'{path}' cannot be written")

@@ -94,18 +94,30 @@ def _replace(partial: Path, target: Path) -> None:
 
 def _make_backup(target: Path, partial: Path) -> Path:
     """Back the file up by a hard link, or a copy where there are no links, once the new file is on the disk."""
-    with partial.open("rb") as file:
-        os.fsync(file.fileno())
+    _put_on_disk(partial)
     backup = backup_of(target)
     if backup.exists():
         raise FileExistsError(
             errno.EEXIST, "A backup of a run that was killed is there; compare it with the file and remove it", backup
         )
+    if not IS_WINDOWS:  # where a link to a file that is open in another program cannot be removed
+        with contextlib.suppress(OSError):  # a file system without links
+            os.link(target, backup)
+            return backup
     try:
-        os.link(target, backup)
-    except OSError:  # a file system without links
         shutil.copy2(target, backup)
+        _put_on_disk(backup)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            backup.unlink()
+        raise
     return backup
+
+
+def _put_on_disk(path: Path) -> None:
+    """Windows does so only for what is open for writing; elsewhere the mode of the file may forbid that."""
+    with path.open("r+b" if IS_WINDOWS else "rb") as file:
+        os.fsync(file.fileno())
 
 
 def remove_old_partials(folder: Path) -> None:
