@@ -165,7 +165,7 @@ def _best_layout(islands: Islands, square: Square, may_turn: bool, progress: Pro
             turns = np.ones(islands.count, np.int64)
         elif number > 1:
             # Half of them from the best so far, of which some islands are turned.
-            kept = random.random_sample(islands.count) < 0.7 if number % 2 else np.zeros(islands.count, bool)
+            kept = random.random_sample(islands.count) < _KEPT if number % 2 else np.zeros(islands.count, bool)
             turns = np.where(kept, best_turns, random.randint(0, 4, islands.count))
         found = packer.improved(turns, best)
         if found is not None:
