@@ -133,7 +133,7 @@ def test_another_process_gives_the_same_bytes(packer, threads: str) -> None:
     environment = os.environ | {
         "LSGP_THREADS": threads,
         "PYTHONHASHSEED": threads,
-        "PYTHONPATH": os.pathsep.join([str(here), str(here.parent), *filter(None, [os.environ.get("PYTHONPATH")])]),
+        "PYTHONPATH": os.pathsep.join([str(here), *filter(None, sys.path)]),
     }
     done = subprocess.run(
         [sys.executable, "-c", script + "print(t.digest())"],
