@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import bmesh
 import bpy
@@ -38,7 +38,7 @@ class EditedMesh(MeshReader):
         return [self._bm.verts[v].is_boundary for v in vertices]
 
     def seams(self) -> NDArray[np.int32]:
-        return rows([[v.index for v in edge.verts] for edge in self._bm.edges if edge.seam], 2, np.int32)
+        return self._ends(edge for edge in self._bm.edges if edge.seam)
 
     def triangles(self, faces: Sequence[int]) -> list[tuple[int, int, int]]:
         found = []
@@ -53,8 +53,10 @@ class EditedMesh(MeshReader):
         vertices = np.array([loop.vert.index for loop in loops], np.int32)
         drawn = [[place[loop] for loop in triangle] for triangle in self._bm.calc_loop_triangles()]
         sizes = np.array([len(face.loops) for face in self._bm.faces], np.int32)
-        edges = rows([[v.index for v in edge.verts] for edge in self._bm.edges], 2, np.int32)
-        return vertices[manifold_triangles(self.all_positions(), vertices, sizes, edges, rows(drawn, 3, np.int32))]
+        triangles = rows(drawn, 3, np.int32)
+        return vertices[
+            manifold_triangles(self.all_positions(), vertices, sizes, self._ends(self._bm.edges), triangles)
+        ]
 
     def drawn_triangles(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
         self._bm.faces.index_update()
@@ -99,6 +101,9 @@ class EditedMesh(MeshReader):
     def _uv_layer(self) -> bmesh.types.BMLayerItem | None:
         active = self._mesh.uv_layers.active
         return None if active is None else self._bm.loops.layers.uv.get(active.name)
+
+    def _ends(self, edges: Iterable[bmesh.types.BMEdge]) -> NDArray[np.int32]:
+        return rows([[v.index for v in edge.verts] for edge in edges], 2, np.int32)
 
     def _vertices(self, triangles: Sequence[Sequence[bmesh.types.BMLoop]]) -> NDArray[np.int32]:
         return rows([[loop.vert.index for loop in triangle] for triangle in triangles], 3, np.int32)

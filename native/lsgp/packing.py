@@ -18,6 +18,7 @@ from .chart_packer import Islands, Layout, Packer, Square, find_xatlas
 from .errors import Cancelled, InputError
 from .island_gaps import border_edges
 from .texels import TexelLayout, at_texel_density, outside_findings
+from .triangles import uv_area
 
 Pack = Literal["tight", "shelves"]
 SHELVES = "shelves"
@@ -140,13 +141,12 @@ def _islands(uv: FloatArray, island: IndexArray) -> Islands:
     place = corners[order[new]] @ np.array([1, 1j])
     triangles = vertices.reshape(-1, 3)
     triangle, corner = border_edges(triangles)
-    along, across = place[triangles[:, 1]] - place[triangles[:, 0]], place[triangles[:, 2]] - place[triangles[:, 0]]
     return Islands(
         place=place,
         triangles=triangles,
         island=owner[order[new]],
         borders=np.stack([triangles[triangle, corner], triangles[triangle, (corner + 1) % 3]], axis=1),
-        area=float(np.abs((along.conj() * across).imag).sum()) / 2,
+        area=uv_area(uv[solved]),
     )
 
 
@@ -180,13 +180,12 @@ def laid_out(
 ) -> tuple[Result, str]:
     """The result with its islands packed and at a texel density, as they are wanted, and who packed them.
 
-    result: of a map that is neither pinned nor seamless. Islands in UDIM tiles lie in rows there, whatever `packing`
-    says, and are not turned where a direction was asked for.  Raises InputError, Cancelled.
+    result: of a map that is neither pinned nor seamless. Islands are not turned where a direction was asked for.
+    texels: without UDIM tiles.  Raises InputError, Cancelled.
     """
-    name = packer_name()
-    if name is None or not packing.is_tight or (texels is not None and texels.udim is not None):
+    if not packing.is_tight:
         return (result if texels is None else at_texel_density(surface, result, texels)), SHELVES
-    turned = result.direction_error is None
+    name, turned = packer_name(), result.direction_error is None
     if texels is not None and packing.margin is not None:
         # What is asked for is to be left at this density.
         scaled = at_texel_density(surface, result, texels)

@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 import shutil
 import subprocess
-import sys
 import threading
 from pathlib import Path
 
@@ -21,6 +19,7 @@ import numpy as np
 import pytest
 from map_checks import digest, surface, unwrap
 from meshes import Mesh
+from other_process import in_another_process
 
 RUNS = 50
 # A quick input of each kind of way through the library: cones chosen and placed, seams, borders, handles, leftovers,
@@ -86,20 +85,6 @@ def test_threads_at_once(count: int) -> None:
     for thread in threads:
         thread.join()
     assert found == [[alone] * 4] * count
-
-
-def in_another_process(script: str, *arguments: object, **environment: str) -> str:
-    here = Path(__file__).resolve().parent
-    path = os.pathsep.join([str(here), str(here.parent), *filter(None, [os.environ.get("PYTHONPATH")])])
-    done = subprocess.run(
-        [sys.executable, "-c", script, *map(str, arguments)],
-        env=os.environ | {"PYTHONPATH": path} | environment,
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
 
 
 PRINT_ANSWERS = "import json, test_repeatability as t; print(json.dumps(t.answers()))"

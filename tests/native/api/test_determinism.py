@@ -3,11 +3,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
-from pathlib import Path
-
 import lsgp
 import meshes
 import numpy as np
@@ -16,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from map_checks import digest, pairs, surface, unwrap
+from other_process import in_another_process
 
 SURFACES = {
     "bumpy sphere": meshes.bumpy_sphere(3),
@@ -38,18 +34,9 @@ def test_another_process_with_other_threads_gives_the_same_bytes(threads: str) -
         "from map_checks import digest, unwrap\n"
         "for mesh in t.SURFACES.values(): print(digest(unwrap(mesh)), digest(unwrap(mesh, unfold='spectral')))\n"
     )
-    here = Path(__file__).resolve().parent
-    environment = os.environ | {
-        "OMP_NUM_THREADS": threads,
-        "PYTHONHASHSEED": threads,
-        "PYTHONPATH": os.pathsep.join([str(here), str(here.parents[1]), *filter(None, [os.environ.get("PYTHONPATH")])]),
-    }
-    done = subprocess.run(
-        [sys.executable, "-c", script], env=environment, capture_output=True, text=True, timeout=120, check=False
-    )
-    assert done.returncode == 0, done.stderr
+    printed = in_another_process(script, OMP_NUM_THREADS=threads, PYTHONHASHSEED=threads)
     expected = [f"{digest(unwrap(m))} {digest(unwrap(m, unfold='spectral'))}" for m in SURFACES.values()]
-    assert done.stdout.split("\n")[:-1] == expected
+    assert printed.split("\n")[:-1] == expected
 
 
 @settings(max_examples=6)

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 import threading
 from collections.abc import Callable
@@ -14,6 +13,7 @@ import lsgp
 import meshes
 import pytest
 from map_checks import digest, surface
+from other_process import in_another_process
 
 # Large enough for threads: more than 20,000 rows in one of their linear systems.
 CUBE = meshes.cube(62)  # 46,128 triangles
@@ -120,12 +120,4 @@ def test_the_environment_has_the_default(variable: str, option: int, expected: i
         f"t.run(t.HILL, lambda done: counts.append(len(os.listdir(t.TASKS))), threads={option}, mode='low-stretch')\n"
         "print(max(counts) - min(counts) + 1)\n"
     )
-    here = Path(__file__).resolve().parent
-    environment = os.environ | {
-        "LSGP_THREADS": variable,
-        "PYTHONPATH": os.pathsep.join([str(here), str(here.parents[1]), *filter(None, [os.environ.get("PYTHONPATH")])]),
-    }
-    done = subprocess.run(
-        [sys.executable, "-c", script], env=environment, capture_output=True, text=True, timeout=120, check=False
-    )
-    assert (done.returncode, done.stdout.strip()) == (0, str(expected)), done.stderr
+    assert in_another_process(script, LSGP_THREADS=variable).strip() == str(expected)

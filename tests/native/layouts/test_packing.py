@@ -3,12 +3,10 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
-import os
-import subprocess
 import sys
 from dataclasses import replace
-from pathlib import Path
 
 import lsgp
 import meshes
@@ -18,6 +16,7 @@ from layout_check import coverage, moves, overlapping_islands, room
 from lsgp import TexelLayout
 from lsgp.island_gaps import least_gap
 from map_checks import codes, surface
+from other_process import in_another_process
 
 PARTS = surface(meshes.merge([*(meshes.bumpy_sphere(2) for _ in range(3)), *(meshes.cube(n) for n in range(1, 4))]))
 SHELVES = {preset: lsgp.auto_unwrap(PARTS, preset=preset, pack="shelves") for preset in ("paint", "bake")}
@@ -114,37 +113,17 @@ def test_a_direction_that_was_asked_for_stays(packer) -> None:
 
 def digest() -> str:
     """Of layouts that take several tries."""
-    packed = [lsgp.pack_islands(given.corner_uv, given.island).tobytes().hex() for given in SHELVES.values()]
-    return str(hash_of("".join(packed)))
-
-
-def hash_of(text: str) -> str:
-    import hashlib
-
-    return hashlib.sha256(text.encode()).hexdigest()
+    packed = [lsgp.pack_islands(given.corner_uv, given.island).tobytes() for given in SHELVES.values()]
+    return hashlib.sha256(b"".join(packed)).hexdigest()
 
 
 @pytest.mark.parametrize("threads", ["1", "3"])
 def test_another_process_gives_the_same_bytes(packer, threads: str) -> None:
     """Whatever the order of hashes and the number of processors."""
-    here = Path(__file__).resolve().parent
     one_processor = "import os; os.sched_setaffinity(0, [min(os.sched_getaffinity(0))])\n"
     script = (one_processor if threads == "1" and sys.platform == "linux" else "") + "import test_packing as t\n"
-    environment = os.environ | {
-        "LSGP_THREADS": threads,
-        "PYTHONHASHSEED": threads,
-        "PYTHONPATH": os.pathsep.join([str(here), *filter(None, sys.path)]),
-    }
-    done = subprocess.run(
-        [sys.executable, "-c", script + "print(t.digest())"],
-        env=environment,
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.strip() == digest() == digest()
+    printed = in_another_process(script + "print(t.digest())", LSGP_THREADS=threads, PYTHONHASHSEED=threads)
+    assert printed.strip() == digest() == digest()
 
 
 @pytest.mark.parametrize("count", [1, 2, 100, 700])
