@@ -42,8 +42,9 @@ class PackSettings:
 
 def packing_of_preset(preset: str, margin: float, *, by_cells: bool, turned: bool) -> PackSettings:
     """How the islands of all objects are packed by a preset of `lsgp.auto_unwrap`.  The others as above."""
-    # The exact margin takes several passes, which are for textures that are computed to the texel.
-    return PackSettings(True, by_cells, packing.EXACT if preset == "bake" else "ADD", margin, turned)
+    # Blender's packer takes several passes for exact margins, which are for textures that are computed to the texel.
+    exact = preset == "bake" or packing.is_tight()
+    return PackSettings(True, by_cells, packing.EXACT if exact else "ADD", margin, turned)
 
 
 def final_layouts(solved: Sequence[Unwrapped], settings: PackSettings) -> list[NDArray[np.float64]]:

@@ -77,8 +77,8 @@ class UV_OT_cone_auto_unwrap(
     )
     margin: bpy.props.IntProperty(
         name="Margin",
-        description="Texels to keep free around each island in a texture of this size; about as many for Paint, whose "
-        "islands are packed faster",
+        description="Texels to keep free around each island in a texture of this size; about as many for Paint where "
+        "Blender's packer is used",
         default=4,
         min=0,
         soft_max=64,

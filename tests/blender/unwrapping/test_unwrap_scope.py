@@ -23,7 +23,7 @@ from scenes import (
     uv_key,
 )
 
-lsgp, packing = addon.core.native.lsgp, addon.jobs.packing
+lsgp, blender_packer = addon.core.native.lsgp, addon.jobs.blender_packer
 
 
 def decorate(obj):
@@ -199,12 +199,12 @@ FAILURES = {
         "could not be solved. Clean the mesh",
     ),
     "packer": (
-        packing,
+        blender_packer,
         "_run_packer",
         addon.core.errors.Refused("Blender's packer failed; switch Pack Islands off"),
         "switch Pack Islands off",
     ),
-    "packer's answer": (packing, "_read_uv", MemoryError(), "not enough memory"),
+    "packer's answer": (blender_packer, "_read_uv", MemoryError(), "not enough memory"),
 }
 
 

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Auto Unwrap packs with xatlas where the extension has it, and with Blender's packer where it has not."""
+
+import bpy
+import numpy as np
+import pytest
+from installed import addon
+from scenes import UvMap, add_cone_cube, add_cube, add_grid, add_texture, covered_twice, pin
+
+lsgp, packing, blender_packer = addon.core.native.lsgp, addon.jobs.packing, addon.jobs.blender_packer
+TEXELS = 512
+
+
+@pytest.fixture(params=["xatlas", "Blender"])
+def packer(request, monkeypatch):
+    """The one whose turn it is: as if xatlas were not there, or as the extension was installed."""
+    if request.param == "Blender":
+        monkeypatch.setattr(lsgp, "packer_name", lambda: None)
+    elif lsgp.packer_name() is None:
+        pytest.xfail("there is no xatlas for this Python")
+    return request.param
+
+
+@pytest.fixture
+def runs(monkeypatch):
+    """Names of the packers that run, in their order."""
+    found = []
+
+    def watch(owner, name, label):
+        run = getattr(owner, name)
+        monkeypatch.setattr(owner, name, lambda *given, **named: (found.append(label), run(*given, **named))[1])
+
+    watch(lsgp, "pack_islands", "xatlas")
+    watch(packing, "pack_once", "Blender")
+    return found
+
+
+def unwrap(**options):
+    return bpy.ops.uv.cone_auto_unwrap(texture_size=str(TEXELS), **options)
+
+
+def add_scene():
+    """Six islands or more, on three objects."""
+    bpy.ops.mesh.primitive_cylinder_add(vertices=24)
+    objects = [bpy.context.object, add_cube("Cube"), add_cube("Scaled", cuts=1)]
+    objects[2].scale = (2.0, 2.0, 2.0)
+    objects[0].select_set(True)
+    bpy.context.view_layer.update()
+    return objects
+
+
+def complex_corners(objects):
+    """Of triangles in UV space, and the number of their island."""
+    corners, owner = [], []
+    for obj in objects:
+        uv_map = UvMap(obj)
+        corners.append(uv_map.uv[uv_map.triangles] @ (1, 1j))
+        owner.append(np.array(uv_map.island_of_face())[uv_map.face_of_triangle] + 1000 * len(owner))
+    return np.concatenate(corners), np.concatenate(owner)
+
+
+def gap_between_islands(corners, owner):
+    """The least distance from a corner of one island to a side of another, which is that of two polygons."""
+    least = np.inf
+    for number in np.unique(owner):
+        points = np.unique(corners[owner == number])
+        others = corners[owner != number]
+        start, along = others.ravel(), (np.roll(others, -1, axis=1) - others).ravel()
+        length = np.abs(along)
+        start, along, length = start[length > 0], along[length > 0], length[length > 0]
+        for point in points:
+            part = np.clip(((point - start) * along.conj()).real / length**2, 0, 1)
+            least = min(least, np.abs(start + part * along - point).min())
+    return least
+
+
+@pytest.mark.parametrize("preset", ["PAINT", "BAKE"])
+def test_islands_are_apart_and_all_of_one_density(packer, runs, preset):
+    objects = add_scene()
+    assert unwrap(preset=preset, margin=8) == {"FINISHED"}
+    assert set(runs) == {packer}
+    corners, owner = complex_corners(objects)
+    assert len(np.unique(owner)) >= 6
+    assert covered_twice(map(UvMap, objects)) == 0
+    around = min(corners.real.min(), corners.imag.min(), 1 - corners.real.max(), 1 - corners.imag.max())
+    if packer == "xatlas" or preset == "BAKE":
+        assert TEXELS * around >= 8 * (1 - 1e-3)
+        assert TEXELS * gap_between_islands(corners, owner) >= 16 * (1 - 1e-3)
+    density = []
+    for obj in objects:
+        uv_map = UvMap(obj)
+        placed = uv_map.uv[uv_map.triangles] @ (1, 1j)
+        area = np.abs(((placed[:, 1] - placed[:, 0]).conj() * (placed[:, 2] - placed[:, 0])).imag).sum() / 2
+        density.append(np.sqrt(area / sum(face.area for face in obj.data.polygons)) / obj.scale.x)
+    assert max(density) / min(density) < 1.001
+
+
+def test_what_xatlas_cannot_pack_is_for_blenders_packer(packer, runs):
+    """Islands that have to stay where they are, and images that are no squares."""
+    cubes = [add_cone_cube("First"), add_cone_cube("Second")]
+    cubes[0].select_set(True)
+    unwrap()
+    pin(cubes[0], [0], UvMap(cubes[0]).uv[[0]])
+    before = UvMap(cubes[0]).uv
+    runs.clear()
+    unwrap()
+    assert set(runs) == {"Blender"}
+    assert np.abs(UvMap(cubes[0]).uv[0] - before[0]).max() < 1e-6
+
+
+def test_a_wide_image_is_for_blenders_packer(packer, runs):
+    parts = [add_grid("First"), add_cone_cube("Second")]
+    parts[0].select_set(True)
+    for part in parts:
+        add_texture(part, 256, 64)
+    unwrap()
+    assert set(runs) == {"Blender"}
+    assert covered_twice(map(UvMap, parts)) == 0
+
+
+def test_margins_without_room_are_made_narrower(packer, runs):
+    cubes = [add_cube(f"Cube {number}", cuts=1) for number in range(9)]
+    for cube in cubes:
+        cube.select_set(True)
+    assert bpy.ops.uv.cone_auto_unwrap(texture_size="512", margin=128) == {"FINISHED"}
+    assert runs[-1] == "Blender"
+    assert covered_twice(map(UvMap, cubes)) == 0
+
+
+def test_operators_with_a_margin_method_are_for_blenders_packer(packer, runs):
+    parts = [add_grid("First"), add_cone_cube("Second")]
+    parts[0].select_set(True)
+    assert bpy.ops.uv.cone_unwrap(pack=True, margin=0.01, margin_method="ADD") == {"FINISHED"}
+    assert runs == ["Blender"]
