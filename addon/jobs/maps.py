@@ -30,7 +30,7 @@ FILLED = 0.6
 class PackSettings:
     """How islands are placed: packed, those of all objects together, or not; by whole cells or not.
 
-    margin_method, margin, turned: as of `packing.pack`.
+    margin_method, margin, turned, udim: as of `packing.pack`; udim not by cells.
     """
 
     pack: bool
@@ -38,13 +38,14 @@ class PackSettings:
     margin_method: str
     margin: float
     turned: bool = True
+    udim: int = 1
 
 
-def packing_of_preset(preset: str, margin: float, *, by_cells: bool, turned: bool) -> PackSettings:
+def packing_of_preset(preset: str, margin: float, *, by_cells: bool, turned: bool, udim: int = 1) -> PackSettings:
     """How the islands of all objects are packed by a preset of `lsgp.auto_unwrap`.  The others as above."""
     # Blender's packer takes several passes for exact margins, which are for textures that are computed to the texel.
     exact = preset == "bake" or packing.is_tight()
-    return PackSettings(True, by_cells, packing.EXACT if exact else "ADD", margin, turned)
+    return PackSettings(True, by_cells, packing.EXACT if exact else "ADD", margin, turned, udim)
 
 
 def final_layouts(solved: Sequence[Unwrapped], settings: PackSettings) -> list[NDArray[np.float64]]:
@@ -53,7 +54,8 @@ def final_layouts(solved: Sequence[Unwrapped], settings: PackSettings) -> list[N
         return [unwrapped.corner_uv for unwrapped in solved]
     if settings.by_cells:
         return cells.pack(solved)
-    packed = packing.pack(_with_one_density(solved), settings.margin_method, settings.margin, turned=settings.turned)
+    parts = _with_one_density(solved)
+    packed = packing.pack(parts, settings.margin_method, settings.margin, turned=settings.turned, udim=settings.udim)
     layouts = [unwrapped.corner_uv.copy() for unwrapped in solved]
     for unwrapped, layout, uv in zip(solved, layouts, packed, strict=True):
         layout[unwrapped.result.solved] = uv

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import native
+from ..core.errors import Refused
 from ..core.islands import Islands
 from .areas import total_area
 from .blender_packer import pack_once
@@ -37,32 +38,48 @@ def is_tight() -> bool:
 
 
 def pack(
-    parts: Sequence[Islands], margin_method: str, margin: float, *, turned: bool = True
+    parts: Sequence[Islands], margin_method: str, margin: float, *, turned: bool = True, udim: int = 1
 ) -> list[NDArray[np.float64]]:
     """Pack the islands of all parts together into the unit square; returns the new corner_uv of each part.
 
     margin_method: of Blender's packer, or EXACT, which looks for the largest layout that leaves the margin.
-    margin: around each island. turned: whether islands may be.
-    Every island is moved by a single similarity.  Raises Refused where Blender does not pack.
+    margin: around each island. turned: whether islands may be. udim: over how many UDIM tiles they are spread at most.
+    Every island is moved by a single similarity.  Raises Refused where Blender does not pack, and where several tiles
+    are asked for that it would have to fill.
     """
     if len(parts) == 1 and not parts[0].island.any() and not parts[0].pinned.any():
         return [_alone(parts[0], margin, turned)]
-    if margin_method != EXACT:
+    if margin_method != EXACT and udim == 1:
         return pack_once(parts, margin_method, margin, ANY_TURN if turned else None)
-    if is_tight() and not any(part.pinned.any() or part.aspect != 1.0 for part in parts):
+    obstacle = _obstacle(parts)
+    if obstacle is None:
         try:
-            return _pack_tightly(parts, margin, turned)
+            return _pack_tightly(parts, margin, turned, udim)
         except native.lsgp.InputError:
-            pass  # The margin leaves no room for so many islands. Blender's packer makes it narrower.
+            # Blender's packer makes the margin narrower.
+            obstacle = "the margin leaves no room for so many islands; lower it"
+    if udim > 1:
+        raise Refused(f"Islands cannot be spread over UDIM tiles: {obstacle}, or set UDIM Tiles to 1")
     return _with_exact_margin(parts, margin, TURNS if turned else (None,))
 
 
-def _pack_tightly(parts: Sequence[Islands], margin: float, turned: bool) -> list[NDArray[np.float64]]:
+def _obstacle(parts: Sequence[Islands]) -> str | None:
+    """Why the packer of xatlas cannot pack these, and what to do; None where it can."""
+    if not is_tight():
+        return "this extension has no packer that can do so for this Blender; take Blender from blender.org"
+    if any(part.pinned.any() for part in parts):
+        return "some are pinned; unpin them"
+    if any(part.aspect != 1.0 for part in parts):
+        return "the image is not square; take one that is"
+    return None
+
+
+def _pack_tightly(parts: Sequence[Islands], margin: float, turned: bool, udim: int) -> list[NDArray[np.float64]]:
     """With the packer of xatlas.  parts: without pins, for square images.  Raises lsgp.InputError."""
     first = np.cumsum([0, *(int(part.island.max()) + 1 for part in parts)])
     island = np.concatenate([part.island + at for part, at in zip(parts, first[:-1], strict=True)])
     uv = native.lsgp.pack_islands(
-        np.concatenate([part.corner_uv for part in parts]), island.astype(np.int32), margin, turned=turned
+        np.concatenate([part.corner_uv for part in parts]), island.astype(np.int32), margin, turned=turned, udim=udim
     )
     return np.split(uv, np.cumsum([len(part.island) for part in parts])[:-1])
 

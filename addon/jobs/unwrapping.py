@@ -139,7 +139,7 @@ def _sharing_the_square(tasks: Sequence[UnwrapTask]) -> list[UnwrapTask]:
     areas = np.array([size_on_the_surface(task.region) ** 2 for task in tasks])
     shares = areas / areas.sum() if (areas > 0).all() and np.isfinite(areas).all() else np.ones(len(tasks))
     return [
-        replace(task, options=replace(task.options, square_share=float(share)))
+        replace(task, options=replace(task.options, square_share=float(share) * task.options.square_share))
         for task, share in zip(tasks, shares, strict=True)
     ]
 

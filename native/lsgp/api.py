@@ -183,8 +183,9 @@ class Options:
         those with arms: "off"; "sparing", only where a short cut fills much of it, and in no component with marked
         seams; "full", wherever more of it is filled than the cut and the further island cost. Transitions stay exact.
         Components with pins keep their islands.
-    square_share: with compact, the part of the square's area that these islands get, above 0 and up to 1; less where
-        other surfaces are packed beside them, so that they are cut less.
+    square_share: with compact, the area that these islands get, 1 being a whole square: less where other surfaces are
+        packed beside them, so that they are cut less; as many as there are UDIM tiles, up to 100, so that they are cut to
+        fill all of them.
     factorization: how linear systems are solved; maps differ by rounding only. "cut" factors once and
         leaves dense problems of the size of the cut, "sparse" factors for every step, "automatic" takes the cheaper.
     threads: of large factorizations, up to 1024; the result is the same for any number. 0: as many as the environment
@@ -220,7 +221,7 @@ class Options:
             arguments.refuse("seamless", self.seamless, "pass a Seamless, or None")
         _set(self, "stretch", arguments.number("stretch", self.stretch, "pass a number from 0 to 1"))
         _set(self, "repair", arguments.flag("repair", self.repair))
-        share = arguments.number("square_share", self.square_share, "pass a number above 0, up to 1")
+        share = arguments.number("square_share", self.square_share, "pass a number above 0, up to 100")
         _set(self, "square_share", share)
         _set(self, "loop_turning", _loop_turning(self.loop_turning))
         _set(self, "threads", _threads(self.threads))

@@ -75,6 +75,7 @@ def auto_unwrap(
     pins: Pins | None = None,
     pack: Pack | None = None,
     margin: float | None = None,
+    udim: int | None = None,
     texels: TexelLayout | None = None,
     progress: Progress | None = None,
 ) -> Result:
@@ -88,7 +89,9 @@ def auto_unwrap(
     pack: "tight": islands lie as close together as by `pack_islands`; "shelves": side by side; None: tight where
         `packer_name` has one, but for layouts that are seamless, pinned or in UDIM tiles, which are never packed.
     margin: with "tight", around each island, of the square's side; None: 4 / 1024, before the layout gets a texel
-        density.
+        density. udim: over how many UDIM tiles a tight layout is spread at most, as by `pack_islands`; without texels,
+        which has its own. It is the
+        `Options.square_share`, too.
     texels: the layout at a texel density, as by `at_texel_density`; None: it fills the unit square. Not with pins.
     pins, progress, errors and the result as of `parameterize`; `Result.cones` has the placed ones too, warnings those
         of placing them.
@@ -104,7 +107,9 @@ def auto_unwrap(
         arguments.require_type("texels", texels, TexelLayout)
         if pins is not None:
             raise InputError("WRONG_PARAMETER", "pins and texels both say how large islands are; pass one of them.")
-    packing = Packing(pack, margin)
+    packing = Packing(pack, margin, udim)
+    if udim is not None:
+        chosen = replace(chosen, square_share=float(udim))
     packs = _may_pack(packing, chosen, pins, texels)
     completed = complete_cones(surface, cones, angles, chosen, count, part_of(progress, 0.0, PLACING))
     rest = part_of(progress, PLACING, PACKING if packs else 1.0)
@@ -124,6 +129,10 @@ def _may_pack(packing: Packing, options: Options, pins: Pins | None, texels: Tex
     for why, is_so in fixed.items():
         if is_so and packing.pack == "tight":
             arguments.refuse("pack", packing.pack, f"leave it out, since this layout is {why}")
+        if is_so and packing.udim is not None:
+            arguments.refuse("udim", packing.udim, f"leave it out, since this layout is {why}")
+    if texels is not None and packing.udim is not None:
+        arguments.refuse("udim", packing.udim, "leave it out and pass that of texels, whose density says the size")
     return packing.is_tight and not any(fixed.values())
 
 

@@ -13,12 +13,12 @@ from numpy.typing import ArrayLike
 
 from . import arguments
 from .api import Progress, Result, Surface
-from .arguments import FloatArray, IndexArray
-from .chart_packer import Islands, Layout, Packer, Square, find_xatlas
-from .errors import Cancelled, InputError
-from .island_gaps import border_edges
-from .texels import TexelLayout, at_texel_density, outside_findings
-from .triangles import uv_area
+from .arguments import FloatArray
+from .chart_packer import Square, find_xatlas
+from .errors import InputError
+from .layout_search import best_layout, islands_of
+from .texels import MOST_TILES, TexelLayout, at_texel_density, outside_findings
+from .udim_packing import spread_over_tiles
 
 Pack = Literal["tight", "shelves"]
 SHELVES = "shelves"
@@ -27,12 +27,6 @@ INSTALL = "pip install 'lsgp[pack]'"
 DEFAULT_MARGIN = 4 / 1024
 """Around each island, of the square's side."""
 
-# Ways to turn islands by quarter turns that are tried; of many islands fewer, since each takes longer.
-_TRIES = 24
-_ISLANDS_OF_ALL_TRIES = 64
-# Of the islands of the best layout, so many keep their turn when some are turned.
-_KEPT = 0.7
-
 
 @dataclass(frozen=True, slots=True)
 class Packing:
@@ -40,11 +34,13 @@ class Packing:
 
     pack: "tight": as by `pack_islands`; "shelves": side by side, as they come from `parameterize`; None: tight if that
         is installed and the margins leave room, otherwise on shelves. margin: of tight layouts, of the square's side;
-        None: `DEFAULT_MARGIN` before the layout gets a texel density, which scales it too.
+        None: `DEFAULT_MARGIN` before the layout gets a texel density, which scales it too. udim: over how many UDIM
+        tiles a tight layout is spread, as by `pack_islands`.
     """
 
     pack: Pack | None = None
     margin: float | None = None
+    udim: int | None = None
 
     def __post_init__(self) -> None:
         """Raises InputError: WRONG_PARAMETER, PACKER_NOT_INSTALLED."""
@@ -52,9 +48,13 @@ class Packing:
             arguments.require_choice("pack", self.pack, get_args(Pack))
         if self.margin is not None:
             _square(self.margin, fill=True)
-            if self.pack != "tight":
+            if self.pack != "tight" and self.udim is None:
                 arguments.refuse("margin", self.margin, 'pass it with pack="tight", or leave it out')
-        if self.pack == "tight":
+        if self.udim is not None:
+            _tile_count(self.udim)
+            if self.pack == SHELVES:
+                arguments.refuse("udim", self.udim, 'pass it with pack="tight", or leave it out')
+        if self.pack == "tight" or self.udim is not None:
             require_packer()
 
     @property
@@ -81,6 +81,7 @@ def pack_islands(
     *,
     fill: bool = True,
     turned: bool = True,
+    udim: int | None = None,
     progress: Progress | None = None,
 ) -> FloatArray:
     """Put islands close together, into as small a square as is found, and return their coordinates, (m, 3, 2).
@@ -93,6 +94,9 @@ def pack_islands(
     fill: the square is the unit square, and the margin is of its side. Otherwise islands keep their size, the square
         begins at the origin, and the margin is in the same unit as they are.
     turned: whether islands may be.
+    udim: over how many UDIM tiles islands are spread at most, from 1001 on, so that they get as large as they can;
+        fewer where the largest island alone fills one. Each lies inside one tile, with the margin around it. With
+        `fill` only.
     progress: called at intervals with the fraction done, 0 to 1; if it returns False, Cancelled is raised.
     The result depends on the arguments and the version of the package alone.
     Raises InputError: PACKER_NOT_INSTALLED; WRONG_PARAMETER, also where the margins leave no room for the islands.
@@ -101,17 +105,37 @@ def pack_islands(
     uv = arguments.corner_coordinates("corner_uv", corner_uv, len(island))
     square = _square(margin, arguments.flag("fill", fill))
     may_turn = arguments.flag("turned", turned)
+    tiles = 1 if udim is None else _tile_count(udim)
+    if tiles > 1 and not square.fill:
+        arguments.refuse("udim", udim, "leave fill out, or use at_texel_density")
     arguments.require_callable(progress)
     require_packer()
-    solved = island >= 0
-    if not solved.any():
-        return uv.copy()
-    islands = _islands(uv, island)
-    found = _best_layout(islands, square, may_turn, progress)
-    place = (found.place - found.low) / (found.side if square.fill else 1.0)
+    solved = np.flatnonzero(island >= 0)
+    lost = solved[~np.isfinite(uv[solved]).all(axis=(1, 2))]
+    if len(lost):
+        raise InputError(
+            "WRONG_PARAMETER",
+            f"corner_uv is not finite at triangle {lost[0]}, which lies in an island; give such triangles island -1.",
+        )
     out = uv.copy()
+    if not len(solved):
+        return out
+    if tiles > 1:
+        out[solved] = spread_over_tiles(uv[solved], island[solved], square.margin, tiles, may_turn, progress)
+        return out
+    islands = islands_of(uv[solved], island[solved])
+    found = best_layout(islands, square, may_turn, progress)
+    place = (found.place - found.low) / (found.side if square.fill else 1.0)
     out[solved] = np.stack([place.real, place.imag], axis=-1)[islands.triangles] + square.margin
     return out
+
+
+def _tile_count(udim: int) -> int:
+    remedy = f"pass a number of tiles from 1 to {MOST_TILES}"
+    count = arguments.whole_number("udim", udim, 1, remedy)
+    if count > MOST_TILES:
+        arguments.refuse("udim", udim, remedy)
+    return count
 
 
 def _square(margin: float, fill: bool) -> Square:
@@ -120,59 +144,6 @@ def _square(margin: float, fill: bool) -> Square:
     if not 0 <= found < (0.5 if fill else math.inf):
         arguments.refuse("margin", margin, remedy if fill else "pass a margin, 0 or more")
     return Square(found, fill)
-
-
-def _islands(uv: FloatArray, island: IndexArray) -> Islands:
-    """Of the triangles that are in one.  Raises InputError: WRONG_PARAMETER."""
-    solved = np.flatnonzero(island >= 0)
-    lost = solved[~np.isfinite(uv[solved]).all(axis=(1, 2))]
-    if len(lost):
-        raise InputError(
-            "WRONG_PARAMETER",
-            f"corner_uv is not finite at triangle {lost[0]}, which lies in an island; give such triangles island -1.",
-        )
-    _, of_triangle = np.unique(island[solved], return_inverse=True)
-    corners, owner = uv[solved].reshape(-1, 2) + 0.0, np.repeat(of_triangle.ravel(), 3)  # -0.0 is 0.0
-    order = np.lexsort((corners[:, 1], corners[:, 0], owner))
-    new = np.ones(len(order), bool)
-    new[1:] = (np.diff(owner[order]) != 0) | (np.diff(corners[order], axis=0) != 0).any(axis=1)
-    vertices = np.empty(len(order), np.int64)
-    vertices[order] = np.cumsum(new) - 1
-    place = corners[order[new]] @ np.array([1, 1j])
-    triangles = vertices.reshape(-1, 3)
-    triangle, corner = border_edges(triangles)
-    return Islands(
-        place=place,
-        triangles=triangles,
-        island=owner[order[new]],
-        borders=np.stack([triangles[triangle, corner], triangles[triangle, (corner + 1) % 3]], axis=1),
-        area=uv_area(uv[solved]),
-    )
-
-
-def _best_layout(islands: Islands, square: Square, may_turn: bool, progress: Progress | None) -> Layout:
-    """The smallest layout of those that are tried.  Raises InputError, Cancelled."""
-    tries = max(1, _TRIES * _ISLANDS_OF_ALL_TRIES // max(islands.count, _ISLANDS_OF_ALL_TRIES)) if may_turn else 1
-    packer = Packer(islands, square)
-    # The generator whose numbers never change with the version of numpy.
-    random = np.random.RandomState(0)
-    best: Layout | None = None
-    turns = best_turns = np.zeros(islands.count, np.int64)
-    for number in range(tries):
-        if progress is not None and progress(number / tries) is False:
-            raise Cancelled("CANCELLED", "Stopped as asked; nothing was changed.")
-        if number == 1:
-            turns = np.ones(islands.count, np.int64)
-        elif number > 1:
-            # Half of them from the best so far, of which some islands are turned.
-            kept = random.random_sample(islands.count) < _KEPT if number % 2 else np.zeros(islands.count, bool)
-            turns = np.where(kept, best_turns, random.randint(0, 4, islands.count))
-        found = packer.improved(turns, best)
-        if found is not None:
-            best, best_turns = found, turns
-    if progress is not None:
-        progress(1.0)
-    return best
 
 
 def laid_out(
@@ -193,9 +164,9 @@ def laid_out(
         return replace(scaled, corner_uv=uv, warnings=[*result.warnings, *outside_findings(uv, result.island)]), name
     margin = DEFAULT_MARGIN if packing.margin is None else packing.margin
     try:
-        uv = pack_islands(result.corner_uv, result.island, margin, turned=turned, progress=progress)
+        uv = pack_islands(result.corner_uv, result.island, margin, turned=turned, udim=packing.udim, progress=progress)
     except InputError:
-        if packing.pack == "tight":
+        if packing.pack == "tight" or packing.udim is not None:
             raise
         name, uv = SHELVES, result.corner_uv
         if progress is not None:

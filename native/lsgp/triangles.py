@@ -83,5 +83,10 @@ def _doubled_areas(surface: Surface) -> NDArray[np.float64]:
 
 def uv_area(corner_uv: FloatArray) -> float:
     """Of all triangles in the plane, flipped ones too, (m, 3, 2)."""
+    return float(uv_areas(corner_uv).sum())
+
+
+def uv_areas(corner_uv: FloatArray) -> FloatArray:
+    """(m,) of triangles in the plane, flipped ones too, (m, 3, 2)."""
     first, second = corner_uv[:, 1] - corner_uv[:, 0], corner_uv[:, 2] - corner_uv[:, 0]
-    return float(np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]).sum()) / 2
+    return np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]) / 2

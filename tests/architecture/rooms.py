@@ -165,11 +165,13 @@ API = (
     "island_gaps",
     "islands",
     "lattice",
+    "layout_search",
     "ledger",
     "packing",
     "texel_raster",
     "texels",
     "triangles",
+    "udim_packing",
     "unfolded_walk",
 )
 # Folders of native/src, each of which may use those before it, but for those it has to do without.

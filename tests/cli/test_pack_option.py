@@ -104,6 +104,26 @@ def test_a_texel_density_keeps_its_margin_and_warns_of_what_is_outside(lsgp, par
         assert (uv.max() > 1) == outside and uv.min() == pytest.approx(6 / 512, abs=WRITTEN)
 
 
+@pytest.mark.parametrize("options", [("--preset", "bake"), ("--overlaps", "split")])
+def test_islands_in_udim_tiles_get_as_large_as_they_can(lsgp, parts: Path, packer, options) -> None:
+    done = lsgp(*UNWRAP, *options, "--udim", 3, "--margin", 8, "--texture-size", 512)
+    assert (done.code, done.err) == (0, "")
+    triangles, uv, island = layout(parts / "out.obj")
+    tile = np.array([np.floor(uv[island == i].mean(axis=(0, 1))) for i in range(island.max() + 1)])
+    count = len(np.unique(tile, axis=0))
+    assert count in (2, 3) and np.unique(tile, axis=0).tolist() == [[k, 0] for k in range(count)]
+    for k in range(count):
+        inside = np.where((tile == (k, 0)).all(axis=1)[island], island, -1)
+        found = room(triangles, uv - (k, 0), inside)
+        assert found.between >= 16 / 512 - 3 * WRITTEN and found.border >= 8 / 512 - 3 * WRITTEN
+    packing = done.report()["packing"]
+    assert packing["tiles"] == count
+    assert packing["coverage"] == pytest.approx(coverage(uv, island) / count, rel=1e-4)
+    assert f"in {count} UDIM tiles" in done.out
+    plain = lsgp(*UNWRAP, *options, "--pack", "tight", "--margin", 8, "--texture-size", 512)
+    assert plain.report()["packing"]["tiles"] == 1 and "UDIM" not in plain.out
+
+
 def test_any_map_can_be_packed_and_without_a_preset_it_is_not(lsgp, parts: Path, packer) -> None:
     assert lsgp(*UNWRAP).report()["packing"] is None
     plain = (parts / "out.obj").read_bytes()
@@ -120,9 +140,10 @@ def test_without_the_packer_the_default_is_shelves_and_tight_is_refused(lsgp, pa
     assert lsgp(*BAKE, "--pack", "shelves").code == 0
     assert (parts / "out.obj").read_bytes() == written
     (parts / "out.obj").unlink()
-    refused = lsgp(*BAKE, "--pack", "tight")
-    assert refused.code == 3 and "PACKER_NOT_INSTALLED" in refused.err and "pip install 'lsgp[pack]'" in refused.err
-    assert refused.report()["code"] == "PACKER_NOT_INSTALLED" and not (parts / "out.obj").exists()
+    for options in (("--pack", "tight"), ("--udim", 2)):
+        refused = lsgp(*BAKE, *options)
+        assert refused.code == 3 and "PACKER_NOT_INSTALLED" in refused.err and "pip install 'lsgp[pack]'" in refused.err
+        assert refused.report()["code"] == "PACKER_NOT_INSTALLED" and not (parts / "out.obj").exists()
 
 
 def test_seamless_and_udim_layouts_are_left_alone(lsgp, parts: Path) -> None:
@@ -132,7 +153,10 @@ def test_seamless_and_udim_layouts_are_left_alone(lsgp, parts: Path) -> None:
     for options, told in (
         (("--preset", "tile", "--pack", "tight"), "not seamless"),
         (("--seamless", "--pack", "shelves"), "not seamless"),
-        (("--preset", "bake", *udim, "--pack", "tight"), "without UDIM tiles"),
+        (("--preset", "bake", *udim, "--pack", "tight"), "not in rows"),
+        (("--preset", "bake", "--udim", 2, "--pack", "shelves"), "leave --pack shelves out"),
+        (("--preset", "tile", "--udim", 2), "not seamless"),
+        (("--seamless", "--udim", 2), "not seamless"),
         (("--preset", "bake", "--margin", 2), "or --pack tight"),
         (("--preset", "bake", "--pack", "shelves", "--margin", 2), "--pack tight"),
         (("--preset", "bake", "--pack", "shelves", "--texture-size", 512), "add --seamless"),

@@ -112,8 +112,7 @@ def test_what_does_not_fit_is_refused_and_nothing_written(lsgp, parts: Path, opt
     ("options", "told"),
     [
         (("--texel-density", 10), "add --texture-size"),
-        (("--udim", 2), "add --texel-density"),
-        (("--margin", 2), "add --texel-density"),
+        (("--margin", 2), "add --udim"),
         (("--texture-size", 1024), "add --seamless"),
         (("--texel-density", 10, "--texture-size", 1024, "--margin", 2), "add --udim"),
         (("--texel-density", 10, "--texture-size", 16, "--udim", 2, "--margin", 8), "no room"),

@@ -35,7 +35,7 @@ OPTIONS: Values = {
     "repair": [True, False],
     "overlaps": ["keep", "split"],
     "compact": ["off", "sparing", "full"],
-    "square_share": [1.0, 0.1],
+    "square_share": [1.0, 0.1, 4.0],
     "factorization": ["automatic", "cut", "sparse"],
     "threads": [0, 1, 3],
 }
@@ -43,7 +43,7 @@ OPTIONS: Values = {
 # Now and then: numbers at the limits of what makes sense, and beyond.
 RARE_OPTIONS: Values = {
     "stretch": [-0.1, 1.5, float("nan"), float("inf"), 1e-300],
-    "square_share": [0.0, -1.0, 1e-300, 1.5, float("nan")],
+    "square_share": [0.0, -1.0, 1e-300, 100.5, float("nan")],
     "threads": [1024, 1025],
 }
 RARE_SEAMLESS: Values = {

@@ -58,7 +58,8 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         {
             **{"surface": WHOLE, "cones": BALL.cones, "angles": None, "preset": "paint", "options": None},
             **{"count": 4, "creases": True, "sharp": EDGES[:3], "pins": None},
-            **{"pack": "shelves", "margin": None, "texels": lsgp.TexelLayout(100.0, 1024), "progress": None},
+            **{"pack": "shelves", "margin": None, "udim": None},
+            **{"texels": lsgp.TexelLayout(100.0, 1024), "progress": None},
         },
     ),
     "preset_options": (lsgp.preset_options, {"preset": "bake"}),
@@ -107,7 +108,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         lsgp.pack_islands,
         {
             **{"corner_uv": FREE_RESULT.corner_uv, "island": FREE_RESULT.island, "margin": 0.01, "fill": True},
-            **{"turned": True, "progress": None},
+            **{"turned": True, "udim": 1, "progress": None},
         },
     ),
     "packer_name": (lsgp.packer_name, {}),

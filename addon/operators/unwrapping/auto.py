@@ -84,6 +84,16 @@ class UV_OT_cone_auto_unwrap(
         soft_max=64,
         subtype="PIXEL",
     )
+    udim: bpy.props.IntProperty(
+        name="UDIM Tiles",
+        description="Spread the islands over so many UDIM tiles, 1001 and following, so that they get as large as they "
+        "can; Bake cuts them further for it. Fewer are taken where the largest island fills one alone. Each tile has a "
+        "texture of this size",
+        default=1,
+        min=1,
+        max=100,
+        soft_max=10,
+    )
     use_subsurf_data: bpy.props.BoolProperty(
         name="Use Subdivision Surface",
         description="Map UVs taking vertex position after Subdivision Surface modifier has been applied",
@@ -118,6 +128,7 @@ class UV_OT_cone_auto_unwrap(
         else:
             layout.prop(self, "texture_size")
             layout.prop(self, "margin")
+            layout.prop(self, "udim")
         layout.prop(self, "direction")
         body = section(layout, "cone_auto_unwrap_cuts", "Cuts and Cones")
         if body is not None:
@@ -160,7 +171,8 @@ class UV_OT_cone_auto_unwrap(
     def write(self, solved: Solved) -> list[str]:
         margin = self.margin / int(self.texture_size)
         by_cells, turned = self.preset == "TILE", not self._direction().is_any
-        pack = packing_of_preset(PRESETS[self.preset][0], margin, by_cells=by_cells, turned=turned)
+        preset = PRESETS[self.preset][0]
+        pack = packing_of_preset(preset, margin, by_cells=by_cells, turned=turned, udim=self.udim)
         layouts = final_layouts([unwrapped for _, _, unwrapped in solved], pack)
         for (obj, task, unwrapped), corner_uv in zip(solved, layouts, strict=True):
             write_map(obj, unwrapped, corner_uv)
@@ -175,6 +187,7 @@ class UV_OT_cone_auto_unwrap(
         """Raises InputError."""
         options = native.lsgp.preset_options(PRESETS[self.preset][0])
         options = replace(options, seams=SEAMS[self.seams][0], compact=options.compact if self.compact else "off")
+        options = replace(options, square_share=float(self.udim))
         if options.seamless is not None:
             options = replace(options, seamless=replace(options.seamless, **self.tile_size_options()))
         return options

@@ -110,7 +110,7 @@ struct Options {
   bool repair = true;  // of flipped triangles and angles off by a turn
   Overlaps overlaps = Overlaps::keep;
   Compactness compact = Compactness::off;
-  double square_share = 1;  // with compact: the part of the square's area that these islands get, above 0
+  double square_share = 1;  // with compact: the squares that these islands get, above 0; part of one, or UDIM tiles
   Factorization factorization = Factorization::automatic;
   // Of large factorizations, up to 1024; the result does not depend on it. 0: as many as the environment variable
   // LSGP_THREADS says, or else as there are processors.

@@ -42,10 +42,12 @@ FLAWS = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class Packed:
-    """By whom islands were packed, and the part of the unit square that they cover."""
+    """By whom islands were packed, in how many UDIM tiles, and the part of these, or of the unit square, that they
+    cover."""
 
     packer: str
     coverage: float
+    tiles: int = 1
 
 
 @dataclass
@@ -88,7 +90,8 @@ def unwrap_file(
     if packing is not None:
         with run.stage("pack"):
             result, packer = laid_out(run.surface, result, packing, layout, part_of(progress, PACKING, 1.0))
-        run.packed = Packed(packer, uv_area(result.corner_uv[result.solved]))
+        tiles = 1 if packing.udim is None else _tiles_in_use(result.corner_uv[result.solved])
+        run.packed = Packed(packer, uv_area(result.corner_uv[result.solved]) / tiles, tiles)
     elif layout is not None:
         result = at_texel_density(run.surface, result, layout)
     if layout is not None:
@@ -99,6 +102,11 @@ def unwrap_file(
         data, findings = format_mesh(file, result.corner_uv, form, None if target is None else target.parent)
         write_output(args.output, data, keep_backup=args.in_place)
     return replace(result, warnings=[*file.findings, *findings, *result.warnings])
+
+
+def _tiles_in_use(uv: NDArray[np.float64]) -> int:
+    """uv: (m, 3, 2), each triangle inside one tile."""
+    return len(np.unique(np.floor(uv.mean(axis=1)), axis=0))
 
 
 def require_flawless(warnings: Sequence[Finding]) -> None:

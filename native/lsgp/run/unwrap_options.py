@@ -18,7 +18,7 @@ from ..api import Compactness, Options, Progress, Seamless, Surface, cut_costs
 from ..arguments import FloatArray
 from ..auto_unwrap import Preset, preset_options
 from ..io.side_files import UsageError
-from ..packing import Pack, Packing
+from ..packing import SHELVES, Pack, Packing
 from ..texels import DEFAULT_MARGIN, MOST_TILES, TexelLayout
 
 DEFAULT_TEXTURE_SIZE = 1024
@@ -248,7 +248,7 @@ def _add_seamless_options(unwrap: argparse.ArgumentParser) -> None:
         metavar="T",
         type=texture_size_option,
         help=f"texels of the texture's side, a power of two; errors are given in them "
-        f"(default: {DEFAULT_TEXTURE_SIZE}); also of --texel-density and --pack tight",
+        f"(default: {DEFAULT_TEXTURE_SIZE}); also of --texel-density, --udim and --pack tight",
     )
     seamless.add_argument(
         "--mip-levels",
@@ -272,8 +272,9 @@ def _add_texel_options(unwrap: argparse.ArgumentParser) -> None:
         "--udim",
         metavar="N",
         type=_tiles_option,
-        help="spread the islands over the UDIM tiles 1001, 1002, ..., each inside one tile of the texture's size "
-        "(default: they stay beside each other, and those outside the unit square are reported)",
+        help="spread the islands over the UDIM tiles 1001, 1002, ..., at most so many, each inside one tile of the "
+        "texture's size: in rows with --texel-density, without it as large as they get, which takes pip install "
+        "'lsgp[pack]' (default: they stay in one square)",
     )
     texels.add_argument(
         "--margin",
@@ -354,13 +355,9 @@ def texture_size(args: argparse.Namespace) -> int:
 
 def texel_layout(args: argparse.Namespace) -> TexelLayout | None:
     """The layout at a texel density; None where none is asked for.  Raises UsageError where options do not fit."""
+    if args.margin is not None and args.udim is None and args.pack != "tight":
+        raise UsageError("--margin is for UDIM tiles or tight layouts; add --udim or --pack tight")
     if args.texel_density is None:
-        if args.udim is not None:
-            raise UsageError("--udim is for layouts at a texel density; add --texel-density")
-        if args.margin is not None and args.pack != "tight":
-            raise UsageError(
-                "--margin is for UDIM tiles or tight layouts; add --texel-density and --udim or --pack tight"
-            )
         return None
     if args.seamless or args.preset == "tile":
         raise UsageError(
@@ -369,8 +366,6 @@ def texel_layout(args: argparse.Namespace) -> TexelLayout | None:
         )
     if args.texture_size is None:
         raise UsageError("--texel-density needs the size of the texture; add --texture-size")
-    if args.margin is not None and args.udim is None and args.pack != "tight":
-        raise UsageError("--margin is for UDIM tiles or tight layouts; add --udim or --pack tight")
     margin = DEFAULT_MARGIN if args.margin is None else args.margin
     if args.udim is not None and 2 * margin >= args.texture_size:
         raise UsageError(f"--margin {margin:g}: a tile of {args.texture_size} texels has no room between its margins")
@@ -382,22 +377,27 @@ def packing_of(args: argparse.Namespace) -> Packing | None:
 
     Raises UsageError where options do not fit; InputError where the packer is not installed.
     """
-    seamless = args.seamless or args.preset == "tile"
-    if seamless or args.udim is not None:
-        if args.pack is not None:
-            kind = "layouts that are not seamless" if seamless else "layouts without UDIM tiles"
-            raise UsageError(f"--pack is for {kind}; leave it out")
+    if args.seamless or args.preset == "tile":
+        for name in ("pack", "udim"):
+            if getattr(args, name) is not None:
+                raise UsageError(f"--{name} is for layouts that are not seamless; leave it out")
         return None
-    if args.pack is None and args.preset is None:
+    if args.udim is not None and args.texel_density is not None:
+        if args.pack is not None:
+            raise UsageError("--pack is for islands that are not in rows; leave it out, or --texel-density or --udim")
+        return None
+    if args.udim is not None and args.pack == SHELVES:
+        raise UsageError("--udim makes a tight layout; leave --pack shelves out, or add --texel-density instead of it")
+    if args.pack is None and args.preset is None and args.udim is None:
         return None
     margin = None if args.margin is None else args.margin / texture_size(args)
-    if args.pack == "tight" and margin is None and args.texture_size is not None:
+    if (args.pack == "tight" or args.udim is not None) and margin is None and args.texture_size is not None:
         margin = DEFAULT_MARGIN / args.texture_size
     if margin is not None and margin >= 0.5:
         raise UsageError(
             f"--margin {margin * texture_size(args):g}: a texture of {texture_size(args)} texels has no room"
         )
-    return Packing(args.pack, margin)
+    return Packing(args.pack, margin, args.udim)
 
 
 def library_options(args: argparse.Namespace) -> Options:
@@ -431,6 +431,7 @@ def library_options(args: argparse.Namespace) -> Options:
         repair=args.repair,
         overlaps=base.overlaps if args.overlaps is None else args.overlaps,
         compact=(base.compact if seamless is None else "off") if args.compact is None else args.compact,
+        square_share=1.0 if args.udim is None else float(args.udim),
     )
 
 
@@ -439,7 +440,8 @@ def _seamless(args: argparse.Namespace, preset: Seamless | None) -> Seamless | N
     base = Seamless() if args.seamless else preset
     if base is None:
         for name in ("tiles", "tile_size", "lattice", "parity", "coarse_grid", "texture_size", "mip_levels"):
-            elsewhere = name == "texture_size" and (args.texel_density is not None or args.pack == "tight")
+            tiled = args.texel_density is not None or args.udim is not None or args.pack == "tight"
+            elsewhere = name == "texture_size" and tiled
             if getattr(args, name) is not None and not elsewhere:
                 raise UsageError(f"--{name.replace('_', '-')} is for seamless layouts; add --seamless")
         return None

@@ -131,9 +131,11 @@ void require_valid(const Options& options) {
     throw Error(Code::wrong_parameter,
                 concat("The share of stretch to take away is ", options.stretch, ". Choose one from 0 to 1."));
   }
-  if (!(options.square_share > 0 && options.square_share <= 1)) {
+  constexpr double most_squares = 100;  // UDIM tiles
+  if (!(options.square_share > 0 && options.square_share <= most_squares)) {
     throw Error(Code::wrong_parameter,
-                concat("The islands' share of the square is ", options.square_share, ". Choose one above 0, up to 1."));
+                concat("The islands' share of the square is ", options.square_share,
+                       ". Choose one above 0, up to the number of UDIM tiles, at most 100."));
   }
   if (options.compact != Compactness::off && options.seamless) {
     throw Error(

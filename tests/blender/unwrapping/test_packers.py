@@ -49,6 +49,11 @@ def add_scene():
     return objects
 
 
+def area(uv_map):
+    placed = uv_map.uv[uv_map.triangles] @ (1, 1j)
+    return np.abs(((placed[:, 1] - placed[:, 0]).conj() * (placed[:, 2] - placed[:, 0])).imag).sum() / 2
+
+
 def complex_corners(objects):
     """Of triangles in UV space, and the number of their island."""
     corners, owner = [], []
@@ -86,12 +91,8 @@ def test_islands_are_apart_and_all_of_one_density(packer, runs, preset):
     if packer == "xatlas" or preset == "BAKE":
         assert TEXELS * around >= 8 * (1 - 1e-3)
         assert TEXELS * gap_between_islands(corners, owner) >= 16 * (1 - 1e-3)
-    density = []
-    for obj in objects:
-        uv_map = UvMap(obj)
-        placed = uv_map.uv[uv_map.triangles] @ (1, 1j)
-        area = np.abs(((placed[:, 1] - placed[:, 0]).conj() * (placed[:, 2] - placed[:, 0])).imag).sum() / 2
-        density.append(np.sqrt(area / sum(face.area for face in obj.data.polygons)) / obj.scale.x)
+    surfaces = [obj.scale.x**2 * sum(face.area for face in obj.data.polygons) for obj in objects]
+    density = [np.sqrt(area(UvMap(obj)) / surface) for obj, surface in zip(objects, surfaces, strict=True)]
     assert max(density) / min(density) < 1.001
 
 
@@ -125,6 +126,63 @@ def test_margins_without_room_are_made_narrower(packer, runs):
     assert bpy.ops.uv.cone_auto_unwrap(texture_size="512", margin=128) == {"FINISHED"}
     assert runs[-1] == "Blender"
     assert covered_twice(map(UvMap, cubes)) == 0
+
+
+def tile_of_islands(objects):
+    """The tile of each island, and whether all of it is inside."""
+    corners, owner = complex_corners(objects)
+    found = []
+    for number in np.unique(owner):
+        places = corners[owner == number].ravel()
+        column, row = np.floor(places.real.mean()), np.floor(places.imag.mean())
+        inside = places - complex(column, row)
+        assert min(inside.real.min(), inside.imag.min(), 1 - inside.real.max(), 1 - inside.imag.max()) > 0
+        found.append((int(column), int(row)))
+    return found
+
+
+@pytest.mark.parametrize("preset", ["PAINT", "BAKE"])
+def test_islands_are_spread_over_udim_tiles(packer, runs, preset):
+    objects = add_scene()
+    assert unwrap(preset=preset) == {"FINISHED"}
+    before = [area(UvMap(obj)) for obj in objects]
+    if packer == "Blender":
+        with pytest.raises(RuntimeError, match="this extension has no packer"):
+            unwrap(preset=preset, udim=2)
+        assert [area(UvMap(obj)) for obj in objects] == before
+        return
+    assert unwrap(preset=preset, udim=2, margin=8) == {"FINISHED"}
+    assert sorted(set(tile_of_islands(objects))) == [(0, 0), (1, 0)]
+    corners, owner = complex_corners(objects)
+    assert TEXELS * gap_between_islands(corners, owner) >= 16 * (1 - 1e-3)
+    grown = [area(UvMap(obj)) / old for obj, old in zip(objects, before, strict=True)]
+    assert min(grown) > 4 / 3
+    assert max(grown) / min(grown) < 1.001
+
+
+@pytest.mark.parametrize("obstacle", ["some are pinned", "not square", "no room"])
+def test_udim_tiles_are_refused_where_islands_cannot_be_spread(obstacle):
+    if lsgp.packer_name() is None:
+        pytest.xfail("there is no xatlas for this Python")
+    objects = add_scene()
+    unwrap()
+    options = {"margin": 250} if obstacle == "no room" else {}
+    if obstacle == "not square":
+        for obj in objects:
+            add_texture(obj, 256, 64)
+    if obstacle == "some are pinned":
+        pin(objects[0], [0], UvMap(objects[0]).uv[[0]])
+    before = [UvMap(obj).uv for obj in objects]
+    with pytest.raises(RuntimeError, match=f"UDIM tiles: .*{obstacle}.*, or set UDIM Tiles to 1"):
+        unwrap(udim=2, **options)
+    assert all(np.array_equal(UvMap(obj).uv, uv) for obj, uv in zip(objects, before, strict=True))
+
+
+def test_an_island_that_is_alone_needs_one_tile():
+    cube = add_cone_cube()
+    assert unwrap(udim=4, compact=False) == {"FINISHED"}
+    uv = UvMap(cube).uv
+    assert UvMap(cube).islands() == 1 and uv.min() >= 0 and uv.max() <= 1
 
 
 def test_operators_with_a_margin_method_are_for_blenders_packer(packer, runs):

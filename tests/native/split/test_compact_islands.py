@@ -132,8 +132,8 @@ def test_strips_become_no_longer_than_the_square() -> None:
 
 def test_a_share_of_the_square_is_one_of_a_larger_one() -> None:
     strip = flat(cells_of("strip"))
-    counts = [unwrap(strip, replace(COMPACT, square_share=share)).island.max() + 1 for share in (1, 0.2, 0.05)]
-    assert counts[0] > counts[1] > counts[2] == 1
+    counts = [unwrap(strip, replace(COMPACT, square_share=share)).island.max() + 1 for share in (4, 1, 0.2, 0.05)]
+    assert counts[0] > counts[1] > counts[2] > counts[3] == 1
 
 
 WHOLE = {
@@ -215,7 +215,7 @@ def test_components_with_pins_keep_their_islands(count: int) -> None:
     ("options", "words"),
     [
         ({"square_share": 0.0}, "share of the square"),
-        ({"square_share": 1.5}, "share of the square"),
+        ({"square_share": 100.5}, "share of the square"),
         ({"square_share": float("nan")}, "share of the square"),
         ({"compact": "full", "seamless": lsgp.Seamless()}, "compact"),
     ],
