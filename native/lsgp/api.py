@@ -184,8 +184,8 @@ class Options:
         seams; "full", wherever more of it is filled than the cut and the further island cost. Transitions stay exact.
         Components with pins keep their islands.
     square_share: with compact, the area that these islands get, 1 being a whole square: less where other surfaces are
-        packed beside them, so that they are cut less; as many as there are UDIM tiles, up to 100, so that they are cut to
-        fill all of them.
+        packed beside them, so that they are cut less; as many as there are UDIM tiles, up to 100, so that all of them
+        are filled.
     factorization: how linear systems are solved; maps differ by rounding only. "cut" factors once and
         leaves dense problems of the size of the cut, "sparse" factors for every step, "automatic" takes the cheaper.
     threads: of large factorizations, up to 1024; the result is the same for any number. 0: as many as the environment

@@ -133,9 +133,8 @@ void require_valid(const Options& options) {
   }
   constexpr double most_squares = 100;  // UDIM tiles
   if (!(options.square_share > 0 && options.square_share <= most_squares)) {
-    throw Error(Code::wrong_parameter,
-                concat("The islands' share of the square is ", options.square_share,
-                       ". Choose one above 0, up to the number of UDIM tiles, at most 100."));
+    throw Error(Code::wrong_parameter, concat("The islands' share of the square is ", options.square_share,
+                                              ". Choose one above 0, up to the number of UDIM tiles, at most 100."));
   }
   if (options.compact != Compactness::off && options.seamless) {
     throw Error(
