@@ -113,14 +113,20 @@ def _python(name: str) -> str:
 
 
 def _signature(name: str, function: Any) -> str:
-    shown = []
     signature = inspect.signature(function)
-    for parameter in signature.parameters.values():
-        default = "" if parameter.default is parameter.empty else f" = {_value(parameter.default)}"
-        kind = "" if parameter.annotation is parameter.empty else f": {parameter.annotation}"
-        shown.append(f"{parameter.name}{kind}{default}")
+    parameters = list(signature.parameters.values())
+    shown = [_parameter(parameter) for parameter in parameters]
+    keyword_only = [i for i, parameter in enumerate(parameters) if parameter.kind is parameter.KEYWORD_ONLY]
+    if keyword_only:
+        shown.insert(keyword_only[0], "*")
     result = "" if signature.return_annotation is signature.empty else f" -> {signature.return_annotation}"
     return f"`{name}({', '.join(shown)}){result}`"
+
+
+def _parameter(parameter: inspect.Parameter) -> str:
+    default = "" if parameter.default is parameter.empty else f" = {_value(parameter.default)}"
+    kind = "" if parameter.annotation is parameter.empty else f": {parameter.annotation}"
+    return f"{parameter.name}{kind}{default}"
 
 
 def _value(default: Any) -> str:

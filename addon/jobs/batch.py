@@ -21,12 +21,14 @@ from ..core.identifiers import CONE_GROUP, IMPORTANCE_GROUP
 from ..mesh.region_read import Faces, Groups, read_region
 from ..mesh.uv_write import write_uv
 from .batch_files import Unreadable, mesh_objects, open_file, save_file
+from .batch_texels import at_density
 from .cuts import cut_choice
 from .directions import direction_choice
 from .maps import final_layouts, packing_of_preset
 from .unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_all, unwrap_task
 
 if TYPE_CHECKING:
+    import lsgp
     from lsgp.batch.records import Record
     from lsgp.batch.tasks import Settings, Task
 
@@ -77,13 +79,14 @@ def _unwrap(task: Task, settings: Settings) -> Record:
         native.part("run.unwrap_file").require_flawless(
             [flaw for _, unwrapped in solved for flaw in unwrapped.result.warnings]
         )
-    for (obj, unwrapped), corner_uv in zip(solved, _layouts([unwrapped for _, unwrapped in solved], args), strict=True):
+    layouts, findings = _layouts([unwrapped for _, unwrapped in solved], args)
+    for (obj, unwrapped), corner_uv in zip(solved, layouts, strict=True):
         write_uv(obj, unwrapped.region, unwrapped.result.solved, corner_uv)
     output = Path(task.out, task.output)
     output.parent.mkdir(parents=True, exist_ok=True)
     with native.part("io.whole_files").whole_file(output, output.suffix, keep_backup=args.in_place) as partial:
         save_file(str(partial))
-    record = _record([unwrapped for _, unwrapped in solved], failures) | {"output": task.output}
+    record = _record([unwrapped for _, unwrapped in solved], findings, failures) | {"output": task.output}
     if settings.pictures:
         largest = max((unwrapped for _, unwrapped in solved), key=lambda found: len(found.region.surface.triangles))
         pictures = native.part("batch.pictures")
@@ -94,7 +97,7 @@ def _unwrap(task: Task, settings: Settings) -> Record:
 
 def _require_fitting(args: argparse.Namespace) -> None:
     """Raise UsageError where options name files with vertices or edges, which can only belong to a single mesh, and
-    where they are for mesh files."""
+    where they are for another way to place islands."""
     cones = native.part("run.unwrap_options").cones_file(args)
     others = {"seam-edges": args.seam_edges, "directions": args.directions, "importance": args.importance}
     for name, value in ({"cones": cones} | others).items():
@@ -102,9 +105,10 @@ def _require_fitting(args: argparse.Namespace) -> None:
             raise native.part("io.side_files").UsageError(
                 f"--{name} with a file is for lsgp batch; here cones, seams and weights are those of the meshes"
             )
-    if args.texel_density is not None:
+    if args.pack == "shelves" or (args.pack is not None and args.texel_density is not None):
         raise native.part("io.side_files").UsageError(
-            "--texel-density is for lsgp batch; in Blender set it in the files, by Set Texel Density"
+            f"--pack {args.pack}{'' if args.texel_density is None else ' at a texel density'} is for lsgp batch; leave "
+            "it out"
         )
 
 
@@ -120,7 +124,8 @@ def _unwrap_task(obj: bpy.types.Object, args: argparse.Namespace) -> UnwrapTask:
         cone_group=CONE_GROUP,
         weight_group=IMPORTANCE_GROUP,
         weight_factor=1.0,
-        use_pins=options.seamless is None,
+        # Pins would have to move with the layout's size.
+        use_pins=options.seamless is None and args.texel_density is None,
         keep_placement=False,
         correct_aspect=options.seamless is None,
         cuts=cut_choice(args),
@@ -134,13 +139,27 @@ def _unwrap_task(obj: bpy.types.Object, args: argparse.Namespace) -> UnwrapTask:
     return replace(task, completes=True, count=unwrap_options.cone_count(args), creases_of=creases_of)
 
 
-def _layouts(solved: Sequence[Unwrapped], args: argparse.Namespace) -> list[NDArray[np.float64]]:
-    """The coordinates of each map as they are written: packed together with a preset.  Raises Refused."""
-    if args.preset is None:
-        return [unwrapped.corner_uv for unwrapped in solved]
-    turned = not direction_choice(args).is_any
-    by_cells = solved[0].result.seamless is not None
-    return final_layouts(solved, packing_of_preset(args.preset, MARGIN, by_cells=by_cells, turned=turned))
+def _layouts(
+    solved: Sequence[Unwrapped], args: argparse.Namespace
+) -> tuple[list[NDArray[np.float64]], list[lsgp.Finding]]:
+    """The coordinates of each map as they are written, and what is to be said of them: packed together with a preset,
+    then at a texel density if that is asked for.  Raises InputError, Refused."""
+    unwrap_options = native.part("run.unwrap_options")
+    layouts = [unwrapped.corner_uv for unwrapped in solved]
+    packing = unwrap_options.packing_of(args)
+    if args.preset is not None or packing is not None:
+        pack = packing_of_preset(
+            args.preset or "bake",
+            MARGIN if packing is None or packing.margin is None else packing.margin,
+            by_cells=solved[0].result.seamless is not None,
+            turned=not direction_choice(args).is_any,
+            udim=1 if packing is None or packing.udim is None else packing.udim,
+        )
+        layouts = final_layouts(solved, pack)
+    texels = unwrap_options.texel_layout(args)
+    if texels is None:
+        return layouts, []
+    return at_density(solved, layouts, texels, share=args.preset is not None)
 
 
 def _nothing_solved(failures: dict[str, Exception]) -> Record:
@@ -160,13 +179,13 @@ def _reasons(failures: dict[str, Exception]) -> str:
     return "; ".join(f"{name}: {explain(error)}" for name, error in failures.items())
 
 
-def _record(solved: Sequence[Unwrapped], failures: dict[str, Exception]) -> Record:
+def _record(solved: Sequence[Unwrapped], findings: Sequence[lsgp.Finding], failures: dict[str, Exception]) -> Record:
     """Sums over the meshes, with the distortion of the one with the highest stretch.  Meshes that were refused beside
-    others count as a warning."""
+    others count as a warning.  findings: about their layouts."""
     results = [unwrapped.result for unwrapped in solved]
     warnings: Counter[str] = Counter()
-    for result in results:
-        warnings.update({finding.code: len(finding.elements.indices) for finding in result.warnings})
+    for found in (*(result.warnings for result in results), findings):
+        warnings.update({finding.code: len(finding.elements.indices) for finding in found})
     if failures:
         warnings["OBJECTS_REFUSED"] = len(failures)
     worst = max((result.distortion for result in results), key=lambda distortion: distortion.l2_stretch)

@@ -37,6 +37,7 @@ class PlacementSettings:
     symmetric: bool
     mirror: tuple[tuple[float, float, float], tuple[float, float, float]] | None
     seams: str
+    threads: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,21 +1,35 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The add-on's preferences: the state of the computing library, and how the overlay looks."""
+"""The add-on's preferences: the state of the computing library, its threads, and how the overlay looks."""
 
 import bpy
 
 from ..core import native
 from ..core.identifiers import EXTENSION
+from ..core.threads import MOST
 from ..overlay.look import CUT_NAMES, OverlayLook
 
 
 class ConeUnwrapPreferences(OverlayLook, bpy.types.AddonPreferences):
     bl_idname = EXTENSION
 
+    threads: bpy.props.IntProperty(
+        name="Threads",
+        description="Threads that unwrapping and placing cones may take; 0: all cores but one, which is left to "
+        "Blender. The UV map is the same for any number",
+        default=0,
+        min=0,
+        max=MOST,
+        soft_max=64,
+    )
+
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
         layout.label(text=native.library_state(), icon="ERROR" if native.PROBLEM else "CHECKMARK")
         if native.REASON:
             layout.label(text=native.REASON)
+        row = layout.row()
+        row.alignment = "LEFT"
+        row.prop(self, "threads")
         layout.separator()
         split = layout.row()
         for heading, names in (

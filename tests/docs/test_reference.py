@@ -20,6 +20,20 @@ def test_every_public_name_is_there_once():
     assert sorted(named) == sorted(lsgp.__all__)
 
 
+def test_signatures_say_what_is_passed_by_name_only():
+    page = (reference.DOCS / "reference" / "python.md").read_text(encoding="utf-8")
+    functions = {f"lsgp.{name}": getattr(lsgp, name) for name in lsgp.__all__ if inspect.isroutine(getattr(lsgp, name))}
+    assert len(functions) > 10
+    for name, function in functions.items():
+        shown = re.search(rf"^`{re.escape(name)}\((.*)\)(?: -> .*)?`$", page, re.MULTILINE)[1]
+        parameters = inspect.getfullargspec(function)
+        assert bool(parameters.kwonlyargs) == ("*" in shown.split(", ")), name
+        for keyword in parameters.kwonlyargs:
+            assert re.search(rf"\*, .*\b{keyword}\b", shown), (name, keyword)
+        for positional in parameters.args:
+            assert re.search(rf"\b{positional}\b", shown.split("*, ")[0]), (name, positional)
+
+
 def test_every_command_is_there_once():
     assert sorted(part for part in reference.parts() if part.startswith("lsgp")) == sorted(reference.commands())
 

@@ -11,6 +11,7 @@ from ...core import findings, native
 from ...core.cone_angles import ConeAngles
 from ...core.errors import Refused, object_errors
 from ...core.region import Region
+from ...core.threads import chosen_threads
 from ...mesh.angles import require_attributes
 from ...mesh.region_read import Faces, Groups, read_region
 from ...mesh.targets import target_objects
@@ -38,7 +39,8 @@ class AngleOperator(ConeGroupProperty, SeamsProperty, BorderProperty, ComputingO
         self.draw_vertex_group(layout, context)
 
     def library_options(self, **more: Any) -> lsgp.Options:
-        return native.lsgp.Options(seams=SEAMS[self.seams][0], border=BORDERS[self.border][0], **more)
+        seams, border = SEAMS[self.seams][0], BORDERS[self.border][0]
+        return native.lsgp.Options(seams=seams, border=border, threads=chosen_threads(), **more)
 
     def objects(self, context: bpy.types.Context) -> list[bpy.types.Object]:
         return target_objects(context)

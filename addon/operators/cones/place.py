@@ -10,6 +10,7 @@ import bpy
 
 from ...core import identifiers
 from ...core.region import Region
+from ...core.threads import chosen_threads
 from ...jobs.placing import PlacementSettings, PlacementTask, place_all, write_placement
 from ...jobs.summaries import placement_summary
 from ...mesh.angles import require_attributes
@@ -112,6 +113,7 @@ class MESH_OT_cone_place(ConeGroupProperty, SeamsProperty, LatticeProperty, Back
             symmetric=self.symmetric,
             mirror=None if normal is None or not self.symmetric else (ORIGIN, normal),
             seams=SEAMS[self.seams][0],
+            threads=chosen_threads(),
         )
 
         def make_task(obj: bpy.types.Object, region: Region) -> PlacementTask:

@@ -11,6 +11,7 @@ import bpy
 
 from ...core import identifiers, native
 from ...core.region import Region
+from ...core.threads import chosen_threads
 from ...jobs.directions import DirectionChoice
 from ...jobs.maps import final_layouts, packing_of_preset, write_map
 from ...jobs.placing import mark_placed
@@ -186,8 +187,9 @@ class UV_OT_cone_auto_unwrap(
     def _options(self) -> lsgp.Options:
         """Raises InputError."""
         options = native.lsgp.preset_options(PRESETS[self.preset][0])
-        options = replace(options, seams=SEAMS[self.seams][0], compact=options.compact if self.compact else "off")
-        options = replace(options, square_share=float(self.udim))
+        compact = options.compact if self.compact else "off"
+        options = replace(options, seams=SEAMS[self.seams][0], compact=compact, square_share=float(self.udim))
+        options = replace(options, threads=chosen_threads())
         if options.seamless is not None:
             options = replace(options, seamless=replace(options.seamless, **self.tile_size_options()))
         return options

@@ -4,6 +4,7 @@
 import bpy
 
 from ...core import native
+from ...core.threads import chosen_threads
 from ...jobs.maps import PackSettings
 from ...jobs.unwrapping import UnwrapSettings
 from ..shared.properties import BORDERS, SEAMS, Choices, DirectionProperty, enum_items
@@ -124,6 +125,7 @@ def unwrap_settings(chosen: bpy.types.OperatorProperties) -> UnwrapSettings:
         stretch=chosen.stretch,
         repair=chosen.repair,
         overlaps=OVERLAPS[chosen.overlaps][0],
+        threads=chosen_threads(),
     )
     return UnwrapSettings(
         options=options,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "api/divided_seams.hpp"
@@ -334,12 +335,31 @@ void Assembly::find_overlapping() {
     }
   }
   double shared = 0;
+  const Array<Index> face = number_faces();
+  Array<char> is_flipped(surface_.triangles.rows(), 0);
+  for (const Index f : result_.flipped) is_flipped[f] = 1;
   for (const Overlap& overlap : result_.flipped.empty() ? find_overlaps(layout_, twin) : find_overlaps(layout_)) {
     shared += overlap.area;
-    result_.overlapping.insert(result_.overlapping.end(), {triangle[overlap.first], triangle[overlap.second]});
+    const Index first = triangle[overlap.first], second = triangle[overlap.second];
+    result_.overlapping.insert(result_.overlapping.end(), {first, second});
+    if (face[overlap.first] != face[overlap.second] || is_flipped[first] || is_flipped[second]) continue;
+    on_own_face_.insert(on_own_face_.end(), {first, second});
   }
   sort_unique(result_.overlapping);
+  sort_unique(on_own_face_);
   result_.overlap_area = shared > 0 ? shared / area : 0;
+}
+
+// Of every triangle of the layout: those that no cut may part are one face.
+Array<Index> Assembly::number_faces() const {
+  Array<Index> out, face;
+  Index before = 0;
+  for (const Solved& solved : solved_) {
+    const Index count = label_parts(solved.component->mesh, solved.component->mesh.cuttable, face);
+    for (const Index own : face) out.push_back(before + own);
+    before += count;
+  }
+  return out;
 }
 
 void Assembly::report_defects() {
@@ -355,24 +375,25 @@ void Assembly::report_defects() {
   const bool foretold = std::any_of(result_.warnings.begin(), result_.warnings.end(),
                                     [](const Finding& finding) { return finding.code == Code::high_distortion; });
   if (!foretold && flipped.empty() && !(result_.distortion.l2_stretch < high_l2)) {
-    result_.warnings.push_back({Code::high_distortion,
-                                concat("The map stretches much: its L2 stretch is ", result_.distortion.l2_stretch,
-                                       ", 1 being none. Add cones where the texture becomes too small."),
-                                {}});
+    result_.warnings.push_back(
+        {Code::high_distortion,
+         concat("The map stretches much: its L2 stretch is ", rounded(result_.distortion.l2_stretch),
+                ", 1 being none. Add cones where the texture becomes too small."),
+         {}});
   }
   if (!inexact_seams_.empty()) {
     result_.warnings.push_back(
         {Code::inexact_seams,
-         concat(
-             "At ", count(inexact_seams_.size() / 2, "cut edge", "cut edges"),
-             " the two sides agree to fewer than nine digits, because the layout shrinks too much there or a part is "
-             "much smaller than the others. Add cones nearby, or unwrap small parts by themselves."),
+         concat("At ", count(inexact_seams_.size() / 2, "cut edge", "cut edges"),
+                " the two sides do not match exactly, because the layout shrinks too much there or a part is much "
+                "smaller than the others. Add cones nearby, or unwrap small parts by themselves."),
          {ElementKind::edges, inexact_seams_}});
   }
   if (!inexact_angles_.empty()) {
     result_.warnings.push_back({Code::inexact_angles,
                                 concat("The angles around ", count(inexact_angles_.size(), "vertex", "vertices"),
-                                       " miss what was imposed by more than a millionth. Add cones nearby."),
+                                       " are not exactly those imposed, but off by up to a degree, because the layout "
+                                       "shrinks too much there. Add cones nearby."),
                                 {ElementKind::vertices, inexact_angles_}});
   }
   if (!flipped.empty()) {
@@ -393,15 +414,28 @@ void Assembly::report_defects() {
 }
 
 void Assembly::report_overlapping() {
-  const std::vector<Index>& overlapping = result_.overlapping;
-  if (overlapping.empty()) return;
-  const char* remedy = options_.overlaps == Overlaps::keep
-                           ? "To bake onto it, choose to split overlaps."
-                           : "They could not be split: unpin corners, or improve the mesh where triangles are flipped.";
-  result_.warnings.push_back(
-      {Code::overlapping_triangles,
-       concat(count(overlapping.size(), "triangle lies", "triangles lie"), " on others in the layout. ", remedy),
-       {ElementKind::triangles, overlapping}});
+  const auto report = [&](const std::vector<Index>& triangles, const char* what) {
+    if (triangles.empty()) return;
+    result_.warnings.push_back({Code::overlapping_triangles,
+                                concat(count(triangles.size(), "triangle lies", "triangles lie"), " on others ", what),
+                                {ElementKind::triangles, triangles}});
+  };
+  if (options_.overlaps == Overlaps::keep) {
+    report(result_.overlapping, "in the layout. To bake onto it, choose to split overlaps.");
+    return;
+  }
+  const bool pinned =
+      std::any_of(solved_.begin(), solved_.end(), [](const Solved& solved) { return solved.map.pins.size() > 1; });
+  std::vector<Index> across_faces;
+  std::set_difference(result_.overlapping.begin(), result_.overlapping.end(), on_own_face_.begin(), on_own_face_.end(),
+                      std::back_inserter(across_faces));
+  report(on_own_face_,
+         "of the same face in the layout, and no cut divides a face. Divide such faces, best into triangles.");
+  report(across_faces, pinned ? "in the layout. Islands with several pins are not split: unpin corners."
+                       : result_.flipped.empty()
+                           ? "in the layout, and could not be split. Move or add cones nearby."
+                           : "in the layout, and could not be split because triangles are flipped. Improve the "
+                             "mesh there, or add a cone nearby.");
 }
 
 }  // namespace lsgp

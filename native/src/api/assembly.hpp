@@ -72,6 +72,7 @@ class Assembly {
 
   void share_map(Index triangle, Index original);
   void find_overlapping();
+  Array<Index> number_faces() const;
   void report_defects();
   void report_overlapping();
 
@@ -85,6 +86,7 @@ class Assembly {
   Array<Index> cut_edges_, inexact_seams_;  // vertex pairs
   AddedCuts added_cuts_;
   Array<Index> inexact_angles_, flat_cones_;
+  std::vector<Index> on_own_face_;  // triangles that lie on others of their face, none of them flipped
   Array<Solved> solved_;
   Array<Failure> failures_;
   Array<Island> islands_;    // those to be arranged

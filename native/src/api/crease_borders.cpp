@@ -44,7 +44,7 @@ VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& con
                            const Progress& progress) {
   if (!(options.angle > 0 && options.angle <= M_PI) || options.most_corners < 0) {
     throw Error(Code::wrong_parameter,
-                concat("Creases begin at an angle of ", options.angle, " and more than ", options.most_corners,
+                concat("Creases begin at an angle of ", options.angle, " radians and more than ", options.most_corners,
                        " corners. Give an angle above 0, at most pi, and a number of corners that is not negative."));
   }
   StageSeconds seconds;

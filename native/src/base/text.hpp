@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <locale>
 #include <sstream>
 #include <string>
@@ -25,6 +26,27 @@ std::string concat(const Parts&... parts) {
 template <typename Integer>
 std::string count(Integer n, const char* one, const char* many) {
   return concat(n, " ", n == 1 ? one : many);
+}
+
+// A number with a few significant digits.
+inline std::string rounded(double value, int digits = 4) {
+  if (value == 0 || !std::isfinite(value)) return concat(value);
+  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - (digits - 1));
+  return std::isfinite(unit) && unit > 0 ? concat(std::round(value / unit) * unit) : concat(value);
+}
+
+// An angle as people read it; rounding noise around whole degrees is none.
+inline std::string degrees(double radians) {
+  constexpr double parts = 1e4;  // of a degree
+  const double shown = std::round(radians * 180 / M_PI * parts) / parts;
+  return concat(shown == 0 ? 0.0 : shown, " degrees");
+}
+
+// A factor given by its natural logarithm, beyond millions by its power of ten.
+inline std::string factor(double log) {
+  constexpr double millions = 6;  // digits
+  const double power = log / std::log(10.0);
+  return power < millions ? rounded(std::exp(log), 3) : concat("10^", std::round(power));
 }
 
 // The first few indices, and that there are more.

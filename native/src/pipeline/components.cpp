@@ -315,7 +315,7 @@ Geometry require_geometry(const Component& component, std::vector<Finding>& find
   findings.push_back(
       {Code::degenerate_faces,
        concat(count(geometry.degenerate.size(), "triangle has", "triangles have"),
-              " no area; they were given a little for the computation. Merge by distance to be rid of them."),
+              " no area, and got a little for the computation. Merge by distance to be rid of this note."),
        in_source(component, {ElementKind::triangles, geometry.degenerate})});
   return geometry;
 }
@@ -333,8 +333,8 @@ void report_border_cones(const Component& component, const Array<Index>& border_
   findings.push_back(
       {Code::cone_on_boundary,
        concat(count(border_cones.size(), "cone lies", "cones lie"),
-              " on an open border, where angles are free anyway; nothing was prescribed there. Give it an "
-              "angle to make it a corner."),
+              " on an open border, where angles are free anyway; nothing was prescribed there. Give an angle to make a "
+              "corner."),
        in_source(component, {ElementKind::vertices, border_cones})});
 }
 

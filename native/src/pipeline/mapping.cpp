@@ -92,8 +92,7 @@ void require_range(const Curvature& curvature, double widest) {
   const double range = curvature.log_scale.maxCoeff() - curvature.log_scale.minCoeff();
   if (range < widest) return;
   throw Error(Code::solver_failed,
-              concat("With these cones and angles lengths in the layout would differ by a factor of 10^",
-                     std::round(range / std::log(10.0)),
+              concat("With these cones and angles lengths in the layout would differ by a factor of ", factor(range),
                      ", more than numbers can hold. Add cones where the texture becomes too small, or let angles that "
                      "were given be chosen."));
 }
@@ -321,8 +320,8 @@ void Mapping::report_adjusted(const ComponentMap& map, const Continuation& end, 
       {Code::angles_adjusted,
        concat("No map without flips was found for the angles given; this one has angles ",
               std::round(100 * end.reached), " % of the way to them from those of least distortion, up to ",
-              off * 180 / M_PI, " degrees off. Take angles nearer to the automatic ones, or subdivide the mesh at ",
-              "the cones."),
+              rounded(off * 180 / M_PI, 3),
+              " degrees off. Take angles nearer to the automatic ones, or subdivide the mesh at ", "the cones."),
        {ElementKind::vertices, map.cones}});
 }
 

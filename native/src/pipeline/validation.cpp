@@ -204,7 +204,7 @@ void require_valid(const Surface& surface) {
   if (!bad.empty()) {
     throw Error(Code::non_finite_position,
                 concat(count(bad.size(), "vertex has", "vertices have"),
-                       " a coordinate that is not a finite number. Move or delete them."),
+                       " a coordinate that is not a finite number. Move or delete ", bad.size() == 1 ? "it." : "them."),
                 {ElementKind::vertices, bad});
   }
   require_extent(surface.positions, used);

@@ -32,6 +32,15 @@ void require_room(const ConeChoice& choice) {
               {ElementKind::vertices, choice.vertices});
 }
 
+// What is off in a map.
+std::string told(const TriedMap& map) {
+  if (map.failed) return "there is no map";
+  const auto angles = count(map.wrong_angles, "vertex", "vertices"), seams = count(map.inexact_seams, "edge", "edges");
+  if (map.inexact_seams == 0) return concat("angles are off at ", angles);
+  if (map.wrong_angles == 0) return concat("the two sides do not match at ", seams, " of cuts");
+  return concat("angles are off at ", angles, " and the two sides do not match at ", seams, " of cuts");
+}
+
 // Cones that somebody marked stay, and the map says what is wrong with it; others are no result.
 void require_right(const VerifiedChoice& choice, bool has_marked) {
   const TriedMap& map = choice.map;
@@ -39,10 +48,7 @@ void require_right(const VerifiedChoice& choice, bool has_marked) {
   throw Error(
       Code::solver_failed,
       concat("No cones were found with which the angles and seams of this part come out right: with ",
-             count(choice.cones.vertices.size(), "cone", "cones"), ", ",
-             map.failed ? std::string("there is no map")
-                        : concat("angles are off at ", count(map.wrong_angles, "vertex", "vertices"), " and seams at ",
-                                 count(map.inexact_seams, "cut edge", "cut edges")),
+             count(choice.cones.vertices.size(), "cone", "cones"), ", ", told(map),
              ". Place more of them, mark cones at tips and branches, or cut the part into simpler ones along seams."),
       {ElementKind::vertices, choice.cones.vertices});
 }

@@ -20,7 +20,7 @@ const char* remedy_for(MissingCones::Why why) {
       return "the places that are left come in mirrored pairs. Ask for one more or one fewer.";
     case MissingCones::Why::no_room: break;
   }
-  return "no other vertex inside it is left where a cone may be. Ask for fewer, or subdivide it.";
+  return "no other inner vertex is left where a cone may be. Ask for fewer, or subdivide the mesh there.";
 }
 
 void append(Array<Index>& to, const Array<Index>& more) { to.insert(to.end(), more.begin(), more.end()); }
@@ -65,8 +65,8 @@ Finding Shortfalls::told_of_stretch() const {
   Array<Index> places = all_have_cones_ ? cones_ : triangles_;
   std::sort(places.begin(), places.end());
   const std::string cones = count(worst_cones_, "cone", "cones");
-  const std::string stretch =
-      std::isfinite(worst_l2_) ? concat("has an L2 stretch of ", worst_l2_) : "has flipped triangles or wrong angles";
+  const std::string stretch = std::isfinite(worst_l2_) ? concat("has an L2 stretch of ", rounded(worst_l2_))
+                                                       : "has flipped triangles or wrong angles";
   const std::string missed =
       parts_ == 1
           ? concat("With ", cones, " the map ", stretch, "; an L2 stretch of ", options_.target, " was asked for. ")

@@ -98,17 +98,16 @@ Array<Index> cones_at(const Bottleneck& at, const Array<Index>& named) {
 [[noreturn]] void refuse(const Bottleneck& at, From from, const Eigen::VectorXd& angle, Array<Index> cones) {
   double sum = 0;
   for (const Index v : at.vertices) sum += angle[v];
-  const double carried = M_PI * at.triangles, degrees = 180 / M_PI;
+  const double carried = M_PI * at.triangles;
   const std::string around =
       concat("The ", count(at.triangles, "triangle", "triangles"), " around ", count(cones.size(), "cone", "cones"));
-  throw Error(
-      Code::angles_impossible,
-      from == From::vertices
-          ? concat(around, " can carry less than ", carried * degrees, " degrees, but the angles there add up to ",
-                   sum * degrees, ". Lower them or subdivide the mesh there.")
-          : concat(around, " carry more than ", carried * degrees, " degrees, but the angles there add up to only ",
-                   sum * degrees, ". Raise them or subdivide the mesh there."),
-      {ElementKind::vertices, std::move(cones)});
+  throw Error(Code::angles_impossible,
+              from == From::vertices
+                  ? concat(around, " can carry less than ", degrees(carried), ", but the angles there add up to ",
+                           degrees(sum), ". Lower them or subdivide the mesh there.")
+                  : concat(around, " carry more than ", degrees(carried), ", but the angles there add up to only ",
+                           degrees(sum), ". Raise them or subdivide the mesh there."),
+              {ElementKind::vertices, std::move(cones)});
 }
 
 }  // namespace

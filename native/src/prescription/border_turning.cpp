@@ -43,9 +43,9 @@ class LoopScales {
       double sum = 0;
       for (const auto& turning : wanted) sum += *turning;
       if (!(std::abs(sum - before.sum()) <= mismatch)) {
-        throw Error(Code::loop_turning, concat("The turning prescribed for all borders adds up to ", sum / M_PI,
-                                               " pi, but with these cone angles it has to be ", before.sum() / M_PI,
-                                               " pi. Leave the turning of one border free."));
+        throw Error(Code::loop_turning, concat("The turning prescribed for all borders adds up to ", degrees(sum),
+                                               ", but with these cone angles it has to be ", degrees(before.sum()),
+                                               ". Leave the turning of one border free."));
       }
       loops.pop_back();
     }

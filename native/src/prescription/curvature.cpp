@@ -57,11 +57,19 @@ bool all_fixed(const ComponentCones& cones) {
   return std::all_of(cones.angles.begin(), cones.angles.end(), [](const auto& angle) { return angle.has_value(); });
 }
 
-[[noreturn]] void throw_gauss_bonnet(const ComponentCones& cones, double sum, double required, const char* remedy) {
+// How a sum of curvatures is bounded: the angles are all given, or some are chosen.
+enum class Sum { is, is_at_most, is_at_least };
+
+[[noreturn]] void throw_gauss_bonnet(const ComponentCones& cones, Sum how, double sum, double required) {
+  const char* bound = how == Sum::is ? "" : how == Sum::is_at_most ? "at most " : "at least ";
+  const std::string missing = concat(rounded(std::abs(required - sum) * 180 / M_PI), " degrees");
   throw Error(Code::gauss_bonnet,
               concat("The ", count(cones.vertices.size(), "cone angle leaves", "cone angles leave"), " a curvature of ",
-                     sum / M_PI, " pi in sum (", sum, "), but this surface requires ", required / M_PI, " pi (",
-                     required, "). ", remedy),
+                     bound, degrees(sum), " in sum, but this surface requires ", degrees(required), ": the angles are ",
+                     missing, " too ", sum < required ? "large" : "small", " together. ",
+                     how == Sum::is ? "Change an angle, or leave one automatic to take up the rest."
+                                    : "The automatic cones cannot take up the rest: change the given angles or add "
+                                      "cones."),
               {ElementKind::vertices, cones.vertices});
 }
 
@@ -82,6 +90,12 @@ Eigen::VectorXd least_distortion(const HalfedgeMesh& mesh, const ComponentCones&
     start = nearest_with_sum(bounds.low, bounds.high, start, required);
   }
   return scale.least_distortion_curvature(bounds.low, bounds.high, std::move(start));
+}
+
+// Where it is a number to compare others with.
+std::string expected_stretch(double l2) {
+  constexpr double telling = 1e6;
+  return l2 < telling ? concat("an L2 stretch of ", rounded(l2), " is expected, 1 being none, and ") : "";
 }
 
 bool possible(const HalfedgeMesh& mesh, Index vertex, double curvature) {
@@ -128,13 +142,13 @@ std::optional<Eigen::VectorXd> straightness(ComponentSystem& system, const Compo
   std::string failure = layout.failure;
   for (Index i = 0; i < k && failure.empty(); ++i) {
     if (!possible(mesh, cones.vertices[i], curvature[i])) {
-      failure = concat("a cone would keep an angle of ", 2 - curvature[i] / M_PI, " pi");
+      failure = concat("a cone would keep an angle of ", degrees(2 * M_PI - curvature[i]));
     }
   }
   if (!failure.empty()) {
     findings.push_back({Code::straightness_failed,
-                        concat("Straight cuts give no usable cone angles here: ", failure, " (", layout.crossings,
-                               " crossings at first). The least-distortion angles were used instead."),
+                        concat("Straight cuts give no usable cone angles here: ", failure,
+                               ". The least-distortion angles were used instead."),
                         {ElementKind::vertices, cones.vertices}});
     return std::nullopt;
   }
@@ -148,7 +162,7 @@ std::optional<Eigen::VectorXd> straightness(ComponentSystem& system, const Compo
   }
   if (!junction_vertices.empty()) {
     findings.push_back({Code::junction_share,
-                        concat("Straight cuts left a curvature of ", junctions / M_PI, " pi (", junctions, ") at ",
+                        concat("Straight cuts left a curvature of ", degrees(junctions), " at ",
                                count(junction_vertices.size(), "junction", "junctions"),
                                " of the cut; it was shared out evenly among the cones."),
                         {ElementKind::vertices, junction_vertices}});
@@ -198,19 +212,19 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, con
   if (cones.vertices.empty()) {
     if (std::abs(required) < renormalized_mismatch) return;
     if (!mesh.closed()) {
-      throw Error(Code::too_few_cones, concat("A straight border has to turn by ", required / M_PI,
-                                              " pi in all, at marked corners. Mark the "
-                                              "border's corners as cones, or leave the border free."));
+      throw Error(Code::too_few_cones, concat("A straight border has to turn by ", degrees(required),
+                                              " in all, at marked corners. Mark the border's corners as cones, or "
+                                              "leave the border free."));
     }
     throw Error(Code::too_few_cones,
-                concat("A closed surface without cones cannot be unfolded: its curvature of ", required / M_PI,
-                       " pi has to go somewhere. Mark cones at tips and corners, or place them automatically."));
+                concat("A closed surface without cones cannot be unfolded: its curvature of ", degrees(required),
+                       " has to go somewhere. Mark cones at tips and corners, or place them automatically."));
   }
   const Bounds widest = widest_bounds(mesh, cones);
   if (all_fixed(cones)) {
     const double sum = widest.low.sum();
     if (std::abs(sum - required) > renormalized_mismatch) {
-      throw_gauss_bonnet(cones, sum, required, "Change an angle, or leave one automatic to take up the rest.");
+      throw_gauss_bonnet(cones, Sum::is, sum, required);
     }
     return;
   }
@@ -218,13 +232,14 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, con
   const bool some_fixed =
       std::any_of(cones.angles.begin(), cones.angles.end(), [](const auto& a) { return a.has_value(); });
   if (some_fixed) {
-    throw_gauss_bonnet(cones, required < widest.low.sum() ? widest.low.sum() : widest.high.sum(), required,
-                       "The automatic cones cannot take up the rest: change the given angles or add cones.");
+    if (required < widest.low.sum()) throw_gauss_bonnet(cones, Sum::is_at_least, widest.low.sum(), required);
+    throw_gauss_bonnet(cones, Sum::is_at_most, widest.high.sum(), required);
   }
+  const char* most = required > 0 ? ", less than 360 degrees each" : " with the triangles around them";
   throw Error(
       Code::too_few_cones,
       concat(count(cones.vertices.size(), "cone cannot", "cones cannot"), " take up the surface's curvature of ",
-             required / M_PI, " pi, less than 2 pi each. Mark more cones, or place them automatically."),
+             degrees(required), most, ". Mark more cones, or place them automatically."),
       {ElementKind::vertices, cones.vertices});
 }
 
@@ -302,8 +317,8 @@ Curvature impose(const HalfedgeMesh& mesh, const Geometry& geometry, const Compo
   const double range = out.log_scale.maxCoeff() - out.log_scale.minCoeff();
   if (!(out.predicted_l2 < high_l2 && range < wide_range)) {
     findings.push_back({Code::high_distortion,
-                        concat("With these cones the map stretches much: an L2 stretch of ", out.predicted_l2,
-                               " is expected, 1 being none, and lengths that differ by a factor of ", std::exp(range),
+                        concat("With these cones the map stretches much: ", expected_stretch(out.predicted_l2),
+                               "lengths in it would differ by a factor of ", factor(range),
                                ". Add cones where the texture becomes too small."),
                         {ElementKind::vertices, asked.vertices}});
   }

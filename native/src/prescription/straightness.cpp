@@ -171,9 +171,9 @@ StraightenedLayout straighten(const CutSurface& surface) {
   StraightBoundary boundary(std::move(sides.segments), unfold_spectral(surface, sides.reduction));
 
   StraightenedLayout layout;
-  layout.crossings = boundary.count_crossings();
   // Each swap lowers the number of crossings.
-  while (boundary.count_crossings() > 0 && boundary.swap_worst()) ++layout.swaps;
+  while (boundary.count_crossings() > 0 && boundary.swap_worst()) {
+  }
   const int left_over = boundary.count_crossings();
 
   layout.curvature = Eigen::VectorXd::Zero(mesh.vertex_count());
@@ -192,11 +192,10 @@ StraightenedLayout straighten(const CutSurface& surface) {
   }
   const double total = layout.curvature.sum(), required = 2 * M_PI * mesh.euler;
   if (left_over > 0) {
-    layout.failure = concat(count(left_over, "pair of straight cuts crosses", "pairs of straight cuts cross"),
-                            " even after ", count(layout.swaps, "swap", "swaps"));
+    layout.failure = concat(count(left_over, "pair of them crosses", "pairs of them cross"), " in the plane");
   } else if (std::abs(total - required) > turn_tolerance) {
-    layout.failure = concat("the angles between the straight cuts leave a curvature of ", total / M_PI,
-                            " pi where the surface requires ", required / M_PI, " pi");
+    layout.failure = concat("the angles between the straight cuts leave a curvature of ", degrees(total),
+                            " where the surface requires ", degrees(required));
   }
   return layout;
 }

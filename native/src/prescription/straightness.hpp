@@ -13,8 +13,6 @@ namespace lsgp {
 struct StraightenedLayout {
   Eigen::VectorXd curvature;  // (n) read at every node of the cut graph, 0 elsewhere
   std::string failure;        // why the angles cannot be used, empty where they can
-  int crossings = 0;          // between straight cuts, before any swap
-  int swaps = 0;              // of cone positions that removed crossings
 };
 
 // Lays the opened surface, closed before, out with every side of every cut straight and least conformal distortion,

@@ -249,7 +249,7 @@ void report_growth(double growth, std::vector<Finding>& findings) {
                       concat("No grid of up to ", most_tiles,
                              " cells was found that costs at most a tenth in "
                              "distortion; this one makes that of a part ",
-                             growth,
+                             rounded(growth, 3),
                              " times as large. Move cones that "
                              "are close to each other apart, use fewer, or unwrap small parts by themselves."),
                       {}});
@@ -443,7 +443,7 @@ void report_cones_given_up(const SeamlessReport& report, std::vector<Finding>& f
   if (!report.relaxed_cones.empty()) {
     findings.push_back({Code::cones_not_snapped,
                         concat(count(report.relaxed_cones.size(), "cone found", "cones found"),
-                               " no place on the grid; cuts towards it show a seam of up to ", report.error,
+                               " no place on the grid; cuts towards it show a seam of up to ", rounded(report.error, 2),
                                " tiles. Use smaller tiles, or merge cones."),
                         {ElementKind::vertices, report.relaxed_cones}});
   }

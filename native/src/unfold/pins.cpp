@@ -133,9 +133,10 @@ PinnedMap move_onto_pins(const HalfedgeMesh& mesh, const Geometry& geometry, con
   out.position.array() += origin - displacement[pins.front().copy];
   const double miss = largest_miss(pins, out.position);
   if (!(miss <= met * size)) {
-    throw_conflict(cut_mesh, pins,
-                   concat("The pins contradict the rotations across the cuts: ", count(pins.size(), "pin", "pins"),
-                          " cannot all be met, the worst is missed by ", miss, ". Unpin vertices beside cuts."));
+    throw_conflict(
+        cut_mesh, pins,
+        concat("The pins contradict the rotations across the cuts: ", count(pins.size(), "pin", "pins"),
+               " cannot all be met, the worst is missed by ", rounded(miss, 3), ". Unpin vertices beside cuts."));
   }
   return out;
 }

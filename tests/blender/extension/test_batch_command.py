@@ -158,14 +158,104 @@ def test_options_that_name_files_of_one_mesh_are_refused(library, tmp_path):
     assert "cones, seams and weights are those of the meshes" in line["message"]
 
 
-def test_a_texel_density_is_for_mesh_files(library, tmp_path):
-    (library / "list.txt").write_text("two.blend\n")
+def density_in_world(obj, texture_size):
+    """Texels per unit of length of the whole map: by shoelaces of the faces' UVs, beside their areas in the world."""
+    matrix, mesh = np.array(obj.matrix_world), obj.data
+    uv = np.array([entry.vector for entry in mesh.uv_layers.active.uv])
+    places = np.array([matrix[:3, :3] @ vertex.co for vertex in mesh.vertices])
+    texels = area = 0.0
+    for face in mesh.polygons:
+        u, v = uv[list(face.loop_indices)].T
+        texels += abs(u @ np.roll(v, -1) - v @ np.roll(u, -1)) / 2 * texture_size**2
+        corners = places[list(face.vertices)]
+        area += np.linalg.norm(np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0)) / 2
+    return np.sqrt(texels / area)
+
+
+@pytest.fixture
+def scaled(tmp_path):
+    """A list of a file with a cube and two that are twice as large in the world."""
+    add_cube("Plain", cuts=1)
+    for name in ("Scaled", "Twin"):
+        add_cube(name, cuts=1).scale = (2, 2, 2)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scaled.blend"), copy=True)
+    clear()
+    (tmp_path / "list.txt").write_text("scaled.blend\n")
+    return tmp_path / "list.txt"
+
+
+@pytest.mark.parametrize("preset", [[], ["--preset", "paint"]])
+def test_all_objects_get_the_texel_density_that_is_asked_for(scaled, tmp_path, preset):
     out = tmp_path / "out"
-    assert run(library / "list.txt", "--out", out, "--texel-density", 100, "--texture-size", 1024) == 3
+    assert run(scaled, "--out", out, "--texel-density", 20, "--texture-size", 512, *preset, "--no-pictures") == 0
     (line,) = lines_of(out)
-    assert (line["status"], line["code"]) == ("refused", "WRONG_USAGE")
-    assert "by Set Texel Density" in line["message"]
-    assert not list(out.rglob("*.blend"))
+    assert "ISLANDS_OUTSIDE" not in line["warnings"]
+    bpy.ops.wm.open_mainfile(filepath=str(out / "scaled.blend"))
+    objects = [bpy.data.objects[name] for name in ("Plain", "Scaled", "Twin")]
+    assert [density_in_world(obj, 512) for obj in objects] == pytest.approx([20, 20, 20], rel=0.02 if preset else 1e-4)
+    if preset:
+        assert covered_twice([UvMap(obj) for obj in objects]) == 0
+
+
+def test_a_texel_density_that_the_square_cannot_hold_is_a_warning_or_takes_tiles(scaled, tmp_path):
+    # 6 faces of 2 x 2 and 12 of 4 x 4 at 100 texels per unit: 2.2 million texels, eight times those of the texture.
+    how = ["--preset", "paint", "--texel-density", 100, "--texture-size", 512, "--no-pictures"]
+    assert run(scaled, "--out", tmp_path / "square", *how) == 0
+    assert lines_of(tmp_path / "square")[0]["warnings"]["ISLANDS_OUTSIDE"] > 0
+
+    assert run(scaled, "--out", tmp_path / "few", *how, "--udim", 2) == 3
+    (line,) = lines_of(tmp_path / "few")
+    assert line["code"] in {"TOO_FEW_TILES", "ISLAND_TOO_LARGE"}
+    assert "triangles" not in line["message"]  # those of both objects together, which nobody could find
+
+
+@pytest.mark.parametrize("preset", [[], ["--preset", "bake"]])
+def test_tiles_without_a_density_are_filled(scaled, tmp_path, preset):
+    out = tmp_path / "out"
+    how = [*preset, "--udim", 2, "--margin", 8, "--texture-size", 512, "--overlaps", "split"]
+    if addon.core.native.lsgp.packer_name() is None:
+        assert run(scaled, "--out", out, *how, "--no-pictures") == 3
+        assert lines_of(out)[0]["code"] == "PACKER_NOT_INSTALLED"
+        return
+    assert run(scaled, "--out", out, *how, "--no-pictures") == 0
+    bpy.ops.wm.open_mainfile(filepath=str(out / "scaled.blend"))
+    objects = [bpy.data.objects[name] for name in ("Plain", "Scaled", "Twin")]
+    uv = np.concatenate([UvMap(obj).uv for obj in objects])
+    assert set(np.floor(uv[:, 0])) == {0, 1} and set(np.floor(uv[:, 1])) == {0}
+    inside = uv % 1
+    assert inside.min() > 7.99 / 512 and inside.max() < 1 - 7.99 / 512
+    densities = [density_in_world(obj, 512) for obj in objects]
+    assert max(densities) / min(densities) < 1.001
+
+
+@pytest.mark.parametrize("options", [["--pack", "shelves"], ["--pack", "tight", "--texel-density", 9, "--margin", 1]])
+def test_other_ways_to_pack_are_refused(scaled, tmp_path, options):
+    if "tight" in options and addon.core.native.lsgp.packer_name() is None:
+        options = ["--pack", "shelves"]
+    sized = ["--texture-size", 512] if "tight" in options else []
+    assert run(scaled, "--out", tmp_path / "out", "--preset", "bake", *options, *sized) == 3
+    (line,) = lines_of(tmp_path / "out")
+    assert line["code"] == "WRONG_USAGE" and "is for lsgp batch" in line["message"]
+
+
+def test_tiles_are_shared_by_all_objects(scaled, tmp_path):
+    out = tmp_path / "out"
+    how = ["--preset", "bake", "--texel-density", 60, "--texture-size", 1024, "--udim", 4, "--margin", 8]
+    assert run(scaled, "--out", out, *how, "--no-pictures") == 0
+    bpy.ops.wm.open_mainfile(filepath=str(out / "scaled.blend"))
+    maps = [UvMap(bpy.data.objects[name]) for name in ("Plain", "Scaled", "Twin")]
+    tiles = np.unique(np.concatenate([np.floor(uv_map.uv) for uv_map in maps]), axis=0)
+    assert len(tiles) > 1
+    for uv_map in maps:
+        inside = uv_map.uv % 1
+        assert inside.min() > 7.9 / 1024 and inside.max() < 1 - 7.9 / 1024
+    beside = np.array([0, 1e-4])  # of points of the raster, which lie on diagonals of the squares
+    for tile in tiles:
+        for uv_map in maps:
+            uv_map.uv -= tile + beside
+        assert covered_twice(maps) == 0
+        for uv_map in maps:
+            uv_map.uv += tile + beside
 
 
 def test_wrong_usage(tmp_path):

@@ -150,7 +150,7 @@ def test_straightness_on_octa_flower_keeps_the_sum_and_nearly_the_best_stretch()
     assert len(junctions) > 0
     finding = only(result.warnings, "JUNCTION_SHARE")
     assert finding.elements.indices.tolist() == junctions.tolist()
-    share = float(re.search(r"(-?[\d.]+) pi", finding.message)[1]) / 4
+    share = float(re.search(r"(-?[\d.]+) degrees", finding.message)[1]) / 720
     assert 0 < abs(share) < 0.02  # of the whole curvature
     assert result.distortion.l2_stretch <= 1.01 * default_map("octa-flower").distortion.l2_stretch
 

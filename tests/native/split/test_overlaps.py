@@ -251,7 +251,31 @@ def test_face_on_itself_cannot_be_split_and_is_reported() -> None:
     border = np.stack([tail, head], axis=1)[twin < 0].astype(np.int32)
     result = unrolled(50, SPLIT, edges=border)
     assert len(result.cut_edges) == 0 and len(result.overlapping) == len(unrolled(50).overlapping)
-    assert "could not be split" in only(result.warnings, "OVERLAPPING_TRIANGLES").message
+    warning = only(result.warnings, "OVERLAPPING_TRIANGLES")
+    assert "of the same face" in warning.message and "Divide such faces" in warning.message
+    assert "flipped" not in warning.message and "unpin" not in warning.message
+    assert np.array_equal(np.sort(warning.elements.indices), result.overlapping)
+
+
+def test_only_triangles_of_faces_on_themselves_are_left_and_named() -> None:
+    """The outer half of a strip is one polygon that winds round more than once, the inner half are quads."""
+    mesh, half, rings = wound(50), 4, 9
+    radius = np.arange(len(mesh.positions)) % rings
+    edges = quads_of(mesh)
+    inside = (radius[edges] >= half).all(axis=1) & ~(radius[edges] == half).all(axis=1)
+    tail, head, twin = oracle.halfedges(mesh.triangles)
+    border = pairs(np.stack([tail, head], axis=1)[twin < 0])
+    allowed = [
+        edge for edge, is_inside in zip(edges.tolist(), inside, strict=True) if not is_inside or tuple(edge) in border
+    ]
+    result = unrolled(50, SPLIT, edges=np.array(allowed, np.int32))
+    face = np.flatnonzero((radius[mesh.triangles] >= half).all(axis=1))
+    warning = only(result.warnings, "OVERLAPPING_TRIANGLES")
+    assert "of the same face" in warning.message
+    named = warning.elements.indices
+    assert len(named) and np.isin(named, face).all()
+    both, shared = overlaps(result.corner_uv @ [1, 1j])
+    assert np.isin(both[shared > 1e-12], named).all()
 
 
 def test_specks_that_lie_on_the_rest_are_split_off() -> None:

@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How many threads the library may take, as the artist chose in the preferences."""
+
+import bpy
+
+from .identifiers import EXTENSION
+
+MOST = 1024
+"""That the library takes."""
+
+
+def chosen_threads() -> int:
+    """0 for the library's default, see `native`.  Only in Blender's main thread."""
+    return bpy.context.preferences.addons[EXTENSION].preferences.threads
