@@ -50,7 +50,7 @@ from .io.mesh_files import MeshFile, read_mesh_file, write_mesh_file
 from .islands import correct_aspect, fit_placement
 from .ledger import LedgerPart, build_ledger, hold_complete, part_surface
 from .packing import pack_islands, packer_name
-from .quads import QuadMesh, QuadRemesh, extract_quads, remesh_to_quads
+from .quads import QuadMesh, QuadQuality, QuadRemesh, extract_quads, quad_quality, remesh_to_quads, smooth_quads
 from .texels import TexelDensity, TexelLayout, at_texel_density, texel_density, triangle_texel_density
 from .triangles import TriangleDistortion, singular_values, triangle_distortion
 
@@ -74,6 +74,7 @@ __all__ = [
     "Placement",
     "Prescription",
     "QuadMesh",
+    "QuadQuality",
     "QuadRemesh",
     "RepairReport",
     "Result",
@@ -110,9 +111,11 @@ __all__ = [
     "place_cones",
     "prescribe_curvature",
     "preset_options",
+    "quad_quality",
     "read_mesh_file",
     "remesh_to_quads",
     "singular_values",
+    "smooth_quads",
     "split_into_paths",
     "texel_density",
     "triangle_distortion",

@@ -15,11 +15,15 @@ from .api import Options, Progress, Result, Seamless, Solver, Surface, surface_a
 from .arguments import FloatArray, IndexArray
 from .auto_unwrap import CompletedCones, complete_cones, part_of
 from .equality import EqualByContent
-from .errors import Finding, InputError
+from .errors import Finding, InputError, SolverError
 from .triangles import uv_area
 
 # Of the time that a remesh takes, where placing the cones and where the layouts end.
 _PLACED, _LAID_OUT = 0.6, 0.95
+# What layouts are warned of does not matter to the grid on the surface.
+_OF_LAYOUTS_ALONE = frozenset({"OVERLAPPING_TRIANGLES"})
+_MOST_QUADS = 2**28
+_MOST_STEPS = 1000
 # A number of quads further than this from what was asked for, as a share of it, gets a second try.
 _NEAR = 0.02
 
@@ -47,6 +51,22 @@ class QuadMesh(EqualByContent):
     def irregular(self) -> IndexArray:
         """The vertices, ascending, at which not four quads meet: those at cones."""
         return np.flatnonzero(self.valences != 4).astype(np.int32)
+
+
+@dataclass(frozen=True, slots=True)
+class QuadQuality:
+    """How far the quads of a mesh are from squares of one size.
+
+    angle_error: mean deviation of their corners from a right angle, radians; worst_angle_error: the largest.
+    edge_deviation: standard deviation of the edges' lengths, relative to their mean; shortest_edge, longest_edge:
+        relative to it as well.
+    """
+
+    angle_error: float
+    worst_angle_error: float
+    edge_deviation: float
+    shortest_edge: float
+    longest_edge: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -103,11 +123,13 @@ def remesh_to_quads(
     cones, angles: as of `parameterize`; they are kept. Components without cones, or whose cones cannot take up their
         curvature, get some, as by `auto_unwrap`. count: how many on each component that gets some.
     target: how many quads there are to be; the number comes near it, or is more where so few leave no valid layout.
-        size: or the side of a quad on the surface, in its unit. Neither: the coarsest grid that costs at most a tenth in
-        distortion.
-    options: of the layout, as of `parameterize`; None: `Options(seamless=Seamless())`. Its `seamless` has no size of its
-        own, and lies on squares without parity.
-    progress: as for `parameterize`.  Raises as `parameterize` and `extract_quads` do.
+        size: or the side of a quad on the surface, in its unit. Neither: the coarsest grid that costs at most a tenth
+        in distortion.
+    options: of the layout, as of `parameterize`; None: `Options(seamless=Seamless())`. Its `seamless` has no size of
+        its own, and lies on squares without parity.
+    Where the surface has `directions`, rows of quads run along them as far as the cones let them.
+    progress: as for `parameterize`.  Raises as `parameterize` and `extract_quads` do, OPEN_SURFACE before any work is
+    done; COMPONENT_SKIPPED where a part has no layout.
     """
     arguments.require_callable(progress)
     arrays = surface_arrays(surface)
@@ -116,10 +138,57 @@ def remesh_to_quads(
     _lsgp.require_closed(arrays)
     completed = complete_cones(surface, cones, angles, chosen, count, part_of(progress, 0.0, _PLACED))
     layout = _lay_out(surface, completed, chosen, target, part_of(progress, _PLACED, _LAID_OUT))
+    _require_whole(layout)
     layout = completed.told(layout, chosen)
     rest = part_of(progress, _LAID_OUT, 1.0)
     mesh = extract_quads(surface, layout.corner_uv, chosen.seamless.cell, rest)
-    return QuadRemesh(mesh, layout, layout.warnings)
+    return QuadRemesh(mesh, layout, [finding for finding in layout.warnings if finding.code not in _OF_LAYOUTS_ALONE])
+
+
+def smooth_quads(surface: Surface, mesh: QuadMesh, steps: int = 10, progress: Progress | None = None) -> QuadMesh:
+    """Even out the quads of `extract_quads` or `remesh_to_quads` on their surface.
+
+    In each step every regular vertex goes half way to the middle of its neighbours, along the surface, and to the
+    nearest point of it around there. Irregular vertices stay at their cones. Edges become more alike; corners that the
+    layout has kept right may lose that, and quads that are large beside what they lie on may fold: `quad_quality`
+    tells. progress: as for `parameterize`.  Raises InputError, Cancelled.
+    """
+    arguments.require_callable(progress)
+    arguments.require_type("mesh", mesh, QuadMesh)
+    steps = arguments.whole_number("steps", steps, 0, f"pass a number from 0 to {_MOST_STEPS}")
+    if steps > _MOST_STEPS:
+        arguments.refuse("steps", steps, f"pass a number from 0 to {_MOST_STEPS}")
+    held = {name: getattr(mesh, name) for name in mesh.__dataclass_fields__}
+    return QuadMesh(**_lsgp.smooth_quads(surface_arrays(surface), held, steps, progress))
+
+
+def quad_quality(positions: ArrayLike, quads: ArrayLike) -> QuadQuality:
+    """Measure quads.  positions: (v, 3). quads: (q, 4) vertices, at least one.  Raises InputError."""
+    positions = arguments.float_rows("positions", positions, 3)
+    quads = arguments.index_rows("quads", quads, 4)
+    if not len(quads):
+        raise InputError("EMPTY_MESH", "There are no quads to measure. Pass those of a mesh.")
+    arguments.require_indices("quads", quads, len(positions))
+    size = np.abs(positions).max()
+    if not (math.isfinite(size) and size > 0):
+        raise InputError("NON_FINITE_POSITION", "Positions are not finite, or all are 0. Pass those of a mesh.")
+    corners = (positions / size)[quads]
+    ahead = np.roll(corners, -1, axis=1) - corners
+    back = np.roll(corners, 1, axis=1) - corners
+    doubled_area = np.linalg.norm(np.cross(ahead, back), axis=2)
+    errors = np.abs(np.arctan2(doubled_area, (ahead * back).sum(axis=2)) - math.pi / 2)
+    # A mesh's edge is in two quads, so that all count alike.
+    lengths = np.linalg.norm(ahead, axis=2)
+    mean = lengths.mean()
+    if mean == 0:
+        raise InputError("DEGENERATE_MESH", "All quads are points. Pass those of a mesh.")
+    return QuadQuality(
+        angle_error=float(errors.mean()),
+        worst_angle_error=float(errors.max()),
+        edge_deviation=float(lengths.std() / mean),
+        shortest_edge=float(lengths.min() / mean),
+        longest_edge=float(lengths.max() / mean),
+    )
 
 
 def _options(options: Options | None) -> Options:
@@ -138,12 +207,16 @@ def _options(options: Options | None) -> Options:
 def _side(surface: Surface, target: int | None, size: float | None) -> float | None:
     """The side of a quad; None where the grid is to be the coarsest one."""
     if target is not None and size is not None:
-        raise InputError("WRONG_PARAMETER", "Both a number and a size of quads are given; pass one of them.")
+        raise InputError(
+            "WRONG_PARAMETER", "target and size both say how many quads there are to be; pass one of them."
+        )
     if size is not None:
         return arguments.positive("size", size)
     if target is None:
         return None
-    target = arguments.whole_number("target", target, 1, "pass how many quads there are to be")
+    target = arguments.whole_number("target", target, 1, f"pass how many quads there are to be, up to {_MOST_QUADS}")
+    if target > _MOST_QUADS:
+        arguments.refuse("target", target, f"pass how many quads there are to be, up to {_MOST_QUADS}")
     corners = surface.positions[surface.triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     return math.sqrt(0.5 * float(np.linalg.norm(normals, axis=1).sum()) / target)
@@ -164,6 +237,13 @@ def _lay_out(
     again = replace(options, seamless=replace(options.seamless, tile_size=side))
     second = solver.parameterize(completed.cones, completed.angles, again, progress=part_of(progress, 0.5, 1.0))
     return min(layout, second, key=lambda found: abs(_quad_count(found) - target))
+
+
+def _require_whole(layout: Result) -> None:
+    """Raises SolverError with why a part has no layout."""
+    for finding in layout.warnings:
+        if finding.code == "COMPONENT_SKIPPED":
+            raise SolverError(finding.code, finding.message, finding.elements)
 
 
 def _quad_count(layout: Result) -> int:

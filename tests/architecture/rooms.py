@@ -167,6 +167,7 @@ API = (
     "lattice",
     "ledger",
     "packing",
+    "quads",
     "texel_raster",
     "texels",
     "triangles",
@@ -187,6 +188,10 @@ SOURCES = {
     "split": (),
     "placement": ("split",),
     "seamless": ("placement",),
+    "quads": (
+        *("solvers", "plane", "cut", "systems", "unfold", "prescription", "repair", "pipeline", "split", "placement"),
+        "seamless",
+    ),
     "api": (),
 }
 

@@ -73,6 +73,7 @@ def examples() -> list[object]:
         lsgp.place_cones(whole),
         lsgp.cone_gains(whole),
         lsgp.measure_distortion(whole, result.corner_uv),
+        lsgp.remesh_to_quads(whole, BALL.cones, target=200).mesh,
         lsgp.triangle_distortion(whole, result.corner_uv),
         part,
         lsgp.Elements("triangles", np.array([3, 4], np.int32)),
