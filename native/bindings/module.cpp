@@ -518,25 +518,6 @@ py::dict to_dict(const lsgp::QuadMesh& mesh) {
   return out;
 }
 
-lsgp::QuadMesh to_quad_mesh(const py::dict& fields) {
-  lsgp::QuadMesh mesh;
-  mesh.positions = to_matrix<lsgp::Positions>(fields["positions"].cast<FloatArray>());
-  mesh.quads = to_matrix<lsgp::Quads>(fields["quads"].cast<IndexArray>());
-  mesh.valences = to_vector(fields["valences"].cast<IndexArray>());
-  mesh.triangles = to_vector(fields["triangles"].cast<IndexArray>());
-  mesh.weights = to_matrix<lsgp::Positions>(fields["weights"].cast<FloatArray>());
-  mesh.surface_vertices = to_vector(fields["surface_vertices"].cast<IndexArray>());
-  return mesh;
-}
-
-py::dict smooth_quads(const SurfaceArrays& surface_arrays, const py::dict& fields, int steps,
-                      const py::object& progress) {
-  const lsgp::Surface surface = to_surface(surface_arrays);
-  const lsgp::QuadMesh mesh = to_quad_mesh(fields);
-  const lsgp::Progress tell = to_progress(progress);
-  return to_dict(without_gil([&] { return lsgp::smooth_quads(surface, mesh, steps, tell); }));
-}
-
 py::dict extract_quads(const SurfaceArrays& surface_arrays, const FloatArray& corner_uv, double cell,
                        const py::object& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
@@ -575,5 +556,4 @@ PYBIND11_MODULE(_lsgp, module) {
   module.def("measure_distortion", &measure_distortion, "surface"_a, "corner_uv"_a, "cones"_a, "progress"_a);
   module.def("require_closed", &require_closed, "surface"_a);
   module.def("extract_quads", &extract_quads, "surface"_a, "corner_uv"_a, "cell"_a, "progress"_a);
-  module.def("smooth_quads", &smooth_quads, "surface"_a, "mesh"_a, "steps"_a, "progress"_a);
 }

@@ -50,7 +50,7 @@ from .io.mesh_files import MeshFile, read_mesh_file, write_mesh_file
 from .islands import correct_aspect, fit_placement
 from .ledger import LedgerPart, build_ledger, hold_complete, part_surface
 from .packing import pack_islands, packer_name
-from .quads import QuadMesh, QuadQuality, QuadRemesh, extract_quads, quad_quality, remesh_to_quads, smooth_quads
+from .quads import QuadMesh, QuadQuality, QuadRemesh, extract_quads, quad_quality, remesh_to_quads
 from .texels import TexelDensity, TexelLayout, at_texel_density, texel_density, triangle_texel_density
 from .triangles import TriangleDistortion, singular_values, triangle_distortion
 
@@ -115,7 +115,6 @@ __all__ = [
     "read_mesh_file",
     "remesh_to_quads",
     "singular_values",
-    "smooth_quads",
     "split_into_paths",
     "texel_density",
     "triangle_distortion",

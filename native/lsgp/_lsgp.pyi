@@ -97,9 +97,3 @@ def extract_quads(
     cell: float,
     progress: Callable[[float], bool | None] | None,
 ) -> dict[str, Any]: ...
-def smooth_quads(
-    surface: _Surface,
-    mesh: dict[str, Any],
-    steps: int,
-    progress: Callable[[float], bool | None] | None,
-) -> dict[str, Any]: ...

@@ -23,7 +23,6 @@ _PLACED, _LAID_OUT = 0.6, 0.95
 # What layouts are warned of does not matter to the grid on the surface.
 _OF_LAYOUTS_ALONE = frozenset({"OVERLAPPING_TRIANGLES"})
 _MOST_QUADS = 2**28
-_MOST_STEPS = 1000
 # A number of quads further than this from what was asked for, as a share of it, gets a second try.
 _NEAR = 0.02
 
@@ -143,23 +142,6 @@ def remesh_to_quads(
     rest = part_of(progress, _LAID_OUT, 1.0)
     mesh = extract_quads(surface, layout.corner_uv, chosen.seamless.cell, rest)
     return QuadRemesh(mesh, layout, [finding for finding in layout.warnings if finding.code not in _OF_LAYOUTS_ALONE])
-
-
-def smooth_quads(surface: Surface, mesh: QuadMesh, steps: int = 10, progress: Progress | None = None) -> QuadMesh:
-    """Even out the quads of `extract_quads` or `remesh_to_quads` on their surface.
-
-    In each step every regular vertex goes half way to the middle of its neighbours, along the surface, and to the
-    nearest point of it around there. Irregular vertices stay at their cones. Edges become more alike; corners that the
-    layout has kept right may lose that, and quads that are large beside what they lie on may fold: `quad_quality`
-    tells. progress: as for `parameterize`.  Raises InputError, Cancelled.
-    """
-    arguments.require_callable(progress)
-    arguments.require_type("mesh", mesh, QuadMesh)
-    steps = arguments.whole_number("steps", steps, 0, f"pass a number from 0 to {_MOST_STEPS}")
-    if steps > _MOST_STEPS:
-        arguments.refuse("steps", steps, f"pass a number from 0 to {_MOST_STEPS}")
-    held = {name: getattr(mesh, name) for name in mesh.__dataclass_fields__}
-    return QuadMesh(**_lsgp.smooth_quads(surface_arrays(surface), held, steps, progress))
 
 
 def quad_quality(positions: ArrayLike, quads: ArrayLike) -> QuadQuality:

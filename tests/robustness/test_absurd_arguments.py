@@ -22,7 +22,6 @@ EDGES = meshes.edges_of(BALL.triangles)
 WHOLE = surface(BALL, seams=BALL.triangles[:3, :2], edges=EDGES, cut_costs=np.linspace(0.5, 2, len(EDGES)))
 RESULT = lsgp.parameterize(WHOLE, BALL.cones, None, lsgp.Options(seamless=lsgp.Seamless()))
 FINE_RESULT = lsgp.parameterize(WHOLE, BALL.cones, None, lsgp.Options(seamless=lsgp.Seamless(tiles=16)))
-QUADS = lsgp.extract_quads(WHOLE, FINE_RESULT.corner_uv)
 FREE_RESULT = lsgp.parameterize(WHOLE, BALL.cones)
 ANGLES = list(RESULT.cone_angles)
 PARTS = lsgp.build_ledger(WHOLE, BALL.cones)
@@ -109,7 +108,6 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             **{"options": lsgp.Options(seamless=lsgp.Seamless()), "count": 4, "progress": None},
         },
     ),
-    "smooth_quads": (lsgp.smooth_quads, {"surface": WHOLE, "mesh": QUADS, "steps": 2, "progress": None}),
     "singular_values": (lsgp.singular_values, {"surface": WHOLE, "corner_uv": RESULT.corner_uv}),
     "triangle_distortion": (lsgp.triangle_distortion, {"surface": WHOLE, "corner_uv": RESULT.corner_uv}),
     "texel_density": (lsgp.texel_density, TEXELS),

@@ -34,11 +34,6 @@ struct QuadMesh {
 LSGP_API QuadMesh extract_quads(const Surface& surface, const CornerUv& corner_uv, double cell = 1,
                                 const Progress& progress = {});
 
-// Evens out quads: in each of so many steps every regular vertex goes half way to the middle of its neighbours, along
-// the surface, and to the nearest point of it around there. Irregular ones stay. mesh: of extract_quads on this
-// surface. Throws WRONG_PARAMETER, and what `parameterize` throws for arrays that are no surface.
-LSGP_API QuadMesh smooth_quads(const Surface& surface, const QuadMesh& mesh, int steps, const Progress& progress = {});
-
 // Throws OPEN_SURFACE or NOT_ORIENTABLE where a surface cannot be covered with quads, whatever its layout, and what
 // `parameterize` throws for arrays that are no surface.
 LSGP_API void require_closed(const Surface& surface);

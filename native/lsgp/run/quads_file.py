@@ -18,7 +18,7 @@ from ..io.polygons import PolygonMesh
 from ..io.safe_files import is_standard_stream
 from ..io.side_files import UsageError, cones_in, load_json
 from ..io.whole_files import write_output
-from ..quads import QuadQuality, QuadRemesh, remesh_to_quads, smooth_quads
+from ..quads import QuadQuality, QuadRemesh, remesh_to_quads
 from .unwrap_file import Run, read_file
 from .unwrap_options import add_cones_option, add_mode_option, add_stretch_option, cone_count, cones_file
 
@@ -46,13 +46,6 @@ def add_quads_options(quads: argparse.ArgumentParser) -> None:
         "(default: as it fits)",
     )
     quads.add_argument(
-        "--smooth",
-        metavar="STEPS",
-        type=int,
-        default=0,
-        help="even out the quads on the surface, in so many steps; irregular vertices stay (default: 0)",
-    )
-    quads.add_argument(
         "--coarse-grid",
         choices=["refine", "merge"],
         default="refine",
@@ -71,8 +64,6 @@ def require_quads_output(args: argparse.Namespace) -> None:
 def quads_file(args: argparse.Namespace, run: Run, progress: Progress | None = None) -> QuadRemesh:
     """Cover args.input with quads and write them into args.output.  Raises OSError, UsageError, LsgpError."""
     options = _options(args)
-    if args.smooth < 0:
-        raise UsageError(f"--smooth {args.smooth}: a number of steps is 0 or more")
     if args.up is not None and not all(map(math.isfinite, args.up)):
         raise UsageError("--up takes finite numbers; give the model's up, as 0 1 0")
     path = cones_file(args)
@@ -90,9 +81,6 @@ def quads_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
             count=cone_count(args),
             progress=progress,
         )
-    if args.smooth:
-        with run.stage("smooth_quads"):
-            remesh = replace(remesh, mesh=smooth_quads(surface, remesh.mesh, args.smooth))
     mesh = PolygonMesh(remesh.mesh.positions, remesh.mesh.quads.ravel(), np.full(len(remesh.mesh.quads), 4, np.int64))
     with run.stage("write_file"):
         write_output(args.output, format_obj(mesh, np.full((len(mesh.corners), 2), np.nan)))

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "base/array.hpp"
@@ -31,10 +32,9 @@ void require_valid(const Surface& surface, const CornerUv& corner_uv, double cel
     if (!(corner_uv.middleRows<3>(3 * f) / cell).allFinite()) without.push_back(f);
   }
   if (without.empty()) return;
-  throw Error(Code::wrong_parameter,
-              concat(count(without.size(), "triangle has", "triangles have"),
-                     " no texture coordinates. Lay out the whole surface."),
-              {ElementKind::triangles, std::move(without)});
+  const std::string what = concat(count(without.size(), "triangle has", "triangles have"),
+                                  " no texture coordinates. Lay out the whole surface.");
+  throw Error(Code::wrong_parameter, what, {ElementKind::triangles, std::move(without)});
 }
 
 void require_closed(const Component& component) {
@@ -49,11 +49,11 @@ void require_closed(const Component& component) {
     border.push_back(component.source_vertex[component.mesh.target(h)]);
   }
   if (border.empty()) return;
-  throw Error(Code::open_surface,
-              concat("The surface has a border of ", count(border.size() / 2, "edge", "edges"),
-                     ", along which the grid would be cut off between its lines. Close the surface: fill its holes, "
-                     "merge vertices by distance, and remove faces inside."),
-              {ElementKind::edges, std::move(border)});
+  const std::string what =
+      concat("The surface has a border of ", count(border.size() / 2, "edge", "edges"),
+             ", along which the grid would be cut off between its lines. Close the surface: fill its holes, "
+             "merge vertices by distance, and remove faces inside.");
+  throw Error(Code::open_surface, what, {ElementKind::edges, std::move(border)});
 }
 
 // Without seams: the mesh runs on across them.

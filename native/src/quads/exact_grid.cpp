@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "base/text.hpp"
 
@@ -95,12 +96,12 @@ class GridBuilder {
       edges.push_back(mesh_.target(h));
     }
     if (edges.empty()) return;
-    throw Error(Code::inexact_seams,
-                concat("Across ", count(edges.size() / 2, "edge", "edges"),
-                       " the layout does not go on by quarter turns and whole cells; it is off by up to ", worst,
-                       " cells. Make a seamless layout on squares with all cones on its grid, give the side of its "
-                       "cells, and do not move or scale its islands."),
-                {ElementKind::edges, std::move(edges)});
+    const std::string what =
+        concat("Across ", count(edges.size() / 2, "edge", "edges"),
+               " the layout does not go on by quarter turns and whole cells; it is off by up to ", worst,
+               " cells. Make a seamless layout on squares with all cones on its grid, give the side of its "
+               "cells, and do not move or scale its islands.");
+    throw Error(Code::inexact_seams, what, {ElementKind::edges, std::move(edges)});
   }
 
   // Puts a vertex to the multiple of `step` that is nearest to its first corner, and its other corners accordingly.
@@ -123,11 +124,11 @@ class GridBuilder {
       if (orient(grid_.at[3 * f], grid_.at[3 * f + 1], grid_.at[3 * f + 2]) <= 0) flipped.push_back(f);
     }
     if (flipped.empty()) return;
-    throw Error(Code::flipped_triangles,
-                concat(count(flipped.size(), "triangle is", "triangles are"),
-                       " flipped or without area in the layout. Make a layout without, with other cones or smaller "
-                       "cells."),
-                {ElementKind::triangles, std::move(flipped)});
+    const std::string what =
+        concat(count(flipped.size(), "triangle is", "triangles are"),
+               " flipped or without area in the layout. Make a layout without, with other cones or smaller "
+               "cells.");
+    throw Error(Code::flipped_triangles, what, {ElementKind::triangles, std::move(flipped)});
   }
 
   void measure_angles() {
@@ -143,20 +144,20 @@ class GridBuilder {
     }
     refuse_off_grid(std::move(off_grid));
     if (narrow.empty()) return;
-    throw Error(Code::cone_angle_range,
-                concat(count(narrow.size(), "cone has", "cones have"),
-                       " an angle of 90 degrees. A single quad would meet itself there: give cones 180 degrees or "
-                       "more."),
-                {ElementKind::vertices, std::move(narrow)});
+    const std::string what =
+        concat(count(narrow.size(), "cone has", "cones have"),
+               " an angle of 90 degrees. A single quad would meet itself there: give cones 180 degrees or "
+               "more.");
+    throw Error(Code::cone_angle_range, what, {ElementKind::vertices, std::move(narrow)});
   }
 
   static void refuse_off_grid(Array<Index> vertices) {
     if (vertices.empty()) return;
-    throw Error(Code::cones_not_snapped,
-                concat(count(vertices.size(), "cone does", "cones do"),
-                       " not lie on a corner of the grid. Make the layout without parity, and with smaller cells "
-                       "where cones were left off the grid."),
-                {ElementKind::vertices, std::move(vertices)});
+    const std::string what =
+        concat(count(vertices.size(), "cone does", "cones do"),
+               " not lie on a corner of the grid. Make the layout without parity, and with smaller cells "
+               "where cones were left off the grid.");
+    throw Error(Code::cones_not_snapped, what, {ElementKind::vertices, std::move(vertices)});
   }
 
   const HalfedgeMesh& mesh_;

@@ -2,6 +2,7 @@
 #include "quads/quad_faces.hpp"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "base/text.hpp"
@@ -36,11 +37,11 @@ void require_fine(const GridVertices& vertices, const GridEdges& edges) {
   for (const Index v : find_doubled(edges)) triangles.push_back(vertices[v].triangle);
   if (triangles.empty()) return;
   sort_unique(triangles);
-  throw Error(Code::grid_too_coarse,
-              concat("The grid is too coarse for a mesh at ", count(triangles.size(), "place", "places"),
-                     ": a quad would have a vertex twice, or two vertices more than one edge. Choose smaller cells, or "
-                     "more quads."),
-              {ElementKind::triangles, std::move(triangles)});
+  const std::string what =
+      concat("The grid is too coarse for a mesh at ", count(triangles.size(), "place", "places"),
+             ": a quad would have a vertex twice, or two vertices more than one edge. Choose smaller cells, or "
+             "more quads.");
+  throw Error(Code::grid_too_coarse, what, {ElementKind::triangles, std::move(triangles)});
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from quad_checks import distances, layout_area, require_quads_of, sides
 
 BALL = meshes.bumpy_sphere(3)
+SINGLE = 1e-5  # cells: what layouts of some dozen cells lose in single precision
 PAIR = meshes.merge([meshes.cube(3), meshes.torus()])
 SURFACES = {
     "cube": meshes.cube(4),
@@ -84,10 +85,10 @@ def test_a_cube_becomes_a_cube_of_squares(n: int, k: int) -> None:
     found = lsgp.remesh_to_quads(upright, mesh.cones, size=side / k).mesh
     assert len(found.quads) == 6 * k * k
     steps = (found.positions - mesh.positions.min(axis=0)) / (side / k)
-    assert np.abs(steps - np.round(steps)).max() <= 1e-9
+    assert np.abs(steps - np.round(steps)).max() <= SINGLE
     assert len(np.unique(np.round(steps), axis=0)) == len(found.positions) == 6 * k * k + 2
     quality = lsgp.quad_quality(found.positions, found.quads)
-    assert quality.worst_angle_error <= 1e-7 and quality.longest_edge - quality.shortest_edge <= 1e-9
+    assert quality.worst_angle_error <= SINGLE and quality.longest_edge - quality.shortest_edge <= SINGLE
 
 
 @pytest.mark.parametrize("cells", [(9, 5), (18, 10), (3, 3), (7, 13), (100, 4)])
@@ -118,7 +119,7 @@ def canonical(quads: NDArray[np.integer]) -> list[list[int]]:
 def test_lines_of_the_grid_through_vertices_and_along_edges(seed: int) -> None:
     """Vertices on multiples of half a cell: every kind of touching, many times."""
     random = np.random.default_rng(seed)
-    mesh, uv = flat_torus((18, 10))
+    mesh, uv = flat_torus((36, 20))
     moves = random.integers(-1, 2, (len(mesh.positions), 2)) / 2
     uv = uv + moves[mesh.triangles]
     require_quads_of(mesh, uv, lsgp.extract_quads(surface(mesh), uv))
