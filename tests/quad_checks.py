@@ -7,10 +7,19 @@ from collections import Counter
 
 import lsgp
 import numpy as np
-from meshes import Mesh, euler_characteristic
+from meshes import Mesh, euler_characteristic, torus
 from numpy.typing import NDArray
 
 TOLERANCE = 1e-12  # of positions, relative to the surface's size
+
+
+def flat_torus(cells: tuple[float, float], around: int = 9, along: int = 5) -> tuple[Mesh, NDArray[np.float64]]:
+    """A torus, and its layout as a rectangle of so many cells."""
+    mesh = torus(around, along)
+    place = np.stack(np.divmod(np.arange(len(mesh.positions)), around)[::-1], axis=1)[mesh.triangles]
+    size = np.array([around, along])
+    wrapped = place + size * ((place == 0) & (place.max(axis=1, keepdims=True) == size - 1))
+    return mesh, wrapped * (np.array(cells) / size)
 
 
 def sides(quads: NDArray[np.int32]) -> Counter:

@@ -126,15 +126,17 @@ def remesh_to_quads(
         in distortion.
     options: of the layout, as of `parameterize`; None: `Options(seamless=Seamless())`. Its `seamless` has no size of
         its own, and lies on squares without parity.
-    Where the surface has `directions`, rows of quads run along them as far as the cones let them.
+    Where the surface has `directions`, rows of quads run along them as far as the cones let them; its seams do not
+    matter.
     progress: as for `parameterize`.  Raises as `parameterize` and `extract_quads` do, OPEN_SURFACE before any work is
     done; COMPONENT_SKIPPED where a part has no layout.
     """
     arguments.require_callable(progress)
-    arrays = surface_arrays(surface)
+    arguments.require_type("surface", surface, Surface)
+    surface = replace(surface, seams=None)
     chosen = _options(options)
     chosen = replace(chosen, seamless=replace(chosen.seamless, tile_size=_side(surface, target, size)))
-    _lsgp.require_closed(arrays)
+    _lsgp.require_closed(surface_arrays(surface))
     completed = complete_cones(surface, cones, angles, chosen, count, part_of(progress, 0.0, _PLACED))
     layout = _lay_out(surface, completed, chosen, target, part_of(progress, _PLACED, _LAID_OUT))
     _require_whole(layout)
