@@ -14,6 +14,7 @@ from map_checks import surface
 from meshes import Mesh
 from numpy.typing import NDArray
 from quad_checks import distances, flat_torus, require_quads_of, sides
+from shared_meshes import shared_mesh
 
 BALL = meshes.bumpy_sphere(3)
 SINGLE = 1e-5  # cells: what layouts of some dozen cells lose in single precision
@@ -146,6 +147,13 @@ def test_layouts_of_fewer_turns_are_traced_as_well(lattice: str) -> None:
     require_quads_of(mesh, layout.corner_uv, lsgp.extract_quads(surface(mesh), layout.corner_uv))
 
 
+@pytest.mark.parametrize("name", ["cube-768", "eight-genus2", "kitten-genus1"])
+def test_quads_of_real_meshes(name: str) -> None:
+    mesh = shared_mesh(name)
+    remesh = lsgp.remesh_to_quads(surface(mesh), target=500)
+    require_quads_of(mesh, remesh.layout.corner_uv, remesh.mesh)
+
+
 def test_turned_triangles_come_out_turned_like_the_others() -> None:
     """A mesh whose triangles are turned at random has the quads of the majority's orientation."""
     mesh = meshes.with_flipped(BALL, range(0, 100, 7))
@@ -172,9 +180,8 @@ def test_seams_leave_no_trace() -> None:
 def test_the_number_of_quads_comes_near_the_target(target: int) -> None:
     found = lsgp.remesh_to_quads(surface(BALL), target=target)
     assert abs(len(found.mesh.quads) - target) <= 0.1 * target
-    area = (
-        np.linalg.norm(np.cross(*np.diff(BALL.positions[BALL.triangles], axis=1).transpose(1, 0, 2)), axis=1).sum() / 2
-    )
+    sides_of_triangles = np.diff(BALL.positions[BALL.triangles], axis=1)
+    area = np.linalg.norm(np.cross(sides_of_triangles[:, 0], sides_of_triangles[:, 1]), axis=1).sum() / 2
     assert found.layout.seamless.tile_size == pytest.approx(np.sqrt(area / target), rel=0.1)
 
 
