@@ -25,6 +25,9 @@ _OF_LAYOUTS_ALONE = frozenset({"OVERLAPPING_TRIANGLES"})
 _MOST_QUADS = 2**28
 # A number of quads further than this from what was asked for, as a share of it, gets a second try.
 _NEAR = 0.02
+# Where quads are too large for a mesh: by how much smaller ones are tried, and how often.
+_FINER = 0.8
+_MOST_REFINEMENTS = 12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -121,7 +124,8 @@ def remesh_to_quads(
 
     cones, angles: as of `parameterize`; they are kept. Components without cones, or whose cones cannot take up their
         curvature, get some, as by `auto_unwrap`. count: how many on each component that gets some.
-    target: how many quads there are to be; the number comes near it, or is more where so few leave no valid layout.
+    target: how many quads there are to be; the number comes near it, or is more where so few leave no valid layout or
+        would be no mesh (GRID_REFINED).
         size: or the side of a quad on the surface, in its unit. Neither: the coarsest grid that costs at most a tenth
         in distortion.
     options: of the layout, as of `parameterize`; None: `Options(seamless=Seamless())`. Its `seamless` has no size of
@@ -135,15 +139,14 @@ def remesh_to_quads(
     arguments.require_type("surface", surface, Surface)
     surface = replace(surface, seams=None)
     chosen = _options(options)
-    chosen = replace(chosen, seamless=replace(chosen.seamless, tile_size=_side(surface, target, size)))
     _lsgp.require_closed(surface_arrays(surface))
+    chosen = replace(chosen, seamless=replace(chosen.seamless, tile_size=_side(surface, target, size)))
     completed = complete_cones(surface, cones, angles, chosen, count, part_of(progress, 0.0, _PLACED))
-    layout = _lay_out(surface, completed, chosen, target, part_of(progress, _PLACED, _LAID_OUT))
-    _require_whole(layout)
-    layout = completed.told(layout, chosen)
-    rest = part_of(progress, _LAID_OUT, 1.0)
-    mesh = extract_quads(surface, layout.corner_uv, chosen.seamless.cell, rest)
-    return QuadRemesh(mesh, layout, [finding for finding in layout.warnings if finding.code not in _OF_LAYOUTS_ALONE])
+    layouts = _Layouts(surface, completed, chosen)
+    layout = layouts.nearest(target, part_of(progress, _PLACED, _LAID_OUT))
+    mesh, layout = layouts.extracted(layout, part_of(progress, _LAID_OUT, 1.0))
+    warnings = [finding for finding in layout.warnings if finding.code not in _OF_LAYOUTS_ALONE]
+    return QuadRemesh(mesh, layout, warnings)
 
 
 def quad_quality(positions: ArrayLike, quads: ArrayLike) -> QuadQuality:
@@ -202,32 +205,63 @@ def _side(surface: Surface, target: int | None, size: float | None) -> float | N
     if target > _MOST_QUADS:
         arguments.refuse("target", target, f"pass how many quads there are to be, up to {_MOST_QUADS}")
     corners = surface.positions[surface.triangles]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return math.sqrt(0.5 * float(np.linalg.norm(normals, axis=1).sum()) / target)
+    with np.errstate(over="ignore", invalid="ignore"):  # the verbs refuse such a surface by name
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        return math.sqrt(0.5 * float(np.linalg.norm(normals, axis=1).sum()) / target)
 
 
-def _lay_out(
-    surface: Surface, completed: CompletedCones, options: Options, target: int | None, progress: Progress | None
-) -> Result:
-    """The layout, on a grid of another size where rounding has taken the first one away from its target."""
-    solver = Solver(surface)
-    layout = solver.parameterize(completed.cones, completed.angles, options, progress=part_of(progress, 0.0, 0.5))
-    if target is None:
-        return layout
-    quads = _quad_count(layout)
-    if abs(quads - target) <= _NEAR * target or any(finding.code == "GRID_REFINED" for finding in layout.warnings):
-        return layout
-    side = options.seamless.tile_size * math.sqrt(quads / target)
-    again = replace(options, seamless=replace(options.seamless, tile_size=side))
-    second = solver.parameterize(completed.cones, completed.angles, again, progress=part_of(progress, 0.5, 1.0))
-    return min(layout, second, key=lambda found: abs(_quad_count(found) - target))
+class _Layouts:
+    """Layouts of one surface through the same cones, on grids of any size.
+
+    options: seamless ones, with the side of the first grid's cells.
+    """
+
+    def __init__(self, surface: Surface, completed: CompletedCones, options: Options) -> None:
+        self._surface, self._completed, self._options = surface, completed, options
+        self._solver = Solver(surface)
+
+    def nearest(self, target: int | None, progress: Progress | None) -> Result:
+        """On the first grid, or on one of another size where rounding has taken that away from its target."""
+        side = self._options.seamless.tile_size
+        layout = self._lay_out(side, part_of(progress, 0.0, 0.5))
+        if target is None or any(finding.code == "GRID_REFINED" for finding in layout.warnings):
+            return layout
+        quads = _quad_count(layout)
+        if abs(quads - target) <= _NEAR * target:
+            return layout
+        second = self._lay_out(side * math.sqrt(quads / target), part_of(progress, 0.5, 1.0))
+        return min(layout, second, key=lambda found: abs(_quad_count(found) - target))
+
+    def extracted(self, layout: Result, progress: Progress | None) -> tuple[QuadMesh, Result]:
+        """The quads of a layout, or of the first one on a finer grid on which they are a mesh, and that layout."""
+        done, cell = 0.0, self._options.seamless.cell
+        for _ in range(_MOST_REFINEMENTS):
+            half = (1 + done) / 2
+            try:
+                return extract_quads(self._surface, layout.corner_uv, cell, part_of(progress, done, half)), layout
+            except SolverError as error:
+                if error.code != "GRID_TOO_COARSE":
+                    raise
+            done = (1 + half) / 2
+            layout = self._lay_out(_FINER * layout.seamless.tile_size, part_of(progress, half, done))
+            layout = replace(layout, warnings=[*layout.warnings, _refined(layout)])
+        return extract_quads(self._surface, layout.corner_uv, cell, part_of(progress, done, 1.0)), layout
+
+    def _lay_out(self, side: float | None, progress: Progress | None) -> Result:
+        options = replace(self._options, seamless=replace(self._options.seamless, tile_size=side))
+        layout = self._solver.parameterize(self._completed.cones, self._completed.angles, options, progress=progress)
+        for finding in layout.warnings:
+            if finding.code == "COMPONENT_SKIPPED":
+                raise SolverError(finding.code, finding.message, finding.elements)
+        return self._completed.told(layout, options)
 
 
-def _require_whole(layout: Result) -> None:
-    """Raises SolverError with why a part has no layout."""
-    for finding in layout.warnings:
-        if finding.code == "COMPONENT_SKIPPED":
-            raise SolverError(finding.code, finding.message, finding.elements)
+def _refined(layout: Result) -> Finding:
+    return Finding(
+        "GRID_REFINED",
+        "With quads as large as asked for one would have a vertex twice, or two vertices more than one edge; they have "
+        f"the side {layout.seamless.tile_size:.4g} now. Ask for more quads, or use fewer cones.",
+    )
 
 
 def _quad_count(layout: Result) -> int:

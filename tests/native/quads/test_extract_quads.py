@@ -10,7 +10,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
-from map_checks import surface
+from map_checks import codes, surface
 from meshes import Mesh
 from numpy.typing import NDArray
 from quad_checks import distances, flat_torus, require_quads_of, sides
@@ -183,6 +183,15 @@ def test_the_number_of_quads_comes_near_the_target(target: int) -> None:
     sides_of_triangles = np.diff(BALL.positions[BALL.triangles], axis=1)
     area = np.linalg.norm(np.cross(sides_of_triangles[:, 0], sides_of_triangles[:, 1]), axis=1).sum() / 2
     assert found.layout.seamless.tile_size == pytest.approx(np.sqrt(area / target), rel=0.1)
+
+
+def test_quads_too_large_for_a_mesh_are_made_smaller() -> None:
+    """A tube of two quads around would have two edges between the same vertices."""
+    mesh = meshes.torus(24, 8, 3.0, 0.4)
+    remesh = lsgp.remesh_to_quads(surface(mesh), size=1.2)
+    assert codes(remesh.warnings) == ["GRID_REFINED"]
+    assert remesh.layout.seamless.tile_size < 1.2
+    require_quads_of(mesh, remesh.layout.corner_uv, remesh.mesh)
 
 
 def test_the_same_bytes_every_time_and_for_any_number_of_threads() -> None:
