@@ -501,6 +501,32 @@ py::dict measure_distortion(const SurfaceArrays& surface_arrays, const FloatArra
   return out;
 }
 
+void require_closed(const SurfaceArrays& surface_arrays) {
+  const lsgp::Surface surface = to_surface(surface_arrays);
+  without_gil([&] { lsgp::require_closed(surface); });
+}
+
+// The fields of lsgp.QuadMesh.
+py::dict to_dict(const lsgp::QuadMesh& mesh) {
+  py::dict out;
+  out["positions"] = to_array(mesh.positions.data(), {mesh.positions.rows(), 3});
+  out["quads"] = to_array(mesh.quads.data(), {mesh.quads.rows(), 4});
+  out["valences"] = to_array(mesh.valences);
+  out["triangles"] = to_array(mesh.triangles);
+  out["weights"] = to_array(mesh.weights.data(), {mesh.weights.rows(), 3});
+  out["surface_vertices"] = to_array(mesh.surface_vertices);
+  return out;
+}
+
+py::dict extract_quads(const SurfaceArrays& surface_arrays, const FloatArray& corner_uv, double cell,
+                       const py::object& progress) {
+  const lsgp::Surface surface = to_surface(surface_arrays);
+  if (corner_uv.size() != 6 * surface.triangles.rows()) throw py::value_error("array of the wrong shape");
+  const lsgp::CornerUv uv = Eigen::Map<const lsgp::CornerUv>(corner_uv.data(), 3 * surface.triangles.rows(), 2);
+  const lsgp::Progress tell = to_progress(progress);
+  return to_dict(without_gil([&] { return lsgp::extract_quads(surface, uv, cell, tell); }));
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_lsgp, module) {
@@ -528,4 +554,6 @@ PYBIND11_MODULE(_lsgp, module) {
   module.def("place_cones", &place_cones, "surface"_a, "cones"_a, "options"_a, "progress"_a);
   module.def("cone_gains", &cone_gains, "surface"_a, "cones"_a, "seam_mode"_a, "progress"_a);
   module.def("measure_distortion", &measure_distortion, "surface"_a, "corner_uv"_a, "cones"_a, "progress"_a);
+  module.def("require_closed", &require_closed, "surface"_a);
+  module.def("extract_quads", &extract_quads, "surface"_a, "corner_uv"_a, "cell"_a, "progress"_a);
 }

@@ -50,6 +50,7 @@ from .io.mesh_files import MeshFile, read_mesh_file, write_mesh_file
 from .islands import correct_aspect, fit_placement
 from .ledger import LedgerPart, build_ledger, hold_complete, part_surface
 from .packing import pack_islands, packer_name
+from .quads import QuadMesh, QuadQuality, QuadRemesh, extract_quads, quad_quality, remesh_to_quads
 from .texels import TexelDensity, TexelLayout, at_texel_density, texel_density, triangle_texel_density
 from .triangles import TriangleDistortion, singular_values, triangle_distortion
 
@@ -72,6 +73,9 @@ __all__ = [
     "Pins",
     "Placement",
     "Prescription",
+    "QuadMesh",
+    "QuadQuality",
+    "QuadRemesh",
     "RepairReport",
     "Result",
     "SeamQuality",
@@ -92,6 +96,7 @@ __all__ = [
     "correct_aspect",
     "crease_borders",
     "cut_costs",
+    "extract_quads",
     "find_cuts",
     "fit_placement",
     "hold_complete",
@@ -106,7 +111,9 @@ __all__ = [
     "place_cones",
     "prescribe_curvature",
     "preset_options",
+    "quad_quality",
     "read_mesh_file",
+    "remesh_to_quads",
     "singular_values",
     "split_into_paths",
     "texel_density",

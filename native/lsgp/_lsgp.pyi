@@ -90,3 +90,10 @@ def measure_distortion(
     cones: _Indices | None,
     progress: Callable[[float], bool | None] | None,
 ) -> dict[str, Any]: ...
+def require_closed(surface: _Surface) -> None: ...
+def extract_quads(
+    surface: _Surface,
+    corner_uv: _Floats,
+    cell: float,
+    progress: Callable[[float], bool | None] | None,
+) -> dict[str, Any]: ...

@@ -168,6 +168,7 @@ API = (
     "layout_search",
     "ledger",
     "packing",
+    "quads",
     "texel_raster",
     "texels",
     "triangles",
@@ -189,6 +190,10 @@ SOURCES = {
     "split": (),
     "placement": ("split",),
     "seamless": ("placement",),
+    "quads": (
+        *("solvers", "plane", "cut", "systems", "unfold", "prescription", "repair", "pipeline", "split", "placement"),
+        "seamless",
+    ),
     "api": (),
 }
 

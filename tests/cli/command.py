@@ -26,6 +26,7 @@ REPORT_KEYS = [
         "direction_error",
         "texel_density",
         "packing",
+        "quads",
         "stage_seconds",
     ],
 ]

@@ -198,7 +198,19 @@ def measure(data: Data, on: lsgp.Surface) -> None:
     lsgp.measure_distortion(on, uv, cones(data, on)[0] if data.ConsumeBool() else None)
 
 
-VERBS = [parameterize, parameterize, solve, find_cuts, creases, prescribe, place, gains, measure]
+def quads(data: Data, on: lsgp.Surface) -> None:
+    target, size = number(data, 100), number(data, 0.2)
+    if data.ConsumeBool():
+        target = None
+    else:
+        size = None
+    vertices, angles = cones(data, on)
+    found = lsgp.remesh_to_quads(on, vertices, angles, target=target, size=size, progress=progress(data)).mesh
+    assert (np.bincount(found.quads.ravel(), minlength=len(found.positions)) == found.valences).all()
+    assert np.isfinite(found.positions).all()
+
+
+VERBS = [parameterize, parameterize, solve, find_cuts, creases, prescribe, place, gains, measure, quads]
 
 
 def one_input(raw: bytes) -> None:

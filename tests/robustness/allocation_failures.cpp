@@ -232,6 +232,12 @@ void measure_distortion(const Case& c, Bytes& out) {
   out << while_armed([&] { return lsgp::measure_distortion(c.surface, uv, &c.cones.vertices); });
 }
 
+void extract_quads(const Case& c, Bytes& out) {
+  const lsgp::CornerUv uv = lsgp::parameterize(c.surface, c.cones, c.options, c.pins).corner_uv;
+  const lsgp::QuadMesh mesh = while_armed([&] { return lsgp::extract_quads(c.surface, uv); });
+  out << mesh.positions << mesh.valences;
+}
+
 // The bytes of the answer, be it a result or an error of the library; none where memory ended.
 std::optional<std::string> answer(const Case& c, long first_failing, bool all_after) {
   memory.count = 0;
@@ -395,6 +401,9 @@ std::deque<Case> make_cases() {
   add("some cones", place_some_cones, sphere);
   add("as many cones as it takes", place_cones, sphere);
   add("measure", measure_distortion, ring);
+  Case& quads = add("quads", extract_quads, sphere);
+  quads.options.seamless.emplace();
+  quads.options.seamless->tiles = 16;
 
   Case& missing = add("refused: cones missing", parameterize, sphere);
   missing.cones = {};

@@ -103,6 +103,12 @@ std::vector<Verb> all_verbs() {
     }
     return std::to_string(lsgp::measure_distortion(surface, seen_from_above).distortion.quasi_conformal);
   });
+  verbs.push_back([](const lsgp::Surface& surface) {
+    lsgp::Options options;
+    options.seamless.emplace().tiles = 16;
+    const lsgp::Result layout = lsgp::parameterize(surface, automatic({0, 2, 3, 5}), options);
+    return bytes_of(lsgp::extract_quads(surface, layout.corner_uv).positions);
+  });
   return verbs;
 }
 

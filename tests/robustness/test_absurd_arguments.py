@@ -21,6 +21,7 @@ BALL = meshes.bumpy_sphere(1)
 EDGES = meshes.edges_of(BALL.triangles)
 WHOLE = surface(BALL, seams=BALL.triangles[:3, :2], edges=EDGES, cut_costs=np.linspace(0.5, 2, len(EDGES)))
 RESULT = lsgp.parameterize(WHOLE, BALL.cones, None, lsgp.Options(seamless=lsgp.Seamless()))
+FINE_RESULT = lsgp.parameterize(WHOLE, BALL.cones, None, lsgp.Options(seamless=lsgp.Seamless(tiles=16)))
 FREE_RESULT = lsgp.parameterize(WHOLE, BALL.cones)
 ANGLES = list(RESULT.cone_angles)
 PARTS = lsgp.build_ledger(WHOLE, BALL.cones)
@@ -95,6 +96,18 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "measure_distortion": (
         lsgp.measure_distortion,
         {"surface": WHOLE, "corner_uv": RESULT.corner_uv, "cones": BALL.cones, "progress": None},
+    ),
+    "extract_quads": (
+        lsgp.extract_quads,
+        {"surface": WHOLE, "corner_uv": FINE_RESULT.corner_uv, "cell": 1.0, "progress": None},
+    ),
+    "quad_quality": (lsgp.quad_quality, {"positions": BALL.positions, "quads": [[0, 1, 2, 3], [3, 2, 1, 0]]}),
+    "remesh_to_quads": (
+        lsgp.remesh_to_quads,
+        {
+            **{"surface": WHOLE, "cones": BALL.cones, "angles": None, "target": 200, "size": None},
+            **{"options": lsgp.Options(seamless=lsgp.Seamless()), "count": 4, "progress": None},
+        },
     ),
     "singular_values": (lsgp.singular_values, {"surface": WHOLE, "corner_uv": RESULT.corner_uv}),
     "triangle_distortion": (lsgp.triangle_distortion, {"surface": WHOLE, "corner_uv": RESULT.corner_uv}),
@@ -195,7 +208,10 @@ OBJECTS = [
 
 
 # How the library calls what its parameters hold.
-CALLED = {"target": ["L2 stretch"], "mirror": ["mirror plane"], "shifts": ["shift"], "cell": ["side of a cell"]}
+CALLED = {
+    **{"target": ["L2 stretch", "cells"], "size": ["cells"], "mirror": ["mirror plane"], "shifts": ["shift"]},
+    **{"cell": ["side of a cell", "cells", "texture coordinates"], "corner_uv": ["texture coordinates", "cells"]},
+}
 
 
 def places(value: Any) -> Iterator[Callable[[Any], Any]]:

@@ -116,6 +116,8 @@ def test_verbs_refuse_other_types_and_shapes_of_cones(kind: str) -> None:
 def test_measuring_refuses_other_types_and_shapes(kind: str) -> None:
     with pytest.raises(lsgp.InputError, match="corner_uv"):
         lsgp.measure_distortion(surface(MESH), (TYPES | SHAPES)[kind](EXPECTED))
+    with pytest.raises(lsgp.InputError, match="corner_uv"):
+        lsgp.extract_quads(surface(MESH), (TYPES | SHAPES)[kind](EXPECTED))
 
 
 @pytest.mark.parametrize("value", [2**31 - 1, 2**31, 2**32, 2**63 - 1, -1, -(2**31), -(2**31) - 1, -(2**63)])

@@ -73,6 +73,7 @@ def examples() -> list[object]:
         lsgp.place_cones(whole),
         lsgp.cone_gains(whole),
         lsgp.measure_distortion(whole, result.corner_uv),
+        lsgp.remesh_to_quads(whole, BALL.cones, target=200).mesh,
         lsgp.triangle_distortion(whole, result.corner_uv),
         part,
         lsgp.Elements("triangles", np.array([3, 4], np.int32)),
@@ -115,7 +116,8 @@ def test_every_public_dataclass_is_among_them_or_holds_no_array() -> None:
     without = kinds - {type(value) for value in EXAMPLES}
     numbers = {lsgp.Options, lsgp.Seamless, lsgp.Distortion, lsgp.SeamQuality, lsgp.RepairReport}
     texels = {lsgp.TexelDensity, lsgp.TexelLayout}
-    assert without == numbers | texels | {lsgp.MeshFile}
+    quads = {lsgp.QuadQuality, lsgp.QuadRemesh}  # the latter has a mesh and a layout, which are compared
+    assert without == numbers | texels | quads | {lsgp.MeshFile}
     assert lsgp.MeshFile.__eq__ is object.__eq__  # a file is itself alone
 
 

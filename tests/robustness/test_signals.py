@@ -41,6 +41,7 @@ verbs = {
     "cuts": lambda tell: lsgp.find_cuts(whole, ball.cones, progress=tell),
     "angles": lambda tell: lsgp.prescribe_curvature(whole, ball.cones, progress=tell),
     "measure": lambda tell: lsgp.measure_distortion(whole, uv, progress=tell),
+    "quads": lambda tell: lsgp.remesh_to_quads(whole, progress=tell),
 }
 verb = verbs[sys.argv[1]]
 told = [] if sys.argv[2] == "told" else None

@@ -13,6 +13,7 @@
 #include "lsgp/options.hpp"
 #include "lsgp/placement.hpp"
 #include "lsgp/progress.hpp"
+#include "lsgp/quads.hpp"
 #include "lsgp/result.hpp"
 #include "lsgp/solver.hpp"
 #include "lsgp/surface.hpp"

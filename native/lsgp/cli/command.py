@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The command line: `lsgp unwrap`, `lsgp cones`, `lsgp batch`, `lsgp measure` and `lsgp pad`.
+"""The command line: `lsgp unwrap`, `lsgp cones`, `lsgp quads`, `lsgp batch`, `lsgp measure` and `lsgp pad`.
 
 `run.exit_codes` has how they end. Files are written at the end, each as a whole or not at all.
 """
@@ -24,10 +24,13 @@ from ..io.polygons import Triangulation
 from ..io.safe_files import is_standard_stream
 from ..io.standard_streams import complain, hold_standard_descriptors, say
 from ..io.whole_files import write_whole
+from ..quads import quad_quality
 from ..run import report as reports
 from ..run.exit_codes import OF_A_RUN, OK, REFUSED, ended, flushed, listed
 from ..run.pad_file import add_pad_options, pad_file
 from ..run.place_file import add_placement_options, place_file, summary
+from ..run.quads_file import add_quads_options, quads_file
+from ..run.quads_file import summary as summary_of_quads
 from ..run.terminal import ProgressLine
 from ..run.unwrap_file import Run, out_of_memory, read_file, unwrap_file, uv_of
 from ..run.unwrap_options import add_threads_option, add_unwrap_options, texture_size, texture_size_option
@@ -55,7 +58,7 @@ def _run(arguments: list[str]) -> int:
     try:
         args = parser.parse_args(expand_options(arguments) if arguments[:1] == ["batch"] else arguments)
         if args.command is None and not (args.version or args.formats):
-            parser.error("a command is needed: unwrap, cones, batch, measure or pad")
+            parser.error("a command is needed: unwrap, cones, quads, batch, measure or pad")
     except SystemExit as end:  # argparse has said why
         return flushed(int(end.code or 0))
     if args.version or args.formats:
@@ -111,6 +114,21 @@ def _parser() -> _Parser:
     add_threads_option(cones)
     cones.set_defaults(run=_reported, make=_cones, in_place=False)
 
+    quads = commands.add_parser(
+        "quads",
+        allow_abbrev=False,
+        help="cover a closed mesh with quads",
+        description="Cover a closed mesh with quads: the squares of a seamless layout, traced over its surface. Every "
+        "face is a quad, every vertex lies on the surface, and the irregular ones are at the cones.",
+    )
+    quads.add_argument("input", metavar="IN", type=Path, help=INPUT)
+    quads.add_argument(
+        "-o", "--output", metavar="OUT.obj", type=Path, required=True, help="the file, or - for standard output"
+    )
+    add_quads_options(quads)
+    add_threads_option(quads)
+    quads.set_defaults(run=_reported, make=_quads, in_place=False)
+
     batch = commands.add_parser(
         "batch",
         allow_abbrev=False,
@@ -150,7 +168,7 @@ def _parser() -> _Parser:
     )
     add_pad_options(pad)
     pad.set_defaults(run=_reported, make=_pad, report=None)
-    for command in (unwrap, cones, measure, pad):
+    for command in (unwrap, cones, quads, measure, pad):
         command.add_argument(
             "--format",
             metavar="F",
@@ -158,7 +176,7 @@ def _parser() -> _Parser:
             help="format of standard input and output and of files without a suffix: "
             f"{', '.join(BY_KEY)} (default: by the first bytes, otherwise obj)",
         )
-    for command in (unwrap, cones, measure):
+    for command in (unwrap, cones, quads, measure):
         command.add_argument("--report", metavar="FILE.json", type=Path, help="write a report, also when refused")
     return parser
 
@@ -210,6 +228,14 @@ def _cones(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
         placement = place_file(args, run, progress)
     _warn(placement.warnings, run.triangulation)
     return reports.placement_report(placement, run.triangulation, run.stage_seconds), summary(args, placement)
+
+
+def _quads(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
+    with ProgressLine(sys.stderr) as progress:
+        remesh = quads_file(args, run, progress)
+    _warn(remesh.warnings, run.triangulation)
+    quality = quad_quality(remesh.mesh.positions, remesh.mesh.quads)
+    return reports.quads_report(remesh, quality, run), summary_of_quads(args.output, remesh, quality)
 
 
 def _measure(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:

@@ -11,6 +11,7 @@ from ..io.image_files import require_image_suffix
 from ..io.mesh_formats import BY_KEY, output_format
 from ..io.safe_files import is_same_file, is_standard_stream, require_separate, require_writable_kind
 from ..io.side_files import UsageError
+from ..run.quads_file import require_quads_output
 
 
 def require_usable_paths(args: argparse.Namespace) -> None:
@@ -23,6 +24,10 @@ def require_usable_paths(args: argparse.Namespace) -> None:
         _choose_output(args)
         output_format(None if is_standard_stream(args.output) else args.output, args.format)
         require_separate(args.input, args.output, in_place=args.in_place)
+    elif args.command == "quads":
+        require_quads_output(args)
+        if is_same_file(args.input, args.output):
+            raise UsageError(f"the output '{args.output}' is the input itself; name another file")
     elif args.command == "pad":
         require_image_suffix(args.input, "the image")
         require_image_suffix(args.output, "the output")

@@ -16,6 +16,7 @@ from ..api import Measurement, Placement, Result
 from ..certificate import certificate
 from ..errors import Elements, Finding, LsgpError
 from ..io.polygons import Triangulation
+from ..quads import QuadQuality, QuadRemesh
 from ..texels import TexelDensity
 from .unwrap_file import Packed, Run
 
@@ -44,6 +45,7 @@ EMPTY: Report = {
     "direction_error": None,
     "texel_density": None,
     "packing": None,
+    "quads": None,
     "stage_seconds": {},
 }
 
@@ -119,6 +121,28 @@ def placement_report(placement: Placement, triangulation: Triangulation, stage_s
         "cone_angles": placement.cone_angles.tolist(),
         "placement": placed_figures(placement),
         "stage_seconds": dict(stage_seconds),
+    }
+
+
+def quads_report(remesh: QuadRemesh, quality: QuadQuality, run: Run) -> Report:
+    """The report of a mesh of quads. "distortion" is that of the layout whose grid they are; "irregular" of "quads"
+    counts its vertices by how many quads meet there."""
+    mesh, layout = remesh.mesh, remesh.layout
+    valences, counts = np.unique(mesh.valences[mesh.irregular], return_counts=True)
+    return EMPTY | {
+        "warnings": _warnings(remesh.warnings, run.triangulation),
+        "triangles": len(run.triangulation.triangles),
+        "cones": layout.cones.tolist(),
+        "cone_angles": layout.cone_angles.tolist(),
+        "distortion": asdict(layout.distortion),
+        "quads": {
+            "count": len(mesh.quads),
+            "vertices": len(mesh.positions),
+            "irregular": {str(valence): count for valence, count in zip(valences, counts.tolist(), strict=True)},
+            "size": layout.seamless.tile_size,
+            **asdict(quality),
+        },
+        "stage_seconds": dict(run.stage_seconds),
     }
 
 

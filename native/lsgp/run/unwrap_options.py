@@ -42,14 +42,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
         "itself, and lengths are kept (paint, bake) or a tileable texture of squares shows no seam (tile); options "
         "given besides win over the preset's (default: none)",
     )
-    unwrap.add_argument(
-        "--cones",
-        metavar="FILE.json|auto|auto:N",
-        type=_cones_option,
-        default=AUTO,
-        help='{"cones": [vertices, from 0], "cone_angles": [radians or null], "angles_over_pi_2": [quarter turns]}, '
-        "angles optional; or cones placed automatically, N on each component (default: auto)",
-    )
+    add_cones_option(unwrap)
     unwrap.add_argument(
         "--prescription",
         choices=["least-distortion", "harmonic", "straightness", "manual"],
@@ -77,11 +70,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
         default="free",
         help="borders take the shape of least distortion, or run straight from cone to cone (default: free)",
     )
-    unwrap.add_argument(
-        "--mode",
-        choices=["conformal", "low-stretch"],
-        help="keep angles, or lengths as far as the cone angles let it (default: conformal)",
-    )
+    add_mode_option(unwrap)
     unwrap.add_argument(
         "--no-repair",
         dest="repair",
@@ -136,6 +125,34 @@ def _add_direction_options(unwrap: argparse.ArgumentParser) -> None:
         "--directions",
         metavar="FILE.json",
         help="[[face, x, y, z], ...], faces counted from 0: what v is to run along there; longer ones count for more",
+    )
+
+
+def add_cones_option(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--cones",
+        metavar="FILE.json|auto|auto:N",
+        type=_cones_option,
+        default=AUTO,
+        help='{"cones": [vertices, from 0], "cone_angles": [radians or null], "angles_over_pi_2": [quarter turns]}, '
+        "angles optional; or cones placed automatically, N on each component (default: auto)",
+    )
+
+
+def add_mode_option(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--mode",
+        choices=["conformal", "low-stretch"],
+        help="keep angles, or lengths as far as the cone angles let it (default: conformal)",
+    )
+
+
+def add_stretch_option(command: argparse._ActionsContainer) -> None:
+    command.add_argument(
+        "--stretch",
+        metavar="S",
+        type=float,
+        help="from 0, the conformal map, to 1, that of least stretch (default: 1)",
     )
 
 
@@ -199,12 +216,7 @@ def add_strict_option(command: argparse.ArgumentParser, result: str) -> None:
 
 def _add_low_stretch_options(unwrap: argparse.ArgumentParser) -> None:
     low_stretch = unwrap.add_argument_group("with --mode low-stretch")
-    low_stretch.add_argument(
-        "--stretch",
-        metavar="S",
-        type=float,
-        help="from 0, the conformal map, to 1, that of least stretch (default: 1)",
-    )
+    add_stretch_option(low_stretch)
     low_stretch.add_argument(
         "--importance",
         metavar="FILE",

@@ -26,6 +26,7 @@ const char* name(Code code) {
     case Code::not_orientable: return "NOT_ORIENTABLE";
     case Code::too_few_cones: return "TOO_FEW_CONES";
     case Code::cuts_blocked: return "CUTS_BLOCKED";
+    case Code::open_surface: return "OPEN_SURFACE";
     case Code::cone_angle_range: return "CONE_ANGLE_RANGE";
     case Code::gauss_bonnet: return "GAUSS_BONNET";
     case Code::angles_impossible: return "ANGLES_IMPOSSIBLE";
@@ -79,7 +80,8 @@ ErrorKind error_kind(Code code) {
   switch (code) {
     case Code::not_orientable:
     case Code::too_few_cones:
-    case Code::cuts_blocked: return ErrorKind::topology;
+    case Code::cuts_blocked:
+    case Code::open_surface: return ErrorKind::topology;
     case Code::cone_angle_range:
     case Code::gauss_bonnet:
     case Code::angles_impossible:

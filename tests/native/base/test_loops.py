@@ -188,6 +188,10 @@ REVIEWED = {
     "prescription/straightness.cpp": [
         ("while (boundary.count_crossings() > 0 && boundary.swap_worst())", "each swap lowers the crossings", OWN),
     ],
+    "quads/grid_edges.cpp": [
+        ("for (;;)", "a straight line leaves each triangle that it crosses, and ends after a cell", OWN),
+        ("for (int visited = 0; !grid_.leads_into(corner, ray.direction); ++visited)", AROUND_A_VERTEX, SHORT),
+    ],
     "repair/newton.cpp": [("for (double length = longest; length > 1e-8; length /= 2)", "27 halvings", SHORT)],
     "seamless/lattice_search.cpp": [
         ("for (Eigen::Index k = 1; k < size;)", "a budget of exchanges", OWN),

@@ -1,0 +1,269 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Quadrangulation: the grid of a seamless layout, traced over a closed surface (the paper's section 8)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _lsgp, arguments
+from .api import Options, Progress, Result, Seamless, Solver, Surface, surface_arrays
+from .arguments import FloatArray, IndexArray
+from .auto_unwrap import CompletedCones, complete_cones, part_of
+from .equality import EqualByContent
+from .errors import Finding, InputError, SolverError
+from .triangles import uv_area
+
+# Of the time that a remesh takes, where placing the cones and where the layouts end.
+_PLACED, _LAID_OUT = 0.6, 0.95
+# What layouts are warned of does not matter to the grid on the surface.
+_OF_LAYOUTS_ALONE = frozenset({"OVERLAPPING_TRIANGLES"})
+_MOST_QUADS = 2**28
+# A number of quads further than this from what was asked for, as a share of it, gets a second try.
+_NEAR = 0.02
+# Where quads are too large for a mesh: by how much smaller ones are tried, and how often.
+_FINER = 0.8
+_MOST_REFINEMENTS = 12
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class QuadMesh(EqualByContent):
+    """A closed manifold mesh whose faces all are quads, and where its vertices are on the surface.
+
+    positions: (v, 3) float64, on the surface. quads: (q, 4) int32, four different vertices each, which turn as the
+    surface's triangles do. No two vertices have more than one edge between them.
+    valences: (v,) int32, how many quads meet at each vertex: the angle of a cone in quarter turns, 4 elsewhere.
+    triangles: (v,) int32, the surface's triangle that each vertex is on. weights: (v, 3) float64, those of the corners
+        of that triangle, at least 0, their sum 1.
+    surface_vertices: (v,) int32, the surface's vertex that each vertex is at, -1 for none.
+    """
+
+    positions: FloatArray
+    quads: IndexArray
+    valences: IndexArray
+    triangles: IndexArray
+    weights: FloatArray
+    surface_vertices: IndexArray
+
+    @property
+    def irregular(self) -> IndexArray:
+        """The vertices, ascending, at which not four quads meet: those at cones."""
+        return np.flatnonzero(self.valences != 4).astype(np.int32)
+
+
+@dataclass(frozen=True, slots=True)
+class QuadQuality:
+    """How far the quads of a mesh are from squares of one size.
+
+    angle_error: mean deviation of their corners from a right angle, radians; worst_angle_error: the largest.
+    edge_deviation: standard deviation of the edges' lengths, relative to their mean; shortest_edge, longest_edge:
+        relative to it as well.
+    """
+
+    angle_error: float
+    worst_angle_error: float
+    edge_deviation: float
+    shortest_edge: float
+    longest_edge: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class QuadRemesh(EqualByContent):
+    """A quadrangulation and what it was made from.
+
+    mesh: the quads. layout: the seamless layout whose grid they are; its `cones` are the irregular vertices, its
+        `seamless.tile_size` is the side of a quad.
+    warnings: findings that leave the mesh usable, those of placing cones and of the layout.
+    """
+
+    mesh: QuadMesh
+    layout: Result
+    warnings: list[Finding]
+
+
+def extract_quads(
+    surface: Surface, corner_uv: ArrayLike, cell: float = 1.0, progress: Progress | None = None
+) -> QuadMesh:
+    """Trace the grid of a seamless layout over a closed surface: its corners become vertices, its cells quads.
+
+    corner_uv: (m, 3, 2), of a layout on the square lattice without parity, such as `Result.corner_uv` of a `Seamless`.
+        What crosses a cut is turned by quarter turns and moved by whole cells, cones are at corners of cells, and no
+        triangle is flipped or without area. Sides of cuts that miss that by less than a thousandth of a cell are made
+        equal.
+    cell: side of a cell in texture coordinates, that of the `Seamless`.
+    progress: as for `parameterize`.
+
+    All decisions are exact, and a layout that is not valid is refused as a whole. The number of quads is the layout's
+    area in cells. Seams and cuts leave no trace in the mesh.
+    Raises InputError: WRONG_PARAMETER, INEXACT_SEAMS, FLIPPED_TRIANGLES, CONES_NOT_SNAPPED; TopologyError:
+    OPEN_SURFACE, NOT_ORIENTABLE; CurvatureError: CONE_ANGLE_RANGE for cones of 90 degrees; SolverError: GRID_TOO_COARSE
+    where cells are too large for a mesh; Cancelled.
+    """
+    arguments.require_callable(progress)
+    arrays = surface_arrays(surface)
+    uv = arguments.corner_coordinates("corner_uv", corner_uv, len(surface.triangles))
+    return QuadMesh(**_lsgp.extract_quads(arrays, uv, arguments.positive("cell", cell), progress))
+
+
+def remesh_to_quads(
+    surface: Surface,
+    cones: ArrayLike = (),
+    angles: Sequence[float | None] | None = None,
+    *,
+    target: int | None = None,
+    size: float | None = None,
+    options: Options | None = None,
+    count: int | None = None,
+    progress: Progress | None = None,
+) -> QuadRemesh:
+    """Cover a closed surface with quads whose irregular vertices are the cones.
+
+    cones, angles: as of `parameterize`; they are kept. Components without cones, or whose cones cannot take up their
+        curvature, get some, as by `auto_unwrap`. count: how many on each component that gets some.
+    target: how many quads there are to be; the number comes near it, or is more where so few leave no valid layout or
+        would be no mesh (GRID_REFINED).
+        size: or the side of a quad on the surface, in its unit. Neither: the coarsest grid that costs at most a tenth
+        in distortion.
+    options: of the layout, as of `parameterize`; None: `Options(seamless=Seamless())`. Its `seamless` has no size of
+        its own, and lies on squares without parity.
+    Where the surface has `directions`, rows of quads run along them as far as the cones let them; its seams do not
+    matter.
+    progress: as for `parameterize`.  Raises as `parameterize` and `extract_quads` do, OPEN_SURFACE before any work is
+    done; COMPONENT_SKIPPED where a part has no layout.
+    """
+    arguments.require_callable(progress)
+    arguments.require_type("surface", surface, Surface)
+    surface = replace(surface, seams=None)
+    chosen = _options(options)
+    _lsgp.require_closed(surface_arrays(surface))
+    chosen = replace(chosen, seamless=replace(chosen.seamless, tile_size=_side(surface, target, size)))
+    completed = complete_cones(surface, cones, angles, chosen, count, part_of(progress, 0.0, _PLACED))
+    layouts = _Layouts(surface, completed, chosen)
+    layout = layouts.nearest(target, part_of(progress, _PLACED, _LAID_OUT))
+    mesh, layout = layouts.extracted(layout, part_of(progress, _LAID_OUT, 1.0))
+    warnings = [finding for finding in layout.warnings if finding.code not in _OF_LAYOUTS_ALONE]
+    return QuadRemesh(mesh, layout, warnings)
+
+
+def quad_quality(positions: ArrayLike, quads: ArrayLike) -> QuadQuality:
+    """Measure quads.  positions: (v, 3). quads: (q, 4) vertices, at least one.  Raises InputError."""
+    positions = arguments.float_rows("positions", positions, 3)
+    quads = arguments.index_rows("quads", quads, 4)
+    if not len(quads):
+        raise InputError("EMPTY_MESH", "There are no quads to measure. Pass those of a mesh.")
+    arguments.require_indices("quads", quads, len(positions))
+    size = np.abs(positions).max()
+    if not (math.isfinite(size) and size > 0):
+        raise InputError("NON_FINITE_POSITION", "Positions are not finite, or all are 0. Pass those of a mesh.")
+    corners = (positions / size)[quads]
+    ahead = np.roll(corners, -1, axis=1) - corners
+    back = np.roll(corners, 1, axis=1) - corners
+    doubled_area = np.linalg.norm(np.cross(ahead, back), axis=2)
+    errors = np.abs(np.arctan2(doubled_area, (ahead * back).sum(axis=2)) - math.pi / 2)
+    # A mesh's edge is in two quads, so that all count alike.
+    lengths = np.linalg.norm(ahead, axis=2)
+    mean = lengths.mean()
+    if mean == 0:
+        raise InputError("DEGENERATE_MESH", "All quads are points. Pass those of a mesh.")
+    return QuadQuality(
+        angle_error=float(errors.mean()),
+        worst_angle_error=float(errors.max()),
+        edge_deviation=float(lengths.std() / mean),
+        shortest_edge=float(lengths.min() / mean),
+        longest_edge=float(lengths.max() / mean),
+    )
+
+
+def _options(options: Options | None) -> Options:
+    """Those of a layout whose grid can be traced."""
+    chosen = Options(seamless=Seamless()) if options is None else options
+    arguments.require_type("options", chosen, Options)
+    seamless = chosen.seamless
+    remedy = "pass seamless=Seamless() on squares, without parity, tiles and tile_size"
+    if seamless is None or seamless.lattice != "square" or seamless.parity or seamless.coarse_grid == "relax":
+        arguments.refuse("options.seamless", seamless, remedy)
+    if seamless.tiles is not None or seamless.tile_size is not None:
+        arguments.refuse("options.seamless", seamless, f"{remedy}; target or size says how many quads there are")
+    return chosen
+
+
+def _side(surface: Surface, target: int | None, size: float | None) -> float | None:
+    """The side of a quad; None where the grid is to be the coarsest one."""
+    if target is not None and size is not None:
+        raise InputError(
+            "WRONG_PARAMETER", "target and size both say how many quads there are to be; pass one of them."
+        )
+    if size is not None:
+        return arguments.positive("size", size)
+    if target is None:
+        return None
+    target = arguments.whole_number("target", target, 1, f"pass how many quads there are to be, up to {_MOST_QUADS}")
+    if target > _MOST_QUADS:
+        arguments.refuse("target", target, f"pass how many quads there are to be, up to {_MOST_QUADS}")
+    corners = surface.positions[surface.triangles]
+    with np.errstate(over="ignore", invalid="ignore"):  # the verbs refuse such a surface by name
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        return math.sqrt(0.5 * float(np.linalg.norm(normals, axis=1).sum()) / target)
+
+
+class _Layouts:
+    """Layouts of one surface through the same cones, on grids of any size.
+
+    options: seamless ones, with the side of the first grid's cells.
+    """
+
+    def __init__(self, surface: Surface, completed: CompletedCones, options: Options) -> None:
+        self._surface, self._completed, self._options = surface, completed, options
+        self._solver = Solver(surface)
+
+    def nearest(self, target: int | None, progress: Progress | None) -> Result:
+        """On the first grid, or on one of another size where rounding has taken that away from its target."""
+        side = self._options.seamless.tile_size
+        layout = self._lay_out(side, part_of(progress, 0.0, 0.5))
+        if target is None or any(finding.code == "GRID_REFINED" for finding in layout.warnings):
+            return layout
+        quads = _quad_count(layout)
+        if abs(quads - target) <= _NEAR * target:
+            return layout
+        second = self._lay_out(side * math.sqrt(quads / target), part_of(progress, 0.5, 1.0))
+        return min(layout, second, key=lambda found: abs(_quad_count(found) - target))
+
+    def extracted(self, layout: Result, progress: Progress | None) -> tuple[QuadMesh, Result]:
+        """The quads of a layout, or of the first one on a finer grid on which they are a mesh, and that layout."""
+        done, cell = 0.0, self._options.seamless.cell
+        for _ in range(_MOST_REFINEMENTS):
+            half = (1 + done) / 2
+            try:
+                return extract_quads(self._surface, layout.corner_uv, cell, part_of(progress, done, half)), layout
+            except SolverError as error:
+                if error.code != "GRID_TOO_COARSE":
+                    raise
+            done = (1 + half) / 2
+            layout = self._lay_out(_FINER * layout.seamless.tile_size, part_of(progress, half, done))
+            layout = replace(layout, warnings=[*layout.warnings, _refined(layout)])
+        return extract_quads(self._surface, layout.corner_uv, cell, part_of(progress, done, 1.0)), layout
+
+    def _lay_out(self, side: float | None, progress: Progress | None) -> Result:
+        options = replace(self._options, seamless=replace(self._options.seamless, tile_size=side))
+        layout = self._solver.parameterize(self._completed.cones, self._completed.angles, options, progress=progress)
+        for finding in layout.warnings:
+            if finding.code == "COMPONENT_SKIPPED":
+                raise SolverError(finding.code, finding.message, finding.elements)
+        return self._completed.told(layout, options)
+
+
+def _refined(layout: Result) -> Finding:
+    return Finding(
+        "GRID_REFINED",
+        "With quads as large as asked for one would have a vertex twice, or two vertices more than one edge; they have "
+        f"the side {layout.seamless.tile_size:.4g} now. Ask for more quads, or use fewer cones.",
+    )
+
+
+def _quad_count(layout: Result) -> int:
+    """The cells of the part that is laid out."""
+    return round(uv_area(layout.corner_uv[layout.solved]) / layout.seamless.cell**2)

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A mesh file in, a file of quads that cover its surface out."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ..api import Options, Progress, Seamless
+from ..io.mesh_formats import OBJ, output_format
+from ..io.mesh_obj import format_obj
+from ..io.polygons import PolygonMesh
+from ..io.safe_files import is_standard_stream
+from ..io.side_files import UsageError, cones_in, load_json
+from ..io.whole_files import write_output
+from ..quads import QuadQuality, QuadRemesh, remesh_to_quads
+from .unwrap_file import Run, read_file
+from .unwrap_options import add_cones_option, add_mode_option, add_stretch_option, cone_count, cones_file
+
+
+def add_quads_options(quads: argparse.ArgumentParser) -> None:
+    """The options of a remesh, which args of `quads_file` have."""
+    number = quads.add_mutually_exclusive_group()
+    number.add_argument(
+        "--target",
+        metavar="N",
+        type=int,
+        help="about so many quads; more where so few leave no valid grid (default: as few as cost at most a tenth in "
+        "distortion)",
+    )
+    number.add_argument("--size", metavar="X", type=float, help="side of a quad on the surface, in its unit")
+    add_cones_option(quads)
+    add_mode_option(quads)
+    add_stretch_option(quads)
+    quads.add_argument(
+        "--up",
+        metavar=("X", "Y", "Z"),
+        nargs=3,
+        type=float,
+        help="turn the grid so that rows of quads run up the model, whose up this is, as far as the cones let them "
+        "(default: as it fits)",
+    )
+    quads.add_argument(
+        "--coarse-grid",
+        choices=["refine", "merge"],
+        default="refine",
+        help="where the quads are too large for a valid grid: take smaller ones, or merge cones less than a quad apart "
+        "(default: refine)",
+    )
+
+
+def require_quads_output(args: argparse.Namespace) -> None:
+    """Raises UsageError where args.output is no file of quads."""
+    target = None if is_standard_stream(args.output) else args.output
+    if output_format(target, None) != OBJ:
+        raise UsageError(f"quads are written as OBJ; name the output .obj, not '{args.output}'")
+
+
+def quads_file(args: argparse.Namespace, run: Run, progress: Progress | None = None) -> QuadRemesh:
+    """Cover args.input with quads and write them into args.output.  Raises OSError, UsageError, LsgpError."""
+    options = _options(args)
+    if args.up is not None and not all(map(math.isfinite, args.up)):
+        raise UsageError("--up takes finite numbers; give the model's up, as 0 1 0")
+    path = cones_file(args)
+    cones_json = None if path is None else load_json(path)
+    file = read_file(args.input, run, args.format)
+    given = ((), None) if path is None else cones_in(cones_json, path, None)
+    surface = file.surface() if args.up is None else replace(file.surface(), directions=args.up)
+    with run.stage("remesh_to_quads"):
+        remesh = remesh_to_quads(
+            surface,
+            *given,
+            target=args.target,
+            size=args.size,
+            options=options,
+            count=cone_count(args),
+            progress=progress,
+        )
+    mesh = PolygonMesh(remesh.mesh.positions, remesh.mesh.quads.ravel(), np.full(len(remesh.mesh.quads), 4, np.int64))
+    with run.stage("write_file"):
+        write_output(args.output, format_obj(mesh, np.full((len(mesh.corners), 2), np.nan)))
+    return replace(remesh, warnings=[*file.findings, *remesh.warnings])
+
+
+def summary(output: Path, remesh: QuadRemesh, quality: QuadQuality) -> str:
+    """What came out and how good it is, as lines of text."""
+    mesh = remesh.mesh
+    irregular = Counter(mesh.valences[mesh.irregular].tolist())
+    kinds = ", ".join(f"{irregular[valence]} of valence {valence}" for valence in sorted(irregular))
+    angle, worst = math.degrees(quality.angle_error), math.degrees(quality.worst_angle_error)
+    return "\n".join(
+        [
+            f"{output}: {len(mesh.quads)} quads of side {remesh.layout.seamless.tile_size:.4g}, "
+            f"{len(mesh.positions)} vertices, {len(mesh.irregular)} irregular{f' ({kinds})' if kinds else ''}",
+            f"corners off 90 degrees: {angle:.1f} on average, {worst:.1f} at most",
+            f"edges: {quality.edge_deviation:.1%} standard deviation, from {quality.shortest_edge:.2f} to "
+            f"{quality.longest_edge:.2f} of the mean",
+        ]
+    )
+
+
+def _options(args: argparse.Namespace) -> Options:
+    """Raises UsageError where they do not go together."""
+    if args.stretch is not None and args.mode != "low-stretch":
+        raise UsageError("--stretch is for maps of low stretch; add --mode low-stretch")
+    return Options(
+        seamless=Seamless(coarse_grid=args.coarse_grid),
+        mode=args.mode or "conformal",
+        stretch=1.0 if args.stretch is None else args.stretch,
+        threads=args.threads,
+    )

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`lsgp quads`: a file of quads, and what is told of it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command import DISTORTION_KEYS, REPORT_KEYS
+from lsgp.io.mesh_files import read_mesh
+from meshes import cylinder
+from polygon_meshes import obj_text
+from quad_checks import fans, sides
+
+QUADS = ["quads", "ball.obj", "-o", "quads.obj"]
+
+
+def quads_of(path: Path) -> tuple[np.ndarray, np.ndarray]:
+    mesh = read_mesh(path)
+    assert set(mesh.sizes.tolist()) == {4}
+    return mesh.positions, mesh.corners.reshape(-1, 4)
+
+
+def test_a_closed_mesh_becomes_a_file_of_quads(lsgp, ball_files: Path) -> None:
+    done = lsgp(*QUADS, "--target", 300, "--cones", "cones.json", "--report", "report.json")
+    assert (done.code, done.err) == (0, "")
+    positions, quads = quads_of(ball_files / "quads.obj")
+    assert b"vt" not in (ball_files / "quads.obj").read_bytes()
+    once = sides(quads)
+    assert set(once.values()) == {1} and all((b, a) in once for a, b in once)
+    assert fans(quads) == len(positions) == len(quads) + 2
+    assert abs(len(quads) - 300) <= 30
+    report = done.report()
+    assert list(report) == REPORT_KEYS
+    assert list(report["distortion"]) == DISTORTION_KEYS
+    told = report["quads"]
+    assert (told["count"], told["vertices"]) == (len(quads), len(positions))
+    valence = np.bincount(quads.ravel())
+    counts = {str(v): int((valence == v).sum()) for v in np.unique(valence[valence != 4]).tolist()}
+    assert told["irregular"] == counts
+    turns = np.round(np.array(report["cone_angles"]) / (np.pi / 2)).astype(int)
+    assert sorted(turns.tolist()) == sorted(valence[valence != 4].tolist())
+    assert 0 < told["angle_error"] < told["worst_angle_error"] < np.pi / 2
+    assert told["shortest_edge"] < 1 < told["longest_edge"]
+    assert set(report["stage_seconds"]) == {"read_file", "triangulate", "remesh_to_quads", "write_file"}
+    first = done.out.splitlines()[0]
+    assert first.startswith(f"quads.obj: {len(quads)} quads of side {told['size']:.4g}, {len(positions)} vertices, ")
+    assert f"{len(turns)} irregular" in first
+    assert f"{np.degrees(told['worst_angle_error']):.1f} at most" in done.out
+
+
+def test_the_side_of_quads_is_that_on_the_surface(lsgp, cube_files: Path) -> None:
+    size = float(np.ptp(read_mesh(cube_files / "cube.obj").positions[:, 0])) / 8
+    done = lsgp("quads", "cube.obj", "-o", "out.obj", "--size", size, "--cones", "corners.json", "--up", 0, 0, 1)
+    assert done.code == 0
+    positions, quads = quads_of(cube_files / "out.obj")
+    assert len(quads) == 6 * 8 * 8
+    lengths = np.linalg.norm(positions[quads] - positions[np.roll(quads, 1, axis=1)], axis=2)
+    np.testing.assert_allclose(lengths, size, rtol=1e-5)
+
+
+def test_low_stretch_makes_edges_more_alike(lsgp, ball_files: Path) -> None:
+    deviations = []
+    for mode in ("conformal", "low-stretch"):
+        lsgp(*QUADS, "--target", 300, "--cones", "cones.json", "--mode", mode, "--report", "report.json")
+        deviations.append(json.loads((ball_files / "report.json").read_text())["quads"]["edge_deviation"])
+    assert deviations[1] < 0.9 * deviations[0]
+
+
+def test_an_open_mesh_is_refused_with_its_border(lsgp, tmp_path: Path) -> None:
+    mesh = cylinder()
+    (tmp_path / "tube.obj").write_text(obj_text(mesh.positions, mesh.triangles.tolist()))
+    done = lsgp("quads", "tube.obj", "-o", "out.obj", "--target", 100, "--report", "report.json")
+    assert done.code == 3
+    assert "refused: OPEN_SURFACE: The surface has a border of 32 edges" in done.err
+    report = done.report()
+    assert (report["status"], report["code"], report["elements"]["kind"]) == ("refused", "OPEN_SURFACE", "edges")
+    assert len(report["elements"]["indices"]) == 32
+    assert not (tmp_path / "out.obj").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["-o", "quads.ply"], "name the output .obj"),
+        (["-o", "ball.obj"], "is the input itself"),
+        (["-o", "quads.obj", "--stretch", "0.5"], "add --mode low-stretch"),
+        (["-o", "quads.obj", "--up", "nan", "0", "0"], "finite"),
+        (["-o", "quads.obj", "--target", "9", "--size", "1"], "not allowed with"),
+        ([], "-o/--output"),
+    ],
+)
+def test_wrong_usage(lsgp, ball_files: Path, arguments: list[str], told: str) -> None:
+    done = lsgp("quads", "ball.obj", *arguments)
+    assert done.code == 2
+    assert told in done.err
+
+
+@pytest.mark.parametrize("arguments", [["--target", 0], ["--size", 0], ["--size", "nan"]])
+def test_numbers_that_no_mesh_has_are_refused(lsgp, ball_files: Path, arguments: list[object]) -> None:
+    done = lsgp(*QUADS, *arguments)
+    assert done.code == 3
+    assert "WRONG_PARAMETER" in done.err
+
+
+def test_standard_streams(lsgp, ball_files: Path) -> None:
+    lsgp(*QUADS, "--target", 200)
+    done = lsgp("quads", "ball.obj", "-o", "-", "--target", 200)
+    assert done.out == (ball_files / "quads.obj").read_text()
+    assert "quads of side" in done.err

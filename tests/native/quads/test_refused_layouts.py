@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Layouts and surfaces that no quads can be extracted from: refused as a whole, by code and elements."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import lsgp
+import meshes
+import numpy as np
+import pytest
+from map_checks import surface
+from numpy.typing import NDArray
+from quad_checks import flat_torus, layout_area, require_quads_of
+
+BALL = meshes.bumpy_sphere(3)
+LAYOUT = lsgp.parameterize(surface(BALL), BALL.cones, options=lsgp.Options(seamless=lsgp.Seamless(tiles=24)))
+
+
+def lay_out(mesh: meshes.Mesh, **seamless: object) -> lsgp.Result:
+    options = lsgp.Options(seamless=lsgp.Seamless(tiles=24, **seamless))
+    return lsgp.parameterize(surface(mesh), mesh.cones, options=options)
+
+
+def flipped(uv: NDArray[np.float64]) -> NDArray[np.float64]:
+    """One inner vertex moved far across its neighbours."""
+    out = uv.copy()
+    out[BALL.triangles == 100] += 5.3
+    return out
+
+
+def without_one(uv: NDArray[np.float64]) -> NDArray[np.float64]:
+    out = uv.copy()
+    out[17] = np.nan
+    return out
+
+
+BROKEN: dict[str, tuple[Callable[[NDArray[np.float64]], NDArray[np.float64]], str]] = {
+    "scaled": (lambda uv: uv * 1.01, "INEXACT_SEAMS"),
+    "one island moved off the grid": (lambda uv: uv + 0.25 * (np.arange(len(uv)) < 40)[:, None, None], "INEXACT_SEAMS"),
+    "turned a little": (
+        lambda uv: uv @ np.array([[np.cos(0.1), np.sin(0.1)], [-np.sin(0.1), np.cos(0.1)]]),
+        "INEXACT_SEAMS",
+    ),
+    "moved by half a cell": (lambda uv: uv + 0.5, "INEXACT_SEAMS|CONES_NOT_SNAPPED"),
+    "mirrored": (lambda uv: uv * [-1, 1], "FLIPPED_TRIANGLES"),
+    "a vertex folded over": (flipped, "FLIPPED_TRIANGLES"),
+    "collapsed": (np.zeros_like, "FLIPPED_TRIANGLES"),
+    "without coordinates": (without_one, "WRONG_PARAMETER"),
+    "too large": (lambda uv: uv * 2.0**24, "WRONG_PARAMETER"),
+}
+
+
+@pytest.mark.parametrize("kind", BROKEN)
+def test_layouts_that_are_not_valid_are_refused_whole(kind: str) -> None:
+    change, code = BROKEN[kind]
+    with pytest.raises(lsgp.InputError) as caught:
+        lsgp.extract_quads(surface(BALL), change(LAYOUT.corner_uv))
+    assert caught.value.code in code.split("|")
+    assert len(caught.value.elements.indices) or kind == "too large"
+
+
+def test_cones_in_the_middle_of_cells_are_refused() -> None:
+    layout = lay_out(BALL, parity=True)
+    with pytest.raises(lsgp.InputError) as caught:
+        lsgp.extract_quads(surface(BALL), layout.corner_uv)
+    assert caught.value.code == "CONES_NOT_SNAPPED"
+    assert sorted(caught.value.elements.indices.tolist()) == sorted(layout.cones.tolist())
+    require_quads_of(BALL, layout.corner_uv, lsgp.extract_quads(surface(BALL), layout.corner_uv + 0.5))
+
+
+def test_other_lattices_are_refused() -> None:
+    layout = lay_out(BALL, lattice="hexagon")
+    with pytest.raises(lsgp.InputError) as caught:
+        lsgp.extract_quads(surface(BALL), layout.corner_uv)
+    assert caught.value.code == "INEXACT_SEAMS"
+
+
+def test_borders_are_refused_and_named() -> None:
+    mesh = meshes.cylinder()
+    layout = lay_out(mesh)
+    sides_of_triangles = np.concatenate([mesh.triangles[:, [i, (i + 1) % 3]] for i in range(3)])
+    edges, uses = np.unique(np.sort(sides_of_triangles, axis=1), axis=0, return_counts=True)
+    for refused in (
+        lambda: lsgp.extract_quads(surface(mesh), layout.corner_uv),
+        lambda: lsgp.remesh_to_quads(surface(mesh), target=100),
+    ):
+        with pytest.raises(lsgp.TopologyError) as caught:
+            refused()
+        assert caught.value.code == "OPEN_SURFACE"
+        named = {tuple(sorted(edge)) for edge in caught.value.elements.indices.tolist()}
+        assert named == {tuple(edge) for edge in edges[uses == 1].tolist()}
+
+
+def test_surfaces_of_one_side_are_refused() -> None:
+    with pytest.raises(lsgp.TopologyError) as caught:
+        lsgp.remesh_to_quads(surface(meshes.klein_bottle()), target=100)
+    assert caught.value.code == "NOT_ORIENTABLE"
+
+
+def test_cones_of_a_quarter_turn_are_refused() -> None:
+    """Two of 90 and one of 180 degrees on a sphere."""
+    mesh = meshes.icosphere(2)
+    angles = [np.pi / 2, np.pi / 2, np.pi]
+    layout = lsgp.parameterize(surface(mesh), [0, 3, 7], angles, lsgp.Options(seamless=lsgp.Seamless(tiles=16)))
+    with pytest.raises(lsgp.CurvatureError) as caught:
+        lsgp.extract_quads(surface(mesh), layout.corner_uv)
+    assert caught.value.code == "CONE_ANGLE_RANGE"
+    assert caught.value.elements.indices.tolist() == [0, 3]
+
+
+@pytest.mark.parametrize("cells", [(1, 3), (2, 3), (5, 2), (1, 1)])
+def test_cells_too_large_for_a_mesh_are_refused(cells: tuple[int, int]) -> None:
+    """Around a tube of two cells, two edges join the same vertices."""
+    mesh, uv = flat_torus(cells)
+    assert round(layout_area(uv)) == cells[0] * cells[1]
+    with pytest.raises(lsgp.SolverError) as caught:
+        lsgp.extract_quads(surface(mesh), uv)
+    assert caught.value.code == "GRID_TOO_COARSE"
+    assert len(caught.value.elements.indices)
+
+
+def test_it_can_be_cancelled() -> None:
+    with pytest.raises(lsgp.Cancelled):
+        lsgp.extract_quads(surface(BALL), LAYOUT.corner_uv, progress=lambda done: False)
