@@ -63,7 +63,7 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
   // A seamless layout was split before its parts were put onto the lattice; pinned ones keep their place.
   if (options_.overlaps == Overlaps::split && !result_.seamless && map.pins.size() < 2) {
     try {
-      split_map(component.mesh, geometry, open_seams(component.mesh), component.mesh.seam, monitor_, map);
+      split_map({component.mesh, geometry, open_seams(component.mesh)}, component.mesh.seam, monitor_, map);
     } catch (const Error& error) {
       failures_.push_back(failure_of(component, error));
       return;
@@ -75,7 +75,7 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
   if (!keeps_islands) {
     const SharedSquare square{surface_area_ / options_.square_share, scale_to_surface(component.mesh, geometry, map),
                               options_.compact};
-    compact_islands(component.mesh, geometry, open_seams(component.mesh), square, map);
+    compact_islands({component.mesh, geometry, open_seams(component.mesh)}, square, map);
   }
   move_findings(component, findings, result_.warnings);
   added_cuts_.add(component, map);

@@ -84,9 +84,8 @@ LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, const ComponentMap& ma
   const NodeGraph nodes = build_node_graph(mesh_, map.cut_graph, [&](Index v) {
     return !relaxed.empty() && v == relaxed.front() ? 1 : rank_of_root(map.curvature.at_vertex[v]);
   });
-  reduction_ = impose_on_lattice(mesh_, map.cut_graph, map.cut_mesh, nodes,
-                                 curvature_of_nodes(mesh_, nodes, map.curvature.at_vertex),
-                                 turns_of_cuts(rotation_, lattice_.symmetry()), lattice_, demands.parity, relaxed);
+  reduction_ = impose_on_lattice(surface(), nodes, curvature_of_nodes(mesh_, nodes, map.curvature.at_vertex),
+                                 turns_of_cuts(rotation_, lattice_.symmetry()), {lattice_, demands.parity, relaxed});
   motion_of_copies_ = motion_of_copies(mesh_, map.cut_graph, map.cut_mesh, rotation_);
   set_start(map);
   integers_ = integers_of(start_);
@@ -112,8 +111,9 @@ void LayoutQuantizer::set_start(const ComponentMap& map) {
   if (energy_ > poor_energy) {
     DegreesOfFreedom all{reduction_.reduction, Array<Index>(mesh_.triangle_count())};
     std::iota(all.triangles.begin(), all.triangles.end(), 0);
-    NewtonMinimizer(surface(), Eigen::VectorXd::Zero(mesh_.vertex_count()),
-                    Eigen::VectorXd::Zero(mesh_.triangle_count()), std::move(all), before_step_, start_)
+    NewtonMinimizer(surface(),
+                    {Eigen::VectorXd::Zero(mesh_.vertex_count()), Eigen::VectorXd::Zero(mesh_.triangle_count())},
+                    std::move(all), before_step_, start_)
         .smooth(DistortionEnergy::Kind::symmetric_dirichlet, poor_steps, least_decrease);
   }
   misalignment_ = measure_misalignment(start_);
@@ -155,7 +155,7 @@ Array<MovingTriangle> LayoutQuantizer::moving_triangles(const ComponentMap& map)
   if (!mesh_.closed() || map.cones.empty()) return out;
   Array<Complex> turn;
   for (const int t : turns_of_cuts(rotation_, lattice_.symmetry())) turn.push_back(lattice_.unit(t));
-  const auto triangulation = triangulate_cones(mesh_, cut_graph_, cut_mesh_, turn, map.cones, start_);
+  const auto triangulation = triangulate_cones(surface(), turn, map.cones, start_);
   if (!triangulation) return out;
   const auto translation_at_start = [&](Index cut) {
     const Sisters sisters = origin_sisters(mesh_, cut_mesh_, cut_graph_.cuts[cut].halfedges.front());
@@ -252,14 +252,14 @@ bool LayoutQuantizer::repair(double scale, const Eigen::VectorXcd& before, Eigen
   target.log_scale = rest_.array() + std::log(scale);
   const ParallelTransport connection{
       measure_jacobians(mesh_, geometry_, cut_mesh_, before).f_z.array().arg(), rotation_, {}};
-  position = untangle(surface(), connection, target, Array<char>(mesh_.vertex_count(), 0), Effort::local,
-                      DistortionEnergy::Kind::framed_foldover_free, before_step_, position);
+  position = untangle(surface(), {connection, target}, {Effort::local, DistortionEnergy::Kind::framed_foldover_free},
+                      before_step_, {position, Array<char>(mesh_.vertex_count(), 0)});
   return check(position).defects() == 0;
 }
 
 // Newton steps on the symmetric Dirichlet energy over the marked vertices.
 void LayoutQuantizer::smooth(double scale, Array<char> marked, int steps, Eigen::VectorXcd& position) const {
-  NewtonMinimizer(surface(), rest_.array() + std::log(scale), Eigen::VectorXd::Zero(mesh_.triangle_count()),
+  NewtonMinimizer(surface(), {rest_.array() + std::log(scale), Eigen::VectorXd::Zero(mesh_.triangle_count())},
                   free_vertices(mesh_, cut_mesh_, motion_of_copies_, without_cones(std::move(marked))), before_step_,
                   position)
       .smooth(DistortionEnergy::Kind::symmetric_dirichlet, steps, least_decrease);
@@ -336,7 +336,7 @@ bool LayoutQuantizer::follow(double scale, const Eigen::VectorXcd& change, Eigen
 void LayoutQuantizer::lower_stretch(double stretch, const Eigen::VectorXd& importance, QuantizedLayout& layout) const {
   const Eigen::VectorXd rest = scale_at_rest(surface(), curvature_, stretch, layout.position);
   NewtonMinimizer relaxation(
-      surface(), rest, Eigen::VectorXd::Zero(mesh_.triangle_count()),
+      surface(), {rest, Eigen::VectorXd::Zero(mesh_.triangle_count())},
       free_vertices(mesh_, cut_mesh_, motion_of_copies_, without_cones(Array<char>(mesh_.vertex_count(), 1))),
       before_step_, layout.position);
   relaxation.weigh(importance_of_triangles(mesh_, geometry_, importance));

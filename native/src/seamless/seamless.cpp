@@ -460,13 +460,9 @@ DividedLayout divide(const HalfedgeMesh& mesh, ComponentMap& map) {
   return out;
 }
 
-// The layouts as maps in cells, split where asked for. A part that cannot be split leaves all maps as they are.
-void take_layouts(const Options& options, const GridSearch& search, Complex shift, const Grid& grid,
-                  Array<SeamlessPart>& parts, ProgressMonitor& monitor) {
-  if (options.overlaps != Overlaps::split) {
-    for (std::size_t i = 0; i < parts.size(); ++i) parts[i].map->position = grid.layouts[i].position.array() + shift;
-    return;
-  }
+// The layouts as maps in cells, split where they overlap. A part that cannot be split leaves all maps as they are.
+void split_layouts(const GridSearch& search, Complex shift, const Grid& grid, Array<SeamlessPart>& parts,
+                   ProgressMonitor& monitor) {
   Array<ComponentMap> maps(parts.size());
   for_each_part(parts, [&](std::size_t i) {
     const HalfedgeMesh& mesh = parts[i].component->mesh;
@@ -474,7 +470,7 @@ void take_layouts(const Options& options, const GridSearch& search, Complex shif
     maps[i].position = grid.layouts[i].position.array() + shift;
     // Cones off the lattice leave translations off it, across which nothing may move.
     const Array<char> nowhere(mesh.halfedge_count(), 0), everywhere(mesh.halfedge_count(), 1);
-    split_map(mesh, parts[i].system->geometry(), nowhere, search.relaxed(i).empty() ? mesh.seam : everywhere, monitor,
+    split_map({mesh, parts[i].system->geometry(), nowhere}, search.relaxed(i).empty() ? mesh.seam : everywhere, monitor,
               maps[i]);
   });
   for (std::size_t i = 0; i < parts.size(); ++i) *parts[i].map = std::move(maps[i]);
@@ -489,7 +485,11 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
   if (options.mode == Mode::low_stretch && options.stretch > 0) search.lower_stretch(options.stretch, grid);
   // With parity cones are at the centres of cells: around a corner of cells an odd number of them may meet.
   const Complex shift = seamless.parity ? Complex(0.5, 0.5) : Complex(0, 0);
-  take_layouts(options, search, shift, grid, parts, monitor);
+  if (options.overlaps == Overlaps::split) {
+    split_layouts(search, shift, grid, parts, monitor);
+  } else {
+    for (std::size_t i = 0; i < parts.size(); ++i) parts[i].map->position = grid.layouts[i].position.array() + shift;
+  }
   Array<DividedLayout> layouts;
   for (const SeamlessPart& part : parts) layouts.push_back(divide(part.component->mesh, *part.map));
   arrange_on_lattice(layouts, lattice, seamless.parity ? 2 : 1);

@@ -398,16 +398,17 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& island) {
 
 }  // namespace
 
-void compact_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& open,
-                     const SharedSquare& square, ComponentMap& map) {
-  Array<char> ends = open, is_cut = map.cut_graph.is_cut;
+void compact_islands(const OpenedSurface& surface, const SharedSquare& square, ComponentMap& map) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  Array<char> ends = surface.open, is_cut = map.cut_graph.is_cut;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) ends[h] = ends[h] || is_cut[h];
-  const FaceGraph graph = build_face_graph(mesh, geometry, ends);
+  const OpenedSurface islands{mesh, surface.geometry, ends};
+  const FaceGraph graph = build_face_graph(islands);
   const Eigen::VectorXcd position = square.scale * at_corners(map.cut_mesh, map.position);
   Compactor compactor(mesh, graph, position, square);
   Array<Index> part = compactor.divide_all();
   straighten_cuts(
-      mesh, geometry, graph, ends, [&](Index face, Index) { return !compactor.is_near_cut(face); }, part);
+      islands, graph, [&](Index face, Index) { return !compactor.is_near_cut(face); }, part);
   bool has_opened = false;
   for (const FaceGraph::Link& link : graph.links) {
     if (part[link.faces[0]] == part[link.faces[1]]) continue;

@@ -34,7 +34,7 @@ class Splitter {
   void split();
   void merge_back();
   void improve();
-  void straighten(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& open);
+  void straighten(const OpenedSurface& surface);
 
   // (faces)
   const Array<Index>& part() const { return part_; }
@@ -410,29 +410,27 @@ bool Splitter::improve(Index a, Index b, const Array<Index>& scope, Units length
   return false;
 }
 
-void Splitter::straighten(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& open) {
+void Splitter::straighten(const OpenedSurface& surface) {
   const auto lies_on_other = [&](Index face, Index other) {
     return std::any_of(partner_.begin() + entry_begin_[face], partner_.begin() + entry_begin_[face + 1],
                        [&](Index partner) { return part_[partner] == other; });
   };
-  straighten_cuts(mesh, geometry, graph_, open, lies_on_other, part_);
+  straighten_cuts(surface, graph_, lies_on_other, part_);
 }
 
 }  // namespace
 
-Index split_overlaps(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<Overlap>& overlaps, CutCost rule,
-                     const std::function<void()>& before_cut, Array<char>& open) {
-  const FaceGraph graph = build_face_graph(mesh, geometry, open);
+Array<Index> split_overlaps(const OpenedSurface& surface, const Array<Overlap>& overlaps, CutCost rule,
+                            const std::function<void()>& before_cut) {
+  const FaceGraph graph = build_face_graph(surface);
   Splitter splitter(graph, overlaps, rule, before_cut);
   splitter.split();
   splitter.merge_back();
   splitter.improve();
-  splitter.straighten(mesh, geometry, open);
-  Index opened = 0;
+  splitter.straighten(surface);
+  Array<Index> opened;
   for (const Link& link : graph.links) {
-    if (splitter.part()[link.faces[0]] == splitter.part()[link.faces[1]]) continue;
-    open[link.halfedge] = open[mesh.twin[link.halfedge]] = 1;
-    ++opened;
+    if (splitter.part()[link.faces[0]] != splitter.part()[link.faces[1]]) opened.push_back(link.halfedge);
   }
   return opened;
 }
