@@ -6,9 +6,11 @@
 #include <limits>
 
 #include "api/divided_seams.hpp"
+#include "api/doubled_triangles.hpp"
+#include "api/report_defects.hpp"
 #include "base/text.hpp"
 #include "plane/overlaps.hpp"
-#include "seamless/seamless.hpp"
+#include "seamless/exact_layout.hpp"
 #include "split/compact_islands.hpp"
 #include "split/split_map.hpp"
 #include "unfold/unfold.hpp"
@@ -123,8 +125,7 @@ void Assembly::finish(const Cones& cones, const Array<std::pair<Index, Index>>& 
     if (element(result_.island, f) != none) triangles.push_back(f);
   }
   result_.distortion = measure_triangles(surface_, result_.corner_uv, triangles);
-  for (const auto& [f, original] : duplicates) share_map(f, original);
-  name_unmapped(duplicates);
+  share_maps(surface_, duplicates, result_);
   add_opened_seams();
   report_flat_cones();
   if (directed_ > 0) result_.direction_error = misalignment_ / directed_;
@@ -135,7 +136,7 @@ void Assembly::finish(const Cones& cones, const Array<std::pair<Index, Index>>& 
     result_.cones.push_back(v);
     result_.cone_angles.push_back(cone_angle_[v]);
   }
-  report_defects();
+  report_defects(options_, std::move(inexact_), result_);
 }
 
 void Assembly::place(const Array<Similarity>& placement) {
@@ -187,10 +188,10 @@ void Assembly::collect_checks(const Component& component, const ComponentMap& ma
     result_.wrong_angle_sums.push_back(component.source_vertex[v]);
   }
   result_.cone_angle_error = std::max(result_.cone_angle_error, map.validity.cone_angle_error);
-  for (const Index v : map.validity.inexact_angles) inexact_angles_.push_back(component.source_vertex[v]);
+  for (const Index v : map.validity.inexact_angles) inexact_.angles.push_back(component.source_vertex[v]);
   for (const Index h : map.inexact_seams) {
-    inexact_seams_.push_back(component.source_vertex[component.mesh.origin(h)]);
-    inexact_seams_.push_back(component.source_vertex[component.mesh.target(h)]);
+    inexact_.seams.push_back(component.source_vertex[component.mesh.origin(h)]);
+    inexact_.seams.push_back(component.source_vertex[component.mesh.target(h)]);
   }
 }
 
@@ -289,32 +290,6 @@ void Assembly::report_flat_cones() {
        {ElementKind::vertices, flat_cones_}});
 }
 
-void Assembly::name_unmapped(const Array<std::pair<Index, Index>>& duplicates) {
-  for (Finding& finding : result_.warnings) {
-    if (finding.code != Code::component_skipped) continue;
-    std::vector<Index>& skipped = finding.elements.indices;
-    const std::vector<Index> originals = skipped;  // sorted, as a component lists its triangles
-    for (const auto& [f, original] : duplicates) {
-      if (std::binary_search(originals.begin(), originals.end(), original)) skipped.push_back(f);
-    }
-    std::sort(skipped.begin(), skipped.end());
-  }
-}
-
-void Assembly::share_map(Index triangle, Index original) {
-  element(result_.island, triangle) = element(result_.island, original);
-  if (result_.direction_errors.size() > 0) {
-    result_.direction_errors[triangle] = result_.direction_errors[original];
-  }
-  for (Index corner = 3 * triangle; corner < 3 * triangle + 3; ++corner) {
-    for (Index other = 3 * original; other < 3 * original + 3; ++other) {
-      if (surface_.triangles.data()[corner] == surface_.triangles.data()[other]) {
-        result_.corner_uv.row(corner) = result_.corner_uv.row(other);
-      }
-    }
-  }
-}
-
 // Triangles that lie on others, over all islands.
 void Assembly::find_overlapping() {
   Array<Index> twin(layout_.size()), triangle(layout_.size() / 3);
@@ -340,68 +315,6 @@ void Assembly::find_overlapping() {
   }
   sort_unique(result_.overlapping);
   result_.overlap_area = shared > 0 ? shared / area : 0;
-}
-
-void Assembly::report_defects() {
-  std::vector<Index>& flipped = result_.flipped;
-  std::vector<Index>& wrong = result_.wrong_angle_sums;
-  std::sort(flipped.begin(), flipped.end());
-  sort_unique(wrong);
-  sort_unique(inexact_angles_);
-  // One of its copies may be off by more than another.
-  const auto is_wrong = [&](Index v) { return std::binary_search(wrong.begin(), wrong.end(), v); };
-  inexact_angles_.erase(std::remove_if(inexact_angles_.begin(), inexact_angles_.end(), is_wrong),
-                        inexact_angles_.end());
-  const bool foretold = std::any_of(result_.warnings.begin(), result_.warnings.end(),
-                                    [](const Finding& finding) { return finding.code == Code::high_distortion; });
-  if (!foretold && flipped.empty() && !(result_.distortion.l2_stretch < high_l2)) {
-    result_.warnings.push_back({Code::high_distortion,
-                                concat("The map stretches much: its L2 stretch is ", result_.distortion.l2_stretch,
-                                       ", 1 being none. Add cones where the texture becomes too small."),
-                                {}});
-  }
-  if (!inexact_seams_.empty()) {
-    result_.warnings.push_back(
-        {Code::inexact_seams,
-         concat(
-             "At ", count(inexact_seams_.size() / 2, "cut edge", "cut edges"),
-             " the two sides agree to fewer than nine digits, because the layout shrinks too much there or a part is "
-             "much smaller than the others. Add cones nearby, or unwrap small parts by themselves."),
-         {ElementKind::edges, inexact_seams_}});
-  }
-  if (!inexact_angles_.empty()) {
-    result_.warnings.push_back({Code::inexact_angles,
-                                concat("The angles around ", count(inexact_angles_.size(), "vertex", "vertices"),
-                                       " miss what was imposed by more than a millionth. Add cones nearby."),
-                                {ElementKind::vertices, inexact_angles_}});
-  }
-  if (!flipped.empty()) {
-    result_.warnings.push_back({Code::flipped_triangles,
-                                concat(count(flipped.size(), "triangle is", "triangles are"),
-                                       " flipped in the layout. Add a cone nearby or improve the mesh there."),
-                                {ElementKind::triangles, flipped}});
-  }
-  if (!wrong.empty()) {
-    result_.warnings.push_back({Code::wrong_angle_sums,
-                                concat("At ", count(wrong.size(), "vertex", "vertices"),
-                                       " angles are off by more than a degree: by a turn, where the layout turns once "
-                                       "too often or too little, or because it shrinks too much. Move or add cones "
-                                       "nearby."),
-                                {ElementKind::vertices, wrong}});
-  }
-  report_overlapping();
-}
-
-void Assembly::report_overlapping() {
-  const std::vector<Index>& overlapping = result_.overlapping;
-  if (overlapping.empty()) return;
-  const char* remedy = options_.overlaps == Overlaps::keep
-                           ? "To bake onto it, choose to split overlaps."
-                           : "They could not be split: unpin corners, or improve the mesh where triangles are flipped.";
-  result_.warnings.push_back(
-      {Code::overlapping_triangles,
-       concat(count(overlapping.size(), "triangle lies", "triangles lie"), " on others in the layout. ", remedy),
-       {ElementKind::triangles, overlapping}});
 }
 
 }  // namespace lsgp

@@ -5,9 +5,8 @@
 #include <functional>
 
 #include "base/array.hpp"
-#include "mesh/geometry.hpp"
-#include "mesh/topology.hpp"
 #include "plane/overlaps.hpp"
+#include "split/face_graph.hpp"
 #include "split/minimum_cut.hpp"
 
 namespace lsgp {
