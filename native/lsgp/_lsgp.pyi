@@ -11,7 +11,7 @@ _Floats = NDArray[np.float64]
 _Indices = NDArray[np.int32]
 _Flags = NDArray[np.bool_]
 _Surface = tuple[_Floats, _Indices, _Indices | None, _Indices, _Floats, _Floats, _Indices, _Floats]
-"""Positions, triangles, edges, seams, importance, costs of cuts along the edges, and borders."""
+"""Positions, triangles, edges, seams, importance, costs of cuts along the edges, borders, and directions."""
 _Cones = tuple[_Indices, _Floats, _Flags]
 """Vertices, angles, and which of them are given."""
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from lsgp.cli import main
 from lsgp.errors import InputError
-from lsgp.io import mesh_formats
+from lsgp.io import optional_packages
 from lsgp.io.mesh_files import read_mesh, read_mesh_file, write_mesh_file
 from lsgp.io.mesh_formats import formats_table
 from lsgp.io.mesh_ply import read_ply
@@ -130,7 +130,7 @@ def test_only_places_that_are_exactly_the_same_are_one() -> None:
 
 def test_what_a_format_takes_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(mesh_formats, "find_spec", lambda name: None)
+    monkeypatch.setattr(optional_packages, "find_spec", lambda name: None)
     Path("in.stl").write_bytes(b"solid\n")
     Path("in.obj").write_text(obj_text(*patch()))
     assert main(["unwrap", "in.stl", "-o", "out.obj"]) == 3

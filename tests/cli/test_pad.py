@@ -94,7 +94,7 @@ def test_refusals_write_nothing(lsgp, folder: Path, arguments: tuple, code: int,
 
 def test_without_opencv_the_refusal_says_how_to_install_it(folder: Path, monkeypatch, capsys) -> None:
     monkeypatch.chdir(folder)
-    monkeypatch.setattr("lsgp.io.image_files.find_spec", lambda name: None)
+    monkeypatch.setattr("lsgp.io.optional_packages.find_spec", lambda name: None)
     assert main(["pad", "rgb8.png", "--uv", "mapped.obj", "--margin", "4", "-o", "out.png"]) == 3
     assert "FORMAT_NOT_INSTALLED" in (said := capsys.readouterr().err) and "pip install 'lsgp[images]'" in said
     assert not (folder / "out.png").exists()

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +11,9 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from .mesh_text import malformed
+from .optional_packages import is_installed, not_installed
 from .side_files import UsageError, read_regular
 
-INSTALL = "pip install 'lsgp[images]'"
 PNG, TIFF = (".png",), (".tif", ".tiff")
 # What PNG holds; TIFF holds whatever is read.
 PNG_KINDS = ("uint8", "uint16")
@@ -64,10 +63,8 @@ def format_image(pixels: NDArray[Any], path: Path) -> bytes:
 
 
 def _opencv() -> Any:
-    if find_spec("cv2") is None:
-        raise InputError(
-            "FORMAT_NOT_INSTALLED", f"Reading and writing images takes the package OpenCV: {INSTALL}, and try again."
-        )
+    if not is_installed("cv2"):
+        raise not_installed("Reading and writing images", "OpenCV", "images", ", and try again.")
     import cv2
 
     return cv2

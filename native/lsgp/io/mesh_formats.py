@@ -5,14 +5,12 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from importlib.util import find_spec
 from pathlib import Path
 
 from ..errors import InputError
 from .mesh_off import HEADER as OFF_HEADER
+from .optional_packages import installation, is_installed, not_installed
 from .side_files import UsageError
-
-INSTALL = "pip install 'lsgp[formats]'"
 
 
 @dataclass(frozen=True)
@@ -57,12 +55,9 @@ def input_format(path: str | os.PathLike[str] | None, data: bytes, given: str | 
         raise InputError(
             "UNKNOWN_FORMAT", f"'{os.fspath(path or '-')}' is no {_one_of(readable)} file. Export the mesh as one."
         )
-    if not _is_there(found.reader):
-        raise InputError(
-            "FORMAT_NOT_INSTALLED",
-            f"Reading {found.name} takes the package {found.reader}: {INSTALL}. Without it "
-            f"{_one_of(_names_at_hand('reader'))} can be read.",
-        )
+    if not is_installed(found.reader):
+        remark = f". Without it {_one_of(_names_at_hand('reader'))} can be read."
+        raise not_installed(f"Reading {found.name}", found.reader, "formats", remark)
     return found
 
 
@@ -79,8 +74,8 @@ def output_format(path: str | os.PathLike[str] | None, given: str | None = None)
             f"'{shown}' cannot be written as {suffix if found is None else found.name}; "
             f"{_one_of(_names_at_hand('writer', suffixes=True))} can"
         )
-    if not _is_there(found.writer):
-        raise UsageError(f"writing '{shown}' takes the package {found.writer}; {INSTALL}")
+    if not is_installed(found.writer):
+        raise UsageError(f"writing '{shown}' takes the package {found.writer}; {installation('formats')}")
     return found
 
 
@@ -100,15 +95,11 @@ def formats_table() -> str:
 def _state(package: str | None) -> str:
     if package is None:
         return "no"
-    return "yes" if _is_there(package) else f"no, {INSTALL}"
-
-
-def _is_there(package: str) -> bool:
-    return not package or find_spec(package) is not None
+    return "yes" if is_installed(package) else f"no, {installation('formats')}"
 
 
 def _at_hand(use: str) -> list[Format]:
-    return [form for form in FORMATS if (package := getattr(form, use)) is not None and _is_there(package)]
+    return [form for form in FORMATS if (package := getattr(form, use)) is not None and is_installed(package)]
 
 
 def _names_at_hand(use: str, *, suffixes: bool = False) -> list[str]:

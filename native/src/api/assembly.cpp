@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 #include "api/divided_seams.hpp"
+#include "api/doubled_triangles.hpp"
+#include "api/report_defects.hpp"
 #include "base/text.hpp"
 #include "plane/overlaps.hpp"
-#include "seamless/seamless.hpp"
+#include "seamless/exact_layout.hpp"
 #include "split/compact_islands.hpp"
 #include "split/split_map.hpp"
 #include "unfold/unfold.hpp"
@@ -64,7 +65,7 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
   // A seamless layout was split before its parts were put onto the lattice; pinned ones keep their place.
   if (options_.overlaps == Overlaps::split && !result_.seamless && map.pins.size() < 2) {
     try {
-      split_map(component.mesh, geometry, open_seams(component.mesh), component.mesh.seam, monitor_, map);
+      split_map({component.mesh, geometry, open_seams(component.mesh)}, component.mesh.seam, monitor_, map);
     } catch (const Error& error) {
       failures_.push_back(failure_of(component, error));
       return;
@@ -76,8 +77,9 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
   if (!keeps_islands) {
     const SharedSquare square{surface_area_ / options_.square_share, scale_to_surface(component.mesh, geometry, map),
                               options_.compact};
-    compact_islands(component.mesh, geometry, open_seams(component.mesh), square, map);
+    compact_islands({component.mesh, geometry, open_seams(component.mesh)}, square, map);
   }
+  defects_.pinned = defects_.pinned || map.pins.size() > 1;
   move_findings(component, findings, result_.warnings);
   added_cuts_.add(component, map);
   for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
@@ -124,8 +126,7 @@ void Assembly::finish(const Cones& cones, const Array<std::pair<Index, Index>>& 
     if (element(result_.island, f) != none) triangles.push_back(f);
   }
   result_.distortion = measure_triangles(surface_, result_.corner_uv, triangles);
-  for (const auto& [f, original] : duplicates) share_map(f, original);
-  name_unmapped(duplicates);
+  share_maps(surface_, duplicates, result_);
   add_opened_seams();
   report_flat_cones();
   if (directed_ > 0) result_.direction_error = misalignment_ / directed_;
@@ -136,7 +137,7 @@ void Assembly::finish(const Cones& cones, const Array<std::pair<Index, Index>>& 
     result_.cones.push_back(v);
     result_.cone_angles.push_back(cone_angle_[v]);
   }
-  report_defects();
+  report_defects(options_, std::move(defects_), result_);
 }
 
 void Assembly::place(const Array<Similarity>& placement) {
@@ -188,10 +189,10 @@ void Assembly::collect_checks(const Component& component, const ComponentMap& ma
     result_.wrong_angle_sums.push_back(component.source_vertex[v]);
   }
   result_.cone_angle_error = std::max(result_.cone_angle_error, map.validity.cone_angle_error);
-  for (const Index v : map.validity.inexact_angles) inexact_angles_.push_back(component.source_vertex[v]);
+  for (const Index v : map.validity.inexact_angles) defects_.inexact_angles.push_back(component.source_vertex[v]);
   for (const Index h : map.inexact_seams) {
-    inexact_seams_.push_back(component.source_vertex[component.mesh.origin(h)]);
-    inexact_seams_.push_back(component.source_vertex[component.mesh.target(h)]);
+    defects_.inexact_seams.push_back(component.source_vertex[component.mesh.origin(h)]);
+    defects_.inexact_seams.push_back(component.source_vertex[component.mesh.target(h)]);
   }
 }
 
@@ -290,32 +291,6 @@ void Assembly::report_flat_cones() {
        {ElementKind::vertices, flat_cones_}});
 }
 
-void Assembly::name_unmapped(const Array<std::pair<Index, Index>>& duplicates) {
-  for (Finding& finding : result_.warnings) {
-    if (finding.code != Code::component_skipped) continue;
-    std::vector<Index>& skipped = finding.elements.indices;
-    const std::vector<Index> originals = skipped;  // sorted, as a component lists its triangles
-    for (const auto& [f, original] : duplicates) {
-      if (std::binary_search(originals.begin(), originals.end(), original)) skipped.push_back(f);
-    }
-    std::sort(skipped.begin(), skipped.end());
-  }
-}
-
-void Assembly::share_map(Index triangle, Index original) {
-  element(result_.island, triangle) = element(result_.island, original);
-  if (result_.direction_errors.size() > 0) {
-    result_.direction_errors[triangle] = result_.direction_errors[original];
-  }
-  for (Index corner = 3 * triangle; corner < 3 * triangle + 3; ++corner) {
-    for (Index other = 3 * original; other < 3 * original + 3; ++other) {
-      if (surface_.triangles.data()[corner] == surface_.triangles.data()[other]) {
-        result_.corner_uv.row(corner) = result_.corner_uv.row(other);
-      }
-    }
-  }
-}
-
 // Triangles that lie on others, over all islands.
 void Assembly::find_overlapping() {
   Array<Index> twin(layout_.size()), triangle(layout_.size() / 3);
@@ -343,10 +318,10 @@ void Assembly::find_overlapping() {
     const Index first = triangle[overlap.first], second = triangle[overlap.second];
     result_.overlapping.insert(result_.overlapping.end(), {first, second});
     if (face[overlap.first] != face[overlap.second] || is_flipped[first] || is_flipped[second]) continue;
-    on_own_face_.insert(on_own_face_.end(), {first, second});
+    defects_.on_own_face.insert(defects_.on_own_face.end(), {first, second});
   }
   sort_unique(result_.overlapping);
-  sort_unique(on_own_face_);
+  sort_unique(defects_.on_own_face);
   result_.overlap_area = shared > 0 ? shared / area : 0;
 }
 
@@ -360,82 +335,6 @@ Array<Index> Assembly::number_faces() const {
     before += count;
   }
   return out;
-}
-
-void Assembly::report_defects() {
-  std::vector<Index>& flipped = result_.flipped;
-  std::vector<Index>& wrong = result_.wrong_angle_sums;
-  std::sort(flipped.begin(), flipped.end());
-  sort_unique(wrong);
-  sort_unique(inexact_angles_);
-  // One of its copies may be off by more than another.
-  const auto is_wrong = [&](Index v) { return std::binary_search(wrong.begin(), wrong.end(), v); };
-  inexact_angles_.erase(std::remove_if(inexact_angles_.begin(), inexact_angles_.end(), is_wrong),
-                        inexact_angles_.end());
-  const bool foretold = std::any_of(result_.warnings.begin(), result_.warnings.end(),
-                                    [](const Finding& finding) { return finding.code == Code::high_distortion; });
-  if (!foretold && flipped.empty() && !(result_.distortion.l2_stretch < high_l2)) {
-    result_.warnings.push_back(
-        {Code::high_distortion,
-         concat("The map stretches much: its L2 stretch is ", rounded(result_.distortion.l2_stretch),
-                ", 1 being none. Add cones where the texture becomes too small."),
-         {}});
-  }
-  if (!inexact_seams_.empty()) {
-    result_.warnings.push_back(
-        {Code::inexact_seams,
-         concat("At ", count(inexact_seams_.size() / 2, "cut edge", "cut edges"),
-                " the two sides do not match exactly, because the layout shrinks too much there or a part is much "
-                "smaller than the others. Add cones nearby, or unwrap small parts by themselves."),
-         {ElementKind::edges, inexact_seams_}});
-  }
-  if (!inexact_angles_.empty()) {
-    result_.warnings.push_back({Code::inexact_angles,
-                                concat("The angles around ", count(inexact_angles_.size(), "vertex", "vertices"),
-                                       " are not exactly those imposed, but off by up to a degree, because the layout "
-                                       "shrinks too much there. Add cones nearby."),
-                                {ElementKind::vertices, inexact_angles_}});
-  }
-  if (!flipped.empty()) {
-    result_.warnings.push_back({Code::flipped_triangles,
-                                concat(count(flipped.size(), "triangle is", "triangles are"),
-                                       " flipped in the layout. Add a cone nearby or improve the mesh there."),
-                                {ElementKind::triangles, flipped}});
-  }
-  if (!wrong.empty()) {
-    result_.warnings.push_back({Code::wrong_angle_sums,
-                                concat("At ", count(wrong.size(), "vertex", "vertices"),
-                                       " angles are off by more than a degree: by a turn, where the layout turns once "
-                                       "too often or too little, or because it shrinks too much. Move or add cones "
-                                       "nearby."),
-                                {ElementKind::vertices, wrong}});
-  }
-  report_overlapping();
-}
-
-void Assembly::report_overlapping() {
-  const auto report = [&](const std::vector<Index>& triangles, const char* what) {
-    if (triangles.empty()) return;
-    result_.warnings.push_back({Code::overlapping_triangles,
-                                concat(count(triangles.size(), "triangle lies", "triangles lie"), " on others ", what),
-                                {ElementKind::triangles, triangles}});
-  };
-  if (options_.overlaps == Overlaps::keep) {
-    report(result_.overlapping, "in the layout. To bake onto it, choose to split overlaps.");
-    return;
-  }
-  const bool pinned =
-      std::any_of(solved_.begin(), solved_.end(), [](const Solved& solved) { return solved.map.pins.size() > 1; });
-  std::vector<Index> across_faces;
-  std::set_difference(result_.overlapping.begin(), result_.overlapping.end(), on_own_face_.begin(), on_own_face_.end(),
-                      std::back_inserter(across_faces));
-  report(on_own_face_,
-         "of the same face in the layout, and no cut divides a face. Divide such faces, best into triangles.");
-  report(across_faces, pinned ? "in the layout. Islands with several pins are not split: unpin corners."
-                       : result_.flipped.empty()
-                           ? "in the layout, and could not be split. Move or add cones nearby."
-                           : "in the layout, and could not be split because triangles are flipped. Improve the "
-                             "mesh there, or add a cone nearby.");
 }
 
 }  // namespace lsgp

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "api/added_cuts.hpp"
+#include "api/report_defects.hpp"
 #include "base/array.hpp"
 #include "pipeline/component_map.hpp"
 #include "pipeline/components.hpp"
@@ -67,26 +68,20 @@ class Assembly {
   // A vertex where parts meet may be flat in one and a cone of another: then it is not named as flat.
   void report_flat_cones();
 
-  // Triangles that lie on one of a skipped component were skipped with it.
-  void name_unmapped(const Array<std::pair<Index, Index>>& duplicates);
-
-  void share_map(Index triangle, Index original);
   void find_overlapping();
   Array<Index> number_faces() const;
-  void report_defects();
-  void report_overlapping();
 
   const Surface& surface_;
   const Array<Component>& components_;
   const Options& options_;
   ProgressMonitor& monitor_;
   Result& result_;
-  double surface_area_ = 0;                 // of all components
-  Array<double> cone_angle_;                // by the caller's vertex, NaN where none was imposed
-  Array<Index> cut_edges_, inexact_seams_;  // vertex pairs
+  double surface_area_ = 0;   // of all components
+  Array<double> cone_angle_;  // by the caller's vertex, NaN where none was imposed
+  Array<Index> cut_edges_;    // vertex pairs
+  Defects defects_;
   AddedCuts added_cuts_;
-  Array<Index> inexact_angles_, flat_cones_;
-  std::vector<Index> on_own_face_;  // triangles that lie on others of their face, none of them flipped
+  Array<Index> flat_cones_;
   Array<Solved> solved_;
   Array<Failure> failures_;
   Array<Island> islands_;    // those to be arranged

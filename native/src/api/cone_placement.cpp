@@ -25,11 +25,10 @@ constexpr double same_angle = 1e-9;  // radians
 // A surface split into components, each with what cones may be placed on.
 class PlacementWork {
  public:
-  PlacementWork(const Surface& surface, const Cones& existing, SeamMode seams, MoreCones more,
-                std::vector<Finding>& findings, const Progress& progress)
-      : triangles_(surface.triangles.rows()), findings_(findings), monitor_(progress, seconds_) {
-    work_ = prepare_placement(surface, existing, seams, more, findings);
-    copies_.assign(surface.positions.rows(), 0);
+  PlacementWork(const PlacementRequest& request, std::vector<Finding>& findings, const Progress& progress)
+      : triangles_(request.surface.triangles.rows()), findings_(findings), monitor_(progress, seconds_) {
+    work_ = prepare_placement(request, findings);
+    copies_.assign(request.surface.positions.rows(), 0);
     for (const Component& component : work_.topology.components) {
       for (const Index v : component.source_vertex) ++copies_[v];
     }
@@ -110,7 +109,7 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
   const LinearAlgebraCounter counter;
   const ThreadCount threads(options.threads);
   const MoreCones more = options.count == 0 ? MoreCones::none : MoreCones::some;
-  PlacementWork work(surface, existing, options.seams, more, out.warnings, progress);
+  PlacementWork work({surface, existing, options.seams, more}, out.warnings, progress);
   out.log_scale = Eigen::VectorXd::Zero(surface.positions.rows());
   Array<std::optional<double>> angle(surface.positions.rows());
   Array<Index> placed, shared;
@@ -170,7 +169,7 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
 ConeGains cone_gains(const Surface& surface, const Cones& existing, SeamMode seams, const Progress& progress) {
   constexpr double unlimited = std::numeric_limits<double>::infinity();
   ConeGains out;
-  PlacementWork work(surface, existing, seams, MoreCones::some, out.warnings, progress);
+  PlacementWork work({surface, existing, seams, MoreCones::some}, out.warnings, progress);
   out.predicted_l2 = Eigen::VectorXd::Constant(surface.positions.rows(), std::numeric_limits<double>::quiet_NaN());
   double stretched_area = 0, total_area = 0, most = 0, most_without = 0;
   work.for_each([&](const Component& component, const Geometry& geometry, const ComponentCones& cones,

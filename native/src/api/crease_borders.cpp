@@ -53,7 +53,7 @@ VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& con
   for (Index i = 0; i < options.sharp.rows(); ++i) sharp.insert(std::minmax(options.sharp(i, 0), options.sharp(i, 1)));
   const Cones given{cones, Array<std::optional<double>>(cones.size())};
   std::vector<Finding> findings;
-  const Work work = prepare(surface, given, Options{}, findings);
+  const Work work = prepare({surface, given, Options{}}, findings);
   const Array<Component>& components = work.topology.components;
   Array<Index> edges;
   for_each_component(components, findings, monitor, [&](std::size_t i) {

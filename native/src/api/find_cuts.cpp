@@ -16,7 +16,7 @@ CutPaths find_cuts(const Surface& surface, const std::vector<Index>& cones, cons
   ProgressMonitor monitor(progress, seconds);
   const Cones automatic{cones, Array<std::optional<double>>(cones.size())};
   std::vector<Finding> findings;
-  const Work work = prepare(surface, automatic, options, findings);
+  const Work work = prepare({surface, automatic, options}, findings);
   const Array<Component>& components = work.topology.components;
   CutPaths out;
   Array<Index> edges;

@@ -40,7 +40,8 @@ LedgerPart account(const Component& component, ComponentCones cones, const Optio
 }  // namespace
 
 std::vector<LedgerPart> build_ledger(const Surface& surface, const Cones& cones, const Options& options, LedgerOf of) {
-  const Work work = prepare_topology(surface, cones, options, of == LedgerOf::map ? MoreCones::none : MoreCones::some);
+  const Work work =
+      prepare_topology({surface, cones, options}, of == LedgerOf::map ? MoreCones::none : MoreCones::some);
   Array<Index> place_of(surface.positions.rows(), none);
   for (std::size_t i = 0; i < cones.vertices.size(); ++i) place_of[cones.vertices[i]] = static_cast<Index>(i);
   std::vector<LedgerPart> out;

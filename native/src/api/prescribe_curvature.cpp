@@ -17,7 +17,7 @@ Prescription prescribe_curvature(const Surface& surface, const Cones& cones, con
   const ThreadCount threads(options.threads);
   StageSeconds seconds;
   ProgressMonitor monitor(progress, seconds);
-  const Work work = prepare(surface, cones, options, out.warnings);
+  const Work work = prepare({surface, cones, options}, out.warnings);
   const Array<Component>& components = work.topology.components;
   out.log_scale = Eigen::VectorXd::Zero(surface.positions.rows());
   Array<double> angle(surface.positions.rows(), std::numeric_limits<double>::quiet_NaN());

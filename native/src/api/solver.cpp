@@ -60,7 +60,7 @@ class Pipeline {
 void Pipeline::prepare_work(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
                             std::vector<Finding>& findings) {
   try {
-    work_ = prepare(surface, cones, options, findings, pins, std::move(work_));
+    work_ = prepare({surface, cones, options}, findings, pins, std::move(work_));
   } catch (...) {
     kept_.clear();
     work_ = {};

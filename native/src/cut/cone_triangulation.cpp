@@ -81,13 +81,16 @@ class Motions {
 // A triangulation that can be flipped; every triangle has a chart of its own.
 class IntrinsicTriangulation {
  public:
-  IntrinsicTriangulation(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh,
-                         const Array<Complex>& turn, const Array<Index>& cones, const Eigen::VectorXcd& position)
-      : halfedges_(mesh.halfedge_count()),
-        outgoing_(mesh.outgoing),
-        is_cone_(mesh.vertex_count(), 0),
-        touched_in_(mesh.vertex_count(), 0),
-        flips_left_(100 * std::int64_t{mesh.halfedge_count()}) {
+  IntrinsicTriangulation(const CutSurface& surface, const Array<Complex>& turn, const Array<Index>& cones,
+                         const Eigen::VectorXcd& position)
+      : halfedges_(surface.mesh.halfedge_count()),
+        outgoing_(surface.mesh.outgoing),
+        is_cone_(surface.mesh.vertex_count(), 0),
+        touched_in_(surface.mesh.vertex_count(), 0),
+        flips_left_(100 * std::int64_t{surface.mesh.halfedge_count()}) {
+    const HalfedgeMesh& mesh = surface.mesh;
+    const CutGraph& cut_graph = surface.cut_graph;
+    const CutMesh& cut_mesh = surface.cut_mesh;
     for (const Index v : cones) is_cone_[v] = 1;
     Array<Index> to_right, to_left;  // (cuts) motions
     for (std::size_t cut = 0; cut < turn.size(); ++cut) {
@@ -323,10 +326,9 @@ class IntrinsicTriangulation {
 
 }  // namespace
 
-std::optional<ConeTriangulation> triangulate_cones(const HalfedgeMesh& mesh, const CutGraph& cut_graph,
-                                                   const CutMesh& cut_mesh, const Array<Complex>& turn,
+std::optional<ConeTriangulation> triangulate_cones(const CutSurface& surface, const Array<Complex>& turn,
                                                    const Array<Index>& cones, const Eigen::VectorXcd& position) {
-  IntrinsicTriangulation triangulation(mesh, cut_graph, cut_mesh, turn, cones, position);
+  IntrinsicTriangulation triangulation(surface, turn, cones, position);
   if (!triangulation.remove_others()) return std::nullopt;
   return triangulation.read();
 }

@@ -33,8 +33,7 @@ struct ConeTriangulation {
 // them.  turn: (cuts) e^{i rotation}.  position: (copies) u + iv, without flips, the angles around every other vertex
 // adding up to 2 pi, both sides of every cut related by its transition.
 // None where a vertex cannot be removed, as happens when the positions are not so.
-std::optional<ConeTriangulation> triangulate_cones(const HalfedgeMesh& mesh, const CutGraph& cut_graph,
-                                                   const CutMesh& cut_mesh, const Array<Complex>& turn,
+std::optional<ConeTriangulation> triangulate_cones(const CutSurface& surface, const Array<Complex>& turn,
                                                    const Array<Index>& cones, const Eigen::VectorXcd& position);
 
 }  // namespace lsgp

@@ -28,14 +28,14 @@ enum class Eliminate {
 
 class Elimination {
  public:
-  Elimination(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh, const NodeGraph& nodes,
-              const Eigen::VectorXd& node_curvature, Array<Complex> turn, Eliminate eliminate)
-      : mesh_(mesh),
-        cut_graph_(cut_graph),
-        cut_mesh_(cut_mesh),
+  Elimination(const CutSurface& surface, const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
+              Array<Complex> turn, Eliminate eliminate)
+      : mesh_(surface.mesh),
+        cut_graph_(surface.cut_graph),
+        cut_mesh_(surface.cut_mesh),
         nodes_(nodes),
-        n_(mesh.vertex_count()),
-        is_solved_(n_ + ssize(cut_graph.cuts), 0),
+        n_(mesh_.vertex_count()),
+        is_solved_(n_ + ssize(cut_graph_.cuts), 0),
         turn_(std::move(turn)),
         eliminate_(eliminate) {
     for (std::size_t i = nodes_.order.size(); i-- > 0;) {
@@ -50,8 +50,8 @@ class Elimination {
     return reduction;
   }
 
-  LatticeReduction reduce_to_lattice(const Eigen::VectorXd& node_curvature, const PointLattice& lattice, bool parity,
-                                     const Array<Index>& relaxed) {
+  LatticeReduction reduce_to_lattice(const Eigen::VectorXd& node_curvature, const LatticeConstraint& constraint) {
+    const auto& [lattice, parity, relaxed] = constraint;
     Array<Index> ids;  // of the integers
     for (Eigen::Index node = 0; node < node_curvature.size(); ++node) {
       const Index v = nodes_.vertex[node];
@@ -280,22 +280,20 @@ class Elimination {
 
 }  // namespace
 
-Reduction impose_transitions(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh,
-                             const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
+Reduction impose_transitions(const CutSurface& surface, const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
                              const Eigen::VectorXd& rotation) {
   Array<Complex> turn(rotation.size());
   for (Eigen::Index p = 0; p < rotation.size(); ++p) turn[p] = std::polar(1.0, rotation[p]);
-  return Elimination(mesh, cut_graph, cut_mesh, nodes, node_curvature, std::move(turn), Eliminate::positions).reduce();
+  return Elimination(surface, nodes, node_curvature, std::move(turn), Eliminate::positions).reduce();
 }
 
-LatticeReduction impose_on_lattice(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh,
-                                   const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
-                                   const Array<int>& turns, const PointLattice& lattice, bool parity,
-                                   const Array<Index>& relaxed) {
+LatticeReduction impose_on_lattice(const CutSurface& surface, const NodeGraph& nodes,
+                                   const Eigen::VectorXd& node_curvature, const Array<int>& turns,
+                                   const LatticeConstraint& constraint) {
   Array<Complex> turn;
-  for (const int t : turns) turn.push_back(lattice.unit(t));
-  return Elimination(mesh, cut_graph, cut_mesh, nodes, node_curvature, std::move(turn), Eliminate::translations)
-      .reduce_to_lattice(node_curvature, lattice, parity, relaxed);
+  for (const int t : turns) turn.push_back(constraint.lattice.unit(t));
+  return Elimination(surface, nodes, node_curvature, std::move(turn), Eliminate::translations)
+      .reduce_to_lattice(node_curvature, constraint);
 }
 
 Reduction leave_free(const CutMesh& cut_mesh, Index grounded) {

@@ -34,8 +34,7 @@ struct Reduction {
 };
 
 // rotation: (cuts) radians, as from find_rotations; node_curvature as there.
-Reduction impose_transitions(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh,
-                             const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
+Reduction impose_transitions(const CutSurface& surface, const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
                              const Eigen::VectorXd& rotation);
 
 // The same with the positions of cones as unknowns, as far as they can be: those and the translations that are left
@@ -52,14 +51,18 @@ struct LatticeReduction {
   Eigen::MatrixXcd basis;             // (d, d) the integers are basis * any lattice points
 };
 
+// What is to lie on a lattice.
+struct LatticeConstraint {
+  const PointLattice& lattice;
+  bool parity;                  // translations lead from white cells to white ones
+  const Array<Index>& relaxed;  // cones that may be anywhere; then the root and what lies between leave the lattice too
+};
+
 // turns: (cuts) rotations in multiples of 2 pi / q.  nodes: rooted at a boundary loop, or at a cone whose 1 - e^{i
-// curvature} is as small as can be but not 0.  parity: translations lead from white cells to white ones.
-// relaxed: cones that may be anywhere; then the root and what lies between leave the lattice too.
-// Throws SEAMLESS_IMPOSSIBLE.
-LatticeReduction impose_on_lattice(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh,
-                                   const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
-                                   const Array<int>& turns, const PointLattice& lattice, bool parity,
-                                   const Array<Index>& relaxed);
+// curvature} is as small as can be but not 0.  Throws SEAMLESS_IMPOSSIBLE.
+LatticeReduction impose_on_lattice(const CutSurface& surface, const NodeGraph& nodes,
+                                   const Eigen::VectorXd& node_curvature, const Array<int>& turns,
+                                   const LatticeConstraint& constraint);
 
 // Every copy an unknown of its own but `grounded`, which is held at zero: no transitions.
 Reduction leave_free(const CutMesh& cut_mesh, Index grounded);

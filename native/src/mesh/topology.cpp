@@ -177,40 +177,45 @@ void measure_topology(HalfedgeMesh& mesh) {
   mesh.genus = (2 - static_cast<int>(mesh.boundary_loops.size()) - mesh.euler) / 2;
 }
 
-void report_repairs(const Surface& surface, const EdgeTable& edges, const Array<Index>& twin,
-                    const Orientation& orientation, const Array<Component>& components,
-                    std::vector<Finding>& findings) {
+void report_crowded_edges(const Surface& surface, const EdgeTable& edges, std::vector<Finding>& findings) {
   Array<Index> crowded;
   for (Index edge = 0; edge < edges.count(); ++edge) {
     if (edges.halfedge_count(edge) <= 2) continue;
     const Index h = edges.halfedge(edge, 0);
     crowded.insert(crowded.end(), {surface.triangles.data()[h], surface.triangles.data()[next(h)]});
   }
-  if (!crowded.empty()) {
-    findings.push_back(
-        {Code::non_manifold_edge,
-         concat(count(crowded.size() / 2, "edge is", "edges are"),
-                " shared by more than two triangles. The layout is open there; delete the surplus faces to close it."),
-         {ElementKind::edges, crowded}});
-  }
-  Array<Index> fans(surface.positions.rows(), 0), split, isolated, turned;
-  for (const Component& component : components) {
-    for (const Index v : component.source_vertex) ++fans[v];
-  }
-  Array<char> open(fans.size(), 0);
+  if (crowded.empty()) return;
+  findings.push_back(
+      {Code::non_manifold_edge,
+       concat(count(crowded.size() / 2, "edge is", "edges are"),
+              " shared by more than two triangles. The layout is open there; delete the surplus faces to close it."),
+       {ElementKind::edges, crowded}});
+}
+
+// (vertices) those at which fans part because the surface was opened there.
+Array<char> mark_opened(const Surface& surface, const EdgeTable& edges, const Array<Index>& twin,
+                        const Orientation& orientation) {
+  Array<char> open(surface.positions.rows(), 0);
   for (Index edge = 0; edge < edges.count(); ++edge) {
     const Index h = edges.halfedge(edge, 0);
-    if (twin[h] != none || edges.halfedge_count(edge) < 2) continue;  // opened on purpose: fans part there
+    if (twin[h] != none || edges.halfedge_count(edge) < 2) continue;
     open[surface.triangles.data()[h]] = open[surface.triangles.data()[next(h)]] = 1;
   }
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
-    if (orientation.component[f] == none || !orientation.orientable[orientation.component[f]]) {
-      for (int c = 0; c < 3; ++c) open[surface.triangles(f, c)] = 1;
-    }
-    if (orientation.reversed[f]) turned.push_back(f);
+    if (orientation.component[f] != none && orientation.orientable[orientation.component[f]]) continue;
+    for (int c = 0; c < 3; ++c) open[surface.triangles(f, c)] = 1;
+  }
+  return open;
+}
+
+// Vertices of several fans and of none.  opened: as from mark_opened.
+void report_fans(const Array<Component>& components, const Array<char>& opened, std::vector<Finding>& findings) {
+  Array<Index> fans(opened.size(), 0), split, isolated;
+  for (const Component& component : components) {
+    for (const Index v : component.source_vertex) ++fans[v];
   }
   for (std::size_t v = 0; v < fans.size(); ++v) {
-    if (open[v]) continue;
+    if (opened[v]) continue;
     if (fans[v] == 0) isolated.push_back(static_cast<Index>(v));
     if (fans[v] > 1) split.push_back(static_cast<Index>(v));
   }
@@ -227,13 +232,19 @@ void report_repairs(const Surface& surface, const EdgeTable& edges, const Array<
          concat(count(isolated.size(), "vertex belongs", "vertices belong"), " to no face and got no coordinates."),
          {ElementKind::vertices, isolated}});
   }
-  if (!turned.empty()) {
-    findings.push_back(
-        {Code::reoriented,
-         concat(count(turned.size(), "triangle faces", "triangles face"), " the other way than the rest of ",
-                "the surface. Unwrapped as if turned; recalculate normals to repair it."),
-         {ElementKind::triangles, turned}});
+}
+
+void report_turned(const Orientation& orientation, std::vector<Finding>& findings) {
+  Array<Index> turned;
+  for (std::size_t f = 0; f < orientation.reversed.size(); ++f) {
+    if (orientation.reversed[f]) turned.push_back(static_cast<Index>(f));
   }
+  if (turned.empty()) return;
+  findings.push_back(
+      {Code::reoriented,
+       concat(count(turned.size(), "triangle faces", "triangles face"), " the other way than the rest of ",
+              "the surface. Unwrapped as if turned; recalculate normals to repair it."),
+       {ElementKind::triangles, turned}});
 }
 
 }  // namespace
@@ -322,7 +333,9 @@ Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std
     number_vertices(surface, component);
     measure_topology(mesh);
   }
-  report_repairs(surface, edges, twin, orientation, components, findings);
+  report_crowded_edges(surface, edges, findings);
+  report_fans(components, mark_opened(surface, edges, twin, orientation), findings);
+  report_turned(orientation, findings);
   return topology;
 }
 

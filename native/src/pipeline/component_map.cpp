@@ -40,16 +40,20 @@ bool closes_holes(const ComponentMap& map) {
   return std::find(closed.begin(), closed.end(), 1) != closed.end();
 }
 
+struct FoundMap {
+  ComponentMap map;
+  std::vector<Finding> findings;
+};
+
 // Tries out angles and geometries, easy repairs first; returns the map with the fewest defects.
-ComponentMap find_valid_map(ComponentSystem& system, const ComponentTask& task, const Options& options,
-                            std::vector<Finding>& findings, ProgressMonitor& monitor,
-                            std::optional<RepairReport>& repair) {
+FoundMap find_valid_map(ComponentSystem& system, const ComponentTask& task, const Options& options,
+                        ProgressMonitor& monitor, std::optional<RepairReport>& repair) {
   constexpr double fat_margin = 0.2;
   const bool persists = repairs(options);
   const bool is_free = persists && task.cones.symmetry == 0 &&
                        (options.prescription == PrescriptionRule::least_distortion ||
                         (options.prescription == PrescriptionRule::manual && !all_given(task.cones)));
-  std::optional<ComponentMap> best;
+  std::optional<FoundMap> best;
   const HalfedgeMesh& mesh = system.mesh();
   std::optional<Geometry> fat;
   std::optional<ComponentSystem> fat_system;
@@ -64,20 +68,19 @@ ComponentMap find_valid_map(ComponentSystem& system, const ComponentTask& task, 
       for (std::size_t i = 0; i < (is_free ? std::size(angle_ranges) : 1); ++i) {
         ComponentCones cones = task.cones;
         if (is_free) cones.range = angle_ranges[i];
-        std::vector<Finding> found;
-        ComponentMap map;
+        FoundMap found;
         try {
-          map = mapping.attempt(cones, effort, found);
+          found.map = mapping.attempt(cones, effort, found.findings);
         } catch (const Error& error) {
           if (!best || error.code() != Code::solver_failed) throw;
           continue;
         }
-        if (!best || map.validity.defects() < best->validity.defects()) {
-          if (is_fat && map.validity.defects() == 0) Mapping(system, task, options, monitor, repair).smooth(map);
-          best = std::move(map);
-          findings = std::move(found);
+        const std::size_t defects = found.map.validity.defects();
+        if (!best || defects < best->map.validity.defects()) {
+          if (is_fat && defects == 0) Mapping(system, task, options, monitor, repair).smooth(found.map);
+          best = std::move(found);
         }
-        if (best->validity.defects() == 0) return std::move(*best);
+        if (best->map.validity.defects() == 0) return std::move(*best);
         // A valid map would have been proof that its angles are possible.
         if (effort == Effort::local && !is_fat && options.prescription == PrescriptionRule::manual) {
           require_possible(mesh, system.geometry(), task.cones);
@@ -102,16 +105,14 @@ ComponentMap attempt_component(ComponentSystem& system, const ComponentTask& tas
 ComponentMap map_component(ComponentSystem& system, const ComponentTask& task, const Options& options,
                            std::vector<Finding>& findings, ProgressMonitor& monitor) {
   std::optional<RepairReport> repair;
-  std::vector<Finding> found;
-  ComponentMap map = find_valid_map(system, task, options, found, monitor, repair);
+  auto [map, found] = find_valid_map(system, task, options, monitor, repair);
   if (map.validity.defects() > 0 && repairs(options) && closes_holes(map) && task.cones.holes != Holes::as_they_are) {
     ComponentTask opened = task;
     opened.cones.holes = Holes::as_they_are;
-    std::vector<Finding> found_opened;
-    ComponentMap other = find_valid_map(system, opened, options, found_opened, monitor, repair);
-    if (other.validity.defects() < map.validity.defects()) {
-      map = std::move(other);
-      found = std::move(found_opened);
+    FoundMap other = find_valid_map(system, opened, options, monitor, repair);
+    if (other.map.validity.defects() < map.validity.defects()) {
+      map = std::move(other.map);
+      found = std::move(other.findings);
     }
   }
   Mapping mapping(system, task, options, monitor, repair);

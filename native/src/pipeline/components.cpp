@@ -180,9 +180,9 @@ Opened find_opened(const Surface& surface, const Array<Component>& components, c
   return out;
 }
 
-void divide(const Surface& surface, const Cones& cones, const Options& options, MoreCones more,
-            std::vector<Finding>& findings, Work& work) {
-  const auto split_along = [&](OpenSeams open) {
+void divide(const Request& request, MoreCones more, std::vector<Finding>& findings, Work& work) {
+  const auto& [surface, cones, options] = request;
+  const auto split_along = [&, &surface = surface, &cones = cones, &options = options](OpenSeams open) {
     split(surface, options.seams, std::move(open), work);
     work.tasks = hand_out(surface, work.topology.components, work.open_seams, cones, options);
   };
@@ -227,27 +227,26 @@ bool is_flat_along_seams(const HalfedgeMesh& torus) {
 
 }  // namespace
 
-Work prepare_placement(const Surface& surface, const Cones& existing, SeamMode seams, MoreCones more,
-                       std::vector<Finding>& findings) {
-  require_valid(surface);
-  require_valid(surface, existing);
+Work prepare_placement(const PlacementRequest& request, std::vector<Finding>& findings) {
+  require_valid(request.surface);
+  require_valid(request.surface, request.existing);
   Options options;
   options.prescription = PrescriptionRule::manual;
-  options.seams = seams;
+  options.seams = request.seams;
   Work work;
-  divide(surface, existing, options, more, findings, work);
+  divide({request.surface, request.existing, options}, request.more, findings, work);
   findings.insert(findings.end(), work.found.begin(), work.found.end());
   return work;
 }
 
-Work prepare(const Surface& surface, const Cones& cones, const Options& options, std::vector<Finding>& findings,
-             const Pins& pins, Work earlier) {
+Work prepare(const Request& request, std::vector<Finding>& findings, const Pins& pins, Work earlier) {
+  const auto& [surface, cones, options] = request;
   if (earlier.topology.components.empty()) require_valid(surface);
   require_valid(surface, cones);
   require_valid(surface, pins);
   require_valid(options, pins);
   Work work = std::move(earlier);
-  divide(surface, cones, options, MoreCones::none, findings, work);
+  divide(request, MoreCones::none, findings, work);
   hand_out_pins(surface, pins, work);
   hand_out_importance(surface.importance, work);
   hand_out_turning(work.topology.components, options, surface.positions.rows(), work.tasks);
@@ -256,12 +255,12 @@ Work prepare(const Surface& surface, const Cones& cones, const Options& options,
   return work;
 }
 
-Work prepare_topology(const Surface& surface, const Cones& cones, const Options& options, MoreCones more) {
-  require_connectivity(surface);
-  require_vertices(surface, cones);
+Work prepare_topology(const Request& request, MoreCones more) {
+  require_connectivity(request.surface);
+  require_vertices(request.surface, request.cones);
   std::vector<Finding> findings;
   Work work;
-  divide(surface, cones, options, more, findings, work);
+  divide(request, more, findings, work);
   return work;
 }
 

@@ -40,6 +40,13 @@ struct Work {
   std::vector<Finding> found;
 };
 
+// What a caller asks of a surface.
+struct Request {
+  const Surface& surface;
+  const Cones& cones;
+  const Options& options;
+};
+
 // Validates the call, splits the surface as the seam mode says and hands out what is asked.
 //
 // What becomes of seams is decided here, for all verbs. Where they are followed they are where cuts run, and cuts join
@@ -47,16 +54,20 @@ struct Work {
 // without cones is opened along its seams, as an artist who marked seams means it.
 // earlier: of the same surface, or empty; its topology is taken where it would come out the same.
 // Throws what require_valid and build_topology throw, and LOOP_TURNING.
-Work prepare(const Surface& surface, const Cones& cones, const Options& options, std::vector<Finding>& findings,
-             const Pins& pins = {}, Work earlier = {});
+Work prepare(const Request& request, std::vector<Finding>& findings, const Pins& pins = {}, Work earlier = {});
 
-// The same for cones that are to be placed.  existing: those there are; given angles stay.
+// The same for cones that are to be placed.
 enum class MoreCones { none, some };
-Work prepare_placement(const Surface& surface, const Cones& existing, SeamMode seams, MoreCones more,
-                       std::vector<Finding>& findings);
+struct PlacementRequest {
+  const Surface& surface;
+  const Cones& existing;  // given angles stay
+  SeamMode seams;
+  MoreCones more;
+};
+Work prepare_placement(const PlacementRequest& request, std::vector<Finding>& findings);
 
 // The same for what needs no positions: these are not looked at.
-Work prepare_topology(const Surface& surface, const Cones& cones, const Options& options, MoreCones more);
+Work prepare_topology(const Request& request, MoreCones more);
 
 // (m, 3) those of a component's triangles.
 Positions directions_on(const Component& component, const Positions& directions);

@@ -40,8 +40,9 @@ UnfoldMethod usable_unfold(const HalfedgeMesh& mesh, const ComponentCones& cones
 // A border without corners is one straight line along its own translation, but the discrete metric knows the angle
 // between two such borders only to the mesh's resolution. Its direction is therefore taken from the map without
 // straight borders, whose translations are consistent.
-void turn_cornerless_borders(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Array<Index>& corners,
-                             const Eigen::VectorXcd& natural, const Array<Index>& edges, Eigen::VectorXd& directions) {
+// natural: (3m) that map.
+void turn_cornerless_borders(const HalfedgeMesh& mesh, const Array<Index>& corners, const Eigen::VectorXcd& natural,
+                             const Array<Index>& edges, Eigen::VectorXd& directions) {
   const std::size_t loop_count = mesh.boundary_loops.size();
   Array<char> has_corner(loop_count, 0);
   for (const Index v : corners) {
@@ -49,7 +50,7 @@ void turn_cornerless_borders(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, 
   }
   Array<Complex> along(loop_count, 0.0);
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    const Complex edge = natural[cut_mesh.copy_of_corner[next(edges[i])]] - natural[cut_mesh.copy_of_corner[edges[i]]];
+    const Complex edge = natural[next(edges[i])] - natural[edges[i]];
     along[mesh.loop_of_vertex[mesh.origin(edges[i])]] +=
         std::polar(1.0, -directions[static_cast<Eigen::Index>(i)]) * edge;
   }
@@ -65,12 +66,12 @@ Eigen::VectorXcd unfold_along_borders(const CutSurface& surface, const Component
   const Geometry& geometry = surface.geometry;
   const Eigen::VectorXd& log_scale = map.curvature.log_scale;
   Eigen::VectorXd directions = metric_directions(mesh, geometry, log_scale, connection.frames, edges);
+  const Jacobians jacobians = prescribed_jacobians(mesh, log_scale, connection.frames);
   if (cones.border == BorderMode::straight) {
-    const Eigen::VectorXcd natural =
-        PoissonSystem(surface, connection.reduction).fit(prescribed_jacobians(mesh, log_scale, connection.frames));
-    turn_cornerless_borders(mesh, map.cut_mesh, cones.vertices, natural, edges, directions);
+    const Eigen::VectorXcd natural = PoissonSystem(surface, connection.reduction).fit(jacobians);
+    turn_cornerless_borders(mesh, cones.vertices, at_corners(map.cut_mesh, natural), edges, directions);
   }
-  return unfold_aligned(surface, connection.reduction, log_scale, connection.frames, edges, directions);
+  return unfold_aligned(surface, connection.reduction, jacobians, edges, directions);
 }
 
 // The fit to the prescribed Jacobians with every triangle's error relative to its scale: where scales differ much, the
@@ -140,8 +141,7 @@ ComponentMap Mapping::attempt(const ComponentCones& cones, Effort effort, std::v
   }
   Curvature target = map.curvature;
   if (map.pins.size() > 1) {
-    PinnedMap pinned =
-        move_onto_pins(mesh_, geometry_, map.cut_mesh, connection.reduction, map.pins, !aligned.empty(), map.position);
+    PinnedMap pinned = move_onto_pins(surface, connection.reduction, map.pins, !aligned.empty(), map.position);
     map.position = std::move(pinned.position);
     target.log_scale.array() += std::log(pinned.scale);
   }
@@ -180,8 +180,8 @@ void Mapping::approach_angles(ComponentMap& map, std::vector<Finding>& findings)
   if (start.validity.defects() > 0 || start.cut_graph.is_cut != map.cut_graph.is_cut) return;
   const CutSurface surface = open(map);
   const ParallelTransportChoice connections(surface, map.curvature, task_.cones.symmetry);
-  Continuation end = follow(surface, path_between(start.curvature, connections, map.curvature), fixed_vertices(map),
-                            Effort::global, counter(), start.position);
+  Continuation end = follow(surface, path_between(start.curvature, connections, map.curvature), Effort::global,
+                            counter(), {start.position, fixed_vertices(map)});
   if (end.reached < 1) {
     if (task_.cones.symmetry > 0) return;
     report_adjusted(map, end, findings);
@@ -196,8 +196,8 @@ void Mapping::relax(ComponentMap& map) {
   const ProgressMonitor::Stage stage(monitor_, "relax");
   const CutSurface surface = open(map);
   const ParallelTransport connection = connection_of(map);
-  map.position = lower_stretch(surface, connection, map.curvature, options_.stretch, fixed_vertices(map),
-                               task_.importance, counter(), map.position);
+  map.position = lower_stretch(surface, {connection, map.curvature}, {options_.stretch, task_.importance}, counter(),
+                               {map.position, fixed_vertices(map)});
   check(map);
 }
 
@@ -206,7 +206,7 @@ void Mapping::smooth(ComponentMap& map) {
   const ProgressMonitor::Stage stage(monitor_, "repair");
   const CutSurface surface = open(map);
   const ParallelTransport connection = connection_of(map);
-  NewtonMinimizer(surface, map.curvature.log_scale, connection.frames,
+  NewtonMinimizer(surface, {map.curvature.log_scale, connection.frames},
                   free_all(mesh_, map.cut_mesh, connection.reduction, fixed_vertices(map)), counter(), map.position)
       .smooth(Kind::conformal_barrier, steps);
   check(map);
@@ -262,7 +262,7 @@ void Mapping::repair(const ParallelTransportChoice& connections, const ParallelT
   }
   const auto repair_with = [&](Effort of_repair) {
     const auto first = connections.is_twisted() ? Kind::framed_foldover_free : Kind::foldover_free;
-    map.position = untangle(surface, connection, target, fixed, of_repair, first, counter(), map.position);
+    map.position = untangle(surface, {connection, target}, {of_repair, first}, counter(), {map.position, fixed});
     check(map);
   };
   repair_with(connections.is_twisted() ? Effort::local : effort);
@@ -290,7 +290,7 @@ void Mapping::polish(const ParallelTransport& connection, const Array<Index>& fl
     if (fixed[v] || (mesh_.loop_of_vertex[v] == none && map.curvature.at_vertex[v] != 0)) marked[v] = 0;
   }
   const Eigen::VectorXcd motion = motion_of_copies(mesh_, map.cut_graph, map.cut_mesh, connection.rotation);
-  NewtonMinimizer(surface, map.curvature.log_scale, connection.frames,
+  NewtonMinimizer(surface, {map.curvature.log_scale, connection.frames},
                   free_vertices(mesh_, map.cut_mesh, motion, marked), counter(), map.position)
       .smooth(Kind::conformal_barrier, steps);
   check(map);
@@ -302,12 +302,12 @@ void Mapping::twist_gradually(const ParallelTransportChoice& connections, const 
   ComponentMap moved = map;
   moved.position = PoissonSystem(surface, natural.reduction)
                        .fit(prescribed_jacobians(mesh_, map.curvature.log_scale, natural.frames));
-  moved.position = untangle(surface, natural, map.curvature, fixed, Effort::local, Kind::framed_foldover_free,
-                            counter(), moved.position);
+  moved.position = untangle(surface, {natural, map.curvature}, {Effort::local, Kind::framed_foldover_free}, counter(),
+                            {moved.position, fixed});
   check(moved);
   if (moved.validity.defects() > 0) return;
-  Continuation end = follow(surface, path_between(map.curvature, connections, map.curvature), fixed, Effort::local,
-                            counter(), moved.position);
+  Continuation end = follow(surface, path_between(map.curvature, connections, map.curvature), Effort::local, counter(),
+                            {moved.position, fixed});
   if (end.reached < 1) return;
   map.position = std::move(end.position);
   check(map);

@@ -29,15 +29,14 @@ class NearestDistance {
 // 60 cones to 1,000, and memory for their own block of H.
 class BatchPlacement {
  public:
-  // The first `kept` sites stay. All arguments have to outlive it.
-  BatchPlacement(const HalfedgeMesh& mesh, const Geometry& geometry, const PlacementProblem& problem,
-                 const ConeSearch& search, double reach, int kept, ProgressMonitor& monitor)
-      : mesh_(mesh),
+  // search: for single cones of the same problem. All arguments have to outlive it.
+  BatchPlacement(const Geometry& geometry, const ConeSearch& search, double reach, ProgressMonitor& monitor)
+      : mesh_(search.mesh()),
         geometry_(geometry),
-        problem_(problem),
+        problem_(search.problem()),
         search_(search),
         reach_(reach),
-        kept_(kept),
+        kept_(search.kept()),
         monitor_(monitor) {}
 
   void add(const Array<int>& sites);  // two back-substitutions each, and a fit

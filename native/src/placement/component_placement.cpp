@@ -78,7 +78,7 @@ PlacedCones place_component(const PlacementTask& task, const PlacementOptions& o
   require_possible(task.mesh, task.geometry, out.cones);
   out.missing = missing_cones(chooser, choice.cones);
   out.cones = chooser.with_angles(choice.cones);
-  out.curvature = impose(task.mesh, task.geometry, out.cones, chooser.border(), chooser.scale(), choice.cones.curvature,
+  out.curvature = impose(chooser.scale(), out.cones, choice.cones.curvature,
                          chooser.scale().evaluate_held(choice.cones.vertices, choice.cones.curvature), findings);
   connect_cones(task.mesh, task.geometry, inside_only(task.mesh, choice.cones.vertices), out.curvature.needs_no_cut);
   require_right(choice, !task.existing.vertices.empty());

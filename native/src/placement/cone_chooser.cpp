@@ -37,7 +37,7 @@ ConeChooser::ConeChooser(const PlacementTask& task, const PlacementOptions& opti
       monitor_(monitor),
       border_(free_border(task.mesh, task.existing.vertices)),
       scale_(task.mesh, task.geometry, border_),
-      sites_(find_cone_sites(task.mesh, task.geometry, task.existing, task.allowed, task.mirrored, effort.sites)),
+      sites_(find_cone_sites(task, effort.sites)),
       kernel_(make_kernel()),
       limits_(task.mesh, task.geometry, kernel_.sites(), given_curvature()),
       problem_{kernel_, limits_, scale_.balanced(), scale_.required_sum()},
@@ -54,7 +54,7 @@ Index ConeChooser::place_count() const {
 LogScaleVariance ConeChooser::make_kernel() {
   monitor_.advance(0.1);
   const ProgressMonitor::Part part(monitor_, 0.1, 0.3);
-  return LogScaleVariance(task_.geometry, scale_, border_, sites_.sites, effort_.probes, monitor_);
+  return LogScaleVariance(scale_, sites_.sites, effort_.probes, monitor_);
 }
 
 Eigen::VectorXd ConeChooser::given_curvature() const {

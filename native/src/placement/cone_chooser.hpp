@@ -23,15 +23,6 @@ struct ConeChoice {
   bool is_possible() const { return predicted_l2 < std::numeric_limits<double>::infinity(); }
 };
 
-// What cones may be placed on, and how.
-struct PlacementTask {
-  const HalfedgeMesh& mesh;
-  const Geometry& geometry;
-  const ComponentCones& existing;
-  const Array<char>& allowed;    // (n) vertices that cones may be placed at
-  const Array<Index>& mirrored;  // (n) images in a mirror plane, or empty
-};
-
 // The effort that a mesh is worth: sites to choose from, random probes of the diagonal of H, sweeps of exchange.
 struct PlacementEffort {
   int sites, probes, sweeps;
@@ -66,9 +57,7 @@ class ConeChooser {
 
   // What sets of cones are made of.
   ConeSet existing(double reach) const;
-  BatchPlacement batches(double reach) {
-    return {task_.mesh, task_.geometry, problem_, search_, reach, sites_.existing, monitor_};
-  }
+  BatchPlacement batches(double reach) { return {task_.geometry, search_, reach, monitor_}; }
   const ConeSearch& search() const { return search_; }
   const Array<Site>& sites() const { return kernel_.sites(); }
   Index place_count() const;  // of single cones, at all sites

@@ -17,6 +17,10 @@ class ConeSearch {
   // The first `kept` sites of every set stay.  sharp: sharp corners are taken where they gain nearly as much.
   ConeSearch(const HalfedgeMesh& mesh, const PlacementProblem& problem, int kept, bool sharp, ProgressMonitor& monitor);
 
+  const HalfedgeMesh& mesh() const { return mesh_; }
+  const PlacementProblem& problem() const { return problem_; }
+  int kept() const { return kept_; }
+
   // Adds the site that gains most, again and again, until there are so many cones or no room is left.
   void grow(ConeSet& set, int cones) const;
 

@@ -91,18 +91,20 @@ void mark_rings(const HalfedgeMesh& mesh, Index vertex, int rings, Array<char>& 
   }
 }
 
-ConeSites find_cone_sites(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& existing,
-                          const Array<char>& allowed, const Array<Index>& mirrored, int most) {
+ConeSites find_cone_sites(const PlacementTask& task, int most) {
+  const HalfedgeMesh& mesh = task.mesh;
+  const Eigen::VectorXd& angle_defect = task.geometry.angle_defect;
+  const Array<Index>& mirrored = task.mirrored;
   Array<char> taken(mesh.vertex_count(), 0);
-  ConeSites out{existing_sites(mesh, existing, mirrored, taken), 0};
+  ConeSites out{existing_sites(mesh, task.existing, mirrored, taken), 0};
   out.existing = static_cast<int>(out.sites.size());
-  const Array<char> reachable = find_reachable(mesh, existing);
+  const Array<char> reachable = find_reachable(mesh, task.existing);
   out.reaches_all = std::find(reachable.begin(), reachable.end(), 0) == reachable.end();
   const auto usable = [&](Index v) {
-    return !taken[v] && allowed[v] && mesh.loop_of_vertex[v] == none && reachable[v];
+    return !taken[v] && task.allowed[v] && mesh.loop_of_vertex[v] == none && reachable[v];
   };
   // Corners carry what they have, also beside each other.
-  const auto is_sharp = [&](Index v) { return std::abs(geometry.angle_defect[v]) >= sharp_defect; };
+  const auto is_sharp = [&](Index v) { return std::abs(angle_defect[v]) >= sharp_defect; };
   Array<Site> candidates;
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (!usable(v)) continue;
@@ -113,7 +115,7 @@ ConeSites find_cone_sites(const HalfedgeMesh& mesh, const Geometry& geometry, co
     }
   }
   std::stable_sort(candidates.begin(), candidates.end(), [&](const Site& a, const Site& b) {
-    return std::abs(geometry.angle_defect[a.vertex]) > std::abs(geometry.angle_defect[b.vertex]);
+    return std::abs(angle_defect[a.vertex]) > std::abs(angle_defect[b.vertex]);
   });
   Array<Site> spread = candidates;
   for (int rings = 1; static_cast<int>(spread.size()) > most; ++rings) {

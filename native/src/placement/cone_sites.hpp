@@ -23,6 +23,15 @@ struct Site {
 Array<Index> find_mirror_images(const HalfedgeMesh& mesh, const Geometry& geometry,
                                 const std::optional<MirrorPlane>& plane);
 
+// What cones may be placed on, and where.
+struct PlacementTask {
+  const HalfedgeMesh& mesh;
+  const Geometry& geometry;
+  const ComponentCones& existing;
+  const Array<char>& allowed;    // (n) vertices that cones may be placed at
+  const Array<Index>& mirrored;  // (n) images in a mirror plane, or empty
+};
+
 struct ConeSites {
   Array<Site> sites;
   int existing = 0;         // the first ones, with cones already
@@ -30,9 +39,8 @@ struct ConeSites {
 };
 
 // Existing cones, then where others may go: allowed vertices inside that cuts can join, all of them or, to have no more
-// than `most`, evenly spread ones and the sharpest of their surroundings.  mirrored: images, or empty.
-ConeSites find_cone_sites(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& existing,
-                          const Array<char>& allowed, const Array<Index>& mirrored, int most);
+// than `most`, evenly spread ones and the sharpest of their surroundings.
+ConeSites find_cone_sites(const PlacementTask& task, int most);
 
 // Marks a vertex and the rings around it, which end at a vertex of more than 64 triangles.
 void mark_rings(const HalfedgeMesh& mesh, Index vertex, int rings, Array<char>& marked);

@@ -29,11 +29,10 @@ class Signs {
 
 }  // namespace
 
-LogScaleVariance::LogScaleVariance(const Geometry& geometry, const LogScale& scale, const BorderConditions& border,
-                                   Array<Site> sites, int probes, ProgressMonitor& monitor)
+LogScaleVariance::LogScaleVariance(const LogScale& scale, Array<Site> sites, int probes, ProgressMonitor& monitor)
     : scale_(scale),
-      elsewhere_(border.curvature - geometry.angle_defect),
-      weight_(geometry.vertex_area / geometry.total_area),
+      elsewhere_(scale.border().curvature - scale.geometry().angle_defect),
+      weight_(scale.geometry().vertex_area / scale.geometry().total_area),
       sites_(std::move(sites)) {
   // What the probes and some columns of the surface at a time take.
   require_matrix_memory(static_cast<double>(site_count()), 2.0 * probes);

@@ -16,8 +16,7 @@ namespace lsgp {
 class LogScaleVariance {
  public:
   // probes: random curvatures from which the diagonal of H is estimated (Nystrom), to about 1 % with 48 of them.
-  LogScaleVariance(const Geometry& geometry, const LogScale& scale, const BorderConditions& border, Array<Site> sites,
-                   int probes, ProgressMonitor& monitor);
+  LogScaleVariance(const LogScale& scale, Array<Site> sites, int probes, ProgressMonitor& monitor);
 
   const Array<Site>& sites() const { return sites_; }
   int site_count() const { return static_cast<int>(sites_.size()); }

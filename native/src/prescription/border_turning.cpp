@@ -24,8 +24,9 @@ constexpr double mismatch = 1e-6;  // of Gauss-Bonnet, radians
 // staying at 0: the turning is affine in c.
 class LoopScales {
  public:
-  LoopScales(const HalfedgeMesh& mesh, const Geometry& geometry, const LogScale& scale)
-      : mesh_(mesh), geometry_(geometry), scale_(scale) {}
+  explicit LoopScales(const LogScale& scale) : mesh_(scale.mesh()), geometry_(scale.geometry()), scale_(scale) {}
+
+  const LogScale& scale() const { return scale_; }
 
   Eigen::VectorXd turning(const Eigen::VectorXd& log_scale) const {
     return turning_of(geometry_.angle_defect + apply_laplacian(mesh_, geometry_, log_scale));
@@ -197,12 +198,12 @@ bool is_planar(const HalfedgeMesh& mesh, const ComponentCones& cones) {
 }
 
 // The log scale with which all holes of a planar part close, or none where that is not to be had.
-std::optional<Eigen::VectorXd> close_all_holes(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                               const LoopScales& loops, const Array<char>& shiftable, Holes holes,
-                                               const LogScale& scale, const Eigen::VectorXd& log_scale) {
+std::optional<Eigen::VectorXd> close_all_holes(const LoopScales& loops, const Array<char>& shiftable, Holes holes,
+                                               const Eigen::VectorXd& log_scale) {
   constexpr double cheap = 1.1;      // times the L2 stretch without
   constexpr double worth = 1.5;      // times that with holes whose borders do not lead back to where they began
   constexpr Index most_closed = 20;  // holes; beyond, three back-substitutions each are too many
+  const LogScale& scale = loops.scale();
   Eigen::Index outer = 0;
   loops.turning(log_scale).maxCoeff(&outer);
   Turning wanted(shiftable.size(), once_around_a_hole);
@@ -221,7 +222,7 @@ std::optional<Eigen::VectorXd> close_all_holes(const HalfedgeMesh& mesh, const G
   if (!is_taken(closed)) return std::nullopt;
   // The map takes up what little is missing where the metric turns nearly once by itself.
   if (shifts.cwiseAbs().maxCoeff() > largest_hole_shift && ssize(inner) <= most_closed) {
-    const auto exact = close_translations(mesh, geometry, scale, inner, closed);
+    const auto exact = close_translations(scale.mesh(), scale.geometry(), scale, inner, closed);
     const bool pays = exact && is_taken(*exact) && scale.predicted_l2(*exact) <= worth * scale.predicted_l2(closed);
     if (pays) return exact;
   }
@@ -230,8 +231,9 @@ std::optional<Eigen::VectorXd> close_all_holes(const HalfedgeMesh& mesh, const G
 
 }  // namespace
 
-void prescribe_turning(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
-                       const BorderConditions& border, const LogScale& scale, Curvature& curvature) {
+void prescribe_turning(const LogScale& scale, const ComponentCones& cones, Curvature& curvature) {
+  const HalfedgeMesh& mesh = scale.mesh();
+  const BorderConditions& border = scale.border();
   const std::size_t loop_count = mesh.boundary_loops.size();
   curvature.needs_no_cut.assign(loop_count, 0);
   const Array<char> shiftable = shiftable_loops(mesh, border);
@@ -244,14 +246,14 @@ void prescribe_turning(const HalfedgeMesh& mesh, const Geometry& geometry, const
         {ElementKind::vertices, mesh.boundary_loops[i]});
   }
   if (border.balanced) return;
-  const LoopScales loops(mesh, geometry, scale);
+  const LoopScales loops(scale);
   Turning wanted = cones.loop_turning;
   wanted.resize(loop_count);
   const bool is_free = std::none_of(wanted.begin(), wanted.end(), [](const auto& turning) { return turning; });
   const bool rounds = cones.symmetry > 0;
   if (loop_count > 1 && is_free && is_planar(mesh, cones) && cones.holes != Holes::as_they_are &&
       (cones.holes == Holes::all || !rounds)) {
-    if (auto closed = close_all_holes(mesh, geometry, loops, shiftable, cones.holes, scale, curvature.log_scale)) {
+    if (auto closed = close_all_holes(loops, shiftable, cones.holes, curvature.log_scale)) {
       curvature.log_scale = std::move(*closed);
       curvature.needs_no_cut.assign(loop_count, 1);
       return;

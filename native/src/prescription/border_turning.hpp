@@ -11,7 +11,6 @@ constexpr double once_around_a_hole = -2 * M_PI;
 
 // Shifts the log scale, which is 0 along held borders, by constants along them that make them turn so, and says which
 // holes need no cut. Throws LOOP_TURNING with the component's own vertex numbers.
-void prescribe_turning(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
-                       const BorderConditions& border, const LogScale& scale, Curvature& curvature);
+void prescribe_turning(const LogScale& scale, const ComponentCones& cones, Curvature& curvature);
 
 }  // namespace lsgp

@@ -266,7 +266,6 @@ void require_possible(const HalfedgeMesh& mesh, const Geometry& geometry, const 
 Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, PrescriptionRule rule,
                     std::vector<Finding>& findings) {
   const HalfedgeMesh& mesh = system.mesh();
-  const Geometry& geometry = system.geometry();
   ComponentCones asked = cones;
   if (rule != PrescriptionRule::manual) std::fill(asked.angles.begin(), asked.angles.end(), std::nullopt);
   const BorderConditions& border = system.border();
@@ -293,15 +292,17 @@ Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, Prescr
   } else if (border.balanced && curvature.size() > 0) {
     curvature.array() += (scale.required_sum() - curvature.sum()) / static_cast<double>(curvature.size());
   }
-  return impose(mesh, geometry, asked, border, scale, curvature, scale.evaluate_held(curvature), findings);
+  return impose(scale, asked, curvature, scale.evaluate_held(curvature), findings);
 }
 
-Curvature impose(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& asked,
-                 const BorderConditions& border, const LogScale& scale, const Eigen::VectorXd& curvature,
+Curvature impose(const LogScale& scale, const ComponentCones& asked, const Eigen::VectorXd& curvature,
                  Eigen::VectorXd log_scale, std::vector<Finding>& findings) {
+  const HalfedgeMesh& mesh = scale.mesh();
+  const Geometry& geometry = scale.geometry();
+  const BorderConditions& border = scale.border();
   Curvature out;
   out.log_scale = std::move(log_scale);
-  prescribe_turning(mesh, geometry, asked, border, scale, out);
+  prescribe_turning(scale, asked, out);
   out.predicted_l2 = scale.predicted_l2(out.log_scale);
   out.at_vertex = border.curvature;
   for (Eigen::Index i = 0; i < curvature.size(); ++i) out.at_vertex[asked.vertices[i]] += curvature[i];

@@ -27,6 +27,10 @@ class LogScale {
   LogScale(const HalfedgeMesh& mesh, const Geometry& geometry, const BorderConditions& border,
            const Array<Index>& cones = {}, const CutFactor* factor = nullptr);
 
+  const HalfedgeMesh& mesh() const { return mesh_; }
+  const Geometry& geometry() const { return geometry_; }
+  const BorderConditions& border() const { return border_; }
+
   void add_cones(const Array<Index>& vertices);  // none twice, none held
   void remove_cones();                           // all of them
   Index cone_count() const { return static_cast<Index>(cones_.size()); }
@@ -134,8 +138,7 @@ Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, Prescr
 
 // The same with the cones' curvatures given, and the log scale that they make, (n) and 0 where held. Throws
 // LOOP_TURNING.
-Curvature impose(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& asked,
-                 const BorderConditions& border, const LogScale& scale, const Eigen::VectorXd& curvature,
+Curvature impose(const LogScale& scale, const ComponentCones& asked, const Eigen::VectorXd& curvature,
                  Eigen::VectorXd log_scale, std::vector<Finding>& findings);
 
 // Refuses what no choice of the automatic angles can mend. Throws TOO_FEW_CONES, CONE_ANGLE_RANGE, GAUSS_BONNET.

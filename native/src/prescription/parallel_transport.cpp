@@ -130,18 +130,16 @@ ParallelTransport ParallelTransportChoice::at(double share, const Curvature& cur
   if (symmetry_ > 0 && share == 1) {
     for (double& rotation : out.rotation) rotation = angle_of_turns(turns_of(rotation, symmetry_), symmetry_);
   }
-  out.reduction = impose_transitions(surface_.mesh, surface_.cut_graph, surface_.cut_mesh, metric.nodes,
-                                     metric.node_curvature, out.rotation);
+  out.reduction = impose_transitions(surface_, metric.nodes, metric.node_curvature, out.rotation);
   return out;
 }
 
 ParallelTransport connection_of_map(const CutSurface& surface, const Curvature& curvature,
                                     const Eigen::VectorXd& rotation, const Eigen::VectorXcd& position) {
-  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
   const NodeGraph nodes = nodes_of_cuts(surface, curvature);
-  return {measure_jacobians(mesh, geometry, cut_mesh, position).f_z.array().arg(), rotation,
-          impose_transitions(mesh, cut_graph, cut_mesh, nodes, curvature_of_nodes(mesh, nodes, curvature.at_vertex),
-                             rotation)};
+  const Eigen::VectorXd node_curvature = curvature_of_nodes(surface.mesh, nodes, curvature.at_vertex);
+  return {measure_jacobians(surface.mesh, surface.geometry, surface.cut_mesh, position).f_z.array().arg(), rotation,
+          impose_transitions(surface, nodes, node_curvature, rotation)};
 }
 
 }  // namespace lsgp

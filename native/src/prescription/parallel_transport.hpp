@@ -36,6 +36,12 @@ class ParallelTransportChoice {
   Eigen::VectorXd twist_, change_;  // of frames and rotations, empty where none
 };
 
+// What a map has to realise: rotations and frames, angles and scale.
+struct MapTarget {
+  const ParallelTransport& connection;
+  const Curvature& curvature;
+};
+
 // The connection that a map without flips realises: its rotations, and the turns of its own triangles as frames.
 ParallelTransport connection_of_map(const CutSurface& surface, const Curvature& curvature,
                                     const Eigen::VectorXd& rotation, const Eigen::VectorXcd& position);

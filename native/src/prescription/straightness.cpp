@@ -149,16 +149,17 @@ StraightSides straighten_sides(const HalfedgeMesh& mesh, const Geometry& geometr
 }
 
 // The angle of a node's sector between the two straight cuts that bound it, in (0, 2 pi].
-double read_angle(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh,
-                  const Eigen::VectorXcd& position, Index copy, Index opened_by, Index closed_by) {
-  const auto far_end = [&](Index h, bool on_left) {
+double read_angle(const CutSurface& surface, const Eigen::VectorXcd& position, const Sector& sector, Index closed_by) {
+  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
+  const auto far_end = [&, &mesh = mesh, &cut_graph = cut_graph, &cut_mesh = cut_mesh](Index h, bool on_left) {
     const Cut& cut = cut_graph.cuts[cut_graph.cut_of[h]];
     const bool forward = cut_graph.runs_forward[h];
     const Sisters end = forward ? target_sisters(mesh, cut_mesh, cut.halfedges.back())
                                 : origin_sisters(mesh, cut_mesh, cut.halfedges.front());
     return position[forward == on_left ? end.left : end.right];
   };
-  const Complex right = far_end(opened_by, true) - position[copy], left = far_end(closed_by, false) - position[copy];
+  const Complex tip = position[sector.copy];
+  const Complex right = far_end(sector.opened_by, true) - tip, left = far_end(closed_by, false) - tip;
   const double angle = std::arg(left * std::conj(right));
   return angle > 0 ? angle : angle + 2 * M_PI;
 }
@@ -185,8 +186,8 @@ StraightenedLayout straighten(const CutSurface& surface) {
       const auto all = sectors(mesh, cut_graph, cut_mesh, v);
       layout.curvature[v] = 2 * M_PI;
       for (std::size_t i = 0; i < all.size(); ++i) {
-        layout.curvature[v] -= read_angle(mesh, cut_graph, cut_mesh, boundary.positions(), all[i].copy,
-                                          all[i].opened_by, all[(i + 1) % all.size()].opened_by);
+        const Index closed_by = all[(i + 1) % all.size()].opened_by;
+        layout.curvature[v] -= read_angle(surface, boundary.positions(), all[i], closed_by);
       }
     }
   }

@@ -53,9 +53,9 @@ Path path_between(const Curvature& begin, const ParallelTransportChoice& connect
   };
 }
 
-Continuation follow(const CutSurface& surface, const Path& path, const Array<char>& fixed, Effort effort,
-                    const StepHook& before_step, const Eigen::VectorXcd& position) {
-  Continuation out{0, path(0), position};
+Continuation follow(const CutSurface& surface, const Path& path, Effort effort, const StepHook& before_step,
+                    const HeldMap& map) {
+  Continuation out{0, path(0), map.position};
   double step = first_step;
   for (int tried = 0; out.reached < 1 && step > shortest_step && tried < most_steps; ++tried) {
     before_step();
@@ -64,15 +64,15 @@ Continuation follow(const CutSurface& surface, const Path& path, const Array<cha
     Eigen::VectorXcd moved =
         PoissonSystem(surface, next.connection.reduction).fit(carry_over(surface, out.at, next, out.position));
     if (!is_valid(surface, next.curvature, moved)) {
-      moved = untangle(surface, next.connection, next.curvature, fixed, effort, Kind::framed_foldover_free, before_step,
-                       moved);
+      moved = untangle(surface, {next.connection, next.curvature}, {effort, Kind::framed_foldover_free}, before_step,
+                       {moved, map.fixed});
     }
     if (!is_valid(surface, next.curvature, moved)) {
       step /= 2;
       continue;
     }
-    NewtonMinimizer(surface, next.curvature.log_scale, next.connection.frames,
-                    free_all(surface.mesh, surface.cut_mesh, next.connection.reduction, fixed), before_step, moved)
+    NewtonMinimizer(surface, {next.curvature.log_scale, next.connection.frames},
+                    free_all(surface.mesh, surface.cut_mesh, next.connection.reduction, map.fixed), before_step, moved)
         .smooth(Kind::conformal_barrier, barrier_steps);
     out = {share, std::move(next), std::move(moved)};
     step *= 1.5;

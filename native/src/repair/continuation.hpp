@@ -27,9 +27,9 @@ struct Continuation {
 // Moves a map along a path in steps over which it stays valid: its Jacobians, scaled and turned as the metric is from
 // one point to the next, are fitted again under the next transitions, and what flips is repaired. Longer steps where
 // that succeeds, shorter ones where it does not.
-// position: valid at the beginning of the path.  fixed: (n) vertices that repairs leave where they are.
-Continuation follow(const CutSurface& surface, const Path& path, const Array<char>& fixed, Effort effort,
-                    const StepHook& before_step, const Eigen::VectorXcd& position);
+// map: valid at the beginning of the path; repairs leave its fixed vertices where they are.
+Continuation follow(const CutSurface& surface, const Path& path, Effort effort, const StepHook& before_step,
+                    const HeldMap& map);
 
 // The path between two choices of curvatures at the same cones, from the metric's own rotations about handles to the
 // chosen ones.

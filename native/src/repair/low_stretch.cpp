@@ -47,15 +47,15 @@ Eigen::VectorXd scale_at_rest(const CutSurface& surface, const Curvature& curvat
   return rest.array() + std::log(area / rest_area) / 2;
 }
 
-Eigen::VectorXcd lower_stretch(const CutSurface& surface, const ParallelTransport& connection,
-                               const Curvature& curvature, double stretch, const Array<char>& fixed,
-                               const Eigen::VectorXd& importance, const StepHook& before_step,
-                               const Eigen::VectorXcd& position) {
+Eigen::VectorXcd lower_stretch(const CutSurface& surface, const MapTarget& target, const StretchOptions& options,
+                               const StepHook& before_step, const HeldMap& map) {
   const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
-  const Eigen::VectorXd rest = scale_at_rest(surface, curvature, stretch, position);
-  Eigen::VectorXcd best = position;
+  const ParallelTransport& connection = target.connection;
+  const Curvature& curvature = target.curvature;
+  const Eigen::VectorXd rest = scale_at_rest(surface, curvature, options.stretch, map.position);
+  Eigen::VectorXcd best = map.position;
   // One linear step takes a map without fixed vertices almost there: frames stay, lengths are those wanted.
-  if (std::find(fixed.begin(), fixed.end(), 1) == fixed.end()) {
+  if (std::find(map.fixed.begin(), map.fixed.end(), 1) == map.fixed.end()) {
     before_step();
     Eigen::VectorXcd fitted =
         PoissonSystem(surface, connection.reduction).fit(prescribed_jacobians(mesh, rest, connection.frames));
@@ -64,9 +64,9 @@ Eigen::VectorXcd lower_stretch(const CutSurface& surface, const ParallelTranspor
       best = std::move(fitted);
     }
   }
-  NewtonMinimizer relaxation(surface, rest, connection.frames, free_all(mesh, cut_mesh, connection.reduction, fixed),
-                             before_step, best);
-  relaxation.weigh(importance_of_triangles(mesh, geometry, importance));
+  NewtonMinimizer relaxation(surface, {rest, connection.frames},
+                             free_all(mesh, cut_mesh, connection.reduction, map.fixed), before_step, best);
+  relaxation.weigh(importance_of_triangles(mesh, geometry, options.importance));
   relaxation.smooth(Kind::symmetric_dirichlet, most_steps, least_decrease);
   return best;
 }

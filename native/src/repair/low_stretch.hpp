@@ -10,14 +10,16 @@
 
 namespace lsgp {
 
-// Least symmetric Dirichlet energy against the surface's triangles scaled by e^{(1 - stretch) y}: the conformal map for
-// 0, the one of least stretch for 1. Translations move as well, but where fixed vertices hold them.
-// curvature: with the log scale y of the conformal map.  fixed: (n) vertices that stay.  importance: (n) or empty,
-// factors of the energy around vertices.  position: (copies) a valid map; so is what is returned.
-Eigen::VectorXcd lower_stretch(const CutSurface& surface, const ParallelTransport& connection,
-                               const Curvature& curvature, double stretch, const Array<char>& fixed,
-                               const Eigen::VectorXd& importance, const StepHook& before_step,
-                               const Eigen::VectorXcd& position);
+struct StretchOptions {
+  double stretch;                     // 0 for the conformal map, 1 for the one of least stretch
+  const Eigen::VectorXd& importance;  // (n) or empty, factors of the energy around vertices
+};
+
+// Least symmetric Dirichlet energy against the surface's triangles scaled by e^{(1 - stretch) y}, y being the target's
+// log scale, that of the conformal map. Translations move as well, but where fixed vertices hold them. The map has to
+// be valid; so is what is returned.
+Eigen::VectorXcd lower_stretch(const CutSurface& surface, const MapTarget& target, const StretchOptions& options,
+                               const StepHook& before_step, const HeldMap& map);
 
 // The log scale that is aimed at, (n), with the area of the map at hand.
 Eigen::VectorXd scale_at_rest(const CutSurface& surface, const Curvature& curvature, double stretch,

@@ -85,14 +85,14 @@ Array<char> mark_around(const HalfedgeMesh& mesh, const Array<Index>& triangles,
   return inside;
 }
 
-NewtonMinimizer::NewtonMinimizer(const CutSurface& surface, const Eigen::VectorXd& log_scale,
-                                 const Eigen::VectorXd& frames, DegreesOfFreedom freedom, StepHook before_step,
-                                 Eigen::VectorXcd& position)
+NewtonMinimizer::NewtonMinimizer(const CutSurface& surface, const RestShapes& rest, DegreesOfFreedom freedom,
+                                 StepHook before_step, Eigen::VectorXcd& position)
     : displacement_(std::move(freedom.displacement)),
       before_step_(std::move(before_step)),
       position_(position),
       hessian_(2 * displacement_.unknown_count) {
   const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
+  const Eigen::VectorXd& log_scale = rest.log_scale;
   shapes_.reserve(freedom.triangles.size());
   for (const Index f : freedom.triangles) {
     const double scale = std::exp(
@@ -105,7 +105,7 @@ NewtonMinimizer::NewtonMinimizer(const CutSurface& surface, const Eigen::VectorX
       // f_z = sum g_j z_j and f_zbar = sum h_j z_j with g = -i conj(e) / (4 A), h = i e / (4 A), e opposite corner j;
       // a turn of f_zbar changes no energy.
       const Complex edge = edge_vector(geometry, next(3 * f + c)) / (4 * geometry.area[f] * scale);
-      shape.g[c] = std::polar(1.0, -frames[f]) * Complex(0, -1) * std::conj(edge);
+      shape.g[c] = std::polar(1.0, -rest.frames[f]) * Complex(0, -1) * std::conj(edge);
       shape.h[c] = Complex(0, 1) * edge;
       shape.copy[c] = cut_mesh.copy_of_corner[3 * f + c];
       displacement_.for_each_term(shape.copy[c], [&](const Term& term) {

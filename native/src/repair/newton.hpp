@@ -36,12 +36,23 @@ Array<char> mark_around(const HalfedgeMesh& mesh, const Array<Index>& triangles,
 // Called before every step of Newton's method; what it throws ends the method.
 using StepHook = std::function<void()>;
 
+// The shapes that triangles are compared with: the surface's own, scaled by e^{log_scale} and turned by frames.
+struct RestShapes {
+  const Eigen::VectorXd& log_scale;  // (n)
+  const Eigen::VectorXd& frames;     // (m) radians
+};
+
+// A map, and what of it stays.
+struct HeldMap {
+  const Eigen::VectorXcd& position;  // (copies) u + iv
+  const Array<char>& fixed;          // (n) vertices that stay where they are
+};
+
 class NewtonMinimizer {
  public:
-  // Rest shapes are the surface's triangles scaled by e^{log_scale}, (n), and turned by frames, (m) radians.
   // Every triangle weighs as much as its area.  position: (copies) u + iv, which is moved.
-  NewtonMinimizer(const CutSurface& surface, const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames,
-                  DegreesOfFreedom freedom, StepHook before_step, Eigen::VectorXcd& position);
+  NewtonMinimizer(const CutSurface& surface, const RestShapes& rest, DegreesOfFreedom freedom, StepHook before_step,
+                  Eigen::VectorXcd& position);
 
   // Multiplies the weights of triangles, (m).
   void weigh(const Eigen::VectorXd& factors);

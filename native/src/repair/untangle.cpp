@@ -44,22 +44,23 @@ Array<Index> defective_triangles(const HalfedgeMesh& mesh, const Validity& valid
 
 }  // namespace
 
-Eigen::VectorXcd untangle(const CutSurface& surface, const ParallelTransport& connection, const Curvature& curvature,
-                          const Array<char>& fixed, Effort effort, Kind first, const StepHook& before_step,
-                          const Eigen::VectorXcd& position) {
+Eigen::VectorXcd untangle(const CutSurface& surface, const MapTarget& target, const UntangleOptions& options,
+                          const StepHook& before_step, const HeldMap& map) {
   const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
+  const ParallelTransport& connection = target.connection;
+  const Curvature& curvature = target.curvature;
   const Eigen::VectorXcd motion = motion_of_copies(mesh, cut_graph, cut_mesh, connection.rotation);
   const auto check = [&, &mesh = mesh, &cut_mesh = cut_mesh](const Eigen::VectorXcd& tried) {
     return check_map(mesh, at_corners(cut_mesh, tried), curvature.at_vertex, curvature.is_free);
   };
-  Eigen::VectorXcd best = position;
+  Eigen::VectorXcd best = map.position;
   Validity left = check(best);
   const Eigen::VectorXd frames =
-      connection.frames.array() + turn_against(mesh, geometry, cut_mesh, connection.frames, position);
+      connection.frames.array() + turn_against(mesh, geometry, cut_mesh, connection.frames, map.position);
   const auto try_out = [&](DegreesOfFreedom freedom, Kind energy, const Steps& most) {
     if (left.defects() == 0 || freedom.displacement.unknown_count == 0) return;
     Eigen::VectorXcd tried = best;
-    NewtonMinimizer relaxation(surface, curvature.log_scale, frames, std::move(freedom), before_step, tried);
+    NewtonMinimizer relaxation(surface, {curvature.log_scale, frames}, std::move(freedom), before_step, tried);
     if (relaxation.unfold(energy, most.unfolding)) {
       relaxation.smooth(Kind::conformal_barrier, most.smoothing, least_decrease);
     }
@@ -72,20 +73,20 @@ Eigen::VectorXcd untangle(const CutSurface& surface, const ParallelTransport& co
     Array<char> marked = mark_around(mesh, defective_triangles(mesh, left), rings);
     for (Index v = 0; v < mesh.vertex_count(); ++v) {
       const bool is_cone = mesh.loop_of_vertex[v] == none && curvature.at_vertex[v] != 0;
-      if (fixed[v] || is_cone) marked[v] = 0;
+      if (map.fixed[v] || is_cone) marked[v] = 0;
     }
     return free_vertices(mesh, cut_mesh, motion, marked);
   };
-  const Kind second = first == Kind::foldover_free ? Kind::framed_foldover_free : Kind::foldover_free;
+  const Kind second = options.first == Kind::foldover_free ? Kind::framed_foldover_free : Kind::foldover_free;
   if (static_cast<double>(left.flipped.size()) <= hopeless_share * mesh.triangle_count()) {
     for (const int rings : neighbourhoods) {
-      for (const Kind energy : {first, second}) try_out(free_around(rings), energy, local_steps);
+      for (const Kind energy : {options.first, second}) try_out(free_around(rings), energy, local_steps);
     }
   }
-  if (effort == Effort::local) return best;
+  if (options.effort == Effort::local) return best;
   // The framed energy knows the angles; the plain one gets out where no map keeps to the frames.
   for (const Kind energy : {Kind::framed_foldover_free, Kind::foldover_free}) {
-    try_out(free_all(mesh, cut_mesh, connection.reduction, fixed), energy, global_steps);
+    try_out(free_all(mesh, cut_mesh, connection.reduction, map.fixed), energy, global_steps);
   }
   return best;
 }

@@ -18,14 +18,18 @@ enum class Effort {
   global,  // and if these do not suffice everything at once, at the cost of some whole unfoldings
 };
 
+struct UntangleOptions {
+  Effort effort = Effort::local;
+  // The energy that is tried first on neighbourhoods: the plain one disturbs a map less that is almost right, the
+  // framed one keeps to the frames.
+  DistortionEnergy::Kind first = DistortionEnergy::Kind::framed_foldover_free;
+};
+
 // Moves a map until no triangle is flipped, by Newton's method on the foldover-free energies (Garanzha et al. 2021)
-// with rest shapes scaled to the prescribed metric and turned by the connection's frames, then smooths what was moved
-// with a conformal barrier. The transitions' rotations stay, so the seams stay exact. The connection's reduction is
-// used by the global effort alone.  fixed: (n) further vertices that stay. first: the energy that is tried first on
-// neighbourhoods: the plain one disturbs a map less that is almost right, the framed one keeps to the frames. position:
-// (copies) u + iv. Returns the positions with the fewest defects found.
-Eigen::VectorXcd untangle(const CutSurface& surface, const ParallelTransport& connection, const Curvature& curvature,
-                          const Array<char>& fixed, Effort effort, DistortionEnergy::Kind first,
-                          const StepHook& before_step, const Eigen::VectorXcd& position);
+// with rest shapes scaled to the target's metric and turned by its frames, then smooths what was moved with a conformal
+// barrier. The transitions' rotations stay, so the seams stay exact. The connection's reduction is used by the global
+// effort alone. Returns the positions with the fewest defects found.
+Eigen::VectorXcd untangle(const CutSurface& surface, const MapTarget& target, const UntangleOptions& options,
+                          const StepHook& before_step, const HeldMap& map);
 
 }  // namespace lsgp

@@ -13,9 +13,7 @@
 #include "plane/layout.hpp"
 #include "prescription/parallel_transport.hpp"
 #include "prescription/quantize_curvature.hpp"
-#include "repair/low_stretch.hpp"
 #include "repair/newton.hpp"
-#include "repair/untangle.hpp"
 #include "systems/stiffness.hpp"
 #include "unfold/unfold.hpp"
 
@@ -30,20 +28,9 @@ constexpr int tried_angles = 16;          // of the layout, within one turn of t
 constexpr int few_angles = 4;             // of those that are searched from on an automatic grid
 constexpr std::size_t tried_targets = 4;  // that are worth a repair
 constexpr std::size_t few_targets = 2;    // that are worth following, and all that are tried on an automatic grid
-// Following them.
-constexpr int most_moves = 20;
-constexpr double shortest_step = 0.01;  // of the way
-// Smoothing by the symmetric Dirichlet energy, 1 for an isometry.
-constexpr double stretched_energy = 1.5;  // of a triangle, or of a layout beside its start, that calls for it
-constexpr int smoothed_rings = 4;         // around stretched triangles
-constexpr int smoothing_steps = 4;
-constexpr int relaxing_steps = 30;
-constexpr double poor_energy = 1.5;  // of a start that is smoothed first
+// A start that is smoothed first.
+constexpr double poor_energy = 1.5;  // 1 for an isometry
 constexpr int poor_steps = 20;
-constexpr double least_decrease = 1e-3;  // of the energy, for which a further step is taken
-// Automatic grids.
-constexpr double mendable_share = 0.1;  // of the triangles, stretched, that are smoothed
-constexpr double easy_share = 2e-4;     // of the triangles, flipped, that are repaired
 
 Array<int> turns_of_cuts(const Eigen::VectorXd& rotation, int symmetry) {
   Array<int> out;
@@ -84,9 +71,8 @@ LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, const ComponentMap& ma
   const NodeGraph nodes = build_node_graph(mesh_, map.cut_graph, [&](Index v) {
     return !relaxed.empty() && v == relaxed.front() ? 1 : rank_of_root(map.curvature.at_vertex[v]);
   });
-  reduction_ = impose_on_lattice(mesh_, map.cut_graph, map.cut_mesh, nodes,
-                                 curvature_of_nodes(mesh_, nodes, map.curvature.at_vertex),
-                                 turns_of_cuts(rotation_, lattice_.symmetry()), lattice_, demands.parity, relaxed);
+  reduction_ = impose_on_lattice(surface(), nodes, curvature_of_nodes(mesh_, nodes, map.curvature.at_vertex),
+                                 turns_of_cuts(rotation_, lattice_.symmetry()), {lattice_, demands.parity, relaxed});
   motion_of_copies_ = motion_of_copies(mesh_, map.cut_graph, map.cut_mesh, rotation_);
   set_start(map);
   integers_ = integers_of(start_);
@@ -112,8 +98,9 @@ void LayoutQuantizer::set_start(const ComponentMap& map) {
   if (energy_ > poor_energy) {
     DegreesOfFreedom all{reduction_.reduction, Array<Index>(mesh_.triangle_count())};
     std::iota(all.triangles.begin(), all.triangles.end(), 0);
-    NewtonMinimizer(surface(), Eigen::VectorXd::Zero(mesh_.vertex_count()),
-                    Eigen::VectorXd::Zero(mesh_.triangle_count()), std::move(all), before_step_, start_)
+    NewtonMinimizer(surface(),
+                    {Eigen::VectorXd::Zero(mesh_.vertex_count()), Eigen::VectorXd::Zero(mesh_.triangle_count())},
+                    std::move(all), before_step_, start_)
         .smooth(DistortionEnergy::Kind::symmetric_dirichlet, poor_steps, least_decrease);
   }
   misalignment_ = measure_misalignment(start_);
@@ -155,7 +142,7 @@ Array<MovingTriangle> LayoutQuantizer::moving_triangles(const ComponentMap& map)
   if (!mesh_.closed() || map.cones.empty()) return out;
   Array<Complex> turn;
   for (const int t : turns_of_cuts(rotation_, lattice_.symmetry())) turn.push_back(lattice_.unit(t));
-  const auto triangulation = triangulate_cones(mesh_, cut_graph_, cut_mesh_, turn, map.cones, start_);
+  const auto triangulation = triangulate_cones(surface(), turn, map.cones, start_);
   if (!triangulation) return out;
   const auto translation_at_start = [&](Index cut) {
     const Sisters sisters = origin_sisters(mesh_, cut_mesh_, cut_graph_.cuts[cut].halfedges.front());
@@ -240,115 +227,6 @@ Array<LayoutQuantizer::Target> LayoutQuantizer::find_targets(double density, int
   }
   std::stable_sort(out.begin(), out.end(), [](const Target& a, const Target& b) { return a.cost < b.cost; });
   return out;
-}
-
-Validity LayoutQuantizer::check(const Eigen::VectorXcd& position) const {
-  return check_map(mesh_, at_corners(cut_mesh_, position), curvature_.at_vertex, curvature_.is_free);
-}
-
-// before: a valid map from which the present one was moved.
-bool LayoutQuantizer::repair(double scale, const Eigen::VectorXcd& before, Eigen::VectorXcd& position) const {
-  Curvature target = curvature_;
-  target.log_scale = rest_.array() + std::log(scale);
-  const ParallelTransport connection{
-      measure_jacobians(mesh_, geometry_, cut_mesh_, before).f_z.array().arg(), rotation_, {}};
-  position = untangle(surface(), connection, target, Array<char>(mesh_.vertex_count(), 0), Effort::local,
-                      DistortionEnergy::Kind::framed_foldover_free, before_step_, position);
-  return check(position).defects() == 0;
-}
-
-// Newton steps on the symmetric Dirichlet energy over the marked vertices.
-void LayoutQuantizer::smooth(double scale, Array<char> marked, int steps, Eigen::VectorXcd& position) const {
-  NewtonMinimizer(surface(), rest_.array() + std::log(scale), Eigen::VectorXd::Zero(mesh_.triangle_count()),
-                  free_vertices(mesh_, cut_mesh_, motion_of_copies_, without_cones(std::move(marked))), before_step_,
-                  position)
-      .smooth(DistortionEnergy::Kind::symmetric_dirichlet, steps, least_decrease);
-}
-
-// Against the scale at rest, 4 for an isometry.
-Eigen::VectorXd LayoutQuantizer::triangle_energies(double scale, const Jacobians& jacobians) const {
-  constexpr DistortionEnergy energy{DistortionEnergy::Kind::symmetric_dirichlet};
-  Eigen::VectorXd out(mesh_.triangle_count());
-  for (Index f = 0; f < mesh_.triangle_count(); ++f) {
-    double rest = 0;
-    for (int c = 0; c < 3; ++c) rest += rest_[mesh_.triangles(f, c)] / 3;
-    const double unit = scale * std::exp(rest);
-    out[f] = energy.value(jacobians.f_z[f] / unit, jacobians.f_zbar[f] / unit);
-  }
-  return out;
-}
-
-// Triangles that are much more distorted than the start, whose own may be: coarse meshes have no conformal maps.
-Array<Index> LayoutQuantizer::find_stretched(double scale, const Jacobians& jacobians) const {
-  const Eigen::VectorXd energies = triangle_energies(scale, jacobians);
-  Array<Index> out;
-  for (Index f = 0; f < mesh_.triangle_count(); ++f) {
-    if (!(energies[f] < stretched_energy * strain_[f])) out.push_back(f);
-  }
-  return out;
-}
-
-// Whether a little smoothing may bring a layout to that energy, which tells early that a grid is too coarse.
-bool LayoutQuantizer::looks_easy(double scale, double most_energy, const Validity& validity,
-                                 const Eigen::VectorXcd& position) const {
-  if (static_cast<double>(validity.flipped.size()) > 1 + easy_share * mesh_.triangle_count()) return false;
-  Jacobians jacobians = measure_jacobians(mesh_, geometry_, cut_mesh_, position);
-  const Array<Index> stretched = find_stretched(scale, jacobians);
-  if (static_cast<double>(stretched.size()) > mendable_share * mesh_.triangle_count()) return false;
-  for (const Index f : stretched) {
-    jacobians.f_z[f] = scale;
-    jacobians.f_zbar[f] = 0;
-  }
-  return symmetric_dirichlet_energy(geometry_, jacobians) <= most_energy;
-}
-
-// Moves the integers of a valid map by `change` at once.
-bool LayoutQuantizer::move(double scale, const LayoutEffort& effort, const Eigen::VectorXcd& change,
-                           Eigen::VectorXcd& position) const {
-  const Eigen::VectorXcd before = position;
-  position += response_->displacement(change);
-  const Validity validity = check(position);
-  if (effort.quick && !looks_easy(scale, effort.most_growth * energy_, validity, position)) return false;
-  if (validity.defects() > 0 && !repair(scale, before, position)) return false;
-  const Array<Index> stretched = find_stretched(scale, measure_jacobians(mesh_, geometry_, cut_mesh_, position));
-  if (!stretched.empty()) smooth(scale, mark_around(mesh_, stretched, smoothed_rings), smoothing_steps, position);
-  return true;
-}
-
-// The same in steps over which the map stays valid.
-bool LayoutQuantizer::follow(double scale, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const {
-  double reached = 0;
-  double step = 0.5;
-  for (int moves = 0; reached < 1 && step > shortest_step && moves < most_moves; ++moves) {
-    const double share = std::min(step, 1 - reached);
-    Eigen::VectorXcd tried = position;
-    if (!move(scale, {}, share * change, tried)) {
-      step /= 2;
-      continue;
-    }
-    reached = share == 1 - reached ? 1 : reached + share;
-    step *= 1.7;
-    position = std::move(tried);
-  }
-  return reached == 1;
-}
-
-void LayoutQuantizer::lower_stretch(double stretch, const Eigen::VectorXd& importance, QuantizedLayout& layout) const {
-  const Eigen::VectorXd rest = scale_at_rest(surface(), curvature_, stretch, layout.position);
-  NewtonMinimizer relaxation(
-      surface(), rest, Eigen::VectorXd::Zero(mesh_.triangle_count()),
-      free_vertices(mesh_, cut_mesh_, motion_of_copies_, without_cones(Array<char>(mesh_.vertex_count(), 1))),
-      before_step_, layout.position);
-  relaxation.weigh(importance_of_triangles(mesh_, geometry_, importance));
-  relaxation.smooth(DistortionEnergy::Kind::symmetric_dirichlet, relaxing_steps, least_decrease);
-  layout.energy = measure_energy(layout.position);
-}
-
-Array<char> LayoutQuantizer::without_cones(Array<char> marked) const {
-  for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-    if (mesh_.loop_of_vertex[v] == none && curvature_.at_vertex[v] != 0) marked[v] = 0;
-  }
-  return marked;
 }
 
 double LayoutQuantizer::measure_energy(const Eigen::VectorXcd& position) const {

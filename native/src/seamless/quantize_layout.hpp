@@ -72,6 +72,11 @@ class LayoutQuantizer {
   void lower_stretch(double stretch, const Eigen::VectorXd& importance, QuantizedLayout& layout) const;
 
  private:
+  // Smoothing by the symmetric Dirichlet energy, 1 for an isometry.
+  static constexpr double stretched_energy = 1.5;  // of a triangle, or of a layout beside its start, that calls for it
+  static constexpr double least_decrease = 1e-3;   // of the energy, for which a further step is taken
+  static constexpr int smoothing_steps = 4;
+
   struct Target {
     Complex motion;             // turn and scale of the start
     Eigen::VectorXcd integers;  // (d)
@@ -79,7 +84,6 @@ class LayoutQuantizer {
   };
 
   CutSurface surface() const { return {mesh_, geometry_, cut_graph_, cut_mesh_}; }
-  Array<char> without_cones(Array<char> marked) const;
   void set_start(const ComponentMap& map);
   Array<MovingTriangle> moving_triangles(const ComponentMap& map);
   UpwardTurn find_upward_turn(const Eigen::VectorXcd& position) const;
@@ -87,6 +91,8 @@ class LayoutQuantizer {
   double measure_misalignment(const Eigen::VectorXcd& position) const;
   Eigen::VectorXcd integers_of(const Eigen::VectorXcd& position) const;
   Array<Target> find_targets(double density, int searched_angles) const;
+
+  // In move_layout.cpp.
   Validity check(const Eigen::VectorXcd& position) const;
   bool repair(double scale, const Eigen::VectorXcd& before, Eigen::VectorXcd& position) const;
   void smooth(double scale, Array<char> marked, int steps, Eigen::VectorXcd& position) const;
@@ -95,6 +101,7 @@ class LayoutQuantizer {
   bool looks_easy(double scale, double most_energy, const Validity& validity, const Eigen::VectorXcd& position) const;
   bool move(double scale, const LayoutEffort& effort, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const;
   bool follow(double scale, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const;
+  Array<char> without_cones(Array<char> marked) const;
 
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;

@@ -2,7 +2,6 @@
 // Seamless layouts (the paper's section 8): every component on one grid, exact in the precision that is stored.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "base/array.hpp"
@@ -10,23 +9,9 @@
 #include "lsgp/options.hpp"
 #include "lsgp/result.hpp"
 #include "pipeline/component_map.hpp"
-#include "pipeline/components.hpp"
+#include "seamless/seamless_part.hpp"
 
 namespace lsgp {
-
-// A component's map, its angles multiples of the lattice's turn, and what it was made from.
-struct SeamlessPart {
-  const Component* component;
-  ComponentTask* task;
-  ComponentMap* map;
-  ComponentSystem* system;  // of the map
-  // Cones given up for others, the caller's vertices, and the system of those that are left.
-  Array<Index> merged{};
-  std::unique_ptr<ComponentSystem> merged_system{};
-};
-
-// As single precision stores it.
-Complex as_stored(Complex z);
 
 // Throws WRONG_PARAMETER.
 void require_valid(const Seamless& seamless, const Options& options, const Pins& pins);

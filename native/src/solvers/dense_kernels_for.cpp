@@ -28,8 +28,12 @@ inline std::complex<double> conjugate(const std::complex<double>& x) { return {x
 inline double real_part(double x) { return x; }
 inline double real_part(const std::complex<double>& x) { return x.real(); }
 
+// Kernels of more than five parameters get their operands one by one, as in the BLAS: from structs the compiler makes
+// code that rounds otherwise.
+
 // out (count) -= sum over columns of factor * column, four columns at a time.
 template <typename Scalar>
+// NOLINTNEXTLINE(readability-function-size)
 inline void subtract_columns(Scalar* __restrict out, int count, const Scalar* columns, std::ptrdiff_t stride,
                              const Scalar* factors, std::ptrdiff_t factor_stride, int column_count) {
   int k = 0;
@@ -92,6 +96,7 @@ bool factor_square(Scalar* square, int size, std::ptrdiff_t stride) {
 }
 
 template <typename Scalar>
+// NOLINTNEXTLINE(readability-function-size)
 void subtract_product(const Scalar* left, int rows, const Scalar* right, int columns, int depth, std::ptrdiff_t stride,
                       Scalar* out, std::ptrdiff_t out_stride) {
   const Eigen::OuterStride<> between(stride);
@@ -100,6 +105,7 @@ void subtract_product(const Scalar* left, int rows, const Scalar* right, int col
 }
 
 template <typename Scalar>
+// NOLINTNEXTLINE(readability-function-size)
 void subtract_square(const Scalar* left, int rows, int depth, std::ptrdiff_t stride, Scalar* out,
                      std::ptrdiff_t out_stride) {
   Block<Scalar> square(out, rows, rows, Eigen::OuterStride<>(out_stride));

@@ -5,15 +5,13 @@
 #include <cmath>
 #include <complex>
 #include <iterator>
-#include <limits>
 #include <numeric>
 #include <utility>
 
-#include "base/checkpoint.hpp"
-#include "base/union_find.hpp"
 #include "plane/convex_hull.hpp"
 #include "split/cut_apart.hpp"
 #include "split/face_graph.hpp"
+#include "split/island_division.hpp"
 #include "split/minimum_cut.hpp"
 #include "split/straight_cuts.hpp"
 
@@ -21,33 +19,9 @@ namespace lsgp {
 
 namespace {
 
-// Parts of the area of all islands that have to be saved: by a cut as long as the square root of that area, and by each
-// further island.
-constexpr double cost_of_cut = 0.15, cost_of_island = 0.01;
-// Times as much for those who would rather have few cuts.
-constexpr double sparing_factor = 8;
-// An island takes what is halfway between its convex hull and its smallest box. Where the smallest square around it is
-// larger than a part of the square that all share, it keeps others out of that square as well.
-constexpr double fill = 0.62, large = 0.7, cost_of_large = 0.5;
-// Of the area of all islands: what is smaller than the first is not cut, and nothing is cut off that is smaller than
-// the second.
-constexpr double least_island = 0.02, least_piece = 0.01;
-constexpr Index most_pieces = 8;  // of one division
-constexpr int directions = 12, positions = 12, cells_across = 40;
-constexpr double operations_a_point = 60;  // of finding hulls
-
-struct Line {
-  Complex normal;  // of length 1
-  double offset;
-  // Above 0 on the side that the normal points to.
-  double distance(Complex z) const { return std::real(std::conj(normal) * z) - offset; }
-};
-
-// A way to divide an island: by a line, or by two that cross.
-struct Division {
-  Array<Line> lines;
-  double worth = 0;
-};
+// Of the area of all islands: what is smaller is not cut.
+constexpr double least_island = 0.02;
+constexpr int cells_across = 40;
 
 class Compactor {
  public:
@@ -57,7 +31,7 @@ class Compactor {
       : graph_(graph),
         position_(position),
         area_(square.area),
-        price_factor_(square.filling == Compactness::sparing ? sparing_factor : 1),
+        search_(square),
         cutter_(graph, CutCost::shortest),
         center_(graph.face_count(), 0),
         place_(graph.face_count(), none),
@@ -99,30 +73,12 @@ class Compactor {
   bool is_near_cut(Index face) const { return is_near_cut_[face]; }
 
  private:
-  // Faces taken together, to try divisions quickly.
-  struct Cells {
-    struct Link {
-      Index cells[2];
-      double length;
-    };
-    Array<Complex> center;
-    Array<double> area;
-    Array<Array<Complex>> hull;
-    Array<Link> links;
-    Index count() const { return static_cast<Index>(area.size()); }
-  };
-
-  // What islands of that hull take of the square.
-  double demand(const Array<Complex>& hull) const;
   Array<Complex> hull_of(const Array<Index>& faces) const;
   // The connected faces of one class each.  faces: those that are divided.  class_of: by their place among them.
   Array<Array<Index>> pieces_of(const Array<Index>& faces, const Array<Index>& class_of);
   // The faces of the pieces into which an island is best cut; fewer than two pieces where it is best left whole.
   Array<Array<Index>> divide(const Array<Index>& island);
-  Cells cells_of(const Array<Index>& island, Complex along);
-  double worth(const Cells& cells, const Array<Index>& class_of, double demand_before) const;
-  double worth(double gain, double length, std::size_t pieces) const;
-  Division find_division(const Cells& cells, const Array<Complex>& hull, Complex along) const;
+  IslandCells cells_of(const Array<Index>& island, Complex along);
   Array<Index> cut_along(const Array<Line>& lines, const Array<Index>& island, double band);
   Array<Index> without_scraps(const Array<Index>& island, const Array<Index>& class_of);
   double length_between(const Array<Index>& faces, const Array<Index>& class_of);
@@ -135,25 +91,14 @@ class Compactor {
 
   const FaceGraph& graph_;
   const Eigen::VectorXcd& position_;
-  const double area_, price_factor_;
+  const double area_;
+  const DivisionSearch search_;
   MinimumCutter cutter_;
   Array<Index> triangle_begin_, triangles_;  // of every face
   Array<Complex> center_;                    // (faces)
   Array<Index> place_;                       // (faces) among those in hand, none elsewhere
   Array<char> is_near_cut_;                  // (faces) may change sides
 };
-
-double Compactor::demand(const Array<Complex>& hull) const {
-  constexpr int turns = 45;  // of a quarter
-  double box = std::numeric_limits<double>::infinity(), square = box;
-  for (int i = 0; i < turns; ++i) {
-    const Extent extent = extent_along(hull, std::polar(1.0, M_PI / 2 * i / turns));
-    box = std::min(box, extent.width() * extent.height());
-    square = std::min(square, std::max(extent.width(), extent.height()));
-  }
-  const double too_large = std::max(0.0, square * square - large * area_ / fill);
-  return (area_of_hull(hull) + box) / 2 + cost_of_large * too_large;
-}
 
 Array<Complex> Compactor::hull_of(const Array<Index>& faces) const {
   Index count = 0;
@@ -191,7 +136,7 @@ Array<Array<Index>> Compactor::pieces_of(const Array<Index>& faces, const Array<
 }
 
 // Faces of one square of a grid that are connected there.
-Compactor::Cells Compactor::cells_of(const Array<Index>& island, Complex along) {
+IslandCells Compactor::cells_of(const Array<Index>& island, Complex along) {
   Array<Complex> centers;
   for (const Index face : island) centers.push_back(center_[face]);
   const Extent extent = extent_along(centers, along);
@@ -201,7 +146,7 @@ Compactor::Cells Compactor::cells_of(const Array<Index>& island, Complex along) 
     const Complex at = size > 0 ? (z * std::conj(along) - extent.low) / size : 0;
     square_of.push_back(static_cast<Index>(at.real()) + (cells_across + 1) * static_cast<Index>(at.imag()));
   }
-  Cells cells;
+  IslandCells cells;
   const Array<Array<Index>> pieces = pieces_of(island, square_of);
   for (std::size_t cell = 0; cell < pieces.size(); ++cell) {
     double area = 0;
@@ -223,84 +168,6 @@ Compactor::Cells Compactor::cells_of(const Array<Index>& island, Complex along) 
   }
   clear_places(island);
   return cells;
-}
-
-// Of a division into so many pieces; 0 where it does not gain its price.
-double Compactor::worth(double gain, double length, std::size_t pieces) const {
-  const double price = price_factor_ * (area_ * cost_of_island * static_cast<double>(pieces - 1) +
-                                        std::sqrt(area_) * cost_of_cut * length);
-  // Between what gains most and what gains most for its price.
-  return gain > price ? gain / std::sqrt(price) : 0;
-}
-
-double Compactor::worth(const Cells& cells, const Array<Index>& class_of, double demand_before) const {
-  UnionFind sets(cells.count());
-  double length = 0;
-  for (const Cells::Link& link : cells.links) {
-    if (class_of[link.cells[0]] == class_of[link.cells[1]])
-      sets.unite(link.cells[0], link.cells[1]);
-    else
-      length += link.length;
-  }
-  Array<Index> roots, number(cells.count(), none);
-  Array<double> area;
-  Array<Index> points;
-  for (Index cell = 0; cell < cells.count(); ++cell) {
-    const Index root = sets.find(cell);
-    if (root == cell) {
-      number[cell] = static_cast<Index>(roots.size());
-      roots.push_back(root);
-      area.push_back(0);
-      points.push_back(0);
-    }
-    number[cell] = number[root];
-    area[number[cell]] += cells.area[cell];
-    points[number[cell]] += static_cast<Index>(cells.hull[cell].size());
-  }
-  if (roots.size() < 2 || static_cast<Index>(roots.size()) > most_pieces ||
-      *std::min_element(area.begin(), area.end()) < least_piece * area_)
-    return 0;
-  double after = 0;
-  for (std::size_t piece = 0; piece < roots.size(); ++piece) {
-    Eigen::VectorXcd outline(points[piece]);
-    Eigen::Index next = 0;
-    for (Index cell = 0; cell < cells.count(); ++cell) {
-      if (number[cell] != static_cast<Index>(piece)) continue;
-      for (const Complex z : cells.hull[cell]) outline[next++] = z;
-    }
-    after += demand(convex_hull(outline));
-  }
-  return worth(demand_before - after, length, roots.size());
-}
-
-// along: a side of the smallest box.
-Division Compactor::find_division(const Cells& cells, const Array<Complex>& hull, Complex along) const {
-  const double before = demand(hull);
-  std::size_t points = 0;
-  for (const Array<Complex>& own : cells.hull) points += own.size();
-  Division best;
-  Array<Index> class_of(cells.count());
-  const auto consider = [&](Array<Line> lines) {
-    for (Index cell = 0; cell < cells.count(); ++cell) {
-      class_of[cell] = 0;
-      for (const Line& line : lines) class_of[cell] = 2 * class_of[cell] + (line.distance(cells.center[cell]) > 0);
-    }
-    const double gain = worth(cells, class_of, before);
-    if (gain > best.worth) best = {std::move(lines), gain};
-    checkpoint(operations_a_point * static_cast<double>(points));
-  };
-  const double total = std::accumulate(cells.area.begin(), cells.area.end(), 0.0);
-  Complex center = 0;
-  for (Index cell = 0; cell < cells.count(); ++cell) center += cells.area[cell] / total * cells.center[cell];
-  for (int i = 0; i < directions; ++i) {
-    const Complex normal = along * std::polar(1.0, M_PI * i / directions);
-    const Extent extent = extent_along(hull, normal);
-    for (int k = 1; k < positions; ++k) consider({{normal, extent.low.real() + extent.width() * k / positions}});
-    if (2 * i >= directions) continue;
-    const Complex across = normal * Complex(0, 1);
-    consider({{normal, Line{normal, 0}.distance(center)}, {across, Line{across, 0}.distance(center)}});
-  }
-  return best;
 }
 
 // The side of every face, by its place in the island, after a cut near each of the lines, short and rather along sharp
@@ -381,33 +248,34 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& island) {
   for (const Index face : island) area += graph_.area[face];
   if (island.size() < 2 || area < least_island * area_) return {};
   const Array<Complex> hull = hull_of(island);
-  const double before = demand(hull);
-  if (before - area < price_factor_ * cost_of_island * area_) return {};
+  const double before = search_.demand(hull);
+  if (before - area < search_.least_gain()) return {};
   const Complex along = longer_side(hull);
-  const Division division = find_division(cells_of(island, along), hull, along);
+  const IslandDivision division = search_.find_division(cells_of(island, along), hull, along);
   if (division.lines.empty()) return {};
-  const double band = extent_along(hull, along).width() / positions;
+  const double band = extent_along(hull, along).width() / division_positions;
   const Array<Index> class_of = without_scraps(island, cut_along(division.lines, island, band));
   Array<Array<Index>> pieces = pieces_of(island, class_of);
   double after = 0;
-  for (const Array<Index>& piece : pieces) after += demand(hull_of(piece));
+  for (const Array<Index>& piece : pieces) after += search_.demand(hull_of(piece));
   // The cells have shown it roughly.
-  const bool is_worth_it = worth(before - after, length_between(island, class_of), pieces.size()) > 0;
+  const bool is_worth_it = search_.worth(before - after, length_between(island, class_of), pieces.size()) > 0;
   return is_worth_it ? pieces : Array<Array<Index>>{};
 }
 
 }  // namespace
 
-void compact_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& open,
-                     const SharedSquare& square, ComponentMap& map) {
-  Array<char> ends = open, is_cut = map.cut_graph.is_cut;
+void compact_islands(const OpenedSurface& surface, const SharedSquare& square, ComponentMap& map) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  Array<char> ends = surface.open, is_cut = map.cut_graph.is_cut;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) ends[h] = ends[h] || is_cut[h];
-  const FaceGraph graph = build_face_graph(mesh, geometry, ends);
+  const OpenedSurface islands{mesh, surface.geometry, ends};
+  const FaceGraph graph = build_face_graph(islands);
   const Eigen::VectorXcd position = square.scale * at_corners(map.cut_mesh, map.position);
   Compactor compactor(mesh, graph, position, square);
   Array<Index> part = compactor.divide_all();
   straighten_cuts(
-      mesh, geometry, graph, ends, [&](Index face, Index) { return !compactor.is_near_cut(face); }, part);
+      islands, graph, [&](Index face, Index) { return !compactor.is_near_cut(face); }, part);
   bool has_opened = false;
   for (const FaceGraph::Link& link : graph.links) {
     if (part[link.faces[0]] == part[link.faces[1]]) continue;

@@ -3,23 +3,16 @@
 #pragma once
 
 #include "base/array.hpp"
-#include "lsgp/options.hpp"
 #include "pipeline/component_map.hpp"
+#include "split/face_graph.hpp"
+#include "split/island_division.hpp"
 
 namespace lsgp {
-
-// The square that the islands of a map are to share with all others.
-struct SharedSquare {
-  double area;   // of all islands, on the surface
-  double scale;  // of the map to the surface
-  Compactness filling;
-};
 
 // Cuts islands that are far from convex, or long beside the square, where that saves more of its area than it costs in
 // cut length and islands; rather along sharp edges. The parts keep their places, so the transitions stay what they are,
 // and those across the further cuts are the identity.
-// open: (3m) halfedges at which the layout ends, besides the cuts.
-void compact_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& open,
-                     const SharedSquare& square, ComponentMap& map);
+// surface: where the layout ends, besides the cuts.
+void compact_islands(const OpenedSurface& surface, const SharedSquare& square, ComponentMap& map);
 
 }  // namespace lsgp

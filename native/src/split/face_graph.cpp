@@ -21,7 +21,10 @@ double discount(const HalfedgeMesh& mesh, Index h) {
 
 }  // namespace
 
-FaceGraph build_face_graph(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& open) {
+FaceGraph build_face_graph(const OpenedSurface& surface) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
+  const Array<char>& open = surface.open;
   FaceGraph graph;
   Array<char> is_side(mesh.halfedge_count());
   for (Index h = 0; h < mesh.halfedge_count(); ++h) is_side[h] = open[h] || mesh.cuttable[h];

@@ -9,6 +9,13 @@
 
 namespace lsgp {
 
+// A surface and where its layout ends.
+struct OpenedSurface {
+  const HalfedgeMesh& mesh;
+  const Geometry& geometry;
+  const Array<char>& open;  // (3m) halfedges, on both sides of an edge
+};
+
 struct FaceGraph {
   using Units = FlowNetwork::Units;
 
@@ -37,7 +44,6 @@ struct FaceGraph {
   }
 };
 
-// open: (3m) halfedges at which the layout ends, on both sides of an edge.
-FaceGraph build_face_graph(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& open);
+FaceGraph build_face_graph(const OpenedSurface& surface);
 
 }  // namespace lsgp

@@ -20,13 +20,12 @@ constexpr double narrowest_joint = 0.25;       // of the square root of the smal
 
 class Joiner {
  public:
-  Joiner(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, const Array<Index>& part,
-         const Array<char>& kept, Array<char>& open);
+  Joiner(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, const Array<char>& kept,
+         MapParts& parts);
 
   void join() {
     while (join_next()) continue;  // each makes two groups one
   }
-  const Array<Motion>& motion() const { return motion_; }
 
  private:
   // Open edges along one cut between two parts: where the left one has to go to meet the right one.
@@ -56,7 +55,7 @@ class Joiner {
   Eigen::VectorXcd corners_;
   double size_;
   Array<Border> borders_;
-  Array<Motion> motion_;           // (parts)
+  Array<Motion>& motion_;          // (parts)
   Array<Index> group_;             // (parts) joined ones share one
   Array<Array<Index>> triangles_;  // (groups)
   Array<double> area_;             // (groups)
@@ -67,16 +66,18 @@ class Joiner {
   Array<Index> place_;     // (m) none
 };
 
-Joiner::Joiner(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, const Array<Index>& part,
-               const Array<char>& kept, Array<char>& open)
+Joiner::Joiner(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, const Array<char>& kept,
+               MapParts& parts)
     : mesh_(mesh),
-      part_(part),
-      open_(open),
+      part_(parts.part),
+      open_(parts.open),
       corners_(at_corners(map.cut_mesh, map.position)),
+      motion_(parts.motion),
       is_closed_(mesh.halfedge_count(), 0),
       place_(mesh.triangle_count(), none) {
+  const Array<Index>& part = parts.part;
   const Index part_count = 1 + *std::max_element(part.begin(), part.end());
-  motion_.resize(part_count);
+  motion_.assign(part_count, {});
   group_.resize(part_count);
   std::iota(group_.begin(), group_.end(), 0);
   triangles_.resize(part_count);
@@ -92,7 +93,7 @@ Joiner::Joiner(const HalfedgeMesh& mesh, const Geometry& geometry, const Compone
   std::map<std::tuple<Index, Index, Index>, Border> borders;  // by cut, left and right part
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     const Index twin = mesh.twin[h], cut = map.cut_graph.cut_of[h];
-    if (twin == none || !open[h] || kept[h] || part[h / 3] == part[twin / 3]) continue;
+    if (twin == none || !open_[h] || kept[h] || part[h / 3] == part[twin / 3]) continue;
     if (cut == none ? h > twin : !map.cut_graph.runs_forward[h]) continue;
     Border& border = borders[{cut, part[h / 3], part[twin / 3]}];
     if (border.halfedges.empty()) {
@@ -184,11 +185,9 @@ bool Joiner::overlaps(Index left, Index right, const Motion& motion, const Array
 
 }  // namespace
 
-Array<Motion> merge_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                            const Array<Index>& part, const Array<char>& kept, Array<char>& open) {
-  Joiner joiner(mesh, geometry, map, part, kept, open);
-  joiner.join();
-  return joiner.motion();
+void merge_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, const Array<char>& kept,
+                   MapParts& parts) {
+  Joiner(mesh, geometry, map, kept, parts).join();
 }
 
 }  // namespace lsgp

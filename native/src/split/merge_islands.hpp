@@ -8,12 +8,18 @@
 
 namespace lsgp {
 
+// The parts that a map is divided into.
+struct MapParts {
+  Array<char> open;      // (3m) halfedges at which they end, on both sides of an edge
+  Array<Index> part;     // (m) of every triangle
+  Array<Motion> motion;  // (parts) how each moves
+};
+
 // Puts a layout that is divided into parts, each of which lies on itself nowhere, together to fewer: parts move across
 // a common cut, which closes, where that leaves them beside each other. Longer cuts are closed first; where parts
-// would hang on a few edges alone, they stay apart. map: its cuts and transitions.  part: (m) of every triangle.  kept:
-// (3m) edges that stay open.  open: (3m) halfedges at which parts end; loses those that are closed. Returns how the
-// parts move.
-Array<Motion> merge_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                            const Array<Index>& part, const Array<char>& kept, Array<char>& open);
+// would hang on a few edges alone, they stay apart. map: its cuts and transitions.  kept: (3m) edges that stay open.
+// parts: loses open halfedges that are closed, and gets how it moves.
+void merge_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, const Array<char>& kept,
+                   MapParts& parts);
 
 }  // namespace lsgp

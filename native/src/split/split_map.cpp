@@ -14,14 +14,6 @@ namespace lsgp {
 
 namespace {
 
-// A way to divide a map: where it is open then, and how its parts move.
-struct Division {
-  Array<char> ends;  // (3m)
-  Array<Index> part;
-  Array<Motion> motion;
-  double cost;
-};
-
 // Of every island, of one that is a scrap on top, and of cuts as long as the square root of the surface's area.
 constexpr double cost_of_island = 0.5, cost_of_scrap = 2, cost_of_cut = 1;
 constexpr double scrap = 0.005;  // of the area
@@ -40,22 +32,43 @@ double cost(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char
          cost_of_cut * length / std::sqrt(geometry.total_area);
 }
 
-Division divide(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                const Array<Overlap>& overlaps, const Array<char>& kept, CutCost rule, ProgressMonitor& monitor,
-                Array<char> ends) {
-  Division out{std::move(ends), {}, {}, 0};
-  split_overlaps(
-      mesh, geometry, overlaps, rule, [&] { monitor.advance(0); }, out.ends);
-  out.motion.resize(label_parts(mesh, out.ends, out.part));
-  if (map.rotation) out.motion = merge_islands(mesh, geometry, map, out.part, kept, out.ends);
-  out.cost = cost(mesh, geometry, out.ends);
-  return out;
-}
+// A way to divide a map.
+struct Division {
+  MapParts parts;
+  double cost;
+};
+
+// The ways to divide a map that overlaps itself.
+class MapDivider {
+ public:
+  // surface: where the map is open, cuts included.  kept: (3m).
+  MapDivider(const OpenedSurface& surface, const ComponentMap& map, const Array<Overlap>& overlaps,
+             const Array<char>& kept, ProgressMonitor& monitor)
+      : surface_(surface), map_(map), overlaps_(overlaps), kept_(kept), monitor_(monitor) {}
+
+  Division divide(CutCost rule) const {
+    const auto& [mesh, geometry, open] = surface_;
+    MapParts parts{open, {}, {}};
+    const Array<Index> opened = split_overlaps(surface_, overlaps_, rule, [&] { monitor_.advance(0); });
+    for (const Index h : opened) parts.open[h] = parts.open[mesh.twin[h]] = 1;
+    parts.motion.resize(label_parts(mesh, parts.open, parts.part));
+    if (map_.rotation) merge_islands(mesh, geometry, map_, kept_, parts);
+    const double total = cost(mesh, geometry, parts.open);
+    return {std::move(parts), total};
+  }
+
+ private:
+  const OpenedSurface& surface_;
+  const ComponentMap& map_;
+  const Array<Overlap>& overlaps_;
+  const Array<char>& kept_;
+  ProgressMonitor& monitor_;
+};
 
 }  // namespace
 
-bool split_map(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& open, const Array<char>& kept,
-               ProgressMonitor& monitor, ComponentMap& map) {
+bool split_map(const OpenedSurface& surface, const Array<char>& kept, ProgressMonitor& monitor, ComponentMap& map) {
+  const auto& [mesh, geometry, open] = surface;
   const ProgressMonitor::Stage stage(monitor, "split");
   Array<char> is_cut = map.cut_graph.is_cut, ends = open;
   Array<Index> twin = mesh.twin;
@@ -70,21 +83,24 @@ bool split_map(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<c
   }
   const Array<Overlap> overlaps = find_overlaps(corners, twin);
   if (overlaps.empty()) return false;
-  Division best = divide(mesh, geometry, map, overlaps, kept, CutCost::shortest, monitor, ends);
+  const OpenedSurface opened{mesh, geometry, ends};
+  const MapDivider divider(opened, map, overlaps, kept, monitor);
+  Division best = divider.divide(CutCost::shortest);
   for (const CutCost rule : {CutCost::no_slivers, CutCost::no_small_parts}) {
-    Division other = divide(mesh, geometry, map, overlaps, kept, rule, monitor, ends);
+    Division other = divider.divide(rule);
     if (other.cost < best.cost) best = std::move(other);
   }
+  const auto& [parts_open, part, motion] = best.parts;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    if (mesh.twin[h] == none || !best.ends[h]) {
+    if (mesh.twin[h] == none || !parts_open[h]) {
       is_cut[h] = 0;
       continue;
     }
     // What was open before stays open, but becomes a cut where its sides move differently.
-    const Motion &here = best.motion[best.part[h / 3]], &there = best.motion[best.part[mesh.twin[h] / 3]];
+    const Motion &here = motion[part[h / 3]], &there = motion[part[mesh.twin[h] / 3]];
     is_cut[h] = is_cut[h] || !open[h] || here.angle != there.angle || here.shift != there.shift;
   }
-  cut_apart(mesh, std::move(is_cut), best.part, best.motion, map);
+  cut_apart(mesh, std::move(is_cut), part, motion, map);
   return true;
 }
 

@@ -4,15 +4,15 @@
 
 #include "base/array.hpp"
 #include "pipeline/component_map.hpp"
+#include "split/face_graph.hpp"
 
 namespace lsgp {
 
 // Opens a map along further cuts (split_overlaps.hpp) and joins its parts across others (merge_islands.hpp) until none
 // overlaps itself. Transitions stay what they were but for how the parts moved. Flipped triangles lie on their
 // neighbours by nature and are let be.
-// open: (3m) halfedges at which the layout ends, besides the cuts.  kept: (3m) those that may not be closed.
+// surface: where the layout ends, besides the cuts.  kept: (3m) halfedges that may not be closed.
 // Returns whether anything changed.
-bool split_map(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& open, const Array<char>& kept,
-               ProgressMonitor& monitor, ComponentMap& map);
+bool split_map(const OpenedSurface& surface, const Array<char>& kept, ProgressMonitor& monitor, ComponentMap& map);
 
 }  // namespace lsgp

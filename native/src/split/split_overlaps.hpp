@@ -5,18 +5,16 @@
 #include <functional>
 
 #include "base/array.hpp"
-#include "mesh/geometry.hpp"
-#include "mesh/topology.hpp"
 #include "plane/overlaps.hpp"
+#include "split/face_graph.hpp"
 #include "split/minimum_cut.hpp"
 
 namespace lsgp {
 
-// Opens edges until no two triangles of one part overlap: minimum cuts between what lies on what, so few and short, and
-// rather along marked seams and sharp edges. The parts keep their places, so the transitions stay what they are.
-// open: (3m) halfedges at which the layout ends already, on both sides of an edge; receives the further ones.
-// Returns how many edges were opened.
-Index split_overlaps(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<Overlap>& overlaps, CutCost rule,
-                     const std::function<void()>& before_cut, Array<char>& open);
+// Finds edges to open so that no two triangles of one part overlap: minimum cuts between what lies on what, so few and
+// short, and rather along marked seams and sharp edges. The parts keep their places, so the transitions stay what they
+// are. Returns a halfedge of every edge.
+Array<Index> split_overlaps(const OpenedSurface& surface, const Array<Overlap>& overlaps, CutCost rule,
+                            const std::function<void()>& before_cut);
 
 }  // namespace lsgp

@@ -22,22 +22,21 @@ using Path = Array<Index>;  // halfedges
 
 class Straightener {
  public:
-  Straightener(const HalfedgeMesh& mesh, const Geometry& geometry, const FaceGraph& graph, const Array<char>& open,
-               const IsHeld& is_held, Array<Index>& part)
-      : mesh_(mesh),
-        geometry_(geometry),
+  Straightener(const OpenedSurface& surface, const FaceGraph& graph, const IsHeld& is_held, Array<Index>& part)
+      : mesh_(surface.mesh),
+        geometry_(surface.geometry),
         graph_(graph),
-        open_(open),
+        open_(surface.open),
         is_held_(is_held),
         part_(part),
-        length_(mesh.halfedge_count(), 0),
-        on_path_(mesh.halfedge_count(), 0),
-        is_end_(mesh.halfedge_count(), 0),
-        distance_(mesh.halfedge_count(), infinity),
-        before_(mesh.halfedge_count(), none),
+        length_(mesh_.halfedge_count(), 0),
+        on_path_(mesh_.halfedge_count(), 0),
+        is_end_(mesh_.halfedge_count(), 0),
+        distance_(mesh_.halfedge_count(), infinity),
+        before_(mesh_.halfedge_count(), none),
         in_band_(graph.face_count(), 0) {
     for (const FaceGraph::Link& link : graph.links) {
-      length_[link.halfedge] = length_[mesh.twin[link.halfedge]] = static_cast<double>(link.cost);
+      length_[link.halfedge] = length_[mesh_.twin[link.halfedge]] = static_cast<double>(link.cost);
     }
   }
 
@@ -294,9 +293,8 @@ bool Straightener::move(const Path& before, const Path& after) {
 
 }  // namespace
 
-void straighten_cuts(const HalfedgeMesh& mesh, const Geometry& geometry, const FaceGraph& graph,
-                     const Array<char>& open, const IsHeld& is_held, Array<Index>& part) {
-  Straightener(mesh, geometry, graph, open, is_held, part).straighten();
+void straighten_cuts(const OpenedSurface& surface, const FaceGraph& graph, const IsHeld& is_held, Array<Index>& part) {
+  Straightener(surface, graph, is_held, part).straighten();
 }
 
 }  // namespace lsgp

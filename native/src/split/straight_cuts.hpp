@@ -14,8 +14,7 @@ using IsHeld = std::function<bool(Index face, Index other)>;
 
 // Replaces each cut between two parts by one nearby that turns less, if it is hardly longer; its ends may slide along
 // what bounds the parts.
-// open: (3m) halfedges at which the layout ends, besides the cuts between parts.  part: (faces), connected.
-void straighten_cuts(const HalfedgeMesh& mesh, const Geometry& geometry, const FaceGraph& graph,
-                     const Array<char>& open, const IsHeld& is_held, Array<Index>& part);
+// part: (faces of the graph), connected.
+void straighten_cuts(const OpenedSurface& surface, const FaceGraph& graph, const IsHeld& is_held, Array<Index>& part);
 
 }  // namespace lsgp

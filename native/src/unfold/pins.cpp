@@ -80,9 +80,9 @@ Array<Pin> pins_of_copies(const CutMesh& cut_mesh, const Array<std::pair<Index, 
   return pins;
 }
 
-PinnedMap move_onto_pins(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                         const Reduction& reduction, const Array<Pin>& pins, bool similarity_only,
-                         const Eigen::VectorXcd& position) {
+PinnedMap move_onto_pins(const CutSurface& surface, const Reduction& reduction, const Array<Pin>& pins,
+                         bool similarity_only, const Eigen::VectorXcd& position) {
+  const CutMesh& cut_mesh = surface.cut_mesh;
   const double size = extent(pins);
   const Similarity similarity = fit(pins, position);
   if (!(size > one_point)) {
@@ -109,7 +109,8 @@ PinnedMap move_onto_pins(const HalfedgeMesh& mesh, const Geometry& geometry, con
   }
 
   // Displacement d = B x + one constant. The constant is taken up by shifting the pins: the first becomes the origin.
-  const Eigen::SparseMatrix<Complex> form = assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction);
+  const Eigen::SparseMatrix<Complex> form =
+      assemble_form(Form::dirichlet, surface.mesh, surface.geometry, cut_mesh, reduction);
   Eigen::SparseMatrix<Complex, Eigen::RowMajor> rows(static_cast<Eigen::Index>(pins.size()) - 1,
                                                      reduction.unknown_count);
   Eigen::VectorXcd values(rows.rows());

@@ -28,8 +28,7 @@ struct PinnedMap {
   Eigen::VectorXcd position;
   double scale;
 };
-PinnedMap move_onto_pins(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                         const Reduction& reduction, const Array<Pin>& pins, bool similarity_only,
-                         const Eigen::VectorXcd& position);
+PinnedMap move_onto_pins(const CutSurface& surface, const Reduction& reduction, const Array<Pin>& pins,
+                         bool similarity_only, const Eigen::VectorXcd& position);
 
 }  // namespace lsgp

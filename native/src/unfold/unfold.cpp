@@ -161,14 +161,12 @@ Eigen::VectorXd metric_directions(const HalfedgeMesh& mesh, const Geometry& geom
   return out;
 }
 
-Eigen::VectorXcd unfold_aligned(const CutSurface& surface, const Reduction& reduction, const Eigen::VectorXd& log_scale,
-                                const Eigen::VectorXd& frames, const Array<Index>& edges,
-                                const Eigen::VectorXd& directions) {
+Eigen::VectorXcd unfold_aligned(const CutSurface& surface, const Reduction& reduction, const Jacobians& jacobians,
+                                const Array<Index>& edges, const Eigen::VectorXd& directions) {
   const CutMesh& cut_mesh = surface.cut_mesh;
   const Eigen::SparseMatrix<Complex> form =
       assemble_form(Form::dirichlet, surface.mesh, surface.geometry, cut_mesh, reduction);
-  const Eigen::VectorXcd pull =
-      gather(reduction, pull_of(surface, prescribed_jacobians(surface.mesh, log_scale, frames)));
+  const Eigen::VectorXcd pull = gather(reduction, pull_of(surface, jacobians));
   // Unknown k becomes its real part, 2k, and its imaginary part, 2k + 1.
   const int size = 2 * reduction.unknown_count;
   LowerAssembly<double> assembly(size, 4 * static_cast<std::size_t>(form.nonZeros()));

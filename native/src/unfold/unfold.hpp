@@ -76,11 +76,10 @@ Jacobians measure_jacobians(const HalfedgeMesh& mesh, const Geometry& geometry, 
 Eigen::VectorXd metric_directions(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& log_scale,
                                   const Eigen::VectorXd& frames, const Array<Index>& edges);
 
-// The same fit with border edges exactly aligned: each of `edges` has the direction given, radians. A real problem of
-// twice the size.
-Eigen::VectorXcd unfold_aligned(const CutSurface& surface, const Reduction& reduction, const Eigen::VectorXd& log_scale,
-                                const Eigen::VectorXd& frames, const Array<Index>& edges,
-                                const Eigen::VectorXd& directions);
+// The fit to Jacobians (PoissonSystem::fit) with border edges exactly aligned: each of `edges` has the direction given,
+// radians. A real problem of twice the size.
+Eigen::VectorXcd unfold_aligned(const CutSurface& surface, const Reduction& reduction, const Jacobians& jacobians,
+                                const Array<Index>& edges, const Eigen::VectorXd& directions);
 
 // The map of least conformal energy at a given Dirichlet energy (Mullen et al. 2008, with a norm that transitions
 // leave invariant). Solved on the cut where the surface comes with a factor, sparse otherwise.

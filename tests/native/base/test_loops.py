@@ -177,7 +177,10 @@ REVIEWED = {
     ],
     "prescription/border_turning.cpp": [("while (true)", "each round lets go of a border, or ends it", WITHIN)],
     "prescription/log_scale.cpp": [("for (; length > 1e-6; length /= 2)", "20 halvings", SHORT)],
-    "prescription/quantize_curvature.cpp": [
+    "prescription/straightness.cpp": [
+        ("while (boundary.count_crossings() > 0 && boundary.swap_worst())", "each swap lowers the crossings", OWN),
+    ],
+    "prescription/turn_exchange.cpp": [
         (
             "for (int missing = sum - turns_.sum(); missing != 0; missing = sum - turns_.sum())",
             "each round takes a turn off what is missing, and the bounds leave room for all",
@@ -185,18 +188,12 @@ REVIEWED = {
         ),
         ("while (trials < most)", "a budget of trials, at least one a round", OWN),
     ],
-    "prescription/straightness.cpp": [
-        ("while (boundary.count_crossings() > 0 && boundary.swap_worst())", "each swap lowers the crossings", OWN),
-    ],
     "quads/grid_edges.cpp": [
         ("for (;;)", "a straight line leaves each triangle that it crosses, and ends after a cell", OWN),
         ("for (int visited = 0; !grid_.leads_into(corner, ray.direction); ++visited)", AROUND_A_VERTEX, SHORT),
     ],
     "repair/newton.cpp": [("for (double length = longest; length > 1e-8; length /= 2)", "27 halvings", SHORT)],
-    "seamless/lattice_search.cpp": [
-        ("for (Eigen::Index k = 1; k < size;)", "a budget of exchanges", OWN),
-    ],
-    "seamless/seamless.cpp": [
+    "seamless/grid_search.cpp": [
         ("for (; tiles <= most_tiles; tiles = next_size(tiles))", "27 sizes up to 16384", WITHIN),
         (
             "for (double tiles = coarsest_tiles; tiles <= most_tiles; tiles = next_size(tiles))",
@@ -204,9 +201,12 @@ REVIEWED = {
             SHORT,
         ),
         ("while (low < high)", "halvings of as many sizes", WITHIN),
-        ("for (;;)", "each round leaves out a part, or ends it", WITHIN),
         ("while (!grid && give_up_cones())", "each round gives up a cone", WITHIN),
     ],
+    "seamless/lattice_search.cpp": [
+        ("for (Eigen::Index k = 1; k < size;)", "a budget of exchanges", OWN),
+    ],
+    "seamless/seamless.cpp": [("for (;;)", "each round leaves out a part, or ends it", WITHIN)],
     "solvers/cholesky.cpp": [
         ("while (!waiting.empty() && plan.parent[waiting.back()] == i)", "children in a tree, each once", SHORT),
         ("for (int child = newest_child; child != -1; child = plan.earlier_sibling[child])", LINKED, SHORT),
@@ -261,10 +261,12 @@ REVIEWED = {
         ("while (cells.count() > most_cells)", "a round that leaves 0.9 of the cells ends it", SHORT),
         ("while (!front.empty())", ONCE_EACH, SHORT),
     ],
-    "split/split_overlaps.cpp": [
-        ("while (!front.empty())", ONCE_EACH, SHORT),
+    "split/overlap_pairs.cpp": [("while (!front.empty())", ONCE_EACH, SHORT)],
+    "split/overlap_splitter.cpp": [
         ("while (!front.empty())", ONCE_EACH, SHORT),
         ("for (;;)", "each cut parts a pair of triangles that lay on each other", OWN),
+    ],
+    "split/part_merger.cpp": [
         ("while (!borders.empty())", "each round makes two parts one", OWN),
         ("for (auto border = borders.begin(); border != borders.end();)", "erases what it does not step over", SHORT),
     ],

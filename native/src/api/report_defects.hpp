@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Names what is wrong with a result.
+#pragma once
+
+#include "base/array.hpp"
+#include "lsgp/options.hpp"
+#include "lsgp/result.hpp"
+
+namespace lsgp {
+
+// What a result does not list, in the caller's numbering.
+struct Defects {
+  Array<Index> inexact_seams;   // vertex pairs
+  Array<Index> inexact_angles;  // vertices
+  Array<Index> on_own_face;     // ascending triangles that overlap others of their face, none of them flipped
+  bool pinned = false;          // whether an island has several pins, so that it is not split
+};
+
+// Sorts the lists of defects of a result and adds a warning for each that is not empty.
+void report_defects(const Options& options, Defects found, Result& result);
+
+}  // namespace lsgp

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "seamless/exact_layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "prescription/quantize_curvature.hpp"
+
+namespace lsgp {
+
+namespace {
+
+// The spacing of the binary fractions below which float32 holds all coordinates of the layout exactly, a bit left for
+// later moves by whole cells.
+double fraction_for(double largest) { return std::exp2(std::ceil(std::log2(largest + 1)) + 1 - 24); }
+
+Complex round_to(Complex z, double fraction) {
+  return {std::round(z.real() / fraction) * fraction, std::round(z.imag() / fraction) * fraction};
+}
+
+// Volatile: GCC 12 takes two conversions to float and back, side by side, for no conversion at all.
+double stored_number(double x) {
+  const volatile float stored = static_cast<float>(x);
+  return stored;
+}
+
+}  // namespace
+
+Complex as_stored(Complex z) { return {stored_number(z.real()), stored_number(z.imag())}; }
+
+ExactLayout::ExactLayout(const SeamlessPart& part, const PointLattice& lattice, Complex shift,
+                         Eigen::VectorXcd& position)
+    : mesh_(part.component->mesh), map_(*part.map), lattice_(lattice), shift_(shift), position_(position) {
+  for (std::size_t p = 0; p < map_.cut_graph.cuts.size(); ++p) {
+    const int q = lattice.symmetry();
+    turns_.push_back((turns_of((*map_.rotation)[static_cast<Eigen::Index>(p)], q) % q + q) % q);
+    const Sisters sisters = origin_sisters(mesh_, map_.cut_mesh, map_.cut_graph.cuts[p].halfedges.front());
+    translations_.push_back(position[sisters.right] - lattice.unit(turns_.back()) * position[sisters.left]);
+  }
+}
+
+void ExactLayout::snap() {
+  const double largest = std::max(position_.real().cwiseAbs().maxCoeff(), position_.imag().cwiseAbs().maxCoeff());
+  const double fraction = fraction_for(largest);
+  for (Complex& translation : translations_) {
+    translation = on_lattice(translation) ? lattice_.nearest(translation) : round_to(translation, fraction);
+  }
+  const Array<char> on_cut = on_cuts(mesh_, map_.cut_graph);
+  for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+    if (!on_cut[v]) {
+      if (!lattice_.square()) continue;
+      // On a border as on a cut, so that the two sides of an open seam stay together.
+      position_[v] = mesh_.loop_of_vertex[v] == none ? as_stored(position_[v]) : round_to(position_[v], fraction);
+      continue;
+    }
+    const auto all = sectors(mesh_, map_.cut_graph, map_.cut_mesh, v);
+    Complex z = position_[all.front().copy];
+    const bool is_cone = mesh_.loop_of_vertex[v] == none && map_.curvature.at_vertex[v] != 0;
+    if (is_cone && on_lattice(z - shift_)) {
+      z = lattice_.nearest(z - shift_) + shift_;
+    } else {
+      z = lattice_.square() ? round_to(z, fraction) : as_stored(z);
+    }
+    for (const Sector& sector : all) {
+      if (sector.copy != all.front().copy) z = cross(z, sector.opened_by);
+      position_[sector.copy] = z;
+    }
+  }
+}
+
+Array<Index> ExactLayout::find_unreadable() const {
+  Array<Index> out;
+  for (std::size_t p = 0; p < map_.cut_graph.cuts.size(); ++p) {
+    for (const Index h : map_.cut_graph.cuts[p].halfedges) {
+      const Sisters tail = origin_sisters(mesh_, map_.cut_mesh, h), head = target_sisters(mesh_, map_.cut_mesh, h);
+      const Complex left = as_stored(position_[head.left]) - as_stored(position_[tail.left]);
+      const Complex right = as_stored(position_[head.right]) - as_stored(position_[tail.right]);
+      const Complex off = right * std::conj(lattice_.unit(turns_[p]) * left);
+      if (std::abs(off) > 0 && std::abs(std::arg(off)) < M_PI / lattice_.symmetry()) continue;
+      out.push_back(mesh_.origin(h));
+      out.push_back(mesh_.target(h));
+    }
+  }
+  return out;
+}
+
+Array<SeamlessCut> ExactLayout::certify(const Component& component) const {
+  Array<SeamlessCut> out;
+  for (std::size_t p = 0; p < map_.cut_graph.cuts.size(); ++p) {
+    const Cut& path = map_.cut_graph.cuts[p];
+    SeamlessCut cut{component.source_vertex[path.tail], component.source_vertex[path.head], turns_[p],
+                    lattice_.nearest_coordinates(translations_[p])};
+    const auto add = [&](const Sisters& sisters) {
+      const Complex image =
+          lattice_.unit(turns_[p]) * as_stored(position_[sisters.left]) + lattice_.point(cut.translation);
+      cut.error = std::max(cut.error, std::abs(as_stored(position_[sisters.right]) - image));
+    };
+    for (const Index h : path.halfedges) {
+      add(origin_sisters(mesh_, map_.cut_mesh, h));
+      add(target_sisters(mesh_, map_.cut_mesh, h));
+    }
+    out.push_back(cut);
+  }
+  return out;
+}
+
+Complex ExactLayout::cross(Complex z, Index h) const {
+  const Index cut = map_.cut_graph.cut_of[h];
+  const Complex turn = lattice_.unit(turns_[cut]), translation = translations_[cut];
+  return map_.cut_graph.runs_forward[h] ? std::conj(turn) * (z - translation) : turn * z + translation;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A layout in numbers that single precision holds, on whose lattice transitions are exact.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "base/array.hpp"
+#include "plane/point_lattice.hpp"
+#include "seamless/seamless_part.hpp"
+
+namespace lsgp {
+
+// As single precision stores it.
+Complex as_stored(Complex z);
+
+// Replaces what is almost on the lattice by what is, and everything else by numbers that float32 holds.
+class ExactLayout {
+ public:
+  ExactLayout(const SeamlessPart& part, const PointLattice& lattice, Complex shift, Eigen::VectorXcd& position);
+
+  void snap();
+
+  // The cut edges, as vertex pairs, whose two sides as stored are not nearest to the turn of their cut: some have
+  // collapsed to a point.
+  Array<Index> find_unreadable() const;
+
+  // Errors as stored: see SeamlessCut.
+  Array<SeamlessCut> certify(const Component& component) const;
+
+ private:
+  // From the copy on the right of an outgoing cut halfedge to the one on its left, seen from the vertex.
+  Complex cross(Complex z, Index h) const;
+
+  bool on_lattice(Complex z) const { return std::abs(z - lattice_.nearest(z)) < rounding; }
+
+  static constexpr double rounding = 1e-6;  // cells
+
+  const HalfedgeMesh& mesh_;
+  const ComponentMap& map_;
+  const PointLattice& lattice_;
+  const Complex shift_;  // of the lattice that cones are on
+  Eigen::VectorXcd& position_;
+  Array<int> turns_;
+  Array<Complex> translations_;
+};
+
+}  // namespace lsgp

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "seamless/grid_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/text.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr double coarsest_tiles = 4;       // tried for an automatic grid
+constexpr double acceptable_growth = 1.1;  // of the energy by an automatic grid
+constexpr double acceptable_turn = 0.02;   // radians, of directions by an automatic grid
+constexpr double near_finest = 1.02;       // of the growth that the finest grid has where that is more
+
+// The next finer size of 1, 1.5, 2, 3, 4, 6, ...
+double next_size(double tiles) {
+  const double power = std::exp2(std::floor(std::log2(tiles * (1 + 1e-9))));
+  return tiles * (1 + 1e-9) < 1.5 * power ? 1.5 * power : 2 * power;
+}
+
+void report_growth(double growth, std::vector<Finding>& findings) {
+  if (growth <= acceptable_growth) return;
+  findings.push_back({Code::grid_distorts,
+                      concat("No grid of up to ", most_tiles,
+                             " cells was found that costs at most a tenth in "
+                             "distortion; this one makes that of a part ",
+                             rounded(growth, 3),
+                             " times as large. Move cones that "
+                             "are close to each other apart, use fewer, or unwrap small parts by themselves."),
+                      {}});
+}
+
+}  // namespace
+
+GridSearch::GridSearch(bool parity, const PointLattice& lattice, Array<SeamlessPart>& parts, ProgressMonitor& monitor)
+    : parity_(parity),
+      lattice_(lattice),
+      parts_(parts),
+      monitor_(monitor),
+      quantizers_(parts.size()),
+      relaxed_(parts.size()) {
+  for_each_part(parts, [&](std::size_t i) { prepare(i); });
+}
+
+double GridSearch::extent() const {
+  double longest = 0;
+  for (const auto& quantizer : quantizers_) longest = std::max(longest, quantizer->extent());
+  return longest;
+}
+
+double GridSearch::energy(std::size_t part, const Eigen::VectorXcd& position) const {
+  return quantizers_[part]->measure_energy(position);
+}
+
+double GridSearch::growth(const Grid& grid) const {
+  double most = 1;
+  for (std::size_t i = 0; i < parts_.size(); ++i) most = std::max(most, grid.layouts[i].energy / energy(i));
+  return most;
+}
+
+std::optional<Grid> GridSearch::lay_out(double tiles, const LayoutEffort& effort) {
+  Grid grid{tiles, tiles / extent(), {}};
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    auto layout = quantize(i, grid.density, effort);
+    if (!layout) {
+      failed_ = i;
+      return std::nullopt;
+    }
+    grid.layouts.push_back(std::move(*layout));
+  }
+  return grid;
+}
+
+std::optional<Grid> GridSearch::refine(double tiles, const LayoutEffort& effort) {
+  for (; tiles <= most_tiles; tiles = next_size(tiles)) {
+    if (auto grid = lay_out(tiles, effort)) return grid;
+  }
+  return std::nullopt;
+}
+
+std::optional<Grid> GridSearch::find_coarsest() {
+  if (auto grid = refine(coarsest_tiles, {acceptable_growth, acceptable_turn, true})) return grid;
+  // What needs more repair takes longer: by halves between sizes, as finer grids cost less.
+  Array<double> sizes;
+  for (double tiles = coarsest_tiles; tiles <= most_tiles; tiles = next_size(tiles)) sizes.push_back(tiles);
+  std::optional<Grid> best = lay_out(sizes.back(), {});
+  if (!best) return refine(coarsest_tiles, {});
+  const LayoutEffort thorough{std::max(acceptable_growth, near_finest * growth(*best)), acceptable_turn, false};
+  std::size_t low = 0, high = sizes.size() - 1;
+  while (low < high) {
+    const std::size_t middle = (low + high) / 2;
+    if (auto grid = lay_out(sizes[middle], thorough)) {
+      best = std::move(grid);
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
+  }
+  return best;
+}
+
+void GridSearch::give_up(const Error& error) {
+  const double density = most_tiles / extent();
+  if (parts_.size() > 1) {
+    for_each_part(parts_, [&](std::size_t i) {
+      if (!quantizers_[i]->quantize(density, {})) throw error;
+    });
+  }
+  throw error;
+}
+
+void GridSearch::lower_stretch(double stretch, Grid& grid) const {
+  for_each_part(parts_, [&](std::size_t i) {
+    quantizers_[i]->lower_stretch(stretch, parts_[i].task->importance, grid.layouts[i]);
+  });
+}
+
+bool GridSearch::merge_nearest(double tiles, const Options& options) {
+  for (const ConePair& pair : quantizers_[failed_]->cone_pairs()) {
+    if (pair.distance * tiles > near * extent()) return false;
+    if (!merge(pair, options)) continue;
+    prepare(failed_);
+    return true;
+  }
+  return false;
+}
+
+void GridSearch::restore_relaxed() {
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    if (relaxed_[i].empty()) continue;
+    relaxed_[i].clear();
+    prepare(i);
+  }
+}
+
+bool GridSearch::relax_near(double tiles) {
+  Array<Index> relaxed;
+  for (const ConePair& pair : quantizers_[failed_]->cone_pairs()) {
+    if (pair.distance * tiles > near * extent()) break;
+    const auto listed = [&](Index v) { return std::find(relaxed.begin(), relaxed.end(), v) != relaxed.end(); };
+    if (!listed(pair.first) && !listed(pair.second)) relaxed.push_back(pair.second);
+  }
+  if (relaxed.empty() || !relaxed_[failed_].empty()) return false;
+  relaxed_[failed_] = std::move(relaxed);
+  prepare(failed_);
+  return true;
+}
+
+std::optional<QuantizedLayout> GridSearch::quantize(std::size_t part, double density,
+                                                    const LayoutEffort& effort) const {
+  try {
+    return quantizers_[part]->quantize(density, effort);
+  } catch (const Error& error) {
+    throw PartsFailed{{failure_of(*parts_[part].component, error)}};
+  }
+}
+
+void GridSearch::prepare(std::size_t part) {
+  const SeamlessPart& of = parts_[part];
+  const LatticeDemands demands{lattice_, parity_, relaxed_[part], of.task->directions};
+  quantizers_[part] = std::make_unique<LayoutQuantizer>(*of.system, *of.map, demands, step_);
+}
+
+bool GridSearch::merge(const ConePair& pair, const Options& options) {
+  SeamlessPart& part = parts_[failed_];
+  const HalfedgeMesh& mesh = part.component->mesh;
+  const Eigen::VectorXd& curvature = part.map->curvature.at_vertex;
+  const double sum = curvature[pair.first] + curvature[pair.second];
+  const auto away = [&](Index v) { return std::abs(part.system->geometry().angle_defect[v] - sum); };
+  const auto [kept, given_up] =
+      away(pair.first) <= away(pair.second) ? std::pair{pair.first, pair.second} : std::pair{pair.second, pair.first};
+  ComponentTask merged = *part.task;
+  merged.cones.vertices.clear();
+  merged.cones.angles.clear();
+  for (const Index v : part.task->cones.vertices) {
+    if (v == given_up) continue;
+    merged.cones.vertices.push_back(v);
+    merged.cones.angles.push_back(mesh.flat_angle(v) - (v == kept ? sum : curvature[v]));
+  }
+  Options manual = options;
+  manual.prescription = PrescriptionRule::manual;
+  try {
+    std::vector<Finding> unsaid;
+    auto system = std::make_unique<ComponentSystem>(mesh, part.system->geometry(), merged.cones, options.factorization);
+    ComponentMap map = map_component(*system, merged, manual, unsaid, monitor_);
+    if (map.validity.defects() > 0) return false;
+    *part.map = std::move(map);
+    part.system = system.get();
+    part.merged_system = std::move(system);
+  } catch (const Error& error) {
+    if (error.code() == Code::cancelled || error.code() == Code::out_of_memory) throw;
+    return false;  // this pair cannot be merged, another may
+  }
+  *part.task = std::move(merged);
+  part.merged.push_back(part.component->source_vertex[given_up]);
+  return true;
+}
+
+Grid find_grid(const Options& options, double unit_scale, GridSearch& search, std::vector<Finding>& findings) {
+  const Seamless& seamless = *options.seamless;
+  if (!seamless.tiles && !seamless.tile_size) {
+    if (auto grid = search.find_coarsest()) {
+      report_growth(search.growth(*grid), findings);
+      return std::move(*grid);
+    }
+  } else {
+    const double asked = seamless.tiles ? *seamless.tiles : search.extent() / (*seamless.tile_size * unit_scale);
+    if (!(asked >= 1e-6 && asked <= most_tiles)) {
+      throw Error(Code::wrong_parameter,
+                  concat("The grid would have ", asked, " cells along the layout; up to ", most_tiles,
+                         " can be stored exactly. Choose another number or size of tiles."));
+    }
+    auto grid = search.lay_out(asked, {});
+    const auto give_up_cones = [&] {
+      switch (seamless.coarse_grid) {
+        case CoarseGrid::merge: return search.merge_nearest(asked, options);
+        case CoarseGrid::relax: return search.relax_near(asked);
+        default: return false;
+      }
+    };
+    while (!grid && give_up_cones()) grid = search.lay_out(asked, {});
+    if (grid) return std::move(*grid);
+    search.restore_relaxed();
+    if (auto finer = search.refine(next_size(std::max(1.0, asked)), {})) {
+      findings.push_back({Code::grid_refined,
+                          concat("No layout is valid on a grid of ", asked, " cells along its longer side; it has ",
+                                 finer->tiles, " now. Use fewer cones for larger tiles."),
+                          {}});
+      return std::move(*finer);
+    }
+  }
+  search.give_up(
+      Error(Code::grid_too_coarse,
+            concat("No grid of up to ", most_tiles,
+                   " cells leaves a valid layout. Move cones that are close to each other apart, or use fewer.")));
+}
+
+}  // namespace lsgp

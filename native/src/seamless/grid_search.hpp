@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The size of the grid that all parts of a seamless layout share.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/array.hpp"
+#include "base/progress_monitor.hpp"
+#include "seamless/quantize_layout.hpp"
+#include "seamless/seamless_part.hpp"
+
+namespace lsgp {
+
+constexpr double most_tiles = 16384;  // beyond, float32 has too few digits left within a cell
+
+struct Grid {
+  double tiles, density;  // cells along the layout's longer side, and a unit of length
+  Array<QuantizedLayout> layouts;
+};
+
+// The layouts of all parts on one grid after another. What is given has to outlive it.
+class GridSearch {
+ public:
+  GridSearch(bool parity, const PointLattice& lattice, Array<SeamlessPart>& parts, ProgressMonitor& monitor);
+
+  double extent() const;
+  double energy(std::size_t part) const { return quantizers_[part]->energy(); }
+  const Array<Index>& relaxed(std::size_t part) const { return relaxed_[part]; }
+
+  double energy(std::size_t part, const Eigen::VectorXcd& position) const;
+
+  // The most that a part's energy has grown by.
+  double growth(const Grid& grid) const;
+
+  // None where a part has no valid layout, or one that is distorted more than allowed.
+  std::optional<Grid> lay_out(double tiles, const LayoutEffort& effort);
+
+  // The first of the sizes from `tiles` on that can be laid out.
+  std::optional<Grid> refine(double tiles, const LayoutEffort& effort);
+
+  // The coarsest grid that costs no more than is acceptable, or where none does, hardly more than the finest.
+  std::optional<Grid> find_coarsest();
+
+  // Throws `error` for the parts that have no layout on the finest grid; where none has one, for all together.
+  [[noreturn]] void give_up(const Error& error);
+
+  void lower_stretch(double stretch, Grid& grid) const;
+
+  // Merges the two nearest cones of the part that could not be laid out. Returns whether there are any so near on a
+  // grid of so many tiles.
+  bool merge_nearest(double tiles, const Options& options);
+
+  void restore_relaxed();
+
+  // Relaxes one of every two cones so near in that part. Returns whether there are any.
+  bool relax_near(double tiles);
+
+ private:
+  static constexpr double near = 2;  // cells
+
+  std::optional<QuantizedLayout> quantize(std::size_t part, double density, const LayoutEffort& effort) const;
+
+  void prepare(std::size_t part);
+
+  // One of the cones takes up the curvature of both: the one whose own is nearer to that.
+  bool merge(const ConePair& pair, const Options& options);
+
+  const bool parity_;
+  const PointLattice& lattice_;
+  Array<SeamlessPart>& parts_;
+  ProgressMonitor& monitor_;
+  Array<std::unique_ptr<LayoutQuantizer>> quantizers_;
+  Array<Array<Index>> relaxed_;  // by part
+  std::size_t failed_ = 0;
+  // Nobody knows how many steps there will be.
+  int steps_ = 0;
+  const StepHook step_ = [this] { monitor_.advance(1 - std::pow(0.99, ++steps_)); };
+};
+
+// The grid that is asked for, or one nearby that has a layout.  unit_scale: of the components' positions to the
+// caller's. Throws WRONG_PARAMETER, GRID_TOO_COARSE.
+Grid find_grid(const Options& options, double unit_scale, GridSearch& search, std::vector<Finding>& findings);
+
+}  // namespace lsgp

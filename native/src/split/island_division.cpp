@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "split/island_division.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "base/checkpoint.hpp"
+#include "base/union_find.hpp"
+#include "mesh/topology.hpp"
+
+namespace lsgp {
+
+namespace {
+
+// Parts of the area of all islands that have to be saved: by a cut as long as the square root of that area, and by each
+// further island.
+constexpr double cost_of_cut = 0.15, cost_of_island = 0.01;
+// Times as much for those who would rather have few cuts.
+constexpr double sparing_factor = 8;
+// An island takes what is halfway between its convex hull and its smallest box. Where the smallest square around it is
+// larger than a part of the square that all share, it keeps others out of that square as well.
+constexpr double fill = 0.62, large = 0.7, cost_of_large = 0.5;
+constexpr Index most_pieces = 8;  // of one division
+constexpr int directions = 12;
+constexpr double operations_a_point = 60;  // of finding hulls
+
+}  // namespace
+
+DivisionSearch::DivisionSearch(const SharedSquare& square)
+    : area_(square.area), price_factor_(square.filling == Compactness::sparing ? sparing_factor : 1) {}
+
+double DivisionSearch::least_gain() const { return price_factor_ * cost_of_island * area_; }
+
+double DivisionSearch::demand(const Array<Complex>& hull) const {
+  constexpr int turns = 45;  // of a quarter
+  double box = std::numeric_limits<double>::infinity(), square = box;
+  for (int i = 0; i < turns; ++i) {
+    const Extent extent = extent_along(hull, std::polar(1.0, M_PI / 2 * i / turns));
+    box = std::min(box, extent.width() * extent.height());
+    square = std::min(square, std::max(extent.width(), extent.height()));
+  }
+  const double too_large = std::max(0.0, square * square - large * area_ / fill);
+  return (area_of_hull(hull) + box) / 2 + cost_of_large * too_large;
+}
+
+double DivisionSearch::worth(double gain, double length, std::size_t pieces) const {
+  const double price = price_factor_ * (area_ * cost_of_island * static_cast<double>(pieces - 1) +
+                                        std::sqrt(area_) * cost_of_cut * length);
+  // Between what gains most and what gains most for its price.
+  return gain > price ? gain / std::sqrt(price) : 0;
+}
+
+double DivisionSearch::worth(const IslandCells& cells, const Array<Index>& class_of, double demand_before) const {
+  UnionFind sets(cells.count());
+  double length = 0;
+  for (const IslandCells::Link& link : cells.links) {
+    if (class_of[link.cells[0]] == class_of[link.cells[1]])
+      sets.unite(link.cells[0], link.cells[1]);
+    else
+      length += link.length;
+  }
+  Array<Index> roots, number(cells.count(), none);
+  Array<double> area;
+  Array<Index> points;
+  for (Index cell = 0; cell < cells.count(); ++cell) {
+    const Index root = sets.find(cell);
+    if (root == cell) {
+      number[cell] = static_cast<Index>(roots.size());
+      roots.push_back(root);
+      area.push_back(0);
+      points.push_back(0);
+    }
+    number[cell] = number[root];
+    area[number[cell]] += cells.area[cell];
+    points[number[cell]] += static_cast<Index>(cells.hull[cell].size());
+  }
+  if (roots.size() < 2 || static_cast<Index>(roots.size()) > most_pieces ||
+      *std::min_element(area.begin(), area.end()) < least_piece * area_)
+    return 0;
+  double after = 0;
+  for (std::size_t piece = 0; piece < roots.size(); ++piece) {
+    Eigen::VectorXcd outline(points[piece]);
+    Eigen::Index next = 0;
+    for (Index cell = 0; cell < cells.count(); ++cell) {
+      if (number[cell] != static_cast<Index>(piece)) continue;
+      for (const Complex z : cells.hull[cell]) outline[next++] = z;
+    }
+    after += demand(convex_hull(outline));
+  }
+  return worth(demand_before - after, length, roots.size());
+}
+
+IslandDivision DivisionSearch::find_division(const IslandCells& cells, const Array<Complex>& hull,
+                                             Complex along) const {
+  const double before = demand(hull);
+  std::size_t points = 0;
+  for (const Array<Complex>& own : cells.hull) points += own.size();
+  IslandDivision best;
+  Array<Index> class_of(cells.count());
+  const auto consider = [&](Array<Line> lines) {
+    for (Index cell = 0; cell < cells.count(); ++cell) {
+      class_of[cell] = 0;
+      for (const Line& line : lines) class_of[cell] = 2 * class_of[cell] + (line.distance(cells.center[cell]) > 0);
+    }
+    const double gain = worth(cells, class_of, before);
+    if (gain > best.worth) best = {std::move(lines), gain};
+    checkpoint(operations_a_point * static_cast<double>(points));
+  };
+  const double total = std::accumulate(cells.area.begin(), cells.area.end(), 0.0);
+  Complex center = 0;
+  for (Index cell = 0; cell < cells.count(); ++cell) center += cells.area[cell] / total * cells.center[cell];
+  for (int i = 0; i < directions; ++i) {
+    const Complex normal = along * std::polar(1.0, M_PI * i / directions);
+    const Extent extent = extent_along(hull, normal);
+    for (int k = 1; k < division_positions; ++k)
+      consider({{normal, extent.low.real() + extent.width() * k / division_positions}});
+    if (2 * i >= directions) continue;
+    const Complex across = normal * Complex(0, 1);
+    consider({{normal, Line{normal, 0}.distance(center)}, {across, Line{across, 0}.distance(center)}});
+  }
+  return best;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where an island is best divided, so that all islands fill a square better.
+#pragma once
+
+#include <complex>
+
+#include "base/array.hpp"
+#include "lsgp/options.hpp"
+#include "plane/convex_hull.hpp"
+
+namespace lsgp {
+
+// The square that the islands of a map are to share with all others.
+struct SharedSquare {
+  double area;   // of all islands, on the surface
+  double scale;  // of the map to the surface
+  Compactness filling;
+};
+
+// Of the area of all islands: nothing is cut off that is smaller.
+constexpr double least_piece = 0.01;
+constexpr int division_positions = 12;  // that are tried across an island
+
+struct Line {
+  Complex normal;  // of length 1
+  double offset;
+  // Above 0 on the side that the normal points to.
+  double distance(Complex z) const { return std::real(std::conj(normal) * z) - offset; }
+};
+
+// A way to divide an island: by a line, or by two that cross.
+struct IslandDivision {
+  Array<Line> lines;
+  double worth = 0;
+};
+
+// The faces of an island taken together to cells, to try divisions quickly.
+struct IslandCells {
+  struct Link {
+    Index cells[2];
+    double length;
+  };
+  Array<Complex> center;
+  Array<double> area;
+  Array<Array<Complex>> hull;
+  Array<Link> links;
+  Index count() const { return static_cast<Index>(area.size()); }
+};
+
+// Weighs what divisions save of the square against what they cost.
+class DivisionSearch {
+ public:
+  explicit DivisionSearch(const SharedSquare& square);
+
+  // What islands of that hull take of the square.
+  double demand(const Array<Complex>& hull) const;
+
+  // The least that has to be saved for a division to be worth it.
+  double least_gain() const;
+
+  // Of a division into so many pieces, `length` being that of the cuts; 0 where it does not gain its price.
+  double worth(double gain, double length, std::size_t pieces) const;
+
+  // The best division of an island.  along: a side of its smallest box.
+  IslandDivision find_division(const IslandCells& cells, const Array<Complex>& hull, Complex along) const;
+
+ private:
+  double worth(const IslandCells& cells, const Array<Index>& class_of, double demand_before) const;
+
+  const double area_, price_factor_;
+};
+
+}  // namespace lsgp

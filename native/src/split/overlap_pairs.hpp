@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Faces of a layout that lie on each other, and the parts that faces belong to.
+#pragma once
+
+#include <algorithm>
+
+#include "base/array.hpp"
+#include "plane/overlaps.hpp"
+#include "split/face_graph.hpp"
+
+namespace lsgp {
+
+// Each pair of faces is an entry of either of them; sorted by face, then partner.
+struct OverlapPairs {
+  Array<Index> begin;        // (faces + 1) entries of a face
+  Array<Index> of, partner;  // (entries) faces
+  Array<double> shared;      // (entries) area
+
+  Index find(Index face, Index partner) const;  // none where they do not lie on each other
+
+  // Whether is(partner) for any face that lies on this one.
+  template <typename Is>
+  bool any_partner(Index face, Is is) const {
+    return std::any_of(partner.begin() + begin[face], partner.begin() + begin[face + 1], is);
+  }
+};
+
+// overlaps: of triangles.
+OverlapPairs collect_pairs(const FaceGraph& graph, const Array<Overlap>& overlaps);
+
+struct FaceParts {
+  Array<Index> of_face;  // (faces) each part is connected
+  Index count = 0;
+};
+
+// Connected faces of one number share a part.
+FaceParts number_parts(const FaceGraph& graph, const Array<Index>& number);
+
+}  // namespace lsgp

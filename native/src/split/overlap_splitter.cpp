@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "split/overlap_splitter.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "base/checkpoint.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr double operations_an_entry = 500;
+
+}  // namespace
+
+OverlapSplitter::OverlapSplitter(const FaceGraph& graph, const OverlapPairs& pairs, MinimumCutter& cutter,
+                                 const std::function<void()>& before_cut)
+    : graph_(graph),
+      pairs_(pairs),
+      cutter_(cutter),
+      before_cut_(before_cut),
+      parts_(number_parts(graph, Array<Index>(graph.face_count(), 0))),
+      is_seen_(pairs.of.size(), 0),
+      depth_(pairs.of.size(), none),
+      side_(graph.face_count(), 0) {}
+
+Array<OverlapSplitter::Part> OverlapSplitter::list_parts() const {
+  Array<Part> parts(parts_.count);
+  for (Index face = 0; face < graph_.face_count(); ++face) parts[parts_.of_face[face]].faces.push_back(face);
+  return parts;
+}
+
+OverlapSplitter::Conflict OverlapSplitter::find_conflict(Index seed) {
+  const Index part = parts_.of_face[pairs_.of[seed]];
+  Conflict out{{seed}};
+  is_seen_[seed] = 1;
+  for (std::size_t i = 0; i < out.entries.size(); ++i) {
+    const Index entry = out.entries[i];
+    out.area += pairs_.shared[entry];
+    side_[pairs_.of[entry]] = 1;
+    for_each_beside(part, entry, [&](Index other) {
+      if (is_seen_[other]) return;
+      is_seen_[other] = 1;
+      out.entries.push_back(other);
+    });
+  }
+  for (const Index entry : out.entries) out.is_two_sided = out.is_two_sided && side_[pairs_.partner[entry]] == 0;
+  for (const Index entry : out.entries) side_[pairs_.of[entry]] = 0;
+  checkpoint(operations_an_entry * static_cast<double>(out.entries.size()));
+  return out;
+}
+
+// Of entries, sorted, that no conflict has.
+void OverlapSplitter::add_conflicts(const Array<Index>& entries, Array<Part>& parts) {
+  for (const Index seed : entries) {
+    const Index part = parts_.of_face[pairs_.of[seed]];
+    if (!is_seen_[seed] && is_conflict_in(part, seed)) parts[part].conflicts.push_back(find_conflict(seed));
+  }
+  for (const Index entry : entries) is_seen_[entry] = 0;
+}
+
+// The largest conflict of two sides, or where there is none a piece of the largest of all.
+OverlapSplitter::Region OverlapSplitter::find_region(const Array<Part>& parts) {
+  const Conflict *two_sided = nullptr, *largest = nullptr;
+  for (const Part& part : parts) {
+    for (const Conflict& own : part.conflicts) {
+      if (largest == nullptr || own.is_larger_than(*largest)) largest = &own;
+      if (own.is_two_sided && (two_sided == nullptr || own.is_larger_than(*two_sided))) two_sided = &own;
+    }
+  }
+  if (largest == nullptr) return {};
+  if (two_sided == nullptr) return grow_region(*largest);
+  Region region;
+  for (const Index entry : two_sided->entries) {
+    region.first.push_back(pairs_.of[entry]);
+    region.second.push_back(pairs_.partner[entry]);
+  }
+  return region;
+}
+
+// From the pair that shares most, half as far as the two sides stay apart.
+OverlapSplitter::Region OverlapSplitter::grow_region(const Conflict& conflict) {
+  const Index seed = *std::max_element(conflict.entries.begin(), conflict.entries.end(),
+                                       [&](Index a, Index b) { return pairs_.shared[a] < pairs_.shared[b]; });
+  const Index part = parts_.of_face[pairs_.of[seed]];
+  Array<Index> grown{seed};
+  depth_[seed] = 0;
+  Index deepest = std::numeric_limits<Index>::max();
+  for (std::size_t i = 0; i < grown.size() && depth_[grown[i]] < deepest; ++i) {
+    const Index entry = grown[i];
+    if (side_[pairs_.of[entry]] == 2 || side_[pairs_.partner[entry]] == 1) {
+      deepest = depth_[entry];
+      break;
+    }
+    side_[pairs_.of[entry]] = 1;
+    side_[pairs_.partner[entry]] = 2;
+    const auto add = [&](Index other) {
+      if (depth_[other] != none) return;
+      depth_[other] = depth_[entry] + 1;
+      grown.push_back(other);
+    };
+    for_each_beside(part, entry, add);
+  }
+  Region region;
+  for (const Index entry : grown) {
+    if (2 * depth_[entry] <= deepest || entry == seed) {
+      region.first.push_back(pairs_.of[entry]);
+      region.second.push_back(pairs_.partner[entry]);
+    }
+  }
+  for (const Index entry : grown) {
+    depth_[entry] = none;
+    side_[pairs_.of[entry]] = side_[pairs_.partner[entry]] = 0;
+  }
+  return region;
+}
+
+// Makes parts of the connected faces on either side of a cut; the first of them keeps the number.
+void OverlapSplitter::divide(Index part, const Array<char>& is_first, Array<Part>& parts) {
+  const Array<Index> faces = std::move(parts[part].faces);
+  Array<Conflict> conflicts = std::move(parts[part].conflicts);
+  constexpr Index first_side = -2, second_side = -3;
+  for (std::size_t i = 0; i < faces.size(); ++i) parts_.of_face[faces[i]] = is_first[i] ? first_side : second_side;
+  Array<Index> front, pieces;
+  for (const Index seed : faces) {
+    const Index side = parts_.of_face[seed];
+    if (side >= 0) continue;
+    pieces.push_back(pieces.empty() ? part : parts_.count++);
+    parts_.of_face[seed] = pieces.back();
+    front.assign(1, seed);
+    while (!front.empty()) {
+      const Index face = front.back();
+      front.pop_back();
+      graph_.for_each_link(face, [&](Index other, const FaceGraph::Link&) {
+        if (parts_.of_face[other] != side) return;
+        parts_.of_face[other] = pieces.back();
+        front.push_back(other);
+      });
+    }
+  }
+  parts.resize(parts_.count);
+  for (const Index piece : pieces) parts[piece] = {};
+  for (const Index face : faces) parts[parts_.of_face[face]].faces.push_back(face);
+  for (Conflict& conflict : conflicts) {
+    const Index piece = parts_.of_face[pairs_.of[conflict.entries.front()]];
+    const bool is_whole = std::all_of(conflict.entries.begin(), conflict.entries.end(),
+                                      [&](Index entry) { return is_conflict_in(piece, entry); });
+    if (is_whole) {
+      parts[piece].conflicts.push_back(std::move(conflict));
+    } else {
+      std::sort(conflict.entries.begin(), conflict.entries.end());
+      add_conflicts(conflict.entries, parts);
+    }
+  }
+}
+
+FaceParts OverlapSplitter::split() {
+  Array<Part> parts = list_parts();
+  Array<Index> entries(pairs_.of.size());
+  std::iota(entries.begin(), entries.end(), 0);
+  add_conflicts(entries, parts);
+  for (;;) {
+    const Region region = find_region(parts);
+    if (region.first.empty()) break;
+    before_cut_();
+    const Index part = parts_.of_face[region.first.front()];
+    divide(part, cutter_.cut(parts[part].faces, region.first, region.second).is_first, parts);
+  }
+  return number_parts(graph_, parts_.of_face);
+}
+
+}  // namespace lsgp

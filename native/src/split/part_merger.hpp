@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fewer and shorter cuts between the parts of a layout that lie on each other.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <utility>
+
+#include "base/array.hpp"
+#include "split/minimum_cut.hpp"
+#include "split/overlap_pairs.hpp"
+
+namespace lsgp {
+
+class PartMerger {
+ public:
+  // parts: no two faces of one lie on each other, which stays so.  before_cut: called before every cut; what it throws
+  // ends the work. What is given has to outlive it.
+  PartMerger(const FaceGraph& graph, const OverlapPairs& pairs, MinimumCutter& cutter,
+             const std::function<void()>& before_cut, FaceParts& parts)
+      : graph_(graph), pairs_(pairs), cutter_(cutter), before_cut_(before_cut), parts_(parts) {}
+
+  // Closes what was opened between two parts that do not lie on each other, the longest cut first.
+  void merge_back();
+
+  // Chooses the cuts between neighbours again.
+  void improve();
+
+  // See straight_cuts.hpp.
+  void straighten(const OpenedSurface& surface);
+
+ private:
+  // By two parts, the lower number first.
+  using PartLengths = std::map<std::pair<Index, Index>, FaceGraph::Units>;
+
+  PartLengths measure_borders() const;         // of what was opened between any two parts
+  Array<Array<Index>> faces_of_parts() const;  // sorted
+  // Chooses the cut between two neighbours, all others given. Returns whether there was a better one.
+  // scope: the faces of both, sorted.
+  bool improve(Index a, Index b, const Array<Index>& scope, FaceGraph::Units length);
+
+  const FaceGraph& graph_;
+  const OverlapPairs& pairs_;
+  MinimumCutter& cutter_;
+  const std::function<void()>& before_cut_;
+  FaceParts& parts_;
+};
+
+}  // namespace lsgp
