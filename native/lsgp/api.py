@@ -646,7 +646,8 @@ def place_cones(
 
     cones, angles: existing cones, which are kept, and angles of theirs that are, None = automatic.
     count: cones per component, existing ones included; a component that has no room for so many gets fewer, which a
-        warning names. None: as few as bring the L2 stretch of the map to `target`.
+        warning names. Where the map with so many cannot be used, the error or warning says how many None gives. None:
+        as few as bring the L2 stretch of the map to `target`.
     lattice: angles become multiples of its turn, for a seamless layout. Where the surface has directions and no `count`
         is given, cones are only where these are not parallel, if that leaves the texture at most 7 degrees off them and
         the stretch within 1.2: around the bottom of a vase, and none in a sleeve.

@@ -18,8 +18,9 @@ struct MirrorPlane {
 };
 
 struct PlacementOptions {
-  // Cones of every component, existing ones included, fewer where there is no room: then a finding says so. None: as
-  // few as reach the target.
+  // Cones of every component, existing ones included, fewer where there is no room: then a finding says so. Where their
+  // map cannot be used, the error or finding says how many are placed without a number. None: as few as reach the
+  // target.
   std::optional<int> count;
   double target = 1.05;               // L2 stretch of the map
   std::optional<Lattice> lattice;     // angles are multiples of its turn, for a seamless layout

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/text.hpp"
 #include "cut/cut_graph.hpp"
@@ -53,6 +54,36 @@ void require_right(const VerifiedChoice& choice, bool has_marked) {
       {ElementKind::vertices, choice.cones.vertices});
 }
 
+// A number of cones is none to insist on where the map with them cannot be used: how many there are without it, and
+// what their map is like. Empty where it cannot be used either.
+std::string told_of_automatic(const PlacementTask& task, PlacementOptions options, ProgressMonitor& monitor,
+                              int& maps) {
+  options.count.reset();
+  const ProgressMonitor::Part part(monitor, 1, 1);
+  ConeChooser chooser(task, options, effort_for(task.mesh.vertex_count()), monitor);
+  VerifiedPlacement placement(chooser, monitor);
+  const VerifiedChoice choice = placement.place();
+  maps += placement.maps();
+  if (!choice.cones.is_possible() || !(choice.map.l2 < high_l2)) return "";
+  const std::size_t placed = choice.cones.vertices.size();
+  return concat(" Left automatic, ", count(placed, "cone is", "cones are"),
+                " placed, and the map has an L2 stretch of ", rounded(choice.map.l2), ".");
+}
+
+// A number of cones that was asked for, but with which the map cannot be used.
+std::optional<Finding> unusable_map(const PlacementTask& task, const PlacementOptions& options,
+                                    const VerifiedChoice& choice, ProgressMonitor& monitor, int& maps) {
+  if (!options.count || !choice.is_mapped || choice.map.l2 < high_l2) return std::nullopt;
+  const std::string map = choice.map.is_valid() ? concat("has an L2 stretch of ", rounded(choice.map.l2))
+                                                : "has flipped triangles or wrong angles";
+  const std::string automatic = told_of_automatic(task, options, monitor, maps);
+  const char* otherwise = " Mark cones at thin tips, clean up spikes and thin triangles, or place more.";
+  return Finding{Code::placement_not_reached,
+                 concat("With ", count(choice.cones.vertices.size(), "cone", "cones"), " the map ", map, ".",
+                        automatic.empty() ? otherwise : automatic),
+                 {ElementKind::vertices, choice.cones.vertices}};
+}
+
 std::optional<MissingCones> missing_cones(const ConeChooser& chooser, const ConeChoice& choice) {
   const int asked = chooser.options().count.value_or(0), placed = static_cast<int>(choice.vertices.size());
   if (placed >= asked) return std::nullopt;
@@ -73,17 +104,29 @@ PlacedCones place_component(const PlacementTask& task, const PlacementOptions& o
   PlacedCones out;
   out.cones = chooser.with_given_angles(choice.cones.vertices);
   require_reachable(chooser, choice.cones);
-  require_feasible(task.mesh, out.cones, chooser.border());
-  require_room(choice.cones);
+  out.maps = placement.maps();
+  // Where a number of cones is refused, what would do is told.
+  const auto refuse_with_remedy = [&](auto require) {
+    try {
+      require();
+    } catch (const Error& error) {
+      if (!options.count || (error.code() != Code::too_few_cones && error.code() != Code::solver_failed)) throw;
+      throw Error(error.code(), error.what() + told_of_automatic(task, options, monitor, out.maps), error.elements());
+    }
+  };
+  refuse_with_remedy([&] {
+    require_feasible(task.mesh, out.cones, chooser.border());
+    require_room(choice.cones);
+  });
   require_possible(task.mesh, task.geometry, out.cones);
   out.missing = missing_cones(chooser, choice.cones);
   out.cones = chooser.with_angles(choice.cones);
   out.curvature = impose(chooser.scale(), out.cones, choice.cones.curvature,
                          chooser.scale().evaluate_held(choice.cones.vertices, choice.cones.curvature), findings);
   connect_cones(task.mesh, task.geometry, inside_only(task.mesh, choice.cones.vertices), out.curvature.needs_no_cut);
-  require_right(choice, !task.existing.vertices.empty());
+  refuse_with_remedy([&] { require_right(choice, !task.existing.vertices.empty()); });
   if (choice.is_mapped) out.mapped_l2 = choice.map.l2;
-  out.maps = placement.maps();
+  if (auto finding = unusable_map(task, options, choice, monitor, out.maps)) findings.push_back(std::move(*finding));
   out.reached = out.mapped_l2.value_or(out.curvature.predicted_l2) <= options.target;
   return out;
 }

@@ -20,7 +20,7 @@ const char* remedy_for(MissingCones::Why why) {
       return "the places that are left come in mirrored pairs. Ask for one more or one fewer.";
     case MissingCones::Why::no_room: break;
   }
-  return "no other inner vertex is left where a cone may be. Ask for fewer, or subdivide the mesh there.";
+  return "no other vertex inside is left where a cone may be. Ask for fewer, or subdivide the mesh there.";
 }
 
 void append(Array<Index>& to, const Array<Index>& more) { to.insert(to.end(), more.begin(), more.end()); }

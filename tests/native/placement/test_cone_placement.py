@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import re
+
 import lsgp
 import meshes
 import numpy as np
@@ -201,6 +203,37 @@ def test_a_number_that_the_handles_cannot_do_with_is_refused_with_that_number() 
     with pytest.raises(lsgp.TopologyError, match=r"8 cones cannot take up .* curvature of -13680 degrees") as caught:
         place(tunnelled_plate(5, 4, 1), count=8)
     assert caught.value.code == "TOO_FEW_CONES" and len(caught.value.elements.indices) == 8
+
+
+def assert_names_what_automatic_placement_finds(message: str, mesh: Mesh) -> None:
+    automatic = place(mesh)
+    found = re.search(r"Left automatic, (\d+) cones are placed, and the map has an L2 stretch of ([\d.]+)\.$", message)
+    assert int(found[1]) == len(automatic.cones)
+    result = lsgp.parameterize(surface(mesh), automatic.cones, automatic.cone_angles)
+    assert float(found[2]) == pytest.approx(result.distortion.l2_stretch, rel=1e-3)
+
+
+def test_a_number_that_is_too_small_is_refused_with_one_that_does() -> None:
+    with pytest.raises(lsgp.TopologyError) as caught:
+        place(MESHES["bumpy"], count=2)
+    assert caught.value.code == "TOO_FEW_CONES"
+    assert_names_what_automatic_placement_finds(caught.value.message, MESHES["bumpy"])
+
+
+def test_a_number_whose_map_is_stretched_beyond_use_is_told_one_that_does() -> None:
+    rod = meshes.cube(3, stretch=(1, 50, 1))
+    placed = place(rod, count=3)
+    assert len(placed.cones) == 3 and placed.mapped_l2 > 3
+    warning = only(placed.warnings, "PLACEMENT_NOT_REACHED")
+    assert f"With 3 cones the map has an L2 stretch of {placed.mapped_l2:.4g}." in warning.message
+    assert np.array_equal(np.sort(warning.elements.indices), np.sort(placed.cones))
+    assert_names_what_automatic_placement_finds(warning.message, rod)
+
+
+def test_a_number_with_a_usable_map_is_as_asked_for() -> None:
+    placed = place(MESHES["bumpy"], count=3)
+    assert placed.mapped_l2 > 1.05
+    assert "PLACEMENT_NOT_REACHED" not in codes(placed.warnings)
 
 
 @pytest.mark.parametrize("count", [0, 1, 2])
