@@ -25,6 +25,8 @@ _OF_LAYOUTS_ALONE = frozenset({"OVERLAPPING_TRIANGLES"})
 _MOST_QUADS = 2**28
 # A number of quads further than this from what was asked for, as a share of it, gets a second try.
 _NEAR = 0.02
+# Cones of a quarter turn are below this angle, radians; how often others are placed to do without.
+_NARROW, _MOST_HOLDS = 0.75 * math.pi, 4
 # Where quads are too large for a mesh: by how much smaller ones are tried, and how often.
 _FINER = 0.8
 _MOST_REFINEMENTS = 12
@@ -123,7 +125,8 @@ def remesh_to_quads(
     """Cover a closed surface with quads whose irregular vertices are the cones.
 
     cones, angles: as of `parameterize`; they are kept. Components without cones, or whose cones cannot take up their
-        curvature, get some, as by `auto_unwrap`. count: how many on each component that gets some.
+        curvature, get some, as by `auto_unwrap`, but none of 90 degrees. count: how many on each component that gets
+        some.
     target: how many quads there are to be; the number comes near it, or is more where so few leave no valid layout or
         would be no mesh (GRID_REFINED).
         size: or the side of a quad on the surface, in its unit. Neither: the coarsest grid that costs at most a tenth
@@ -141,7 +144,7 @@ def remesh_to_quads(
     chosen = _options(options)
     _lsgp.require_closed(surface_arrays(surface))
     chosen = replace(chosen, seamless=replace(chosen.seamless, tile_size=_side(surface, target, size)))
-    completed = complete_cones(surface, cones, angles, chosen, count, part_of(progress, 0.0, _PLACED))
+    completed = _wide_cones(surface, cones, angles, chosen, count, part_of(progress, 0.0, _PLACED))
     layouts = _Layouts(surface, completed, chosen)
     layout = layouts.nearest(target, part_of(progress, _PLACED, _LAID_OUT))
     mesh, layout = layouts.extracted(layout, part_of(progress, _LAID_OUT, 1.0))
@@ -208,6 +211,35 @@ def _side(surface: Surface, target: int | None, size: float | None) -> float | N
     with np.errstate(over="ignore", invalid="ignore"):  # the verbs refuse such a surface by name
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         return math.sqrt(0.5 * float(np.linalg.norm(normals, axis=1).sum()) / target)
+
+
+def _wide_cones(
+    surface: Surface,
+    cones: ArrayLike,
+    angles: Sequence[float | None] | None,
+    options: Options,
+    count: int | None,
+    progress: Progress | None,
+) -> CompletedCones:
+    """Those of `complete_cones`, but where it places one of 90 degrees that is held at 180, and others are placed
+    besides."""
+    completed = complete_cones(surface, cones, angles, options, count, part_of(progress, 0.0, 0.5))
+    given = arguments.index_vector("cones", cones)
+    held, done = np.empty(0, np.int32), 0.5
+    for _ in range(_MOST_HOLDS):
+        is_narrow = [angle is not None and angle < _NARROW for angle in completed.angles]
+        narrow = np.setdiff1d(completed.cones[np.array(is_narrow, bool)], given)
+        if not len(narrow):
+            break
+        held = np.union1d(held, narrow).astype(np.int32)
+        fixed = [*arguments.cone_angles("angles", angles, len(given)), *[math.pi] * len(held)]
+        begin, done = done, (1 + done) / 2
+        part = part_of(progress, begin, done)
+        again = complete_cones(surface, np.concatenate([given, held]), fixed, options, count, part)
+        if again.placement is None:
+            break  # there is no other place: what the narrow cones are refused for is said of them
+        completed = again
+    return completed
 
 
 class _Layouts:

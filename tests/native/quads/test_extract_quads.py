@@ -185,6 +185,20 @@ def test_the_number_of_quads_comes_near_the_target(target: int) -> None:
     assert found.layout.seamless.tile_size == pytest.approx(np.sqrt(area / target), rel=0.1)
 
 
+def test_placed_cones_of_a_quarter_turn_are_held_at_two() -> None:
+    """On a spike cones for a seamless layout have 90 degrees, where no quads could meet."""
+    ball = meshes.icosphere(3)
+    spike = 1 + 2.5 * np.exp(4 * (ball.positions[:, 2:] - 1))
+    mesh = ball._replace(positions=ball.positions * np.concatenate([np.ones((len(spike), 2)), spike], axis=1))
+    placed = lsgp.place_cones(surface(mesh), lattice="square")
+    narrow = placed.cones[placed.cone_angles < 2]
+    assert len(narrow)
+    remesh = lsgp.remesh_to_quads(surface(mesh), target=400)
+    require_quads_of(mesh, remesh.layout.corner_uv, remesh.mesh)
+    held = np.isin(remesh.mesh.surface_vertices, narrow)
+    assert remesh.mesh.valences[held].tolist() == [2] * len(narrow)
+
+
 def test_quads_too_large_for_a_mesh_are_made_smaller() -> None:
     """A tube of two quads around would have two edges between the same vertices."""
     mesh = meshes.torus(24, 8, 3.0, 0.4)
