@@ -126,8 +126,8 @@ class GridBuilder {
     if (flipped.empty()) return;
     const std::string what =
         concat(count(flipped.size(), "triangle is", "triangles are"),
-               " flipped or without area in the layout. Make a layout without, with other cones or smaller "
-               "cells.");
+               " flipped or without area in the layout. Merge needles of the mesh by distance, or make a "
+               "layout without, with other cones or smaller cells.");
     throw Error(Code::flipped_triangles, what, {ElementKind::triangles, std::move(flipped)});
   }
 
