@@ -23,6 +23,7 @@ from .operators.cuts.select import MESH_OT_cone_select_cuts
 from .operators.inspection.measure_distortion import UV_OT_cone_measure
 from .operators.inspection.select_reported import MESH_OT_cone_select_reported
 from .operators.inspection.show_texture import UV_OT_cone_texture
+from .operators.quads.remesh import OBJECT_OT_cone_remesh_to_quads
 from .operators.texels.get_density import UV_OT_cone_texel_get
 from .operators.texels.select_by_density import MESH_OT_cone_texel_select
 from .operators.texels.set_density import UV_OT_cone_texel_set
@@ -46,6 +47,7 @@ CLASSES = (
     MESH_OT_cone_clear_data,
     UV_OT_cone_auto_unwrap,
     UV_OT_cone_unwrap,
+    OBJECT_OT_cone_remesh_to_quads,
     UV_OT_cone_measure,
     UV_OT_cone_texture,
     UV_OT_cone_extend_image,

@@ -43,6 +43,11 @@ def placement_summary(placement: lsgp.Placement, new: int) -> str:
     return f"{count}, {new} of them new, {told} (1 is none)"
 
 
+def quad_summary(mesh: lsgp.QuadMesh) -> str:
+    irregular = counted(len(mesh.irregular), "irregular vertex", "irregular vertices")
+    return f"{len(mesh.quads):,} quads, {irregular}"
+
+
 def _seam_summary(unwrapped: Unwrapped) -> str:
     report = unwrapped.result.seamless
     tiles = f"{report.tiles:.4g} tiles across"

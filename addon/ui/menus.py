@@ -57,6 +57,7 @@ class VIEW3D_MT_cone_unwrap(bpy.types.Menu):
         layout.operator_context = "INVOKE_DEFAULT"
         layout.operator(identifiers.AUTO_UNWRAP)
         layout.operator(identifiers.UNWRAP)
+        layout.operator(identifiers.REMESH_TO_QUADS)
         layout.separator()
         layout.operator(identifiers.MARK).clear = False
         layout.operator(identifiers.MARK, text="Clear Cone").clear = True
@@ -87,6 +88,12 @@ def draw_unwrap(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
     self.layout.menu(VIEW3D_MT_cone_unwrap.bl_idname)
 
 
+def draw_remesh(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    self.layout.separator()
+    self.layout.operator_context = "INVOKE_DEFAULT"
+    self.layout.operator(identifiers.REMESH_TO_QUADS)
+
+
 def draw_for_vertices(self: bpy.types.Menu, context: bpy.types.Context) -> None:
     """The context menu is shared by all select modes; cones are vertices."""
     if context.tool_settings.mesh_select_mode[0]:
@@ -98,6 +105,7 @@ ENTRIES = (
     ("IMAGE_MT_uvs_unwrap", draw_unwrap),
     ("IMAGE_MT_uvs", draw_submenu),
     ("VIEW3D_MT_object", draw_submenu),
+    ("VIEW3D_MT_object_convert", draw_remesh),
     ("VIEW3D_MT_edit_mesh_edges", draw_submenu),
     ("VIEW3D_MT_edit_mesh_vertices", draw_submenu),
     ("VIEW3D_MT_edit_mesh_context_menu", draw_for_vertices),

@@ -237,6 +237,7 @@ TREES = (
             Room("cuts", ("cuts/*",), ("shared",)),
             Room("inspection", ("inspection/*",), ("shared",)),
             Room("texels", ("texels/*",), ("shared",)),
+            Room("quads", ("quads/*",), ("shared", "unwrapping")),
         ),
     ),
     Tree(

@@ -43,6 +43,10 @@ class BackgroundOperator(ComputingOperator):
 
     # To be defined by operators
 
+    def sources(self, context: bpy.types.Context) -> tuple[list[bpy.types.Object], Faces]:
+        """The objects to work on, and which of their faces."""
+        return target_objects(context), Faces.UV_SELECTED if selects_by_uv(context) else Faces.SELECTED
+
     def plan(self) -> tuple[Groups, Callable[[bpy.types.Object, Region], Task]]:
         """The vertex groups to read, and what makes the task of an object; that may raise LsgpError and Refused."""
         raise NotImplementedError
@@ -102,8 +106,7 @@ class BackgroundOperator(ComputingOperator):
     def _gather(self, context: bpy.types.Context) -> tuple[list[tuple[bpy.types.Object, Task]], dict[str, Exception]]:
         """What is to be computed for each object with selected faces, and the errors of the others by name."""
         groups, make_task = self.plan()
-        faces = Faces.UV_SELECTED if selects_by_uv(context) else Faces.SELECTED
-        objects = target_objects(context)
+        objects, faces = self.sources(context)
 
         def read(obj: bpy.types.Object) -> Task | None:
             region = read_region(obj, faces, groups, subdivided=self.use_subsurf_data)

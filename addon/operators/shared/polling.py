@@ -25,10 +25,24 @@ def poll_meshes(operator: type[bpy.types.Operator], context: bpy.types.Context) 
 
 def poll_computation(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
     """True where there are meshes to work on and the computing library is available."""
+    return _poll_library(operator) and poll_meshes(operator, context)
+
+
+def poll_computation_on_objects(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
+    """True where meshes are selected in object mode and the computing library is available."""
+    if not _poll_library(operator):
+        return False
+    if context.mode != "OBJECT" or not target_objects(context):
+        operator.poll_message_set("Select mesh objects in object mode")
+        return False
+    return True
+
+
+def _poll_library(operator: type[bpy.types.Operator]) -> bool:
     if native.PROBLEM:
         operator.poll_message_set(native.PROBLEM)
         return False
-    return poll_meshes(operator, context)
+    return True
 
 
 class EditMeshOperator:

@@ -13,6 +13,7 @@ native = addon.core.native
 OPERATORS = {
     "uv.cone_auto_unwrap",
     "uv.cone_unwrap",
+    "object.cone_remesh_to_quads",
     "mesh.cone_mark",
     "mesh.cone_select",
     "mesh.cone_place",
@@ -87,6 +88,10 @@ def test_settings_of_the_unwrap_can_be_kept_as_presets():
     assert "PRESET" in bpy.types.UV_OT_cone_unwrap.bl_options
 
 
+def test_remeshing_is_where_blender_converts_objects():
+    assert our_entries("VIEW3D_MT_object_convert") == [("object.cone_remesh_to_quads", None)]
+
+
 @pytest.mark.parametrize(
     "menu", ["IMAGE_MT_uvs", "VIEW3D_MT_object", "VIEW3D_MT_edit_mesh_edges", "VIEW3D_MT_edit_mesh_vertices"]
 )
@@ -100,6 +105,7 @@ def test_everything_is_in_the_submenu_and_auto_unwrap_comes_first():
     assert [(name, entry.clear) for name, entry, _ in stand_in.layout.drawn] == [
         ("uv.cone_auto_unwrap", None),
         ("uv.cone_unwrap", None),
+        ("object.cone_remesh_to_quads", None),
         ("mesh.cone_mark", False),
         ("mesh.cone_mark", True),
         ("mesh.cone_select", None),

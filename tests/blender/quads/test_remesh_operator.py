@@ -1,0 +1,388 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Remesh to Quads: the new object's mesh, what is carried over to it, and that the original is left alone."""
+
+import math
+from collections import Counter
+
+import bpy
+import numpy as np
+import pytest
+from installed import addon
+from logged import refused
+from scenes import add_ball, add_cone_cube, add_cube, add_grid, changed, corners, edit, mark, marked, snapshot
+
+lsgp = addon.core.native.lsgp
+
+ALLOWED = {"data-blocks", "context", "selected objects"}
+
+
+def remesh(**options):
+    assert bpy.ops.object.cone_remesh_to_quads(**options) == {"FINISHED"}
+    return bpy.context.object
+
+
+def select_only(*objects):
+    bpy.ops.object.select_all(action="DESELECT")
+    for obj in objects:
+        obj.select_set(True)
+    bpy.context.view_layer.objects.active = objects[0]
+
+
+def positions(obj):
+    """In the world."""
+    return np.array([obj.matrix_world @ vertex.co for vertex in obj.data.vertices])
+
+
+def quads_of(obj):
+    assert {len(face.vertices) for face in obj.data.polygons} == {4}
+    return np.array([face.vertices[:] for face in obj.data.polygons])
+
+
+def valences(obj):
+    return np.bincount(quads_of(obj).ravel(), minlength=len(obj.data.vertices))
+
+
+def assert_closed(obj, euler):
+    """Every edge is once in each direction in a quad, which tells the Euler characteristic."""
+    quads = quads_of(obj)
+    sides = Counter((int(a), int(b)) for quad in quads for a, b in zip(quad, np.roll(quad, -1), strict=True))
+    assert set(sides.values()) == {1}
+    assert all((b, a) in sides for a, b in sides)
+    assert len(obj.data.edges) == len(sides) // 2
+    assert len(obj.data.vertices) - len(obj.data.edges) + len(quads) == euler
+
+
+def side_lengths(obj):
+    ends = positions(obj)[quads_of(obj)]
+    return np.linalg.norm(ends - np.roll(ends, -1, axis=1), axis=2)
+
+
+def material(name):
+    return bpy.data.materials.new(name)
+
+
+# --- the quads ------------------------------------------------------------------------------------------------------
+
+
+def test_a_cube_becomes_as_many_squares_a_side(reports):
+    cube = add_cone_cube()
+    before = snapshot(cube)
+    reports()
+    made = remesh(count=600)
+    assert made.name == made.data.name == "Cube Quads"
+    assert changed(before, snapshot(cube)) <= ALLOWED
+    assert len(made.data.polygons) == 600
+    assert_closed(made, euler=2)
+    assert side_lengths(made) == pytest.approx(0.2, abs=1e-5)
+    assert np.abs(positions(made)).max(axis=1) == pytest.approx(1.0, abs=1e-6)
+    assert Counter(valences(made).tolist()) == {3: 8, 4: 602 - 8}
+    assert "600 quads, 8 irregular vertices" in reports()
+    # Outward, as the cube's.
+    assert all(face.normal.dot(face.center) > 0 for face in made.data.polygons)
+
+
+def test_the_new_object_is_selected_and_the_original_is_kept():
+    cube, other = add_cone_cube(), bpy.data.collections.new("Other")
+    bpy.context.scene.collection.children.link(other)
+    other.objects.link(cube)
+    made = remesh(count=96)
+    assert bpy.context.selected_objects == [made]
+    assert set(made.users_collection) == set(cube.users_collection)
+    assert not cube.hide_get()
+    select_only(cube)
+    again = remesh(count=96, hide_original=True)
+    assert again.name == "Cube Quads.001"
+    assert cube.hide_get() and not again.hide_get()
+
+
+def test_in_local_view_the_new_object_is_seen():
+    cube = add_cone_cube()
+    area = next(area for area in bpy.context.window_manager.windows[0].screen.areas if area.type == "VIEW_3D")
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    view = area.spaces.active
+    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=area, region=region):
+        bpy.ops.view3d.localview()
+        assert cube.local_view_get(view)
+        made = remesh(count=96)
+        assert made.local_view_get(view)
+        select_only(cube)
+        bpy.ops.view3d.localview()
+
+
+def test_a_torus_needs_no_irregular_vertices(reports):
+    bpy.ops.mesh.primitive_torus_add(major_segments=48, minor_segments=16)
+    reports()
+    made = remesh(count=1000, rows="FREE")
+    assert_closed(made, euler=0)
+    assert len(made.data.polygons) == pytest.approx(1000, rel=0.05)
+    irregular = int((valences(made) != 4).sum())
+    assert f"{len(made.data.polygons):,} quads, {irregular} irregular vert" in reports()
+
+
+def test_numbers_have_separators(reports):
+    add_cone_cube()
+    reports()
+    made = remesh(count=2400)
+    assert len(made.data.polygons) == 2400
+    assert "2,400 quads" in reports()
+
+
+@pytest.mark.parametrize("even_sizes", [False, True])
+def test_missing_cones_are_placed(even_sizes):
+    ball = add_ball()
+    ball.vertex_groups.clear()
+    made = remesh(count=500, even_sizes=even_sizes)
+    assert_closed(made, euler=2)
+    assert (valences(made) - 4).sum() == -8
+    assert marked(ball) == []
+
+
+def test_even_sizes_are_more_even():
+    ball = add_ball()
+    spread = {}
+    for even_sizes in (False, True):
+        select_only(ball)
+        lengths = side_lengths(remesh(count=1000, even_sizes=even_sizes))
+        spread[even_sizes] = lengths.std() / lengths.mean()
+    assert spread[True] < spread[False]
+
+
+def test_marked_cones_are_the_irregular_vertices():
+    ball = add_ball()
+    cones = positions(ball)[marked(ball)]
+    made = remesh(count=500)
+    (irregular,) = np.nonzero(valences(made) != 4)
+    assert len(irregular) == len(cones) == 8
+    gaps = np.linalg.norm(positions(made)[irregular][:, None] - cones, axis=2)
+    assert gaps.min(axis=0).max() < 1e-6
+    # They are marked on the new mesh with the angles that quads make there.
+    assert marked(made) == irregular.tolist()
+    kept = addon.mesh.angles.read_angles(made, "uv_cones")
+    assert kept.angles == [pytest.approx(n * math.pi / 2) for n in valences(made)[irregular]]
+
+
+def test_a_prescribed_angle_is_kept():
+    ball = add_ball()
+    cones = marked(ball)
+    addon.mesh.angles.write_angles(ball, cones[:1], [math.pi], [addon.core.cone_angles.Kind.PRESCRIBED])
+    place = positions(ball)[cones[0]]
+    made = remesh(count=500)
+    at = np.linalg.norm(positions(made) - place, axis=1).argmin()
+    assert valences(made)[at] == 2
+
+
+# --- the transform --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("scale", [(1, 1, 1), (3, 1, 0.5), (-1, 2, 1)])
+def test_quads_are_square_in_the_world(scale):
+    cube = add_cone_cube()
+    parent = bpy.data.objects.new("Parent", None)
+    bpy.context.collection.objects.link(parent)
+    parent.location = (4, 5, 6)
+    cube.parent = parent
+    cube.scale, cube.location, cube.rotation_euler = scale, (1, 2, 3), (0.3, 0.2, 0.1)
+    bpy.context.view_layer.update()
+    made = remesh(amount="SIZE", size=0.25, rows="FREE", even_sizes=True)
+    bpy.context.view_layer.update()
+    assert made.matrix_world == cube.matrix_world
+    assert_closed(made, euler=2)
+    # On the cube, in its own coordinates.
+    assert np.abs([vertex.co[:] for vertex in made.data.vertices]).max(axis=1) == pytest.approx(1.0, abs=1e-6)
+    area = 8 * (abs(scale[0] * scale[1]) + abs(scale[1] * scale[2]) + abs(scale[2] * scale[0]))
+    assert len(made.data.polygons) == pytest.approx(area / 0.25**2, rel=0.1)
+    lengths = side_lengths(made)
+    assert np.median(lengths) == pytest.approx(0.25, rel=0.1)
+    assert lengths.std() < 0.15 * lengths.mean()
+
+
+def test_rows_run_along_the_world_axis():
+    cube = add_cone_cube()
+    cube.rotation_euler = (0, 0, 0.5)
+    bpy.context.view_layer.update()
+    made = remesh(count=600, rows="Z")
+    places = positions(made)
+    along = places[[edge.vertices[0] for edge in made.data.edges]] - places[[e.vertices[1] for e in made.data.edges]]
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    upright = np.abs(along[:, 2])
+    assert (np.minimum(upright, 1 - upright) < 1e-4).all()
+
+
+def test_an_object_without_size_is_refused(reports):
+    cube = add_cone_cube()
+    cube.scale = (0, 0, 0)
+    bpy.context.view_layer.update()
+    with refused("Refused", "scaled to zero"):
+        bpy.ops.object.cone_remesh_to_quads(amount="SIZE")
+    assert len(bpy.data.objects) == 1
+
+
+def test_modifiers_are_not_copied():
+    cube = add_cone_cube()
+    cube.modifiers.new("Bevel", "BEVEL")
+    made = remesh(count=96)
+    assert [modifier.name for modifier in cube.modifiers] == ["Bevel"]
+    assert not made.modifiers
+
+
+# --- what is carried over -------------------------------------------------------------------------------------------
+
+
+def test_materials_and_shading_are_those_of_the_faces_below():
+    cube = add_cone_cube()
+    for name in "ABC":
+        cube.data.materials.append(material(name))
+    for face in cube.data.polygons:
+        face.material_index = int(np.abs(face.center).argmax())
+        face.use_smooth = face.center.z > 0.9
+    cube.material_slots[2].link = "OBJECT"
+    cube.material_slots[2].material = material("Own")
+    made = remesh(count=600)
+    assert [slot.material.name for slot in made.material_slots] == ["A", "B", "Own"]
+    assert [m.name for m in made.data.materials if m] == ["A", "B", "C"]
+    for face in made.data.polygons:
+        assert face.material_index == np.abs(face.center).argmax()
+        assert face.use_smooth == (face.center.z > 0.99)
+
+
+def test_the_texture_that_shows_the_map_is_not_carried_over():
+    cube = add_cone_cube()
+    cube.data.materials.append(material("Own"))
+    assert bpy.ops.uv.cone_texture(pattern="CHECKER") == {"FINISHED"}
+    made = remesh(count=96)
+    assert [slot.material.name for slot in made.material_slots] == ["Own"]
+    assert cube.material_slots[0].material.cone_unwrap_texture
+
+
+def test_groups_and_attributes_of_points_are_interpolated():
+    cube = add_cone_cube()
+    group = cube.vertex_groups.new(name="Height")
+    cube.vertex_groups.new(name="Empty")
+    values = cube.data.attributes.new("x", "FLOAT", "POINT")
+    colors = cube.data.color_attributes.new("tint", "FLOAT_COLOR", "POINT")
+    painted = cube.data.color_attributes.new("paint", "FLOAT_COLOR", "CORNER")
+    for vertex in cube.data.vertices:
+        group.add([vertex.index], 0.5 + 0.5 * vertex.co.z, "REPLACE")
+        values.data[vertex.index].value = vertex.co.x
+        colors.data[vertex.index].color = (*(0.5 + 0.5 * np.array(vertex.co)), 1)
+    for loop in cube.data.loops:
+        painted.data[loop.index].color = (*(0.5 + 0.5 * np.array(cube.data.vertices[loop.vertex_index].co)), 0.5)
+    made = remesh(count=600)
+    assert [g.name for g in made.vertex_groups] == ["Height", "Empty", "uv_cones"]
+    places = np.array([vertex.co for vertex in made.data.vertices])
+    weights = np.zeros(len(places))
+    for vertex in made.data.vertices:
+        weights[vertex.index] = next((g.weight for g in vertex.groups if g.group == 0), 0.0)
+    assert weights == pytest.approx(0.5 + 0.5 * places[:, 2], abs=1e-6)
+    attributes = made.data.attributes
+    assert [entry.value for entry in attributes["x"].data] == pytest.approx(places[:, 0], abs=1e-6)
+    for name, alpha in (("tint", 1.0), ("paint", 0.5)):
+        assert attributes[name].domain == "POINT"
+        found = np.array([entry.color[:] for entry in attributes[name].data])
+        assert found[:, :3] == pytest.approx(0.5 + 0.5 * places, abs=1e-6)
+        assert found[:, 3] == pytest.approx(alpha)
+
+
+def test_attributes_of_faces_are_those_of_the_faces_below():
+    cube = add_cone_cube()
+    numbers = cube.data.attributes.new("side", "INT", "FACE")
+    for face in cube.data.polygons:
+        numbers.data[face.index].value = int(np.abs(face.center).argmax())
+    made = remesh(count=600)
+    sides = made.data.attributes["side"].data
+    assert all(sides[face.index].value == np.abs(face.center).argmax() for face in made.data.polygons)
+
+
+def test_there_is_no_uv_layer():
+    add_cone_cube()
+    assert not remesh(count=96).data.uv_layers
+
+
+# --- refusals -------------------------------------------------------------------------------------------------------
+
+
+def test_an_open_mesh_is_refused_and_its_border_can_be_selected():
+    bpy.ops.mesh.primitive_monkey_add()
+    monkey = bpy.context.object
+    before = snapshot(monkey)
+    sides = Counter(tuple(sorted(key)) for face in monkey.data.polygons for key in face.edge_keys)
+    border = {edge for edge, count in sides.items() if count == 1}
+    # Of the first of its parts, one eye.
+    with refused("OPEN_SURFACE", "border of 8 edges"):
+        bpy.ops.object.cone_remesh_to_quads()
+    assert changed(before, snapshot(monkey)) == set()
+    edit(monkey, select="DESELECT")
+    assert bpy.ops.mesh.cone_select_reported() == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    chosen = {tuple(sorted(edge.vertices)) for edge in monkey.data.edges if edge.select}
+    assert len(chosen) == 8 and chosen <= border
+
+
+def test_of_two_objects_one_may_be_refused(reports):
+    grid, cube = add_grid(), add_cone_cube()
+    select_only(grid, cube)
+    reports()
+    assert bpy.ops.object.cone_remesh_to_quads(count=96) == {"FINISHED"}
+    said = reports()
+    assert "Cube: 96 quads, 8 irregular vertices" in said
+    assert "Warning: Grid: The surface has a border" in said
+    assert {obj.name for obj in bpy.data.objects} == {"Grid", "Cube", "Cube Quads"}
+    # The refused one stays selected, and active.
+    assert {obj.name for obj in bpy.context.selected_objects} == {"Grid", "Cube Quads"}
+    assert bpy.context.object == grid
+
+
+def test_objects_that_share_a_mesh_get_quads_of_their_own():
+    cube = add_cone_cube()
+    double = cube.copy()
+    bpy.context.collection.objects.link(double)
+    double.scale = (2, 2, 2)
+    select_only(cube, double)
+    bpy.context.view_layer.update()
+    assert bpy.ops.object.cone_remesh_to_quads(amount="SIZE", size=0.25) == {"FINISHED"}
+    counts = {obj.name: len(obj.data.polygons) for obj in bpy.context.selected_objects}
+    assert counts == {"Cube Quads": 6 * 8**2, "Cube.001 Quads": 6 * 16**2}
+
+
+def test_stopping_at_any_time_leaves_everything_as_it_was():
+    ball = add_ball()
+    before = snapshot(ball)
+    operator = bpy.types.OBJECT_OT_cone_remesh_to_quads
+    region = addon.mesh.region_read.read_region(
+        ball, addon.mesh.region_read.Faces.ALL, addon.mesh.region_read.Groups("uv_cones")
+    )
+    quads = addon.jobs.quads
+    options = lsgp.Options(seamless=lsgp.Seamless())
+    task = quads.quad_task(region, quads.QuadSettings(options, 500, None, addon.jobs.directions.DirectionChoice()))
+    told = []
+    (found,) = operator.solve([task], told.append)
+    assert len(found.mesh.quads) == pytest.approx(500, rel=0.05)
+    assert told == sorted(told) and told[-1] == pytest.approx(1.0)
+    for limit in range(0, len(told), max(1, len(told) // 5)):
+        calls = iter(range(limit))
+        with pytest.raises(lsgp.Cancelled):
+            operator.solve([task], lambda done, calls=calls: next(calls, None) is not None)
+    assert changed(before, snapshot(ball)) == set()
+
+
+def test_it_runs_in_object_mode_only():
+    cube = add_cone_cube()
+    edit(cube)
+    with pytest.raises(RuntimeError, match="Select mesh objects in object mode"):
+        bpy.ops.object.cone_remesh_to_quads()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.ops.object.select_all(action="DESELECT")
+    with pytest.raises(RuntimeError, match="Select mesh objects in object mode"):
+        bpy.ops.object.cone_remesh_to_quads()
+
+
+def test_undo_leaves_the_file_as_it_was():
+    cube = add_cube()
+    mark(cube, corners(cube))
+    bpy.ops.ed.undo_push(message="before")
+    before = snapshot(cube)
+    assert bpy.ops.object.cone_remesh_to_quads("EXEC_DEFAULT", True, count=96) == {"FINISHED"}
+    assert "Cube Quads" in bpy.data.objects
+    bpy.ops.ed.undo()
+    assert changed(before, snapshot(bpy.data.objects["Cube"])) == set()
+    assert "Cube Quads" not in bpy.data.objects and "Cube Quads" not in bpy.data.meshes
