@@ -82,9 +82,6 @@ def _show_beside(obj: bpy.types.Object, made: bpy.types.Object) -> None:
     for collection in obj.users_collection:
         collection.objects.link(made)
     made.select_set(True)
-    view = bpy.context.space_data
-    if view is not None and view.type == "VIEW_3D" and view.local_view is not None:
-        made.local_view_set(view, True)
     objects = bpy.context.view_layer.objects
     if objects.active == obj:
         objects.active = made

@@ -11,8 +11,6 @@ from installed import addon
 from logged import refused
 from scenes import add_ball, add_cone_cube, add_cube, add_grid, changed, corners, edit, mark, marked, snapshot
 
-lsgp = addon.core.native.lsgp
-
 ALLOWED = {"data-blocks", "context", "selected objects"}
 
 
@@ -93,20 +91,6 @@ def test_the_new_object_is_selected_and_the_original_is_kept():
     again = remesh(count=96, hide_original=True)
     assert again.name == "Cube Quads.001"
     assert cube.hide_get() and not again.hide_get()
-
-
-def test_in_local_view_the_new_object_is_seen():
-    cube = add_cone_cube()
-    area = next(area for area in bpy.context.window_manager.windows[0].screen.areas if area.type == "VIEW_3D")
-    region = next(region for region in area.regions if region.type == "WINDOW")
-    view = area.spaces.active
-    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=area, region=region):
-        bpy.ops.view3d.localview()
-        assert cube.local_view_get(view)
-        made = remesh(count=96)
-        assert made.local_view_get(view)
-        select_only(cube)
-        bpy.ops.view3d.localview()
 
 
 def test_a_torus_needs_no_irregular_vertices(reports):
@@ -342,27 +326,6 @@ def test_objects_that_share_a_mesh_get_quads_of_their_own():
     assert bpy.ops.object.cone_remesh_to_quads(amount="SIZE", size=0.25) == {"FINISHED"}
     counts = {obj.name: len(obj.data.polygons) for obj in bpy.context.selected_objects}
     assert counts == {"Cube Quads": 6 * 8**2, "Cube.001 Quads": 6 * 16**2}
-
-
-def test_stopping_at_any_time_leaves_everything_as_it_was():
-    ball = add_ball()
-    before = snapshot(ball)
-    operator = bpy.types.OBJECT_OT_cone_remesh_to_quads
-    region = addon.mesh.region_read.read_region(
-        ball, addon.mesh.region_read.Faces.ALL, addon.mesh.region_read.Groups("uv_cones")
-    )
-    quads = addon.jobs.quads
-    options = lsgp.Options(seamless=lsgp.Seamless())
-    task = quads.quad_task(region, quads.QuadSettings(options, 500, None, addon.jobs.directions.DirectionChoice()))
-    told = []
-    (found,) = operator.solve([task], told.append)
-    assert len(found.mesh.quads) == pytest.approx(500, rel=0.05)
-    assert told == sorted(told) and told[-1] == pytest.approx(1.0)
-    for limit in range(0, len(told), max(1, len(told) // 5)):
-        calls = iter(range(limit))
-        with pytest.raises(lsgp.Cancelled):
-            operator.solve([task], lambda done, calls=calls: next(calls, None) is not None)
-    assert changed(before, snapshot(ball)) == set()
 
 
 def test_it_runs_in_object_mode_only():
