@@ -108,7 +108,7 @@ class GridBuilder {
   // Returns whether they come round to the first one again.
   bool place(Index v, std::int64_t step) {
     const Index first = mesh_.outgoing[v];
-    const double scale = static_cast<double>(grid_.cell() / step);
+    const double scale = static_cast<double>(grid_.cell()) / static_cast<double>(step);
     const auto nearest = [&](double x) { return static_cast<std::int64_t>(std::round(x * scale)) * step; };
     GridPoint at{nearest(uv_[first].real()), nearest(uv_[first].imag())};
     mesh_.for_each_outgoing(v, [&](Index h) {
