@@ -209,14 +209,14 @@ def complete_cones(
     except Cancelled:
         raise
     except LsgpError:
-        # The map of the other components can still be made; it says what is wrong with these.
+        # The other components can still be mapped; mapping reports the defect of these.
         return CompletedCones(given, held, None)
     placed = replace(placed, warnings=_renumbered(placed.warnings, triangles))
     return _completed(given, held, options, count, placed)
 
 
 def joined_warnings(of_placement: Sequence[Finding], of_map: Sequence[Finding]) -> list[Finding]:
-    """Those of placing cones and of the map through them; what both say of the surface is said once."""
+    """Merges the findings of placement and mapping, without duplicates."""
     said = {(finding.code, finding.message) for finding in of_map}
     return [finding for finding in of_placement if (finding.code, finding.message) not in said] + list(of_map)
 

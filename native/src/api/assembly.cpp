@@ -19,9 +19,8 @@ namespace lsgp {
 
 namespace {
 
-// Brings a map to the surface's texel density: by the area its triangles have, whichever way up they are, but where
-// they are folded flat or sheared so much that their lengths are far more than that area's, by their lengths, which
-// bounds what a part without area takes of the layout.
+// The factor that gives a map the surface's texel density. Scales by total unsigned UV area; where triangles are nearly
+// degenerate, by Dirichlet energy, which bounds the size of a collapsed map.
 double scale_to_surface(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map) {
   constexpr double least_share = 0.1;  // of the Dirichlet energy, which is the area of a conformal map
   const Jacobians jacobians = measure_jacobians(mesh, geometry, map.cut_mesh, map.position);

@@ -6,11 +6,11 @@
 
 namespace lsgp {
 
-// What to do where memory does not suffice.
+// The remedy to suggest if memory does not suffice.
 constexpr const char* fewer_faces = "Unwrap fewer faces at once, or close other programs.";
 constexpr const char* fewer_cones = "Use fewer cones, unwrap fewer faces at once, or close other programs.";
 
-// Bytes that the process can still have.
+// Bytes that the process can still allocate.
 double memory_left();
 
 // Throws OUT_OF_MEMORY where the process cannot have that much more, bytes, before anything is spent on it. Linux

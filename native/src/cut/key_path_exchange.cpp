@@ -107,7 +107,7 @@ CutPath KeyPathExchange::find_cheaper(const CutPath& path, CutRegions& regions) 
 double KeyPathExchange::try_all() {
   const HalfedgeMesh& mesh = network_.mesh;
   ++rounds_;
-  Array<std::pair<double, Index>> order;  // dear ones first: there is most to be gained
+  Array<std::pair<double, Index>> order;  // most expensive paths first: largest potential gain
   double before = 0, gained = 0;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (!network_.is_cut[h] || traced_[h] == rounds_) continue;

@@ -89,7 +89,7 @@ class Elimination {
     for (Index p = 0; p < ssize(turn_); ++p) add_row(translation_id(p), out.translation.row(p));
     out.basis = Eigen::MatrixXcd::Identity(count, count);
     const auto cuts = static_cast<Eigen::Index>(out.cuts.size());
-    // The diagonal of a matrix without elements is none to Eigen.
+    // Eigen cannot take the diagonal of an empty matrix.
     if (parity && cuts > 0) out.basis.diagonal().tail(cuts).setConstant(Complex(1, 1));
     const Index first = nodes_.order.empty() ? none : nodes_.vertex[nodes_.order.front()];
     if (first != none && is_solved_[first]) {

@@ -53,7 +53,7 @@ Array<std::pair<Index, Index>> find_duplicates(const Surface& surface, const Edg
   }
   if (is_plain) return duplicates;
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
-    // On the edge of fewest triangles, since a crowd may share the others.
+    // Search the edge with the fewest triangles; the others may be shared by many.
     Index own = 3 * f;
     for (Index h = 3 * f + 1; h < 3 * f + 3; ++h) {
       if (edges.halfedge_count(edges.edge_of(h)) < edges.halfedge_count(edges.edge_of(own))) own = h;

@@ -65,8 +65,9 @@ void hand_out_turning(const Array<Component>& components, const Options& options
     const bool exists = vertex >= 0 && vertex < vertex_count;
     throw Error(
         Code::loop_turning,
-        concat("The turning of a border was given ", found ? "as no finite number" : "for a vertex that lies on none",
-               exists ? "" : concat(" (", vertex, ")"), ". Give an angle, by a vertex on the border."),
+        concat("The prescribed turning of a boundary is ",
+               found ? "not a finite number" : "given at a vertex that is not on a boundary",
+               exists ? "" : concat(" (", vertex, ")"), ". Give an angle in radians and a vertex on the boundary."),
         {ElementKind::vertices, exists ? Array<Index>{vertex} : Array<Index>{}});
   }
 }

@@ -24,16 +24,16 @@ struct ComponentTask {
   TextureDirections directions;                     // or none
 };
 
-// A surface's components and what is asked of each.
+// A surface's components and the task of each.
 struct Work {
   Topology topology;
   Array<ComponentTask> tasks;  // (components)
   double unit_scale = 1;       // of the components' positions to the caller's
 
-  // How often the topology was built: what was made from it holds as long as this stays.
+  // Incremented whenever the topology is rebuilt; derived data is valid while it is unchanged.
   std::int64_t generation = 0;
 
-  // What it was built for, and what building it found.
+  // The input that the topology was built for, and the findings of building it.
   SeamMode seams = SeamMode::follow;
   OpenSeams open_seams;
   Array<Component> unopened;  // before some of them were opened along seams that are followed, if any were

@@ -16,11 +16,11 @@ void require_connectivity(const Surface& surface);
 // WRONG_PARAMETER.
 void require_valid(const Surface& surface);
 
-// For the vertices of one component. Throws SCALE_RANGE where a few of them lie immeasurably far from all others, as
-// Blender leaves infinite coordinates.
+// For the vertices of one component. Throws SCALE_RANGE if a few of them are so far from all others that distances lose
+// all precision, as in meshes whose infinite coordinates Blender has replaced.
 void require_comparable(const Positions& positions);
 
-// That cones are vertices and have an angle or none each. Throws CONE_INDEX, ANGLE_COUNT.
+// Checks that cones are valid vertices and that angles match cones. Throws CONE_INDEX, ANGLE_COUNT.
 void require_vertices(const Surface& surface, const Cones& cones);
 
 // Throws CONE_INDEX, CONE_DUPLICATE, CONE_NOT_ON_SURFACE, ANGLE_COUNT, CONE_ANGLE_NON_FINITE, CONE_ANGLE_RANGE.

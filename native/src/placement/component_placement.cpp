@@ -54,8 +54,8 @@ void require_right(const VerifiedChoice& choice, bool has_marked) {
       {ElementKind::vertices, choice.cones.vertices});
 }
 
-// A number of cones is none to insist on where the map with them cannot be used: how many there are without it, and
-// what their map is like. Empty where it cannot be used either.
+// If the map with the requested number of cones is unusable: says how many cones are placed without a given number, and
+// how good their map is. Empty if that map is unusable, too.
 std::string told_of_automatic(const PlacementTask& task, PlacementOptions options, ProgressMonitor& monitor,
                               int& maps) {
   options.count.reset();
@@ -105,7 +105,7 @@ PlacedCones place_component(const PlacementTask& task, const PlacementOptions& o
   out.cones = chooser.with_given_angles(choice.cones.vertices);
   require_reachable(chooser, choice.cones);
   out.maps = placement.maps();
-  // Where a number of cones is refused, what would do is told.
+  // If a requested number of cones is refused, the message adds a number that works.
   const auto refuse_with_remedy = [&](auto require) {
     try {
       require();

@@ -65,12 +65,12 @@ void ConeGrowth::advance_in_batches(double target) {
   has_room_ = has_grown && batches_->cone_count() < most;
   if (!batches_->feasible()) return;
   if (has_grown) batches_->exchange(1);
-  // Rounded angles stretch no less.
+  // Rounding the angles cannot lower the stretch.
   if (chooser_.options().lattice && has_room_ && chooser_.predicted_l2(*batches_) > target) return;
   keep_better(chooser_.settled(*batches_));
 }
 
-// Every surface is worth the stages; beyond them, one of which Gauss-Bonnet asks more has a cone for each quarter turn.
+// Every surface may use all stages; more only if the curvature that Gauss-Bonnet requires has more quarter turns.
 int ConeGrowth::most_automatic() const {
   const PlacementProblem& problem = chooser_.problem();
   const double turns = problem.balanced ? std::abs(problem.required_sum) / usual_turn : 0;

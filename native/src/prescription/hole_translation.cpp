@@ -31,7 +31,7 @@ struct HoleBorder {
     Eigen::RowVectorXcd change = Eigen::RowVectorXcd::Zero(unknowns.size());
     for (Eigen::Index i = 0; i < size(); ++i) {
       const Eigen::Index next = after(i);
-      // Steps too far may end in what is no number, which std::polar does not take.
+      // Overlong steps can produce NaN, which std::polar does not accept.
       const Complex edge = length[i] / perimeter * std::exp((scale[i] + scale[next]) / 2) *
                            Complex(std::cos(direction), std::sin(direction));
       gap += edge;

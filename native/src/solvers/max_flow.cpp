@@ -56,7 +56,7 @@ Array<char> FlowNetwork::reachable(int source) const {
   return reached;
 }
 
-// Counted from the sink, so that no way of falling distance is a dead end before flow has blocked it.
+// Levels are distances to the sink, so every level-decreasing path reaches it until blocked.
 bool FlowNetwork::find_distances(int source, int sink) {
   distance_.assign(first_.size(), -1);
   distance_[sink] = 0;

@@ -258,7 +258,7 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& island) {
   Array<Array<Index>> pieces = pieces_of(island, class_of);
   double after = 0;
   for (const Array<Index>& piece : pieces) after += search_.demand(hull_of(piece));
-  // The cells have shown it roughly.
+  // The cells only gave an estimate of the gain.
   const bool is_worth_it = search_.worth(before - after, length_between(island, class_of), pieces.size()) > 0;
   return is_worth_it ? pieces : Array<Array<Index>>{};
 }
