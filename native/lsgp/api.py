@@ -14,6 +14,7 @@ from . import _lsgp, arguments
 from .arguments import FloatArray, IndexArray
 from .equality import EqualByContent
 from .errors import Finding
+from .short_repr import ShortRepr
 
 PrescriptionRule = Literal["least-distortion", "harmonic", "straightness", "manual"]
 UnfoldMethod = Literal["poisson", "spectral"]
@@ -35,8 +36,8 @@ def _set(instance: object, name: str, value: object) -> None:
     object.__setattr__(instance, name, value)
 
 
-@dataclass(frozen=True, eq=False)
-class Surface(EqualByContent):
+@dataclass(frozen=True, eq=False, repr=False)
+class Surface(EqualByContent, ShortRepr):
     """A triangulated surface, possibly of several components, and the edges its cuts may follow.
 
     positions: (n, 3) float64, any unit.
@@ -89,8 +90,8 @@ def _directions(directions: ArrayLike, triangle_count: int) -> FloatArray:
     return np.tile(arguments.floats_of_shape("directions", directions, (3,)), (triangle_count, 1))
 
 
-@dataclass(frozen=True, eq=False)
-class Pins(EqualByContent):
+@dataclass(frozen=True, eq=False, repr=False)
+class Pins(EqualByContent, ShortRepr):
     """Corners whose texture coordinates are to stay.
 
     corners: (p,) int32, 3 * triangle + corner. uv: (p, 2) float64.
@@ -243,8 +244,8 @@ def _loop_turning(angles: Mapping[int, float]) -> dict[int, float]:
     }
 
 
-@dataclass(frozen=True, slots=True)
-class Distortion:
+@dataclass(frozen=True, slots=True, repr=False)
+class Distortion(ShortRepr):
     """Quality of a map (the paper's section 7.1), over all solved triangles.
 
     quasi_conformal: mean of sigma_1 / sigma_2 over triangles; 1 is conformal.
@@ -261,8 +262,8 @@ class Distortion:
     l2_stretch: float
 
 
-@dataclass(frozen=True, slots=True)
-class SeamQuality:
+@dataclass(frozen=True, slots=True, repr=False)
+class SeamQuality(ShortRepr):
     """How exactly the two sides of every cut are related by one rotation and one translation, in `corner_uv`.
 
     Islands enclosed by cuts and seams are placed one by one, and a cut between two of them is measured by itself.
@@ -280,8 +281,8 @@ class SeamQuality:
     translation_residual: float
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SeamlessReport(EqualByContent):
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class SeamlessReport(EqualByContent, ShortRepr):
     """What makes a layout seamless, and at what cost: the certificate of its cuts.
 
     A cut is crossed from its left side to its right one by z -> e^(2 pi i turns / symmetry) z + cell (a + b g), where g
@@ -327,8 +328,8 @@ class RepairReport:
     iterations: int
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Result(EqualByContent):
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Result(EqualByContent, ShortRepr):
     """A map, what was imposed on it, and what was measured.
 
     corner_uv: (m, 3, 2) float64, one (u, v) per triangle corner; NaN where not solved. Islands have their 3D area
@@ -383,9 +384,22 @@ class Result(EqualByContent):
     factorizations: int
     back_substitutions: int
 
+    def _shown(self) -> dict[str, Any]:
+        return {
+            "triangles": len(self.solved),
+            "solved": int(self.solved.sum()),
+            "islands": len(np.unique(self.island[self.solved])),
+            "cones": len(self.cones),
+            "l2_stretch": self.distortion.l2_stretch,
+            "flipped": len(self.flipped),
+            "wrong_angle_sums": len(self.wrong_angle_sums),
+            "overlapping": len(self.overlapping),
+            "warnings": sorted({finding.code for finding in self.warnings}),
+        }
 
-@dataclass(frozen=True, slots=True, eq=False)
-class CutPaths(EqualByContent):
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class CutPaths(EqualByContent, ShortRepr):
     """Cuts that open a surface into disks through its cones (the paper's section 4.1).
 
     edges: (c, 2) int32 vertex pairs. paths: the cuts, each an int32 array of vertices from node to node; nodes are
@@ -396,8 +410,8 @@ class CutPaths(EqualByContent):
     paths: list[IndexArray]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Prescription(EqualByContent):
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Prescription(EqualByContent, ShortRepr):
     """Cone angles under Gauss-Bonnet and the scale they imply (the paper's section 5).
 
     cones, cone_angles: (k,) int32, (k,) float64 radians. log_scale: (n,) float64, area-weighted mean 0 on an island.
@@ -411,8 +425,8 @@ class Prescription(EqualByContent):
     warnings: list[Finding]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Placement(EqualByContent):
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Placement(EqualByContent, ShortRepr):
     """Cones placed automatically, with the angles that go with them.
 
     cones, cone_angles: (k,) int32, (k,) float64 radians, existing ones first but for those on a border that prescribe
@@ -438,8 +452,8 @@ class Placement(EqualByContent):
     back_substitutions: int
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ConeGains(EqualByContent):
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class ConeGains(EqualByContent, ShortRepr):
     """The stretch to expect with one more cone, its angle and the automatic ones recomputed.
 
     predicted_l2: (n,) float64, the L2 stretch of the vertex's component with a cone there, to first order; NaN where
@@ -455,8 +469,8 @@ class ConeGains(EqualByContent):
     warnings: list[Finding]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Measurement(EqualByContent):
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Measurement(EqualByContent, ShortRepr):
     """Quality of given texture coordinates; cuts are the interior edges whose two sides differ.
 
     island: (m,) int32. flipped: triangles turned against the majority of their island. cut_edges: (c, 2) int32.

@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .equality import EqualByContent
+from .short_repr import ShortRepr
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Elements(EqualByContent):
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Elements(EqualByContent, ShortRepr):
     """Mesh elements a finding speaks of.
 
     kind: "vertices", "edges" or "triangles" ("faces" once mapped to the polygons of a file).

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _lsgp, arguments
 from .api import FloatArray, IndexArray, Options, Surface, cone_arrays, surface_arrays
 from .equality import EqualByContent
+from .short_repr import ShortRepr
 
 # Tolerance of the sum, radians: that of the library.
 CLOSED_WITHIN = 1e-6
@@ -23,8 +24,8 @@ CLOSED_WITHIN = 1e-6
 _STORED_WITHIN = 5e-7
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class LedgerPart(EqualByContent):
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class LedgerPart(EqualByContent, ShortRepr):
     """The account of one connected part; angles and curvatures in radians.
 
     triangles: (m,) int32. cones: (k,) int32, places in the list of cones that was given; a vertex at which several

@@ -16,6 +16,7 @@ from .arguments import FloatArray, IndexArray
 from .auto_unwrap import CompletedCones, complete_cones, part_of
 from .equality import EqualByContent
 from .errors import Finding, InputError, SolverError
+from .short_repr import ShortRepr
 from .triangles import uv_area
 
 # Of the time that a remesh takes, where placing the cones and where the layouts end.
@@ -32,8 +33,8 @@ _FINER = 0.8
 _MOST_REFINEMENTS = 12
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class QuadMesh(EqualByContent):
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class QuadMesh(EqualByContent, ShortRepr):
     """A closed manifold mesh whose faces all are quads, and where its vertices are on the surface.
 
     positions: (v, 3) float64, on the surface. quads: (q, 4) int32, four different vertices each, which turn as the
@@ -73,8 +74,8 @@ class QuadQuality:
     longest_edge: float
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class QuadRemesh(EqualByContent):
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class QuadRemesh(EqualByContent, ShortRepr):
     """A quadrangulation and what it was made from.
 
     mesh: the quads. layout: the seamless layout whose grid they are; its `cones` are the irregular vertices, its

@@ -11,10 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 from . import arguments
 from .api import FloatArray, Surface
 from .equality import EqualByContent
+from .short_repr import ShortRepr
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TriangleDistortion(EqualByContent):
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class TriangleDistortion(EqualByContent, ShortRepr):
     """Measures of each triangle, (m,) float64; NaN where it has no area on the surface or no coordinates.
 
     conformal: sigma_1 / sigma_2, 1 where angles are kept. area: (share of the UV area) / (share of the 3D area), 1

@@ -86,15 +86,15 @@ def speed_page(rows: list[Measured]) -> str:
     return f"""# Speed
 
 Written by `python tools/benchmark/benchmark.py --tables speed --write`. All methods take arrays and return texture
-coordinates, in alternating processes of their own; figures are CPU seconds of all threads, medians of repetitions. Compare
-them with each other, not with those of another machine.
+coordinates, in alternating processes of their own; figures are CPU seconds of all threads, medians of repetitions.
+Compare them with each other, not with those of another machine.
 
 - **lsgp**: given cones, angles of least distortion, the Poisson map, its check and the search for overlaps, no repair.
 - **angle edited**, **cone moved**: a repeated call of `lsgp.Solver`, which caches unchanged data.
 - **LSCM**: that of libigl, on the surface cut open along lsgp's cuts, without continuity across them.
 - **Blender**: with the same cuts marked as seams; Minimum Stretch with 10 iterations.
-- **Laplacian**: analysis, factorization and one solve of the bare real cotangent Laplacian with one vertex fixed, a lower
-  bound for any method with one Poisson solve.
+- **Laplacian**: analysis, factorization and one solve of the bare real cotangent Laplacian with one vertex fixed, a
+  lower bound for any method with one Poisson solve.
 
 The larger meshes are decimated and subdivided from `max-planck-25k`. Runs that would take too long are omitted.
 
@@ -106,10 +106,10 @@ Ratios, the peak memory of the processes, Python and libraries included, and the
 
 {as_table(ratio_rows(rows))}
 
-The stages of lsgp, with its CPU time divided in proportion to the wall-clock time of its stages. The factorization counts
-as part of prescription, which needs it first. Editing an angle needs no factorization; the remaining stages are linear
-passes over the whole surface: the frames and the solve for the two coordinates (unfold), and the measurements of the map
-that is returned (check, layout, overlaps).
+The stages of lsgp, with its CPU time divided in proportion to the wall-clock time of its stages. The factorization
+counts as part of prescription, which needs it first. Editing an angle needs no factorization; the remaining stages are
+linear passes over the whole surface: the frames and the solve for the two coordinates (unfold), and the measurements of
+the map that is returned (check, layout, overlaps).
 
 {as_table(stage_rows(rows))}
 """

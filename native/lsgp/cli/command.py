@@ -35,6 +35,7 @@ from ..run.terminal import ProgressLine
 from ..run.unwrap_file import Run, out_of_memory, read_file, unwrap_file, uv_of
 from ..run.unwrap_options import add_threads_option, add_unwrap_options, texture_size, texture_size_option
 from ..texels import texel_density
+from .examples import Formatter, with_examples
 from .output_paths import require_usable_paths
 
 INPUT = "OBJ, OFF, PLY, glTF, GLB or STL, or - for standard input; polygons of any size"
@@ -178,6 +179,9 @@ def _parser() -> _Parser:
         )
     for command in (unwrap, cones, quads, measure):
         command.add_argument("--report", metavar="FILE.json", type=Path, help="write a report, also when refused")
+    for name, command in commands.choices.items():
+        command.formatter_class = Formatter
+        command.epilog = with_examples(name, command.epilog)
     return parser
 
 
