@@ -42,8 +42,8 @@ def add_quads_options(quads: argparse.ArgumentParser) -> None:
         metavar=("X", "Y", "Z"),
         nargs=3,
         type=float,
-        help="the model's up direction: the grid is rotated so that rows of quads follow it, as far as the cones permit "
-        "(default: any rotation)",
+        help="the model's up direction: the grid is rotated so that rows of quads follow it, as far as the cones "
+        "permit (default: any rotation)",
     )
     quads.add_argument(
         "--coarse-grid",

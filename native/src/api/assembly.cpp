@@ -167,8 +167,8 @@ void Assembly::place(const Array<Similarity>& placement) {
   }
   if (layout_.allFinite()) return;
   throw Error(Code::solver_failed,
-              "The layout's sizes differ by more than numbers can hold. Add cones where the surface is stretched most, "
-              "or unwrap its parts one by one.");
+              "The scale of the layout varies beyond the range of numbers. Add cones where the surface is stretched "
+              "most, or unwrap its components separately.");
 }
 
 void Assembly::check_in_layout(Solved& solved) const {

@@ -80,7 +80,7 @@ Array<Index> mirror_images(const Component& component, const Geometry& geometry,
     Array<Index> all(component.source_triangle.size());
     for (std::size_t f = 0; f < all.size(); ++f) all[f] = static_cast<Index>(f);
     findings.push_back({Code::not_symmetric,
-                        concat("A part of the surface is not its own mirror image in ",
+                        concat("A component of the surface is not its own mirror image in ",
                                options.mirror ? "the given plane" : "any plane that was tried",
                                "; its cones were placed without regard to symmetry. Symmetrize the mesh, or give its "
                                "mirror plane."),
@@ -95,7 +95,7 @@ void report_shared(Array<Index> vertices, std::vector<Finding>& findings) {
   sort_unique(vertices);
   findings.push_back({Code::split_vertex,
                       concat(count(vertices.size(), "cone is", "cones are"),
-                             " where parts of the surface touch, and should have an angle of its own on each; only one "
+                             " where pieces of the surface touch, and should have a separate angle on each; only one "
                              "can be given. Split the vertices there."),
                       {ElementKind::vertices, std::move(vertices)}});
 }

@@ -260,8 +260,8 @@ class Elimination {
     }
     if (!found || period == 0.0) {
       throw Error(Code::seamless_impossible,
-                  "The cones leave no layout in which all of them lie on the lattice. Mark one more cone, or choose "
-                  "another lattice.");
+                  "With these cones no layout has all of them on the lattice. Mark one more cone, or choose another "
+                  "lattice.");
     }
     step(pivot, pivot) = period;
     basis *= step;

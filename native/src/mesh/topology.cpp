@@ -222,8 +222,8 @@ void report_fans(const Array<Component>& components, const Array<char>& opened, 
   if (!split.empty()) {
     findings.push_back({Code::split_vertex,
                         concat("At ", count(split.size(), "vertex", "vertices"),
-                               " separate parts of the surface touch. They were unwrapped as separate vertices; split "
-                               "them to be rid of this note."),
+                               " separate pieces of the surface touch. They were unwrapped as separate vertices; split "
+                               "the vertices to avoid this note."),
                         {ElementKind::vertices, split}});
   }
   if (!isolated.empty()) {
@@ -242,8 +242,8 @@ void report_turned(const Orientation& orientation, std::vector<Finding>& finding
   if (turned.empty()) return;
   findings.push_back(
       {Code::reoriented,
-       concat(count(turned.size(), "triangle faces", "triangles face"), " the other way than the rest of ",
-              "the surface. Unwrapped as if turned; recalculate normals to repair it."),
+       concat(count(turned.size(), "triangle has", "triangles have"), " the opposite orientation to the rest of ",
+              "the surface. Unwrapped as if flipped; recalculate normals to repair it."),
        {ElementKind::triangles, turned}});
 }
 
@@ -279,19 +279,19 @@ Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std
     }
     edges = EdgeTable(surface, skip);
     findings.push_back({Code::duplicate_face,
-                        concat(count(doubled.size(), "triangle lies", "triangles lie"),
-                               " on another one and got its coordinates. Delete doubled faces to be rid of this note."),
+                        concat(count(doubled.size(), "triangle coincides", "triangles coincide"),
+                               " with another one and got its coordinates. Delete duplicate faces to avoid this note."),
                         {ElementKind::triangles, doubled}});
   }
   const Array<char> cuttable =
       surface.edges ? mark_edges(edges, *surface.edges, Code::edge_not_in_mesh,
-                                 "name no edge of a triangle. Pass edges of this mesh as cuttable edges.")
+                                 "are not edges of a triangle. Pass edges of this mesh as cuttable edges.")
                     : Array<char>(edges.count(), 1);
   const Array<double> factor = cut_factors(edges, surface);
   const Array<char> seam = mark_edges(edges, surface.seams, Code::seam_not_an_edge,
-                                      "are marked as a seam but name no edge. Mark edges of this mesh.");
+                                      "are marked as seams but are not edges. Mark edges of this mesh.");
   const Array<char> border = mark_edges(edges, surface.borders, Code::edge_not_in_mesh,
-                                        "are named as a border but are no edge. Name edges of this mesh.");
+                                        "are given as borders but are not edges. Pass edges of this mesh.");
   const Array<Index> twin =
       join_halfedges(edges, border, seam, open_seams, static_cast<Index>(3 * surface.triangles.rows()));
   const Orientation orientation = orient(surface, skip, twin);

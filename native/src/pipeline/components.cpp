@@ -210,11 +210,11 @@ void divide(const Request& request, MoreCones more, std::vector<Finding>& findin
     findings.push_back({Code::seams_opened, sentence, {ElementKind::triangles, std::move(triangles)}});
   };
   report(opened.without_cones,
-         "A part has seams but no cones: it was opened along its seams like an ordinary unwrap. Mark cones to have the "
-         "texture run on across them.");
+         "A component has seams but no cones: it was opened along its seams as in an ordinary unwrap. Mark cones if "
+         "the texture should continue across them.");
   report(opened.not_orientable,
-         "A part has one side only: it was opened along its seams like an ordinary unwrap, since no texture can run on "
-         "across all of them.");
+         "A component is one-sided: it was opened along its seams as in an ordinary unwrap, since no texture can "
+         "continue across all of them.");
 }
 
 // A torus without cones is flat, and its texture runs on across its seams, unless these part it into planar parts some
@@ -333,7 +333,7 @@ void report_border_cones(const Component& component, const Array<Index>& border_
   findings.push_back(
       {Code::cone_on_boundary,
        concat(count(border_cones.size(), "cone lies", "cones lie"),
-              " on an open border, where angles are free anyway; nothing was prescribed there. Give an angle to make a "
+              " on a boundary, where angles are free anyway; nothing was prescribed there. Give an angle to make a "
               "corner."),
        in_source(component, {ElementKind::vertices, border_cones})});
 }
@@ -346,7 +346,7 @@ Failure failure_of(const Component& component, const Error& error) {
 void report_skipped(const Array<Failure>& failures, std::vector<Finding>& findings) {
   for (const auto& [component, error] : failures) {
     findings.push_back({Code::component_skipped,
-                        concat("A part of the surface was left as it is (", name(error.code()), "): ", error.what()),
+                        concat("A component of the surface was left out (", name(error.code()), "): ", error.what()),
                         {ElementKind::triangles, component->source_triangle}});
   }
 }

@@ -48,9 +48,9 @@ void require_right(const VerifiedChoice& choice, bool has_marked) {
   if (!choice.is_mapped || !map.is_off() || !map.is_repaired || has_marked) return;
   throw Error(
       Code::solver_failed,
-      concat("No cones were found with which the angles and seams of this part come out right: with ",
+      concat("No cones were found with correct angles and seams on this component: with ",
              count(choice.cones.vertices.size(), "cone", "cones"), ", ", told(map),
-             ". Place more of them, mark cones at tips and branches, or cut the part into simpler ones along seams."),
+             ". Place more, mark cones at tips and branches, or cut the component into simpler ones along seams."),
       {ElementKind::vertices, choice.cones.vertices});
 }
 

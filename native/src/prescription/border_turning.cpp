@@ -44,9 +44,9 @@ class LoopScales {
       double sum = 0;
       for (const auto& turning : wanted) sum += *turning;
       if (!(std::abs(sum - before.sum()) <= mismatch)) {
-        throw Error(Code::loop_turning, concat("The turning prescribed for all borders adds up to ", degrees(sum),
+        throw Error(Code::loop_turning, concat("The turning prescribed for all boundaries adds up to ", degrees(sum),
                                                ", but with these cone angles it has to be ", degrees(before.sum()),
-                                               ". Leave the turning of one border free."));
+                                               ". Leave the turning of one boundary free."));
       }
       loops.pop_back();
     }
@@ -241,8 +241,8 @@ void prescribe_turning(const LogScale& scale, const ComponentCones& cones, Curva
     if (!cones.loop_turning[i] || shiftable[i]) continue;
     throw Error(
         Code::loop_turning,
-        "The turning of a border cannot be prescribed where the border is straight or all its vertices are corners: "
-        "their angles say how it turns. Leave its turning free.",
+        "The turning of a boundary cannot be prescribed if the boundary is straight or all its vertices are corners: "
+        "their angles determine it. Leave its turning free.",
         {ElementKind::vertices, mesh.boundary_loops[i]});
   }
   if (border.balanced) return;

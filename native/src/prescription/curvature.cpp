@@ -112,7 +112,7 @@ Eigen::VectorXd harmonic(const HalfedgeMesh& mesh, const ComponentCones& cones, 
   if (!impossible.empty()) {
     throw Error(Code::cone_angle_range,
                 concat("The harmonic angle of ", count(impossible.size(), "cone is", "cones is"),
-                       " one no map can have. Add cones near it, or use the least-distortion prescription."),
+                       " one that no map can have. Add cones near it, or use the least-distortion prescription."),
                 {ElementKind::vertices, impossible});
   }
   return curvature;
@@ -126,7 +126,7 @@ std::optional<Eigen::VectorXd> straightness(ComponentSystem& system, const Compo
     // With a free border the straightened layout is an arbitrary one of many, and so are its angles.
     findings.push_back(
         {Code::straightness_failed,
-         "Straight cuts give usable cone angles on closed surfaces only, and this one has an open border. The "
+         "Straight cuts give usable cone angles only on closed surfaces, and this one has a boundary. The "
          "least-distortion angles were used instead.",
          {ElementKind::vertices, cones.vertices}});
     return std::nullopt;
@@ -164,7 +164,7 @@ std::optional<Eigen::VectorXd> straightness(ComponentSystem& system, const Compo
     findings.push_back({Code::junction_share,
                         concat("Straight cuts left a curvature of ", degrees(junctions), " at ",
                                count(junction_vertices.size(), "junction", "junctions"),
-                               " of the cut; it was shared out evenly among the cones."),
+                               " of the cut; it was distributed evenly over the cones."),
                         {ElementKind::vertices, junction_vertices}});
   }
   return curvature;
@@ -212,13 +212,13 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, con
   if (cones.vertices.empty()) {
     if (std::abs(required) < renormalized_mismatch) return;
     if (!mesh.closed()) {
-      throw Error(Code::too_few_cones, concat("A straight border has to turn by ", degrees(required),
-                                              " in all, at marked corners. Mark the border's corners as cones, or "
-                                              "leave the border free."));
+      throw Error(Code::too_few_cones, concat("A straight boundary has to turn by ", degrees(required),
+                                              " in all, at marked corners. Mark the boundary's corners as cones, or "
+                                              "leave the boundary free."));
     }
     throw Error(Code::too_few_cones,
                 concat("A closed surface without cones cannot be unfolded: its curvature of ", degrees(required),
-                       " has to go somewhere. Mark cones at tips and corners, or place them automatically."));
+                       " has to be at cones. Mark cones at tips and corners, or place them automatically."));
   }
   const Bounds widest = widest_bounds(mesh, cones);
   if (all_fixed(cones)) {

@@ -156,7 +156,7 @@ class GridBuilder {
     const std::string what =
         concat(count(vertices.size(), "cone does", "cones do"),
                " not lie on a corner of the grid. Make the layout without parity, and with smaller cells "
-               "where cones were left off the grid.");
+               "if cones were left off the grid.");
     throw Error(Code::cones_not_snapped, what, {ElementKind::vertices, std::move(vertices)});
   }
 

@@ -27,10 +27,10 @@ void report_growth(double growth, std::vector<Finding>& findings) {
   findings.push_back({Code::grid_distorts,
                       concat("No grid of up to ", most_tiles,
                              " cells was found that costs at most a tenth in "
-                             "distortion; this one makes that of a part ",
+                             "distortion; this one multiplies that of a component by ",
                              rounded(growth, 3),
-                             " times as large. Move cones that "
-                             "are close to each other apart, use fewer, or unwrap small parts by themselves."),
+                             ". Move cones that are close to "
+                             "each other apart, use fewer, or unwrap small components separately."),
                       {}});
 }
 

@@ -25,14 +25,14 @@ void leave_out(const Array<Failure>& failures, Array<SeamlessPart>& parts, std::
   report_skipped(failures, findings);
 }
 
-// None where single precision holds the part's cuts.
+// None if single precision can represent the component's cuts.
 std::optional<Error> refusal_of(const ExactLayout& exact) {
   Array<Index> edges = exact.find_unreadable();
   if (edges.empty()) return std::nullopt;
   const std::string what = concat(
       count(edges.size() / 2, "cut edge is", "cut edges are"),
-      " so short in the layout that single precision cannot hold how the two sides are turned. Merge vertices by "
-      "distance, or unwrap small parts by themselves.");
+      " so short in the layout that single precision cannot represent the rotation between the two sides. Merge "
+      "vertices by distance, or unwrap small components separately.");
   return Error(Code::seamless_impossible, what, {ElementKind::edges, std::move(edges)});
 }
 
@@ -159,17 +159,17 @@ void require_valid(const Seamless& seamless, const Options& options, const Pins&
     refuse(concat("The cell's side is ", seamless.cell, "."), "Choose a power of two, 1 or less.");
   }
   if (seamless.parity && seamless.lattice != Lattice::square) {
-    refuse("Only square cells can be told black from white.", "Choose the square lattice, or no parity.");
+    refuse("Parity requires square cells.", "Choose the square lattice, or no parity.");
   }
   if (options.method == Method::lscm) {
     refuse("Least squares conformal maps have no transitions to round.", "Choose the method lsgp.");
   }
   if (options.border == BorderMode::straight) {
-    refuse("Straight borders cannot be kept in a seamless layout.", "Leave the borders free.");
+    refuse("Straight boundaries cannot be kept in a seamless layout.", "Leave the boundaries free.");
   }
   if (!pins.corners.empty()) {
     throw Error(Code::pins_conflict,
-                "Pinned texture coordinates cannot be kept in a seamless layout, whose places are the lattice's. "
+                "Pinned texture coordinates cannot be kept in a seamless layout, which is aligned with a lattice. "
                 "Unpin them.");
   }
 }
@@ -183,8 +183,8 @@ void require_quantizable(const HalfedgeMesh& mesh, const ComponentMap& map) {
   throw Error(
       Code::seamless_impossible,
       concat("With angles rounded for the lattice ", count(map.validity.flipped.size(), "triangle is", "triangles are"),
-             " flipped and ", count(map.validity.wrong_angle_sums.size(), "vertex turns", "vertices turn"),
-             " wrongly, so there is no layout to start from. Move or add cones nearby."),
+             " flipped and ", count(map.validity.wrong_angle_sums.size(), "vertex has", "vertices have"),
+             " a wrong angle sum, so there is no valid initial layout. Move or add cones nearby."),
       {ElementKind::vertices, std::move(where)});
 }
 
