@@ -41,7 +41,7 @@ Eigen::VectorXd crease_angles(const Surface& surface, const EdgeTable& edges) {
   return angle;
 }
 
-// The factor that being a crease, or marked sharp, gives each row of the surface's edges.
+// The factor of creases and sharp edges for each row of the surface's edges.
 Eigen::VectorXd crease_factors(const Surface& surface, const CutPreferences& preferences) {
   const EdgeTable edges(surface, Array<char>(surface.triangles.rows(), 0));
   Eigen::VectorXd angle = Eigen::VectorXd::Zero(edges.count());

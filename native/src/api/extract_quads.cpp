@@ -56,7 +56,7 @@ void require_closed(const Component& component) {
   throw Error(Code::open_surface, what, {ElementKind::edges, std::move(border)});
 }
 
-// Without seams: the mesh runs on across them.
+// Without seams, across which the mesh continues.
 Topology build_closed_topology(const Surface& surface) {
   Surface whole = surface;
   whole.seams.resize(0, 2);

@@ -34,7 +34,7 @@ class Pipeline {
              const Progress& progress);
 
  private:
-  // What is kept of one component.
+  // Cached data of one component.
   struct Kept {
     Geometry geometry;
     std::vector<Finding> found;  // while it was built

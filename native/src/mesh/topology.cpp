@@ -30,7 +30,7 @@ Array<char> mark_edges(const EdgeTable& edges, const VertexPairs& pairs, Code co
   return marked;
 }
 
-// What each of the surface's edges counts as a cut, empty where nothing was said; 1 where no cut may run.
+// The cut cost factor of each edge, empty if none were given; 1 where no cut may run.
 Array<double> cut_factors(const EdgeTable& edges, const Surface& surface) {
   if (surface.cut_costs.size() == 0) return {};
   Array<double> out(edges.count(), 1);
@@ -76,7 +76,7 @@ struct Orientation {
   Array<char> orientable;  // per component
 };
 
-// The other halfedge of every edge across which the surface goes on, those of two triangles that are neither a border
+// The twin of every halfedge across which the surface continues: at edges of two triangles that are neither a border
 // nor an open seam; none at others, (3m).
 Array<Index> join_halfedges(const EdgeTable& edges, const Array<char>& border, const Array<char>& seam,
                             const OpenSeams& open_seams, Index halfedge_count) {
@@ -91,7 +91,7 @@ Array<Index> join_halfedges(const EdgeTable& edges, const Array<char>& border, c
   return twin;
 }
 
-// Labels components by breadth-first search over joined halfedges and turns every triangle like its component's
+// Labels components by breadth-first search over joined halfedges and orients every triangle like its component's
 // majority.
 Orientation orient(const Surface& surface, const Array<char>& skip, const Array<Index>& twin) {
   const Index triangle_count = static_cast<Index>(surface.triangles.rows());
@@ -141,7 +141,7 @@ void find_boundary_loops(HalfedgeMesh& mesh) {
   }
 }
 
-// Numbers vertices by fans: corners joined by turning about them share a vertex.
+// Numbers vertices by fans: corners connected by rotation about their vertex share it.
 void number_vertices(const Surface& surface, Component& component) {
   HalfedgeMesh& mesh = component.mesh;
   const Index halfedge_count = mesh.halfedge_count();
@@ -192,7 +192,7 @@ void report_crowded_edges(const Surface& surface, const EdgeTable& edges, std::v
        {ElementKind::edges, crowded}});
 }
 
-// (vertices) those at which fans part because the surface was opened there.
+// (vertices) those at which fans are separate because the surface was opened there.
 Array<char> mark_opened(const Surface& surface, const EdgeTable& edges, const Array<Index>& twin,
                         const Orientation& orientation) {
   Array<char> open(surface.positions.rows(), 0);

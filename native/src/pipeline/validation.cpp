@@ -15,7 +15,7 @@ namespace {
 // Squared areas and their sums must neither overflow nor vanish in double precision.
 constexpr double largest_extent = 1e60;
 constexpr double smallest_extent = 1e-60;
-// What lies so much farther out leaves the rest no digit, in lengths or in angles.
+// Outliers this far away leave no significant digits for the rest, in lengths or angles.
 constexpr double farthest = 1e20;
 constexpr double smallest_cone_angle = 1e-6;  // radians; less is lost beside the angles of triangles
 constexpr double largest_cost = 1e6;          // of a cut per length
@@ -143,7 +143,7 @@ void require_valid(const Options& options) {
         "seamless layout.");
   }
   if (options.method != Method::lscm) return;
-  // Its least squares are its own, and it has no transitions that others could keep.
+  // It solves a least squares problem of its own, without transitions.
   const auto refuse = [](const char* what, const char* instead) {
     throw Error(Code::wrong_parameter, concat("The method lscm ", what, ". Choose the method lsgp, or ", instead, "."));
   };
@@ -224,7 +224,7 @@ void require_comparable(const Positions& positions) {
   const Eigen::VectorXd distance = (positions.rowwise() - middle).cwiseAbs().rowwise().maxCoeff();
   for (Index v = 0; v < n; ++v) sorted[v] = distance[v];
   std::sort(sorted.begin(), sorted.end());
-  // Where more than a few are apart it is the surface's shape.
+  // If more than a few are distant, it is the surface's shape.
   for (Index reached = n - n / 4; reached < n; ++reached) {
     const double reach = sorted[reached - 1];
     if (!(reach > 0 && sorted[reached] > farthest * reach)) continue;

@@ -9,7 +9,7 @@
 
 namespace lsgp {
 
-// That triangles, edges and seams name vertices. Throws EMPTY_MESH, INDEX_OUT_OF_RANGE, BAD_FACE.
+// Checks that triangles, edges and seams refer to vertices. Throws EMPTY_MESH, INDEX_OUT_OF_RANGE, BAD_FACE.
 void require_connectivity(const Surface& surface);
 
 // Throws EMPTY_MESH, INDEX_OUT_OF_RANGE, BAD_FACE, NON_FINITE_POSITION, SCALE_RANGE, DEGENERATE_MESH,
@@ -29,7 +29,7 @@ void require_valid(const Surface& surface, const Cones& cones);
 // Throws WRONG_PARAMETER.
 void require_valid(const Options& options);
 
-// The same for what cannot be kept together with pins as well. Throws PINS_CONFLICT.
+// The same, also for options that are incompatible with pins. Throws PINS_CONFLICT.
 void require_valid(const Options& options, const Pins& pins);
 
 // Throws WRONG_PARAMETER.

@@ -49,7 +49,7 @@ double DivisionSearch::demand(const Array<Complex>& hull) const {
 double DivisionSearch::worth(double gain, double length, std::size_t pieces) const {
   const double price = price_factor_ * (area_ * cost_of_island * static_cast<double>(pieces - 1) +
                                         std::sqrt(area_) * cost_of_cut * length);
-  // Between what gains most and what gains most for its price.
+  // A compromise between the largest gain and the largest gain per cost.
   return gain > price ? gain / std::sqrt(price) : 0;
 }
 
