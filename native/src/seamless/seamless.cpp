@@ -29,10 +29,10 @@ void leave_out(const Array<Failure>& failures, Array<SeamlessPart>& parts, std::
 std::optional<Error> refusal_of(const ExactLayout& exact) {
   Array<Index> edges = exact.find_unreadable();
   if (edges.empty()) return std::nullopt;
-  const std::string what = concat(
-      count(edges.size() / 2, "cut edge is", "cut edges are"),
-      " so short in the layout that single precision cannot represent the rotation between the two sides. Merge "
-      "vertices by distance, or unwrap small components separately.");
+  const std::string what =
+      concat(count(edges.size() / 2, "cut edge is", "cut edges are"),
+             " so short in the layout that single precision cannot represent the rotation between the two sides. Merge "
+             "vertices by distance, or unwrap small components separately.");
   return Error(Code::seamless_impossible, what, {ElementKind::edges, std::move(edges)});
 }
 
