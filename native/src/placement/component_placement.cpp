@@ -15,7 +15,7 @@ namespace lsgp {
 
 namespace {
 
-// Refuses cones that are too few because cuts do not get to where others could be.
+// Refuses too few cones if cuts cannot reach further sites.
 void require_reachable(const ConeChooser& chooser, const ConeChoice& choice) {
   if (choice.is_possible() || chooser.reaches_all()) return;
   const Index places = chooser.place_count();
@@ -33,7 +33,7 @@ void require_room(const ConeChoice& choice) {
               {ElementKind::vertices, choice.vertices});
 }
 
-// What is off in a map.
+// The defects of a map, as text.
 std::string told(const TriedMap& map) {
   if (map.failed) return "there is no map";
   const auto angles = count(map.wrong_angles, "vertex", "vertices"), seams = count(map.inexact_seams, "edge", "edges");
@@ -42,7 +42,7 @@ std::string told(const TriedMap& map) {
   return concat("angles are off at ", angles, " and the two sides do not match at ", seams, " of cuts");
 }
 
-// Cones that somebody marked stay, and the map says what is wrong with it; others are no result.
+// Marked cones are kept, and the map reports its defects; other cones with defects are refused.
 void require_right(const VerifiedChoice& choice, bool has_marked) {
   const TriedMap& map = choice.map;
   if (!choice.is_mapped || !map.is_off() || !map.is_repaired || has_marked) return;
@@ -70,7 +70,7 @@ std::string told_of_automatic(const PlacementTask& task, PlacementOptions option
                 " placed, and the map has an L2 stretch of ", rounded(choice.map.l2), ".");
 }
 
-// A number of cones that was asked for, but with which the map cannot be used.
+// A requested number of cones with which the map is unusable.
 std::optional<Finding> unusable_map(const PlacementTask& task, const PlacementOptions& options,
                                     const VerifiedChoice& choice, ProgressMonitor& monitor, int& maps) {
   if (!options.count || !choice.is_mapped || choice.map.l2 < high_l2) return std::nullopt;

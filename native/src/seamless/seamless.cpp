@@ -14,7 +14,7 @@ namespace lsgp {
 
 namespace {
 
-// Takes parts out and reports them; throws where none is left.
+// Removes components and reports them; throws if none is left.
 void leave_out(const Array<Failure>& failures, Array<SeamlessPart>& parts, std::vector<Finding>& findings) {
   const auto has_failed = [&](const SeamlessPart& part) {
     return std::any_of(failures.begin(), failures.end(),
@@ -53,7 +53,7 @@ void report_cones_given_up(const SeamlessReport& report, std::vector<Finding>& f
   }
 }
 
-// Parts that cuts close off are placed one by one.
+// Regions enclosed by cuts are placed individually.
 DividedLayout divide(const HalfedgeMesh& mesh, ComponentMap& map) {
   Array<Index> part_of_triangle;
   DividedLayout out{&map.position, Array<Index>(map.cut_mesh.copy_count()), 0};
@@ -64,7 +64,7 @@ DividedLayout divide(const HalfedgeMesh& mesh, ComponentMap& map) {
   return out;
 }
 
-// The layouts as maps in cells, split where they overlap. A part that cannot be split leaves all maps as they are.
+// The layouts as maps in cells, split where they overlap. If a component cannot be split, all maps are left unchanged.
 void split_layouts(const GridSearch& search, Complex shift, const Grid& grid, Array<SeamlessPart>& parts,
                    ProgressMonitor& monitor) {
   Array<ComponentMap> maps(parts.size());
@@ -72,7 +72,7 @@ void split_layouts(const GridSearch& search, Complex shift, const Grid& grid, Ar
     const HalfedgeMesh& mesh = parts[i].component->mesh;
     maps[i] = *parts[i].map;
     maps[i].position = grid.layouts[i].position.array() + shift;
-    // Cones off the lattice leave translations off it, across which nothing may move.
+    // Cones off the lattice have translations off it, across which no part may move.
     const Array<char> nowhere(mesh.halfedge_count(), 0), everywhere(mesh.halfedge_count(), 1);
     split_map({mesh, parts[i].system->geometry(), nowhere}, search.relaxed(i).empty() ? mesh.seam : everywhere, monitor,
               maps[i]);
@@ -121,7 +121,7 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
     }
     area += part.system->geometry().total_area;
     before += part.system->geometry().total_area * search.energy(i);
-    // Triangles that single precision has folded to nothing, which are named, have none.
+    // Triangles that collapsed in single precision, which are reported, have none.
     const double stored_energy = search.energy(i, part.map->position);
     after +=
         part.system->geometry().total_area * (std::isfinite(stored_energy) ? stored_energy : grid.layouts[i].energy);

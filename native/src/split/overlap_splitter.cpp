@@ -53,7 +53,7 @@ OverlapSplitter::Conflict OverlapSplitter::find_conflict(Index seed) {
   return out;
 }
 
-// The sorted entries without those of conflicts.
+// Adds the conflicts of those of the sorted entries that no conflict contains yet.
 void OverlapSplitter::add_conflicts(const Array<Index>& entries, Array<Part>& parts) {
   for (const Index seed : entries) {
     const Index part = parts_.of_face[pairs_.of[seed]];
