@@ -123,7 +123,7 @@ def expand_options(argv: Sequence[str]) -> list[str]:
     try:
         words = shlex.split(text)
     except ValueError as error:
-        raise UsageError(f"{option} is no list of options: {error}") from error
+        raise UsageError(f"{option} is not a list of options: {error}") from error
     return [*arguments[:at], *words, *arguments[after:]]
 
 
@@ -142,7 +142,7 @@ def main(argv: Sequence[str], kind: Kind, parser: argparse.ArgumentParser) -> in
 def run_batch(args: argparse.Namespace, kind: Kind = MESH_FILES) -> int:
     """Run a batch and return its exit code.  Raises OSError, UsageError, KeyboardInterrupt."""
     if args.jobs is not None and args.scheduler is not None:
-        raise UsageError("--jobs is for this machine; how many jobs a cluster does is told to its workers")
+        raise UsageError("--jobs is for this machine; set the number of processes of a cluster on its workers")
     cluster = Cluster.of(args)
     if args.memory_limit is not None and not sys.platform.startswith("linux"):
         raise UsageError("--memory-limit works on Linux only; leave it out")
@@ -239,7 +239,7 @@ def _cores() -> int:
 
 def _count_option(text: str) -> int:
     if not (text.isascii() and text.isdigit() and len(text) < 10 and int(text) > 0):
-        raise argparse.ArgumentTypeError(f"'{text}' is no whole number from 1 up")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a whole number of at least 1")
     return int(text)
 
 
@@ -249,5 +249,5 @@ def _seconds_option(text: str) -> float:
     except ValueError:
         seconds = 0.0
     if not 0 < seconds < 1e7:
-        raise argparse.ArgumentTypeError(f"'{text}' is no number of seconds")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of seconds")
     return seconds

@@ -116,7 +116,7 @@ def require_polygons(
     if len(small):
         raise InputError(
             "BAD_FACE",
-            f"{_faces(small, place)} with fewer than three corners. Remove such faces: loose edges are no faces.",
+            f"{_faces(small, place)} with fewer than three corners. Remove such faces: loose edges are not faces.",
             Elements("faces", small.astype(np.int32)),
         )
 
