@@ -146,7 +146,7 @@ WRONG_USAGE = {
     "report over output": ([*PLACE, "--report", "placed.json"], "same file"),
     "missing mesh": (["cones", "none.obj", "-o", "placed.json"], "none.obj"),
     "missing kept cones": ([*PLACE, "--keep", "none.json"], "none.json"),
-    "kept cones that are no JSON": ([*PLACE, "--keep", "ball.obj"], "no JSON"),
+    "kept cones that are no JSON": ([*PLACE, "--keep", "ball.obj"], "not valid JSON"),
     "count and target": ([*PLACE, "--count", "4", "--target", "1.1"], "not allowed with"),
     "count that is no number": ([*PLACE, "--count", "some"], "some"),
     "lattice without seamless": ([*PLACE, "--lattice", "square"], "add --seamless"),

@@ -409,7 +409,7 @@ class World:
 
 def _share_an_angle(placed: lsgp.Placement) -> bool:
     """Whether cones of different angles are one vertex, so that the angles cannot be what they should."""
-    return any(finding.code == "SPLIT_VERTEX" and "angle of its own" in finding.message for finding in placed.warnings)
+    return any(finding.code == "SPLIT_VERTEX" and "separate angle" in finding.message for finding in placed.warnings)
 
 
 def _gap(one: Outcome, other: Outcome) -> str:

@@ -278,7 +278,7 @@ def test_threads_that_share_a_solver_take_turns_or_are_refused() -> None:
         first = threads.submit(solver.parameterize, mesh.cones, None, RAW, None, wait)
         assert is_under_way.wait(60)
         second = threads.submit(solver.parameterize, mesh.cones[1:], None, RAW)
-        with pytest.raises(lsgp.SolverError, match="another call") as refused:
+        with pytest.raises(lsgp.SolverError, match="already running a call") as refused:
             second.result(60)
         was_refused.set()
         assert refused.value.code == "SOLVER_BUSY"
