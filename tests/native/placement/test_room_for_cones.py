@@ -124,6 +124,6 @@ def test_a_cone_where_parts_touch_is_named_if_its_angles_differ() -> None:
     triangles[triangles == len(cube.positions)] = corner
     apart = lsgp.place_cones(surface(mesh), [corner])
     touching = lsgp.place_cones(lsgp.Surface(mesh.positions, triangles), [corner])
-    named = [f for f in touching.warnings if f.code == "SPLIT_VERTEX" and "of its own" in f.message]
+    named = [f for f in touching.warnings if f.code == "SPLIT_VERTEX" and "separate angle" in f.message]
     assert [f.elements.indices.tolist() for f in named] == [[corner]]
     assert "SPLIT_VERTEX" not in codes(apart.warnings)
