@@ -44,7 +44,10 @@ def test_cones_that_find_no_room_are_named_by_the_parts_that_lack_it() -> None:
     mesh = meshes.merge([meshes.grid(2, 2), meshes.bumpy_sphere(1)])
     placed = place(mesh, count=5)
     finding = only(placed.warnings, "PLACEMENT_NOT_REACHED")
-    assert finding.message.startswith("1 of the 5 cones asked for was placed") and "no other interior vertex" in finding.message
+    assert (
+        finding.message.startswith("1 of the 5 cones asked for was placed")
+        and "no other interior vertex" in finding.message
+    )
     assert finding.elements.kind == "triangles" and finding.elements.indices.tolist() == list(range(8))
     assert len(placed.cones) == 6
 
