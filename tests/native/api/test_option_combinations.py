@@ -29,10 +29,10 @@ CONES = {"closed": meshes.bumpy_sphere(1).cones, "open": np.array([0, 6, 24, 42,
 # Each with what it is refused for.
 REFUSED = {
     ("method", "seamless"): "transitions",
-    ("method", "mode"): "lengths",
-    ("method", "border"): "border",
-    ("method", "unfold"): "spectrally",
-    ("border", "seamless"): "borders",
+    ("method", "mode"): "low stretch",
+    ("method", "border"): "boundaries",
+    ("method", "unfold"): "spectral",
+    ("border", "seamless"): "boundaries",
 }
 PAIRS = [
     (one, first, other, second)
