@@ -30,7 +30,7 @@ from .operators.texels.set_density import UV_OT_cone_texel_set
 from .operators.unwrapping.auto import UV_OT_cone_auto_unwrap
 from .operators.unwrapping.from_cones import UV_OT_cone_unwrap
 from .overlay import handlers
-from .ui import manual, menus
+from .ui import manual, menus, presets
 from .ui.angle_panel import VIEW3D_PT_cone_angles
 from .ui.panels import PANELS
 from .ui.preferences import ConeUnwrapPreferences
@@ -68,7 +68,7 @@ CLASSES = (
     *PANELS,
     VIEW3D_PT_cone_angles,
 )
-MODULES = (changes, reports, distortion, texture, texel_settings, handlers, command, manual)
+MODULES = (changes, reports, distortion, texture, texel_settings, handlers, command, manual, presets)
 
 
 def register() -> None:
