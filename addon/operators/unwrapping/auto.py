@@ -5,11 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import bpy
 
 from ...core import identifiers, native
+from ...core.choices import PRESETS, FirstPressProperties
 from ...core.region import Region
 from ...core.threads import chosen_threads
 from ...jobs.directions import DirectionChoice
@@ -20,18 +21,10 @@ from ...jobs.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_all
 from ...mesh.angles import require_attributes
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
-from ..shared.properties import (
-    SEAMS,
-    Choices,
-    ConeGroupProperty,
-    CutsProperty,
-    DirectionProperty,
-    SeamsProperty,
-    enum_items,
-)
+from ..shared.properties import SEAMS, ConeGroupProperty, CutsProperty, SeamsProperty
 from .cut_choices import chosen_cuts
 from .direction_choices import chosen_direction
-from .seamless import TEXTURE_SIZES, TileSizeProperties
+from .seamless import TileSizeProperties
 from .sections import section
 
 if TYPE_CHECKING:
@@ -39,22 +32,15 @@ if TYPE_CHECKING:
 
     from ...jobs.solving import Progress
 
-PRESETS: Choices = {
-    "PAINT": ("paint", "Paint", "For texture painting: even sizes, few islands, nothing overlaps"),
-    "TILE": ("tile", "Tile", "For tileable textures: squares match across every cut, so that no seam shows"),
-    "BAKE": (
-        "bake",
-        "Bake",
-        "For baking: even sizes, nothing overlaps, islands fill the square, and the margin is exact",
-    ),
-}
+# Values that were last taken from the preferences, by property.
+_taken: dict[str, Any] = {}
 
 
 class UV_OT_cone_auto_unwrap(
     ConeGroupProperty,
     SeamsProperty,
     CutsProperty,
-    DirectionProperty,
+    FirstPressProperties,
     TileSizeProperties,
     BackgroundOperator,
     bpy.types.Operator,
@@ -72,19 +58,6 @@ class UV_OT_cone_auto_unwrap(
     activity = "Unwrapping"
     nothing_selected = "No face is selected; select the faces to unwrap"
 
-    preset: bpy.props.EnumProperty(name="Preset", description="What the UV map is for", items=enum_items(PRESETS))
-    texture_size: bpy.props.EnumProperty(
-        name="Texture Size", description="Side of the texture in texels", items=TEXTURE_SIZES, default="1024"
-    )
-    margin: bpy.props.IntProperty(
-        name="Margin",
-        description="Texels to keep free around each island in a texture of this size; about as many for Paint where "
-        "Blender's packer is used",
-        default=4,
-        min=0,
-        soft_max=64,
-        subtype="PIXEL",
-    )
     udim: bpy.props.IntProperty(
         name="UDIM Tiles",
         description="Spread the islands over so many UDIM tiles, 1001 and following, so that they get as large as they "
@@ -119,6 +92,20 @@ class UV_OT_cone_auto_unwrap(
         description="Mark the cones that are placed, so that they can be edited and are kept by the next run",
         default=False,
     )
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        self._take_defaults(context.preferences.addons[identifiers.EXTENSION].preferences)
+        return super().invoke(context, event)
+
+    def _take_defaults(self, preferences: bpy.types.AddonPreferences) -> None:
+        """Take from the preferences what neither the caller says nor the artist chose since Blender was started."""
+        for name in FirstPressProperties.NAMES:
+            given = getattr(preferences, name)
+            said = self.properties.is_property_set(name)
+            chosen = self.properties.is_property_set(name, ghost=False) and getattr(self, name) != _taken.get(name)
+            if not (said or chosen):
+                setattr(self, name, given)
+                _taken[name] = given
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

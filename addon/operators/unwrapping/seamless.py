@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core import native
-from ..shared.properties import LATTICES, Choices, LatticeProperty, enum_items
+from ...core.choices import TEXTURE_SIZES, Choices, enum_items
+from ..shared.properties import LATTICES, LatticeProperty
 from .sections import section
 
 if TYPE_CHECKING:
@@ -22,7 +23,6 @@ COARSE_GRIDS: Choices = {
     "MERGE": ("merge", "Merge Cones", "Merge cones that are less than a tile apart"),
     "RELAX": ("relax", "Leave Cones", "Leave cones without a place on the grid off it; their cuts show a seam"),
 }
-TEXTURE_SIZES = [(str(2**level), str(2**level), f"{2**level} texels per side") for level in range(6, 15)]
 
 
 class TileSizeProperties:

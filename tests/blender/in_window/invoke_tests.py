@@ -320,3 +320,31 @@ def register(panel, options):
     bpy.utils.unregister_class(panel)
     panel.bl_options = options
     bpy.utils.register_class(panel)
+
+
+PREFERRED = ("preset", "texture_size", "margin", "direction")
+
+
+def pressed(**options):
+    """What Auto Unwrap, invoked, was run with."""
+    assert bpy.ops.uv.cone_auto_unwrap("INVOKE_DEFAULT", True, **options) <= {"FINISHED", "RUNNING_MODAL"}
+    yield from until(lambda: not running("UV_OT_cone_auto_unwrap"))
+    used = bpy.context.window_manager.operators[-1].properties
+    return tuple(getattr(used, name) for name in PREFERRED)
+
+
+def test_the_first_press_begins_with_the_preferences_until_the_artist_chooses():
+    add_cone_cube()
+    preferences = bpy.context.preferences.addons[addon.core.identifiers.EXTENSION].preferences
+    try:
+        assert (yield from pressed()) == ("PAINT", "1024", 4, "AUTO")
+        for name, value in zip(PREFERRED, ("BAKE", "2048", 8, "Z"), strict=True):
+            setattr(preferences, name, value)
+        # The last run had what the preferences said then; nobody chose it.
+        assert (yield from pressed()) == ("BAKE", "2048", 8, "Z")
+        assert (yield from pressed(margin=2)) == ("BAKE", "2048", 2, "Z")
+        preferences.margin, preferences.preset = 16, "TILE"
+        assert (yield from pressed()) == ("TILE", "2048", 2, "Z")
+    finally:
+        for name in PREFERRED:
+            preferences.property_unset(name)
