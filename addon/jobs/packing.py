@@ -63,6 +63,14 @@ def pack(
     return _with_exact_margin(parts, margin, TURNS if turned else (None,))
 
 
+def pack_at_scale(parts: Sequence[Islands], margin: float, *, turned: bool) -> list[NDArray[np.float64]] | None:
+    """Put the islands of all parts close together in a square that begins at the origin, and leave their size.
+
+    Returns, margin, turned: as of `pack`; None where the packer of xatlas cannot pack them.
+    """
+    return None if _obstacle(parts) else _pack_tightly(parts, margin, turned, 1, fill=False)
+
+
 def _obstacle(parts: Sequence[Islands]) -> str | None:
     """Why the packer of xatlas cannot pack these, and what to do; None where it can."""
     if not is_tight():
@@ -74,12 +82,22 @@ def _obstacle(parts: Sequence[Islands]) -> str | None:
     return None
 
 
-def _pack_tightly(parts: Sequence[Islands], margin: float, turned: bool, udim: int) -> list[NDArray[np.float64]]:
-    """With the packer of xatlas.  parts: without pins, for square images.  Raises lsgp.InputError."""
+def _pack_tightly(
+    parts: Sequence[Islands], margin: float, turned: bool, udim: int, *, fill: bool = True
+) -> list[NDArray[np.float64]]:
+    """With the packer of xatlas.  parts: without pins, for square images.  fill: whether tiles are to be filled.
+
+    Raises lsgp.InputError.
+    """
     first = np.cumsum([0, *(int(part.island.max()) + 1 for part in parts)])
     island = np.concatenate([part.island + at for part, at in zip(parts, first[:-1], strict=True)])
     uv = native.lsgp.pack_islands(
-        np.concatenate([part.corner_uv for part in parts]), island.astype(np.int32), margin, turned=turned, udim=udim
+        np.concatenate([part.corner_uv for part in parts]),
+        island.astype(np.int32),
+        margin,
+        fill=fill,
+        turned=turned,
+        udim=udim,
     )
     return np.split(uv, np.cumsum([len(part.island) for part in parts])[:-1])
 

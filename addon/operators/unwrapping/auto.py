@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 from ...core import identifiers, native
-from ...core.choices import PRESETS, FirstPressProperties
+from ...core.choices import PRESETS, Choices, FirstPressProperties, enum_items
+from ...core.length_units import length_unit
 from ...core.region import Region
 from ...core.threads import chosen_threads
 from ...jobs.directions import DirectionChoice
-from ...jobs.maps import final_layouts, packing_of_preset, write_map
+from ...jobs.maps import PackSettings, final_layouts, packing_of_preset, write_map
 from ...jobs.placing import mark_placed
 from ...jobs.summaries import unwrap_summary
 from ...jobs.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_all, unwrap_task
@@ -31,6 +32,11 @@ if TYPE_CHECKING:
     import lsgp
 
     from ...jobs.solving import Progress
+
+SCALES: Choices = {
+    "FILL": (None, "Fill Square", "Islands get as large as they can"),
+    "DENSITY": (None, "Texel Density", "Islands get so many texels along a unit of length in the world"),
+}
 
 # Values that were last taken from the preferences, by property.
 _taken: dict[str, Any] = {}
@@ -62,12 +68,13 @@ class UV_OT_cone_auto_unwrap(
         name="UDIM Tiles",
         description="Spread the islands over so many UDIM tiles, 1001 and following, so that they get as large as they "
         "can; Bake cuts them further for it. Fewer are taken where the largest island fills one alone. Each tile has a "
-        "texture of this size",
+        "texture of this size. At a texel density they are so many at most",
         default=1,
         min=1,
         max=100,
         soft_max=10,
     )
+    scale: bpy.props.EnumProperty(name="Scale", description="How large islands are", items=enum_items(SCALES))
     use_subsurf_data: bpy.props.BoolProperty(
         name="Use Subdivision Surface",
         description="Map UVs taking vertex position after Subdivision Surface modifier has been applied",
@@ -112,10 +119,13 @@ class UV_OT_cone_auto_unwrap(
         layout.use_property_split = True
         layout.row().prop(self, "preset", expand=True)
         if self.preset == "TILE":
-            self.draw_tile_size(layout)
+            self.draw_tile_size(layout, context)
         else:
             layout.prop(self, "texture_size")
             layout.prop(self, "margin")
+            layout.prop(self, "scale")
+            if self.scale == "DENSITY":
+                self.draw_density(layout, context)
             layout.prop(self, "udim")
         layout.prop(self, "direction")
         body = section(layout, "cone_auto_unwrap_cuts", "Cuts and Cones")
@@ -130,14 +140,15 @@ class UV_OT_cone_auto_unwrap(
             self.draw_vertex_group(body, context)
 
     def plan(self) -> tuple[Groups, Callable[[bpy.types.Object, Region], UnwrapTask]]:
+        self.adopt_density(bpy.context)
         options = self._options()
         settings = UnwrapSettings(
             options=options,
             cone_group=self.vertex_group,
             weight_group=None,
             weight_factor=1.0,
-            # Pins and the shape of an image would tear a seamless layout.
-            use_pins=options.seamless is None,
+            # Pins and the shape of an image would tear a seamless layout; pins would have to move for a density.
+            use_pins=options.seamless is None and self.scale == "FILL",
             keep_placement=False,
             correct_aspect=options.seamless is None,
             cuts=chosen_cuts(self.cuts),
@@ -157,16 +168,22 @@ class UV_OT_cone_auto_unwrap(
         return unwrap_all(tasks, progress)
 
     def write(self, solved: Solved) -> list[str]:
-        margin = self.margin / int(self.texture_size)
-        by_cells, turned = self.preset == "TILE", not self._direction().is_any
-        preset = PRESETS[self.preset][0]
-        pack = packing_of_preset(preset, margin, by_cells=by_cells, turned=turned, udim=self.udim)
-        layouts = final_layouts([unwrapped for _, _, unwrapped in solved], pack)
+        layouts = final_layouts([unwrapped for _, _, unwrapped in solved], self._packing())
         for (obj, task, unwrapped), corner_uv in zip(solved, layouts, strict=True):
             write_map(obj, unwrapped, corner_uv)
             if self.mark:
                 mark_placed(obj, self.vertex_group, task.cones, unwrapped.result)
         return [unwrap_summary(unwrapped) for _, _, unwrapped in solved]
+
+    def _packing(self) -> PackSettings:
+        size = int(self.texture_size)
+        by_cells, turned = self.preset == "TILE", not self._direction().is_any
+        preset = PRESETS[self.preset][0]
+        pack = packing_of_preset(preset, self.margin / size, by_cells=by_cells, turned=turned, udim=self.udim)
+        if self.scale == "FILL" or by_cells:
+            return pack
+        layout = native.lsgp.TexelLayout(self.density, size, self.udim, self.margin)
+        return replace(pack, texels=layout, unit=length_unit(bpy.context.scene).size)
 
     def _direction(self) -> DirectionChoice:
         return chosen_direction(self.direction, tiles=self.preset == "TILE")

@@ -54,7 +54,7 @@ class UV_OT_cone_unwrap(
         layout.use_property_split = True
         self.draw_mode(layout, context)
         layout.prop(self, "overlaps")
-        self.draw_seamless(layout)
+        self.draw_seamless(layout, context)
         body = section(layout, "cone_unwrap_cuts", "Cuts and Cones")
         if body is not None:
             for name in ("cuts", "seams", "border", "prescription", "unfold", "repair", "use_subsurf_data"):
@@ -65,6 +65,7 @@ class UV_OT_cone_unwrap(
             self.draw_placement(body)
 
     def plan(self) -> tuple[Groups, Callable[[bpy.types.Object, Region], UnwrapTask]]:
+        self.adopt_density(bpy.context)
         settings = unwrap_settings(self)
         return Groups(settings.cone_group, settings.weight_group), lambda _obj, region: unwrap_task(region, settings)
 
