@@ -11,6 +11,7 @@ from contextlib import contextmanager, suppress
 import bpy
 import numpy as np
 from installed import addon
+from mathutils import Vector
 from scenes import add_ball, add_cone_cube, changed, edit, marked, plain_copy, snapshot, uv_key
 from windows import STEP, press, region, running, until
 
@@ -348,3 +349,29 @@ def test_the_first_press_begins_with_the_preferences_until_the_artist_chooses():
     finally:
         for name in PREFERRED:
             preferences.property_unset(name)
+
+
+def test_a_click_on_a_row_turns_the_view_to_a_cone_that_is_out_of_sight():
+    cube = add_cone_cube()
+    view = bpy.context.region_data
+    for mode in ("OBJECT", "EDIT"):
+        bpy.ops.object.mode_set(mode=mode)
+        view.view_rotation, view.view_location = (1, 0, 0, 0), (0, 0, 0)
+        yield 0.2
+        # From above, the corners at the top are seen and stay where they are.
+        for vertex in marked(cube):
+            before = view.view_rotation.copy()
+            assert bpy.ops.mesh.cone_select_one(vertex=vertex) == {"FINISHED"}
+            yield 0.1
+            towards = view.view_rotation @ Vector((0, 0, 1))
+            outward = Vector(np.sign(corner_places(cube)[vertex]))
+            was_seen = outward.dot(before @ Vector((0, 0, 1))) > 0
+            assert outward.dot(towards) > 0 and (view.view_rotation == before) == was_seen
+
+
+def corner_places(cube):
+    """The positions of the vertices of a mesh in any mode."""
+    mesh = plain_copy(cube)
+    places = [tuple(vertex.co) for vertex in mesh.vertices]
+    bpy.data.meshes.remove(mesh)
+    return places
