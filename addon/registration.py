@@ -3,7 +3,7 @@
 
 import bpy
 
-from .jobs import command
+from .jobs import command, remembered
 from .mesh import changes, distortion, reports, texel_settings, texture
 from .operators.angles.preview_stretch import MESH_OT_cone_preview
 from .operators.angles.select_row import MESH_OT_cone_select_one
@@ -68,7 +68,7 @@ CLASSES = (
     *PANELS,
     VIEW3D_PT_cone_angles,
 )
-MODULES = (changes, reports, distortion, texture, texel_settings, handlers, command, manual, presets)
+MODULES = (changes, reports, distortion, texture, texel_settings, handlers, command, remembered, manual, presets)
 
 
 def register() -> None:

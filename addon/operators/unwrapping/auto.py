@@ -17,8 +17,9 @@ from ...core.threads import chosen_threads
 from ...jobs.directions import DirectionChoice
 from ...jobs.maps import PackSettings, final_layouts, packing_of_preset, write_map
 from ...jobs.placing import mark_placed
+from ...jobs.remembered import unwrap_all_once
 from ...jobs.summaries import unwrap_summary
-from ...jobs.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_all, unwrap_task
+from ...jobs.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_task
 from ...mesh.angles import require_attributes
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
@@ -165,7 +166,7 @@ class UV_OT_cone_auto_unwrap(
 
     @staticmethod
     def solve(tasks: list[UnwrapTask], progress: Progress | None = None) -> list[Unwrapped | Exception]:
-        return unwrap_all(tasks, progress)
+        return unwrap_all_once(tasks, progress)
 
     def write(self, solved: Solved) -> list[str]:
         layouts = final_layouts([unwrapped for _, _, unwrapped in solved], self._packing())

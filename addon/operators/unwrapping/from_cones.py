@@ -11,8 +11,9 @@ import bpy
 from ...core import identifiers
 from ...core.region import Region
 from ...jobs.maps import final_layouts, write_map
+from ...jobs.remembered import unwrap_all_once
 from ...jobs.summaries import unwrap_summary
-from ...jobs.unwrapping import Unwrapped, UnwrapTask, unwrap_all, unwrap_task
+from ...jobs.unwrapping import Unwrapped, UnwrapTask, unwrap_task
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
 from ..shared.properties import BorderProperty, ConeGroupProperty, CutsProperty, SeamsProperty
@@ -71,7 +72,7 @@ class UV_OT_cone_unwrap(
 
     @staticmethod
     def solve(tasks: list[UnwrapTask], progress: Progress | None = None) -> list[Unwrapped | Exception]:
-        return unwrap_all(tasks, progress)
+        return unwrap_all_once(tasks, progress)
 
     def write(self, solved: Solved) -> list[str]:
         layouts = final_layouts([unwrapped for _, _, unwrapped in solved], self.pack_settings())

@@ -18,7 +18,8 @@ from windows import STEP, press, region, running, until
 
 @contextmanager
 def slowed(seconds, verb="parameterize"):
-    """The library takes so much longer, and tells its progress meanwhile."""
+    """The library takes so much longer, and tells its progress meanwhile; maps made before are forgotten."""
+    addon.jobs.remembered.forget()
     lsgp = addon.core.native.lsgp
     work = getattr(lsgp, verb)
 
