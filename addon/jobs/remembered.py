@@ -6,15 +6,16 @@ So a change of the margin in the redo panel takes packing alone, and so does a p
 
 from __future__ import annotations
 
-import hashlib
 from collections import OrderedDict
-from collections.abc import Iterator, Sequence
-from dataclasses import fields, is_dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import bpy
 import numpy as np
 
+from ..core.digest import digest_of
+from . import packing
 from .unwrapping import Unwrapped, UnwrapTask, unwrap, unwrap_all
 
 if TYPE_CHECKING:
@@ -47,33 +48,14 @@ def digest(task: UnwrapTask) -> bytes:
     """
     if not task.keep_placement and not task.pinned.any():
         task = replace(task, region=replace(task.region, corner_uv=np.empty((0, 3, 2))))
-    found = hashlib.blake2b(digest_size=20)
-    for part in _parts(task):
-        found.update(part)
-    return found.digest()
-
-
-def _parts(value: Any) -> Iterator[bytes]:
-    """A value in pieces, each with its type and size, so that different values have different pieces."""
-    if is_dataclass(value):
-        yield type(value).__name__.encode()
-        for field in fields(value):
-            yield from _parts(getattr(value, field.name))
-    elif isinstance(value, np.ndarray):
-        yield f"{value.dtype}{value.shape}".encode()
-        yield np.ascontiguousarray(value).tobytes()
-    elif isinstance(value, (list, tuple)):
-        yield f"{len(value)}[".encode()
-        for item in value:
-            yield from _parts(item)
-    else:
-        yield f"{value!r};".encode()
+    return digest_of(task)
 
 
 @bpy.app.handlers.persistent
 def forget(*_: Any) -> None:
     """Called by Blender when another file is opened."""
     _kept.clear()
+    packing.forget()
 
 
 def register() -> None:
