@@ -102,7 +102,9 @@ class UV_OT_cone_auto_unwrap(
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        self._take_defaults(context.preferences.addons[identifiers.EXTENSION].preferences)
+        # None: registered by a script, without preferences.
+        if (extension := context.preferences.addons.get(identifiers.EXTENSION)) is not None:
+            self._take_defaults(extension.preferences)
         return super().invoke(context, event)
 
     def _take_defaults(self, preferences: bpy.types.AddonPreferences) -> None:

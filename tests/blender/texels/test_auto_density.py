@@ -29,7 +29,7 @@ def unwrap(**options):
 
 
 @pytest.mark.parametrize("preset", ["PAINT", "BAKE"])
-@pytest.mark.parametrize("asked, udim, tiles", [(25, 1, 1), (25, 4, 1), (50, 4, 2)])
+@pytest.mark.parametrize("asked, udim, tiles", [(18, 1, 1), (18, 4, 1), (50, 4, 2)])
 def test_all_objects_get_the_density_in_as_few_tiles_as_hold_them(preset, asked, udim, tiles):
     objects = cubes(4)
     assert unwrap(preset=preset, density=asked, udim=udim) == {"FINISHED"}

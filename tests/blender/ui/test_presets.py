@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The presets that the extension brings: where Blender lists them, and that each says all there is to say."""
 
+import re
 from pathlib import Path
 
 import bpy
@@ -12,7 +13,7 @@ FOLDER = Path(addon.__file__).parent / "presets" / "operator"
 PRESETS = sorted(path.relative_to(FOLDER).as_posix() for path in FOLDER.glob("*/*.py"))
 # Values that are nobody's default.
 OTHERS = {
-    "uv.cone_auto_unwrap": {"preset": "BAKE", "texture_size": "64", "margin": 1, "udim": 2, "cuts": "VIEW"},
+    "uv.cone_auto_unwrap": {"preset": "BAKE", "texture_size": "64", "margin": 1, "cuts": "VIEW"},
     "uv.cone_unwrap": {"mode": "LOW_STRETCH", "stretch": 0.25, "pack": False, "prescription": "HARMONIC"},
 }
 
@@ -45,4 +46,4 @@ def test_a_preset_does_not_depend_on_what_was_set_before(preset):
     assert after[0] == after[1]
     properties = bpy.context.active_operator.properties
     set_by_it = {name for name in after[0] if properties.is_property_set(name)}
-    assert run(**{name: after[0][name] for name in set_by_it}) == {"FINISHED"}
+    assert set_by_it == set(re.findall(r"^op\.(\w+) = ", (FOLDER / preset).read_text(), re.MULTILINE))
