@@ -3,7 +3,7 @@
 
 import bpy
 
-from .jobs import command
+from .jobs import command, remembered
 from .mesh import changes, distortion, reports, texel_settings, texture
 from .operators.angles.preview_stretch import MESH_OT_cone_preview
 from .operators.angles.select_row import MESH_OT_cone_select_one
@@ -30,7 +30,7 @@ from .operators.texels.set_density import UV_OT_cone_texel_set
 from .operators.unwrapping.auto import UV_OT_cone_auto_unwrap
 from .operators.unwrapping.from_cones import UV_OT_cone_unwrap
 from .overlay import handlers
-from .ui import menus
+from .ui import manual, menus, presets
 from .ui.angle_panel import VIEW3D_PT_cone_angles
 from .ui.panels import PANELS
 from .ui.preferences import ConeUnwrapPreferences
@@ -68,7 +68,7 @@ CLASSES = (
     *PANELS,
     VIEW3D_PT_cone_angles,
 )
-MODULES = (changes, reports, distortion, texture, texel_settings, handlers, command)
+MODULES = (changes, reports, distortion, texture, texel_settings, handlers, command, remembered, manual, presets)
 
 
 def register() -> None:

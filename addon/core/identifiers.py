@@ -4,6 +4,9 @@
 EXTENSION = __package__.rpartition(".")[0]
 """The Python package of the add-on, by which Blender knows it."""
 
+HOME_PAGE = "https://extensions.blender.org/add-ons/cone-unwrap/"
+"""The website in the manifest."""
+
 CONE_GROUP = "uv_cones"
 """Default vertex group; a weight above 0.5 marks a cone."""
 

@@ -7,7 +7,7 @@ Panels are redrawn often, so tables are cached until their mesh changes.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import bpy
@@ -15,6 +15,7 @@ import numpy as np
 
 from ..core import identifiers, native
 from ..core.cone_angles import ConeAngles, Kind
+from ..core.places import place_names
 from ..core.text import counted
 from ..mesh import changes
 from ..mesh.angles import angles_in
@@ -22,8 +23,6 @@ from ..mesh.reader import reader
 
 if TYPE_CHECKING:
     import lsgp
-
-KIND_LABELS = {None: "Automatic", Kind.FOUND: "Automatic", Kind.PRESCRIBED: "Prescribed", Kind.SNAPPED: "Snapped"}
 
 # Meshes with more faces get their table only on request.
 LARGEST_UNASKED = 10_000
@@ -43,12 +42,16 @@ class TableSettings:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One cone.  angle, curvature: in radians; these and the kind are None where unwrapping computes them."""
+    """One cone.  angle, curvature: in radians; these and the kind are None where unwrapping computes them.
+
+    place: where it is seen on the model.
+    """
 
     vertex: int
     angle: float | None
     kind: Kind | None
     curvature: float | None
+    place: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,8 +81,16 @@ def current_table(
     # The ledger needs no positions.
     surface = native.lsgp.Surface(np.zeros((vertices, 3)), mesh.all_triangles(), seams=mesh.seams())
     table = build_table(surface, angles_in(obj, settings.group, mesh), settings.options())
+    places = mesh.positions([row.vertex for part in table for row in part.rows])
+    table = _named(table, place_names(places, obj.bound_box))
     _tables[obj.data.session_uid] = (*now, table)
     return table
+
+
+def _named(table: list[TablePart], names: list[str]) -> list[TablePart]:
+    """The table with these names of its rows, in order."""
+    following = iter(names)
+    return [replace(part, rows=[replace(row, place=next(following)) for row in part.rows]) for part in table]
 
 
 def last_settings(context: bpy.types.Context) -> TableSettings:

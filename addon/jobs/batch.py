@@ -21,8 +21,8 @@ from ..core.identifiers import CONE_GROUP, IMPORTANCE_GROUP
 from ..mesh.region_read import Faces, Groups, read_region
 from ..mesh.uv_write import write_uv
 from .batch_files import Unreadable, mesh_objects, open_file, save_file
-from .batch_texels import at_density
 from .cuts import cut_choice
+from .densities import at_density
 from .directions import direction_choice
 from .maps import final_layouts, packing_of_preset
 from .unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_all, unwrap_task

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
@@ -16,8 +17,12 @@ from ..mesh import reports
 from ..mesh.uv_write import write_uv
 from . import cells, packing
 from .areas import size_on_the_surface, total_area
+from .densities import packed_at_density
 from .texels import map_density
 from .unwrapping import Unwrapped
+
+if TYPE_CHECKING:
+    import lsgp
 
 TEXTURE_SIZE = 1024
 """Side, in texels, of the texture for which errors of seams are reported."""
@@ -30,7 +35,8 @@ FILLED = 0.6
 class PackSettings:
     """How islands are placed: packed, those of all objects together, or not; by whole cells or not.
 
-    margin_method, margin, turned, udim: as of `packing.pack`; udim not by cells.
+    margin_method, margin, turned, udim: as of `packing.pack`; udim not by cells. texels: the layout at a texel density,
+    with its own margin and tiles, per `unit` of length in Blender's own; None: the square is filled.
     """
 
     pack: bool
@@ -39,6 +45,8 @@ class PackSettings:
     margin: float
     turned: bool = True
     udim: int = 1
+    texels: lsgp.TexelLayout | None = None
+    unit: float = 1.0
 
 
 def packing_of_preset(preset: str, margin: float, *, by_cells: bool, turned: bool, udim: int = 1) -> PackSettings:
@@ -49,15 +57,24 @@ def packing_of_preset(preset: str, margin: float, *, by_cells: bool, turned: boo
 
 
 def final_layouts(solved: Sequence[Unwrapped], settings: PackSettings) -> list[NDArray[np.float64]]:
-    """The coordinates of each map as they are to be written, (m, 3, 2) arrays.  Raises Refused."""
+    """The coordinates of each map as they are to be written, (m, 3, 2) arrays.  Raises Refused; InputError at a texel
+    density that the tiles do not hold."""
     if not settings.pack or not solved:
         return [unwrapped.corner_uv for unwrapped in solved]
     if settings.by_cells:
         return cells.pack(solved)
     parts = _with_one_density(solved)
+    if settings.texels is not None:
+        alike = _whole(solved, [part.corner_uv for part in parts])
+        return packed_at_density(solved, alike, settings.texels, turned=settings.turned, unit=settings.unit)
     packed = packing.pack(parts, settings.margin_method, settings.margin, turned=settings.turned, udim=settings.udim)
+    return _whole(solved, packed)
+
+
+def _whole(solved: Sequence[Unwrapped], of_islands: Sequence[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
+    """The coordinates of each map, (m, 3, 2), with these of its solved triangles."""
     layouts = [unwrapped.corner_uv.copy() for unwrapped in solved]
-    for unwrapped, layout, uv in zip(solved, layouts, packed, strict=True):
+    for unwrapped, layout, uv in zip(solved, layouts, of_islands, strict=True):
         layout[unwrapped.result.solved] = uv
     return layouts
 

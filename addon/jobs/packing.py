@@ -4,12 +4,14 @@ otherwise by Blender's own."""
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..core import native
+from ..core.digest import digest_of
 from ..core.errors import Refused
 from ..core.islands import Islands
 from .areas import total_area
@@ -30,6 +32,11 @@ ENOUGH = 0.65
 # Of a full turn, tried for an island that is alone, and what another of them has to gain.
 DIRECTIONS = 720
 TURN_GAINS = 1e-3
+KEPT = 8
+"""Layouts that are not searched for again."""
+
+# The last layouts by the packer of xatlas, by all that they were made from.
+_kept: OrderedDict[bytes, NDArray[np.float64]] = OrderedDict()
 
 
 def is_tight() -> bool:
@@ -63,6 +70,14 @@ def pack(
     return _with_exact_margin(parts, margin, TURNS if turned else (None,))
 
 
+def pack_at_scale(parts: Sequence[Islands], margin: float, *, turned: bool) -> list[NDArray[np.float64]] | None:
+    """Put the islands of all parts close together in a square that begins at the origin, and leave their size.
+
+    Returns, margin, turned: as of `pack`; None where the packer of xatlas cannot pack them.
+    """
+    return None if _obstacle(parts) else _pack_tightly(parts, margin, turned, 1, fill=False)
+
+
 def _obstacle(parts: Sequence[Islands]) -> str | None:
     """Why the packer of xatlas cannot pack these, and what to do; None where it can."""
     if not is_tight():
@@ -74,14 +89,29 @@ def _obstacle(parts: Sequence[Islands]) -> str | None:
     return None
 
 
-def _pack_tightly(parts: Sequence[Islands], margin: float, turned: bool, udim: int) -> list[NDArray[np.float64]]:
-    """With the packer of xatlas.  parts: without pins, for square images.  Raises lsgp.InputError."""
+def _pack_tightly(
+    parts: Sequence[Islands], margin: float, turned: bool, udim: int, *, fill: bool = True
+) -> list[NDArray[np.float64]]:
+    """With the packer of xatlas.  parts: without pins, for square images.  fill: whether tiles are to be filled.
+
+    Raises lsgp.InputError.
+    """
     first = np.cumsum([0, *(int(part.island.max()) + 1 for part in parts)])
     island = np.concatenate([part.island + at for part, at in zip(parts, first[:-1], strict=True)])
-    uv = native.lsgp.pack_islands(
-        np.concatenate([part.corner_uv for part in parts]), island.astype(np.int32), margin, turned=turned, udim=udim
-    )
+    before, how = np.concatenate([part.corner_uv for part in parts]), {"fill": fill, "turned": turned, "udim": udim}
+    key = digest_of(before, island, margin, how)
+    uv = _kept.pop(key, None)
+    if uv is None:
+        uv = native.lsgp.pack_islands(before, island.astype(np.int32), margin, **how)
+    _kept[key] = uv
+    if len(_kept) > KEPT:
+        _kept.popitem(last=False)
     return np.split(uv, np.cumsum([len(part.island) for part in parts])[:-1])
+
+
+def forget() -> None:
+    """Drop the layouts that are kept."""
+    _kept.clear()
 
 
 def _with_exact_margin(

@@ -6,7 +6,7 @@ Runs in a thread of its own while Blender continues, so nothing here touches Ble
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING
@@ -127,9 +127,16 @@ def unwrap_task(region: Region, settings: UnwrapSettings) -> UnwrapTask:
     )
 
 
-def unwrap_all(tasks: Sequence[UnwrapTask], progress: Progress | None = None) -> list[Unwrapped | Exception]:
-    """The maps of all tasks; an error in place of each that could not be computed.  Raises Cancelled."""
-    return solve_all(_sharing_the_square(tasks), unwrap, progress)
+def unwrap_all(
+    tasks: Sequence[UnwrapTask],
+    progress: Progress | None = None,
+    solve: Callable[[UnwrapTask, Progress | None], Unwrapped] | None = None,
+) -> list[Unwrapped | Exception]:
+    """The maps of all tasks; an error in place of each that could not be computed.  Raises Cancelled.
+
+    solve: in place of `unwrap`.
+    """
+    return solve_all(_sharing_the_square(tasks), solve or unwrap, progress)
 
 
 def _sharing_the_square(tasks: Sequence[UnwrapTask]) -> list[UnwrapTask]:

@@ -7,7 +7,9 @@ or redo restore the map.
 
 from __future__ import annotations
 
+import base64
 import json
+import zlib
 from collections import OrderedDict
 from dataclasses import asdict, dataclass, replace
 from typing import Any
@@ -16,6 +18,7 @@ import bpy
 import numpy as np
 
 from ..core.region import Region
+from ..core.runs import as_runs, from_runs
 from . import changes
 from .uv_digest import uv_digest
 
@@ -47,6 +50,8 @@ class Report:
     overlaps_known: bool = True
 
 
+ELEMENTS = ("cones", "flipped", "overlapping")
+
 # Reports since Blender was started, by digest; undo in edit mode restores UVs, but no properties of the mesh.
 _known: OrderedDict[str, Report] = OrderedDict()
 KNOWN = 64
@@ -76,7 +81,7 @@ def store(mesh: bpy.types.Mesh, report: Report) -> None:
     """Keep the report with the mesh and its current UV map."""
     digest = uv_digest(mesh)
     _remember(digest, report)
-    mesh.cone_unwrap_report = f"{digest}\n{json.dumps(asdict(report))}"
+    mesh.cone_unwrap_report = f"{digest}\n{_packed(report)}"
     changes.mark_changed(mesh)
 
 
@@ -114,11 +119,20 @@ def _remember(digest: str, report: Report | None) -> None:
         _known.popitem(last=False)
 
 
+def _packed(report: Report) -> str:
+    """As text of few characters: elements as runs, compressed."""
+    elements = {name: as_runs(getattr(report, name)) for name in ELEMENTS}
+    kept = asdict(report) | elements | {"paths": [as_runs(path) for path in report.paths]}
+    return base64.b85encode(zlib.compress(json.dumps(kept, separators=(",", ":")).encode())).decode()
+
+
 def _parsed(text: str) -> Report | None:
     """None where another version of the add-on wrote it."""
     try:
-        return Report(**json.loads(text))
-    except (TypeError, ValueError):
+        kept = json.loads(zlib.decompress(base64.b85decode(text)))
+        elements = {name: from_runs(kept[name]) for name in ELEMENTS}
+        return Report(**kept | elements | {"paths": [from_runs(path) for path in kept["paths"]]})
+    except (KeyError, TypeError, ValueError, zlib.error):
         return None
 
 

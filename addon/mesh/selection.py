@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Selecting elements of meshes in edit mode."""
+"""Selecting elements of meshes."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 import bmesh
 import bpy
+import numpy as np
 
 VERTEX_MODE = (True, False, False)
 EDGE_MODE = (False, True, False)
@@ -45,6 +46,15 @@ def select_elements(
         bm.uv_select_sync_valid = False
     bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
     return len(visible)
+
+
+def select_stored_vertex(mesh: bpy.types.Mesh, vertex: int, *, extend: bool) -> None:
+    """Select a vertex of a mesh in object mode, as it will be seen in edit mode.  extend: keep the selection."""
+    if not extend:
+        for elements in (mesh.vertices, mesh.edges, mesh.polygons):
+            elements.foreach_set("select", np.zeros(len(elements), bool))
+    mesh.vertices[vertex].select = True
+    mesh.update_tag()
 
 
 def set_select_mode(

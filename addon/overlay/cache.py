@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import bpy
@@ -33,6 +33,9 @@ class Entry:
 
 _entries: dict[int, Entry] = {}
 
+# By session_uid of the mesh: the cone that is drawn larger.
+_highlighted: dict[int, int] = {}
+
 
 def entry(obj: bpy.types.Object) -> Entry:
     """What is shown of the object's mesh, rebuilt only if the mesh has changed."""
@@ -40,9 +43,22 @@ def entry(obj: bpy.types.Object) -> Entry:
     version = changes.version(mesh)
     kept = _entries.get(mesh.session_uid)
     if kept is None or kept.version != version or kept.mode != obj.mode:
-        kept = Entry(version, obj.mode, build_content(obj, reports.current(mesh)))
+        content = build_content(obj, reports.current(mesh))
+        kept = Entry(version, obj.mode, replace(content, active=_active(obj)))
         _entries[mesh.session_uid] = kept
     return kept
+
+
+def highlight(obj: bpy.types.Object, vertex: int) -> None:
+    """Draw this cone larger in object mode, where no selection shows it."""
+    _highlighted[obj.data.session_uid] = vertex
+    kept = entry(obj)
+    kept.content = replace(kept.content, active=_active(obj))
+    redraw.views()
+
+
+def _active(obj: bpy.types.Object) -> int | None:
+    return None if obj.mode == "EDIT" else _highlighted.get(obj.data.session_uid)
 
 
 def show(obj: bpy.types.Object, content: Content) -> None:
@@ -56,3 +72,4 @@ def show(obj: bpy.types.Object, content: Content) -> None:
 def clear() -> None:
     """Drop everything, including batches on the GPU."""
     _entries.clear()
+    _highlighted.clear()

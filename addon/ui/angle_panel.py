@@ -8,8 +8,9 @@ from collections.abc import Iterator
 import bpy
 
 from ..core import identifiers
+from ..core.cone_angles import Kind
 from ..core.text import degrees
-from ..jobs.angle_table import KIND_LABELS, Row, TablePart, TableSettings, current_table, last_settings, verdict
+from ..jobs.angle_table import Row, TablePart, TableSettings, current_table, last_settings, verdict
 from ..overlay import cache
 from ..overlay.content import Cone
 from .panels import ConeUnwrapSubPanel
@@ -17,6 +18,9 @@ from .panels import ConeUnwrapSubPanel
 # A table with more rows or parts would not be readable.
 MOST_ROWS = 100
 MOST_PARTS = 8
+
+# Of angles that unwrapping keeps; it chooses the others.
+ICONS = {Kind.PRESCRIBED: "PINNED", Kind.SNAPPED: "SNAP_ON"}
 
 
 class VIEW3D_PT_cone_angles(ConeUnwrapSubPanel, bpy.types.Panel):
@@ -86,16 +90,16 @@ def draw_ledger(layout: bpy.types.UILayout, part: TablePart) -> None:
 
 
 def columns(layout: bpy.types.UILayout) -> Iterator[bpy.types.UILayout]:
-    """The four cells of a line of the table, from left to right."""
+    """The three cells of a line of the table, from left to right."""
     rest = layout
-    for factor in (0.17, 0.27, 0.5):
+    for factor in (0.44, 0.48):
         rest = rest.split(factor=factor, align=True)
         yield rest.column(align=True)
     yield rest.column(align=True)
 
 
 def draw_head(layout: bpy.types.UILayout) -> None:
-    for cell, title in zip(columns(layout), ("Vertex", "Angle", "Kind", "Curvature"), strict=True):
+    for cell, title in zip(columns(layout), ("Cone", "Angle", "Curvature"), strict=True):
         cell.label(text=title)
 
 
@@ -103,11 +107,10 @@ def draw_row(layout: bpy.types.UILayout, row: Row, imposed: Cone | None) -> None
     """imposed: the cone as the overlay shows it; where the angle is automatic, that of the last unwrap is shown."""
     known = row if row.angle is not None or imposed is None else imposed
     text = "—" if known.angle is None else ("~" if row.angle is None else "") + degrees(known.angle)
-    vertex, angle, kind, curvature = columns(layout)
-    vertex.operator(identifiers.SELECT_ONE, text=str(row.vertex), emboss=False).vertex = row.vertex
-    typed = angle.operator(identifiers.SET_ANGLE, text=text)
+    place, angle, curvature = columns(layout)
+    place.operator(identifiers.SELECT_ONE, text=row.place, emboss=False).vertex = row.vertex
+    typed = angle.operator(identifiers.SET_ANGLE, text=text, icon=ICONS.get(row.kind, "NONE"))
     typed.vertex = row.vertex
     if known.angle is not None:
         typed.angle = known.angle
-    kind.label(text=KIND_LABELS[row.kind])
     curvature.label(text="" if known.curvature is None else degrees(known.curvature, signed=True))

@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The add-on's preferences: the state of the computing library, its threads, and how the overlay looks."""
+"""The add-on's preferences: the state of the computing library, its threads, what Auto Unwrap begins with, and how the
+overlay looks."""
 
 import bpy
 
 from ..core import native
+from ..core.choices import FirstPressProperties
 from ..core.identifiers import EXTENSION
 from ..core.threads import MOST
 from ..overlay.look import CUT_NAMES, OverlayLook
 
 
-class ConeUnwrapPreferences(OverlayLook, bpy.types.AddonPreferences):
+class ConeUnwrapPreferences(FirstPressProperties, OverlayLook, bpy.types.AddonPreferences):
     bl_idname = EXTENSION
 
     threads: bpy.props.IntProperty(
@@ -30,6 +32,13 @@ class ConeUnwrapPreferences(OverlayLook, bpy.types.AddonPreferences):
         row = layout.row()
         row.alignment = "LEFT"
         row.prop(self, "threads")
+        layout.separator()
+        layout.label(text="Auto Unwrap, until something else is chosen")
+        row = layout.row()
+        for name in self.NAMES:
+            column = row.column()
+            column.label(text=self.bl_rna.properties[name].name)
+            column.prop(self, name, text="")
         layout.separator()
         split = layout.row()
         for heading, names in (

@@ -219,6 +219,7 @@ TREES = (
             Room("overlay", ("overlay/*",), ("core", "mesh", "jobs")),
             Room("operators", ("operators/*", "operators/*/*"), ("core", "mesh", "jobs", "overlay")),
             Room("ui", ("ui/*",), ("core", "mesh", "jobs", "overlay")),
+            Room("presets", ("presets/operator/*/*",)),
             Room(
                 "registration",
                 ("__init__.py", "registration.py"),

@@ -93,6 +93,20 @@ def test_islands_are_spread_over_udim_tiles(lsgp, parts: Path) -> None:
     assert tiles == {(column, 0) for column in range(len(tiles))} and 1 < len(tiles) <= 8
 
 
+@pytest.mark.parametrize("preset", ["--seamless", "--preset=tile"])
+def test_tiles_get_the_density_that_is_asked_for(lsgp, parts: Path, preset: str) -> None:
+    (parts / "cube.obj").write_text(obj_text(*cube(2)))
+    side = np.ptp(cube(2)[0], axis=0)[0]
+    # Three whole textures of 512 texels along an edge: nothing has to be rounded.
+    density = 3 * 512 / side
+    arguments = ("unwrap", "cube.obj", "-o", "out.obj", "--report", "report.json", "--cones", "auto:8", preset)
+    done = lsgp(*arguments, "--texel-density", density, "--texture-size", 512)
+    assert (done.code, done.err) == (0, "")
+    assert density_of(parts / "out.obj", 512) == pytest.approx(density, rel=1e-5)
+    assert done.report()["texel_density"]["median"] == pytest.approx(density)
+    assert done.report()["seamless"]["error"] == 0
+
+
 @pytest.mark.parametrize(
     ("options", "code"),
     [
@@ -116,8 +130,10 @@ def test_what_does_not_fit_is_refused_and_nothing_written(lsgp, parts: Path, opt
         (("--texture-size", 1024), "add --seamless"),
         (("--texel-density", 10, "--texture-size", 1024, "--margin", 2), "add --udim"),
         (("--texel-density", 10, "--texture-size", 16, "--udim", 2, "--margin", 8), "no room"),
-        (("--texel-density", 10, "--texture-size", 1024, "--seamless"), "not seamless"),
-        (("--texel-density", 10, "--texture-size", 1024, "--preset", "tile"), "not seamless"),
+        (("--texel-density", 10, "--seamless"), "add --texture-size"),
+        (("--texel-density", 10, "--texture-size", 1024, "--seamless", "--tiles", 4), "leave --tiles"),
+        (("--texel-density", 10, "--texture-size", 1024, "--preset", "tile", "--tile-size", 4), "leave --tiles"),
+        (("--texel-density", 10, "--texture-size", 1024, "--preset", "tile", "--udim", 4), "not seamless"),
         (("--texel-density", 0, "--texture-size", 1024), "above 0"),
         (("--texel-density", "inf", "--texture-size", 1024), "above 0"),
         (("--texel-density", "nan", "--texture-size", 1024), "above 0"),

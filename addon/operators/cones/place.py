@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core import identifiers
+from ...core.choices import enum_items
 from ...core.region import Region
 from ...core.threads import chosen_threads
 from ...jobs.placing import PlacementSettings, PlacementTask, place_all, write_placement
@@ -16,7 +17,7 @@ from ...jobs.summaries import placement_summary
 from ...mesh.angles import require_attributes
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
-from ..shared.properties import LATTICES, SEAMS, ConeGroupProperty, LatticeProperty, SeamsProperty, enum_items
+from ..shared.properties import LATTICES, SEAMS, ConeGroupProperty, LatticeProperty, SeamsProperty
 
 if TYPE_CHECKING:
     import lsgp

@@ -5,7 +5,7 @@ import bpy
 
 from ...core import identifiers
 from ...core.text import counted
-from ...mesh import reports, texture
+from ...mesh import reports, texture, texture_note
 from ...mesh.targets import target_objects
 from ..shared.polling import poll_meshes
 
@@ -67,6 +67,7 @@ class UV_OT_cone_texture(bpy.types.Operator):
             for obj in objects:
                 texture.show(obj, material)
             texture.show_in_view(context, material)
+        texture_note.update_note()
         if not changed:
             self.report(
                 {"WARNING"},

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core import identifiers, native
+from ...core.choices import Choices, enum_items
 from ...core.region import Region
 from ...jobs.directions import DirectionChoice
 from ...jobs.quads import QuadSettings, QuadTask, quad_task, remesh_all
@@ -17,7 +18,7 @@ from ...mesh.quad_object import add_quad_object
 from ...mesh.region_read import Faces, Groups
 from ..shared.background import BackgroundOperator, Solved
 from ..shared.polling import poll_computation_on_objects
-from ..shared.properties import Choices, ConeGroupProperty, enum_items
+from ..shared.properties import ConeGroupProperty
 from ..unwrapping.direction_choices import AXES
 
 if TYPE_CHECKING:

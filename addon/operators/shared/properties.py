@@ -3,10 +3,8 @@
 
 import bpy
 
+from ...core.choices import Choices, enum_items
 from ...core.identifiers import CONE_GROUP, SEAM_COST_GROUP
-
-Choices = dict[str, tuple[str | None, str, str]]
-"""Value for the library, label and description by identifier."""
 
 SEAMS: Choices = {
     "FOLLOW": (
@@ -22,14 +20,6 @@ CUTS: Choices = {
     "VIEW": (None, "Hidden from View", "Out of sight from the 3D view, and along creases and sharp edges"),
     "SHARP": (None, "Creases", "Along creases and sharp edges"),
     "SHORTEST": (None, "Shortest", "The shortest way"),
-}
-DIRECTIONS: Choices = {
-    "AUTO": (None, "Automatic", "World Z where the UV map is for tiles, otherwise as the islands fit"),
-    "FIT": (None, "As It Fits", "Islands are rotated so that they take little room"),
-    "X": (None, "World X", "The texture's upward direction is the world's X axis where the surface lets it"),
-    "Y": (None, "World Y", "The texture's upward direction is the world's Y axis where the surface lets it"),
-    "Z": (None, "World Z", "The texture's upward direction is the world's Z axis: bricks lie level"),
-    "EDGE": (None, "Active Edge", "The texture's upward direction is that of the active edge, on the island beside it"),
 }
 BORDERS: Choices = {
     "FREE": (
@@ -68,11 +58,6 @@ LATTICES: Choices = {
 }
 
 
-def enum_items(choices: Choices) -> list[tuple[str, str, str]]:
-    """The choices as items of an enum property."""
-    return [(identifier, label, description) for identifier, (_, label, description) in choices.items()]
-
-
 class ConeGroupProperty:
     """Mix-in: the vertex group whose members are the cones."""
 
@@ -106,16 +91,6 @@ class CutsProperty:
         description="Where cuts run; the faces keep their shapes in the UV map. Weights in the vertex group "
         f'"{SEAM_COST_GROUP}" keep cuts away where they are above 0.5, and draw them near where they are below',
         items=enum_items(CUTS),
-    )
-
-
-class DirectionProperty:
-    """Mix-in: where the texture runs."""
-
-    direction: bpy.props.EnumProperty(
-        name="Texture Up",
-        description="What the texture's upward direction follows; islands are rotated for it, not deformed",
-        items=enum_items(DIRECTIONS),
     )
 
 

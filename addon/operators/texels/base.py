@@ -6,15 +6,12 @@ from __future__ import annotations
 import bpy
 
 from ...core.errors import Refused
-from ...core.length_units import length_unit
 from ...jobs.texels import Texels, measure_texels
 from ...mesh.region_read import Faces, read_chosen, require_editable
 from ...mesh.targets import selects_by_uv
 from ...mesh.texel_settings import (
-    DENSITY_DESCRIPTION,
     IMAGE_DESCRIPTION,
     SIZE_DESCRIPTION,
-    density_unit,
     texel_settings,
     texture_size,
 )
@@ -50,7 +47,7 @@ class TexelOperator(ComputingOperator):
         layout = self.layout
         layout.use_property_split = True
         if "density" in self.properties.bl_rna.properties:
-            layout.prop(self, "density", text=f"Density ({density_unit(context.scene)})")
+            self.draw_density(layout, context)
         self.draw_choices(layout)
         layout.prop(self, "use_image")
         layout.prop(self, "texture_size")
@@ -71,21 +68,3 @@ class TexelOperator(ComputingOperator):
         if found is None:
             return None
         return measure_texels(*found, texture_size(obj, use_image=self.use_image, typed=self.texture_size))
-
-
-class DensityProperty:
-    """Mix-in: a density in the scene's unit."""
-
-    density: bpy.props.FloatProperty(
-        name="Density",
-        description=DENSITY_DESCRIPTION,
-        default=1024.0,
-        min=1e-6,
-        soft_max=1e5,
-        precision=2,
-        options={"SKIP_SAVE"},
-    )
-
-    def density_in_world(self, context: bpy.types.Context) -> float:
-        """In pixels per unit of length of Blender."""
-        return self.density / length_unit(context.scene).size

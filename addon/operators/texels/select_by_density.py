@@ -14,8 +14,9 @@ from ...mesh.selection import FACE_MODE, select_elements, set_select_mode
 from ...mesh.targets import target_objects
 from ...mesh.texel_settings import shown_density
 from ..shared.conclusion import conclude, for_each, say_selected
+from ..shared.density import DensityProperty, density_in_world
 from ..shared.polling import poll_edit_mesh
-from .base import DensityProperty, TexelOperator
+from .base import TexelOperator
 
 
 class MESH_OT_cone_texel_select(DensityProperty, TexelOperator, bpy.types.Operator):
@@ -57,7 +58,7 @@ class MESH_OT_cone_texel_select(DensityProperty, TexelOperator, bpy.types.Operat
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         self.adopt_settings(context)
-        wanted, off = self.density_in_world(context), self.tolerance / 100
+        wanted, off = density_in_world(self, context), self.tolerance / 100
 
         def accepted(obj: bpy.types.Object) -> list[int]:
             ratio = face_densities(self.measured(context, obj, Faces.ALL)) / wanted

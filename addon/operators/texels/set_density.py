@@ -15,7 +15,8 @@ from ...mesh.targets import target_objects
 from ...mesh.texel_settings import shown_density
 from ...mesh.uv_write import write_uv
 from ..shared.conclusion import conclude, for_each
-from .base import NOTHING_SELECTED, DensityProperty, TexelOperator
+from ..shared.density import DensityProperty, density_in_world
+from .base import NOTHING_SELECTED, TexelOperator
 
 
 class UV_OT_cone_texel_set(DensityProperty, TexelOperator, bpy.types.Operator):
@@ -31,7 +32,7 @@ class UV_OT_cone_texel_set(DensityProperty, TexelOperator, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         self.adopt_settings(context)
-        density = self.density_in_world(context)
+        density = density_in_world(self, context)
 
         def scaled(obj: bpy.types.Object) -> tuple[Region, Scaled, Report | None] | None:
             measured = self.measured(context, obj)

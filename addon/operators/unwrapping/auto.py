@@ -5,33 +5,28 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import bpy
 
 from ...core import identifiers, native
+from ...core.choices import PRESETS, Choices, FirstPressProperties, enum_items
+from ...core.length_units import length_unit
 from ...core.region import Region
 from ...core.threads import chosen_threads
 from ...jobs.directions import DirectionChoice
-from ...jobs.maps import final_layouts, packing_of_preset, write_map
+from ...jobs.maps import PackSettings, final_layouts, packing_of_preset, write_map
 from ...jobs.placing import mark_placed
+from ...jobs.remembered import unwrap_all_once
 from ...jobs.summaries import unwrap_summary
-from ...jobs.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_all, unwrap_task
+from ...jobs.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_task
 from ...mesh.angles import require_attributes
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
-from ..shared.properties import (
-    SEAMS,
-    Choices,
-    ConeGroupProperty,
-    CutsProperty,
-    DirectionProperty,
-    SeamsProperty,
-    enum_items,
-)
+from ..shared.properties import SEAMS, ConeGroupProperty, CutsProperty, SeamsProperty
 from .cut_choices import chosen_cuts
 from .direction_choices import chosen_direction
-from .seamless import TEXTURE_SIZES, TileSizeProperties
+from .seamless import TileSizeProperties
 from .sections import section
 
 if TYPE_CHECKING:
@@ -39,22 +34,20 @@ if TYPE_CHECKING:
 
     from ...jobs.solving import Progress
 
-PRESETS: Choices = {
-    "PAINT": ("paint", "Paint", "For texture painting: even sizes, few islands, nothing overlaps"),
-    "TILE": ("tile", "Tile", "For tileable textures: squares match across every cut, so that no seam shows"),
-    "BAKE": (
-        "bake",
-        "Bake",
-        "For baking: even sizes, nothing overlaps, islands fill the square, and the margin is exact",
-    ),
+SCALES: Choices = {
+    "FILL": (None, "Fill Square", "Islands get as large as they can"),
+    "DENSITY": (None, "Texel Density", "Islands get so many texels along a unit of length in the world"),
 }
+
+# Values that were last taken from the preferences, by property.
+_taken: dict[str, Any] = {}
 
 
 class UV_OT_cone_auto_unwrap(
     ConeGroupProperty,
     SeamsProperty,
     CutsProperty,
-    DirectionProperty,
+    FirstPressProperties,
     TileSizeProperties,
     BackgroundOperator,
     bpy.types.Operator,
@@ -72,29 +65,17 @@ class UV_OT_cone_auto_unwrap(
     activity = "Unwrapping"
     nothing_selected = "No face is selected; select the faces to unwrap"
 
-    preset: bpy.props.EnumProperty(name="Preset", description="What the UV map is for", items=enum_items(PRESETS))
-    texture_size: bpy.props.EnumProperty(
-        name="Texture Size", description="Side of the texture in texels", items=TEXTURE_SIZES, default="1024"
-    )
-    margin: bpy.props.IntProperty(
-        name="Margin",
-        description="Texels to keep free around each island in a texture of this size; about as many for Paint where "
-        "Blender's packer is used",
-        default=4,
-        min=0,
-        soft_max=64,
-        subtype="PIXEL",
-    )
     udim: bpy.props.IntProperty(
         name="UDIM Tiles",
         description="Spread the islands over so many UDIM tiles, 1001 and following, so that they get as large as they "
         "can; Bake cuts them further for it. Fewer are taken where the largest island fills one alone. Each tile has a "
-        "texture of this size",
+        "texture of this size. At a texel density they are so many at most",
         default=1,
         min=1,
         max=100,
         soft_max=10,
     )
+    scale: bpy.props.EnumProperty(name="Scale", description="How large islands are", items=enum_items(SCALES))
     use_subsurf_data: bpy.props.BoolProperty(
         name="Use Subdivision Surface",
         description="Map UVs taking vertex position after Subdivision Surface modifier has been applied",
@@ -120,15 +101,34 @@ class UV_OT_cone_auto_unwrap(
         default=False,
     )
 
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        # None: registered by a script, without preferences.
+        if (extension := context.preferences.addons.get(identifiers.EXTENSION)) is not None:
+            self._take_defaults(extension.preferences)
+        return super().invoke(context, event)
+
+    def _take_defaults(self, preferences: bpy.types.AddonPreferences) -> None:
+        """Take from the preferences what neither the caller says nor the artist chose since Blender was started."""
+        for name in FirstPressProperties.NAMES:
+            given = getattr(preferences, name)
+            said = self.properties.is_property_set(name)
+            chosen = self.properties.is_property_set(name, ghost=False) and getattr(self, name) != _taken.get(name)
+            if not (said or chosen):
+                setattr(self, name, given)
+                _taken[name] = given
+
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
         layout.row().prop(self, "preset", expand=True)
         if self.preset == "TILE":
-            self.draw_tile_size(layout)
+            self.draw_tile_size(layout, context)
         else:
             layout.prop(self, "texture_size")
             layout.prop(self, "margin")
+            layout.prop(self, "scale")
+            if self.scale == "DENSITY":
+                self.draw_density(layout, context)
             layout.prop(self, "udim")
         layout.prop(self, "direction")
         body = section(layout, "cone_auto_unwrap_cuts", "Cuts and Cones")
@@ -143,14 +143,15 @@ class UV_OT_cone_auto_unwrap(
             self.draw_vertex_group(body, context)
 
     def plan(self) -> tuple[Groups, Callable[[bpy.types.Object, Region], UnwrapTask]]:
+        self.adopt_density(bpy.context)
         options = self._options()
         settings = UnwrapSettings(
             options=options,
             cone_group=self.vertex_group,
             weight_group=None,
             weight_factor=1.0,
-            # Pins and the shape of an image would tear a seamless layout.
-            use_pins=options.seamless is None,
+            # Pins and the shape of an image would tear a seamless layout; pins would have to move for a density.
+            use_pins=options.seamless is None and self.scale == "FILL",
             keep_placement=False,
             correct_aspect=options.seamless is None,
             cuts=chosen_cuts(self.cuts),
@@ -167,19 +168,25 @@ class UV_OT_cone_auto_unwrap(
 
     @staticmethod
     def solve(tasks: list[UnwrapTask], progress: Progress | None = None) -> list[Unwrapped | Exception]:
-        return unwrap_all(tasks, progress)
+        return unwrap_all_once(tasks, progress)
 
     def write(self, solved: Solved) -> list[str]:
-        margin = self.margin / int(self.texture_size)
-        by_cells, turned = self.preset == "TILE", not self._direction().is_any
-        preset = PRESETS[self.preset][0]
-        pack = packing_of_preset(preset, margin, by_cells=by_cells, turned=turned, udim=self.udim)
-        layouts = final_layouts([unwrapped for _, _, unwrapped in solved], pack)
+        layouts = final_layouts([unwrapped for _, _, unwrapped in solved], self._packing())
         for (obj, task, unwrapped), corner_uv in zip(solved, layouts, strict=True):
             write_map(obj, unwrapped, corner_uv)
             if self.mark:
                 mark_placed(obj, self.vertex_group, task.cones, unwrapped.result)
         return [unwrap_summary(unwrapped) for _, _, unwrapped in solved]
+
+    def _packing(self) -> PackSettings:
+        size = int(self.texture_size)
+        by_cells, turned = self.preset == "TILE", not self._direction().is_any
+        preset = PRESETS[self.preset][0]
+        pack = packing_of_preset(preset, self.margin / size, by_cells=by_cells, turned=turned, udim=self.udim)
+        if self.scale == "FILL" or by_cells:
+            return pack
+        layout = native.lsgp.TexelLayout(self.density, size, self.udim, self.margin)
+        return replace(pack, texels=layout, unit=length_unit(bpy.context.scene).size)
 
     def _direction(self) -> DirectionChoice:
         return chosen_direction(self.direction, tiles=self.preset == "TILE")

@@ -11,8 +11,9 @@ import bpy
 from ...core import identifiers
 from ...core.region import Region
 from ...jobs.maps import final_layouts, write_map
+from ...jobs.remembered import unwrap_all_once
 from ...jobs.summaries import unwrap_summary
-from ...jobs.unwrapping import Unwrapped, UnwrapTask, unwrap_all, unwrap_task
+from ...jobs.unwrapping import Unwrapped, UnwrapTask, unwrap_task
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
 from ..shared.properties import BorderProperty, ConeGroupProperty, CutsProperty, SeamsProperty
@@ -54,7 +55,7 @@ class UV_OT_cone_unwrap(
         layout.use_property_split = True
         self.draw_mode(layout, context)
         layout.prop(self, "overlaps")
-        self.draw_seamless(layout)
+        self.draw_seamless(layout, context)
         body = section(layout, "cone_unwrap_cuts", "Cuts and Cones")
         if body is not None:
             for name in ("cuts", "seams", "border", "prescription", "unfold", "repair", "use_subsurf_data"):
@@ -65,12 +66,13 @@ class UV_OT_cone_unwrap(
             self.draw_placement(body)
 
     def plan(self) -> tuple[Groups, Callable[[bpy.types.Object, Region], UnwrapTask]]:
+        self.adopt_density(bpy.context)
         settings = unwrap_settings(self)
         return Groups(settings.cone_group, settings.weight_group), lambda _obj, region: unwrap_task(region, settings)
 
     @staticmethod
     def solve(tasks: list[UnwrapTask], progress: Progress | None = None) -> list[Unwrapped | Exception]:
-        return unwrap_all(tasks, progress)
+        return unwrap_all_once(tasks, progress)
 
     def write(self, solved: Solved) -> list[str]:
         layouts = final_layouts([unwrapped for _, _, unwrapped in solved], self.pack_settings())

@@ -3,8 +3,8 @@
 
 import bpy
 
+from ...core.choices import Choices, enum_items
 from ...core.identifiers import IMPORTANCE_GROUP
-from ..shared.properties import Choices, enum_items
 
 MODES: Choices = {
     "CONFORMAL": ("conformal", "Conformal", "Preserve angles; the scale may vary over the surface"),

@@ -4,10 +4,11 @@
 import bpy
 
 from ...core import native
+from ...core.choices import Choices, DirectionProperty, enum_items
 from ...core.threads import chosen_threads
 from ...jobs.maps import PackSettings
 from ...jobs.unwrapping import UnwrapSettings
-from ..shared.properties import BORDERS, SEAMS, Choices, DirectionProperty, enum_items
+from ..shared.properties import BORDERS, SEAMS
 from .cut_choices import chosen_cuts
 from .direction_choices import chosen_direction
 from .low_stretch import MODES

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core import native
-from ..shared.properties import LATTICES, Choices, LatticeProperty, enum_items
+from ...core.choices import TEXTURE_SIZES, Choices, enum_items
+from ..shared.density import DensityProperty, density_in_world
+from ..shared.properties import LATTICES, LatticeProperty
 from .sections import section
 
 if TYPE_CHECKING:
@@ -16,17 +18,17 @@ TILE_FITS: Choices = {
     "AUTO": (None, "Automatic", "The largest tiles that add at most a tenth to the distortion"),
     "TILES": (None, "Count", "This many tiles along the longer side of the layout, before rounding"),
     "SIZE": (None, "Size", "Tiles of this size on the surface, before rounding"),
+    "DENSITY": (None, "Texel Density", "Tiles that are a whole texture at this texel density, before rounding"),
 }
 COARSE_GRIDS: Choices = {
     "REFINE": ("refine", "Smaller Tiles", "Take the next smaller tiles that fit"),
     "MERGE": ("merge", "Merge Cones", "Merge cones that are less than a tile apart"),
     "RELAX": ("relax", "Leave Cones", "Leave cones without a place on the grid off it; their cuts show a seam"),
 }
-TEXTURE_SIZES = [(str(2**level), str(2**level), f"{2**level} texels per side") for level in range(6, 15)]
 
 
-class TileSizeProperties:
-    """Mix-in: how large the tiles of a seamless layout are."""
+class TileSizeProperties(DensityProperty):
+    """Mix-in: how large the tiles of a seamless layout are.  Needs a property `texture_size`."""
 
     tile_fit: bpy.props.EnumProperty(
         name="Tile Size", description="How the size of the tiles on the surface is chosen", items=enum_items(TILE_FITS)
@@ -51,20 +53,23 @@ class TileSizeProperties:
         unit="LENGTH",
     )
 
-    def draw_tile_size(self, layout: bpy.types.UILayout) -> None:
+    def draw_tile_size(self, layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         """How it is chosen and, where it is given, the number."""
         layout.prop(self, "tile_fit")
         if self.tile_fit == "TILES":
             layout.prop(self, "tiles")
         elif self.tile_fit == "SIZE":
             layout.prop(self, "tile_size")
+        elif self.tile_fit == "DENSITY":
+            self.draw_density(layout, context)
+            layout.prop(self, "texture_size")
 
     def tile_size_options(self) -> dict[str, float | None]:
         """The fields of the library's options for it."""
-        return {
-            "tiles": self.tiles if self.tile_fit == "TILES" else None,
-            "tile_size": self.tile_size if self.tile_fit == "SIZE" else None,
-        }
+        tile_size = self.tile_size if self.tile_fit == "SIZE" else None
+        if self.tile_fit == "DENSITY":
+            tile_size = int(self.texture_size) / density_in_world(self, bpy.context)
+        return {"tiles": self.tiles if self.tile_fit == "TILES" else None, "tile_size": tile_size}
 
 
 class SeamlessProperties(TileSizeProperties, LatticeProperty):
@@ -103,7 +108,7 @@ class SeamlessProperties(TileSizeProperties, LatticeProperty):
         max=14,
     )
 
-    def draw_seamless(self, layout: bpy.types.UILayout) -> None:
+    def draw_seamless(self, layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         """The switch and, while it is on, the other properties."""
         layout.prop(self, "seamless")
         body = section(layout, "cone_unwrap_seamless", "Tiles", is_open=True) if self.seamless else None
@@ -111,14 +116,15 @@ class SeamlessProperties(TileSizeProperties, LatticeProperty):
             return
         column = body.column()
         column.prop(self, "lattice")
-        self.draw_tile_size(column)
+        self.draw_tile_size(column, context)
         column.prop(self, "coarse_grid")
         row = column.row()
         row.active = self.lattice == "SQUARE"
         row.prop(self, "parity")
         column.prop(self, "mip_safe")
         if self.mip_safe:
-            column.prop(self, "texture_size")
+            if self.tile_fit != "DENSITY":
+                column.prop(self, "texture_size")
             column.prop(self, "mip_levels")
 
     def seamless_options(self) -> "lsgp.Seamless | None":

@@ -94,8 +94,8 @@ def unwrap_file(
         run.packed = Packed(packer, uv_area(result.corner_uv[result.solved]) / tiles, tiles)
     elif layout is not None:
         result = at_texel_density(run.surface, result, layout)
-    if layout is not None:
-        run.texels = texel_density(run.surface, result.corner_uv, layout.texture_size)
+    if args.texel_density is not None:
+        run.texels = texel_density(run.surface, result.corner_uv, args.texture_size)
     if args.strict:
         require_flawless(result.warnings)
     with run.stage("write_file"):

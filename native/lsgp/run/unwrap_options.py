@@ -290,7 +290,7 @@ def _add_texel_options(unwrap: argparse.ArgumentParser) -> None:
         metavar="D",
         type=_density_option,
         help="texels per unit of length on the surface, with --texture-size: the layout has this scale instead of "
-        "filling the unit square",
+        "filling the unit square; each tile of a seamless layout is one texture, with this scale before rounding",
     )
     texels.add_argument(
         "--udim",
@@ -372,24 +372,28 @@ def cone_count(args: argparse.Namespace) -> int | None:
     return int(args.cones.removeprefix(AUTO_COUNT)) if args.cones.startswith(AUTO_COUNT) else None
 
 
+def _is_seamless(args: argparse.Namespace) -> bool:
+    return bool(args.seamless) or args.preset == "tile"
+
+
 def texture_size(args: argparse.Namespace) -> int:
     """Side of the texture, in texels, that errors are given for."""
     return DEFAULT_TEXTURE_SIZE if args.texture_size is None else args.texture_size
 
 
 def texel_layout(args: argparse.Namespace) -> TexelLayout | None:
-    """The layout at a texel density; None where none is asked for.  Raises UsageError where options do not fit."""
+    """The layout at a texel density; None where none is asked for, or by the size of tiles of a seamless layout.
+
+    Raises UsageError where options do not fit.
+    """
     if args.margin is not None and args.udim is None and args.pack != "tight":
         raise UsageError("--margin is for UDIM tiles or tight layouts; add --udim or --pack tight")
     if args.texel_density is None:
         return None
-    if args.seamless or args.preset == "tile":
-        raise UsageError(
-            "--texel-density is for layouts that are not seamless; choose the size of their tiles by --tiles or "
-            "--tile-size"
-        )
     if args.texture_size is None:
         raise UsageError("--texel-density needs the size of the texture; add --texture-size")
+    if _is_seamless(args):
+        return None
     margin = DEFAULT_MARGIN if args.margin is None else args.margin
     if args.udim is not None and 2 * margin >= args.texture_size:
         raise UsageError(f"--margin {margin:g}: a tile of {args.texture_size} texels has no room between its margins")
@@ -401,7 +405,7 @@ def packing_of(args: argparse.Namespace) -> Packing | None:
 
     Raises UsageError where options do not fit; InputError where the packer is not installed.
     """
-    if args.seamless or args.preset == "tile":
+    if _is_seamless(args):
         for name in ("pack", "udim"):
             if getattr(args, name) is not None:
                 raise UsageError(f"--{name} is for layouts that are not seamless; leave it out")
@@ -470,6 +474,10 @@ def _seamless(args: argparse.Namespace, preset: Seamless | None) -> Seamless | N
                 raise UsageError(f"--{name.replace('_', '-')} is for seamless layouts; add --seamless")
         return None
     wanted = {name: getattr(args, name) for name in ("lattice", "tiles", "tile_size", "parity", "coarse_grid")}
+    if args.texel_density is not None:
+        if args.tiles is not None or args.tile_size is not None:
+            raise UsageError("--texel-density says how large tiles are; leave --tiles and --tile-size out")
+        wanted["tile_size"] = texture_size(args) / args.texel_density
     return replace(base, **{name: value for name, value in wanted.items() if value is not None}, cell=_cell(args))
 
 

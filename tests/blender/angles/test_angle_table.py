@@ -2,6 +2,7 @@
 """Angles of cones: where they are kept, the table and its ledger, and the operators that change them."""
 
 import re
+from dataclasses import replace
 from itertools import permutations
 from math import pi, radians
 
@@ -170,7 +171,7 @@ def test_the_table_shows_every_cone_with_angle_kind_and_curvature():
     cube = add_cone_cube()
     a, b, *others = corners(cube)
     angles.write_angles(cube, [a, b], [pi, 1.5 * pi], [Kind.PRESCRIBED, Kind.SNAPPED])
-    shown = rows(cube)
+    shown = {vertex: replace(row, place="") for vertex, row in rows(cube).items()}
     assert shown[a] == angle_table.Row(a, pi, Kind.PRESCRIBED, pi)
     assert shown[b] == angle_table.Row(b, 1.5 * pi, Kind.SNAPPED, 0.5 * pi)
     assert all(shown[v] == angle_table.Row(v, None, None, None) for v in others)
@@ -248,8 +249,8 @@ class Drawn:
     def label(self, text="", icon="NONE"):
         self.lines.append(text)
 
-    def operator(self, name, text="", **_options):
-        self.lines.append(text or name)
+    def operator(self, name, text="", icon="NONE", **_options):
+        self.lines.append((text or name) + (f" {icon}" if icon != "NONE" else ""))
         return type("Properties", (), {})()
 
 
@@ -260,14 +261,29 @@ def drawn_lines():
     return panel.layout.lines
 
 
+def place_of(corner):
+    """The name of a corner of the active cube."""
+    x, y, z = (at > 0 for at in bpy.context.object.data.vertices[corner].co)
+    return f"{('Low', 'Top')[z]} {('Front', 'Back')[y]} {('Left', 'Right')[x]}"
+
+
+def test_cones_are_named_by_where_they_are_seen():
+    box = [(-1, -2, -3), (1, 2, 3)]
+    points = [(-1, -2, 3), (0, 0, 0), (0.9, 0, -3), (0.8, 0.1, -2.9), (0, 2, 0)]
+    names = addon.core.places.place_names(points, box)
+    assert names == ["Top Front Left", "Middle", "Low Right 1", "Low Right 2", "Back"]
+    # A flat model has no front and back.
+    assert addon.core.places.place_names([(1, 0, 1)], [(0, 0, 0), (1, 0, 1)]) == ["Top Right"]
+
+
 def test_automatic_cones_have_the_angle_of_the_last_unwrap():
     first = corners(add_cone_cube())[0]
     before = drawn_lines()
-    at = before.index(str(first))
-    assert before[at : at + 4] == [str(first), "—", "Automatic", ""]
+    at = before.index(place_of(first))
+    assert before[at : at + 3] == [place_of(first), "—", ""]
     bpy.ops.uv.cone_unwrap()
     bpy.context.view_layer.update()
-    assert drawn_lines()[at : at + 4] == [str(first), "~270.0°", "Automatic", "+90.0°"]
+    assert drawn_lines()[at : at + 3] == [place_of(first), "~270.0°", "+90.0°"]
 
 
 def test_the_panel_draws_the_table_and_the_fixes():
@@ -277,9 +293,9 @@ def test_the_panel_draws_the_table_and_the_fixes():
     bpy.context.view_layer.update()
     lines = drawn_lines()
     assert lines[:3] == ["Assigned 180.0° of 720.0°", "Missing 540.0°", "Left to 7 automatic cones"]
-    assert lines[3:7] == ["Vertex", "Angle", "Kind", "Curvature"]
-    at = lines.index(str(first))
-    assert lines[at : at + 4] == [str(first), "180.0°", "Snapped", "+180.0°"]
+    assert lines[3:6] == ["Cone", "Angle", "Curvature"]
+    at = lines.index(place_of(first))
+    assert lines[at : at + 3] == [place_of(first), "180.0° SNAP_ON", "+180.0°"]
     assert [line for line in lines if line.startswith("mesh.")] == [
         "mesh.cone_spread_rest",
         "mesh.cone_snap_angles",
@@ -298,6 +314,22 @@ def test_a_click_selects_the_cone():
     bpy.ops.mesh.cone_select_one(vertex=second, extend=True)
     assert selected(cube) == sorted([first, second])
     assert bpy.ops.mesh.cone_select_one(vertex=10**6) == {"CANCELLED"}
+
+
+def test_a_click_in_object_mode_selects_the_cone_and_draws_it_larger():
+    cube = add_cone_cube()
+    first, second = corners(cube)[:2]
+    cache = addon.overlay.cache
+    assert bpy.ops.mesh.cone_select_one(vertex=first) == {"FINISHED"}
+    bpy.context.view_layer.update()
+    assert cache.entry(cube).content.active == first
+    assert bpy.ops.mesh.cone_select_one(vertex=second, extend=True) == {"FINISHED"}
+    bpy.context.view_layer.update()
+    assert cache.entry(cube).content.active == second
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert selected(cube) == sorted([first, second])
+    # There the selection shows it.
+    assert cache.entry(cube).content.active is None
 
 
 # --- setting angles -------------------------------------------------------------------------------------------------

@@ -244,3 +244,27 @@ def test_place_without_selected_faces_is_refused():
     with pytest.raises(RuntimeError, match="select the faces"):
         bpy.ops.mesh.cone_place()
     assert changed(before, snapshot(grid)) == set()
+
+
+def test_normalize_all_on_a_rigged_mesh_leaves_bones_and_cones_alone():
+    cube = add_cube()
+    bpy.ops.object.armature_add()
+    rig = bpy.context.object
+    bpy.ops.object.mode_set(mode="EDIT")
+    rig.data.edit_bones[0].name = "lower"
+    upper = rig.data.edit_bones.new("upper")
+    upper.head, upper.tail = (0, 0, 1), (0, 0, 2)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.context.view_layer.objects.active = cube
+    cube.modifiers.new("Armature", "ARMATURE").object = rig
+    for name, weight in (("lower", 0.25), ("upper", 0.75)):
+        cube.vertex_groups.new(name=name).add(range(len(cube.data.vertices)), weight, "REPLACE")
+    edit(cube)
+    select_elements(cube, "verts", [3])
+    bpy.ops.mesh.cone_mark()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    # A lock would leave nothing to other groups where Blender normalizes all of them together.
+    assert not cube.vertex_groups[GROUP].lock_weight
+    assert bpy.ops.object.vertex_group_normalize_all(lock_active=False) == {"FINISHED"}
+    weights = [[round(group.weight, 6) for group in cube.data.vertices[v].groups] for v in (3, 4)]
+    assert weights == [[0.25, 0.75, 1.0], [0.25, 0.75]]

@@ -11,13 +11,15 @@ from contextlib import contextmanager, suppress
 import bpy
 import numpy as np
 from installed import addon
+from mathutils import Vector
 from scenes import add_ball, add_cone_cube, changed, edit, marked, plain_copy, snapshot, uv_key
 from windows import STEP, press, region, running, until
 
 
 @contextmanager
 def slowed(seconds, verb="parameterize"):
-    """The library takes so much longer, and tells its progress meanwhile."""
+    """The library takes so much longer, and tells its progress meanwhile; maps made before are forgotten."""
+    addon.jobs.remembered.forget()
     lsgp = addon.core.native.lsgp
     work = getattr(lsgp, verb)
 
@@ -320,3 +322,57 @@ def register(panel, options):
     bpy.utils.unregister_class(panel)
     panel.bl_options = options
     bpy.utils.register_class(panel)
+
+
+PREFERRED = ("preset", "texture_size", "margin", "direction")
+
+
+def pressed(**options):
+    """What Auto Unwrap, invoked, was run with."""
+    assert bpy.ops.uv.cone_auto_unwrap("INVOKE_DEFAULT", True, **options) <= {"FINISHED", "RUNNING_MODAL"}
+    yield from until(lambda: not running("UV_OT_cone_auto_unwrap"))
+    used = bpy.context.window_manager.operators[-1].properties
+    return tuple(getattr(used, name) for name in PREFERRED)
+
+
+def test_the_first_press_begins_with_the_preferences_until_the_artist_chooses():
+    add_cone_cube()
+    preferences = bpy.context.preferences.addons[addon.core.identifiers.EXTENSION].preferences
+    try:
+        assert (yield from pressed()) == ("PAINT", "1024", 4, "AUTO")
+        for name, value in zip(PREFERRED, ("BAKE", "2048", 8, "Z"), strict=True):
+            setattr(preferences, name, value)
+        # The last run had what the preferences said then; nobody chose it.
+        assert (yield from pressed()) == ("BAKE", "2048", 8, "Z")
+        assert (yield from pressed(margin=2)) == ("BAKE", "2048", 2, "Z")
+        preferences.margin, preferences.preset = 16, "TILE"
+        assert (yield from pressed()) == ("TILE", "2048", 2, "Z")
+    finally:
+        for name in PREFERRED:
+            preferences.property_unset(name)
+
+
+def test_a_click_on_a_row_turns_the_view_to_a_cone_that_is_out_of_sight():
+    cube = add_cone_cube()
+    view = bpy.context.region_data
+    for mode in ("OBJECT", "EDIT"):
+        bpy.ops.object.mode_set(mode=mode)
+        view.view_rotation, view.view_location = (1, 0, 0, 0), (0, 0, 0)
+        yield 0.2
+        # From above, the corners at the top are seen and stay where they are.
+        for vertex in marked(cube):
+            before = view.view_rotation.copy()
+            assert bpy.ops.mesh.cone_select_one(vertex=vertex) == {"FINISHED"}
+            yield 0.1
+            towards = view.view_rotation @ Vector((0, 0, 1))
+            outward = Vector(np.sign(corner_places(cube)[vertex]))
+            was_seen = outward.dot(before @ Vector((0, 0, 1))) > 0
+            assert outward.dot(towards) > 0 and (view.view_rotation == before) == was_seen
+
+
+def corner_places(cube):
+    """The positions of the vertices of a mesh in any mode."""
+    mesh = plain_copy(cube)
+    places = [tuple(vertex.co) for vertex in mesh.vertices]
+    bpy.data.meshes.remove(mesh)
+    return places

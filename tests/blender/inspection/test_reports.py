@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What an unwrap ended with is kept with the mesh, and only told of the UV map it is about."""
 
+import base64
+import zlib
+from dataclasses import replace
 from itertools import pairwise
 
 import bmesh
@@ -169,7 +172,42 @@ def test_what_another_version_has_written_is_ignored():
     mark(cube, [], GROUP)
     bpy.ops.uv.cone_unwrap()
     digest = cube.data.cone_unwrap_report.partition("\n")[0]
-    for text in ('{"paths": []}', "[1]", "nonsense", ""):
+    packed = [base64.b85encode(zlib.compress(text)).decode() for text in (b'{"paths": []}', b"[1]", b"no JSON")]
+    for text in ('{"paths": [[0, 1]], "cones": [3]}', "[1]", "nonsense", "", "ä", *packed):
         reports._known.clear()
         cube.data.cone_unwrap_report = f"{digest}\n{text}"
         assert reports.find(cube.data) is None
+
+
+def test_a_report_on_a_hundred_thousand_triangles_takes_few_characters():
+    cube = add_cone_cube()
+    bpy.ops.uv.cone_unwrap(seamless=True)
+    faces = 50_000
+    large = replace(
+        reports.find(cube.data),
+        # Cuts along rows and columns of a grid of 250 by 200 quads, and all faces but some.
+        paths=[list(range(251 * row, 251 * (row + 1))) for row in range(0, 200, 20)]
+        + [list(range(column, 251 * 201, 251)) for column in range(0, 250, 25)],
+        overlapping=[face for face in range(faces) if face % 10_000 > 100],
+        flipped=[17, 4000, 4001, 4002],
+        faces=faces,
+    )
+    reports.store(cube.data, large)
+    assert len(cube.data.cone_unwrap_report) < 4000
+    reports._known.clear()
+    assert reports.find(cube.data) == large
+
+
+@pytest.mark.parametrize(
+    ("numbers", "runs"),
+    [
+        ([], []),
+        ([0], [0, 1]),
+        ([7], [7, 1]),
+        (list(range(5, 1000)), [5, 1, 1, 994]),
+        ([4, 2, 0, 9], [4, 1, -2, 2, 9, 1]),
+    ],
+)
+def test_numbers_in_equal_steps_are_kept_as_runs(numbers, runs):
+    assert addon.core.runs.as_runs(numbers) == runs
+    assert addon.core.runs.from_runs(runs) == numbers

@@ -11,7 +11,7 @@ texture, image_aspect, tile_pictures = addon.mesh.texture, addon.mesh.image_aspe
 
 
 def blocks():
-    return {kind: sorted(getattr(bpy.data, kind).keys()) for kind in ("materials", "images", "textures", "node_groups")}
+    return {kind: sorted(getattr(bpy.data, kind).keys()) for kind in ("materials", "images", "textures", "texts")}
 
 
 def slots(obj):
@@ -80,6 +80,27 @@ def test_replaced_materials_are_kept_in_the_file(tmp_path):
     bpy.ops.uv.cone_texture(clear=True)
     assert [material.name for _, material in slots(bpy.data.objects["Cube"])] == ["Red", "Green"]
     assert blocks()["materials"] == ["Green", "Red"]
+
+
+@pytest.mark.parametrize("prepare", [without_slots, with_an_empty_slot, with_materials, with_materials_of_the_object])
+def test_a_file_is_repaired_without_the_extension_by_the_script_in_it(prepare, tmp_path):
+    cube = add_cone_cube('It\'s a "cube"')
+    prepare(cube)
+    name, there = cube.name, [(link, material and material.name) for link, material in slots(cube)]
+    bpy.ops.uv.cone_texture()
+    addon.unregister()
+    try:
+        # Saved once more without the extension, it still has the materials.
+        for _ in range(2):
+            bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "cube.blend"))
+            bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "cube.blend"))
+        (script,) = bpy.data.texts
+        for _ in range(2):
+            exec(compile(script.as_string(), script.name, "exec"), {})
+            found = slots(bpy.data.objects[name])
+            assert [(link, material and material.name) for link, material in found] == there
+    finally:
+        addon.register()
 
 
 def test_what_was_changed_meanwhile_is_the_artists():

@@ -12,6 +12,7 @@ SEAMLESS_ONLY = {
     "tile_fit",
     "tiles",
     "tile_size",
+    "density",
     "coarse_grid",
     "parity",
     "mip_safe",
@@ -41,7 +42,7 @@ class RecordingLayout:
     def separator(self):
         pass
 
-    def prop(self, _owner, name, expand=False):
+    def prop(self, _owner, name, expand=False, text=""):
         self.drawn[name] = self.active
 
     def prop_search(self, _owner, name, *_where):
@@ -90,6 +91,9 @@ def test_options_of_seamless_layouts_are_drawn_only_with_it():
     assert plain.keys() - seamless.keys() == {"correct_aspect", "margin_method", "margin"}
     assert panel(seamless=True, tile_fit="TILES").keys() - seamless.keys() == {"tiles"}
     assert panel(seamless=True, tile_fit="SIZE").keys() - seamless.keys() == {"tile_size"}
+    by_density = panel(seamless=True, tile_fit="DENSITY").keys()
+    assert by_density - seamless.keys() == {"density", "texture_size"}
+    assert panel(seamless=True, tile_fit="DENSITY", mip_safe=True).keys() - by_density == {"mip_levels"}
     assert panel(seamless=True, mip_safe=True).keys() - seamless.keys() == {"texture_size", "mip_levels"}
     assert seamless["parity"] and not panel(seamless=True, lattice="HEXAGON")["parity"]
 

@@ -1,0 +1,9 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lengths are kept as far as the cones allow."""
+
+import bpy
+
+op = bpy.context.active_operator
+for name in {*op.properties.bl_rna.properties.keys()} - {"rna_type"}:
+    op.properties.property_unset(name)
+op.mode = "LOW_STRETCH"

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Auto Unwrap with its defaults on what artists begin with: even in density, nothing overlaps, one line is said."""
+
+import bpy
+import numpy as np
+import pytest
+from first_press_models import MODELS
+from installed import addon
+from scenes import UvMap, covered_twice
+
+Faces, Groups = addon.mesh.region_read.Faces, addon.mesh.region_read.Groups
+
+
+def unwrapped(model, preset, reports):
+    """The objects, their maps, one for each mesh, and what was said."""
+    objects = model()
+    bpy.context.view_layer.update()
+    reports()
+    assert bpy.ops.uv.cone_auto_unwrap(preset=preset) == {"FINISHED"}
+    return objects, {obj.data: UvMap(obj) for obj in reversed(objects)}, reports()
+
+
+def island_densities(obj, uv_map):
+    """Lengths in the map by lengths on the subdivided surface in the world, of each island."""
+    region = addon.mesh.region_read.read_region(obj, Faces.ALL, Groups("uv_cones"), subdivided=True)
+    places = region.surface.positions[uv_map.vertex[uv_map.triangles]] * region.object_scale
+    areas = np.linalg.norm(np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0]), axis=1) / 2
+    island = np.unique(np.array(uv_map.island_of_face())[uv_map.face_of_triangle], return_inverse=True)[1]
+    return np.sqrt(np.bincount(island, np.abs(uv_map._areas())) / np.bincount(island, areas))
+
+
+@pytest.mark.parametrize("model", MODELS, ids=lambda model: model.__name__)
+@pytest.mark.parametrize("preset", ["PAINT", "BAKE"])
+def test_densities_are_alike_nothing_overlaps_and_one_line_is_said(model, preset, reports):
+    objects, maps, said = unwrapped(model, preset, reports)
+    densities = np.concatenate([island_densities(obj, maps[obj.data]) for obj in objects if obj.scale.x == 1])
+    # Islands have one scale, and what is left of stretch differs between them.
+    assert densities.max() / densities.min() < 1.06
+    means = [float(np.median(island_densities(obj, maps[obj.data]))) for obj in objects if obj.scale.x == 1]
+    assert max(means) / min(means) < 1.01
+    for uv_map in maps.values():
+        assert uv_map.uv.min() >= 0 and uv_map.uv.max() <= 1
+        assert uv_map.flipped() == uv_map.overlapping() == set()
+    assert covered_twice(maps.values()) == 0
+    assert len(said.strip().splitlines()) == 1 and said.startswith("Info: ")
+
+
+@pytest.mark.parametrize("model", MODELS, ids=lambda model: model.__name__)
+def test_tiles_meet_nothing_is_flipped_and_one_line_is_said(model, reports):
+    _, maps, said = unwrapped(model, "TILE", reports)
+    for uv_map in maps.values():
+        assert uv_map.flipped() == set()
+        assert uv_map.tile_error() == 0
+    assert len(said.strip().splitlines()) == 1 and said.startswith("Info: ")
