@@ -9,6 +9,7 @@ or got in the first step.
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import native
-from ..mesh import reports
+from ..mesh import changes, reports
 from ..mesh.angles import require_attributes
 from ..mesh.reader import readable_mesh
 from ..mesh.region_read import Faces, Groups, build_region, require_editable
@@ -77,6 +78,7 @@ class ConeSession:
             places = places_on_subdivision(obj, copy) if settings.subdivided else None
             region = build_region(obj, self.mesh, Faces.ALL, groups, places)
         self._obj, self._group = obj, settings.cone_group
+        self._era, self._doubted = changes.era(), False
         task = unwrap_task(region, settings)
         self._whole = replace(task, region=with_cut_costs(task.region, task.cuts))
         self._part_of = _parts(region.surface)
@@ -89,6 +91,23 @@ class ConeSession:
         self._places = np.where(known[:, :, None], region.corner_uv, np.nan)
         self._uv = EditedUv(obj.data)
         self._picker = Picker(self.mesh)
+
+    def doubt(self) -> None:
+        """Something else may have changed the mesh."""
+        self._doubted = True
+
+    def is_intact(self) -> bool:
+        """Whether the mesh can still be written to."""
+        if changes.era() != self._era:
+            return False
+        try:
+            if self._doubted:
+                self._uv.find_again(self.mesh.loop_vertices)
+                self._doubted = False
+            return self._uv.is_open
+        except ReferenceError:
+            # The mesh was removed.
+            return False
 
     def vertex_at(self, screen: Screen, x: float, y: float) -> int | None:
         """As `Picker.vertex_at`."""
@@ -116,9 +135,18 @@ class ConeSession:
         places = self._places[step.triangles]
         self._places[step.triangles] = np.where(np.isnan(places), unwrapped.corner_uv, places)
         self._uv.write(unwrapped.region, unwrapped.result.solved, unwrapped.corner_uv)
-        self.mesh.uv = self._uv.now
         self._shown = unwrapped
-        self._report = reports.joined(self._earlier, report_on(unwrapped), unwrapped.region)
+        self._took(reports.joined(self._earlier, report_on(unwrapped), unwrapped.region))
+
+    def show_before(self) -> None:
+        """Write the map as it was before the session."""
+        self._uv.reset()
+        self._shown = None
+        self._took(self._earlier)
+
+    def _took(self, report: reports.Report | None) -> None:
+        self.mesh.uv = self._uv.now
+        self._report = report
 
     def report(self) -> reports.Report | None:
         """On the map as shown, without the cones that were removed since."""
@@ -135,7 +163,9 @@ class ConeSession:
 
     def restore(self) -> None:
         """Leave the mesh as it was before the session."""
-        self._uv.restore()
+        if changes.era() == self._era:
+            with suppress(ReferenceError):
+                self._uv.restore()
 
     def finish(self) -> Unwrapped:
         """Unwrap with all chosen options and store the cones, as one change.

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, field
 
 import bpy
 import numpy as np
@@ -13,6 +14,15 @@ from ..core.cone_angles import ConeAngles, Kind
 from ..mesh import angles, cones
 
 LEAST_ANGLE = math.radians(1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class ConesState:
+    """Angle and kind of each cone, the connected parts with edited ones and the active one; equal by the cones."""
+
+    cones: dict[int, tuple[float | None, Kind]]
+    touched: frozenset[int] = field(compare=False)
+    active: int | None = field(compare=False)
 
 
 class EditedCones:
@@ -52,6 +62,13 @@ class EditedCones:
         vertices = self.vertices
         chosen = [self._cones[vertex] for vertex in vertices]
         return ConeAngles(np.array(vertices, np.int32), [angle for angle, _ in chosen], [kind for _, kind in chosen])
+
+    def state(self) -> ConesState:
+        return ConesState(dict(self._cones), self.touched, self.active)
+
+    def put(self, state: ConesState) -> None:
+        """Go back, or forward, to a state."""
+        self._cones, self._touched, self.active = dict(state.cones), set(state.touched), state.active
 
     def add(self, vertex: int) -> None:
         """Add a cone with an automatic angle, unless there is one already, and make it the active one."""

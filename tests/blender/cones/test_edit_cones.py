@@ -31,7 +31,7 @@ from scenes import (
 )
 
 cone_session, unwrapping, content = addon.jobs.cone_session, addon.jobs.unwrapping, addon.overlay.content
-following = addon.jobs.following
+following, edit_history = addon.jobs.following, addon.jobs.edit_history
 reports, screens, typed_number = addon.mesh.reports, addon.core.screen, addon.operators.cones.typed_number
 lsgp = addon.core.native.lsgp
 
@@ -416,4 +416,91 @@ def test_stopping_leaves_no_computation_and_shows_nothing(monkeypatch):
     follower.stop()
     assert not follower.is_busy and not follower.follow()
     np.testing.assert_array_equal(UvMap(ball).uv, before)
+    session.restore()
+
+
+def history_of(session):
+    return edit_history.EditHistory(session.cones.state, session.cones.put)
+
+
+def test_steps_are_undone_and_redone_with_the_angles_the_active_cone_and_the_map():
+    ball = add_ball()
+    bpy.ops.mesh.cone_place(automatic=False, count=8)
+    bpy.ops.uv.cone_unwrap()
+    session = begin(ball)
+    history, follower = history_of(session), following.Follower(session)
+    seen = [(session.cones.current(), session.cones.active, UvMap(ball).uv)]
+
+    def change(name, work):
+        history.begin(name)
+        work()
+        follower.outdated = True
+        until_idle(follower)
+        seen.append((session.cones.current(), session.cones.active, UvMap(ball).uv))
+
+    first = session.cones.vertices[0]
+    free = next(v for v in range(len(ball.data.vertices)) if v not in session.cones)
+    change("Add Cone", lambda: session.cones.add(free))
+    change("Set Angle", lambda: session.cones.set_angle(math.radians(350)))
+    change("Remove Cone", lambda: session.cones.remove(first))
+
+    def compare(expected):
+        follower.outdated = True
+        until_idle(follower)
+        cones, active, uv = expected
+        assert session.cones.current().angles == cones.angles and session.cones.active == active
+        np.testing.assert_array_equal(session.cones.current().cones, cones.cones)
+        np.testing.assert_allclose(UvMap(ball).uv, uv, atol=1e-5)
+
+    names = ["Add Cone", "Set Angle", "Remove Cone"]
+    for number in (2, 1, 0):
+        assert history.undoes == names[number] and history.undo()
+        compare(seen[number])
+    assert not session.cones.changed and not history.undo() and history.undoes is None
+    np.testing.assert_array_equal(UvMap(ball).uv, seen[0][2])
+    for number in (1, 2, 3):
+        assert history.redoes == names[number - 1] and history.redo()
+        compare(seen[number])
+    assert not history.redo()
+    assert history.undo()
+    change("Turn Angle", lambda: session.turn_angle(math.radians(15), 1))
+    assert history.redoes is None and history.undoes == "Turn Angle"
+    session.restore()
+
+
+def test_steps_that_change_nothing_are_none():
+    session = begin(add_ball())
+    history = history_of(session)
+    first = session.cones.vertices[0]
+    history.begin("Remove Cone")
+    session.cones.remove(first)
+    history.begin("Move Cone")
+    session.cones.add(session.cones.vertices[0])
+    assert history.undoes == "Remove Cone" and history.undo()
+    assert first in session.cones and history.undoes is None
+    session.restore()
+
+
+def test_undone_steps_give_the_parts_they_touched_back():
+    cube, other = add_cone_cube("Cube"), add_cube("Other")
+    mark(other, corners(other))
+    other.location.x = 5
+    bpy.ops.object.select_all(action="SELECT")
+    bpy.context.view_layer.objects.active = cube
+    bpy.ops.object.join()
+    bpy.ops.uv.cone_unwrap()
+    before = UvMap(cube).uv
+    session = begin(cube)
+    history = history_of(session)
+    near, far = session.cones.vertices[0], session.cones.vertices[-1]
+    for cone in (near, far):
+        history.begin("Remove Cone")
+        session.cones.remove(cone)
+        follow(session)
+    history.undo()
+    follow(session)
+    uv = UvMap(cube)
+    same = (uv.uv == before).all(axis=1)
+    is_near = uv.positions[uv.vertex][:, 0] < 2
+    assert same[~is_near].all() and not same[is_near].any()
     session.restore()

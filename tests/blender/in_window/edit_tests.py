@@ -7,7 +7,7 @@ Run by run_in_window.py; no pytest.
 import bpy
 import numpy as np
 from mathutils import Quaternion, Vector
-from scenes import ANGLES, add_ball, changed, edit, marked, plain_copy, snapshot
+from scenes import ANGLES, add_ball, changed, edit, marked, plain_copy, snapshot, uv_key
 from windows import area, click, drag, event, move_to, place_of, press, region, running, take_picture, type_text, until
 
 
@@ -148,3 +148,183 @@ def test_opening_a_file_ends_the_tool():
     yield from begin()
     bpy.app.timers.register(lambda: bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True) and None)
     yield from until(lambda: not editing(), 8.0)
+
+
+def behind(over, accept):
+    """A vertex that is seen by the view, were it not for what lies over it; and its place."""
+    for vertex in in_front(ball(), accept):
+        x, y = place_of(ball(), vertex)
+        if 20 < x - over.x < over.width - 20 and 20 < y - over.y < over.height - 20:
+            return vertex, (x, y)
+    raise LookupError("no vertex is behind it")
+
+
+def finished():
+    """Press Enter, and the cones that there are then."""
+    yield from press("RET")
+    yield from until(lambda: not editing())
+    return marked(ball())
+
+
+def test_the_sidebar_gets_its_own_clicks():
+    yield from begin()
+    cones = marked(ball())
+    area().spaces.active.show_region_ui = True
+    area().spaces.active.region_3d.view_distance = 2.5
+    yield 0.5
+    sidebar = region("UI")
+    category = sidebar.active_panel_category
+    _, place = behind(sidebar, lambda v: v not in cones)
+    yield from click(place)
+    # Of the tabs at its right one that is not the open one.
+    for height in range(40, 240, 20):
+        yield from click((sidebar.x + sidebar.width - 10, sidebar.y + sidebar.height - height))
+        if sidebar.active_panel_category != category:
+            break
+    yield 0.3
+    take_picture("sidebar_while_editing")
+    assert sidebar.active_panel_category != category
+    assert editing()
+    assert (yield from finished()) == cones
+
+
+def test_the_navigation_gizmo_turns_the_view():
+    yield from begin()
+    cones = marked(ball())
+    view = area().spaces.active.region_3d
+    view.view_distance = 1.8
+    yield 0.3
+    scale = bpy.context.preferences.system.ui_scale
+    header = region("TOOL_HEADER")
+    ball_place = region().x + region().width - 50 * scale, header.y - 50 * scale
+    rotation = view.view_rotation.copy()
+    yield from drag(ball_place, (ball_place[0] - 30, ball_place[1] - 5), 4)
+    yield 0.3
+    assert rotation.rotation_difference(view.view_rotation).angle > 0.1
+    assert editing()
+    assert (yield from finished()) == cones
+
+
+def test_cones_are_added_in_each_view_of_four():
+    yield from begin()
+    cones = marked(ball())
+    bpy.ops.screen.region_quadview()
+    yield 0.5
+    added = []
+    views = [part for part in area().regions if part.type == "WINDOW"]
+    assert len(views) == 4
+    for number, view in enumerate(views):
+        view.data.view_location, view.data.view_distance = (0, 0, 0), 6.0
+        yield 0.3
+        toward = view.data.view_matrix.inverted().to_3x3().col[2]
+        facing = sorted(ball().data.vertices, key=lambda vertex: -(vertex.normal @ toward))
+        free = [vertex.index for vertex in facing if vertex.index not in {*cones, *added}]
+        added.append(free[number])
+        yield from click(place_of(ball(), added[-1], view))
+    yield 0.3
+    take_picture("four_views")
+    assert (yield from finished()) == sorted([*cones, *added])
+    bpy.ops.screen.region_quadview()
+
+
+def begin_and_change():
+    """With one cone more and the map changed; returns what was before."""
+    yield from begin()
+    before, cones, uv = snapshot(ball()), marked(ball()), uv_of(ball())
+    yield from click(place_of(ball(), in_front(ball(), lambda v: v not in cones)[0]))
+    yield from until(lambda: uv_of(ball()) != uv)
+    return before
+
+
+def test_leaving_edit_mode_ends_the_tool_and_leaves_everything_as_it_was():
+    before = yield from begin_and_change()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    yield from until(lambda: not editing())
+    assert changed(before, snapshot(ball())) == {"mode", "context"}
+
+
+def test_undo_by_another_operator_ends_the_tool():
+    before = yield from begin_and_change()
+    bpy.ops.ed.undo_push(message="meanwhile")
+    bpy.ops.ed.undo()
+    yield from until(lambda: not editing())
+    assert changed(before, snapshot(ball())) == set()
+
+
+def test_other_elements_end_the_tool():
+    yield from begin_and_change()
+    bpy.ops.mesh.select_all(action="SELECT")
+    bpy.ops.mesh.subdivide("EXEC_DEFAULT", True)
+    yield from until(lambda: not editing())
+    assert bpy.context.mode == "EDIT_MESH"
+
+
+def test_other_layers_and_other_selections_do_not_matter():
+    before = yield from begin_and_change()
+    bpy.ops.mesh.uv_texture_add("EXEC_DEFAULT", True)
+    bpy.context.object.data.uv_layers.active_index = 0
+    bpy.ops.mesh.select_all("EXEC_DEFAULT", True, action="SELECT")
+    yield 0.2
+    assert editing()
+    yield from press("ESC")
+    yield from until(lambda: not editing())
+    after = snapshot(ball())
+    assert before[uv_key()] == after[uv_key()]
+
+
+def test_our_other_operators_wait_for_the_end():
+    yield from begin()
+    assert not bpy.ops.uv.cone_unwrap.poll() and not bpy.ops.mesh.cone_mark.poll()
+    yield from press("ESC")
+    yield from until(lambda: not editing())
+    assert bpy.ops.uv.cone_unwrap.poll() and bpy.ops.mesh.cone_mark.poll()
+
+
+def test_ctrl_z_takes_back_one_step_and_blender_keeps_one_of_all():
+    yield from begin()
+    before, cones = snapshot(ball()), marked(ball())
+    first, second = in_front(ball(), lambda v: v not in cones)[:2]
+    place = place_of(ball(), first)
+    yield from click(place)
+    yield from press("RET", place)
+    yield from until(lambda: not editing())
+    one = snapshot(ball())
+    bpy.ops.ed.undo()
+    yield 0.2
+    assert changed(before, snapshot(ball())) == set()
+    assert bpy.ops.mesh.cone_edit("INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
+    yield from click(place)
+    yield from type_text("300", place)
+    event("WHEELUPMOUSE", "PRESS", place)
+    yield 0.2
+    yield from click(place_of(ball(), second))
+    yield 0.3
+    take_picture("steps_to_undo")
+    for _ in range(3):
+        yield from press("Z", place, ctrl=True)
+    yield 0.3
+    take_picture("steps_undone")
+    assert editing()
+    yield from press("RET", place)
+    yield from until(lambda: not editing())
+    assert changed(one, snapshot(ball())) == set()
+    bpy.ops.ed.undo()
+    yield 0.2
+    assert changed(before, snapshot(ball())) == set()
+
+
+def test_all_steps_undone_leave_everything_as_it_was_and_redone_steps_count():
+    yield from begin()
+    before, cones = snapshot(ball()), marked(ball())
+    added = in_front(ball(), lambda v: v not in cones)[0]
+    place = place_of(ball(), added)
+    yield from click(place)
+    yield from press("Z", place, ctrl=True)
+    yield 0.3
+    assert changed(before, snapshot(ball())) == set()
+    yield from press("Z", place, ctrl=True, shift=True)
+    yield from press("Z", place, ctrl=True)
+    yield from press("Y", place, ctrl=True)
+    yield from press("RET", place)
+    yield from until(lambda: not editing())
+    assert marked(ball()) == sorted([*cones, added])
