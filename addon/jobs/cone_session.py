@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import native
+from ..core.errors import object_errors
 from ..mesh import changes, reports
 from ..mesh.angles import require_attributes
 from ..mesh.reader import readable_mesh
@@ -27,8 +28,10 @@ from ..mesh.subdivided import places_on_subdivision
 from ..mesh.uv_write import EditedUv
 from .cuts import with_cut_costs
 from .edited_cones import EditedCones
-from .maps import report_on
+from .edited_layout import Layout, packed
+from .maps import PackSettings, report_on
 from .picking import Picker
+from .texels import map_density
 from .unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap, unwrap_task
 
 if TYPE_CHECKING:
@@ -167,21 +170,46 @@ class ConeSession:
             with suppress(ReferenceError):
                 self._uv.restore()
 
-    def finish(self) -> Unwrapped:
+    def finish(self, placing: PackSettings) -> Unwrapped:
         """Unwrap with all chosen options and store the cones, as one change.
 
-        Raises LsgpError where that is impossible; then the map is as before the session and the cones are stored.
+        placing: how islands are packed where an edited one does not fit any more into its place.
+        Raises LsgpError and Refused where that is impossible; then the map is as before the session and the cones are
+        stored.
         """
         try:
             step = self._step()
             self.show(step, step.solve())
-        except native.lsgp.LsgpError:
+            if placing.pack and not placing.by_cells:
+                self._fit(placing)
+        except object_errors():
             self.restore()
             raise
         finally:
             self.cones.store(self._obj, self._group)
-        reports.store(self._obj.data, self.report())
+        corner_uv = self._uv.now[step.task.region.triangle_loops].astype(np.float64)
+        density = map_density(step.task.region, corner_uv)
+        reports.store(self._obj.data, replace(self.report(), texel_density=density))
         return self._shown
+
+    def _fit(self, placing: PackSettings) -> None:
+        """Pack all islands where an edited one is outside the square, or on another one and none was before."""
+        whole = self._whole.region
+        edited = np.zeros(len(whole.triangle_loops), bool)
+        edited[self._scope.triangles] = True
+        # Where the map is not one of ours, what else it has may be on anything.
+        counts = edited if self._earlier is None else np.ones_like(edited)
+        now, before = (self._layout(uv, counts) for uv in (self._uv.now, self._uv.before))
+        if now.crosses_tiles(edited) or (now.overlaps() and not before.overlaps()):
+            uv = packed(whole.surface.triangles, now, self._whole.pinned, self._whole.aspect, placing)
+            self._uv.write(whole, now.island >= 0, uv)
+            self.mesh.uv = self._uv.now
+
+    def _layout(self, loop_uv: NDArray[np.float32], counts: NDArray[np.bool_]) -> Layout:
+        whole = self._whole.region
+        uv = loop_uv[whole.triangle_loops].astype(np.float64)
+        island = native.lsgp.measure_distortion(whole.surface, uv).island
+        return Layout(uv, np.where(counts, island, -1).astype(np.int32))
 
     def _step(self, **draft: object) -> Step:
         scope = self._current_scope()

@@ -90,6 +90,11 @@ class EditedUv:
         return not self._lost and self._mesh.is_editmode and self._bm.is_valid
 
     @property
+    def before(self) -> NDArray[np.float32]:
+        """(l, 2), as before anything was written."""
+        return self._before
+
+    @property
     def now(self) -> NDArray[np.float32]:
         """(l, 2), as last written."""
         return self._now

@@ -19,7 +19,7 @@ from ...overlay import cache
 from ...overlay.content import session_content
 from ..shared.conclusion import conclude
 from ..shared.polling import poll_computation, poll_edit_mesh
-from ..unwrapping.properties import unwrap_settings
+from ..unwrapping.properties import pack_settings, unwrap_settings
 from .cursor import Cursor
 from .typed_number import TypedNumber
 
@@ -57,8 +57,8 @@ class MESH_OT_cone_edit(bpy.types.Operator):
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         obj = context.edit_object
         try:
-            settings = unwrap_settings(context.window_manager.operator_properties_last(identifiers.UNWRAP))
-            self._session = ConeSession(obj, settings)
+            chosen = context.window_manager.operator_properties_last(identifiers.UNWRAP)
+            self._session, self._placing = ConeSession(obj, unwrap_settings(chosen)), pack_settings(chosen)
         except object_errors() as error:
             return conclude(self, [], {}, {obj.name: error})
         self._obj, self._uid = obj, obj.data.session_uid
@@ -263,7 +263,7 @@ class MESH_OT_cone_edit(bpy.types.Operator):
             return {"CANCELLED"}
         name = self._obj.name
         try:
-            unwrapped = self._session.finish()
+            unwrapped = self._session.finish(self._placing)
             region, warnings = unwrapped.region, unwrapped.warnings
         except object_errors() as error:
             region, warnings = None, [error]

@@ -20,6 +20,7 @@ from scenes import (
     add_sphere,
     changed,
     corners,
+    covered_twice,
     edit,
     mark,
     marked,
@@ -36,6 +37,8 @@ reports, screens, typed_number = addon.mesh.reports, addon.core.screen, addon.op
 lsgp = addon.core.native.lsgp
 
 SIZE = 400
+AS_THEY_ARE = addon.jobs.maps.PackSettings(False, False, "SCALED", 0.001)
+PACKED = replace(AS_THEY_ARE, pack=True)
 
 
 def begin(obj, **options):
@@ -179,7 +182,7 @@ def test_finishing_changes_the_map_the_cones_and_their_angles_alone():
     session.cones.add(start[0])
     session.cones.move(neighbor(ball, start[0]))
     session.cones.set_angle(math.radians(300))
-    session.finish()
+    session.finish(AS_THEY_ARE)
     expected = sorted({*start[1:], session.cones.active})
     assert marked(ball) == expected and selected(ball) == []
     assert stored_angle(ball, session.cones.active) == np.float32(math.radians(300))
@@ -195,7 +198,7 @@ def test_the_finished_map_is_that_of_the_operator():
     bpy.ops.uv.cone_unwrap()
     session = begin(ball)
     session.cones.remove(session.cones.vertices[0])
-    session.finish()
+    session.finish(AS_THEY_ARE)
     edited = UvMap(ball)
     bpy.ops.mesh.select_all(action="SELECT")
     bpy.ops.uv.cone_unwrap()
@@ -274,7 +277,7 @@ def test_what_cannot_be_unwrapped_leaves_the_map_and_keeps_the_cones():
     with pytest.raises(lsgp.LsgpError):
         follow(session)
     with pytest.raises(lsgp.LsgpError):
-        session.finish()
+        session.finish(AS_THEY_ARE)
     assert marked(sphere) == [30]
     assert uv_key() not in changed(before, snapshot(sphere))
 
@@ -307,7 +310,7 @@ def test_found_angles_are_automatic_once_the_cones_of_their_part_are_others():
     assert None not in found
     session.cones.remove(first)
     assert session.cones.current().angles == [None] * 7
-    session.finish()
+    session.finish(AS_THEY_ARE)
     assert stored_angle(ball, second) == 0.0
 
 
@@ -317,7 +320,7 @@ def test_open_borders_need_no_cone():
     middle = vertex_near(grid, 0.0, 0.0, 0.0)
     session.cones.add(middle)
     session.cones.set_angle(math.radians(330))
-    session.finish()
+    session.finish(AS_THEY_ARE)
     assert abs(UvMap(grid).angle_sum(middle) - math.radians(330)) < 1e-3
 
 
@@ -504,3 +507,95 @@ def test_undone_steps_give_the_parts_they_touched_back():
     is_near = uv.positions[uv.vertex][:, 0] < 2
     assert same[~is_near].all() and not same[is_near].any()
     session.restore()
+
+
+def is_in_tile(uv, column=0, row=0):
+    return bool((uv >= (column - 1e-5, row - 1e-5)).all() and (uv <= (column + 1 + 1e-5, row + 1 + 1e-5)).all())
+
+
+def with_a_sharp_cone(build, placing):
+    """The map of an object that was unwrapped and then got a sharp cone in place of two blunt ones."""
+    obj = build()
+    bpy.ops.uv.cone_unwrap()
+    assert is_in_tile(UvMap(obj).uv)
+    session = begin(obj)
+    session.cones.remove(session.cones.vertices[0])
+    session.cones.remove(session.cones.vertices[-1])
+    session.cones.add(session.cones.vertices[2])
+    session.cones.set_angle(math.radians(120))
+    session.finish(placing)
+    report = reports.find(obj.data)
+    assert report.texel_density is not None and sorted(report.cones) == marked(obj)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    return UvMap(obj)
+
+
+@pytest.mark.parametrize("build", [add_ball, add_cone_cube])
+def test_what_does_not_fit_into_its_place_is_packed_again(build):
+    left, packed = (with_a_sharp_cone(build, placing) for placing in (AS_THEY_ARE, PACKED))
+    assert not is_in_tile(left.uv) and is_in_tile(packed.uv)
+    assert packed.sister_difference() < 4 * UV_ROUNDING
+    assert packed.split_edges() == left.split_edges()
+    assert packed.l2_stretch() == pytest.approx(left.l2_stretch(), abs=1e-4)
+
+
+def two_cubes(place):
+    """Two cubes in one mesh, unwrapped; place: where their UVs go then."""
+    cube, other = add_cone_cube("Cube", 1), add_cone_cube("Other", 1)
+    other.location.x = 5
+    bpy.ops.object.select_all(action="SELECT")
+    bpy.context.view_layer.objects.active = cube
+    bpy.ops.object.join()
+    bpy.ops.uv.cone_unwrap()
+    uv_map = UvMap(cube)
+    is_near = uv_map.positions[uv_map.vertex][:, 0] < 2
+    uv = place(uv_map.uv, is_near).astype(np.float32)
+    cube.data.attributes["UVMap"].data.foreach_set("vector", uv.ravel())
+    # The report is on the map that was.
+    reports.store(cube.data, reports._parsed(cube.data.cone_unwrap_report.partition("\n")[2]))
+    return cube
+
+
+def overlap_after(place, placing):
+    """How much of the map of two cubes lies on itself once one of them is edited; and the map."""
+    cube = two_cubes(place)
+    session = begin(cube)
+    near = [cone for cone in session.cones.vertices if cube.data.vertices[cone].co.x < 2]
+    for cone in near[4:]:
+        session.cones.remove(cone)
+    session.finish(placing)
+    uv_map = UvMap(cube)
+    return covered_twice([uv_map], 150), uv_map
+
+
+def placed(*middles):
+    """Moves the UVs of the two cubes so that these are the middles of their boxes."""
+
+    def place(uv, is_near):
+        out = uv.copy()
+        for part, middle in zip((is_near, ~is_near), middles, strict=True):
+            low, high = uv[part].min(axis=0), uv[part].max(axis=0)
+            out[part] = middle + (uv[part] - (low + high) / 2) * (0.25 / (high - low).max())
+        return out
+
+    return place
+
+
+def test_islands_that_came_to_lie_on_others_are_packed():
+    overlap, _ = overlap_after(lambda uv, _near: uv, AS_THEY_ARE)
+    assert overlap > 0
+    bpy.ops.object.mode_set(mode="OBJECT")
+    overlap, uv_map = overlap_after(lambda uv, _near: uv, PACKED)
+    assert overlap == 0 and is_in_tile(uv_map.uv)
+
+
+def test_islands_that_lay_on_each_other_stay_so():
+    """Both are in the middle of the square, where edited ones have room."""
+    overlap, uv_map = overlap_after(placed((0.5, 0.5), (0.5, 0.5)), PACKED)
+    assert overlap > 0
+    assert np.abs(uv_map.uv - 0.5).max() < 0.3
+
+
+def test_maps_on_another_tile_stay_there():
+    _, uv_map = overlap_after(placed((3.25, 1.5), (3.75, 1.5)), PACKED)
+    assert is_in_tile(uv_map.uv, 3, 1)
