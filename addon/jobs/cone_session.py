@@ -26,6 +26,7 @@ from ..mesh.region_read import Faces, Groups, build_region, require_editable
 from ..mesh.stored_mesh import FrozenMesh
 from ..mesh.subdivided import places_on_subdivision
 from ..mesh.uv_write import EditedUv
+from .angle_table import FollowedTable
 from .cuts import with_cut_costs
 from .edited_cones import EditedCones
 from .edited_layout import Layout, packed
@@ -111,6 +112,10 @@ class ConeSession:
         except ReferenceError:
             # The mesh was removed.
             return False
+
+    def table(self) -> FollowedTable:
+        """The table of the cones as they are edited."""
+        return FollowedTable(self._whole.region.surface, self.cones.current)
 
     def vertex_at(self, screen: Screen, x: float, y: float) -> int | None:
         """As `Picker.vertex_at`."""

@@ -11,6 +11,7 @@ import bpy
 from ...core import findings, identifiers
 from ...core.errors import object_errors
 from ...core.text import counted, degrees
+from ...jobs import angle_table
 from ...jobs.cone_session import ConeSession
 from ...jobs.edit_history import EditHistory
 from ...jobs.following import Follower
@@ -70,6 +71,7 @@ class MESH_OT_cone_edit(bpy.types.Operator):
         self._dragging = self._moved = False
         self._last_operator = _last_operator(context)
         changes.suspend(obj.data)
+        angle_table.follow(self._uid, self._session.table())
         self._timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
         context.window_manager.modal_handler_add(self)
         self._draw()
@@ -285,6 +287,7 @@ class MESH_OT_cone_edit(bpy.types.Operator):
             with context.temp_override(workspace=workspace):
                 workspace.status_text_set(None)
         self._show_header(None)
+        angle_table.unfollow(self._uid)
         changes.resume(self._uid)
 
 

@@ -32,6 +32,7 @@ from scenes import (
 )
 
 cone_session, unwrapping, content = addon.jobs.cone_session, addon.jobs.unwrapping, addon.overlay.content
+angle_table = addon.jobs.angle_table
 following, edit_history = addon.jobs.following, addon.jobs.edit_history
 reports, screens, typed_number = addon.mesh.reports, addon.core.screen, addon.operators.cones.typed_number
 lsgp = addon.core.native.lsgp
@@ -599,3 +600,28 @@ def test_islands_that_lay_on_each_other_stay_so():
 def test_maps_on_another_tile_stay_there():
     _, uv_map = overlap_after(placed((3.25, 1.5), (3.75, 1.5)), PACKED)
     assert is_in_tile(uv_map.uv, 3, 1)
+
+
+SETTINGS = angle_table.TableSettings("uv_cones", "follow", "free")
+
+
+def test_the_table_of_angles_follows():
+    ball = add_ball()
+    edit(ball, select="DESELECT")
+    uid = ball.data.session_uid
+    stored = angle_table.current_table(ball, SETTINGS)
+    session = begin(ball)
+    angle_table.follow(uid, session.table())
+    assert angle_table.current_table(ball, SETTINGS) == stored
+    first, *others = session.cones.vertices
+    session.cones.add(first)
+    session.cones.set_angle(math.radians(200))
+    (part,) = angle_table.current_table(ball, SETTINGS)
+    assert [row.vertex for row in part.rows] == [first, *others]
+    assert part.rows[0].angle == math.radians(200) and part.ledger.assigned == pytest.approx(math.radians(160))
+    assert angle_table.current_table(ball, SETTINGS)[0] is part
+    session.cones.remove(others[0])
+    assert len(angle_table.current_table(ball, SETTINGS)[0].rows) == len(others)
+    session.restore()
+    angle_table.unfollow(uid)
+    assert angle_table.current_table(ball, SETTINGS) == stored

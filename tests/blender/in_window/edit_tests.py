@@ -6,9 +6,12 @@ Run by run_in_window.py; no pytest.
 
 import bpy
 import numpy as np
+from installed import addon
 from mathutils import Quaternion, Vector
 from scenes import ANGLES, add_ball, changed, edit, marked, plain_copy, snapshot, uv_key
 from windows import area, click, drag, event, move_to, place_of, press, region, running, take_picture, type_text, until
+
+angle_table = addon.jobs.angle_table
 
 
 def editing():
@@ -328,3 +331,37 @@ def test_all_steps_undone_leave_everything_as_it_was_and_redone_steps_count():
     yield from press("RET", place)
     yield from until(lambda: not editing())
     assert marked(ball()) == sorted([*cones, added])
+
+
+def open_sidebar():
+    """With the tab of the add-on."""
+    area().spaces.active.show_region_ui = True
+    yield 0.5
+    sidebar = region("UI")
+    for height in range(20, round(sidebar.height), 20):
+        if sidebar.active_panel_category == "Cone Unwrap":
+            break
+        yield from click((sidebar.x + sidebar.width - 10, sidebar.y + sidebar.height - height))
+    yield 0.3
+
+
+def test_the_table_shows_the_cones_as_they_are_edited():
+    yield from begin()
+    cones = marked(ball())
+    yield from open_sidebar()
+    sidebar = region("UI")
+    # Its panel, to be seen in the picture.
+    yield from click((sidebar.x + 80, sidebar.y + sidebar.height - 142))
+    settings = angle_table.last_settings(bpy.context)
+    added = in_front(ball(), lambda v: v not in cones)[0]
+    place = place_of(ball(), added)
+    yield from click(place)
+    yield from type_text("345", place)
+    yield 0.3
+    (part,) = angle_table.current_table(ball(), settings)
+    assert {row.vertex: row.angle for row in part.rows}[added] == np.radians(345)
+    take_picture("table_while_editing")
+    yield from press("ESC")
+    yield from until(lambda: not editing())
+    (part,) = angle_table.current_table(ball(), settings)
+    assert [row.vertex for row in part.rows] == cones
