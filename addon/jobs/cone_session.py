@@ -31,7 +31,6 @@ from .cuts import with_cut_costs
 from .edited_cones import EditedCones
 from .edited_layout import Layout, packed
 from .maps import PackSettings, report_on
-from .picking import Picker
 from .texels import map_density
 from .unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap, unwrap_task
 
@@ -39,7 +38,6 @@ if TYPE_CHECKING:
     import lsgp
 
     from ..core.region import Region
-    from ..core.screen import Screen
     from .solving import Progress
 
 
@@ -94,7 +92,6 @@ class ConeSession:
         known = self._whole.pinned if self._earlier is None else np.ones_like(self._whole.pinned)
         self._places = np.where(known[:, :, None], region.corner_uv, np.nan)
         self._uv = EditedUv(obj.data)
-        self._picker = Picker(self.mesh)
 
     def doubt(self) -> None:
         """Something else may have changed the mesh."""
@@ -116,14 +113,6 @@ class ConeSession:
     def table(self) -> FollowedTable:
         """The table of the cones as they are edited."""
         return FollowedTable(self._whole.region.surface, self.cones.current)
-
-    def vertex_at(self, screen: Screen, x: float, y: float) -> int | None:
-        """As `Picker.vertex_at`."""
-        return self._picker.vertex_at(screen, x, y)
-
-    def cone_at(self, screen: Screen, x: float, y: float, radius: float) -> int | None:
-        """As `Picker.cone_at`."""
-        return self._picker.cone_at(screen, self.cones.vertices, x, y, radius)
 
     def angle(self, vertex: int) -> float | None:
         """The angle chosen for a cone, or computed for it in the last step; None where none is known."""

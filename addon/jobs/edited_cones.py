@@ -84,11 +84,11 @@ class EditedCones:
             self.active = None
 
     def move(self, vertex: int) -> bool:
-        """Move the active cone with its angle to a vertex, unless there is a cone.  Returns whether it moved."""
-        if vertex in self._cones:
+        """Move the active cone with its angle to a vertex, unless there is a cone, or another connected part, which may
+        merely be in front.  Returns whether it moved."""
+        if vertex in self._cones or self._part_of[vertex] != self._part_of[self.active]:
             return False
         self._touch(vertex)
-        self._touch(self.active)
         self._cones[vertex] = self._cones.pop(self.active)
         self.active = vertex
         return True

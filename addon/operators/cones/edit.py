@@ -4,18 +4,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
 
 import bpy
 
 from ...core import findings, identifiers
 from ...core.errors import object_errors
 from ...core.text import counted, degrees
-from ...jobs import angle_table
-from ...jobs.cone_session import ConeSession
-from ...jobs.edit_history import EditHistory
-from ...jobs.following import Follower
-from ...mesh import changes
+from ...jobs.edited_objects import EditedObject, EditedObjects
+from ...mesh.targets import target_objects
 from ...overlay import cache
 from ...overlay.content import session_content
 from ..shared.conclusion import conclude
@@ -23,6 +21,9 @@ from ..shared.polling import poll_computation, poll_edit_mesh
 from ..unwrapping.properties import pack_settings, unwrap_settings
 from .cursor import Cursor
 from .typed_number import TypedNumber
+
+if TYPE_CHECKING:
+    from ...jobs.cone_session import ConeSession
 
 INTERVAL = 1 / 60
 WHEEL_STEP, FINE_STEP = math.radians(15.0), math.radians(1.0)
@@ -36,13 +37,13 @@ STATUS = (
 
 
 class MESH_OT_cone_edit(bpy.types.Operator):
-    """Passes events on to a `ConeSession`."""
+    """Passes events on to `EditedObjects`."""
 
     bl_idname = identifiers.EDIT
     bl_label = "Edit Cones"
     bl_description = (
         "Add, drag and remove cones with the mouse and give them angles, while the UV map follows. "
-        "The mesh is unwrapped with the settings of the last Unwrap from Cones, and each island keeps its place"
+        "Meshes are unwrapped with the settings of the last Unwrap from Cones, and each island keeps its place"
     )
     bl_options = {"UNDO"}
 
@@ -56,25 +57,21 @@ class MESH_OT_cone_edit(bpy.types.Operator):
         return True
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        obj = context.edit_object
+        objects = target_objects(context)
         try:
             chosen = context.window_manager.operator_properties_last(identifiers.UNWRAP)
-            self._session, self._placing = ConeSession(obj, unwrap_settings(chosen)), pack_settings(chosen)
+            self._objects, self._placing = EditedObjects(objects, unwrap_settings(chosen)), pack_settings(chosen)
         except object_errors() as error:
-            return conclude(self, [], {}, {obj.name: error})
-        self._obj, self._uid = obj, obj.data.session_uid
-        self._cursor = Cursor(obj)
+            return conclude(self, [], {}, {objects[0].name: error})
+        self._cursor = Cursor()
         self._cursor.follow(event)
-        self._follower = Follower(self._session)
         self._typed = TypedNumber()
-        self._history = EditHistory(self._session.cones.state, self._session.cones.put)
         self._dragging = self._moved = False
+        self._refusal = ""
         self._last_operator = _last_operator(context)
-        changes.suspend(obj.data)
-        angle_table.follow(self._uid, self._session.table())
         self._timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
         context.window_manager.modal_handler_add(self)
-        self._draw()
+        self._draw(self._objects.begun)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -90,7 +87,7 @@ class MESH_OT_cone_edit(bpy.types.Operator):
             return {"PASS_THROUGH"}
         if event.type in BUTTONS and not self._dragging and self._cursor.view() is None:
             # It may change anything.
-            self._session.doubt()
+            self._objects.doubt()
             return {"PASS_THROUGH"}
         if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
             self.cancel(context)
@@ -115,8 +112,7 @@ class MESH_OT_cone_edit(bpy.types.Operator):
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Also called by Blender where it ends the operator, for example before another file is opened."""
-        self._follower.stop()
-        self._session.restore()
+        self._objects.restore()
         self._end(context)
 
     # Events
@@ -126,8 +122,8 @@ class MESH_OT_cone_edit(bpy.types.Operator):
         last = _last_operator(context)
         if last != self._last_operator:
             self._last_operator = last
-            self._session.doubt()
-        return self._session.is_intact()
+            self._objects.doubt()
+        return self._objects.is_intact()
 
     def _click(self, event: bpy.types.Event) -> set[str]:
         if event.value == "RELEASE":
@@ -141,59 +137,70 @@ class MESH_OT_cone_edit(bpy.types.Operator):
 
     def _press(self, event: bpy.types.Event) -> None:
         self._typed.clear()
-        cone = self._cursor.cone(self._session)
+        cone = self._cursor.cone(self._objects)
+        pick = cone if cone is not None or event.ctrl else self._cursor.vertex(self._objects)
+        if pick is None or not self._begin(pick[0]):
+            return
+        edited, hit = pick
         if event.ctrl:
-            if cone is not None:
-                self._history.begin("Remove Cone")
-                self._session.cones.remove(cone)
-                self._changed()
-            return
-        vertex = self._cursor.vertex(self._session) if cone is None else cone
-        if vertex is None:
-            return
-        self._dragging = True
-        self._history.begin("Add Cone" if cone is None else "Move Cone")
-        self._session.cones.add(vertex)
-        if cone is None:
+            self._objects.history.begin("Remove Cone")
+            edited.session.cones.remove(hit.vertex)
+        else:
+            self._dragging = True
+            self._objects.history.begin("Add Cone" if cone is None else "Move Cone")
+            edited.session.cones.add(hit.vertex)
+        if cone is None or event.ctrl:
             self._changed()
         else:
+            self._draw([edited])
+
+    def _begin(self, edited: EditedObject) -> bool:
+        """Make an object the active one.  Returns whether its cones can be edited."""
+        try:
+            before = self._objects.activate(edited)
+        except object_errors() as error:
+            self._refusal = f"{edited.name}: {findings.explain(error)}"
             self._draw()
+            return False
+        self._refusal = ""
+        if before is not None:
+            self._draw([before])
+        return True
 
     def _turn(self, event: bpy.types.Event) -> set[str]:
         """Away from cones, the wheel zooms."""
         if not self._dragging:
-            cone = self._cursor.cone(self._session)
-            if cone is None:
+            pick = self._cursor.cone(self._objects)
+            if pick is None or not self._begin(pick[0]):
                 return {"PASS_THROUGH"}
-            self._session.cones.active = cone
+            pick[0].session.cones.active = pick[1].vertex
         self._typed.clear()
-        self._history.begin("Turn Angle")
-        self._session.turn_angle(FINE_STEP if event.shift else WHEEL_STEP, WHEEL[event.type])
+        self._objects.history.begin("Turn Angle")
+        self._objects.active.session.turn_angle(FINE_STEP if event.shift else WHEEL_STEP, WHEEL[event.type])
         self._changed()
         return {"RUNNING_MODAL"}
 
     def _type(self, event: bpy.types.Event) -> None:
         if event.ctrl or event.oskey:
             self._go_back(event)
-        elif self._session.cones.active is None:
             return
-        elif event.type == "A":
+        cones = self._objects.active_cones
+        if cones is None:
+            return
+        if event.type == "A":
             self._typed.clear()
-            self._history.begin("Automatic Angle")
-            self._session.cones.set_angle(None)
+            self._objects.history.begin("Automatic Angle")
+            cones.set_angle(None)
             self._changed()
-        else:
-            self._type_angle(event)
-
-    def _type_angle(self, event: bpy.types.Event) -> None:
+            return
         begins = not self._typed.text
         if not self._typed.press(event.type, event.unicode):
             return
         if begins:
-            self._history.begin("Set Angle")
+            self._objects.history.begin("Set Angle")
         angle = self._typed.value
         if angle:
-            self._session.cones.set_angle(math.radians(angle))
+            cones.set_angle(math.radians(angle))
             self._changed()
         self._draw()
 
@@ -204,35 +211,43 @@ class MESH_OT_cone_edit(bpy.types.Operator):
             return
         self._typed.clear()
         self._dragging = False
-        if self._history.redo() if redo else self._history.undo():
-            self._changed()
+        history = self._objects.history
+        if history.redo() if redo else history.undo():
+            self._draw(self._objects.begun)
 
     def _changed(self) -> None:
-        self._follower.outdated = True
-        self._draw()
+        """To be called after a change of the active object's cones."""
+        self._objects.active.follower.outdated = True
+        self._draw([self._objects.active])
 
     def _follow(self) -> None:
         """Move the dragged cone to the cursor, and let the map follow."""
-        moved = False
+        active, moved = self._objects.active, False
         if self._dragging and self._moved:
-            vertex = self._cursor.vertex(self._session)
-            moved = vertex is not None and self._session.cones.move(vertex)
+            pick = self._cursor.vertex(self._objects)
+            moved = pick is not None and pick[0] is active and active.session.cones.move(pick[1].vertex)
+            active.follower.outdated |= moved
         self._moved = False
-        self._follower.outdated |= moved
+        shown = self._objects.follow()
         # While the map is late, at least the cone is drawn at the cursor.
-        if self._follower.follow() or (moved and self._follower.is_busy):
-            self._draw()
+        if moved and active.follower.is_busy:
+            shown.append(active)
+        if shown:
+            self._draw(shown)
 
     # What is shown
 
-    def _draw(self) -> None:
-        cache.show(self._obj, session_content(self._obj, self._session))
+    def _draw(self, objects: Iterable[EditedObject] = ()) -> None:
+        """objects: those whose cones or maps have changed."""
+        for edited in objects:
+            cache.show(edited.obj, session_content(edited.obj, edited.session))
         self._show_header(self._header())
         bpy.context.workspace.status_text_set(self._status())
 
     def _status(self) -> str:
         texts = [STATUS]
-        for key, step in (("Ctrl-Z: undo", self._history.undoes), ("Ctrl-Shift-Z: redo", self._history.redoes)):
+        history = self._objects.history
+        for key, step in (("Ctrl-Z: undo", history.undoes), ("Ctrl-Shift-Z: redo", history.redoes)):
             if step is not None:
                 texts.append(f"{key} {step}")
         return "  |  ".join(texts)
@@ -242,37 +257,41 @@ class MESH_OT_cone_edit(bpy.types.Operator):
             area.header_text_set(text)
 
     def _header(self) -> str:
-        session, active = self._session, self._session.cones.active
-        texts = [f"Edit Cones: {counted(len(session.cones.vertices), 'cone')}"]
+        texts = [f"Edit Cones: {counted(self._objects.count(), 'cone')}"]
+        active = self._objects.active or next(iter(self._objects.begun), None)
+        if active is not None:
+            texts += self._figures(active.session)
+            texts.append(active.follower.problem)
+        return "  |  ".join(text for text in (*texts, self._refusal) if text)
+
+    def _figures(self, session: ConeSession) -> Iterator[str]:
+        """The angle of the active cone, and the stretch of the map."""
+        active = session.cones.active
         if active is not None:
             angle = session.angle(active)
             shown = "automatic" if angle is None else degrees(angle)
             if angle is not None and session.cones.is_automatic(active):
                 shown += " (automatic)"
-            texts.append(f"Angle: [{self._typed.text}|]°" if self._typed.text else f"Angle: {shown}")
+            yield f"Angle: [{self._typed.text}|]°" if self._typed.text else f"Angle: {shown}"
         if session.stretch is not None:
-            texts.append(f"Stretch: {session.stretch:.3f} (1 is none)")
-        if self._follower.problem:
-            texts.append(self._follower.problem)
-        return "  |  ".join(texts)
+            yield f"Stretch: {session.stretch:.3f} (1 is none)"
 
     # Ending
 
     def _finish(self, context: bpy.types.Context) -> set[str]:
-        self._follower.stop()
-        if not self._session.cones.changed:
+        self._objects.stop()
+        if not self._objects.changed:
             self.cancel(context)
             return {"CANCELLED"}
-        name = self._obj.name
-        try:
-            unwrapped = self._session.finish(self._placing)
-            region, warnings = unwrapped.region, unwrapped.warnings
-        except object_errors() as error:
-            region, warnings = None, [error]
+        finished = self._objects.finish(self._placing)
         self._end(context)
-        findings.keep(self._obj, region, warnings)
-        done = f"{name}: {counted(len(self._session.cones.vertices), 'cone')}"
-        return conclude(self, [done], {name: warnings}, {})
+        done, warnings = [], {}
+        for edited, outcome in finished:
+            failed = isinstance(outcome, Exception)
+            warnings[edited.name] = [outcome] if failed else outcome.warnings
+            findings.keep(edited.obj, None if failed else outcome.region, warnings[edited.name])
+            done.append(f"{edited.name}: {counted(len(edited.cones), 'cone')}")
+        return conclude(self, done, warnings, {})
 
     def _give_up(self, context: bpy.types.Context) -> set[str]:
         """End where another operator has changed the mesh."""
@@ -287,8 +306,7 @@ class MESH_OT_cone_edit(bpy.types.Operator):
             with context.temp_override(workspace=workspace):
                 workspace.status_text_set(None)
         self._show_header(None)
-        angle_table.unfollow(self._uid)
-        changes.resume(self._uid)
+        self._objects.end()
 
 
 def _last_operator(context: bpy.types.Context) -> int:

@@ -32,8 +32,9 @@ from scenes import (
 )
 
 cone_session, unwrapping, content = addon.jobs.cone_session, addon.jobs.unwrapping, addon.overlay.content
-angle_table = addon.jobs.angle_table
+angle_table, picking, edited_objects = addon.jobs.angle_table, addon.jobs.picking, addon.jobs.edited_objects
 following, edit_history = addon.jobs.following, addon.jobs.edit_history
+changes = addon.mesh.changes
 reports, screens, typed_number = addon.mesh.reports, addon.core.screen, addon.operators.cones.typed_number
 lsgp = addon.core.native.lsgp
 
@@ -56,6 +57,16 @@ def follow(session):
     unwrapped = step.solve()
     session.show(step, unwrapped)
     return unwrapped
+
+
+def vertex_at(session, x, y):
+    hit = picking.Picker(session.mesh).vertex_at(from_above(), x, y)
+    return None if hit is None else hit.vertex
+
+
+def cone_at(session, x, y, radius):
+    hit = picking.Picker(session.mesh).cone_at(from_above(), session.cones.vertices, x, y, radius)
+    return None if hit is None else hit.vertex
 
 
 def from_above():
@@ -96,9 +107,9 @@ def test_the_vertex_under_the_cursor_is_the_nearest_of_the_face_there():
     cube = add_cone_cube()
     session = begin(cube)
     expected = vertex_near(cube, 0.5, -0.5, 1.0)
-    assert session.vertex_at(from_above(), *pixel(0.5, -0.5)) == expected
-    assert session.vertex_at(from_above(), *pixel(0.3, -0.68)) == expected
-    assert session.vertex_at(from_above(), *pixel(1.5, 0.0)) is None
+    assert vertex_at(session, *pixel(0.5, -0.5)) == expected
+    assert vertex_at(session, *pixel(0.3, -0.68)) == expected
+    assert vertex_at(session, *pixel(1.5, 0.0)) is None
     session.restore()
 
 
@@ -108,9 +119,9 @@ def test_the_cone_under_the_cursor_is_seen_and_near():
     session = begin(cube)
     x, y = pixel(1.0, 1.0)
     # Right behind it is another one.
-    assert session.cone_at(from_above(), x + 5, y, 10) == vertex_near(cube, 1.0, 1.0, 1.0)
-    assert session.cone_at(from_above(), x + 15, y, 10) is None
-    assert session.cone_at(from_above(), *pixel(0.0, 0.0), 10) is None
+    assert cone_at(session, x + 5, y, 10) == vertex_near(cube, 1.0, 1.0, 1.0)
+    assert cone_at(session, x + 15, y, 10) is None
+    assert cone_at(session, *pixel(0.0, 0.0), 10) is None
     session.restore()
 
 
@@ -119,7 +130,7 @@ def test_hidden_faces_are_not_picked():
     edit(cube)
     bpy.ops.mesh.hide(unselected=False)
     session = begin(cube)
-    assert session.vertex_at(from_above(), *pixel(0.5, 0.5)) is None
+    assert vertex_at(session, *pixel(0.5, 0.5)) is None
     session.restore()
 
 
@@ -625,3 +636,120 @@ def test_the_table_of_angles_follows():
     session.restore()
     angle_table.unfollow(uid)
     assert angle_table.current_table(ball, SETTINGS) == stored
+
+
+def seen_from_above(obj):
+    """As `from_above`, of an object anywhere."""
+    screen = from_above()
+    return screens.Screen(screen.matrix @ np.array(obj.matrix_world, np.float64), SIZE, SIZE)
+
+
+def begin_together(*objects, **options):
+    if objects[0].mode != "EDIT":
+        edit(*objects, select="DESELECT")
+    cuts = addon.jobs.cuts.CutChoice()
+    settings = unwrapping.UnwrapSettings(lsgp.Options(**options), "uv_cones", None, 0.0, True, False, True, cuts)
+    return edited_objects.EditedObjects(objects, settings)
+
+
+def add_upper_and_lower():
+    """Two cubes over each other, the upper one half as wide and twice as flat."""
+    lower, upper = add_cone_cube("Lower"), add_cone_cube("Upper")
+    upper.scale, upper.location = (0.5, 0.5, 0.25), (0.0, 0.0, 3.0)
+    bpy.context.view_layer.update()
+    return lower, upper
+
+
+def test_the_nearest_object_in_the_world_is_picked():
+    lower, upper = add_upper_and_lower()
+    objects = begin_together(lower, upper)
+    edited, hit = objects.vertex_at(seen_from_above, *pixel(0.2, 0.25))
+    assert edited.obj == upper and hit.vertex == vertex_near(upper, 0.5, 0.5, 1.0)
+    edited, hit = objects.vertex_at(seen_from_above, *pixel(0.8, 0.9))
+    assert edited.obj == lower and hit.vertex == vertex_near(lower, 1.0, 1.0, 1.0)
+    assert objects.vertex_at(seen_from_above, *pixel(1.5, 0.0)) is None
+    only_lower = objects.vertex_at(lambda obj: seen_from_above(obj) if obj == lower else None, *pixel(0.2, 0.25))
+    assert only_lower[0].obj == lower
+    assert objects.begun == []
+    objects.end()
+
+
+def test_cones_behind_another_object_are_not_picked():
+    lower, upper = add_upper_and_lower()
+    hidden = vertex_near(lower, 0.0, 0.0, 1.0)
+    mark(lower, [hidden])
+    objects = begin_together(lower, upper)
+    edited, hit = objects.cone_at(seen_from_above, *pixel(0.5, 0.5), 10)
+    assert edited.obj == upper and hit.vertex == vertex_near(upper, 1.0, 1.0, 1.0)
+    edited, hit = objects.cone_at(seen_from_above, *pixel(1.0, 1.0), 10)
+    assert edited.obj == lower and hit.vertex == vertex_near(lower, 1.0, 1.0, 1.0)
+    assert objects.cone_at(seen_from_above, *pixel(0.0, 0.0), 10) is None
+    alone = objects.cone_at(lambda obj: seen_from_above(obj) if obj == lower else None, *pixel(0.0, 0.0), 10)
+    assert alone[0].obj == lower and alone[1].vertex == hidden
+    objects.end()
+
+
+def until_all_idle(objects):
+    while any(edited.follower.outdated or edited.follower.is_busy for edited in objects.begun):
+        objects.follow()
+
+
+def test_objects_are_edited_undone_and_put_back_together():
+    first, second, third = add_ball("First"), add_ball("Second"), add_ball("Third")
+    second.scale = 1.0, 1.0, 2.0
+    bpy.ops.object.select_all(action="SELECT")
+    bpy.ops.uv.cone_unwrap()
+    edit(first, second, third, select="DESELECT")
+    before = [snapshot(obj) for obj in (first, second, third)]
+    objects = begin_together(first, second, third)
+    assert changes.is_suspended(third.data)
+    for edited in objects._all[:2]:
+        objects.activate(edited)
+        objects.history.begin("Remove Cone")
+        edited.session.cones.remove(edited.cones[0])
+        edited.follower.outdated = True
+    until_all_idle(objects)
+    assert len(objects.begun) == 2 and objects.count() == 22 and objects.active.obj == second
+    maps = [UvMap(obj).uv for obj in (first, second)]
+    assert objects.history.undo()
+    until_all_idle(objects)
+    assert objects.count() == 23 and objects.active_cones is None
+    assert uv_key() not in changed(before[1], snapshot(second))
+    np.testing.assert_array_equal(UvMap(first).uv, maps[0])
+    assert objects.history.redo()
+    until_all_idle(objects)
+    np.testing.assert_allclose(UvMap(second).uv, maps[1], atol=1e-5)
+    objects.restore()
+    objects.end()
+    assert not changes.is_suspended(third.data)
+    for obj, state in zip((first, second, third), before, strict=True):
+        assert changed(state, snapshot(obj)) == set()
+
+
+def test_one_object_that_cannot_be_unwrapped_does_not_keep_others_from_it():
+    good, bad = add_ball("Good"), add_cone_cube("Bad")
+    objects = begin_together(good, bad)
+    for edited in objects._all:
+        objects.activate(edited)
+        for cone in edited.cones[1 if edited.obj == good else 0 :][: 1 if edited.obj == good else 7]:
+            edited.session.cones.remove(cone)
+    finished = objects.finish(PACKED)
+    objects.end()
+    assert [isinstance(outcome, Exception) for _, outcome in finished] == [False, True]
+    assert len(marked(good)) == 7 and len(marked(bad)) == 1
+    assert reports.find(good.data) is not None
+
+
+def test_a_dragged_cone_stays_on_its_connected_part():
+    cube, other = add_cone_cube("Cube"), add_cone_cube("Other")
+    other.location.x = 5
+    bpy.ops.object.select_all(action="SELECT")
+    bpy.context.view_layer.objects.active = cube
+    bpy.ops.object.join()
+    session = begin(cube)
+    near, far = vertex_near(cube, 0.0, 0.0, 1.0), vertex_near(cube, 5.0, 0.0, 1.0)
+    session.cones.add(session.cones.vertices[0])
+    assert session.cones.move(near)
+    assert not session.cones.move(far)
+    assert session.cones.active == near and far not in session.cones
+    session.restore()

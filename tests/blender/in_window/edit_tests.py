@@ -365,3 +365,103 @@ def test_the_table_shows_the_cones_as_they_are_edited():
     yield from until(lambda: not editing())
     (part,) = angle_table.current_table(ball(), settings)
     assert [row.vertex for row in part.rows] == cones
+
+
+def begin_with_two():
+    """Two balls beside each other in edit mode, one of them scaled, with the tool running."""
+    left, right = add_ball("Left", cuts=4), add_ball("Right", cuts=4)
+    left.location.x, right.location.x, right.scale = -1.4, 1.4, (0.6, 1.0, 1.4)
+    bpy.ops.object.select_all(action="SELECT")
+    bpy.ops.uv.cone_unwrap()
+    edit(left, right, select="DESELECT")
+    seen = area().spaces.active.region_3d
+    seen.view_perspective = "PERSP"
+    seen.view_rotation, seen.view_distance = Quaternion((0.7071, 0.7071, 0, 0)), 9.0
+    bpy.ops.ed.undo_push(message="before")
+    yield 0.3
+    assert bpy.ops.mesh.cone_edit("INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
+    yield 0.1
+    return left.name, right.name
+
+
+def add_one_to_each(names):
+    """By clicks; returns the vertices."""
+    added = []
+    for name in names:
+        obj = bpy.data.objects[name]
+        cones = marked(obj)
+        added.append(in_front(obj, lambda v, cones=cones: v not in cones)[0])
+        yield from click(place_of(obj, added[-1]))
+        yield 0.3
+    return added
+
+
+def states(names):
+    return [snapshot(bpy.data.objects[name]) for name in names]
+
+
+def test_two_objects_are_edited_in_one_step_of_undo():
+    names = yield from begin_with_two()
+    before = states(names)
+    cones = [marked(bpy.data.objects[name]) for name in names]
+    added = yield from add_one_to_each(names)
+    yield from type_text("340", place_of(bpy.data.objects[names[1]], added[1]))
+    yield 0.3
+    take_picture("two_objects")
+    yield from press("RET")
+    yield from press("RET")
+    yield from until(lambda: not editing())
+    assert [marked(bpy.data.objects[name]) for name in names] == [
+        sorted([*old, new]) for old, new in zip(cones, added, strict=True)
+    ]
+    assert abs(angle_of(bpy.data.objects[names[1]], added[1]) - 340) < 1e-4
+    after = states(names)
+    bpy.ops.ed.undo()
+    yield 0.2
+    assert not any(changed(*pair) for pair in zip(before, states(names), strict=True))
+    bpy.ops.ed.redo()
+    yield 0.2
+    assert not any(changed(*pair) for pair in zip(after, states(names), strict=True))
+
+
+def test_esc_leaves_two_objects_as_they_were():
+    names = yield from begin_with_two()
+    before = states(names)
+    yield from add_one_to_each(names)
+    assert all(uv_key() in changed(*pair) for pair in zip(before, states(names), strict=True))
+    yield from press("ESC")
+    yield from until(lambda: not editing())
+    assert not any(changed(*pair) for pair in zip(before, states(names), strict=True))
+
+
+def test_objects_outside_a_local_view_are_not_picked():
+    names = yield from begin_with_two()
+    left, right = (bpy.data.objects[name] for name in names)
+    place = place_of(right, in_front(right, lambda v: v not in marked(right))[0])
+    bpy.ops.view3d.localview(frame_selected=False)
+    right.local_view_set(area().spaces.active, False)
+    yield 0.5
+    assert right.mode == "EDIT" and not right.visible_in_viewport_get(area().spaces.active)
+    yield from click(place)
+    yield from click(place_of(left, in_front(left, lambda v: v not in marked(left))[0]))
+    yield 0.3
+    take_picture("local_view")
+    yield from press("RET")
+    yield from until(lambda: not editing())
+    assert (len(marked(left)), len(marked(right))) == (9, 8)
+    bpy.ops.view3d.localview()
+
+
+def test_under_a_subdivision_surface_the_vertices_of_the_cage_are_picked():
+    yield from begin()
+    yield from press("ESC")
+    yield from until(lambda: not editing())
+    ball().modifiers.new("Subdivision", "SUBSURF").levels = 2
+    yield 0.3
+    assert bpy.ops.mesh.cone_edit("INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
+    cones, uv = marked(ball()), uv_of(ball())
+    added = in_front(ball(), lambda v: v not in cones)[0]
+    yield from click(place_of(ball(), added))
+    yield from until(lambda: uv_of(ball()) != uv)
+    take_picture("subdivision")
+    assert (yield from finished()) == sorted([*cones, added])
