@@ -19,6 +19,7 @@ from ...overlay.content import session_content
 from ..shared.conclusion import conclude
 from ..shared.polling import poll_computation, poll_edit_mesh
 from ..unwrapping.properties import pack_settings, unwrap_settings
+from . import hints
 from .cursor import Cursor
 from .typed_number import TypedNumber
 
@@ -30,10 +31,6 @@ WHEEL_STEP, FINE_STEP = math.radians(15.0), math.radians(1.0)
 NAVIGATION = {"MIDDLEMOUSE", "TRACKPADPAN", "TRACKPADZOOM", "MOUSEROTATE", "MOUSESMARTZOOM", "NDOF_MOTION"}
 BUTTONS = {"LEFTMOUSE", "RIGHTMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE"}
 WHEEL = {"WHEELUPMOUSE": 1, "WHEELDOWNMOUSE": -1}
-STATUS = (
-    "Click: add, drag: move, Ctrl-click: remove  |  Wheel over a cone or while dragging: angle, Shift: fine  |  "
-    "Digits: angle in degrees, A: automatic  |  Enter: confirm  |  Esc, right click: cancel"
-)
 
 
 class MESH_OT_cone_edit(bpy.types.Operator):
@@ -242,15 +239,8 @@ class MESH_OT_cone_edit(bpy.types.Operator):
         for edited in objects:
             cache.show(edited.obj, session_content(edited.obj, edited.session))
         self._show_header(self._header())
-        bpy.context.workspace.status_text_set(self._status())
-
-    def _status(self) -> str:
-        texts = [STATUS]
         history = self._objects.history
-        for key, step in (("Ctrl-Z: undo", history.undoes), ("Ctrl-Shift-Z: redo", history.redoes)):
-            if step is not None:
-                texts.append(f"{key} {step}")
-        return "  |  ".join(texts)
+        bpy.context.workspace.status_text_set(hints.status(hints.hints(history.undoes, history.redoes)))
 
     def _show_header(self, text: str | None) -> None:
         for area in _view_areas():

@@ -4,6 +4,7 @@
 Run by run_in_window.py; no pytest.
 """
 
+import bl_ui
 import bpy
 import numpy as np
 from installed import addon
@@ -314,6 +315,21 @@ def test_ctrl_z_takes_back_one_step_and_blender_keeps_one_of_all():
     bpy.ops.ed.undo()
     yield 0.2
     assert changed(before, snapshot(ball())) == set()
+
+
+def status_bar_is_blenders():
+    header = bl_ui.space_statusbar.STATUSBAR_HT_header
+    return header.draw is header._draw_orig
+
+
+def test_the_status_bar_is_the_tools_until_it_ends():
+    yield from begin()
+    yield 0.2
+    take_picture("status_bar")
+    assert not status_bar_is_blenders()
+    yield from press("ESC")
+    yield from until(lambda: not editing())
+    assert status_bar_is_blenders()
 
 
 def test_all_steps_undone_leave_everything_as_it_was_and_redone_steps_count():
