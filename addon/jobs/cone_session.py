@@ -29,8 +29,8 @@ from ..mesh.uv_write import EditedUv
 from .angle_table import FollowedTable
 from .cuts import with_cut_costs
 from .edited_cones import EditedCones
-from .edited_layout import Layout, packed
-from .maps import PackSettings, report_on
+from .edited_layout import Layout, Placement
+from .maps import report_on
 from .texels import map_density
 from .unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap, unwrap_task
 
@@ -160,44 +160,48 @@ class ConeSession:
 
     def restore(self) -> None:
         """Leave the mesh as it was before the session."""
+        self._shown, self._report = None, self._earlier
         if changes.era() == self._era:
             with suppress(ReferenceError):
                 self._uv.restore()
 
-    def finish(self, placing: PackSettings) -> Unwrapped:
-        """Unwrap with all chosen options and store the cones, as one change.
+    def unwrap(self) -> Unwrapped:
+        """Unwrap with all chosen options.
 
-        placing: how islands are packed where an edited one does not fit any more into its place.
-        Raises LsgpError and Refused where that is impossible; then the map is as before the session and the cones are
-        stored.
+        Raises LsgpError and MemoryError where that is impossible; then the map is as before the session.
         """
         try:
             step = self._step()
             self.show(step, step.solve())
-            if placing.pack and not placing.by_cells:
-                self._fit(placing)
         except object_errors():
             self.restore()
             raise
-        finally:
-            self.cones.store(self._obj, self._group)
-        corner_uv = self._uv.now[step.task.region.triangle_loops].astype(np.float64)
-        density = map_density(step.task.region, corner_uv)
-        reports.store(self._obj.data, replace(self.report(), texel_density=density))
         return self._shown
 
-    def _fit(self, placing: PackSettings) -> None:
-        """Pack all islands where an edited one is outside the square, or on another one and none was before."""
+    def store(self) -> None:
+        """Store the cones, and the report on the map where it was written."""
+        self.cones.store(self._obj, self._group)
+        report = self.report()
+        if report is not None and (self._shown is not None or self._uv.is_changed):
+            region = self._whole.region if self._shown is None else self._shown.region
+            corner_uv = self._uv.now[region.triangle_loops].astype(np.float64)
+            reports.store(self._obj.data, replace(report, texel_density=map_density(region, corner_uv)))
+
+    def placement(self) -> Placement:
+        """Where the islands are now and where they were before the session."""
         whole = self._whole.region
         edited = np.zeros(len(whole.triangle_loops), bool)
-        edited[self._scope.triangles] = True
+        if self._shown is not None:
+            edited[self._scope.triangles] = True
         # Where the map is not one of ours, what else it has may be on anything.
         counts = edited if self._earlier is None else np.ones_like(edited)
         now, before = (self._layout(uv, counts) for uv in (self._uv.now, self._uv.before))
-        if now.crosses_tiles(edited) or (now.overlaps() and not before.overlaps()):
-            uv = packed(whole.surface.triangles, now, self._whole.pinned, self._whole.aspect, placing)
-            self._uv.write(whole, now.island >= 0, uv)
-            self.mesh.uv = self._uv.now
+        return Placement(whole.surface.triangles, now, before, edited, self._whole.pinned, self._whole.aspect)
+
+    def place(self, layout: Layout) -> None:
+        """Write the coordinates of all islands of a layout."""
+        self._uv.write(self._whole.region, layout.island >= 0, layout.corner_uv)
+        self.mesh.uv = self._uv.now
 
     def _layout(self, loop_uv: NDArray[np.float32], counts: NDArray[np.bool_]) -> Layout:
         whole = self._whole.region

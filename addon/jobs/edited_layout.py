@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,25 +53,83 @@ class Layout:
         return bool((island[first[covered]] != island[last[covered]]).any())
 
 
-def packed(
-    triangles: NDArray[np.int32],
-    layout: Layout,
-    pinned: NDArray[np.bool_],
-    aspect: float,
-    settings: PackSettings,
-) -> NDArray[np.float64]:
-    """The coordinates with all islands packed, as they are but for one scale; what is in no island stays.
+@dataclass(frozen=True, slots=True)
+class Placement:
+    """The islands of one mesh, now and before its cones were edited.
 
-    triangles: (m, 3). pinned: (m, 3). aspect: as of `Islands`.  Raises Refused.
+    triangles: (m, 3). edited: (m,) bool, those that were unwrapped again. pinned: (m, 3) bool. aspect: as of `Islands`.
     """
-    inside = layout.island >= 0
-    corners, fixed = layout.corner_uv[inside], pinned[inside]
+
+    triangles: NDArray[np.int32]
+    now: Layout
+    before: Layout
+    edited: NDArray[np.bool_]
+    pinned: NDArray[np.bool_]
+    aspect: float
+
+    def islands(self, scale: float) -> Islands:
+        """For the packer, at a scale."""
+        inside = self.now.island >= 0
+        _, island = np.unique(self.now.island[inside], return_inverse=True)
+        corners = scale * self.now.corner_uv[inside]
+        return Islands(
+            self.triangles[inside], corners, island.ravel().astype(np.int32), self.pinned[inside], self.aspect
+        )
+
+
+def packed_where_needed(placements: Sequence[Placement], settings: PackSettings) -> list[Layout | None]:
+    """The layouts of meshes with their islands packed again, None for those that stay as they are.
+
+    Those that shared the square are packed together, each other mesh by itself.  Raises Refused.
+    """
+    if not settings.pack or settings.by_cells:
+        return [None] * len(placements)
+    shared = not joined([placement.before for placement in placements]).overlaps()
+    groups = [range(len(placements))] if shared else [[number] for number in range(len(placements))]
+    layouts: list[Layout | None] = [None] * len(placements)
+    for group in groups:
+        members = [placements[number] for number in group]
+        if _is_needed(members):
+            for number, layout in zip(group, _packed(members, settings), strict=True):
+                layouts[number] = layout if (layout.island >= 0).any() else None
+    return layouts
+
+
+def joined(layouts: Sequence[Layout]) -> Layout:
+    """All islands in one layout."""
+    counts = [int(layout.island.max(initial=-1)) + 1 for layout in layouts]
+    first = np.cumsum([0, *counts])[:-1]
+    island = [np.where(layout.island < 0, -1, layout.island + at) for layout, at in zip(layouts, first, strict=True)]
+    return Layout(np.concatenate([layout.corner_uv for layout in layouts]), np.concatenate(island).astype(np.int32))
+
+
+def _is_needed(placements: Sequence[Placement]) -> bool:
+    """Whether an edited island is outside the square, or islands lie on each other and did not before."""
+    now, before = (joined([getattr(placement, when) for placement in placements]) for when in ("now", "before"))
+    edited = np.concatenate([placement.edited for placement in placements])
+    return edited.any() and (now.crosses_tiles(edited) or (now.overlaps() and not before.overlaps()))
+
+
+def _packed(placements: Sequence[Placement], settings: PackSettings) -> list[Layout]:
+    """With all islands packed together, as they are but for one scale."""
+    area = sum(total_area(placement.islands(1.0).corner_uv) for placement in placements)
     # So that a margin that is added before scaling is about what was asked for.
-    scale = 1.0 if fixed.any() else np.sqrt(FILLED / total_area(corners))
-    _, island = np.unique(layout.island[inside], return_inverse=True)
-    part = Islands(triangles[inside], scale * corners, island.ravel().astype(np.int32), fixed, aspect)
-    out = layout.corner_uv.copy()
-    out[inside] = packing.pack(
-        [part], settings.margin_method, settings.margin, turned=settings.turned, udim=settings.udim
-    )[0]
-    return out
+    scale = 1.0 if any(placement.pinned.any() for placement in placements) else np.sqrt(FILLED / area)
+    parts = [placement.islands(scale) for placement in placements]
+    packed = iter(
+        packing.pack(
+            [part for part in parts if len(part.triangles)],
+            settings.margin_method,
+            settings.margin,
+            turned=settings.turned,
+            udim=settings.udim,
+        )
+    )
+    layouts = []
+    for placement in placements:
+        corner_uv = placement.now.corner_uv.copy()
+        inside = placement.now.island >= 0
+        if inside.any():
+            corner_uv[inside] = next(packed)
+        layouts.append(Layout(corner_uv, placement.now.island))
+    return layouts

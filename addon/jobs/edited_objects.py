@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -21,6 +22,7 @@ from . import angle_table
 from .cone_session import ConeSession
 from .edit_history import EditHistory
 from .edited_cones import ConesState, EditedCones
+from .finishing import finish
 from .following import Follower
 from .maps import PackSettings
 from .picking import Hit, Picker
@@ -192,17 +194,18 @@ class EditedObjects:
             edited.follower.stop()
 
     def finish(self, placing: PackSettings) -> list[tuple[EditedObject, Unwrapped | Exception]]:
-        """Unwrap the objects whose cones were changed, and store these; the map of each, or why there is none."""
-        finished = []
-        for edited in self.begun:
-            if not edited.session.cones.changed:
-                edited.session.restore()
-                continue
-            try:
-                finished.append((edited, edited.session.finish(placing)))
-            except object_errors() as error:
-                finished.append((edited, error))
-        return finished
+        """Unwrap the objects whose cones were changed, and store these; the map of each, or why there is none.
+
+        placing: as of `finishing.finish`.
+        """
+        changed = [edited for edited in self.begun if edited.session.cones.changed]
+        others = []
+        for edited in self._all:
+            if edited not in changed:
+                with suppress(*object_errors()):
+                    edited.begin().restore()
+                    others.append(edited.session)
+        return list(zip(changed, finish([edited.session for edited in changed], others, placing), strict=True))
 
     def restore(self) -> None:
         """Leave all meshes as they were."""

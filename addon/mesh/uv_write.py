@@ -90,6 +90,11 @@ class EditedUv:
         return not self._lost and self._mesh.is_editmode and self._bm.is_valid
 
     @property
+    def is_changed(self) -> bool:
+        """Whether the values differ from those before anything was written."""
+        return not np.array_equal(self._now, self._before)
+
+    @property
     def before(self) -> NDArray[np.float32]:
         """(l, 2), as before anything was written."""
         return self._before
@@ -136,7 +141,7 @@ class EditedUv:
             self._mesh.update_tag()
         else:
             return
-        if self._created:
+        if self._created and self._name in self._mesh.uv_layers:
             self._mesh.uv_layers.remove(self._mesh.uv_layers[self._name])
 
     def _set(self, uv: NDArray[np.float32]) -> None:

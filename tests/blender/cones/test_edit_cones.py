@@ -32,7 +32,7 @@ from scenes import (
 )
 
 cone_session, unwrapping, content = addon.jobs.cone_session, addon.jobs.unwrapping, addon.overlay.content
-hints = addon.operators.cones.hints
+hints, finishing = addon.operators.cones.hints, addon.jobs.finishing
 angle_table, picking, edited_objects = addon.jobs.angle_table, addon.jobs.picking, addon.jobs.edited_objects
 following, edit_history = addon.jobs.following, addon.jobs.edit_history
 changes = addon.mesh.changes
@@ -58,6 +58,14 @@ def follow(session):
     unwrapped = step.solve()
     session.show(step, unwrapped)
     return unwrapped
+
+
+def finish(session, placing):
+    """Raises what kept the mesh from being unwrapped."""
+    (outcome,) = finishing.finish([session], [], placing)
+    if isinstance(outcome, Exception):
+        raise outcome
+    return outcome
 
 
 def vertex_at(session, x, y):
@@ -195,7 +203,7 @@ def test_finishing_changes_the_map_the_cones_and_their_angles_alone():
     session.cones.add(start[0])
     session.cones.move(neighbor(ball, start[0]))
     session.cones.set_angle(math.radians(300))
-    session.finish(AS_THEY_ARE)
+    finish(session, AS_THEY_ARE)
     expected = sorted({*start[1:], session.cones.active})
     assert marked(ball) == expected and selected(ball) == []
     assert stored_angle(ball, session.cones.active) == np.float32(math.radians(300))
@@ -211,7 +219,7 @@ def test_the_finished_map_is_that_of_the_operator():
     bpy.ops.uv.cone_unwrap()
     session = begin(ball)
     session.cones.remove(session.cones.vertices[0])
-    session.finish(AS_THEY_ARE)
+    finish(session, AS_THEY_ARE)
     edited = UvMap(ball)
     bpy.ops.mesh.select_all(action="SELECT")
     bpy.ops.uv.cone_unwrap()
@@ -290,7 +298,7 @@ def test_what_cannot_be_unwrapped_leaves_the_map_and_keeps_the_cones():
     with pytest.raises(lsgp.LsgpError):
         follow(session)
     with pytest.raises(lsgp.LsgpError):
-        session.finish(AS_THEY_ARE)
+        finish(session, AS_THEY_ARE)
     assert marked(sphere) == [30]
     assert uv_key() not in changed(before, snapshot(sphere))
 
@@ -323,7 +331,7 @@ def test_found_angles_are_automatic_once_the_cones_of_their_part_are_others():
     assert None not in found
     session.cones.remove(first)
     assert session.cones.current().angles == [None] * 7
-    session.finish(AS_THEY_ARE)
+    finish(session, AS_THEY_ARE)
     assert stored_angle(ball, second) == 0.0
 
 
@@ -333,7 +341,7 @@ def test_open_borders_need_no_cone():
     middle = vertex_near(grid, 0.0, 0.0, 0.0)
     session.cones.add(middle)
     session.cones.set_angle(math.radians(330))
-    session.finish(AS_THEY_ARE)
+    finish(session, AS_THEY_ARE)
     assert abs(UvMap(grid).angle_sum(middle) - math.radians(330)) < 1e-3
 
 
@@ -536,7 +544,7 @@ def with_a_sharp_cone(build, placing):
     session.cones.remove(session.cones.vertices[-1])
     session.cones.add(session.cones.vertices[2])
     session.cones.set_angle(math.radians(120))
-    session.finish(placing)
+    finish(session, placing)
     report = reports.find(obj.data)
     assert report.texel_density is not None and sorted(report.cones) == marked(obj)
     bpy.ops.object.mode_set(mode="OBJECT")
@@ -576,7 +584,7 @@ def overlap_after(place, placing):
     near = [cone for cone in session.cones.vertices if cube.data.vertices[cone].co.x < 2]
     for cone in near[4:]:
         session.cones.remove(cone)
-    session.finish(placing)
+    finish(session, placing)
     uv_map = UvMap(cube)
     return covered_twice([uv_map], 150), uv_map
 
@@ -785,3 +793,44 @@ def test_the_status_bar_has_icons_where_blender_has_them_and_names_the_steps():
     assert text.startswith("Click: Add  |  Drag: Move") and text.endswith("Wheel: Angle")
     assert "Ctrl-Shift-Z: Redo" not in text
     assert [hint.text for hint in hints.hints(None, "Move Cone")].count("Redo Move Cone") == 1
+
+
+def shared_square(place):
+    """Three cubes in a mesh each, unwrapped together, their islands then moved; place: the middles of their boxes."""
+    cubes = [add_cone_cube(name, 1) for name in ("First", "Second", "Third")]
+    bpy.ops.object.select_all(action="SELECT")
+    bpy.ops.uv.cone_unwrap()
+    for cube, middle in zip(cubes, place, strict=True):
+        uv = UvMap(cube).uv
+        low, high = uv.min(axis=0), uv.max(axis=0)
+        uv = middle + (uv - (low + high) / 2) * (0.3 / (high - low).max())
+        cube.data.attributes["UVMap"].data.foreach_set("vector", uv.astype(np.float32).ravel())
+        reports.store(cube.data, reports._parsed(cube.data.cone_unwrap_report.partition("\n")[2]))
+    return cubes
+
+
+def with_fewer_cones_on_the_first(place):
+    """The maps of three cubes before and after one of them gets another shape in the map."""
+    cubes = shared_square(place)
+    before = [UvMap(cube).uv for cube in cubes]
+    objects = begin_together(*cubes)
+    objects.activate(objects._all[0])
+    for cone in objects._all[0].cones[4:]:
+        objects.active.session.cones.remove(cone)
+    objects.finish(PACKED)
+    objects.end()
+    assert all(reports.find(cube.data) is not None for cube in cubes)
+    return before, [UvMap(cube) for cube in cubes]
+
+
+def test_objects_that_share_the_square_make_room():
+    _, maps = with_fewer_cones_on_the_first([(0.2, 0.5), (0.5, 0.5), (0.8, 0.5)])
+    assert covered_twice(maps, 100) == 0
+    assert all(is_in_tile(uv_map.uv) for uv_map in maps)
+
+
+def test_objects_that_do_not_share_the_square_stay():
+    before, maps = with_fewer_cones_on_the_first([(0.5, 0.5)] * 3)
+    for uv, uv_map in zip(before[1:], maps[1:], strict=True):
+        np.testing.assert_array_equal(uv_map.uv, uv)
+    assert is_in_tile(maps[0].uv)
