@@ -11,6 +11,7 @@ from functools import cached_property
 import bpy
 import numpy as np
 from mathutils import Vector
+from numpy.typing import NDArray
 
 from ..core.errors import object_errors
 from ..core.screen import Screen
@@ -28,19 +29,37 @@ from .maps import PackSettings
 from .picking import Hit, Picker
 from .unwrapping import Unwrapped, UnwrapSettings
 
-Screens = Callable[[bpy.types.Object], "Screen | None"]
-"""The projection of each object in a view; None where the view does not show it."""
+
+@dataclass(frozen=True, slots=True)
+class Sight:
+    """What a view shows.
+
+    screen_of: the projection of an object, None where the view does not show it. layout: whether UV maps are shown, as
+    by a UV editor, instead of meshes. selected: whether only those of selected faces are.
+    """
+
+    screen_of: Callable[[bpy.types.Object], Screen | None]
+    layout: bool = False
+    selected: bool = False
 
 
 class EditedObject:
-    """An object in edit mode. Its session and follower are there once it has begun."""
+    """An object in edit mode.
+
+    session, follower, start: once it has begun, and the cones of then. holds_layout: whether its map, which follows a
+    cone that is dragged in it, is picked as it was.
+    """
 
     def __init__(self, obj: bpy.types.Object, settings: UnwrapSettings) -> None:
         self.obj, self.uid, self.name = obj, obj.data.session_uid, obj.name
         self.session: ConeSession | None = None
         self.follower: Follower | None = None
         self.start: ConesState | None = None
+        self.holds_layout = False
         self._settings = settings
+        self._layout_picker: Picker | None = None
+        self._picked_uv: NDArray[np.float32] | None = None
+        self._picked_selected = False
 
     def begin(self) -> ConeSession:
         """The session, from now on.  Raises Refused, LsgpError."""
@@ -51,12 +70,33 @@ class EditedObject:
             angle_table.follow(self.uid, self.session.table())
         return self.session
 
+    def picker(self, sight: Sight) -> Picker | None:
+        """For the mesh, or for its map as it is; None without a map."""
+        if not sight.layout:
+            return self._mesh_picker
+        mesh = self._mesh
+        is_current = self._picked_uv is mesh.uv and self._picked_selected == sight.selected
+        if self._layout_picker is None or not (self.holds_layout or is_current):
+            self._layout_picker = Picker.of_layout(mesh, selected=sight.selected)
+            self._picked_uv, self._picked_selected = mesh.uv, sight.selected
+        return self._layout_picker
+
     @cached_property
-    def picker(self) -> Picker:
-        if self.session is not None:
-            return Picker(self.session.mesh)
+    def _mesh_picker(self) -> Picker:
+        return Picker.of_mesh(self._mesh)
+
+    def place(self, vertex: int) -> NDArray[np.float32]:
+        """(3,) position of a vertex in the object's space."""
+        return self._mesh.positions([vertex])[0]
+
+    @property
+    def _mesh(self) -> FrozenMesh:
+        return self._read if self.session is None else self.session.mesh
+
+    @cached_property
+    def _read(self) -> FrozenMesh:
         with readable_mesh(self.obj) as copy:
-            return Picker(FrozenMesh(copy))
+            return FrozenMesh(copy)
 
     @property
     def cones(self) -> list[int]:
@@ -124,35 +164,41 @@ class EditedObjects:
 
     # Picking
 
-    def vertex_at(self, screens: Screens, x: float, y: float) -> Pick | None:
+    def hold_layouts(self, held: bool) -> None:
+        """Whether maps are picked as they are now, while they follow a cone that is dragged."""
+        for edited in self._all:
+            edited.holds_layout = held
+
+    def vertex_at(self, sight: Sight, x: float, y: float) -> Pick | None:
         """The nearest vertex of the first triangle under a pixel, and its object; None where there is no triangle."""
-        found = [(edited, edited.picker.vertex_at(screen, x, y)) for edited, screen in self._shown(screens)]
+        found = [(edited, picker.vertex_at(screen, x, y)) for edited, picker, screen in self._shown(sight)]
         return min((pick for pick in found if pick[1] is not None), key=lambda pick: pick[1].depth, default=None)
 
-    def cone_at(self, screens: Screens, x: float, y: float, radius: float) -> Pick | None:
+    def cone_at(self, sight: Sight, x: float, y: float, radius: float) -> Pick | None:
         """The nearest cone to a pixel within a radius, in pixels, that no object hides, and its object."""
         found = [
-            (edited, edited.picker.cone_at(screen, edited.cones, x, y, radius))
-            for edited, screen in self._shown(screens)
+            (edited, picker.cone_at(screen, edited.cones, x, y, radius))
+            for edited, picker, screen in self._shown(sight)
         ]
-        seen = [pick for pick in found if pick[1] is not None and not self._is_behind(pick, screens)]
+        seen = [pick for pick in found if pick[1] is not None and (sight.layout or not self._is_behind(pick, sight))]
         return min(seen, key=lambda pick: pick[1].distance, default=None)
 
-    def _is_behind(self, pick: Pick, screens: Screens) -> bool:
+    def _is_behind(self, pick: Pick, sight: Sight) -> bool:
         """Whether another object hides a cone."""
         own, hit = pick
-        place = own.obj.matrix_world @ Vector(own.picker.place(hit.vertex))
+        place = own.obj.matrix_world @ Vector(own.place(hit.vertex))
         return any(
-            edited.picker.hides(screen, np.array(edited.obj.matrix_world.inverted_safe() @ place))
-            for edited, screen in self._shown(screens)
+            picker.hides(screen, np.array(edited.obj.matrix_world.inverted_safe() @ place))
+            for edited, picker, screen in self._shown(sight)
             if edited is not own
         )
 
-    def _shown(self, screens: Screens) -> Iterator[tuple[EditedObject, Screen]]:
+    def _shown(self, sight: Sight) -> Iterator[tuple[EditedObject, Picker, Screen]]:
         for edited in self._all:
-            screen = screens(edited.obj)
-            if screen is not None:
-                yield edited, screen
+            screen = sight.screen_of(edited.obj)
+            picker = None if screen is None else edited.picker(sight)
+            if picker is not None:
+                yield edited, picker, screen
 
     # All sessions
 

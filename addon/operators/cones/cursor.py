@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from ...core.screen import Screen
-from ...jobs.edited_objects import EditedObjects, Pick
+from ...jobs.edited_objects import EditedObjects, Pick, Sight
 from .views import View, view_at
 
 # Pixels, at a scale of 1.
@@ -33,18 +33,34 @@ class Cursor:
     def vertex(self, objects: EditedObjects) -> Pick | None:
         """The vertex under the cursor, and its object; None where there is no face."""
         view = self.view()
-        return None if view is None else objects.vertex_at(partial(_screen, view), *view.place)
+        return None if view is None else objects.vertex_at(_sight(view), *view.place)
 
     def cone(self, objects: EditedObjects) -> Pick | None:
         """The visible cone at the cursor, and its object; None where there is none."""
         view = self.view()
         radius = RADIUS * bpy.context.preferences.system.pixel_size
-        return None if view is None else objects.cone_at(partial(_screen, view), *view.place, radius)
+        return None if view is None else objects.cone_at(_sight(view), *view.place, radius)
 
 
-def _screen(view: View, obj: bpy.types.Object) -> Screen | None:
-    """The projection of an object; None where the view does not show it, as outside a local view."""
+def _sight(view: View) -> Sight:
+    if view.area.type == "VIEW_3D":
+        return Sight(partial(_in_scene, view))
+    # Without synchronization a UV editor shows the selected faces.
+    return Sight(partial(_in_layout, view), layout=True, selected=not bpy.context.tool_settings.use_uv_select_sync)
+
+
+def _in_scene(view: View, obj: bpy.types.Object) -> Screen | None:
+    """None outside a local view, for example."""
     if not obj.visible_in_viewport_get(view.area.spaces.active):
         return None
     matrix = view.region.data.perspective_matrix @ obj.matrix_world
     return Screen(np.array(matrix, np.float64), view.region.width, view.region.height)
+
+
+def _in_layout(view: View, _obj: bpy.types.Object) -> Screen:
+    """Of texture coordinates with z = 0."""
+    width, height = view.region.width, view.region.height
+    low, high = (np.array(view.region.view2d.region_to_view(*corner)) for corner in ((0, 0), (width, height)))
+    matrix = np.diag([*(2 / (high - low)), -0.5, 1.0])
+    matrix[:2, 3] = -(high + low) / (high - low)
+    return Screen(matrix, width, height)

@@ -22,6 +22,7 @@ from ..unwrapping.properties import pack_settings, unwrap_settings
 from . import hints
 from .cursor import Cursor
 from .typed_number import TypedNumber
+from .views import shows_meshes
 
 if TYPE_CHECKING:
     from ...jobs.cone_session import ConeSession
@@ -48,8 +49,8 @@ class MESH_OT_cone_edit(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         if not (poll_computation(cls, context) and poll_edit_mesh(cls, context)):
             return False
-        if context.area is None or context.area.type != "VIEW_3D":
-            cls.poll_message_set("Move the mouse over a 3D view first")
+        if context.space_data is None or not shows_meshes(context.space_data):
+            cls.poll_message_set("Move the mouse over a 3D view or UV editor first")
             return False
         return True
 
@@ -127,7 +128,7 @@ class MESH_OT_cone_edit(bpy.types.Operator):
             if not self._dragging:
                 # A button was pressed elsewhere.
                 return {"PASS_THROUGH"}
-            self._dragging = False
+            self._drag(False)
         elif event.value in {"PRESS", "DOUBLE_CLICK"}:
             self._press(event)
         return {"RUNNING_MODAL"}
@@ -143,13 +144,17 @@ class MESH_OT_cone_edit(bpy.types.Operator):
             self._objects.history.begin("Remove Cone")
             edited.session.cones.remove(hit.vertex)
         else:
-            self._dragging = True
+            self._drag(True)
             self._objects.history.begin("Add Cone" if cone is None else "Move Cone")
             edited.session.cones.add(hit.vertex)
         if cone is None or event.ctrl:
             self._changed()
         else:
             self._draw([edited])
+
+    def _drag(self, dragging: bool) -> None:
+        self._dragging = dragging
+        self._objects.hold_layouts(dragging)
 
     def _begin(self, edited: EditedObject) -> bool:
         """Make an object the active one.  Returns whether its cones can be edited."""
@@ -207,7 +212,7 @@ class MESH_OT_cone_edit(bpy.types.Operator):
         if not redo and event.type != "Z":
             return
         self._typed.clear()
-        self._dragging = False
+        self._drag(False)
         history = self._objects.history
         if history.redo() if redo else history.undo():
             self._draw(self._objects.begun)
@@ -307,4 +312,4 @@ def _last_operator(context: bpy.types.Context) -> int:
 
 def _view_areas() -> Iterator[bpy.types.Area]:
     """Of all screens, also those that are not shown."""
-    return (area for screen in bpy.data.screens for area in screen.areas if area.type == "VIEW_3D")
+    return (area for screen in bpy.data.screens for area in screen.areas if area.type in {"VIEW_3D", "IMAGE_EDITOR"})

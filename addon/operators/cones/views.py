@@ -28,14 +28,19 @@ class View:
 
 
 def view_at(window: bpy.types.Window, x: int, y: int) -> View | None:
-    """The 3D view under a pixel of a window; None where that shows anything else."""
+    """The 3D view or UV editor under a pixel of a window; None where that shows anything else."""
     area = next((area for area in window.screen.areas if _is_inside(area, x, y)), None)
-    if area is None or area.type != "VIEW_3D":
+    if area is None or not shows_meshes(area.spaces.active):
         return None
     under = [region for region in area.regions if _is_inside(region, x, y)]
     if len(under) != 1 or under[0].type != "WINDOW" or _is_on_gizmo(area, under[0], x, y):
         return None
     return View(area, under[0], (x - under[0].x, y - under[0].y))
+
+
+def shows_meshes(space: bpy.types.Space) -> bool:
+    """Whether it is a 3D view, or a UV editor."""
+    return space.type == "VIEW_3D" or (space.type == "IMAGE_EDITOR" and space.show_uvedit)
 
 
 def _is_inside(part: bpy.types.Area | bpy.types.Region, x: int, y: int) -> bool:
@@ -49,8 +54,8 @@ def _is_on_gizmo(area: bpy.types.Area, region: bpy.types.Region, x: int, y: int)
     if not (space.show_gizmo and space.show_gizmo_navigate):
         return False
     system = bpy.context.preferences.system
-    # Other views, as those of a quad view, can only be zoomed and panned.
-    turns = not region.data.lock_rotation
+    # UV editors and other views, as those of a quad view, can only be zoomed and panned.
+    turns = space.type == "VIEW_3D" and not region.data.lock_rotation
     right, top = _free_corner(area, region)
     ball = (look.gizmo_size_navigate_v3d + 2 * BALL_MARGIN) * system.ui_scale
     shown = look.mini_axis_type if turns else "NONE"

@@ -69,12 +69,12 @@ def finish(session, placing):
 
 
 def vertex_at(session, x, y):
-    hit = picking.Picker(session.mesh).vertex_at(from_above(), x, y)
+    hit = picking.Picker.of_mesh(session.mesh).vertex_at(from_above(), x, y)
     return None if hit is None else hit.vertex
 
 
 def cone_at(session, x, y, radius):
-    hit = picking.Picker(session.mesh).cone_at(from_above(), session.cones.vertices, x, y, radius)
+    hit = picking.Picker.of_mesh(session.mesh).cone_at(from_above(), session.cones.vertices, x, y, radius)
     return None if hit is None else hit.vertex
 
 
@@ -372,7 +372,16 @@ def test_a_session_shows_what_the_overlay_shows_of_the_same_map(build):
         expected = content.build_content(obj, report, marked=session.cones.current())
         found = content.build_content(obj, report, session.mesh, session.cones.current())
         assert found.cones == expected.cones
-        for name in ("cone_places", "cut_lines", "cut_paths", "cut_uv", "flipped", "overlapping"):
+        for name in (
+            "cone_places",
+            "cone_uv",
+            "cone_rows",
+            "cut_lines",
+            "cut_paths",
+            "cut_uv",
+            "flipped",
+            "overlapping",
+        ):
             np.testing.assert_allclose(getattr(found, name), getattr(expected, name), atol=1e-6)
         session.cones.add(vertex_near(obj, 0.4, 0.3, 0.5))
         follow(session)
@@ -653,6 +662,14 @@ def seen_from_above(obj):
     return screens.Screen(screen.matrix @ np.array(obj.matrix_world, np.float64), SIZE, SIZE)
 
 
+FROM_ABOVE = edited_objects.Sight(seen_from_above)
+
+
+def alone(shown):
+    """As in a local view."""
+    return edited_objects.Sight(lambda obj: seen_from_above(obj) if obj == shown else None)
+
+
 def begin_together(*objects, **options):
     if objects[0].mode != "EDIT":
         edit(*objects, select="DESELECT")
@@ -672,12 +689,12 @@ def add_upper_and_lower():
 def test_the_nearest_object_in_the_world_is_picked():
     lower, upper = add_upper_and_lower()
     objects = begin_together(lower, upper)
-    edited, hit = objects.vertex_at(seen_from_above, *pixel(0.2, 0.25))
+    edited, hit = objects.vertex_at(FROM_ABOVE, *pixel(0.2, 0.25))
     assert edited.obj == upper and hit.vertex == vertex_near(upper, 0.5, 0.5, 1.0)
-    edited, hit = objects.vertex_at(seen_from_above, *pixel(0.8, 0.9))
+    edited, hit = objects.vertex_at(FROM_ABOVE, *pixel(0.8, 0.9))
     assert edited.obj == lower and hit.vertex == vertex_near(lower, 1.0, 1.0, 1.0)
-    assert objects.vertex_at(seen_from_above, *pixel(1.5, 0.0)) is None
-    only_lower = objects.vertex_at(lambda obj: seen_from_above(obj) if obj == lower else None, *pixel(0.2, 0.25))
+    assert objects.vertex_at(FROM_ABOVE, *pixel(1.5, 0.0)) is None
+    only_lower = objects.vertex_at(alone(lower), *pixel(0.2, 0.25))
     assert only_lower[0].obj == lower
     assert objects.begun == []
     objects.end()
@@ -688,13 +705,13 @@ def test_cones_behind_another_object_are_not_picked():
     hidden = vertex_near(lower, 0.0, 0.0, 1.0)
     mark(lower, [hidden])
     objects = begin_together(lower, upper)
-    edited, hit = objects.cone_at(seen_from_above, *pixel(0.5, 0.5), 10)
+    edited, hit = objects.cone_at(FROM_ABOVE, *pixel(0.5, 0.5), 10)
     assert edited.obj == upper and hit.vertex == vertex_near(upper, 1.0, 1.0, 1.0)
-    edited, hit = objects.cone_at(seen_from_above, *pixel(1.0, 1.0), 10)
+    edited, hit = objects.cone_at(FROM_ABOVE, *pixel(1.0, 1.0), 10)
     assert edited.obj == lower and hit.vertex == vertex_near(lower, 1.0, 1.0, 1.0)
-    assert objects.cone_at(seen_from_above, *pixel(0.0, 0.0), 10) is None
-    alone = objects.cone_at(lambda obj: seen_from_above(obj) if obj == lower else None, *pixel(0.0, 0.0), 10)
-    assert alone[0].obj == lower and alone[1].vertex == hidden
+    assert objects.cone_at(FROM_ABOVE, *pixel(0.0, 0.0), 10) is None
+    found = objects.cone_at(alone(lower), *pixel(0.0, 0.0), 10)
+    assert found[0].obj == lower and found[1].vertex == hidden
     objects.end()
 
 
@@ -834,3 +851,61 @@ def test_objects_that_do_not_share_the_square_stay():
     for uv, uv_map in zip(before[1:], maps[1:], strict=True):
         np.testing.assert_array_equal(uv_map.uv, uv)
     assert is_in_tile(maps[0].uv)
+
+
+def over_the_layout(*, selected=False):
+    """A UV editor that shows the unit square, SIZE pixels wide."""
+    matrix = np.array([(2.0, 0, 0, -1), (0, 2.0, 0, -1), (0, 0, -0.5, 0), (0, 0, 0, 1)])
+    return edited_objects.Sight(lambda _obj: screens.Screen(matrix, SIZE, SIZE), layout=True, selected=selected)
+
+
+def test_vertices_and_cones_are_picked_in_the_layout():
+    ball = add_ball(cuts=2)
+    bpy.ops.uv.cone_unwrap()
+    uv = UvMap(ball)
+    objects = begin_together(ball)
+    for triangle in uv.triangles[::7]:
+        corners_uv = uv.uv[triangle]
+        near = 0.5 * corners_uv[1] + 0.25 * (corners_uv[0] + corners_uv[2])
+        nearest = triangle[np.linalg.norm(corners_uv - near, axis=1).argmin()]
+        _, hit = objects.vertex_at(over_the_layout(), *(SIZE * near))
+        assert hit.vertex == uv.vertex[nearest]
+    for loop in np.flatnonzero(np.isin(uv.vertex, marked(ball))):
+        _, hit = objects.cone_at(over_the_layout(), *(SIZE * uv.uv[loop] + (1, 0)), 3)
+        assert hit.vertex == uv.vertex[loop]
+    assert objects.vertex_at(over_the_layout(selected=True), *(SIZE * near)) is None
+    objects.end()
+
+
+def test_the_layout_is_picked_as_it_was_while_a_cone_is_dragged_in_it():
+    ball = add_ball()
+    bpy.ops.uv.cone_unwrap()
+    before = UvMap(ball)
+    objects = begin_together(ball)
+    (edited,) = objects._all
+    place = before.uv[before.triangles[10]].mean(axis=0)
+    _, first = objects.vertex_at(over_the_layout(), *(SIZE * place))
+    objects.hold_layouts(True)
+    objects.activate(edited)
+    edited.session.cones.add(first.vertex)
+    edited.session.cones.set_angle(math.radians(200))
+    edited.follower.outdated = True
+    until_all_idle(objects)
+    after = UvMap(ball)
+    triangle = after.triangles[40]
+    held = objects.vertex_at(over_the_layout(), *(SIZE * before.uv[triangle].mean(axis=0)))
+    assert held[1].vertex in before.vertex[triangle]
+    objects.hold_layouts(False)
+    now = objects.vertex_at(over_the_layout(), *(SIZE * after.uv[triangle].mean(axis=0)))
+    assert now[1].vertex in after.vertex[triangle]
+    assert np.abs(after.uv - before.uv).max() > 0.05
+    objects.restore()
+    objects.end()
+
+
+def test_a_mesh_without_a_layout_is_not_picked_there():
+    ball = add_ball()
+    ball.data.uv_layers.remove(ball.data.uv_layers[0])
+    objects = begin_together(ball, add_ball("Other"))
+    assert objects.vertex_at(over_the_layout(), SIZE / 2, SIZE / 2) is None
+    objects.end()

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from installed import addon
 from mathutils import Quaternion, Vector
-from scenes import ANGLES, add_ball, changed, edit, marked, plain_copy, snapshot, uv_key
+from scenes import ANGLES, UvMap, add_ball, changed, edit, marked, plain_copy, snapshot, uv_key
 from windows import area, click, drag, event, move_to, place_of, press, region, running, take_picture, type_text, until
 
 angle_table = addon.jobs.angle_table
@@ -481,3 +481,65 @@ def test_under_a_subdivision_surface_the_vertices_of_the_cage_are_picked():
     yield from until(lambda: uv_of(ball()) != uv)
     take_picture("subdivision")
     assert (yield from finished()) == sorted([*cones, added])
+
+
+def place_in_layout(obj, vertex):
+    """Pixels, in the window, of a vertex in the UV editor, where it is only once."""
+    within = region("WINDOW", "IMAGE_EDITOR")
+    uv_map = UvMap(obj)
+    x, y = within.view2d.view_to_region(*uv_map.uv[uv_map.vertex == vertex][0], clip=False)
+    return within.x + x, within.y + y
+
+
+def inner_vertices(obj):
+    """Those that are once in the layout, away from its cuts; the farthest from all cones there first."""
+    uv_map = UvMap(obj)
+    on_cuts = {vertex for edge in uv_map.split_edges() for vertex in edge}
+    cones = uv_map.uv[np.isin(uv_map.vertex, marked(obj))]
+
+    def distance(vertex):
+        return np.linalg.norm(cones - uv_map.uv[uv_map.vertex == vertex][0], axis=1).min()
+
+    return sorted({*range(len(obj.data.vertices))} - on_cuts, key=distance, reverse=True)
+
+
+def ends(obj, cones):
+    """Cones at ends of cuts, which are once in the layout too."""
+    uv_map = UvMap(obj)
+    return [cone for cone in cones if len(np.unique(uv_map.uv[uv_map.vertex == cone].round(6), axis=0)) == 1]
+
+
+def test_cones_are_added_and_dragged_in_the_uv_editor():
+    yield from begin()
+    yield from press("ESC")
+    yield from until(lambda: not editing())
+    other = max((a for a in bpy.context.screen.areas if a.type != "VIEW_3D"), key=lambda a: a.width * a.height)
+    other.ui_type = "UV"
+    bpy.context.tool_settings.use_uv_select_sync = True
+    yield 0.5
+    within = region("WINDOW", "IMAGE_EDITOR")
+    with bpy.context.temp_override(area=other, region=within):
+        bpy.ops.image.view_all(fit_view=True)
+    yield 0.5
+    before, cones = snapshot(ball()), marked(ball())
+    with bpy.context.temp_override(area=other, region=within):
+        assert bpy.ops.mesh.cone_edit("INVOKE_DEFAULT", True) == {"RUNNING_MODAL"}
+    added = inner_vertices(ball())[0]
+    yield from click(place_in_layout(ball(), added))
+    yield 0.5
+    take_picture("uv_editor_added")
+    (part,) = angle_table.current_table(ball(), angle_table.last_settings(bpy.context))
+    assert [row.vertex for row in part.rows] == sorted([*cones, added])
+    yield from press("Z", place_in_layout(ball(), added), ctrl=True)
+    yield 0.5
+    assert changed(before, snapshot(ball())) == set()
+    start, target = ends(ball(), cones)[0], inner_vertices(ball())[1]
+    yield from drag(place_in_layout(ball(), start), place_in_layout(ball(), target))
+    yield 0.5
+    take_picture("uv_editor_dragged")
+    yield from press("RET")
+    yield from until(lambda: not editing())
+    assert marked(ball()) == sorted({*cones} - {start} | {target})
+    bpy.ops.ed.undo()
+    yield 0.2
+    assert changed(before, snapshot(ball())) == set()
