@@ -11,4 +11,5 @@ MOST = 1024
 
 def chosen_threads() -> int:
     """0 for the library's default, see `native`.  Only in Blender's main thread."""
-    return bpy.context.preferences.addons[EXTENSION].preferences.threads
+    addon = bpy.context.preferences.addons.get(EXTENSION)
+    return 0 if addon is None else addon.preferences.threads  # None: registered by a script, without preferences

@@ -1,7 +1,31 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cone parameterization with exact affine transitions across every cut.
+"""UV maps whose textures continue across the seams: cone parameterization with exact affine transitions.
 
-Vintescu, Dupont, Lavoué, Memari, Tierny: Least Squares Affine Transitions for Global Parameterization, WSCG 2017.
+A map in one call, here of a tetrahedron:
+
+>>> import lsgp
+>>> surface = lsgp.Surface(
+...     positions=[[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]],  # (n, 3), any unit
+...     triangles=[[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]],  # (m, 3), counter-clockwise from outside
+... )
+>>> result = lsgp.auto_unwrap(surface, preset="paint")
+>>> result.corner_uv.shape  # one (u, v) per triangle corner
+(4, 3, 2)
+
+The same step by step, with cones placed automatically and all options:
+
+>>> placed = lsgp.place_cones(surface)
+>>> options = lsgp.Options(mode="low-stretch")
+>>> result = lsgp.parameterize(surface, placed.cones, placed.cone_angles, options)
+>>> len(result.flipped), round(result.distortion.l2_stretch, 3)
+(0, 1.0)
+
+Further functions: `read_mesh_file` and `write_mesh_file` for meshes in files, `Solver` for repeated maps of one
+surface, `measure_distortion` for existing coordinates, `pack_islands`, `pad_image` and `extract_quads`. Every error is
+an `LsgpError` with a code, a message and the elements concerned. The command `lsgp` does the same for files.
+
+The method: Vintescu, Dupont, Lavoué, Memari, Tierny: Least Squares Affine Transitions for Global Parameterization, WSCG
+2017.
 """
 
 from importlib.metadata import version

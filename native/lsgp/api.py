@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The verbs of the library over numpy arrays: validation of the call, the native core, typed results."""
+"""The functions of the library over numpy arrays: validation of the call, the native core, typed results."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from . import _lsgp, arguments
 from .arguments import FloatArray, IndexArray
 from .equality import EqualByContent
 from .errors import Finding
+from .short_repr import ShortRepr
 
 PrescriptionRule = Literal["least-distortion", "harmonic", "straightness", "manual"]
 UnfoldMethod = Literal["poisson", "spectral"]
@@ -35,24 +36,24 @@ def _set(instance: object, name: str, value: object) -> None:
     object.__setattr__(instance, name, value)
 
 
-@dataclass(frozen=True, eq=False)
-class Surface(EqualByContent):
+@dataclass(frozen=True, eq=False, repr=False)
+class Surface(EqualByContent, ShortRepr):
     """A triangulated surface, possibly of several components, and the edges its cuts may follow.
 
     positions: (n, 3) float64, any unit.
     triangles: (m, 3) int32, counter-clockwise seen from outside.
     edges: (e, 2) int32, the edges a cut may follow (mesh edges, not the diagonals of triangulated polygons);
         None for all edges of the triangles.
-    seams: (s, 2) int32, marked edges; `Options.seams` says what they mean.
-    importance: (n,) float64, at least 0: how much stretch at each vertex weighs in the mode "low-stretch"; None: all
-        vertices alike.
-    cut_costs: (e,) float64, 0 to 1e6: what a cut along each of `edges` costs for its length; None: 1. Costs decide
-        where cuts run, and leave the map as it is.
-    borders: (b, 2) int32, edges where the surface ends and its texture too, whatever seams mean.
-    directions: (m, 3) float64, what the texture's v is to run along at each triangle, in space: the part that lies in
-        the triangle counts, the longer the more, and (0, 0, 0) asks for nothing; or (3,), the same for all triangles;
-        None: no matter. Islands are turned for it, which leaves the map as it is; `Result.direction_errors` says by how
-        much it was missed.
+    seams: (s, 2) int32, marked edges, with the meaning given by `Options.seams`.
+    importance: (n,) float64, at least 0: the weight of stretch at each vertex in the mode "low-stretch"; None: equal
+        weights.
+    cut_costs: (e,) float64, 0 to 1e6: cost per length of a cut along each of `edges`; None: 1. Costs determine the
+        routes of cuts and do not change the map.
+    borders: (b, 2) int32, edges at which surface and texture end, whatever the meaning of seams.
+    directions: (m, 3) float64, the desired direction of the texture's v at each triangle, in space: its component in
+        the triangle's plane counts, with a weight given by its length, and (0, 0, 0) means none; or (3,), the same for
+        all triangles; None: none. Islands are rotated accordingly, which does not change the map;
+        `Result.direction_errors` has the deviations.
     """
 
     positions: FloatArray
@@ -89,9 +90,9 @@ def _directions(directions: ArrayLike, triangle_count: int) -> FloatArray:
     return np.tile(arguments.floats_of_shape("directions", directions, (3,)), (triangle_count, 1))
 
 
-@dataclass(frozen=True, eq=False)
-class Pins(EqualByContent):
-    """Corners whose texture coordinates are to stay.
+@dataclass(frozen=True, eq=False, repr=False)
+class Pins(EqualByContent, ShortRepr):
+    """Corners with fixed texture coordinates.
 
     corners: (p,) int32, 3 * triangle + corner. uv: (p, 2) float64.
     """
@@ -121,16 +122,16 @@ _CHOICES = {
 class Seamless:
     """A layout in which a tileable texture shows no seam (the paper's section 8).
 
-    Cone angles become multiples of the lattice's turn, and translations across cuts lead from lattice point to lattice
-    point. Coordinates are exact in float32: do not scale them afterwards but by powers of two.
+    Cone angles become multiples of the lattice's rotation, and translations across cuts map lattice points to lattice
+    points. Coordinates are exact in float32: afterwards scale them only by powers of two.
 
     lattice: "square": quarter turns of unit squares; "stripe": half turns of unit squares; "translation": unit squares
-        without turns; "triangle": third turns of triangles of side 1; "hexagon": sixth turns of them.
+        without rotation; "triangle": third turns of triangles of side 1; "hexagon": sixth turns of them.
     tiles: cells along the layout's longer side, before rounding. tile_size: or the side of a cell on the surface, in
         its unit. Neither: the coarsest grid that is valid and costs at most a tenth in distortion.
     parity: square lattice only: black and white cells match across cuts as well.
-    coarse_grid: where no layout on so coarse a grid is valid: "refine" takes the next finer one, "merge" merges
-        cones less than a cell apart, "relax" leaves those cones off the grid that cannot be placed on it.
+    coarse_grid: if no layout on such a coarse grid is valid: "refine" uses the next finer one, "merge" merges cones
+        less than a cell apart, "relax" leaves those cones off the grid that cannot be placed on it.
     cell: side of a cell in texture coordinates, a power of two. 1 is a whole tile; 2**level / size makes translations
         multiples of 2**level texels of a texture of that size, so that its mipmaps match up to that level.
     """
@@ -156,42 +157,41 @@ class Seamless:
 class Options:
     """How to prescribe the cone angles and how to unfold.
 
-    prescription: the rule that chooses the automatic angles. None: "manual" where angles are given (those are kept,
-        the other cones absorb the rest with least distortion), "least-distortion" otherwise.
-    unfold: "poisson" (robust, one linear solve) or "spectral" (the paper's, an eigenproblem; closed surfaces).
+    prescription: the rule that chooses the automatic angles. None: "manual" if angles are given (those are kept, the
+        other cones absorb the rest with least distortion), "least-distortion" otherwise.
+    unfold: "poisson" (robust, one linear solve) or "spectral" (the paper's eigenproblem; closed surfaces).
     method: "lsgp", or "lscm" for the paper's comparison: the same cuts without transitions.
-    seams: "follow": all marked seams are cut, others only where cones or handles need them, and a part enclosed by
-        seams becomes an island of its own; "boundary": every seam is an open border, as in Blender's own unwrap;
+    seams: "follow": all marked seams are cut, other edges only where cones or handles need them, and a region enclosed
+        by seams becomes an island of its own; "boundary": every seam is an open boundary, as in Blender's own unwrap;
         "ignore".
-        With "follow", a component without cones is opened along its seams too (SEAMS_OPENED), unless its borders are
-        straight, it is seamless and has a border, or it is a torus that they part into disks or not at all; the
-        texture of one with cones, placed ones too, runs on across its seams.
-        Parts that are open along seams and have neither handles nor cones are cut no further, however many holes they
-        have, as long as numbers can hold their map. CUTS_ADDED names all cuts besides the seams.
-    border: "free": angles along borders are those of least distortion, and a cone there that has an angle is a corner;
-        "straight": borders run straight from marked cone to marked cone.
-    loop_turning: total turning of borders, radians, by any vertex on each; the others turn with least distortion. A
-        free border about which the metric turns almost once, a hole, needs no cut and gets none; on surfaces without
-        handles and cones all holes are left whole where that costs less than a tenth of L2 stretch.
-    seamless: round angles and translations so that a tileable texture shows no seam; None: leave them.
-    mode: "conformal" keeps angles; "low-stretch" keeps lengths as far as the cone angles let it.
-    stretch: with "low-stretch", from 0, the conformal map, to 1, that of least stretch.
+        With "follow", a component without cones is also opened along its seams (SEAMS_OPENED), unless its boundaries
+        are straight, it is seamless and has a boundary, or it is a torus that its seams divide into disks or not at
+        all; the texture of a component with given or placed cones continues across its seams.
+        Pieces that are open along seams and have neither handles nor cones are not cut further, however many holes they
+        have, as long as their map is within the range of numbers. CUTS_ADDED names all cuts besides the seams.
+    border: "free": angles along boundaries are those of least distortion, and a cone there that has an angle is a
+        corner; "straight": boundaries are straight from marked cone to marked cone.
+    loop_turning: total turning of boundaries, radians, by any vertex on each; the others turn with least distortion. A
+        free boundary about which the metric turns almost once, a hole, needs no cut and gets none; on surfaces without
+        handles and cones all holes stay whole if that costs less than a tenth of L2 stretch.
+    seamless: round angles and translations so that a tileable texture shows no seam; None: no rounding.
+    mode: "conformal" preserves angles; "low-stretch" preserves lengths as far as the cone angles permit.
+    stretch: with "low-stretch", from 0, the conformal map, to 1, the map of least stretch.
     repair: untangle flipped triangles and correct angles that are off by a full turn.
     overlaps: "keep" islands that overlap themselves, or "split" them along further cuts until none does; transitions
         stay exact.
-    compact: whether to cut islands further that would leave much of a square empty, such as long strips, rings and
-        those with arms: "off"; "sparing", only where a short cut fills much of it, and in no component with marked
-        seams; "full", wherever more of it is filled than the cut and the further island cost. Transitions stay exact.
-        Components with pins keep their islands.
-    square_share: with compact, the area that these islands get, 1 being a whole square: less where other surfaces are
-        packed beside them, so that they are cut less; as many as there are UDIM tiles, up to 100, so that all of them
-        are filled.
-    factorization: how linear systems are solved; maps differ by rounding only. "cut" factors once and
-        leaves dense problems of the size of the cut, "sparse" factors for every step, "automatic" takes the cheaper.
-    threads: of large factorizations, up to 1024; the result is the same for any number. 0: as many as the environment
-        variable LSGP_THREADS says when the library first asks, or else as there are processors.
+    compact: further cuts of islands that would leave much of a square empty, such as long strips, rings and islands
+        with arms: "off"; "sparing", only where a short cut fills much of the square, and in no component with marked
+        seams; "full", wherever the filled area outweighs the cost of the cut and the additional island. Transitions
+        stay exact. Components with pins keep their islands.
+    square_share: with compact, the area available to these islands, 1 being a whole square: less if other surfaces are
+        packed beside them, so that they are cut less; the number of UDIM tiles, up to 100, so that all are filled.
+    factorization: how linear systems are solved; maps differ only by rounding. "cut" factors once and leaves dense
+        problems of the size of the cut, "sparse" factors for every step, "automatic" uses the cheaper.
+    threads: number of threads for large factorizations, up to 1024; the result is the same for any number. 0: the value
+        of the environment variable LSGP_THREADS at the library's first use, or else the number of processors.
 
-    Options that contradict each other are refused (WRONG_PARAMETER; PINS_CONFLICT where pins are concerned): the method
+    Options that contradict each other are refused (WRONG_PARAMETER; PINS_CONFLICT if pins are involved): the method
     "lscm" with "spectral", "low-stretch", "straight", loop_turning, seamless or pins; seamless with "straight", compact
     or pins. Maps of "lscm" and "spectral" are not repaired.
     """
@@ -243,8 +243,8 @@ def _loop_turning(angles: Mapping[int, float]) -> dict[int, float]:
     }
 
 
-@dataclass(frozen=True, slots=True)
-class Distortion:
+@dataclass(frozen=True, slots=True, repr=False)
+class Distortion(ShortRepr):
     """Quality of a map (the paper's section 7.1), over all solved triangles.
 
     quasi_conformal: mean of sigma_1 / sigma_2 over triangles; 1 is conformal.
@@ -261,18 +261,19 @@ class Distortion:
     l2_stretch: float
 
 
-@dataclass(frozen=True, slots=True)
-class SeamQuality:
+@dataclass(frozen=True, slots=True, repr=False)
+class SeamQuality(ShortRepr):
     """How exactly the two sides of every cut are related by one rotation and one translation, in `corner_uv`.
 
-    Islands enclosed by cuts and seams are placed one by one, and a cut between two of them is measured by itself.
-    INEXACT_SEAMS names the edges that are off by more than rounding explains, as in a part much smaller than the
+    Islands enclosed by cuts and seams are placed individually, and a cut between two of them is measured separately.
+    INEXACT_SEAMS names the edges with larger errors than rounding explains, as on a component much smaller than the
     others.
 
-    sister_ratio_max: largest ratio of the longer to the shorter of two sister edges; 1 is exact.
-    rotation_residual: largest angle between a cut edge's own turn and its cut's rotation, radians.
-    translation_residual: largest distance between a vertex and the image of its sister, relative to the size of their
-        islands, of the larger where these are two.
+    sister_ratio_max: largest ratio of the longer to the shorter side of a cut edge (the paper's sister edges); 1 is
+        exact.
+    rotation_residual: largest angle between the rotation of a cut edge and that of its cut, radians.
+    translation_residual: largest distance between a vertex on a cut and the image of its copy on the other side,
+        relative to the size of their island, of the larger one if there are two.
     """
 
     sister_ratio_max: float
@@ -280,20 +281,20 @@ class SeamQuality:
     translation_residual: float
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SeamlessReport(EqualByContent):
-    """What makes a layout seamless, and at what cost: the certificate of its cuts.
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class SeamlessReport(EqualByContent, ShortRepr):
+    """The certificate of a seamless layout: the transition and the error of every cut, and the cost of rounding.
 
     A cut is crossed from its left side to its right one by z -> e^(2 pi i turns / symmetry) z + cell (a + b g), where g
     is i on square lattices and e^(i pi / 3) on triangular ones and z = u + iv.
 
     symmetry: rotations are multiples of 2 pi / symmetry. tiles: cells along the layout's longer side, before rounding.
     tile_size: side of a cell on the surface. cell: the same in texture coordinates.
-    energy_before, energy_after: symmetric Dirichlet energy, 1 is isometric, around the rounding of the translations.
+    energy_before, energy_after: symmetric Dirichlet energy before and after rounding the translations, 1 is isometric.
     cut_nodes: (c, 2) int32 vertices at the cuts' tails and heads. cut_turns: (c,) int32, 0 .. symmetry - 1.
-    cut_translations: (c, 2) int64, (a, b). cut_errors: (c,) float64, the largest distance of a vertex, as float32
-        stores it, from the image of its sister, in cells. error: the largest of them, 0 on square lattices.
-    flat_cones: cones whose curvature was rounded to zero, which are no cones any more. merged_cones: cones given up for
+    cut_translations: (c, 2) int64, (a, b). cut_errors: (c,) float64, the largest distance of a vertex, as stored in
+        float32, from the image of its copy, in cells. error: the largest of them, 0 on square lattices.
+    flat_cones: cones whose curvature was rounded to zero, now ordinary vertices. merged_cones: cones merged with
         another within a cell.
     relaxed_cones: cones off the lattice; the cuts to them show a seam.
     """
@@ -327,36 +328,38 @@ class RepairReport:
     iterations: int
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Result(EqualByContent):
-    """A map, what was imposed on it, and what was measured.
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Result(EqualByContent, ShortRepr):
+    """A map, the constraints imposed on it, and its measurements.
 
     corner_uv: (m, 3, 2) float64, one (u, v) per triangle corner; NaN where not solved. Islands have their 3D area
-        up to one common factor, do not overlap each other and lie in the unit square; a part that is sheared to less
-        than a tenth of its Dirichlet energy is smaller.
+        up to one common factor, do not overlap each other and lie in the unit square; a component whose area is sheared
+        to less than a tenth of its Dirichlet energy is smaller.
     solved: (m,) bool.
     island: (m,) int32, the island of each triangle, -1 where not solved.
-    cut_edges: (c, 2) int32 vertex pairs along which the layout is open, mesh boundaries and the seams of "boundary" not
-        included; of parts with cones, seams that end inside are, whose two sides lie on each other.
+    cut_edges: (c, 2) int32 vertex pairs along which the layout is open, without mesh boundaries and the seams of
+        "boundary"; on components with cones, seams that end in the interior are included, although their two sides
+        coincide.
     borders: (b, 2) int32 vertex pairs, those of `Surface.borders`.
     cones, cone_angles: (k,) int32 and (k,) float64, radians, the angles that were imposed.
-    flipped: indices of triangles with UV area <= 0. wrong_angle_sums: vertices whose UV angles, those of flipped
-        triangles counted below 0, miss what was imposed by more than a degree: by whole turns, or by anything where the
-        two sides of a cut are not alike. INEXACT_ANGLES names those that miss it by less, but by more than 1e-6
-        radians. On a free border only its turning as a whole is judged. The map is valid when both are empty.
+    flipped: indices of triangles with UV area <= 0. wrong_angle_sums: vertices whose UV angle sum, with negative angles
+        of flipped triangles, misses the imposed sum by more than a degree: by full turns, or by any amount if the two
+        sides of a cut differ. INEXACT_ANGLES names those that miss it by less, but by more than 1e-6 radians. On a free
+        boundary only the total turning is judged. The map is valid if both are empty.
     overlapping: indices of triangles that overlap others. overlap_area: total area of all overlapping pairs, as a
         fraction of the layout's area.
     repair: defects of the first unfolding and the work of repairing them.
     cone_angle_error: largest deviation of a cone's UV angle sum from its imposed angle, radians.
-    log_scale: (n,) float64, predicted logarithm of the length scale at each vertex, area-weighted mean 0 on an island.
-    direction_errors: (m,) float64, angle between v and the direction of each triangle, radians, in a seamless layout up
-        to the lattice's turns; NaN where there is none. None where `Surface.directions` is. direction_error: their
-        mean, weighted by area and by the directions' length; None where no triangle has one.
-    seamless: the certificate of a seamless layout; None where none was asked for. Such a layout is not scaled into the
+    log_scale: (n,) float64, the predicted log conformal factor: logarithm of the length scale at each vertex,
+        area-weighted mean 0 on an island.
+    direction_errors: (m,) float64, angle between v and the direction of each triangle, radians, in a seamless layout
+        modulo the lattice's rotations; NaN for triangles without direction. None if `Surface.directions` is None.
+        direction_error: their mean, weighted by area and by the directions' length; None if no triangle has one.
+    seamless: the certificate of a seamless layout; None for other layouts. A seamless layout is not scaled into the
         unit square: one cell has the side `cell`.
     warnings: findings that leave the result usable.
-    stage_seconds: wall-clock seconds of each stage; results that differ in nothing else are equal.
-    factorizations, back_substitutions: of sparse matrices.
+    stage_seconds: wall-clock seconds of each stage; not compared by equality.
+    factorizations, back_substitutions: numbers of those of sparse matrices.
     """
 
     corner_uv: FloatArray
@@ -383,9 +386,22 @@ class Result(EqualByContent):
     factorizations: int
     back_substitutions: int
 
+    def _shown(self) -> dict[str, Any]:
+        return {
+            "triangles": len(self.solved),
+            "solved": int(self.solved.sum()),
+            "islands": len(np.unique(self.island[self.solved])),
+            "cones": len(self.cones),
+            "l2_stretch": self.distortion.l2_stretch,
+            "flipped": len(self.flipped),
+            "wrong_angle_sums": len(self.wrong_angle_sums),
+            "overlapping": len(self.overlapping),
+            "warnings": sorted({finding.code for finding in self.warnings}),
+        }
 
-@dataclass(frozen=True, slots=True, eq=False)
-class CutPaths(EqualByContent):
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class CutPaths(EqualByContent, ShortRepr):
     """Cuts that open a surface into disks through its cones (the paper's section 4.1).
 
     edges: (c, 2) int32 vertex pairs. paths: the cuts, each an int32 array of vertices from node to node; nodes are
@@ -396,12 +412,13 @@ class CutPaths(EqualByContent):
     paths: list[IndexArray]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Prescription(EqualByContent):
-    """Cone angles under Gauss-Bonnet and the scale they imply (the paper's section 5).
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Prescription(EqualByContent, ShortRepr):
+    """Cone angles that satisfy Gauss-Bonnet and the scale they imply (the paper's section 5).
 
-    cones, cone_angles: (k,) int32, (k,) float64 radians. log_scale: (n,) float64, area-weighted mean 0 on an island.
-    predicted_l2: the L2 stretch the map will have.
+    cones, cone_angles: (k,) int32, (k,) float64 radians. log_scale: (n,) float64, the log conformal factor,
+        area-weighted mean 0 on an island.
+    predicted_l2: the predicted L2 stretch of the map.
     """
 
     cones: IndexArray
@@ -411,19 +428,19 @@ class Prescription(EqualByContent):
     warnings: list[Finding]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Placement(EqualByContent):
-    """Cones placed automatically, with the angles that go with them.
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Placement(EqualByContent, ShortRepr):
+    """Cones placed automatically, with their angles.
 
-    cones, cone_angles: (k,) int32, (k,) float64 radians, existing ones first but for those on a border that prescribe
-        nothing. `parameterize` with both gives the map that was measured here.
+    cones, cone_angles: (k,) int32, (k,) float64 radians, existing ones first, without those on a boundary that have no
+        angle. `parameterize` with both gives the map that was measured here.
     log_scale: (n,) float64, predicted, area-weighted mean 0 on an island. predicted_l2: the L2 stretch that follows
         from it, 1 being none, exact in the limit of fine triangles.
-    mapped_l2: the L2 stretch of the map itself; infinite where that has flipped triangles or wrong angles, None where
-        it was not made, which is where a component gets more than 60 cones by `count` or has them.
-    reached: whether mapped_l2, or predicted_l2 where there is none, is within the target on every component.
-    maps: of components, made to find that out. factorizations, back_substitutions: the linear algebra it took to
-        choose, without that of these maps.
+    mapped_l2: the L2 stretch of the map itself; infinite if the map has flipped triangles or wrong angles, None if no
+        map was computed, as for components with more than 60 given or requested (`count`) cones.
+    reached: whether mapped_l2, or predicted_l2 without a map, is within the target on every component.
+    maps: number of maps of components computed for this. factorizations, back_substitutions: the linear algebra of the
+        choice, without that of these maps.
     """
 
     cones: IndexArray
@@ -438,15 +455,15 @@ class Placement(EqualByContent):
     back_substitutions: int
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ConeGains(EqualByContent):
-    """The stretch to expect with one more cone, its angle and the automatic ones recomputed.
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class ConeGains(EqualByContent, ShortRepr):
+    """The predicted stretch with one more cone, its angle and the automatic ones recomputed.
 
     predicted_l2: (n,) float64, the L2 stretch of the vertex's component with a cone there, to first order; NaN where
         none may be placed. Values are capped at 1e100.
-    present_l2: the L2 stretch of the whole surface as it is; infinite where a component needs a cone, as one that
-        is opened along its seams for want of cones does.
-    best: the vertex where a cone lowers that most; None where none does.
+    present_l2: the L2 stretch of the whole surface with the given cones; infinite if a component needs a cone, as one
+        that would be opened along its seams because it has none.
+    best: the vertex where a cone lowers that most; None if there is none.
     """
 
     predicted_l2: FloatArray
@@ -455,14 +472,13 @@ class ConeGains(EqualByContent):
     warnings: list[Finding]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Measurement(EqualByContent):
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Measurement(EqualByContent, ShortRepr):
     """Quality of given texture coordinates; cuts are the interior edges whose two sides differ.
 
-    island: (m,) int32. flipped: triangles turned against the majority of their island. cut_edges: (c, 2) int32.
-    A part of the surface that has one side only is measured as if open along its cuts, which `seams` then leaves out;
-    where an island of it has one side all the same, each of its triangles is one. Triangles without area in the plane
-    make figures infinite.
+    island: (m,) int32. flipped: triangles oriented against the majority of their island. cut_edges: (c, 2) int32.
+    A one-sided component is measured as if open along its cuts, which `seams` then leaves out; if an island of it is
+    still one-sided, each of its triangles becomes an island. Triangles without area in the plane make figures infinite.
     """
 
     distortion: Distortion
@@ -483,9 +499,9 @@ def parameterize(
     """Cut the surface through its cones and unfold it with exact transitions across every cut.
 
     cones: (k,) int32 vertex indices. angles: one total angle in radians per cone, None = automatic.
-    pins: with two or more on a component its map goes through them, and its place, size and turn are theirs; with one,
-        its place is.
-    Components that cannot be solved are named in a warning when others could; the first error is raised otherwise.
+    pins: two or more on a component determine its position, size and rotation, and its map meets all of them; one
+        determines its position.
+    Components that cannot be solved are named in a warning if others can; otherwise the first error is raised.
     progress: called at intervals with the fraction done, 0 to 1; if it returns False, Cancelled is raised; its own
         exceptions propagate.
     Raises InputError, TopologyError, CurvatureError, SolverError, Cancelled.
@@ -496,12 +512,12 @@ def parameterize(
 
 
 class Solver:
-    """Parameterizes one surface repeatedly, for instance while a cone is dragged or an angle is tried out.
+    """Parameterizes one surface repeatedly, for instance while a cone is dragged or an angle is tried.
 
-    Every call returns what `lsgp.parameterize` does and caches what the next one can reuse: the surface's topology and
-    geometry, and, as long as a component's cones stay where they are, its factored linear systems. Angles and all
-    options but `seams`, `border` and `factorization`, those of seamless layouts among them, may then change without a
-    new factorization.
+    Every call returns the same as `lsgp.parameterize` and caches data for the next one: the surface's topology and
+    geometry, and, as long as a component's cones do not move, its factored linear systems. Angles and all options
+    except `seams`, `border` and `factorization`, including those of seamless layouts, can then change without a new
+    factorization.
     A call during another one, from another thread or from its progress callback, raises SolverError (SOLVER_BUSY).
     """
 
@@ -517,7 +533,7 @@ class Solver:
         pins: Pins | None = None,
         progress: Progress | None = None,
     ) -> Result:
-        """Arguments, result and errors as of `lsgp.parameterize`."""
+        """Arguments, result and errors as for `lsgp.parameterize`."""
         out = self._solver.parameterize(*_call(cones, angles, options, pins, progress))
         return _to_result(out, self._borders)
 
@@ -549,7 +565,8 @@ def find_cuts(
 ) -> CutPaths:
     """Cuts that join all cones and boundary loops and open every handle, as short as a local search finds them.
 
-    Where the surface has costs of cuts, as cheap. A map may need fewer: holes that the metric turns about are not cut.
+    If the surface has cut costs, these are minimised instead. A map may need fewer cuts: holes about which the metric
+    turns once are not cut.
 
     progress: as for `parameterize`.  Raises InputError, TopologyError, Cancelled.
     """
@@ -569,13 +586,14 @@ def crease_borders(
 ) -> IndexArray:
     """Edges for `Surface.borders`, (b, 2) int32, with which hard surfaces unfold without stretch and without cones.
 
-    What lies between creases is a patch. Patches are unfolded together across what they share of a border where that
-    is straight and not short, and a tube is opened from end to end: a cylinder becomes a rectangle and two disks.
-    Parts with cones or marked seams have no such borders, nor have those where a fifth of the curvature lies off the
-    creases.
-    angle: radians between the normals of the two triangles, from which on an edge is a crease.
+    The regions between creases are patches. Patches are unfolded together across shared boundary segments that are
+    straight and not short, and a tube is opened from end to end: a cylinder becomes a rectangle and two disks.
+    Components with cones or marked seams, and those with more than a fifth of their curvature off the creases, have no
+    such edges.
+    angle: least angle between the normals at a crease, radians.
     sharp: (s, 2) int32, edges that are creases whatever their angle.
-    most_corners: parts whose curvature sits at no more vertices than this have none, since cones there do as well.
+    most_corners: components with their curvature at no more vertices than this have none, since cones there serve as
+        well.
     progress: as for `parameterize`.  Raises InputError, TopologyError, Cancelled.
     """
     arguments.require_callable(progress)
@@ -595,14 +613,14 @@ def cut_costs(
     paint: ArrayLike | None = None,
     progress: Progress | None = None,
 ) -> FloatArray:
-    """What a cut along each of the surface's `edges` should cost for its length, (e,) float64, for `Surface.cut_costs`.
+    """The cost per length of a cut along each of the surface's `edges`, (e,) float64, for `Surface.cut_costs`.
 
-    front: (3,), the direction from the surface to who looks at it; cuts hide from the views around it: a cost is 0.1
-        where no view sees the edge and 1.1 where all do. None: it does not matter.
+    front: (3,), the direction from the surface to the viewer; cuts are hidden from the views around it: a cost is 0.1
+        if no view sees the edge and 1.1 if all do. None: visibility has no effect.
     creases: costs fall to 0.12 of that along edges where the surface bends by 50 degrees or more, not below 30.
     sharp: (s, 2) int32, edges that are creases whatever their angle.
-    paint: (n,) float64, from 0 at vertices where cuts should run, for a tenth of the cost, to 1 where they should not,
-        for ten times as much. None: no matter.
+    paint: (n,) float64, from 0 at vertices that attract cuts, for a tenth of the cost, to 1 at vertices that repel
+        them, for ten times the cost. None: no effect.
     progress: as for `parameterize`.  Raises InputError, Cancelled.
     """
     arguments.require_callable(progress)
@@ -642,21 +660,22 @@ def place_cones(
     threads: int = 0,
     progress: Progress | None = None,
 ) -> Placement:
-    """Place cones where they lower the stretch most, with the angles that go with them.
+    """Place cones where they lower the stretch most, with their angles.
 
-    cones, angles: existing cones, which are kept, and angles of theirs that are, None = automatic.
-    count: cones per component, existing ones included; a component that has no room for so many gets fewer, which a
-        warning names. Where the map with so many cannot be used, the error or warning says how many None gives. None:
-        as few as bring the L2 stretch of the map to `target`.
-    lattice: angles become multiples of its turn, for a seamless layout. Where the surface has directions and no `count`
-        is given, cones are only where these are not parallel, if that leaves the texture at most 7 degrees off them and
-        the stretch within 1.2: around the bottom of a vase, and none in a sleeve.
-    prefer_sharp: sharp corners before smooth places where that costs little.
-    symmetric: the same cones on both sides of a plane: of `mirror`, a point on it and its normal, or None: found.
-    seams, progress: as for `parameterize`, which does with the cones and angles placed what is assumed here: with
-        "follow" a component that gets cones is not opened along its seams. threads: as in `Options`.
-    None is placed on a border, where no edge leads that cuts may follow, nor, where the mesh has room, within two rings
-    of another.
+    cones, angles: existing cones and their fixed angles, which are kept; None = automatic.
+    count: cones per component, including existing ones; a component without room for so many gets fewer, and a warning
+        names it. If the map with this number is unusable, the error or warning says how many None gives. None: the
+        fewest that bring the L2 stretch of the map to `target`.
+    lattice: angles become multiples of its rotation, for a seamless layout. If the surface has directions and no
+        `count` is given, cones are placed only where directions are not parallel, provided that the texture is then at
+        most 7 degrees off them and the stretch within 1.2: around the bottom of a vase, and none in a sleeve.
+    prefer_sharp: prefer sharp corners to smooth regions if that costs little.
+    symmetric: the same cones on both sides of a plane, given by `mirror`, a point on it and its normal, or, if that is
+        None, detected.
+    seams, progress: as for `parameterize`, which treats the placed cones and angles as assumed here: with "follow" a
+        component that gets cones is not opened along its seams. threads: as in `Options`.
+    No cone is placed on a boundary, at a vertex that cuts cannot reach, or, if the mesh has room, within two rings of
+    another.
     Raises InputError, TopologyError, CurvatureError, SolverError, Cancelled.
     """
     arguments.require_callable(progress)
@@ -687,7 +706,7 @@ def cone_gains(
     seams: SeamMode = "follow",
     progress: Progress | None = None,
 ) -> ConeGains:
-    """The stretch to expect with one more cone, for every vertex.  Arguments and errors as in `place_cones`."""
+    """The predicted stretch with one more cone, for every vertex.  Arguments and errors as in `place_cones`."""
     arguments.require_callable(progress)
     arguments.require_choice("seams", seams, get_args(SeamMode))
     return ConeGains(**_lsgp.cone_gains(surface_arrays(surface), _given_cones(cones, angles), seams, progress))
@@ -696,8 +715,8 @@ def cone_gains(
 def measure_distortion(
     surface: Surface, corner_uv: ArrayLike, cones: ArrayLike | None = None, progress: Progress | None = None
 ) -> Measurement:
-    """Measure given texture coordinates, (m, 3, 2) float64, one (u, v) per triangle corner; one that is not
-    finite leaves a triangle out.
+    """Measure given texture coordinates, (m, 3, 2) float64, one (u, v) per triangle corner; triangles with a
+    coordinate that is not finite are left out.
 
     cones: (k,) int32, the vertices at which a cut may change its rotation; None: every vertex whose angles do not add
     up to a full turn. progress: as for `parameterize`.  Raises InputError, Cancelled.

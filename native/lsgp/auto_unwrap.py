@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From a surface to a finished map in one call: presets, and cones where the given ones do not suffice."""
+"""From a surface to a finished map in one call: presets, and automatic cones if the given ones do not suffice."""
 
 from __future__ import annotations
 
@@ -53,10 +53,11 @@ _PRESETS: dict[Preset, Options] = {
 def preset_options(preset: Preset) -> Options:
     """The options of a preset of `auto_unwrap`; `dataclasses.replace` changes some of them.
 
-    preset: "paint" keeps lengths, for texture painting, and cuts islands where they would leave most of the square
-        empty; "tile" makes a tileable texture of squares show no seam; "bake" is for textures that are computed:
-        islands are cut so that they fill the square, hard surfaces at their creases, as in `with_crease_borders`.
-    No island of theirs overlaps itself.  Raises InputError.
+    preset: "paint" preserves lengths, for texture painting, and cuts islands that would leave most of the square empty;
+        "tile" makes seams invisible for a tileable texture of squares; "bake" is for computed textures: it preserves
+        lengths, cuts islands so that they fill the square, and hard surfaces at their creases, as in
+        `with_crease_borders`.
+    With every preset no island overlaps itself.  Raises InputError.
     """
     arguments.require_choice("preset", preset, get_args(Preset))
     return _PRESETS[preset]
@@ -79,22 +80,21 @@ def auto_unwrap(
     texels: TexelLayout | None = None,
     progress: Progress | None = None,
 ) -> Result:
-    """Unwrap a surface ready for use: cones are placed where they are missing, and what a preset asks for is done.
+    """Unwrap a surface ready for use: place missing cones and apply a preset.
 
-    cones, angles: as of `parameterize`; they are kept. A component without cones gets as many as its stretch takes,
-        which may be none; one whose cones cannot take up its curvature gets more.
-    options: in place of `preset_options(preset)`. count: cones on each component that gets some, as of `place_cones`;
-        None: as few as bring the L2 stretch to 1.05.
-    creases: whether hard surfaces may end at their creases, as in `with_crease_borders`, to which `sharp` belongs.
-    pack: "tight": islands lie as close together as by `pack_islands`; "shelves": side by side; None: tight where
-        `packer_name` has one, but for layouts that are seamless, pinned or in UDIM tiles, which are never packed.
-    margin: with "tight", around each island, of the square's side; None: 4 / 1024, before the layout gets a texel
-        density. udim: over how many UDIM tiles a tight layout is spread at most, as by `pack_islands`; without texels,
-        which has its own. It is the
-        `Options.square_share`, too.
-    texels: the layout at a texel density, as by `at_texel_density`; None: it fills the unit square. Not with pins.
-    pins, progress, errors and the result as of `parameterize`; `Result.cones` has the placed ones too, warnings those
-        of placing them.
+    cones, angles: as for `parameterize`; they are kept. A component without cones gets the number that its stretch
+        requires, which may be 0; one whose cones cannot take up its curvature gets more.
+    options: instead of `preset_options(preset)`. count: cones on each component that gets some, as for `place_cones`;
+        None: the fewest that bring the L2 stretch to 1.05.
+    creases: whether hard surfaces may be cut at their creases, as in `with_crease_borders`, which takes `sharp`.
+    pack: "tight": as by `pack_islands`; "shelves": in rows; None: tight if `packer_name` returns a packer. Layouts that
+        are seamless, pinned or in UDIM tiles at a texel density are never packed.
+    margin: with "tight", around each island, as a fraction of the square's side; None: 4 / 1024, before the layout gets
+        a texel density. udim: most UDIM tiles that a tight layout is spread over, as for `pack_islands`, and its
+        `Options.square_share`; not with texels, which have their own.
+    texels: a layout at a texel density, as by `at_texel_density`; None: it fills the unit square. Not with pins.
+    pins, progress, errors and the result as for `parameterize`; `Result.cones` includes the placed cones, its warnings
+        those of the placement.
     """
     chosen = preset_options(preset)
     if options is not None:
@@ -143,11 +143,11 @@ def with_crease_borders(
     options: Options,
     sharp: ArrayLike | None = None,
 ) -> Surface:
-    """The surface with the borders of `crease_borders` that a preset wants besides its own.
+    """The surface with its own borders and those of `crease_borders` that a preset requires.
 
-    "bake": all; "paint": those of parts whose curvature sits at more than 24 vertices, since cones there do as well and
-    let the texture run on; "tile", and with options for seamless layouts, straight borders or turning that is given:
-    none. sharp, errors: as of `crease_borders`.
+    "bake": all; "paint": those of components with curvature at more than 24 vertices, since fewer can be cones, across
+    which the texture continues; "tile", and options for seamless layouts, straight borders or prescribed turning: none.
+    sharp, errors: as for `crease_borders`.
     """
     most_corners = _MOST_CORNERS[preset]
     if most_corners is None or options.seamless is not None or options.border != "free" or options.loop_turning:
@@ -158,11 +158,11 @@ def with_crease_borders(
 
 @dataclass(frozen=True, slots=True)
 class CompletedCones:
-    """Given cones with those placed besides.
+    """Given cones and those placed in addition.
 
-    cones: (k,) int32, given ones first. angles: one each for `parameterize`, None = automatic. placement: of the
-    components that got some or were looked at; None where there is none. by_target: whether it was a stretch to reach,
-    and not a number, that said how many.
+    cones: (k,) int32, given ones first. angles: one each for `parameterize`, None = automatic. placement: on the
+    components that needed or were tried for cones; None if there are none. by_target: whether the number was determined
+    by a target stretch.
     """
 
     cones: IndexArray
@@ -171,7 +171,7 @@ class CompletedCones:
     by_target: bool = True
 
     def told(self, result: Result, options: Options) -> Result:
-        """The result of a map through these cones with the warnings of placing them, as far as they hold for it."""
+        """The result of a map through these cones with the applicable warnings of their placement."""
         if self.placement is None:
             return result
         findings = self.placement.warnings
@@ -209,14 +209,14 @@ def complete_cones(
     except Cancelled:
         raise
     except LsgpError:
-        # The map of the other components can still be made; it says what is wrong with these.
+        # The other components can still be mapped; mapping reports the defect of these.
         return CompletedCones(given, held, None)
     placed = replace(placed, warnings=_renumbered(placed.warnings, triangles))
     return _completed(given, held, options, count, placed)
 
 
 def joined_warnings(of_placement: Sequence[Finding], of_map: Sequence[Finding]) -> list[Finding]:
-    """Those of placing cones and of the map through them; what both say of the surface is said once."""
+    """Merges the findings of placement and mapping, without duplicates."""
     said = {(finding.code, finding.message) for finding in of_map}
     return [finding for finding in of_placement if (finding.code, finding.message) not in said] + list(of_map)
 

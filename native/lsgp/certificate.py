@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The certificate of a seamless layout: how every cut is crossed, as data for the report and as lines of text."""
+"""The certificate of a seamless layout: the transition of every cut, as data for the report and as lines of text."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ SHOWN_CUTS = 12
 def certificate(report: SeamlessReport, texture_size: int) -> dict[str, Any]:
     """The certificate as data.
 
-    A cut is crossed from its left side to its right one by a turn of `turns` / `symmetry` and a shift by `translation`:
-    whole multiples of the two vectors of `basis`, which are (u, v) in cells. `cell` is the side of a cell in texture
-    coordinates, `error` the largest error of a cut in cells; error_texels are of a texture of `texture_size` texels a
-    side that covers the unit square.  Raises InputError.
+    The left side of a cut is mapped to its right side by a rotation of `turns` / `symmetry` full turns and then a
+    translation by `translation`: integer multiples of the two vectors of `basis`, which are (u, v) in cells. `cell` is
+    the side of a cell in texture coordinates, `error` the largest error of a cut in cells; error_texels refers to a
+    texture of `texture_size` texels a side that covers the unit square.  Raises InputError.
     """
     texels = _texels(report, texture_size)
     cuts = zip(

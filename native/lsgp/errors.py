@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Errors of the library: what is wrong, where, how much, and what to do.
+"""Errors of the library: cause, place, amount and remedy.
 
-Every error carries a ``code`` that never changes its meaning, a ``message`` written for an artist that ends with
-what to do, and the offending ``elements`` in the caller's numbering, so that a user interface can select them.
+Every error has a ``code`` with a permanent meaning, a ``message`` for artists that ends with a remedy, and the
+``elements`` concerned in the caller's numbering, so that a user interface can select them.
 """
 
 from __future__ import annotations
@@ -14,11 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .equality import EqualByContent
+from .short_repr import ShortRepr
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Elements(EqualByContent):
-    """Mesh elements a finding speaks of.
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Elements(EqualByContent, ShortRepr):
+    """The mesh elements that a finding concerns.
 
     kind: "vertices", "edges" or "triangles" ("faces" once mapped to the polygons of a file).
     indices: (k,) int32, or (k, 2) int32 vertex pairs for edges.
@@ -41,7 +42,7 @@ class Elements(EqualByContent):
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A warning about a usable result: a code, a sentence and the elements it concerns."""
+    """A warning about a usable result: a code, a sentence and the elements concerned."""
 
     code: str
     message: str
@@ -75,11 +76,11 @@ class TopologyError(LsgpError):
 
 
 class CurvatureError(LsgpError):
-    """Cone angles that no flat metric has; the message states the sum and the sum required."""
+    """Cone angles that no flat metric has; the message states their sum and the required sum."""
 
 
 class SolverError(LsgpError):
-    """A factorization or an iteration that did not succeed."""
+    """A factorization or an iteration failed."""
 
 
 class Cancelled(LsgpError):

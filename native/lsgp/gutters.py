@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Gutters of a texture: texels beside islands hold what lies beyond the cut, not a smear of the border."""
+"""Gutters of a texture: texels beside islands hold the content beyond the cut, not copies of the boundary."""
 
 from __future__ import annotations
 
@@ -38,23 +38,24 @@ _LEAST_WEIGHT = 1e-3
 def pad_image(
     image: ArrayLike, surface: Surface, corner_uv: ArrayLike, margin: float, *, normal_map: bool = False
 ) -> NDArray[Any]:
-    """A texture whose gutters hold what lies beyond the cuts, so that filtered lookups match on both sides of a cut.
+    """A texture whose gutters hold the content beyond the cuts, so that filtered lookups match on both sides of a cut.
 
     image: (height, width) or (height, width, channels), 1 to 4 channels, uint8, uint16, float32 or float64; the first
     row is the top, v = 1.
     corner_uv: (m, 3, 2), in the unit square; NaN where there is none.
     margin: how far gutters reach from islands, in pixels.
     normal_map: the first two channels are a direction in the tangent plane, to the right and up, with 0 at half the
-    range of whole numbers, at 1/2 in floating point; it is turned with the map.
+            range of integers, at 1/2 in floating point; it is rotated with the map.
 
-    A texel whose centre is in no triangle takes the value from where its centre lies beyond the nearest border, carried
-    on by unfolding triangles across all edges on the way; the sample is bilinear, of covered texels alone. Across cuts
-    of this library's maps that is exact in position; in other maps, edges of two lengths are matched by a similarity.
-    Where the surface ends, or is mirrored in the map, it is the value of the nearest covered texel. Covered texels and
-    those beyond the margin stay. Where coordinates are squeezed for an image that is not square, as by
-    `correct_aspect`, transitions are those on the image. The image is not changed; returns one of its shape and dtype.
-    Raises InputError: WRONG_SHAPE, WRONG_DTYPE, WRONG_PARAMETER, INDEX_OUT_OF_RANGE; ISLANDS_OUTSIDE of the unit
-    square, as of seamless layouts, where a texel is at several places of the surface; NO_UV where nothing is mapped.
+    A texel whose centre is in no triangle gets the value of the surface beyond the nearest boundary of the island,
+    found by unfolding triangles across all edges on the way; the sample is bilinear, from covered texels only. Across
+    cuts of this library's maps its position is exact; in other maps, sides of different length are matched by a
+    similarity. At the boundary of the surface, or where it is mirrored in the map, it is the value of the nearest
+    covered texel. Covered texels and those beyond the margin do not change. If coordinates are squeezed for an image
+    that is not square, as by `correct_aspect`, transitions are those on the image. The argument is not modified;
+    returns an image of its shape and dtype.
+    Raises InputError: WRONG_SHAPE, WRONG_DTYPE, WRONG_PARAMETER, INDEX_OUT_OF_RANGE; ISLANDS_OUTSIDE the unit square,
+    as in seamless layouts, in which a texel is at several places of the surface; NO_UV if nothing is mapped.
     """
     turns_normals = arguments.flag("normal_map", normal_map)
     pixels = _image(image, turns_normals)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Placement of finished islands: moved back to where they were, and fitted to images that are not square.
+"""Placement of finished islands: restoring their positions, and fitting them to images that are not square.
 
-Whole islands only are moved, each by one similarity, so that both sides of every cut stay related as they are.
+Only whole islands are moved, each by one similarity, so that the relation of both sides of every cut is preserved.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ _NO_TURN = 1e-9
 
 
 def fit_placement(corner_uv: FloatArray, old_uv: FloatArray, island: IndexArray) -> FloatArray:
-    """Move every island to where the same corners were, by one turn, one uniform scale and one shift each.
+    """Move every island to the former position of its corners, by one rotation, uniform scale and translation each.
 
     corner_uv: (m, 3, 2) float64, the new coordinates. old_uv: (m, 3, 2), the old ones. island: (m,), -1 for none.
-    Turn and place are those that fit best in least squares over the island's corners, never a mirror image. The scale
-    keeps the root mean square distance of the corners from their middle: the least-squares scale would shrink an
+    Rotation and position are the best fit in least squares over the island's corners, never a reflection. The scale
+    preserves the root mean square distance of the corners from their centroid: the least-squares scale would shrink an
     island with every change of its shape.
-    Triangles without an island stay, and so do islands whose old coordinates are not finite or lie on one point.
-    Returns a new array; raises InputError on arrays that do not belong together.
+    Triangles without an island do not move, nor do islands whose old coordinates are not finite or coincide.
+    Returns a new array; raises InputError for arrays that do not match.
     """
     island = arguments.islands("island", island)
     corner_uv = arguments.corner_coordinates("corner_uv", corner_uv, len(island))
@@ -63,8 +63,8 @@ def fit_placement(corner_uv: FloatArray, old_uv: FloatArray, island: IndexArray)
 def correct_aspect(corner_uv: ArrayLike, aspect: float) -> FloatArray:
     """Squeeze coordinates so that they are undistorted on an image of this aspect.
 
-    corner_uv: (..., 2). aspect: width of the image over its height, above 0. What lay in the unit square stays in it.
-    Raises InputError on another aspect.
+    corner_uv: (..., 2). aspect: width of the image over its height, above 0. Coordinates in the unit square stay in it.
+    Raises InputError for other values of aspect.
     """
     aspect = arguments.positive("aspect", aspect, "pass width over height of the image, above 0")
     uv = arguments.floats("corner_uv", corner_uv)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Islands of seamless layouts moved by whole cells, so that a tileable texture shows no seam before or after.
+"""Moves of islands of seamless layouts by whole cells, which keep a tileable texture free of visible seams.
 
-Coordinates are those that float32 stores. A move by whole cells keeps every cut's turn and leads its translation from
-lattice point to lattice point; only the grid on which float32 can hold both sides exactly may get coarser.
+Coordinates are stored in float32. A move by whole cells keeps the rotation of every cut and changes its translation
+by a lattice vector; only the grid on which float32 represents both sides exactly may become coarser.
 
-All functions raise InputError where arguments are not of the shapes and kinds they name.
+All functions raise InputError for arguments of other shapes and types than documented.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _SYMMETRIES = (1, 2, 3, 4, 6)
 
 
 def whole_cells(shift: ArrayLike, symmetry: int, cell: float) -> FloatArray:
-    """Moves by whole cells near the given ones, (k, 2): in the nearest row of lattice points, the nearest.
+    """Moves by whole cells near the given ones, (k, 2): the nearest in the nearest row of lattice points.
 
     symmetry, cell: as in `SeamlessReport`.
     """
@@ -41,9 +41,10 @@ def whole_cells(shift: ArrayLike, symmetry: int, cell: float) -> FloatArray:
 def nearest_places(
     corner_uv: FloatArray, old_uv: FloatArray, island: IndexArray, symmetry: int, cell: float
 ) -> FloatArray:
-    """The move by whole cells, (islands, 2), that takes each island nearest to where its corners were.
+    """The move by whole cells, (islands, 2), that brings each island nearest to the former position of its corners.
 
-    corner_uv, old_uv: (m, 3, 2). island: (m,), -1 for none. An island with an old coordinate that is not finite stays.
+    corner_uv, old_uv: (m, 3, 2). island: (m,), -1 for none. Islands with an old coordinate that is not finite do not
+    move.
     """
     symmetry, cell = _cells(symmetry, cell)
     island = arguments.islands("island", island)
@@ -101,11 +102,11 @@ def island_boxes(corner_uv: FloatArray, island: IndexArray) -> FloatArray:
 def shift_islands(
     triangles: IndexArray, corner_uv: FloatArray, island: IndexArray, cut_edges: IndexArray, shifts: FloatArray
 ) -> FloatArray:
-    """Move islands of a seamless layout and round to what float32 holds, so that both sides of every cut still match.
+    """Move islands of a seamless layout and round to float32, so that both sides of every cut still match.
 
     triangles: (m, 3). corner_uv: (m, 3, 2), island: (m,), cut_edges: (c, 2): of the `Result`. shifts: (islands, 2),
-    whole cells each. Where float32 is too coarse for the vertices of cuts at their new place, they go to its grid, both
-    sides together; cuts crossed by third or sixth turns, which it never holds exactly, are right to its rounding.
+    whole cells each. If float32 is too coarse for the vertices of cuts at their new position, both sides are rounded to
+    its grid together; cuts with third or sixth turns, which float32 never represents exactly, match up to rounding.
     Returns a new array.
     """
     island = arguments.islands("island", island)

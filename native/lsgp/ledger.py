@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Gauss-Bonnet ledger: the curvature given to the cones of every connected part, and what is missing.
+"""The Gauss-Bonnet ledger: the assigned and the missing curvature of every connected component.
 
-A flat metric with cones has its curvature at the cones: 2 pi less the cone's angle, on a border pi less it. On a closed
-part they add up to 2 pi (2 - 2 genus), whatever its shape. A border that turns freely takes up what the cones leave.
+A flat metric with cones has its curvature at the cones: 2 pi minus the cone's angle, pi minus it on a boundary. On a
+closed component the sum is 2 pi (2 - 2 genus), whatever its shape. A free boundary takes up the remaining curvature.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _lsgp, arguments
 from .api import FloatArray, IndexArray, Options, Surface, cone_arrays, surface_arrays
 from .equality import EqualByContent
+from .short_repr import ShortRepr
 
 # Tolerance of the sum, radians: that of the library.
 CLOSED_WITHIN = 1e-6
@@ -23,18 +24,17 @@ CLOSED_WITHIN = 1e-6
 _STORED_WITHIN = 5e-7
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class LedgerPart(EqualByContent):
-    """The account of one connected part; angles and curvatures in radians.
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class LedgerPart(EqualByContent, ShortRepr):
+    """The budget of one connected component; angles and curvatures in radians.
 
-    triangles: (m,) int32. cones: (k,) int32, places in the list of cones that was given; a vertex at which several
-        parts touch is a cone of each. A cone on a free border is one of its corners where it has an angle, none
-        otherwise.
-    curvature: (k,) float64, what each cone takes up; NaN where its angle is automatic.
-    euler: vertices - edges + triangles; 0 of a surface with one side, which has no map. borders: how many.
-    assigned: the sum of the curvatures given. required: what all have to add up to.
-    border_takes_up: a free border takes up what the cones leave, so that all sets of angles close.
-    room: least and most that the automatic cones can take up together.
+    triangles: (m,) int32. cones: (k,) int32, indices into the given list of cones; a vertex at which several components
+        touch is a cone of each. A cone on a free boundary counts only if it has an angle, as a corner.
+    curvature: (k,) float64, of each cone; NaN if its angle is automatic.
+    euler: vertices - edges + triangles; 0 for a one-sided surface, which has no map. borders: number of boundaries.
+    assigned: the sum of the given curvatures. required: the sum that all must have.
+    border_takes_up: a free boundary takes up the remaining curvature, so that any set of angles closes.
+    room: least and most curvature that the automatic cones can take up together.
     """
 
     triangles: IndexArray
@@ -49,7 +49,7 @@ class LedgerPart(EqualByContent):
 
     @property
     def missing(self) -> float:
-        """What automatic cones or the border take up; without them it has to be 0."""
+        """The curvature left to automatic cones or the boundary; must be 0 if there are none."""
         return self.required - self.assigned
 
     @property
@@ -77,16 +77,15 @@ def build_ledger(
     *,
     gets_cones: bool = False,
 ) -> list[LedgerPart]:
-    """The account of every connected part that has triangles, in the order of their first ones.
+    """The budget of every connected component with triangles, in the order of their first ones.
 
-    cones, angles: as in `parameterize`; with a rule that chooses all angles, given ones do not count. Parts are those
-    that `parameterize` solves one by one, as the options' meaning of seams has them.
-    gets_cones: those of `place_cones` and `cone_gains` instead. They differ where a part without cones is opened along
-        its seams: with its first cone it is whole.
-    Whether a map can have the given angles is for `prescribe_curvature` and `parameterize` to say; the ledger says
-    whether they add up.
-    Of the positions only their number counts. Raises InputError where cones are no vertices, angles not as many, or
-    triangles, edges and seams none of the mesh.
+    cones, angles: as in `parameterize`; with a rule that chooses all angles, given ones have no effect. Components are
+    those that `parameterize` solves separately, subject to the options' meaning of seams.
+    gets_cones: use the components of `place_cones` and `cone_gains` instead. They differ if a component without cones
+        is opened along its seams: its first cone makes it whole.
+    The ledger says whether angles add up; `prescribe_curvature` and `parameterize` decide whether a map can have them.
+    Only the number of positions matters. Raises InputError if cones are not vertices, the numbers of cones and angles
+    differ, or triangles, edges and seams do not belong to the mesh.
     """
     _require_surface(surface)
     gets_cones = arguments.flag("gets_cones", gets_cones)
@@ -103,11 +102,11 @@ def hold_complete(
     tentative: ArrayLike,
     options: Options | None = None,
 ) -> list[float | None]:
-    """The angles, those marked tentative, (k,) bool, only in parts whose ledger is complete with them.
+    """The angles, with tentative ones (marked, (k,) bool) kept only in components whose ledger is complete with them.
 
     Angles computed for one set of cones are meaningless for another: once a cone is added, removed or given another
     angle, the others are automatic again. The rounding error of angles stored in single precision is distributed over
-    those that hold.  Errors as in `build_ledger`.
+    the kept ones.  Errors as in `build_ledger`.
     """
     given = arguments.cone_angles("angles", angles, len(arguments.index_vector("cones", cones)))
     held = list(given)
@@ -124,7 +123,7 @@ def hold_complete(
 
 
 def part_surface(surface: Surface, part: LedgerPart) -> Surface:
-    """One part by itself, its vertices numbered as before; cuts may follow all of its edges."""
+    """One component as a surface of its own, with unchanged vertex indices; cuts may follow all of its edges."""
     _require_surface(surface)
     arguments.require_type("part", part, LedgerPart)
     arguments.require_indices("part.triangles", part.triangles, len(surface.triangles))

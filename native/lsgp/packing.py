@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Islands packed close together, by quarter turns and shifts, with the packer of xatlas."""
+"""Tight packing of islands, by quarter turns and translations, with the packer of xatlas."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Packing:
 
 
 def packer_name() -> str | None:
-    """Name and version of the packer of tight layouts, on which they depend; None where it is not installed."""
+    """Name and version of the packer of tight layouts, which depend on both; None if it is not installed."""
     return None if find_xatlas() is None else f"xatlas {version('xatlas')}"
 
 
@@ -84,22 +84,22 @@ def pack_islands(
     udim: int | None = None,
     progress: Progress | None = None,
 ) -> FloatArray:
-    """Put islands close together, into as small a square as is found, and return their coordinates, (m, 3, 2).
+    """Pack islands tightly, into the smallest square found, and return their coordinates, (m, 3, 2).
 
-    Every island is moved as a whole: by a quarter turn, a shift, and a scale that all of them share, so that texel
-    density and the transitions across cuts stay as they are.  Takes the package xatlas: pip install 'lsgp[pack]'.
+    Every island is moved as a whole: by a quarter turn, a translation, and a common scale, so that texel density and
+    the transitions across cuts are preserved.  Requires the package xatlas: pip install 'lsgp[pack]'.
 
-    corner_uv: (m, 3, 2). island: (m,), -1 for none; such triangles stay.
-    margin: around each island, so that twice as much is between two; from 0, less than 0.5.
-    fill: the square is the unit square, and the margin is of its side. Otherwise islands keep their size, the square
-        begins at the origin, and the margin is in the same unit as they are.
-    turned: whether islands may be.
-    udim: over how many UDIM tiles islands are spread at most, from 1001 on, so that they get as large as they can;
-        fewer where the largest island alone fills one. Each lies inside one tile, with the margin around it. With
-        `fill` only.
+    corner_uv: (m, 3, 2). island: (m,), -1 for none; such triangles do not move.
+    margin: around each island, so that the gap between two is twice as wide; at least 0, less than 0.5.
+    fill: the square is the unit square, and the margin is a fraction of its side. Otherwise islands keep their size,
+        the square starts at the origin, and the margin is in the unit of the coordinates.
+    turned: whether islands may be rotated.
+    udim: the most UDIM tiles that islands are spread over, from 1001 on, so that they become as large as possible;
+        fewer are used if the largest island alone fills one. Each island lies inside one tile, with its margin. Only
+        with `fill`.
     progress: called at intervals with the fraction done, 0 to 1; if it returns False, Cancelled is raised.
-    The result depends on the arguments and the version of the package alone.
-    Raises InputError: PACKER_NOT_INSTALLED; WRONG_PARAMETER, also where the margins leave no room for the islands.
+    The result depends only on the arguments and the version of the package.
+    Raises InputError: PACKER_NOT_INSTALLED; WRONG_PARAMETER, also if the margins leave no room for the islands.
     """
     island = arguments.islands("island", island)
     uv = arguments.corner_coordinates("corner_uv", corner_uv, len(island))

@@ -16,6 +16,7 @@ from .arguments import FloatArray, IndexArray
 from .auto_unwrap import CompletedCones, complete_cones, part_of
 from .equality import EqualByContent
 from .errors import Finding, InputError, SolverError
+from .short_repr import ShortRepr
 from .triangles import uv_area
 
 # Of the time that a remesh takes, where placing the cones and where the layouts end.
@@ -32,16 +33,16 @@ _FINER = 0.8
 _MOST_REFINEMENTS = 12
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class QuadMesh(EqualByContent):
-    """A closed manifold mesh whose faces all are quads, and where its vertices are on the surface.
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class QuadMesh(EqualByContent, ShortRepr):
+    """A closed manifold quad mesh, and the positions of its vertices on the surface.
 
-    positions: (v, 3) float64, on the surface. quads: (q, 4) int32, four different vertices each, which turn as the
-    surface's triangles do. No two vertices have more than one edge between them.
-    valences: (v,) int32, how many quads meet at each vertex: the angle of a cone in quarter turns, 4 elsewhere.
-    triangles: (v,) int32, the surface's triangle that each vertex is on. weights: (v, 3) float64, those of the corners
-        of that triangle, at least 0, their sum 1.
-    surface_vertices: (v,) int32, the surface's vertex that each vertex is at, -1 for none.
+    positions: (v, 3) float64, on the surface. quads: (q, 4) int32, four distinct vertices each, oriented like the
+        surface's triangles. No two vertices share more than one edge.
+    valences: (v,) int32, the number of quads at each vertex: the angle of a cone in quarter turns, 4 elsewhere.
+    triangles: (v,) int32, the surface's triangle that contains each vertex. weights: (v, 3) float64, barycentric
+        coordinates in that triangle, at least 0, with sum 1.
+    surface_vertices: (v,) int32, the surface's vertex at each vertex, -1 for none.
     """
 
     positions: FloatArray
@@ -53,13 +54,13 @@ class QuadMesh(EqualByContent):
 
     @property
     def irregular(self) -> IndexArray:
-        """The vertices, ascending, at which not four quads meet: those at cones."""
+        """The vertices whose valence is not 4, ascending: those at cones."""
         return np.flatnonzero(self.valences != 4).astype(np.int32)
 
 
 @dataclass(frozen=True, slots=True)
 class QuadQuality:
-    """How far the quads of a mesh are from squares of one size.
+    """The deviation of quads from squares of one size.
 
     angle_error: mean deviation of their corners from a right angle, radians; worst_angle_error: the largest.
     edge_deviation: standard deviation of the edges' lengths, relative to their mean; shortest_edge, longest_edge:
@@ -73,13 +74,13 @@ class QuadQuality:
     longest_edge: float
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class QuadRemesh(EqualByContent):
-    """A quadrangulation and what it was made from.
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class QuadRemesh(EqualByContent, ShortRepr):
+    """A quadrangulation and its seamless layout.
 
-    mesh: the quads. layout: the seamless layout whose grid they are; its `cones` are the irregular vertices, its
+    mesh: the quads. layout: the seamless layout whose grid was traced; its `cones` are the irregular vertices, its
         `seamless.tile_size` is the side of a quad.
-    warnings: findings that leave the mesh usable, those of placing cones and of the layout.
+    warnings: findings that leave the mesh usable, including those of the placement of cones and of the layout.
     """
 
     mesh: QuadMesh
@@ -93,17 +94,16 @@ def extract_quads(
     """Trace the grid of a seamless layout over a closed surface: its corners become vertices, its cells quads.
 
     corner_uv: (m, 3, 2), of a layout on the square lattice without parity, such as `Result.corner_uv` of a `Seamless`.
-        What crosses a cut is turned by quarter turns and moved by whole cells, cones are at corners of cells, and no
-        triangle is flipped or without area. Sides of cuts that miss that by less than a thousandth of a cell are made
-        equal.
+        Transitions across cuts are quarter turns and whole cells, cones are at corners of cells, and no triangle is
+        flipped or without area. Sides of cuts that deviate by less than a thousandth of a cell are made to match.
     cell: side of a cell in texture coordinates, that of the `Seamless`.
     progress: as for `parameterize`.
 
-    All decisions are exact, and a layout that is not valid is refused as a whole. The number of quads is the layout's
-    area in cells. Seams and cuts leave no trace in the mesh.
+    All decisions are exact, and an invalid layout is refused as a whole. The number of quads is the layout's area in
+    cells. The mesh does not depend on seams and cuts.
     Raises InputError: WRONG_PARAMETER, INEXACT_SEAMS, FLIPPED_TRIANGLES, CONES_NOT_SNAPPED; TopologyError:
     OPEN_SURFACE, NOT_ORIENTABLE; CurvatureError: CONE_ANGLE_RANGE for cones of 90 degrees; SolverError: GRID_TOO_COARSE
-    where cells are too large for a mesh; Cancelled.
+    if cells are too large for a mesh; Cancelled.
     """
     arguments.require_callable(progress)
     arrays = surface_arrays(surface)
@@ -124,19 +124,18 @@ def remesh_to_quads(
 ) -> QuadRemesh:
     """Cover a closed surface with quads whose irregular vertices are the cones.
 
-    cones, angles: as of `parameterize`; they are kept. Components without cones, or whose cones cannot take up their
-        curvature, get some, as by `auto_unwrap`, but none of 90 degrees. count: how many on each component that gets
-        some.
-    target: how many quads there are to be; the number comes near it, or is more where so few leave no valid layout or
-        would be no mesh (GRID_REFINED).
+    cones, angles: as for `parameterize`; they are kept. Components without cones, or whose cones cannot take up their
+        curvature, get some, as with `auto_unwrap`, but none of 90 degrees. count: the number on each component that
+        gets some.
+    target: the approximate number of quads; it is larger if so few have no valid layout or are not a mesh
+        (GRID_REFINED).
         size: or the side of a quad on the surface, in its unit. Neither: the coarsest grid that costs at most a tenth
         in distortion.
-    options: of the layout, as of `parameterize`; None: `Options(seamless=Seamless())`. Its `seamless` has no size of
-        its own, and lies on squares without parity.
-    Where the surface has `directions`, rows of quads run along them as far as the cones let them; its seams do not
-    matter.
-    progress: as for `parameterize`.  Raises as `parameterize` and `extract_quads` do, OPEN_SURFACE before any work is
-    done; COMPONENT_SKIPPED where a part has no layout.
+    options: for the layout, as for `parameterize`; None: `Options(seamless=Seamless())`. Its `seamless` must not have a
+        size, and uses the square lattice without parity.
+    If the surface has `directions`, rows of quads follow them as far as the cones permit; its seams have no effect.
+    progress: as for `parameterize`.  Raises the errors of `parameterize` and `extract_quads`, OPEN_SURFACE before any
+    work is done; COMPONENT_SKIPPED if a component has no layout.
     """
     arguments.require_callable(progress)
     arguments.require_type("surface", surface, Surface)

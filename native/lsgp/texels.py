@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Texel density: how many texels of a texture a unit of length on the surface gets; and layouts of a given density."""
+"""Texel density: the number of texels per unit of length on the surface; and layouts of a given density."""
 
 from __future__ import annotations
 
@@ -45,9 +45,9 @@ class TexelDensity:
 class TexelLayout:
     """A layout of a given texel density, in place of one that fills the unit square.
 
-    density: `TexelDensity.mean` of the whole layout, texels per unit of length. texture_size: side of the texture, of
-    each UDIM tile, in texels. udim: over how many UDIM tiles islands are spread, from 1001 on, each inside one tile;
-    None: they stay beside each other as they are. margin: texels around each island, with udim.
+    density: `TexelDensity.mean` of the whole layout, texels per unit of length. texture_size: side of the texture or of
+    each UDIM tile, in texels. udim: the most UDIM tiles that islands are spread over, from 1001 on, each island inside
+    one tile; None: islands are not rearranged. margin: texels around each island, with udim.
     """
 
     density: float
@@ -57,7 +57,7 @@ class TexelLayout:
 
 
 def triangle_texel_density(surface: Surface, corner_uv: ArrayLike, texture_size: float | Sequence[float]) -> FloatArray:
-    """(m,) texels per unit of length of each triangle; NaN where it has no area on the surface or no coordinates.
+    """(m,) texels per unit of length on each triangle; NaN if it has no area on the surface or no coordinates.
 
     corner_uv: (m, 3, 2). texture_size: side of the texture in texels, or its width and its height.
     Raises InputError.
@@ -69,7 +69,7 @@ def triangle_texel_density(surface: Surface, corner_uv: ArrayLike, texture_size:
 
 
 def texel_density(surface: Surface, corner_uv: ArrayLike, texture_size: float | Sequence[float]) -> TexelDensity:
-    """The texel density of a map.  Arguments and errors as of `triangle_texel_density`; NO_UV where nothing is mapped.
+    """The texel density of a map.  Arguments and errors as for `triangle_texel_density`; NO_UV if nothing is mapped.
 
     Triangles without area on the surface or without coordinates do not count.
     """
@@ -94,10 +94,11 @@ def texel_density(surface: Surface, corner_uv: ArrayLike, texture_size: float | 
 def at_texel_density(surface: Surface, result: Result, layout: TexelLayout) -> Result:
     """The result with its layout at a texel density: one scale for all islands, so that cuts still match.
 
-    Without `layout.udim` the layout keeps its order and its corner at the origin; where it is larger than the square,
-    ISLANDS_OUTSIDE is among the warnings. With it, islands lie in rows in tiles 1001, 1002, ...; nothing is turned.
-    Raises InputError: WRONG_PARAMETER, also of seamless layouts, whose size is that of their tiles; ISLAND_TOO_LARGE
-    where one does not fit a tile; TOO_FEW_TILES.
+    Without `layout.udim` the layout keeps its arrangement and its corner at the origin; if it is larger than the
+    square, ISLANDS_OUTSIDE is among the warnings. With it, islands lie in rows in tiles 1001, 1002, ..., without
+    rotation.
+    Raises InputError: WRONG_PARAMETER, also for seamless layouts, whose size is given by their tiles; ISLAND_TOO_LARGE
+    if one does not fit a tile; TOO_FEW_TILES.
     """
     arguments.require_type("result", result, Result)
     arguments.require_type("layout", layout, TexelLayout)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The distortion of every single triangle, for heat maps; `measure_distortion` has that of a whole map."""
+"""The distortion of single triangles, for heat maps; `measure_distortion` measures whole maps."""
 
 from __future__ import annotations
 
@@ -11,16 +11,17 @@ from numpy.typing import ArrayLike, NDArray
 from . import arguments
 from .api import FloatArray, Surface
 from .equality import EqualByContent
+from .short_repr import ShortRepr
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TriangleDistortion(EqualByContent):
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class TriangleDistortion(EqualByContent, ShortRepr):
     """Measures of each triangle, (m,) float64; NaN where it has no area on the surface or no coordinates.
 
-    conformal: sigma_1 / sigma_2, 1 where angles are kept. area: (share of the UV area) / (share of the 3D area), 1
-    where the triangle has its part of the texture. stretch: the L2 stretch of Sander et al. 2001 of the triangle alone,
-    at the common scale of the whole map; 1 where lengths are kept. All are infinite or 0 where the triangle's image has
-    no area.
+    conformal: sigma_1 / sigma_2, 1 if angles are preserved. area: (share of the UV area) / (share of the 3D area), 1 if
+    the triangle has its share of the texture. stretch: the L2 stretch of Sander et al. 2001 of the triangle, at the
+    common scale of the whole map; 1 if lengths are preserved. All are infinite or 0 if the triangle's image has no
+    area.
     """
 
     conformal: FloatArray

@@ -169,6 +169,7 @@ API = (
     "ledger",
     "packing",
     "quads",
+    "short_repr",
     "texel_raster",
     "texels",
     "triangles",

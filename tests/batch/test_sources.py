@@ -86,7 +86,7 @@ def test_lists_that_are_none_are_refused_by_line(tmp_path: Path, batch, content:
     (tmp_path / "list.txt").write_bytes(content)
     done = batch("list.txt", "--out", "out")
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.startswith("lsgp: error: 'list.txt' is no list of files: line ")
+    assert done.stderr.startswith("lsgp: error: 'list.txt' is not a list of files: line ")
     assert done.stderr.count("\n") == 1
 
 
@@ -127,7 +127,7 @@ def test_pipes_keep_nobody_waiting(tmp_path: Path, batch, lines_in) -> None:
     assert done.returncode == 4
     ended = {line["asset"]: line for line in lines_in(tmp_path / "listed" / "journal.jsonl")}
     assert (ended["in/pipe.obj"]["status"], ended["in/pipe.obj"]["code"]) == ("failed", "FILE_ERROR")
-    assert "no ordinary file" in ended["in/pipe.obj"]["message"]
+    assert "not a regular file" in ended["in/pipe.obj"]["message"]
 
 
 @posix

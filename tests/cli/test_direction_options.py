@@ -68,7 +68,7 @@ def test_the_preset_for_tiles_has_the_up_of_most_exporters(lsgp, cube_files: Pat
         ("[[0.5, 1, 2, 3]]", "does not have the form"),
         ("[[96, 0, 1, 0]]", "has a direction at face 96, but the mesh has 96 faces"),
         ("[[-1, 0, 1, 0]]", "has a direction at face -1"),
-        ("[[0, NaN, 1, 0]]", "The direction at 2 triangles is no finite vector"),
+        ("[[0, NaN, 1, 0]]", "The direction at 2 triangles is not a finite vector"),
     ],
 )
 def test_a_wrong_directions_file_is_refused(lsgp, cube_files: Path, content: str, said: str) -> None:

@@ -144,6 +144,9 @@ def test_without_the_packer_the_default_is_shelves_and_tight_is_refused(lsgp, pa
         refused = lsgp(*BAKE, *options)
         assert refused.code == 3 and "PACKER_NOT_INSTALLED" in refused.err and "pip install 'lsgp[pack]'" in refused.err
         assert refused.report()["code"] == "PACKER_NOT_INSTALLED" and not (parts / "out.obj").exists()
+        batch = lsgp("batch", parts, "--out", parts.parent / "batch", *options)
+        assert batch.code == 2 and "PACKER_NOT_INSTALLED" in batch.err and "Traceback" not in batch.err
+        assert not (parts.parent / "batch").exists()
 
 
 def test_seamless_and_udim_layouts_are_left_alone(lsgp, parts: Path) -> None:

@@ -74,7 +74,7 @@ def test_an_open_mesh_is_refused_with_its_border(lsgp, tmp_path: Path) -> None:
     (tmp_path / "tube.obj").write_text(obj_text(mesh.positions, mesh.triangles.tolist()))
     done = lsgp("quads", "tube.obj", "-o", "out.obj", "--target", 100, "--report", "report.json")
     assert done.code == 3
-    assert "refused: OPEN_SURFACE: The surface has a border of 32 edges" in done.err
+    assert "refused: OPEN_SURFACE: The surface has a boundary of 32 edges" in done.err
     report = done.report()
     assert (report["status"], report["code"], report["elements"]["kind"]) == ("refused", "OPEN_SURFACE", "edges")
     assert len(report["elements"]["indices"]) == 32

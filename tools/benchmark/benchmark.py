@@ -85,31 +85,31 @@ def measure_speed(largest: int, repetitions: int, blender: str | None, writes: b
 def speed_page(rows: list[Measured]) -> str:
     return f"""# Speed
 
-Written by `python tools/benchmark/benchmark.py --tables speed --write`. All methods get arrays and give texture
-coordinates, in processes of their own that take turns; figures are CPU seconds of all threads, medians of repetitions,
-and hold beside each other, not beside those of another machine.
+Written by `python tools/benchmark/benchmark.py --tables speed --write`. All methods take arrays and return texture
+coordinates, in alternating processes of their own; figures are CPU seconds of all threads, medians of repetitions.
+Compare them with each other, not with those of another machine.
 
-- **lsgp**: cones given, angles of least distortion, the Poisson map, its check and the search for overlaps, no repair.
-- **angle edited**, **cone moved**: the same again through `lsgp.Solver`, which keeps what does not change.
-- **LSCM**: libigl's, on the surface cut open along lsgp's cut, without continuity across it.
-- **Blender**: with that cut marked as seams; Minimum Stretch with 10 iterations.
-- **Laplacian**: analysis, factorization and one solve of the bare real cotangent Laplacian with one vertex held, the
-  least that any method with one Poisson solve takes.
+- **lsgp**: given cones, angles of least distortion, the Poisson map, its check and the search for overlaps, no repair.
+- **angle edited**, **cone moved**: a repeated call of `lsgp.Solver`, which caches unchanged data.
+- **LSCM**: that of libigl, on the surface cut open along lsgp's cuts, without continuity across them.
+- **Blender**: with the same cuts marked as seams; Minimum Stretch with 10 iterations.
+- **Laplacian**: analysis, factorization and one solve of the bare real cotangent Laplacian with one vertex fixed, a
+  lower bound for any method with one Poisson solve.
 
-The larger meshes are decimated and subdivided from `max-planck-25k`. What would take too long is left out.
+The larger meshes are decimated and subdivided from `max-planck-25k`. Runs that would take too long are omitted.
 
 ![CPU seconds by triangles](../images/benchmark.svg)
 
 {as_table(time_rows(rows))}
 
-Ratios, the most memory the processes took, Python and libraries included, and what is wrong with lsgp's unrepaired map:
+Ratios, the peak memory of the processes, Python and libraries included, and the defects of lsgp's unrepaired map:
 
 {as_table(ratio_rows(rows))}
 
-lsgp stage by stage, its CPU time divided as the wall-clock time of its stages. The factorization counts as
-prescription, which needs it first. Where an angle is edited there is none, and what is left are passes over the whole
-surface, each linear: the frames and the solve for the two coordinates (unfold), and what is measured of the map that is
-returned (check, layout, overlaps).
+The stages of lsgp, with its CPU time divided in proportion to the wall-clock time of its stages. The factorization
+counts as part of prescription, which needs it first. Editing an angle needs no factorization; the remaining stages are
+linear passes over the whole surface: the frames and the solve for the two coordinates (unfold), and the measurements of
+the map that is returned (check, layout, overlaps).
 
 {as_table(stage_rows(rows))}
 """

@@ -40,14 +40,14 @@ def main() -> None:
         uv = inset(uv, arguments.margin / arguments.size)
         image, covered = bake(whole, uv, arguments.size)
         padded = {
-            "nothing": image,
-            "smear": smeared(image, covered, arguments.margin),
+            "empty": image,
+            "nearest texel": smeared(image, covered, arguments.margin),
             "beyond the cut": lsgp.pad_image(image, whole, uv, arguments.margin),
         }
         neighbours = in_units(difference_of_neighbours(image, covered))
         for kind, pixels in padded.items():
             found = map(in_units, difference_across_cuts(whole, uv, pixels, LEVELS))
-            first = kind == "nothing"
+            first = kind == "empty"
             print(f"| {f'`{name}`' if first else ''} | {kind} | {' | '.join(found)} | {neighbours if first else ''} |")
             if arguments.picture is not None:
                 save(arguments.picture / f"{name}-{kind}.png".replace("()", ""), pixels)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 PAPER, INK, SURFACE, LAYOUT, CUT = "#f6f4ee", "#282e38", "#8a93a0", "#7796a8", "#d6336c"
 WIDTH, HEIGHT, TOP = 960, 270, 128
-HEADINGS = ((165, "quasi-conformal"), (480, "area"), (792, "sister ratio"))
+HEADINGS = ((165, "quasi-conformal"), (480, "area"), (792, "seam length mismatch"))
 
 
 def text(x: float, y: float, words: str, size: int = 15, weight: str = "normal") -> str:
@@ -53,7 +53,7 @@ def diagram() -> str:
     parts = [
         *(
             text(x, 32, words, 18, "bold")
-            for x, words in ((165, "quasi-conformal"), (480, "area"), (795, "sister ratio"))
+            for x, words in ((165, "quasi-conformal"), (480, "area"), (795, "seam length mismatch"))
         ),
         f'<circle cx="80" cy="{TOP}" r="40" {DASHED}/>',
         arrow(150, TOP),
@@ -67,10 +67,10 @@ def diagram() -> str:
         text(480, 222, "Squares of one size get more"),
         text(480, 244, "or less room than their share"),
         cut(655, [38, 45, 36], [38, 45, 36]),
-        text(702, 222, "1: both sides fit,"),
+        text(702, 222, "0: both sides fit,"),
         text(702, 244, "stripes run on"),
         cut(822, [38, 45, 36], [38 / 1.4, 45 / 1.2, 36 * 1.4]),
-        text(870, 222, "1.4: each stripe"),
+        text(870, 222, "0.4: each stripe"),
         text(870, 244, "meets another place"),
     ]
     head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}">'

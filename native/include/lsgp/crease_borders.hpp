@@ -5,11 +5,11 @@
 
 namespace lsgp {
 
-// Where a hard surface may end at its creases.
+// Which creases a hard surface may be cut at.
 struct CreaseOptions {
-  double angle = 0.7;      // radians between the normals of the two triangles, from which on an edge is a crease
+  double angle = 0.7;      // least angle between the normals at a crease, radians
   VertexPairs sharp;       // (s, 2) edges that are creases whatever their angle
-  Index most_corners = 0;  // a component whose curvature sits at no more vertices than this is left to cones there
+  Index most_corners = 0;  // components with curvature at no more vertices than this are left to cones there
 };
 
 }  // namespace lsgp

@@ -8,13 +8,14 @@
 
 namespace lsgp {
 
-// What makes an edge a good place for a cut.
+// Preferences for the routes of cuts.
 struct CutPreferences {
-  // From the surface to who looks at it: cuts hide from the views around this direction. None: they hide from nobody.
+  // From the surface to the viewer: cuts are hidden from the views around this direction. None: visibility has no
+  // effect.
   std::optional<Eigen::Vector3d> front;
   bool creases = true;    // edges at which the surface bends
   VertexPairs sharp;      // (s, 2) edges that are creases whatever their angle
-  Eigen::VectorXd paint;  // (n) from 0, where cuts should run, to 1, where they should not; 0.5 or empty: no matter
+  Eigen::VectorXd paint;  // (n) from 0, which attracts cuts, to 1, which repels them; 0.5 or empty: no effect
 };
 
 }  // namespace lsgp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Errors and findings: what is wrong, where in the caller's numbering, how much, and what to do.
+// Errors and findings: cause, place in the caller's numbering, amount and remedy.
 #pragma once
 
 #include <stdexcept>
@@ -104,7 +104,7 @@ class LSGP_API Error : public std::runtime_error {
   Elements elements_;
 };
 
-// Something to know about a usable result.
+// A note about a usable result.
 struct Finding {
   Code code;
   std::string message;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The account of Gauss and Bonnet: the curvature that cones have been given, and what is missing.
+// The Gauss-Bonnet budget: the assigned and the missing curvature of cones.
 #pragma once
 
 #include <array>
@@ -9,22 +9,22 @@
 
 namespace lsgp {
 
-// Of one connected part. A flat metric with cones has its curvature at the cones: 2 pi less the cone's angle, on a
-// border pi less it. Angles and curvatures in radians.
+// Of one connected component. A flat metric with cones has its curvature at the cones: 2 pi minus the cone's angle, pi
+// minus it on a boundary. Angles and curvatures in radians.
 struct LedgerPart {
   std::vector<Index> triangles;   // (m)
-  std::vector<Index> cones;       // (k) places in the caller's list of those that count here
-  std::vector<double> curvature;  // (k) NaN where the angle is automatic
-  int euler = 0;                  // V - E + F; 0 of a surface with one side, which has no map
-  int borders = 0;                // how many
-  double assigned = 0;            // the sum of the curvatures given
-  double required = 0;            // what all have to add up to
-  bool border_takes_up = false;   // a free border takes up what the cones leave
-  std::array<double, 2> room{};   // the least and the most that automatic cones can take up together
+  std::vector<Index> cones;       // (k) indices into the caller's list of those that count here
+  std::vector<double> curvature;  // (k) NaN if the angle is automatic
+  int euler = 0;                  // V - E + F; 0 for a one-sided surface, which has no map
+  int borders = 0;                // number of boundaries
+  double assigned = 0;            // the sum of the given curvatures
+  double required = 0;            // the sum that all must have
+  bool border_takes_up = false;   // a free boundary takes up the remaining curvature
+  std::array<double, 2> room{};   // least and most curvature that automatic cones can take up together
 };
 
-// Of which verbs the parts are: those that parameterize solves one by one, or those that place_cones and cone_gains do.
-// They differ where a part without cones is opened along its seams: with its first cone it is whole.
+// Which components: those that parameterize solves separately, or those of place_cones and cone_gains. They differ if a
+// component without cones is opened along its seams: its first cone makes it whole.
 enum class LedgerOf { map, placement };
 
 }  // namespace lsgp

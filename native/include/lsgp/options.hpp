@@ -25,60 +25,60 @@ enum class UnfoldMethod {
 enum class Method {
   lsgp,  // exact affine transitions across every cut
   // The paper's comparison: the same cuts, two pinned vertices, no transitions (Levy et al. 2002). Not with spectral
-  // unfolding, low stretch, straight borders, given turning, seamless layouts or pins.
+  // unfolding, low stretch, straight boundaries, prescribed turning, seamless layouts or pins.
   lscm,
 };
 
-// What a map keeps where it cannot keep both.
+// What a map preserves if it cannot preserve both.
 enum class Mode {
   conformal,    // angles
-  low_stretch,  // lengths, as far as the cone angles let it
+  low_stretch,  // lengths, as far as the cone angles permit
 };
 
-// What becomes of islands that lie on themselves, as those with cones of negative curvature do.
+// The treatment of islands that overlap themselves, as those with cones of negative curvature do.
 enum class Overlaps {
   keep,
-  split,  // along further cuts, until no island does; transitions stay exact
+  split,  // along further cuts, until no island overlaps itself; transitions stay exact
 };
 
-// Whether islands are cut further where they would leave much of a square empty; transitions stay exact. Not in
-// seamless layouts; components with pins keep their islands.
+// Whether islands that would leave much of a square empty are cut further; transitions stay exact. Not in seamless
+// layouts; components with pins keep their islands.
 enum class Compactness {
   off,
   sparing,  // only where a short cut fills much of the square, and in no component with marked seams
-  full,     // wherever more of it is filled than the cut and the further island cost
+  full,     // wherever the filled area outweighs the cost of the cut and the additional island
 };
 
-// What a marked seam means.
+// The meaning of a marked seam.
 enum class SeamMode {
-  follow,    // all seams are cut, and others where cones and handles need them; a part without cones is open there
-  boundary,  // every seam is an open border, as in Blender's own unwrap
+  follow,    // all seams are cut, other edges if cones and handles need it; components without cones are open there
+  boundary,  // every seam is an open boundary, as in Blender's own unwrap
   ignore,
 };
 
 enum class BorderMode {
-  free,      // angles along borders come out as they distort least; a cone there with an angle is a corner
-  straight,  // borders run straight from marked cone to marked cone
+  free,      // angles along boundaries are those of least distortion; a cone there with an angle is a corner
+  straight,  // boundaries are straight from marked cone to marked cone
 };
 
-// The points that cones and translations lie on in a seamless layout, and the rotations that leave them in place.
+// The lattice of cones and translations in a seamless layout, and its rotations.
 enum class Lattice {
-  square,       // quarter turns of the unit squares: any tileable texture that looks the same turned by 90 degrees
+  square,       // quarter turns of the unit squares: any tileable texture that looks the same rotated by 90 degrees
   stripe,       // half turns of the unit squares
-  translation,  // no turns, of the unit squares
+  translation,  // no rotations, of the unit squares
   triangle,     // third turns of the triangles of side 1
   hexagon,      // sixth turns of the triangles of side 1
 };
 
-// What to do where no layout is valid on a grid as coarse as asked for.
+// The remedy if no layout is valid on a grid as coarse as requested.
 enum class CoarseGrid {
-  refine,  // take the next finer grid
+  refine,  // use the next finer grid
   merge,   // merge cones less than a cell apart
   relax,   // leave cones off the grid that find no place on it (the paper's section 8)
 };
 
 // A layout in which a tileable texture shows no seam (the paper's section 8): cone angles are multiples of the
-// lattice's turn, and translations across cuts lead from lattice point to lattice point.
+// lattice's rotation, and translations across cuts map lattice points to lattice points.
 struct Seamless {
   Lattice lattice = Lattice::square;
   std::optional<double> tiles;      // cells along the layout's longer side, before rounding
@@ -89,10 +89,10 @@ struct Seamless {
   double cell = 1;  // its side in texture coordinates, a power of two: 1 is a whole tile
 };
 
-// How the linear systems of prescription and unfolding are solved; the maps are the same but for rounding.
+// How the linear systems of prescription and unfolding are solved; the maps differ only by rounding.
 enum class Factorization {
   automatic,  // the cheaper one
-  cut,        // one factorization up to the cut, then dense: fast where cuts are short
+  cut,        // one factorization up to the cut, then dense: fast for short cuts
   sparse,     // one for each
 };
 
@@ -102,18 +102,18 @@ struct Options {
   Method method = Method::lsgp;
   SeamMode seams = SeamMode::follow;
   BorderMode border = BorderMode::free;
-  // Total turning of boundary loops, radians, each named by a vertex on it; other loops turn as they distort least.
+  // Total turning of boundary loops, radians, each given by a vertex on it; other loops turn with least distortion.
   std::vector<std::pair<Index, double>> loop_turning;
   std::optional<Seamless> seamless;
   Mode mode = Mode::conformal;
-  double stretch = 1;  // with low_stretch: from 0, the conformal map, to 1, that of least stretch
+  double stretch = 1;  // with low_stretch: from 0, the conformal map, to 1, the map of least stretch
   bool repair = true;  // of flipped triangles and angles off by a turn
   Overlaps overlaps = Overlaps::keep;
   Compactness compact = Compactness::off;
-  double square_share = 1;  // with compact: the squares that these islands get, above 0; part of one, or UDIM tiles
+  double square_share = 1;  // with compact: number of squares for these islands, above 0: part of one, or UDIM tiles
   Factorization factorization = Factorization::automatic;
-  // Of large factorizations, up to 1024; the result does not depend on it. 0: as many as the environment variable
-  // LSGP_THREADS says, or else as there are processors.
+  // Number of threads for large factorizations, up to 1024; the result does not depend on it. 0: the value of the
+  // environment variable LSGP_THREADS, or else the number of processors.
   int threads = 0;
 };
 

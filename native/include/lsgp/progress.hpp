@@ -5,8 +5,8 @@
 
 namespace lsgp {
 
-// Called now and then from the calling thread with how much is done, 0 to 1, never less than before. Returns whether
-// to go on; if not, the verb throws CANCELLED.
+// Called at intervals from the calling thread with the fraction done, 0 to 1, never less than before. Returns whether
+// to continue; if not, the function throws CANCELLED.
 using Progress = std::function<bool(double done)>;
 
 }  // namespace lsgp

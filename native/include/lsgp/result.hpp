@@ -23,50 +23,49 @@ struct Distortion {
   double l2_stretch = 0;                     // Sander et al. 2001, normalised: 1 is isometric
 };
 
-// How exactly the two sides of every cut are related by one rotation and one translation, in the coordinates that are
-// returned.
+// How exactly the two sides of every cut are related by one rotation and one translation, in the returned coordinates.
 struct SeamQuality {
-  double sister_ratio_max = 1;      // longer to shorter of two sister edges
-  double rotation_residual = 0;     // angle between a cut edge's own turn and its cut's rotation, radians
-  double translation_residual = 0;  // distance of a vertex to the image of its sister, relative to its islands' size
+  double sister_ratio_max = 1;      // longer to shorter side of a cut edge (the paper's sister edges)
+  double rotation_residual = 0;     // angle between a cut edge's rotation and that of its cut, radians
+  double translation_residual = 0;  // distance of a vertex to the image of its copy, relative to its islands' size
 };
 
 using StageSeconds = std::vector<std::pair<std::string, double>>;  // wall clock
 
-// How one cut of a seamless layout is crossed, from its left side to its right one: z -> e^{2 pi i turns / q} z + t
+// The transition of a cut in a seamless layout, from its left side to its right one: z -> e^{2 pi i turns / q} z + t
 // with t = cell (translation[0] + translation[1] g), where g is i on square lattices and e^{i pi / 3} on triangular
 // ones.
 struct SeamlessCut {
   Index tail, head;                           // vertices
   int turns;                                  // 0 .. q - 1
   std::array<std::int64_t, 2> translation{};  // in cells
-  double error = 0;  // largest distance of a vertex, as float32 stores it, from the image of its sister, in cells
+  double error = 0;  // largest distance of a vertex, as stored in float32, from the image of its copy, in cells
 };
 
-// What makes a layout seamless, and at what cost.
+// The certificate of a seamless layout, and the cost of rounding.
 struct SeamlessReport {
   int symmetry = 4;                            // q
   double tiles = 0;                            // cells along the layout's longer side, before rounding
   double tile_size = 0;                        // side of a cell on the surface
   double cell = 1;                             // the same in texture coordinates
-  double energy_before = 1, energy_after = 1;  // symmetric Dirichlet energy, 1 is isometric, around the rounding
+  double energy_before = 1, energy_after = 1;  // symmetric Dirichlet energy before and after rounding, 1 is isometric
   std::vector<SeamlessCut> cuts;
   double error = 0;                  // the largest of the cuts'
-  std::vector<Index> flat_cones;     // came out flat and are no cones any more
-  std::vector<Index> merged_cones;   // given up for another within a cell
+  std::vector<Index> flat_cones;     // rounded to zero curvature, now ordinary vertices
+  std::vector<Index> merged_cones;   // merged with another within a cell
   std::vector<Index> relaxed_cones;  // off the lattice: the cuts to them show a seam
 };
 
-// What the unfolding left to repair, and the work of that and of relaxing the map.
+// Defects of the first unfolding, and the work of repairing and relaxing the map.
 struct RepairReport {
   Index flipped_before = 0, wrong_angle_sums_before = 0;  // of the first unfolding
   int iterations = 0;                                     // of Newton's method, low stretch included
 };
 
-// The linear algebra that a call took.
+// The linear algebra of a call.
 struct LinearAlgebra {
   int factorizations = 0;      // of sparse matrices
-  int back_substitutions = 0;  // with their factors, one a right side
+  int back_substitutions = 0;  // with their factors, one per right-hand side
 };
 
 struct CutPaths {
@@ -92,13 +91,13 @@ struct Result {
   SeamQuality seams;
   std::vector<Index> flipped;           // triangles with UV area <= 0
   std::vector<Index> wrong_angle_sums;  // vertices whose UV angles are off by more than a degree
-  std::vector<Index> overlapping;       // triangles that lie on others
-  double overlap_area = 0;              // of all pairs of triangles together, as a share of the layout's area
+  std::vector<Index> overlapping;       // triangles that overlap others
+  double overlap_area = 0;              // total of all pairs of triangles, as a share of the layout's area
   RepairReport repair;
   double cone_angle_error = 0;  // largest deviation of a cone's UV angle sum, radians
   Eigen::VectorXd log_scale;    // (n) as in Prescription
-  // (m) angle between a triangle's direction and v, up to a seamless layout's turns, radians, NaN where there is none;
-  // empty where none are given.
+  // (m) angle between a triangle's direction and v, modulo a seamless layout's rotations, radians, NaN without
+  // direction; empty if none are given.
   Eigen::VectorXd direction_errors;
   std::optional<double> direction_error;  // their mean by area and length of the directions
   std::optional<SeamlessReport> seamless;

@@ -11,10 +11,11 @@
 
 namespace lsgp {
 
-// Parameterizes one surface again and again, as for a cone that is dragged or an angle that is tried out. Every call
-// returns what the verb of the same name does and keeps what the next one may use: the topology and geometry of the
-// surface, and, as long as a component's cones stay where they are, its factored linear systems. Angles,
-// prescription, unfolding, repair, mode and seamless options may then change without a new factorization.
+// Parameterizes one surface repeatedly, for instance while a cone is dragged or an angle is tried. Every call returns
+// the
+// same as the function of that name and caches data for the next one: the topology and geometry of the surface, and, as
+// long as a component's cones do not move, its factored linear systems. Angles, prescription, unfolding, repair, mode
+// and seamless options can then change without a new factorization.
 // A call during another one, from another thread or from its progress callback, throws SOLVER_BUSY.
 class LSGP_API Solver {
  public:

@@ -23,11 +23,11 @@ struct Surface {
   Positions positions;               // (n, 3), any unit
   Triangles triangles;               // (m, 3), counter-clockwise seen from outside
   std::optional<VertexPairs> edges;  // (e, 2) edges a cut may follow; absent: every edge of the triangles
-  VertexPairs seams;                 // (s, 2) marked edges; cuts are drawn to them
-  Eigen::VectorXd importance;        // (n) weights of stretch at vertices, or empty: all weigh alike
+  VertexPairs seams;                 // (s, 2) marked edges, with the meaning given by Options::seams
+  Eigen::VectorXd importance;        // (n) weights of stretch at vertices, or empty: equal weights
   Eigen::VectorXd cut_costs;         // (e) cost of a cut along each of `edges` per length, or empty: 1
-  VertexPairs borders;               // (b, 2) edges where the surface ends, whatever seams mean
-  Positions directions;              // (m, 3) what v is to run along at each triangle, as long as it weighs, or empty
+  VertexPairs borders;               // (b, 2) edges where the surface ends, whatever the meaning of seams
+  Positions directions;              // (m, 3) desired direction of v at each triangle, weighted by length, or empty
 };
 
 struct Cones {
@@ -35,7 +35,7 @@ struct Cones {
   std::vector<std::optional<double>> angles;  // (k) total angle in radians, empty = automatic
 };
 
-// Corners whose texture coordinates are to stay.
+// Corners with fixed texture coordinates.
 struct Pins {
   std::vector<Index> corners;  // (p) 3 * triangle + corner
   CornerUv positions;          // (p, 2)

@@ -159,7 +159,7 @@ def _in_list(source: Path) -> dict[str, Path]:
             text = "\0"
         if "\0" in text or len(line) > _LONGEST_PATH:
             raise UsageError(
-                f"'{source}' is no list of files: line {number} cannot be a path. Name a folder, a mesh, or a text "
+                f"'{source}' is not a list of files: line {number} cannot be a path. Name a folder, a mesh, or a text "
                 "file in UTF-8 with a path on each line"
             )
         if text:

@@ -65,20 +65,22 @@ def add_batch_options(batch: argparse.ArgumentParser) -> None:
         "source",
         metavar="LIST|FOLDER",
         type=Path,
-        help="files, one a line, or a folder, at any depth; or a single mesh",
+        help="a text file with a path on each line, a folder, searched at any depth, or a single mesh",
     )
-    batch.add_argument("--out", metavar="DIR", type=Path, required=True, help="folder of the results; made if missing")
-    batch.add_argument("--jobs", metavar="N", type=_count_option, help="processes at a time (default: one each core)")
+    batch.add_argument(
+        "--out", metavar="DIR", type=Path, required=True, help="folder of the results, created if missing"
+    )
+    batch.add_argument("--jobs", metavar="N", type=_count_option, help="concurrent processes (default: one per core)")
     batch.add_argument("--shard", metavar="i/n", type=shard_option, help="only the i-th of n parts, for array jobs")
     batch.add_argument(
         "--only-missing",
         action="store_true",
-        help="resume an earlier run: skip what has a result or was refused, retry what failed",
+        help="resume an earlier run: skip assets that have a result or were refused, retry failed ones",
     )
-    batch.add_argument("--timeout", metavar="S", type=_seconds_option, help="seconds an asset may take")
-    batch.add_argument("--memory-limit", metavar="MB", type=_count_option, help="memory an asset may take (Linux)")
+    batch.add_argument("--timeout", metavar="S", type=_seconds_option, help="time limit per asset in seconds")
+    batch.add_argument("--memory-limit", metavar="MB", type=_count_option, help="memory limit per asset (Linux)")
     batch.add_argument(
-        "--exit-zero", action="store_true", help="exit code 0 once all assets have ended, for farms that repeat tasks"
+        "--exit-zero", action="store_true", help="exit code 0 once all assets are done, for farms that repeat tasks"
     )
     batch.add_argument("--reports", action="store_true", help="write the report of each result beside it")
     batch.add_argument(
@@ -98,11 +100,11 @@ def add_scheduler_options(batch: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--scheduler",
         metavar="ADDRESS",
-        help="work on the Dask cluster with this scheduler, tls://host:8786 or tcp://host:8786 for one",
+        help="run on the Dask cluster with this scheduler, for instance tls://host:8786",
     )
     group.add_argument("--tls-ca-file", metavar="FILE", help="certificates of the cluster's authorities, PEM")
     group.add_argument("--tls-cert", metavar="FILE", help="certificate to show to the scheduler, PEM")
-    group.add_argument("--tls-key", metavar="FILE", help="its key, if it is in a file of its own, PEM")
+    group.add_argument("--tls-key", metavar="FILE", help="key of the certificate, if it is in a separate file, PEM")
 
 
 def expand_options(argv: Sequence[str]) -> list[str]:
@@ -121,7 +123,7 @@ def expand_options(argv: Sequence[str]) -> list[str]:
     try:
         words = shlex.split(text)
     except ValueError as error:
-        raise UsageError(f"{option} is no list of options: {error}") from error
+        raise UsageError(f"{option} is not a list of options: {error}") from error
     return [*arguments[:at], *words, *arguments[after:]]
 
 
@@ -140,7 +142,7 @@ def main(argv: Sequence[str], kind: Kind, parser: argparse.ArgumentParser) -> in
 def run_batch(args: argparse.Namespace, kind: Kind = MESH_FILES) -> int:
     """Run a batch and return its exit code.  Raises OSError, UsageError, KeyboardInterrupt."""
     if args.jobs is not None and args.scheduler is not None:
-        raise UsageError("--jobs is for this machine; how many jobs a cluster does is told to its workers")
+        raise UsageError("--jobs is for this machine; set the number of processes of a cluster on its workers")
     cluster = Cluster.of(args)
     if args.memory_limit is not None and not sys.platform.startswith("linux"):
         raise UsageError("--memory-limit works on Linux only; leave it out")
@@ -237,7 +239,7 @@ def _cores() -> int:
 
 def _count_option(text: str) -> int:
     if not (text.isascii() and text.isdigit() and len(text) < 10 and int(text) > 0):
-        raise argparse.ArgumentTypeError(f"'{text}' is no whole number from 1 up")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a whole number of at least 1")
     return int(text)
 
 
@@ -247,5 +249,5 @@ def _seconds_option(text: str) -> float:
     except ValueError:
         seconds = 0.0
     if not 0 < seconds < 1e7:
-        raise argparse.ArgumentTypeError(f"'{text}' is no number of seconds")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of seconds")
     return seconds

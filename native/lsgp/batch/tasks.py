@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .. import __version__
+from .. import InputError, __version__
 from ..io.side_files import UsageError
 from ..run.unwrap_options import add_unwrap_options, library_options
 from .assets import Asset, picture_name
@@ -48,11 +48,14 @@ class Settings:
 
     @classmethod
     def of(cls, args: argparse.Namespace) -> Settings:
-        """Raises UsageError where options contradict each other or a file they name is missing."""
+        """Raises UsageError where options contradict each other, or a file or a package that they take is missing."""
         names = argparse.ArgumentParser(add_help=False)
         add_unwrap_options(names)
         options = {name: getattr(args, name) for name in vars(names.parse_args([]))}
-        library_options(args)
+        try:
+            library_options(args)
+        except InputError as error:
+            raise UsageError(f"{error} ({error.code})") from error
         for name in SIDE_FILES:
             options[name] = _whole_path(name, options[name])
         return cls(options, args.pictures, args.reports, args.memory_limit)

@@ -46,7 +46,7 @@ def refusal(error: LsgpError, run: Run) -> Record:
 def _require_ordinary(path: Path) -> None:
     """Refuse a pipe or a device, which would block the process; a missing file is reported when it is read."""
     if path.exists() and not path.is_file():
-        raise OSError(None, "This is no ordinary file", os.fspath(path))
+        raise OSError(None, "This is not a regular file", os.fspath(path))
 
 
 def _unwrap(task: Task, settings: Settings, run: Run) -> Record:

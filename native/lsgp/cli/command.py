@@ -35,6 +35,7 @@ from ..run.terminal import ProgressLine
 from ..run.unwrap_file import Run, out_of_memory, read_file, unwrap_file, uv_of
 from ..run.unwrap_options import add_threads_option, add_unwrap_options, texture_size, texture_size_option
 from ..texels import texel_density
+from .examples import Formatter, with_examples
 from .output_paths import require_usable_paths
 
 INPUT = "OBJ, OFF, PLY, glTF, GLB or STL, or - for standard input; polygons of any size"
@@ -85,7 +86,7 @@ def _parser() -> _Parser:
         allow_abbrev=False,
         help="write a mesh with texture coordinates",
         description="Cut a mesh through its cones, unfold it, and write it with texture coordinates. OBJ, PLY and glTF "
-        "files written in the same format keep everything else that they have.",
+        "files written in the same format keep all other content.",
     )
     unwrap.add_argument("input", metavar="IN", type=Path, help=INPUT)
     unwrap.add_argument(
@@ -119,7 +120,7 @@ def _parser() -> _Parser:
         allow_abbrev=False,
         help="cover a closed mesh with quads",
         description="Cover a closed mesh with quads: the squares of a seamless layout, traced over its surface. Every "
-        "face is a quad, every vertex lies on the surface, and the irregular ones are at the cones.",
+        "face is a quad, every vertex lies on the surface, and irregular vertices are at the cones.",
     )
     quads.add_argument("input", metavar="IN", type=Path, help=INPUT)
     quads.add_argument(
@@ -134,7 +135,7 @@ def _parser() -> _Parser:
         allow_abbrev=False,
         help="unwrap many meshes",
         description="Unwrap all meshes of a folder or a list, or a single one, each as `lsgp unwrap` does it. Every "
-        "asset gets a line in DIR/journal.jsonl when it has ended; DIR/summary.txt and DIR/contact-sheet.html are "
+        "asset gets a line in DIR/journal.jsonl when it is done; DIR/summary.txt and DIR/contact-sheet.html are "
         "written at the end. In the names of files for --cones, --seam-edges, --directions and --importance, {} "
         "stands for a mesh's path without its suffix.",
         epilog=EXIT_CODES,
@@ -163,8 +164,8 @@ def _parser() -> _Parser:
         "pad",
         allow_abbrev=False,
         help="fill the gutters of a texture",
-        description="Fill the texels beside the islands of a texture with what lies beyond the cuts, so that filtered "
-        "lookups match there. Texels whose centre is in an island stay as they are.",
+        description="Fill the texels beside the islands of a texture with the content beyond the cuts, so that "
+        "filtered lookups match there. Texels whose centre is in an island do not change.",
     )
     add_pad_options(pad)
     pad.set_defaults(run=_reported, make=_pad, report=None)
@@ -178,6 +179,9 @@ def _parser() -> _Parser:
         )
     for command in (unwrap, cones, quads, measure):
         command.add_argument("--report", metavar="FILE.json", type=Path, help="write a report, also when refused")
+    for name, command in commands.choices.items():
+        command.formatter_class = Formatter
+        command.epilog = with_examples(name, command.epilog)
     return parser
 
 

@@ -22,7 +22,7 @@ PNG_KINDS = ("uint8", "uint16")
 def require_image_suffix(path: Path, what: str) -> None:
     """Raise UsageError where the name is not that of a PNG or TIFF file.  what: the file is, for the message."""
     if path.suffix.lower() not in PNG + TIFF:
-        raise UsageError(f"{what} '{path}' is no PNG or TIFF by its name; end it with .png or .tif")
+        raise UsageError(f"{what} '{path}' is not a PNG or TIFF file by its suffix; use .png or .tif")
 
 
 def read_image(path: Path) -> NDArray[Any]:
@@ -38,7 +38,7 @@ def read_image(path: Path) -> NDArray[Any]:
     except cv2.error:
         pixels = None
     if pixels is None:
-        raise malformed(f"'{path}' is no image that can be read as PNG or TIFF.")
+        raise malformed(f"'{path}' is not a readable PNG or TIFF image.")
     return _channels_swapped(pixels)
 
 

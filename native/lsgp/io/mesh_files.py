@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..api import Surface
 from ..errors import Finding, InputError
+from ..short_repr import ShortRepr
 from .mesh_formats import FORMATS, GLB, GLTF, OBJ, OFF, PLY, STL, Format, input_format, output_format
 from .mesh_gltf import edit_gltf, new_gltf, read_gltf
 from .mesh_obj import format_obj, read_obj
@@ -37,8 +38,8 @@ GLTF_FORMS = (GLTF, GLB)
 NAMED_EXTRAS = 8
 
 
-@dataclass(frozen=True, eq=False)
-class MeshFile:
+@dataclass(frozen=True, eq=False, repr=False)
+class MeshFile(ShortRepr):
     """A mesh file that has been read, with everything needed to write it again.
 
     path: None for standard input. format, data: its format and its bytes.

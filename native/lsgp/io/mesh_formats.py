@@ -53,7 +53,7 @@ def input_format(path: str | os.PathLike[str] | None, data: bytes, given: str | 
     if found is None or found.reader is None:
         readable = [form.name for form in FORMATS if form.reader is not None]
         raise InputError(
-            "UNKNOWN_FORMAT", f"'{os.fspath(path or '-')}' is no {_one_of(readable)} file. Export the mesh as one."
+            "UNKNOWN_FORMAT", f"'{os.fspath(path or '-')}' is not an {_one_of(readable)} file. Export the mesh as one."
         )
     if not is_installed(found.reader):
         remark = f". Without it {_one_of(_names_at_hand('reader'))} can be read."

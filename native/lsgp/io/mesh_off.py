@@ -59,7 +59,7 @@ def _read_counts(texts: list[bytes], lines: list[int]) -> tuple[int, int, int]:
     keyword, *rest = texts[0].split(None, 1)
     header = HEADER.match(keyword)
     if header is None:
-        raise malformed(f"{quoted(keyword)} is no header of an OFF file.", lines[0])
+        raise malformed(f"{quoted(keyword)} is not the header of an OFF file.", lines[0])
     if header[2] or header[3]:
         raise malformed("vertices with other than three dimensions cannot be unwrapped.", lines[0])
     if rest and rest[0].startswith(b"BINARY"):
@@ -71,5 +71,5 @@ def _read_counts(texts: list[bytes], lines: list[int]) -> tuple[int, int, int]:
     counts.require_tokens(2, "counts of vertices and faces are needed.")
     vertex_count, face_count = counts.integers(np.arange(2)).tolist()
     if vertex_count < 0 or face_count < 0:
-        raise malformed(f"{vertex_count} vertices and {face_count} faces are no counts.", lines[row])
+        raise malformed(f"{vertex_count} vertices and {face_count} faces are not valid counts.", lines[row])
     return vertex_count, face_count, row + 1

@@ -126,7 +126,7 @@ def _read_header(data: bytes) -> tuple[list[Element], str, int, int]:
                 return elements, byte_order, begin, line + 1
             case _:
                 raise malformed(
-                    f"{quoted(b' '.join(tokens))} is no line of a PLY header, or it lacks its format.", line
+                    f"{quoted(b' '.join(tokens))} is not a line of a PLY header, or the format is missing.", line
                 )
     raise malformed("the header has no end (end_header).", line + 1)
 

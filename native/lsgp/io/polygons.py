@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..equality import EqualByContent
 from ..errors import Elements, InputError
+from ..short_repr import ShortRepr
 from .ear_clipping import (
     ALLOWS_ANY,
     NEARLY_STRAIGHT,
@@ -35,8 +36,8 @@ LARGE = 1024
 CHUNK = 1 << 19
 
 
-@dataclass(frozen=True, eq=False)
-class PolygonMesh(EqualByContent):
+@dataclass(frozen=True, eq=False, repr=False)
+class PolygonMesh(EqualByContent, ShortRepr):
     """Vertices and polygons of a file, in its order.
 
     positions: (n, 3) float64. corners: (c,) int32, the vertices of all polygons one after the other.
@@ -57,8 +58,8 @@ class PolygonMesh(EqualByContent):
         return np.cumsum(self.sizes) - self.sizes
 
 
-@dataclass(frozen=True, eq=False)
-class Triangulation(EqualByContent):
+@dataclass(frozen=True, eq=False, repr=False)
+class Triangulation(EqualByContent, ShortRepr):
     """Triangles of a polygon mesh; those of one polygon stand together, polygons in their order.
 
     triangles: (m, 3) int32 vertices, turning the way of their polygon. polygon: (m,) int32.
@@ -115,7 +116,7 @@ def require_polygons(
     if len(small):
         raise InputError(
             "BAD_FACE",
-            f"{_faces(small, place)} with fewer than three corners. Remove such faces: loose edges are no faces.",
+            f"{_faces(small, place)} with fewer than three corners. Remove such faces: loose edges are not faces.",
             Elements("faces", small.astype(np.int32)),
         )
 

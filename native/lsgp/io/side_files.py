@@ -112,7 +112,7 @@ def _parsed(data: bytes, path: Path) -> Any:
     try:
         return json.loads(data)
     except (ValueError, RecursionError) as error:
-        raise UsageError(f"'{path}' is no JSON: {error}") from error
+        raise UsageError(f"'{path}' is not valid JSON: {error}") from error
 
 
 def _is_list_of(value: Any, accepts: Callable[[Any], bool]) -> bool:

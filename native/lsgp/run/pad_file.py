@@ -24,11 +24,11 @@ def add_pad_options(pad: argparse.ArgumentParser) -> None:
         required=True,
         help="the mesh with its texture coordinates: OBJ, glTF or GLB, or - for standard input",
     )
-    pad.add_argument("--margin", metavar="N", type=float, required=True, help="how far gutters reach, in pixels")
+    pad.add_argument("--margin", metavar="N", type=float, required=True, help="width of the gutters, in pixels")
     pad.add_argument(
         "--normal-map",
         action="store_true",
-        help="the image is a tangent-space normal map, green up: turn its normals with the map",
+        help="the image is a tangent-space normal map, green up: rotate its normals with the map",
     )
     pad.add_argument("-o", "--output", metavar="OUT", type=Path, required=True, help="PNG or TIFF, by its suffix")
 

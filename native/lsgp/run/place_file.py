@@ -29,19 +29,22 @@ DEFAULT_LATTICE = "square"
 def add_placement_options(cones: argparse.ArgumentParser) -> None:
     """The options of placing cones, which args of `place_file` have."""
     number = cones.add_mutually_exclusive_group()
-    number.add_argument("--count", metavar="N", type=int, help="cones on each component, kept ones included")
+    number.add_argument("--count", metavar="N", type=int, help="cones on each component, including kept ones")
     number.add_argument(
         "--target",
         metavar="L2",
         type=float,
-        help="as few as bring the L2 stretch of each component's map to this, 1 being none (default: 1.05)",
+        help="the fewest cones with which each component's map has at most this L2 stretch, 1 being none "
+        "(default: 1.05)",
     )
-    cones.add_argument("--keep", metavar="FILE.json", help="a cones file to be completed; its cone_angles stay")
+    cones.add_argument("--keep", metavar="FILE.json", help="a cones file to complete; its cone_angles are kept")
     cones.add_argument(
-        "--seamless", action="store_true", help="choose places and angles together for a seamless layout"
+        "--seamless", action="store_true", help="choose positions and angles together for a seamless layout"
     )
     cones.add_argument(
-        "--lattice", choices=LATTICES, help=f"with --seamless: whose turns the angles are (default: {DEFAULT_LATTICE})"
+        "--lattice",
+        choices=LATTICES,
+        help=f"with --seamless: angles are multiples of its rotation (default: {DEFAULT_LATTICE})",
     )
     cones.add_argument("--symmetric", action="store_true", help="the same cones on both sides of a mirror plane")
     cones.add_argument(
@@ -49,14 +52,14 @@ def add_placement_options(cones: argparse.ArgumentParser) -> None:
         metavar=("PX", "PY", "PZ", "NX", "NY", "NZ"),
         nargs=6,
         type=float,
-        help="with --symmetric: a point on the plane and its normal (default: found)",
+        help="with --symmetric: a point on the plane and its normal (default: detected)",
     )
     cones.add_argument(
-        "--prefer-sharp", action="store_true", help="sharp corners before smooth places where that costs little"
+        "--prefer-sharp", action="store_true", help="prefer sharp corners to smooth regions if that costs little"
     )
     cones.add_argument("--seam-edges", metavar="FILE.json", help="[[a, b], ...]: marked edges, as for lsgp unwrap")
     cones.add_argument(
-        "--seams", choices=SEAM_MODES, default="follow", help="what marked edges mean, as for lsgp unwrap"
+        "--seams", choices=SEAM_MODES, default="follow", help="meaning of marked edges, as for lsgp unwrap"
     )
     add_cut_options(cones)
     add_strict_option(cones, "set of cones")

@@ -30,8 +30,8 @@ def add_quads_options(quads: argparse.ArgumentParser) -> None:
         "--target",
         metavar="N",
         type=int,
-        help="about so many quads; more where so few leave no valid grid (default: as few as cost at most a tenth in "
-        "distortion)",
+        help="approximate number of quads; more if so few have no valid grid (default: the fewest that cost at most a "
+        "tenth in distortion)",
     )
     number.add_argument("--size", metavar="X", type=float, help="side of a quad on the surface, in its unit")
     add_cones_option(quads)
@@ -42,14 +42,14 @@ def add_quads_options(quads: argparse.ArgumentParser) -> None:
         metavar=("X", "Y", "Z"),
         nargs=3,
         type=float,
-        help="turn the grid so that rows of quads run up the model, whose up this is, as far as the cones let them "
-        "(default: as it fits)",
+        help="the model's up direction: the grid is rotated so that rows of quads follow it, as far as the cones "
+        "permit (default: any rotation)",
     )
     quads.add_argument(
         "--coarse-grid",
         choices=["refine", "merge"],
         default="refine",
-        help="where the quads are too large for a valid grid: take smaller ones, or merge cones less than a quad apart "
+        help="if the quads are too large for a valid grid: use smaller ones, or merge cones less than a quad apart "
         "(default: refine)",
     )
 

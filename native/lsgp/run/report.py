@@ -197,7 +197,7 @@ def quality_table(
         ("quasi-conformal", f"{d.quasi_conformal:.4f}", "1", f"area-weighted {d.quasi_conformal_area_weighted:.4f}"),
         ("area", f"{d.area:.4f}", "1", f"10 % {d.area_p10:.4f}, 90 % {d.area_p90:.4f}"),
         ("L2 stretch", f"{d.l2_stretch:.4f}", "1", ""),
-        ("sister ratio - 1", f"{s.sister_ratio_max - 1:.1e}", "0", ""),
+        ("seam length mismatch", f"{s.sister_ratio_max - 1:.1e}", "0", ""),
         ("rotation residual", f"{s.rotation_residual:.1e}", "0", "radians"),
         ("translation residual", f"{s.translation_residual:.1e}", "0", "of the layout"),
     ]

@@ -38,9 +38,9 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
     unwrap.add_argument(
         "--preset",
         choices=get_args(Preset),
-        help="unwrap ready for use: cones of a file are kept, components with too few get more, no island overlaps "
-        "itself, and lengths are kept (paint, bake) or a tileable texture of squares shows no seam (tile); options "
-        "given besides win over the preset's (default: none)",
+        help="a map ready for use: cones from a file are kept, components with too few get more, no island overlaps "
+        "itself, and lengths are preserved (paint, bake) or a tileable texture of squares shows no seam (tile); "
+        "explicit options override those of the preset (default: none)",
     )
     add_cones_option(unwrap)
     unwrap.add_argument(
@@ -49,16 +49,28 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
         help="how cone angles are chosen (default: the cone_angles of the cones file where it has them, otherwise "
         "least-distortion)",
     )
-    unwrap.add_argument("--unfold", choices=["poisson", "spectral"], default="poisson", help="default: poisson")
-    unwrap.add_argument("--method", choices=["lsgp", "lscm"], default="lsgp", help="default: lsgp")
     unwrap.add_argument(
-        "--seam-edges", metavar="FILE.json", help="[[a, b], ...]: marked edges; --seams says what they mean"
+        "--unfold",
+        choices=["poisson", "spectral"],
+        default="poisson",
+        help="integrate the prescribed metric by one linear solve, or compute the smallest conformal eigenvector as "
+        "in the paper, on closed surfaces (default: poisson)",
+    )
+    unwrap.add_argument(
+        "--method",
+        choices=["lsgp", "lscm"],
+        default="lsgp",
+        help="relate the sides of every cut by one rotation and translation, or, for comparison, unfold along the same "
+        "cuts by least squares conformal maps without transitions (default: lsgp)",
+    )
+    unwrap.add_argument(
+        "--seam-edges", metavar="FILE.json", help="[[a, b], ...]: marked edges, with the meaning given by --seams"
     )
     unwrap.add_argument(
         "--seams",
         choices=SEAM_MODES,
         default="follow",
-        help="marked edges: they are cut, and others where cones need it, they are open borders, or they are ignored "
+        help="meaning of marked edges: cut, with further cuts where cones need them; open boundaries; or ignored "
         "(default: follow)",
     )
     add_cut_options(unwrap)
@@ -68,7 +80,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
         "--border",
         choices=["free", "straight"],
         default="free",
-        help="borders take the shape of least distortion, or run straight from cone to cone (default: free)",
+        help="boundaries take the shape of least distortion, or are straight from cone to cone (default: free)",
     )
     add_mode_option(unwrap)
     unwrap.add_argument(
@@ -106,8 +118,8 @@ def _add_crease_option(unwrap: argparse.ArgumentParser) -> None:
         "--no-creases",
         dest="creases",
         action="store_false",
-        help="with --preset: let the texture of hard surfaces run on across their creases; without this they end there "
-        "where paint and bake have hardly any stretch by it (default: with them)",
+        help="with --preset: do not cut hard surfaces at their creases, so that the texture continues across them; by "
+        "default paint and bake cut there where hardly any stretch remains",
     )
 
 
@@ -118,13 +130,13 @@ def _add_direction_options(unwrap: argparse.ArgumentParser) -> None:
         metavar=("X", "Y", "Z"),
         nargs=3,
         type=float,
-        help="turn islands so that the texture's v runs up the model, whose up this is; 0 0 0: turn them as it fits "
+        help="the model's up direction: islands are rotated so that the texture's v follows it; 0 0 0: any rotation "
         "(default: with --preset tile 0 1 0, otherwise 0 0 0)",
     )
     direction.add_argument(
         "--directions",
         metavar="FILE.json",
-        help="[[face, x, y, z], ...], faces counted from 0: what v is to run along there; longer ones count for more",
+        help="[[face, x, y, z], ...], faces counted from 0: the direction of v there; longer vectors have more weight",
     )
 
 
@@ -143,7 +155,7 @@ def add_mode_option(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--mode",
         choices=["conformal", "low-stretch"],
-        help="keep angles, or lengths as far as the cone angles let it (default: conformal)",
+        help="preserve angles, or lengths as far as the cone angles permit (default: conformal)",
     )
 
 
@@ -152,7 +164,7 @@ def add_stretch_option(command: argparse._ActionsContainer) -> None:
         "--stretch",
         metavar="S",
         type=float,
-        help="from 0, the conformal map, to 1, that of least stretch (default: 1)",
+        help="from 0, the conformal map, to 1, the map of least stretch (default: 1)",
     )
 
 
@@ -161,15 +173,15 @@ def add_cut_options(command: argparse.ArgumentParser) -> None:
         "--cuts",
         choices=["hidden", "sharp", "shortest"],
         default="hidden",
-        help="where cuts run: out of sight from the front and along creases, along creases alone, or the shortest way; "
-        "the map is the same (default: hidden)",
+        help="route of the cuts: hidden from the front and along creases, along creases only, or the shortest; the map "
+        "is the same (default: hidden)",
     )
     command.add_argument(
         "--front",
         metavar=("X", "Y", "Z"),
         nargs=3,
         type=float,
-        help="with --cuts hidden: the direction from the model to who looks at it (default: 0 0 1)",
+        help="with --cuts hidden: the direction from the model to the viewer (default: 0 0 1)",
     )
 
 
@@ -193,8 +205,8 @@ def add_threads_option(command: argparse.ArgumentParser) -> None:
         metavar="N",
         type=int,
         default=0,
-        help="threads for meshes of tens of thousands of triangles and more, up to 1024; the result is the same for "
-        "any number (default: as many as LSGP_THREADS in the environment says, or else as there are processors)",
+        help="number of threads for meshes of tens of thousands of triangles and more, up to 1024; the result is the "
+        "same for any number (default: the environment variable LSGP_THREADS, or else the number of processors)",
     )
 
 
@@ -209,8 +221,8 @@ def add_strict_option(command: argparse.ArgumentParser, result: str) -> None:
     command.add_argument(
         "--strict",
         action="store_true",
-        help=f"refuse a {result} with flipped triangles, wrong or inexact angles, inexact seams, parts left out, or "
-        "cones that miss what was asked for, instead of warning of them: exit code 3, and no file but the report",
+        help=f"refuse a {result} with flipped triangles, wrong or inexact angles, inexact seams, components left out, "
+        "or cones that miss the target, instead of warning: exit code 3, and no file but the report",
     )
 
 
@@ -220,7 +232,7 @@ def _add_low_stretch_options(unwrap: argparse.ArgumentParser) -> None:
     low_stretch.add_argument(
         "--importance",
         metavar="FILE",
-        help="how much stretch at each vertex weighs, numbers from 0 up, as text or [number, ...] (default: all alike)",
+        help="weight of stretch at each vertex, numbers from 0 up, as text or [number, ...] (default: equal weights)",
     )
 
 
@@ -243,8 +255,8 @@ def _add_seamless_options(unwrap: argparse.ArgumentParser) -> None:
     seamless.add_argument(
         "--lattice",
         choices=LATTICES,
-        help="under what the texture looks the same: quarter turns, half turns or none of squares, third or sixth "
-        "turns of triangles (default: square)",
+        help="the texture's symmetry: rotations of squares by quarter turns (square), by half turns (stripe) or none "
+        "(translation), of triangles by third turns (triangle) or sixth turns (hexagon) (default: square)",
     )
     seamless.add_argument(
         "--parity", action="store_true", default=None, help="the black and white squares of a checker match as well"
@@ -252,22 +264,22 @@ def _add_seamless_options(unwrap: argparse.ArgumentParser) -> None:
     seamless.add_argument(
         "--coarse-grid",
         choices=["refine", "merge", "relax"],
-        help="where the tiles are too large for a valid layout: take smaller ones, merge cones less than a tile apart, "
+        help="if the tiles are too large for a valid layout: take smaller tiles, merge cones less than a tile apart, "
         "or leave cones off the grid (default: refine)",
     )
     seamless.add_argument(
         "--texture-size",
         metavar="T",
         type=texture_size_option,
-        help=f"texels of the texture's side, a power of two; errors are given in them "
-        f"(default: {DEFAULT_TEXTURE_SIZE}); also of --texel-density, --udim and --pack tight",
+        help=f"the texture's side in texels, a power of two, for errors given in texels "
+        f"(default: {DEFAULT_TEXTURE_SIZE}); also for --texel-density, --udim and --pack tight",
     )
     seamless.add_argument(
         "--mip-levels",
         metavar="L",
         type=int,
-        help="cells of 2^L texels instead of whole tiles, for a texture that repeats in them; its first L mipmaps "
-        "match as well",
+        help="use cells of 2^L texels instead of whole tiles, for a texture that repeats in such cells; its first L "
+        "mipmaps match as well",
     )
 
 
@@ -277,16 +289,16 @@ def _add_texel_options(unwrap: argparse.ArgumentParser) -> None:
         "--texel-density",
         metavar="D",
         type=_density_option,
-        help="texels per unit of length on the surface, with --texture-size: the layout gets this scale instead of "
+        help="texels per unit of length on the surface, with --texture-size: the layout has this scale instead of "
         "filling the unit square",
     )
     texels.add_argument(
         "--udim",
         metavar="N",
         type=_tiles_option,
-        help="spread the islands over the UDIM tiles 1001, 1002, ..., at most so many, each inside one tile of the "
-        "texture's size: in rows with --texel-density, without it as large as they get, which takes pip install "
-        "'lsgp[pack]' (default: they stay in one square)",
+        help="spread the islands over at most N UDIM tiles 1001, 1002, ..., each island inside one tile of the "
+        "texture's size: in rows with --texel-density; without it as large as possible, which requires pip install "
+        "'lsgp[pack]' (default: one square)",
     )
     texels.add_argument(
         "--margin",
@@ -301,8 +313,8 @@ def _add_pack_option(unwrap: argparse.ArgumentParser) -> None:
     unwrap.add_argument(
         "--pack",
         choices=get_args(Pack),
-        help="lay islands close together, which takes pip install 'lsgp[pack]', or on shelves (default: with --preset "
-        "paint and bake tight if that is installed, otherwise shelves)",
+        help="pack islands tightly, which requires pip install 'lsgp[pack]', or in rows (shelves) (default: tight with "
+        "--preset paint and bake if that is installed, otherwise shelves)",
     )
 
 

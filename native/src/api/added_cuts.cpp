@@ -30,13 +30,13 @@ void AddedCuts::report(std::vector<Finding>& findings) const {
   const auto add_reason = [&](bool holds, const char* reason) {
     if (holds) why += (why.empty() ? "" : ", and ") + std::string(reason);
   };
-  add_reason(reach_cones_, "to reach cones and borders");
+  add_reason(reach_cones_, "to reach cones and boundaries");
   add_reason(open_handles_, "to open handles");
-  add_reason(open_holes_, "because parts with holes would be stretched too much without");
+  add_reason(open_holes_, "because components with holes would be stretched too much otherwise");
   const std::size_t edge_count = edges_.size() / 2;
   findings.push_back({Code::cuts_added,
                       concat(count(edge_count, "edge was", "edges were"), " cut besides the marked seams, ", why,
-                             ". Mark seams there to choose other ways."),
+                             ". Mark seams there to choose other routes."),
                       {ElementKind::edges, edges_}});
 }
 

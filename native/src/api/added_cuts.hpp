@@ -10,8 +10,8 @@ namespace lsgp {
 
 class AddedCuts {
  public:
-  // Collects them where a component has marked seams. Edges that are no cuts any more do not count, and neither do cuts
-  // that split overlaps.
+  // Collects them if a component has marked seams. Edges that are no longer cuts and cuts that split overlaps do not
+  // count.
   void add(const Component& component, const ComponentMap& map);
 
   // As CUTS_ADDED.

@@ -19,9 +19,8 @@ namespace lsgp {
 
 namespace {
 
-// Brings a map to the surface's texel density: by the area its triangles have, whichever way up they are, but where
-// they are folded flat or sheared so much that their lengths are far more than that area's, by their lengths, which
-// bounds what a part without area takes of the layout.
+// The factor that gives a map the surface's texel density. Scales by total unsigned UV area; where triangles are nearly
+// degenerate, by Dirichlet energy, which bounds the size of a collapsed map.
 double scale_to_surface(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map) {
   constexpr double least_share = 0.1;  // of the Dirichlet energy, which is the area of a conformal map
   const Jacobians jacobians = measure_jacobians(mesh, geometry, map.cut_mesh, map.position);
@@ -32,7 +31,7 @@ double scale_to_surface(const HalfedgeMesh& mesh, const Geometry& geometry, cons
   return std::isfinite(scale) ? scale : 1;
 }
 
-// Seamless layouts promise what single precision stores.
+// The guarantees of seamless layouts hold for coordinates as stored in single precision.
 void add_flips_as_stored(const HalfedgeMesh& mesh, const CornerPositions& corners, Validity& validity) {
   const Eigen::VectorXcd stored = corners.unaryExpr([](Complex z) { return as_stored(z); });
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
@@ -62,7 +61,7 @@ Assembly::Assembly(const Surface& surface, const Array<Component>& components, c
 void Assembly::add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, ComponentMap map,
                    std::vector<Finding> findings) {
   const Component& component = components_[component_index];
-  // A seamless layout was split before its parts were put onto the lattice; pinned ones keep their place.
+  // A seamless layout was split before its parts were put onto the lattice; pinned ones keep their position.
   if (options_.overlaps == Overlaps::split && !result_.seamless && map.pins.size() < 2) {
     try {
       split_map({component.mesh, geometry, open_seams(component.mesh)}, component.mesh.seam, monitor_, map);
@@ -168,8 +167,8 @@ void Assembly::place(const Array<Similarity>& placement) {
   }
   if (layout_.allFinite()) return;
   throw Error(Code::solver_failed,
-              "The layout's sizes differ by more than numbers can hold. Add cones where the surface is stretched most, "
-              "or unwrap its parts one by one.");
+              "The scale of the layout varies beyond the range of numbers. Add cones where the surface is stretched "
+              "most, or unwrap its components separately.");
 }
 
 void Assembly::check_in_layout(Solved& solved) const {
@@ -209,7 +208,7 @@ void Assembly::measure_directions(const Solved& solved) {
 }
 
 Array<char> Assembly::open_seams(const HalfedgeMesh& mesh) const {
-  // A seamless layout runs on across seams that were not cut.
+  // A seamless layout continues across seams that were not cut.
   return result_.seamless ? Array<char>(mesh.halfedge_count(), 0) : mesh.seam;
 }
 
@@ -280,7 +279,7 @@ void Assembly::add_opened_seams() {
 
 void Assembly::report_flat_cones() {
   const auto is_cone = [&](Index v) { return !std::isnan(cone_angle_[v]); };
-  sort_unique(flat_cones_);  // a vertex where parts meet is one of each
+  sort_unique(flat_cones_);  // a vertex shared by components is one of each
   flat_cones_.erase(std::remove_if(flat_cones_.begin(), flat_cones_.end(), is_cone), flat_cones_.end());
   if (flat_cones_.empty()) return;
   result_.seamless->flat_cones = flat_cones_;  // angles are rounded for seamless layouts alone
@@ -291,7 +290,7 @@ void Assembly::report_flat_cones() {
        {ElementKind::vertices, flat_cones_}});
 }
 
-// Triangles that lie on others, over all islands.
+// Overlapping triangles, over all islands.
 void Assembly::find_overlapping() {
   Array<Index> twin(layout_.size()), triangle(layout_.size() / 3);
   double area = 0;
@@ -325,7 +324,7 @@ void Assembly::find_overlapping() {
   result_.overlap_area = shared > 0 ? shared / area : 0;
 }
 
-// Of every triangle of the layout: those that no cut may part are one face.
+// The face of every triangle of the layout: triangles that no cut may separate form one face.
 Array<Index> Assembly::number_faces() const {
   Array<Index> out, face;
   Index before = 0;

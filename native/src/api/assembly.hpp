@@ -24,10 +24,10 @@ class Assembly {
   void add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, ComponentMap map,
            std::vector<Finding> findings);
 
-  // Reports components that were left out; throws the first one's error where no other is there.
+  // Reports components that were left out; if there are no others, rethrows the first error.
   void require_any();
 
-  // Arranges the islands, checks what is returned and names what is wrong.  duplicates: as in Topology.
+  // Arranges the islands, checks the result and reports its defects.  duplicates: as in Topology.
   void finish(const Cones& cones, const Array<std::pair<Index, Index>>& duplicates);
 
  private:
@@ -40,16 +40,16 @@ class Assembly {
     double scale = 1;               // of the map to the texel density of all
     Array<double> turn;             // (parts) by which each is turned in the layout, radians
     Eigen::Index first_island = 0;  // of those to be arranged
-    bool is_in_place = false;       // nothing of it is to be arranged
+    bool is_in_place = false;       // its islands are not to be arranged
     Eigen::Index first_corner = 0;  // in the layout
   };
 
-  // Writes where every corner comes to lie, in the result and in `layout_`.
+  // Writes the position of every corner to the result and to `layout_`.
   void place(const Array<Similarity>& placement);
   CornerPositions corners(const Solved& solved) const {
     return layout_.segment(solved.first_corner, solved.component->mesh.halfedge_count());
   }
-  // Checks the coordinates that are returned: a component much smaller than the others has lost digits to its place.
+  // Checks the final coordinates: a component much smaller than the others has lost digits to its position.
   void check_in_layout(Solved& solved) const;
   void collect_checks(const Component& component, const ComponentMap& map);
   void measure_directions(const Solved& solved);
@@ -57,15 +57,15 @@ class Assembly {
   // Halfedges at which a component's layout may end besides its cuts, (3m).
   Array<char> open_seams(const HalfedgeMesh& mesh) const;
 
-  // A component is one island, or several where its cuts and seams together close off parts: those keep their size and
-  // are placed one by one, related across the seam by how they were moved. Seams that end inside are cut too, and both
-  // their sides lie on each other.
+  // A component is one island, or several if its cuts and seams enclose regions: these keep their size and are placed
+  // individually, related across the seam by their motions. Seams that end in the interior are cut as well, and their
+  // two sides coincide.
   void add_islands(const Geometry& geometry, Solved& solved);
 
-  // Seams along which components without cones were opened are cut too, though their sides are borders.
+  // Seams along which components without cones were opened count as cut, though their sides are boundaries.
   void add_opened_seams();
 
-  // A vertex where parts meet may be flat in one and a cone of another: then it is not named as flat.
+  // A vertex shared by components may be flat in one and a cone of another: then it is not reported as flat.
   void report_flat_cones();
 
   void find_overlapping();

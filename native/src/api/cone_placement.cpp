@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The verbs of cone placement; every component is worked on for itself.
+// The functions of cone placement; components are independent.
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr double same_angle = 1e-9;  // radians
 
-// A surface split into components, each with what cones may be placed on.
+// A surface split into components, with the vertices where cones may be placed.
 class PlacementWork {
  public:
   PlacementWork(const PlacementRequest& request, std::vector<Finding>& findings, const Progress& progress)
@@ -50,7 +50,7 @@ class PlacementWork {
                                        static_cast<double>(triangles_before) / static_cast<double>(triangles_));
       monitor_.advance(0);
       const Geometry geometry = require_geometry(component, findings_);
-      // A vertex where parts meet cannot have an angle on each.
+      // A vertex shared by components cannot have an angle on each.
       Array<char> allowed;
       for (const Index v : component.source_vertex) allowed.push_back(copies_[v] == 1);
       std::vector<Finding> found;
@@ -80,7 +80,7 @@ Array<Index> mirror_images(const Component& component, const Geometry& geometry,
     Array<Index> all(component.source_triangle.size());
     for (std::size_t f = 0; f < all.size(); ++f) all[f] = static_cast<Index>(f);
     findings.push_back({Code::not_symmetric,
-                        concat("A part of the surface is not its own mirror image in ",
+                        concat("A component of the surface is not its own mirror image in ",
                                options.mirror ? "the given plane" : "any plane that was tried",
                                "; its cones were placed without regard to symmetry. Symmetrize the mesh, or give its "
                                "mirror plane."),
@@ -89,13 +89,13 @@ Array<Index> mirror_images(const Component& component, const Geometry& geometry,
   return images;
 }
 
-// A vertex has one angle in the result, whatever is best on each part that touches there.
+// A vertex has one angle in the result, even if different ones are best on the components that touch there.
 void report_shared(Array<Index> vertices, std::vector<Finding>& findings) {
   if (vertices.empty()) return;
   sort_unique(vertices);
   findings.push_back({Code::split_vertex,
                       concat(count(vertices.size(), "cone is", "cones are"),
-                             " where parts of the surface touch, and should have an angle of its own on each; only one "
+                             " where pieces of the surface touch, and should have a separate angle on each; only one "
                              "can be given. Split the vertices there."),
                       {ElementKind::vertices, std::move(vertices)}});
 }
@@ -181,7 +181,7 @@ ConeGains cone_gains(const Surface& surface, const Cones& existing, SeamMode sea
     stretched_area += gains.present_l2 * gains.present_l2 * geometry.total_area;
     total_area += geometry.total_area;
     if (gains.best == none) return;
-    // A component that has to have a cone comes first, the largest before others.
+    // Components that need a cone come first, in order of decreasing size.
     const bool needed = gains.present_l2 == unlimited;
     const double with_cone = gains.predicted_l2[gains.best];
     const double saved = geometry.total_area * (gains.present_l2 * gains.present_l2 - with_cone * with_cone);

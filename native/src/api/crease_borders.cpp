@@ -32,7 +32,7 @@ Eigen::VectorXd bends(const HalfedgeMesh& mesh) {
   return out;
 }
 
-// Whether the artist has said something about a component's cuts, which is to hold then.
+// Whether the component has marked cones or seams; those take precedence.
 bool is_marked(const HalfedgeMesh& mesh, const ComponentTask& task) {
   return !task.cones.vertices.empty() || !task.border_cones.empty() ||
          std::find(mesh.seam.begin(), mesh.seam.end(), 1) != mesh.seam.end();

@@ -41,7 +41,7 @@ Eigen::VectorXd crease_angles(const Surface& surface, const EdgeTable& edges) {
   return angle;
 }
 
-// The factor that being a crease, or marked sharp, gives each row of the surface's edges.
+// The factor of creases and sharp edges for each row of the surface's edges.
 Eigen::VectorXd crease_factors(const Surface& surface, const CutPreferences& preferences) {
   const EdgeTable edges(surface, Array<char>(surface.triangles.rows(), 0));
   Eigen::VectorXd angle = Eigen::VectorXd::Zero(edges.count());
@@ -61,12 +61,11 @@ Eigen::VectorXd crease_factors(const Surface& surface, const CutPreferences& pre
 
 void require_preferences(const Surface& surface, const CutPreferences& preferences) {
   if (!surface.edges) {
-    throw Error(
-        Code::wrong_parameter,
-        "Costs are those of the edges that a cut may follow, and these are not named. Name the surface's edges.");
+    throw Error(Code::wrong_parameter,
+                "Cut costs need the list of edges that cuts may follow. Set the surface's `edges`.");
   }
   if (preferences.front && !(preferences.front->allFinite() && preferences.front->cwiseAbs().maxCoeff() > 0)) {
-    throw Error(Code::wrong_parameter, "The front is no direction. Give three numbers that are not all 0.");
+    throw Error(Code::wrong_parameter, "The front is not a direction. Give three finite numbers that are not all 0.");
   }
   const Eigen::VectorXd& paint = preferences.paint;
   if (paint.size() == 0) return;

@@ -12,8 +12,8 @@ struct PlacedParts {
   Array<double> turn;               // (parts) by which each was turned, radians
 };
 
-// Measures positions u + iv at the component's corners, (3m), against what the map imposed and what the parts were
-// turned by: its cuts, and the edges along which it was parted without a cut.
+// Measures positions u + iv at the component's corners, (3m), against the imposed transitions and the rotations of the
+// parts: its cuts, and the edges along which it was divided without a cut.
 void check_divided_seams(const HalfedgeMesh& mesh, const PlacedParts& parts, const CornerPositions& corners,
                          ComponentMap& map);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangles that lie on others share their map.
+// Duplicate triangles share the map of the original.
 #pragma once
 
 #include <utility>
@@ -10,7 +10,7 @@
 
 namespace lsgp {
 
-// Gives such triangles the coordinates of those that they lie on; they are skipped with these.
+// Gives duplicates the coordinates of the originals; they are skipped with these.
 // duplicates: as in Topology.
 void share_maps(const Surface& surface, const Array<std::pair<Index, Index>>& duplicates, Result& result);
 

@@ -39,7 +39,7 @@ void require_valid(const Surface& surface, const CornerUv& corner_uv, double cel
 
 void require_closed(const Component& component) {
   if (!component.orientable) {
-    throw Error(Code::not_orientable, "A part of the surface has one side only, which quads cannot cover. Cut it open.",
+    throw Error(Code::not_orientable, "A component is one-sided, and quads cannot cover it. Cut it open.",
                 {ElementKind::triangles, component.source_triangle});
   }
   Array<Index> border;
@@ -50,13 +50,13 @@ void require_closed(const Component& component) {
   }
   if (border.empty()) return;
   const std::string what =
-      concat("The surface has a border of ", count(border.size() / 2, "edge", "edges"),
+      concat("The surface has a boundary of ", count(border.size() / 2, "edge", "edges"),
              ", along which the grid would be cut off between its lines. Close the surface: fill its holes, "
-             "merge vertices by distance, and remove faces inside.");
+             "merge vertices by distance, and remove interior faces.");
   throw Error(Code::open_surface, what, {ElementKind::edges, std::move(border)});
 }
 
-// Without seams: the mesh runs on across them.
+// Without seams, across which the mesh continues.
 Topology build_closed_topology(const Surface& surface) {
   Surface whole = surface;
   whole.seams.resize(0, 2);

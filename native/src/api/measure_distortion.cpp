@@ -91,8 +91,8 @@ Array<Index> edges_between(const Part& part, const CornerUv& uv, const Array<Ind
   return out;
 }
 
-// What has one side only is opened where its layout is, each island of which may have two; where one has not, around
-// every triangle. Names the edges with different coordinates.
+// Non-orientable components are cut along the layout's seams; if an island is still non-orientable, along every edge.
+// cut_edges: gets the edges whose sides have different coordinates.
 Topology build_two_sided(Part& part, const CornerUv& uv, Array<Index>& cut_edges) {
   std::vector<Finding> ignored;
   Topology topology = build_topology(part.surface, {}, ignored);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The map of a component that has seams and got no cones: it is opened along them.
+// The map of a component with seams that got no cones: it is opened along them.
 #pragma once
 
 #include "lsgp/placement.hpp"

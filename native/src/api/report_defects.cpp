@@ -53,7 +53,7 @@ void report_defects(const Options& options, Defects found, Result& result) {
   if (!foretold && flipped.empty() && !(result.distortion.l2_stretch < high_l2)) {
     result.warnings.push_back(
         {Code::high_distortion,
-         concat("The map stretches much: its L2 stretch is ", rounded(result.distortion.l2_stretch),
+         concat("The map has high stretch: its L2 stretch is ", rounded(result.distortion.l2_stretch),
                 ", 1 being none. Add cones where the texture becomes too small."),
          {}});
   }
@@ -61,8 +61,8 @@ void report_defects(const Options& options, Defects found, Result& result) {
     result.warnings.push_back(
         {Code::inexact_seams,
          concat("At ", count(found.inexact_seams.size() / 2, "cut edge", "cut edges"),
-                " the two sides do not match exactly, because the layout shrinks too much there or a part is much "
-                "smaller than the others. Add cones nearby, or unwrap small parts by themselves."),
+                " the two sides do not match exactly, because the layout shrinks too much there or a component is much "
+                "smaller than the others. Add cones nearby, or unwrap small components separately."),
          {ElementKind::edges, found.inexact_seams}});
   }
   if (!found.inexact_angles.empty()) {
@@ -81,8 +81,8 @@ void report_defects(const Options& options, Defects found, Result& result) {
   if (!wrong.empty()) {
     result.warnings.push_back({Code::wrong_angle_sums,
                                concat("At ", count(wrong.size(), "vertex", "vertices"),
-                                      " angles are off by more than a degree: by a turn, where the layout turns once "
-                                      "too often or too little, or because it shrinks too much. Move or add cones "
+                                      " angles are off by more than a degree: by a full turn, where the layout winds "
+                                      "once too often or too little, or because it shrinks too much. Move or add cones "
                                       "nearby."),
                                {ElementKind::vertices, wrong}});
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names what is wrong with a result.
+// Reports the defects of a result.
 #pragma once
 
 #include "base/array.hpp"
@@ -8,7 +8,7 @@
 
 namespace lsgp {
 
-// What a result does not list, in the caller's numbering.
+// Defects that are not listed in a result, in the caller's numbering.
 struct Defects {
   Array<Index> inexact_seams;   // vertex pairs
   Array<Index> inexact_angles;  // vertices

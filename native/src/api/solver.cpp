@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The whole way from a surface to its map; every component is worked on for itself.
+// From a surface to its map; components are independent.
 #include "lsgp/solver.hpp"
 #include "base/array.hpp"
 
@@ -34,7 +34,7 @@ class Pipeline {
              const Progress& progress);
 
  private:
-  // What is kept of one component.
+  // Cached data of one component.
   struct Kept {
     Geometry geometry;
     std::vector<Finding> found;  // while it was built
@@ -179,8 +179,8 @@ class Turn {
   explicit Turn(std::atomic<bool>& is_busy) : is_busy_(is_busy) {
     if (!is_busy_.exchange(true)) return;
     throw Error(Code::solver_busy,
-                "The solver is at work on another call, of another thread or of the one whose progress is told. Wait "
-                "until that one ends, or take a solver for each.");
+                "This solver is already running a call (from another thread, or from its own progress callback). Wait "
+                "for it, or use one solver per thread.");
   }
   ~Turn() { is_busy_ = false; }
   Turn(const Turn&) = delete;

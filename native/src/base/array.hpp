@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A std::vector whose elements are counted and named by any integer: Index, Eigen::Index and int as well as
+// A std::vector whose sizes and subscripts may be of any integer type: Index, Eigen::Index and int as well as
 // std::size_t.
 //
-// Vertices, corners and triangles are numbered by signed integers, as in Eigen; std::vector takes unsigned ones, which
-// would need a conversion at every subscript. A negative number becomes one beyond any size, which assertions of the
-// standard library catch as they do with std::vector.
+// Vertices, corners and triangles have signed indices, as in Eigen; std::vector takes unsigned ones, which would need a
+// conversion at every subscript. A negative index converts to a huge value, which the library's assertions catch.
 #pragma once
 
 #include <algorithm>
@@ -62,19 +61,19 @@ class Array : public std::vector<T> {
   }
 };
 
-// The number of elements, as signed as what names them (std::ssize of C++20).
+// The number of elements as a signed integer (std::ssize).
 template <typename Container>
 std::ptrdiff_t ssize(const Container& container) {
   return static_cast<std::ptrdiff_t>(container.size());
 }
 
-// Element i of a std::vector, of which the public types are made, or of a std::array.
+// Element i of a std::vector, as used in the public types, or of a std::array.
 template <typename Container, typename Integer>
 auto& element(Container& container, Integer i) {
   return container[static_cast<std::size_t>(i)];
 }
 
-// Leaves each element once, in ascending order.
+// Sorts the elements and removes duplicates.
 template <typename Container>
 void sort_unique(Container& container) {
   std::sort(container.begin(), container.end());

@@ -8,10 +8,10 @@ namespace lsgp {
 
 constexpr double operations_between_visits = 5e7;
 
-// Told by long work of this thread: about so many multiplications have been done.
+// Called by long computations: reports approximate work, in multiplications, since the last call.
 void checkpoint(double operations);
 
-// While it lives, `visit` is called by the checkpoints of this thread, some hundredths of a second apart; it may throw.
+// During its lifetime, checkpoints of this thread call `visit` every few hundredths of a second; it may throw.
 class CheckpointVisitor {
  public:
   explicit CheckpointVisitor(std::function<void()> visit);

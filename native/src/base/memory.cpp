@@ -39,7 +39,7 @@ constexpr double no_limit = std::numeric_limits<double>::infinity();
 
 #if defined(__linux__)
 
-// The number after a word of a file, or its first one where no word is given; `otherwise` where there is none.
+// The number that follows a word in a file, or the first number if no word is given; `otherwise` if there is none.
 double number_in(const char* path, const std::string& word, double otherwise) {
   std::ifstream file(path);
   std::string read;
@@ -56,7 +56,7 @@ double left_on_the_machine() {
   return kilobytes("MemAvailable:", no_limit) + kilobytes("SwapFree:", 0);
 }
 
-// Files that were read lately count as used, but make room.
+// The page cache of inactive files counts as used but is reclaimable.
 double left_in_the_container() {
   const double most = number_in("/sys/fs/cgroup/memory.max", "", no_limit);
   const double used = number_in("/sys/fs/cgroup/memory.current", "", 0);
@@ -72,14 +72,14 @@ double left_to_the_process() {
 
 #elif defined(_WIN32)
 
-// What the system can still promise: memory and the paging files together.
+// The system's remaining commit limit: memory and paging files together.
 double left_on_the_machine() {
   MEMORYSTATUSEX status{};
   status.dwLength = sizeof(status);
   return GlobalMemoryStatusEx(&status) ? static_cast<double>(status.ullAvailPageFile) : no_limit;
 }
 
-// Containers and batch systems put processes into jobs, which may limit what each promises itself and all together.
+// Containers and batch systems put processes into jobs, which may limit the memory of each and of all together.
 JOBOBJECT_EXTENDED_LIMIT_INFORMATION job_limits() {
   JOBOBJECT_EXTENDED_LIMIT_INFORMATION limits{};
   if (!QueryInformationJobObject(nullptr, JobObjectExtendedLimitInformation, &limits, sizeof(limits), nullptr)) {
@@ -96,7 +96,7 @@ double used_by_the_process() {
              : 0;
 }
 
-// What the job's other processes use is not told.
+// The memory used by the job's other processes is unknown.
 double left_in_the_container() {
   const JOBOBJECT_EXTENDED_LIMIT_INFORMATION limits = job_limits();
   if ((limits.BasicLimitInformation.LimitFlags & JOB_OBJECT_LIMIT_JOB_MEMORY) == 0) return no_limit;
@@ -111,7 +111,7 @@ double left_to_the_process() {
 
 #elif defined(__APPLE__)
 
-// Other processes' memory can be compressed or go to the disk, but for what is wired.
+// Everything but wired memory can be compressed or swapped out.
 double left_on_the_machine() {
   std::uint64_t size = 0;
   std::size_t length = sizeof(size);
@@ -148,7 +148,7 @@ double left_to_the_process() { return no_limit; }
 double memory_left() { return std::min({left_on_the_machine(), left_in_the_container(), left_to_the_process()}); }
 
 void require_memory(double bytes, const char* remedy) {
-  constexpr double small = 16 << 20;  // not worth asking for
+  constexpr double small = 16 << 20;  // not worth a query
   if (bytes < small) return;
   const double left = memory_left();
   if (bytes <= left) return;
@@ -176,12 +176,12 @@ void prefer_huge_pages(void*, std::size_t) {}
 
 namespace lsgp {
 
-// glibc gives freed memory back beyond twice the largest block that was freed so far, of those up to 32 MB (mallopt(3),
-// M_MMAP_THRESHOLD). A block of that size, which is never touched, costs nothing.
+// glibc returns free memory to the system above twice the size of the largest block freed so far, up to 32 MB
+// (mallopt(3), M_MMAP_THRESHOLD). Allocating and freeing such a block without touching it costs nothing.
 void keep_freed_memory() {
 #ifdef __GLIBC__
   static const bool is_kept = [] {
-    void* volatile block = std::malloc((std::size_t(32) << 20) - 8192);  // volatile: compilers leave such pairs out
+    void* volatile block = std::malloc((std::size_t(32) << 20) - 8192);  // volatile: compilers elide such pairs
     std::free(block);
     return true;
   }();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Progress and stage timings of a running verb.
+// Progress and stage timings of a public function while it runs.
 #pragma once
 
 #include <chrono>
@@ -17,14 +17,13 @@ class ProgressMonitor {
   ProgressMonitor(const ProgressMonitor&) = delete;
   ProgressMonitor& operator=(const ProgressMonitor&) = delete;
 
-  // done: of the innermost part under way, 0 to 1. Throws CANCELLED.
+  // done: of the innermost active part, 0 to 1. Throws CANCELLED.
   void advance(double done);
 
-  // Where nobody knows how much there is to do: a small share of what is left of the part. Long work does it by
-  // itself, at its checkpoints.
+  // For loops of unknown length: advances by a fixed fraction of the remaining interval. Checkpoints call it, too.
   void tick();
 
-  // While it lives, what is done is told as what lies between two shares of the part around it.
+  // Maps this scope's progress to the interval [begin, end] of the enclosing scope.
   class Part {
    public:
     Part(ProgressMonitor& monitor, double begin, double end);
@@ -34,11 +33,10 @@ class ProgressMonitor {
 
    private:
     ProgressMonitor& monitor_;
-    const double low_, high_;  // of the part around it
+    const double low_, high_;  // interval of the enclosing part
   };
 
-  // Adds the wall-clock time until its end to a stage; while another one is under way within it, that counts for the
-  // other alone.
+  // Adds the wall-clock time of its lifetime to a stage, excluding the time of nested stages.
   class Stage {
    public:
     Stage(ProgressMonitor& monitor, const char* name);

@@ -13,12 +13,12 @@
 
 namespace lsgp {
 
-// Everything written one after the other, numbers with six digits and a point whatever the locale.
+// Concatenates the arguments; numbers have six digits and a decimal point in every locale.
 template <typename... Parts>
 std::string concat(const Parts&... parts) {
   std::ostringstream out;
   out.imbue(std::locale::classic());
-  out.exceptions(std::ios_base::badbit);  // a stream would keep it to itself when memory ends
+  out.exceptions(std::ios_base::badbit);  // otherwise the stream would swallow std::bad_alloc
   (out << ... << parts);
   return out.str();
 }
@@ -35,21 +35,21 @@ inline std::string rounded(double value, int digits = 4) {
   return std::isfinite(unit) && unit > 0 ? concat(std::round(value / unit) * unit) : concat(value);
 }
 
-// An angle as people read it; rounding noise around whole degrees is none.
+// An angle in degrees, rounded so that noise around whole degrees disappears.
 inline std::string degrees(double radians) {
   constexpr double parts = 1e4;  // of a degree
   const double shown = std::round(radians * 180 / M_PI * parts) / parts;
   return concat(shown == 0 ? 0.0 : shown, " degrees");
 }
 
-// A factor given by its natural logarithm, beyond millions by its power of ten.
+// A factor given by its natural logarithm; above a million written as a power of ten.
 inline std::string factor(double log) {
   constexpr double millions = 6;  // digits
   const double power = log / std::log(10.0);
   return power < millions ? rounded(std::exp(log), 3) : concat("10^", std::round(power));
 }
 
-// The first few indices, and that there are more.
+// The first few indices, with an ellipsis if there are more.
 inline std::string list(const std::vector<Index>& indices) {
   constexpr std::size_t shown = 8;
   std::string out;

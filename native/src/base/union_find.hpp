@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Disjoint sets; the lowest member stands for each.
+// Disjoint sets; each is represented by its lowest member.
 #pragma once
 
 #include <algorithm>

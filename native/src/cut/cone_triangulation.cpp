@@ -13,8 +13,8 @@ namespace {
 
 // Areas of triangles are compared relative to the square of their longest side.
 constexpr double strictly_convex = 1e-12;
-// Around a vertex that is about to be removed a triangle may have no area: where the vertex lies on the line between
-// two neighbours, the removal dissolves it.
+// A triangle at a vertex that is about to be removed may have no area: if the vertex lies on the line between two
+// neighbours, the removal dissolves it.
 constexpr double no_area = 1e-9;
 // Sine of the angle by which an edge fails to be Delaunay before it is flipped; less is a tie.
 constexpr double delaunay_tie = 1e-10;
@@ -116,14 +116,14 @@ class IntrinsicTriangulation {
     for (Index h = 0; h < mesh.halfedge_count(); ++h) suspects_.push_back(h);
   }
 
-  // Leaves no vertices but the cones; whether that was possible.
+  // Removes all vertices but the cones; returns whether that was possible.
   bool remove_others() {
     restore_delaunay();
     Array<Index> left, stuck;
     for (Index v = 0; v < static_cast<Index>(is_cone_.size()); ++v) {
       if (!is_cone_[v]) left.push_back(v);
     }
-    // In one pass no two neighbours: that coarsens evenly and keeps degrees small.
+    // No two neighbours in one pass, which coarsens evenly and keeps degrees small.
     for (int pass = 1; !left.empty(); ++pass) {
       stuck.clear();
       for (const Index v : left) {
@@ -173,7 +173,7 @@ class IntrinsicTriangulation {
     if (motion == Motions::identity) return;
     const Index other = twin(h) - twin(h) % 3;
     const Complex turn = motions_[motion].turn;
-    // By the edge the two share, so that charts fit together however often they are moved.
+    // By their common edge, so that charts fit together however often they are moved.
     const Complex from = 0.5 * (at(twin(h)) + at(next(twin(h)))), to = 0.5 * (at(h) + at(next(h)));
     for (Index k = other; k < other + 3; ++k) {
       halfedges_[k].across = motions_.compose(motion, halfedges_[k].across);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The intrinsic triangulation whose only vertices are the cones: it tells whether cones moved to other places still
-// make a layout without flips.
+// The intrinsic triangulation whose only vertices are the cones: it decides whether a layout with moved cones can be
+// free of flips.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@
 
 namespace lsgp {
 
-// Where a triangle's corner lies in the triangle's own chart:
+// The position of a triangle's corner in the triangle's own chart:
 //   turn * z + sum of coefficient * t,
 // z the position of the cone's first copy (its number is the vertex's), t the translations of cuts,
 // z_right = e^{i rotation} z_left + t.
@@ -24,7 +24,7 @@ struct ConeCorner {
 };
 
 // All three corners of a triangle are in one chart, counter-clockwise. A cone can be at several of them. For moved
-// cones and translations the corners hold as far as these satisfy the closing equations of all nodes.
+// cones and translations the corners are valid if these satisfy the closing equations of all nodes.
 struct ConeTriangulation {
   Array<std::array<ConeCorner, 3>> triangles;  // 2 (cones - Euler characteristic)
 };
@@ -32,7 +32,7 @@ struct ConeTriangulation {
 // Closed surfaces of any genus.  cones: at least one, and all vertices whose angle is not 2 pi; flat ones may be among
 // them.  turn: (cuts) e^{i rotation}.  position: (copies) u + iv, without flips, the angles around every other vertex
 // adding up to 2 pi, both sides of every cut related by its transition.
-// None where a vertex cannot be removed, as happens when the positions are not so.
+// None if a vertex cannot be removed, which happens for other positions.
 std::optional<ConeTriangulation> triangulate_cones(const CutSurface& surface, const Array<Complex>& turn,
                                                    const Array<Index>& cones, const Eigen::VectorXcd& position);
 

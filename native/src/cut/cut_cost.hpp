@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a cut costs: where it may run, and how long each of its edges counts.
+// The cost of a cut: permitted edges and their weighted lengths.
 #pragma once
 
 #include "mesh/geometry.hpp"
@@ -7,10 +7,10 @@
 
 namespace lsgp {
 
-// A cut edge runs inside the surface, along an edge of the mesh proper.
+// A cut edge is an interior edge of the original mesh.
 inline bool may_cut(const HalfedgeMesh& mesh, Index h) { return mesh.twin[h] != none && mesh.cuttable[h]; }
 
-// The length of an edge times its factor. Seams cost nothing: they are to be opened anyway.
+// The length of an edge times its factor. Seams cost nothing, since they are opened anyway.
 inline double cut_cost(const HalfedgeMesh& mesh, const Geometry& geometry, Index h) {
   if (mesh.seam[h]) return 0;
   return mesh.cut_factor.empty() ? geometry.length[h] : mesh.cut_factor[h] * geometry.length[h];

@@ -134,7 +134,7 @@ void mark_through(const HalfedgeMesh& mesh, const Forest& forest, Index bridge, 
   }
 }
 
-// Without ends that cut nothing: a source that is no cone can leave one.
+// Prunes dangling branches, which a seam network without cones can leave.
 Array<char> prune(const HalfedgeMesh& mesh, const Array<char>& is_cone, Array<char> is_cut) {
   Array<Index> degree = count_cuts(mesh, is_cut);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The surface opened along its cut graph: copies of vertices, and the sisters on both sides of every cut.
+// The surface opened along its cut graph: copies of vertices, and the sister edges (the paper's term) on both sides of
+// every cut.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,14 +20,13 @@ struct CutMesh {
 class CutFactor;
 class FrameTree;
 
-// A surface and how it is opened. What has been computed for a cut graph with these cuts, and maybe others, serves
-// here too.
+// A surface and its cuts. Data computed for a cut graph that contains these cuts can be reused.
 struct CutSurface {
   const HalfedgeMesh& mesh;
   const Geometry& geometry;
   const CutGraph& cut_graph;
   const CutMesh& cut_mesh;
-  const CutFactor* factor = nullptr;  // of this geometry, where there is one
+  const CutFactor* factor = nullptr;  // of this geometry, or null
   const FrameTree* frame_tree = nullptr;
 };
 
@@ -41,17 +41,17 @@ struct Sector {
 
 CutMesh cut_open(const HalfedgeMesh& mesh, const CutGraph& cut_graph);
 
-// The sectors of v from the first outgoing cut halfedge on; an inside vertex closes up with that halfedge again.
+// The sectors of v from the first outgoing cut halfedge on; those of an interior vertex end at that halfedge again.
 Array<Sector> sectors(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh, Index v);
 
-// Whether a halfedge lies on the border of the opened surface.
+// Whether a halfedge lies on the boundary of the opened surface.
 inline bool is_open(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, Index h) {
   const Index twin = mesh.twin[h];
   return twin == none || cut_mesh.copy_of_corner[twin] != cut_mesh.copy_of_corner[next(h)] ||
          cut_mesh.copy_of_corner[next(twin)] != cut_mesh.copy_of_corner[h];
 }
 
-// Both copies of the vertex a cut's halfedge leaves from, and of the vertex it runs to.
+// Both copies of the origin of a cut's halfedge, and of its target.
 struct Sisters {
   Index left, right;
 };

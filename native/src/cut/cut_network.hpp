@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cuts while they are being improved: a graph of edges with the vertices that it has to reach.
+// Cuts during their improvement: a graph of edges with the vertices that it has to reach.
 #pragma once
 
 #include "base/array.hpp"
@@ -15,12 +15,12 @@ Array<Index> count_cuts(const HalfedgeMesh& mesh, const Array<char>& is_cut);
 struct CutNetwork {
   const HalfedgeMesh& mesh;
   const Geometry& geometry;
-  const Array<char>& is_cone;  // (n) vertices inside that have to stay on the cuts
-  Array<char> is_avoided;      // (n) vertices of borders that no cut may touch
+  const Array<char>& is_cone;  // (n) interior vertices that have to stay on the cuts
+  Array<char> is_avoided;      // (n) boundary vertices that no cut may touch
   Array<char> is_cut;          // (3m) on both halfedges
   Array<Index> degree;         // (n) cut edges at each vertex
 
-  // uncut: (loops) the borders to avoid, or empty.
+  // uncut: (loops) the boundaries to avoid, or empty.
   CutNetwork(const HalfedgeMesh& surface, const Geometry& metric, const Array<char>& cones, const Array<char>& uncut,
              Array<char> cuts);
 
@@ -29,7 +29,7 @@ struct CutNetwork {
   bool is_node(Index v) const { return is_cone[v] || is_on_border(v) || degree[v] != 2; }
   double cost(const CutPath& path) const;
 
-  // The path between two nodes that a cut halfedge is on, or the closed curve without a node.
+  // The path between two nodes that contains a cut halfedge, or a closed curve without nodes.
   CutPath trace(Index h) const;
   void open(const CutPath& path) { set(path, 1); }
   void close(const CutPath& path) { set(path, 0); }

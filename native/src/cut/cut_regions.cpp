@@ -36,7 +36,7 @@ CutRegions::CutRegions(const CutNetwork& network)
   });
 }
 
-// Divides the regions of the vertices inside a closed path among those around, as far as a cost.
+// Distributes the regions of the interior vertices of a closed path over the neighbouring ones, up to a cost.
 void CutRegions::redo(const CutPath& closed, double below) {
   const HalfedgeMesh& mesh = network_.mesh;
   ++round_;
@@ -91,7 +91,7 @@ CutPath CutRegions::find(const CutPath& closed, const Array<Index>& is_apart, In
     });
   }
   if (best == none) return {};
-  // Cuts may have been opened across the path since the regions were built: what leads from part to part is enough.
+  // Cuts may have been opened across the path since the regions were built: a segment from part to part suffices.
   const CutPath whole = path_through(best);
   const bool from = is_apart[mesh.origin(whole.front())] == mark;
   CutPath path;
@@ -105,7 +105,7 @@ CutPath CutRegions::find(const CutPath& closed, const Array<Index>& is_apart, In
   return path;
 }
 
-// From the vertex of the cuts at one end of an edge to that at the other.
+// The path from the vertex of the cuts at one end of an edge to that at the other.
 CutPath CutRegions::path_through(Index bridge) const {
   const HalfedgeMesh& mesh = network_.mesh;
   CutPath path;

@@ -7,14 +7,14 @@
 
 namespace lsgp {
 
-// The vertices nearest to each vertex of the cuts, and the edges between these regions, as they were when this was
-// built: paths through them stay as long as the cuts that they lead to (Mehlhorn 1988; Uchoa and Werneck 2012).
+// The Voronoi regions of the vertices of the cuts, and the edges between them, at the time of construction: paths
+// through them stay valid while the cuts at their ends exist (Mehlhorn 1988; Uchoa and Werneck 2012).
 class CutRegions {
  public:
   explicit CutRegions(const CutNetwork& network);
 
-  // The cheapest path between the parts into which closing a path has divided the cuts, with the regions of the path's
-  // vertices divided among the others; empty where none is below a cost.
+  // The cheapest path between the two parts of the cuts after closing a path, with the regions of the path's vertices
+  // distributed over the others; empty if none is below a cost.
   // is_apart: (n) marks the vertices of one part by `mark`.
   CutPath find(const CutPath& closed, const Array<Index>& is_apart, Index mark, double below);
 

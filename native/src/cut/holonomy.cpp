@@ -55,7 +55,7 @@ NodeGraph build_node_graph(const HalfedgeMesh& mesh, const CutGraph& cut_graph,
 Eigen::VectorXd find_rotations(const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
                                const Eigen::VectorXd& free_rotation) {
   Eigen::VectorXd rotation = free_rotation;
-  Eigen::VectorXd remaining = -node_curvature;  // what the node's parent cut has to balance
+  Eigen::VectorXd remaining = -node_curvature;  // to be balanced by the node's parent cut
   for (Eigen::Index p = 0; p < rotation.size(); ++p) {
     if (nodes.in_tree[p]) continue;
     remaining[nodes.tail[p]] -= rotation[p];

@@ -12,13 +12,13 @@ namespace lsgp {
 
 namespace {
 
-// Marks the smaller of the two parts that the cuts fall into where a path is closed.
+// Marks the smaller of the two parts of the cuts after closing a path.
 class Parting {
  public:
   explicit Parting(const CutNetwork& network) : network_(network), mark_of_(network.mesh.vertex_count(), 0) {}
 
-  // From both ends at once, so that the effort is that of the smaller one. None where there is but one part. Returns
-  // the mark.
+  // Searches from both ends at once, so that the cost is that of the smaller part. Returns the mark, none if there is
+  // only one part.
   std::optional<Index> mark(Index head, Index tail) {
     if (head == tail) return std::nullopt;
     Front fronts[] = {{++marks_, {head}}, {++marks_, {tail}}};
@@ -41,7 +41,7 @@ class Parting {
     std::size_t done = 0;
   };
 
-  // Goes on from one vertex. Returns whether the other front was not met.
+  // Expands one vertex. Returns whether the other front was not met.
   bool advance(Front& front, Index other) {
     const HalfedgeMesh& mesh = network_.mesh;
     const Index v = front.vertices[front.done++];
@@ -69,7 +69,7 @@ class KeyPathExchange {
   explicit KeyPathExchange(CutNetwork& network)
       : network_(network), parting_(network), strips_(network), traced_(network.mesh.halfedge_count(), 0) {}
 
-  // Tries every path once. Returns how much cheaper the cuts have become, as a share.
+  // Tries every path once. Returns the relative reduction of cost.
   double try_all();
 
  private:
@@ -99,7 +99,7 @@ CutPath KeyPathExchange::find_cheaper(const CutPath& path, CutRegions& regions) 
   if (const auto mark = parting_.mark(mesh.target(path.back()), mesh.origin(path.front()))) {
     return regions.find(path, parting_.mark_of(), *mark, below);
   }
-  // A closed path may be the whole border of a piece.
+  // A closed path may be the whole boundary of a piece.
   const bool is_whole = ends.after_head == path.front() || ends.after_tail == mesh.twin[path.back()];
   return is_whole ? CutPath() : strips_.find(path, ends, below);
 }
@@ -107,7 +107,7 @@ CutPath KeyPathExchange::find_cheaper(const CutPath& path, CutRegions& regions) 
 double KeyPathExchange::try_all() {
   const HalfedgeMesh& mesh = network_.mesh;
   ++rounds_;
-  Array<std::pair<double, Index>> order;  // dear ones first: there is most to be gained
+  Array<std::pair<double, Index>> order;  // most expensive paths first: largest potential gain
   double before = 0, gained = 0;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (!network_.is_cut[h] || traced_[h] == rounds_) continue;

@@ -11,7 +11,7 @@
 
 namespace lsgp {
 
-// The next border halfedge of the opened surface, from the target of h; visits those in between, which leave there.
+// The next boundary halfedge of the opened surface, from the target of h; visits the outgoing halfedges in between.
 template <typename Visit>
 Index StripSearch::follow_border(Index h, Visit visit) const {
   Index g = next(h);
@@ -27,7 +27,7 @@ StripSearch::Ends StripSearch::ends_of(const CutPath& path) const {
   return {follow_border(path.back(), pass_by), follow_border(network_.mesh.twin[path.front()], pass_by)};
 }
 
-// The side whose border starts with `first`, unless it is a single cone.
+// The side whose boundary starts with `first`, unless it is a single cone.
 StripSearch::Side StripSearch::mark_side(Index first, Index lone) {
   Side side{++marks_, lone};
   if (lone != none) return side;
@@ -69,7 +69,7 @@ CutPath StripSearch::find(const CutPath& path, const Ends& ends, double below) {
   }
   const bool lone_head = ends.after_head == mesh.twin[path.back()], lone_tail = ends.after_tail == path.front();
   const Side head = mark_side(ends.after_head, lone_head ? mesh.target(path.back()) : none);
-  // The path may have separated two pieces, which are one now.
+  // The path may have separated two pieces, which are now connected.
   if (!lone_tail && mark_[ends.after_tail] == head.mark) return {};
   const Side tail = mark_side(ends.after_tail, lone_tail ? mesh.origin(path.front()) : none);
   if (head.length <= tail.length) return cross(head, tail, starts(head, ends.after_head), below);

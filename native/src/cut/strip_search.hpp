@@ -6,29 +6,29 @@
 
 namespace lsgp {
 
-// Finds the cheapest path across the strip that is left where a cut is closed and its two sides are not joined any
-// more; where they meet in other vertices, as around a handle, as well.
+// Finds the cheapest path across the strip that remains when a cut is closed, even if the sides of the strip meet in
+// other vertices, as around a handle.
 class StripSearch {
  public:
   explicit StripSearch(const CutNetwork& network) : network_(network) {}
 
-  // What followed both ends of a path on the border of the opened surface, before it was closed.
+  // The successors of both ends of a path on the boundary of the opened surface, before the path was closed.
   struct Ends {
     Index after_head, after_tail;  // halfedges
   };
   Ends ends_of(const CutPath& path) const;
 
-  // The cheapest path that opens the surface again where `path` was closed; empty where none is below a cost.
+  // The cheapest path that opens the surface again after `path` was closed; empty if none is below a cost.
   CutPath find(const CutPath& path, const Ends& ends, double below);
 
  private:
-  // How the search got to a vertex.
+  // How the search reached a vertex.
   struct Reached {
     double distance;
     Index by;      // the halfedge that leads there
-    Index search;  // its number: others are out of date
+    Index search;  // its number: entries of other searches are outdated
   };
-  // The sides are marked by numbers that no other strip has; one of a single cone is named instead.
+  // The sides are marked by numbers unique to the strip; a side that is a single cone is given by that vertex.
   struct Side {
     Index mark, lone;
     Index length = 0;  // edges

@@ -9,21 +9,22 @@ namespace lsgp {
 
 namespace {
 
-// A sum of unknowns while they are still vertices and cuts; ordered, so that results do not depend on addresses.
+// A linear combination of vertices and cuts, before unknowns are numbered; ordered, so that results do not depend on
+// addresses.
 using Expression = std::map<Index, Complex>;
 
 void add_scaled(Expression& sum, Complex factor, const Expression& terms) {
   for (const auto& [id, coefficient] : terms) sum[id] += factor * coefficient;
 }
 
-// Where going round a node turns by at least this much (|1 - e^{i curvature}|), the node's own position is solved for:
-// a local expression in the translations of its cuts. Below it that would divide by almost nothing, and the
-// translation towards the root, whose coefficient has modulus 1, is solved for instead.
+// If a loop around a node rotates by at least this much (|1 - e^{i curvature}|), the node's own position is eliminated:
+// a local expression in the translations of its cuts. Below it this would divide by almost zero, and the translation
+// towards the root, whose coefficient has modulus 1, is eliminated instead.
 constexpr double clear_turn = 0.01;
 
 enum class Eliminate {
-  positions,     // of nodes that turn clearly: local expressions, small coefficients
-  translations,  // towards the root, whose coefficients are units: what is left lies on the lattice independently
+  positions,     // of nodes with clear rotation: local expressions, small coefficients
+  translations,  // towards the root, with unit coefficients: the remaining unknowns are independent lattice points
 };
 
 class Elimination {
@@ -58,7 +59,7 @@ class Elimination {
       const bool free = std::find(relaxed.begin(), relaxed.end(), v) != relaxed.end();
       if (v != none && node_curvature[node] != 0 && !is_solved_[v] && !free) ids.push_back(v);
     }
-    // A layout may be shifted from lattice point to lattice point: one cone is put to the origin.
+    // A layout may be translated by lattice vectors: one cone is put at the origin.
     Index ground = ids.empty() ? none : ids.front();
     if (ground != none) ids.erase(ids.begin());
     bool shifts = ground != none;
@@ -89,7 +90,7 @@ class Elimination {
     for (Index p = 0; p < ssize(turn_); ++p) add_row(translation_id(p), out.translation.row(p));
     out.basis = Eigen::MatrixXcd::Identity(count, count);
     const auto cuts = static_cast<Eigen::Index>(out.cuts.size());
-    // The diagonal of a matrix without elements is none to Eigen.
+    // Eigen cannot take the diagonal of an empty matrix.
     if (parity && cuts > 0) out.basis.diagonal().tail(cuts).setConstant(Complex(1, 1));
     const Index first = nodes_.order.empty() ? none : nodes_.vertex[nodes_.order.front()];
     if (first != none && is_solved_[first]) {
@@ -105,7 +106,7 @@ class Elimination {
   Index id_count() const { return static_cast<Index>(is_solved_.size()); }
   Index translation_id(Index cut) const { return n_ + cut; }
 
-  // What the crossing of an outgoing cut halfedge, counter-clockwise, does to an expression.
+  // Applies the transition across an outgoing cut halfedge, counter-clockwise, to an expression.
   Expression cross(const Expression& before, Index h) const {
     const Index cut = cut_graph_.cut_of[h];
     Expression after;
@@ -128,7 +129,7 @@ class Elimination {
     return out;
   }
 
-  // Going once round: z_v = turned z_v + translations.
+  // A loop around the node: z_v = rotated z_v + translations.
   void close_node(Index node, double curvature) {
     const Index v = nodes_.vertex[node];
     const auto all = sectors(mesh_, cut_graph_, cut_mesh_, v);
@@ -143,7 +144,7 @@ class Elimination {
     }
     if (gap != 0.0) round[v] = -gap;
     Index pivot = nodes_.parent_cut[node] == none ? none : translation_id(nodes_.parent_cut[node]);
-    if (pivot == none) {  // the root: its translations are functions of others by now
+    if (pivot == none) {  // the root: its translations are already expressed by others
       Expression resolved;
       for (const auto& [id, coefficient] : round) add_scaled(resolved, coefficient, resolve(id));
       round = std::move(resolved);
@@ -174,8 +175,8 @@ class Elimination {
     return out;
   }
 
-  // The unknown that holds the layout in place: any whose value changes when the layout is shifted, but for vertices
-  // off cuts and borders, which are to be eliminated first.
+  // The unknown that fixes the layout's position: any that changes when the layout is translated, except vertices off
+  // cuts and boundaries, which are to be eliminated first.
   Index find_ground() const {
     const Array<char> on_cut = on_cuts(mesh_, cut_graph_);
     const auto shift = [&](Index id) {
@@ -189,7 +190,7 @@ class Elimination {
     return ground;
   }
 
-  // Numbers what is not solved for but the ground, (ids).
+  // Numbers the remaining unknowns except the fixed one, (ids).
   Array<Index> number(Index ground, Reduction& reduction) {
     Array<Index> unknown(id_count(), none);
     for (Index id = 0; id < id_count(); ++id) {
@@ -260,8 +261,8 @@ class Elimination {
     }
     if (!found || period == 0.0) {
       throw Error(Code::seamless_impossible,
-                  "The cones leave no layout in which all of them lie on the lattice. Mark one more cone, or choose "
-                  "another lattice.");
+                  "With these cones no layout has all of them on the lattice. Mark one more cone, or choose another "
+                  "lattice.");
     }
     step(pivot, pivot) = period;
     basis *= step;

@@ -21,17 +21,17 @@ struct Geometry {
   Array<Index> degenerate;  // triangles without a usable area; lengths are mollified when there are any
 };
 
-// Degenerate triangles are given area: one constant is added to all lengths, the smallest that leaves every triangle
-// inequality a margin (Sharp and Crane 2020, section 4.5).
+// Degenerate triangles get area: the smallest constant that gives every triangle inequality a margin is added to all
+// lengths (Sharp and Crane 2020, section 4.5).
 Geometry build_geometry(const HalfedgeMesh& mesh);
 
 // The same with a margin given, in mean edge lengths: fatter triangles, for which more maps are valid.
 Geometry mollified(const HalfedgeMesh& mesh, Geometry geometry, double margin);
 
-// The normal of a triangle in space, as long as twice its area.
+// The normal of a triangle in space; its length is twice the area.
 Eigen::Vector3d area_normal(const Positions& positions, const Triangles& triangles, Index f);
 
-// Between two directions, radians; 0 where one is none.
+// The angle between two directions, radians; 0 if one is zero.
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
 // The edge vector of halfedge h in its triangle's own frame, in which the triangle's first halfedge is real.

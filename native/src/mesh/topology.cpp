@@ -30,7 +30,7 @@ Array<char> mark_edges(const EdgeTable& edges, const VertexPairs& pairs, Code co
   return marked;
 }
 
-// What each of the surface's edges counts as a cut, empty where nothing was said; 1 where no cut may run.
+// The cut cost factor of each edge, empty if none were given; 1 where no cut may run.
 Array<double> cut_factors(const EdgeTable& edges, const Surface& surface) {
   if (surface.cut_costs.size() == 0) return {};
   Array<double> out(edges.count(), 1);
@@ -53,7 +53,7 @@ Array<std::pair<Index, Index>> find_duplicates(const Surface& surface, const Edg
   }
   if (is_plain) return duplicates;
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
-    // On the edge of fewest triangles, since a crowd may share the others.
+    // Search the edge with the fewest triangles; the others may be shared by many.
     Index own = 3 * f;
     for (Index h = 3 * f + 1; h < 3 * f + 3; ++h) {
       if (edges.halfedge_count(edges.edge_of(h)) < edges.halfedge_count(edges.edge_of(own))) own = h;
@@ -76,7 +76,7 @@ struct Orientation {
   Array<char> orientable;  // per component
 };
 
-// The other halfedge of every edge across which the surface goes on, those of two triangles that are neither a border
+// The twin of every halfedge across which the surface continues: at edges of two triangles that are neither a border
 // nor an open seam; none at others, (3m).
 Array<Index> join_halfedges(const EdgeTable& edges, const Array<char>& border, const Array<char>& seam,
                             const OpenSeams& open_seams, Index halfedge_count) {
@@ -91,7 +91,7 @@ Array<Index> join_halfedges(const EdgeTable& edges, const Array<char>& border, c
   return twin;
 }
 
-// Labels components by breadth-first search over joined halfedges and turns every triangle like its component's
+// Labels components by breadth-first search over joined halfedges and orients every triangle like its component's
 // majority.
 Orientation orient(const Surface& surface, const Array<char>& skip, const Array<Index>& twin) {
   const Index triangle_count = static_cast<Index>(surface.triangles.rows());
@@ -141,7 +141,7 @@ void find_boundary_loops(HalfedgeMesh& mesh) {
   }
 }
 
-// Numbers vertices by fans: corners joined by turning about them share a vertex.
+// Numbers vertices by fans: corners connected by rotation about their vertex share it.
 void number_vertices(const Surface& surface, Component& component) {
   HalfedgeMesh& mesh = component.mesh;
   const Index halfedge_count = mesh.halfedge_count();
@@ -192,7 +192,7 @@ void report_crowded_edges(const Surface& surface, const EdgeTable& edges, std::v
        {ElementKind::edges, crowded}});
 }
 
-// (vertices) those at which fans part because the surface was opened there.
+// (vertices) those at which fans are separate because the surface was opened there.
 Array<char> mark_opened(const Surface& surface, const EdgeTable& edges, const Array<Index>& twin,
                         const Orientation& orientation) {
   Array<char> open(surface.positions.rows(), 0);
@@ -222,8 +222,8 @@ void report_fans(const Array<Component>& components, const Array<char>& opened, 
   if (!split.empty()) {
     findings.push_back({Code::split_vertex,
                         concat("At ", count(split.size(), "vertex", "vertices"),
-                               " separate parts of the surface touch. They were unwrapped as separate vertices; split "
-                               "them to be rid of this note."),
+                               " separate pieces of the surface touch. They were unwrapped as separate vertices; split "
+                               "the vertices to avoid this note."),
                         {ElementKind::vertices, split}});
   }
   if (!isolated.empty()) {
@@ -242,8 +242,8 @@ void report_turned(const Orientation& orientation, std::vector<Finding>& finding
   if (turned.empty()) return;
   findings.push_back(
       {Code::reoriented,
-       concat(count(turned.size(), "triangle faces", "triangles face"), " the other way than the rest of ",
-              "the surface. Unwrapped as if turned; recalculate normals to repair it."),
+       concat(count(turned.size(), "triangle has", "triangles have"), " the opposite orientation to the rest of ",
+              "the surface. Unwrapped as if flipped; recalculate normals to repair it."),
        {ElementKind::triangles, turned}});
 }
 
@@ -279,19 +279,19 @@ Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std
     }
     edges = EdgeTable(surface, skip);
     findings.push_back({Code::duplicate_face,
-                        concat(count(doubled.size(), "triangle lies", "triangles lie"),
-                               " on another one and got its coordinates. Delete doubled faces to be rid of this note."),
+                        concat(count(doubled.size(), "triangle coincides", "triangles coincide"),
+                               " with another one and got its coordinates. Delete duplicate faces to avoid this note."),
                         {ElementKind::triangles, doubled}});
   }
   const Array<char> cuttable =
       surface.edges ? mark_edges(edges, *surface.edges, Code::edge_not_in_mesh,
-                                 "name no edge of a triangle. Pass edges of this mesh as cuttable edges.")
+                                 "are not edges of a triangle. Pass edges of this mesh as cuttable edges.")
                     : Array<char>(edges.count(), 1);
   const Array<double> factor = cut_factors(edges, surface);
   const Array<char> seam = mark_edges(edges, surface.seams, Code::seam_not_an_edge,
-                                      "are marked as a seam but name no edge. Mark edges of this mesh.");
+                                      "are marked as seams but are not edges. Mark edges of this mesh.");
   const Array<char> border = mark_edges(edges, surface.borders, Code::edge_not_in_mesh,
-                                        "are named as a border but are no edge. Name edges of this mesh.");
+                                        "are given as borders but are not edges. Pass edges of this mesh.");
   const Array<Index> twin =
       join_halfedges(edges, border, seam, open_seams, static_cast<Index>(3 * surface.triangles.rows()));
   const Orientation orientation = orient(surface, skip, twin);

@@ -27,7 +27,7 @@ struct HalfedgeMesh {
   Array<Index> twin;                   // (3m) none on the boundary
   Array<Index> outgoing;               // (n) a halfedge leaving each vertex; on the boundary the one without a twin
   Array<char> cuttable, seam;          // (3m) equal on both halfedges of an edge
-  Array<double> cut_factor;            // (3m) of an edge's length as a cut, or empty: 1
+  Array<double> cut_factor;            // (3m) cost per length of a cut along the edge, or empty: 1
   Array<Array<Index>> boundary_loops;  // vertices, surface on the left
   Array<Index> loop_of_vertex;         // (n) none inside
   int euler = 0;                       // V - E + F
@@ -40,7 +40,7 @@ struct HalfedgeMesh {
   Index target(Index h) const { return triangles.data()[next(h)]; }
   bool closed() const { return boundary_loops.empty(); }
 
-  // The angle of a vertex of no curvature: 2 pi inside, pi on a border.
+  // The angle of a vertex without curvature: 2 pi in the interior, pi on the boundary.
   double flat_angle(Index v) const { return loop_of_vertex[v] == none ? 2 * M_PI : M_PI; }
 
   // The next outgoing halfedge counter-clockwise about the same vertex; none after the last at a boundary.
@@ -57,7 +57,8 @@ struct HalfedgeMesh {
   }
 };
 
-// Numbers the parts into which open edges, (3m) on both halfedges, divide the triangles; part: (m). Returns how many.
+// Numbers the parts into which open edges, (3m) on both halfedges, divide the triangles; part: (m). Returns their
+// number.
 Index label_parts(const HalfedgeMesh& mesh, const Array<char>& open, Array<Index>& part);
 
 // One component of the caller's surface.
@@ -66,7 +67,7 @@ struct Component {
   Array<Index> source_vertex;    // (n) the caller's vertices
   Array<Index> source_triangle;  // (m) the caller's triangles
   Array<char> reversed;          // (m) corners 1 and 2 exchanged to orient the component
-  bool orientable = true;        // otherwise the mesh is empty but for its sources
+  bool orientable = true;        // otherwise the mesh is empty except for its sources
 
   // The caller's corner 3 * triangle + corner of one of this component's.
   Index source_corner(Index corner) const {
@@ -81,12 +82,12 @@ struct Topology {
   Array<std::pair<Index, Index>> duplicates;
 };
 
-// Which seams are borders: those of the triangles marked, (m); empty: none.
+// Which seams are boundaries: those of the marked triangles, (m); empty: none.
 using OpenSeams = Array<char>;
 
 // Splits a surface into components joined along edges of exactly two triangles. Edges of more triangles are opened,
-// vertices whose triangles form several fans are split, triangles turned against their component's majority are
-// reversed, triangles that lie on another are left out; each is reported. Throws EDGE_NOT_IN_MESH, SEAM_NOT_AN_EDGE.
+// vertices whose triangles form several fans are split, triangles oriented against their component's majority are
+// reversed, duplicate triangles are left out; each is reported. Throws EDGE_NOT_IN_MESH, SEAM_NOT_AN_EDGE.
 Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std::vector<Finding>& findings);
 
 }  // namespace lsgp

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int view_count = 16;
 
-// Directions whose density is the cosine to an axis: uniform points on the disk below (Vogel's spiral).
+// Directions with cosine density about an axis: uniform points on the disk below (Vogel's spiral).
 Array<Eigen::Vector3d> views_around(const Eigen::Vector3d& axis) {
   const double golden_angle = M_PI * (3 - std::sqrt(5.0));
   const Eigen::Vector3d right = axis.unitOrthogonal(), up = axis.cross(right);
@@ -27,7 +27,7 @@ Array<Eigen::Vector3d> views_around(const Eigen::Vector3d& axis) {
   return out;
 }
 
-// The surface seen along one direction: for every pixel the depth of what is nearest to the viewer.
+// The surface seen along one direction: for every pixel the depth nearest to the viewer.
 class DepthBuffer {
  public:
   DepthBuffer(int size, double extent)
@@ -64,8 +64,8 @@ class DepthBuffer {
     }
   }
 
-  // Of the four pixels around a point one at least shows no surface nearer to the viewer: surfaces that are steep in
-  // this view do not hide themselves.
+  // A point is visible if at least one of the four pixels around it shows no surface nearer to the viewer, so that
+  // surfaces that are steep in this view do not hide themselves.
   bool shows(const Eigen::RowVector3d& point) const {
     constexpr double slack = 1;  // pixels
     const int column = first_center(point[0]) - 1, row = first_center(point[1]) - 1;

@@ -7,10 +7,10 @@
 
 namespace lsgp {
 
-// From how much of the views around a direction each point on the surface is seen, 0 to 1, (p): views from the half
-// space in front, weighed by the cosine to `front`, by depth buffers without perspective. Approximate: to a pixel of
-// some thousandths of the extent, and to the number of views.
-// points: (p, 3) on the surface.  front: from the surface to who looks at it, not zero.
+// The share of the views around a direction that see each point on the surface, 0 to 1, (p): orthographic views from
+// the half space in front, weighted by the cosine to `front`, with depth buffers. Approximate: limited by pixels of
+// some thousandths of the extent, and by the number of views.
+// points: (p, 3) on the surface.  front: from the surface to the viewer, not zero.
 Eigen::VectorXd visible_share(const Surface& surface, const Positions& points, const Eigen::Vector3d& front);
 
 }  // namespace lsgp

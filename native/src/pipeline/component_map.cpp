@@ -45,7 +45,7 @@ struct FoundMap {
   std::vector<Finding> findings;
 };
 
-// Tries out angles and geometries, easy repairs first; returns the map with the fewest defects.
+// Tries angles and geometries, local repairs first; returns the map with the fewest defects.
 FoundMap find_valid_map(ComponentSystem& system, const ComponentTask& task, const Options& options,
                         ProgressMonitor& monitor, std::optional<RepairReport>& repair) {
   constexpr double fat_margin = 0.2;
@@ -58,7 +58,7 @@ FoundMap find_valid_map(ComponentSystem& system, const ComponentTask& task, cons
   std::optional<Geometry> fat;
   std::optional<ComponentSystem> fat_system;
   for (const Effort effort : {Effort::local, Effort::global}) {
-    // What is easy is tried on the surface itself first; what is hard is easier on fat triangles.
+    // Local repairs are first tried on the surface itself; hard cases are easier on fat triangles.
     for (const bool is_fat : {effort == Effort::global, effort == Effort::local}) {
       if (is_fat && !fat) {
         fat = mollified(mesh, system.geometry(), fat_margin);

@@ -18,14 +18,14 @@
 
 namespace lsgp {
 
-// A component's map and all that was imposed on it, in its own numbering.
+// A component's map and its constraints, in its own numbering.
 struct ComponentMap {
   CutGraph cut_graph;
   CutMesh cut_mesh;
   Array<Index> required_cuts;  // halfedges, one of each edge that is cut before overlaps are split
   Curvature curvature;
-  Array<Index> cones;                       // inside
-  Array<Index> flat_cones;                  // and those that rounding has left no curvature
+  Array<Index> cones;                       // interior
+  Array<Index> flat_cones;                  // cones rounded to zero curvature
   std::optional<Eigen::VectorXd> rotation;  // (cuts) imposed, radians; none without transitions
   Eigen::VectorXcd position;                // (copies) u + iv
   Array<Pin> pins;
@@ -41,7 +41,7 @@ struct ComponentMap {
 ComponentMap map_component(ComponentSystem& system, const ComponentTask& task, const Options& options,
                            std::vector<Finding>& findings, ProgressMonitor& monitor);
 
-// The first map that `map_component` makes, with the easy repairs only: the same where it has no defects.
+// The first map of `map_component`, with local repairs only: identical if it has no defects.
 ComponentMap attempt_component(ComponentSystem& system, const ComponentTask& task, const Options& options,
                                std::vector<Finding>& findings, ProgressMonitor& monitor);
 

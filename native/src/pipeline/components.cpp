@@ -15,7 +15,7 @@ namespace lsgp {
 
 namespace {
 
-// open: along whose seams the surface is open.
+// open: the components that are opened along their seams.
 Array<ComponentTask> hand_out(const Surface& surface, const Array<Component>& components, const OpenSeams& open,
                               const Cones& cones, const Options& options) {
   Array<Index> cone_at(surface.positions.rows(), none);
@@ -65,8 +65,9 @@ void hand_out_turning(const Array<Component>& components, const Options& options
     const bool exists = vertex >= 0 && vertex < vertex_count;
     throw Error(
         Code::loop_turning,
-        concat("The turning of a border was given ", found ? "as no finite number" : "for a vertex that lies on none",
-               exists ? "" : concat(" (", vertex, ")"), ". Give an angle, by a vertex on the border."),
+        concat("The prescribed turning of a boundary is ",
+               found ? "not a finite number" : "given at a vertex that is not on a boundary",
+               exists ? "" : concat(" (", vertex, ")"), ". Give an angle in radians and a vertex on the boundary."),
         {ElementKind::vertices, exists ? Array<Index>{vertex} : Array<Index>{}});
   }
 }
@@ -95,7 +96,7 @@ void hand_out_importance(const Eigen::VectorXd& importance, Work& work) {
   }
 }
 
-// The sum of the curvatures of a component's cones; none where it is not given.
+// The sum of the curvatures of a component's cones; none if it is not determined.
 std::optional<double> given_curvature(const HalfedgeMesh& mesh, const ComponentCones& cones) {
   double sum = 0;
   for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
@@ -131,7 +132,7 @@ double unit_scale(const Surface& surface) {
   return largest > 0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
 }
 
-// The components of the surface, unless they are those already.
+// Builds the components of the surface unless they are up to date.
 void split(const Surface& surface, SeamMode seams, OpenSeams open, Work& work) {
   if (!work.topology.components.empty() && work.seams == seams && work.open_seams == open) return;
   Surface used = surface;
@@ -209,15 +210,15 @@ void divide(const Request& request, MoreCones more, std::vector<Finding>& findin
     findings.push_back({Code::seams_opened, sentence, {ElementKind::triangles, std::move(triangles)}});
   };
   report(opened.without_cones,
-         "A part has seams but no cones: it was opened along its seams like an ordinary unwrap. Mark cones to have the "
-         "texture run on across them.");
+         "A component has seams but no cones: it was opened along its seams as in an ordinary unwrap. Mark cones if "
+         "the texture should continue across them.");
   report(opened.not_orientable,
-         "A part has one side only: it was opened along its seams like an ordinary unwrap, since no texture can run on "
-         "across all of them.");
+         "A component is one-sided: it was opened along its seams as in an ordinary unwrap, since no texture can "
+         "continue across all of them.");
 }
 
-// A torus without cones is flat, and its texture runs on across its seams, unless these part it into planar parts some
-// of which have holes: they need no cut of their own when the torus is opened.
+// A torus without cones is flat, and its texture continues across its seams, unless these divide it into planar pieces
+// some of which have holes: those need no cut of their own if the torus is opened.
 bool is_flat_along_seams(const HalfedgeMesh& torus) {
   const Array<PartTopology> parts = measure_parts(torus, torus.seam);
   const bool all_planar = std::all_of(parts.begin(), parts.end(), [](const auto& part) { return part.is_planar(); });
@@ -286,7 +287,7 @@ bool let_borders_run_along(const HalfedgeMesh& mesh, const Positions& directions
 bool opens_along_seams(const Component& component, const ComponentCones& cones, const Options& options) {
   const HalfedgeMesh& mesh = component.mesh;
   if (options.seams != SeamMode::follow || !component.orientable || !cones.vertices.empty()) return false;
-  // Straight borders need corners, which parts would not have, and tiles run on across seams.
+  // Straight boundaries need corners, which pieces would not have, and tiles continue across seams.
   if (!mesh.closed() && (options.border != BorderMode::free || options.seamless)) return false;
   bool has_seam = false;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) has_seam |= mesh.seam[h] && mesh.twin[h] != none;
@@ -310,7 +311,7 @@ Geometry require_geometry(const Component& component, std::vector<Finding>& find
         concat("None of the ", geometry.degenerate.size(), " triangles has an area. Restore the surface's shape."),
         {ElementKind::triangles, geometry.degenerate});
   }
-  require_comparable(component.mesh.positions);  // what lies far away has degenerate triangles only
+  require_comparable(component.mesh.positions);  // distant outliers have only degenerate triangles
   findings.push_back(
       {Code::degenerate_faces,
        concat(count(geometry.degenerate.size(), "triangle has", "triangles have"),
@@ -332,7 +333,7 @@ void report_border_cones(const Component& component, const Array<Index>& border_
   findings.push_back(
       {Code::cone_on_boundary,
        concat(count(border_cones.size(), "cone lies", "cones lie"),
-              " on an open border, where angles are free anyway; nothing was prescribed there. Give an angle to make a "
+              " on a boundary, where angles are free anyway; nothing was prescribed there. Give an angle to make a "
               "corner."),
        in_source(component, {ElementKind::vertices, border_cones})});
 }
@@ -345,7 +346,7 @@ Failure failure_of(const Component& component, const Error& error) {
 void report_skipped(const Array<Failure>& failures, std::vector<Finding>& findings) {
   for (const auto& [component, error] : failures) {
     findings.push_back({Code::component_skipped,
-                        concat("A part of the surface was left as it is (", name(error.code()), "): ", error.what()),
+                        concat("A component of the surface was left out (", name(error.code()), "): ", error.what()),
                         {ElementKind::triangles, component->source_triangle}});
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Splits the caller's surface into components, and renames what is found there into the caller's numbering.
+// Splits the caller's surface into components, and translates findings into the caller's numbering.
 #pragma once
 
 #include <cstdint>
@@ -15,44 +15,44 @@
 
 namespace lsgp {
 
-// What the caller asks of one component, in its own numbering.
+// The task for one component, in its own numbering.
 struct ComponentTask {
   ComponentCones cones;                             // in the caller's order
-  Array<Index> border_cones;                        // vertices of cones on a free border that prescribe nothing
-  Array<std::pair<Index, Complex>> pinned_corners;  // and their places
+  Array<Index> border_cones;                        // vertices of cones without angle on a free boundary
+  Array<std::pair<Index, Complex>> pinned_corners;  // and their positions
   Eigen::VectorXd importance;                       // (n) weights of stretch, or empty
   TextureDirections directions;                     // or none
 };
 
-// A surface's components and what is asked of each.
+// A surface's components and the task of each.
 struct Work {
   Topology topology;
   Array<ComponentTask> tasks;  // (components)
   double unit_scale = 1;       // of the components' positions to the caller's
 
-  // How often the topology was built: what was made from it holds as long as this stays.
+  // Incremented whenever the topology is rebuilt; derived data is valid while it is unchanged.
   std::int64_t generation = 0;
 
-  // What it was built for, and what building it found.
+  // The input that the topology was built for, and the findings of building it.
   SeamMode seams = SeamMode::follow;
   OpenSeams open_seams;
-  Array<Component> unopened;  // before some of them were opened along seams that are followed, if any were
+  Array<Component> unopened;  // before some of them were opened along seams, or empty
   std::vector<Finding> found;
 };
 
-// What a caller asks of a surface.
+// The task for a surface.
 struct Request {
   const Surface& surface;
   const Cones& cones;
   const Options& options;
 };
 
-// Validates the call, splits the surface as the seam mode says and hands out what is asked.
+// Validates the call, splits the surface according to the seam mode and distributes the tasks.
 //
-// What becomes of seams is decided here, for all verbs. Where they are followed they are where cuts run, and cuts join
-// cones: a component that has cones, or is to get some, stays as it is, and its texture runs on across its seams. One
-// without cones is opened along its seams, as an artist who marked seams means it.
-// earlier: of the same surface, or empty; its topology is taken where it would come out the same.
+// The meaning of seams is decided here, for all functions. If they are followed, cuts run along them and join cones: a
+// component that has or gets cones stays whole, and its texture continues across its seams. A component without cones
+// is opened along its seams, as an artist who marked seams expects.
+// earlier: of the same surface, or empty; its topology is reused if it would be the same.
 // Throws what require_valid and build_topology throw, and LOOP_TURNING.
 Work prepare(const Request& request, std::vector<Finding>& findings, const Pins& pins = {}, Work earlier = {});
 
@@ -60,25 +60,25 @@ Work prepare(const Request& request, std::vector<Finding>& findings, const Pins&
 enum class MoreCones { none, some };
 struct PlacementRequest {
   const Surface& surface;
-  const Cones& existing;  // given angles stay
+  const Cones& existing;  // given angles are kept
   SeamMode seams;
   MoreCones more;
 };
 Work prepare_placement(const PlacementRequest& request, std::vector<Finding>& findings);
 
-// The same for what needs no positions: these are not looked at.
+// The same without positions, which are not accessed.
 Work prepare_topology(const Request& request, MoreCones more);
 
 // (m, 3) those of a component's triangles.
 Positions directions_on(const Component& component, const Positions& directions);
 
-// Has borders of a component turn so that a seamless layout runs along directions: a sleeve becomes a strip. Only where
-// nothing else is asked for and they all can, with this sum of the cones' curvatures; none: which can follow from it.
-// Returns whether it does.
+// Prescribes the turning of a component's boundaries so that a seamless layout follows directions: a sleeve becomes a
+// strip. Only if nothing else is prescribed and all boundaries can, with this sum of the cones' curvatures (none:
+// free). Returns whether it does.
 bool let_borders_run_along(const HalfedgeMesh& mesh, const Positions& directions, int symmetry,
                            std::optional<double> curvature, ComponentCones& cones);
 
-// Whether seams that are followed are borders of this component, for want of cones.
+// Whether the component is opened along its followed seams because it has no cones.
 bool opens_along_seams(const Component& component, const ComponentCones& cones, const Options& options);
 
 // Throws NOT_ORIENTABLE, DEGENERATE_MESH, SCALE_RANGE.
@@ -87,10 +87,10 @@ Geometry require_geometry(const Component& component, std::vector<Finding>& find
 // Renames a component's vertices, triangles or edges into the caller's.
 Elements in_source(const Component& component, Elements elements);
 
-// Names cones on a free border, which prescribe nothing.
+// Reports cones without angle on a free boundary.
 void report_border_cones(const Component& component, const Array<Index>& border_cones, std::vector<Finding>& findings);
 
-// Hands findings on in the caller's numbering.
+// Appends findings in the caller's numbering.
 void move_findings(const Component& component, std::vector<Finding>& from, std::vector<Finding>& to);
 
 // Why a component has no map, in the caller's numbering.
@@ -98,14 +98,14 @@ struct Failure {
   const Component* component;
   Error error;
 };
-// Throws the error where the work has to end: CANCELLED.
+// Rethrows CANCELLED.
 Failure failure_of(const Component& component, const Error& error);
 
-// Names failures as COMPONENT_SKIPPED.
+// Reports failures as COMPONENT_SKIPPED.
 void report_skipped(const Array<Failure>& failures, std::vector<Finding>& findings);
 
-// Runs solve(component index) for every component. One that throws is reported as COMPONENT_SKIPPED, unless all do:
-// then the first error is thrown in the caller's numbering.
+// Runs solve(component index) for every component. Errors are reported as COMPONENT_SKIPPED, unless all components
+// fail: then the first error is rethrown in the caller's numbering.
 template <typename Solve>
 void for_each_component(const Array<Component>& components, std::vector<Finding>& findings, Solve solve) {
   Array<Failure> failures;
@@ -120,7 +120,7 @@ void for_each_component(const Array<Component>& components, std::vector<Finding>
   report_skipped(failures, findings);
 }
 
-// The same, telling the monitor that all take as long as each other.
+// The same, reporting progress as if all took equally long.
 template <typename Solve>
 void for_each_component(const Array<Component>& components, std::vector<Finding>& findings, ProgressMonitor& monitor,
                         Solve solve) {

@@ -22,8 +22,8 @@ using Kind = DistortionEnergy::Kind;
 
 constexpr double tangled_share = 0.002;  // of the triangles flipped, for which another fit is tried
 
-// A surface with boundary has conformal maps without number, so the spectral step would return an arbitrary one; only
-// without cones does the smallest eigenvector still mean something (Mullen et al. 2008).
+// A surface with boundary has infinitely many conformal maps, so the spectral step would return an arbitrary one; the
+// smallest eigenvector is only meaningful without cones (Mullen et al. 2008).
 UnfoldMethod usable_unfold(const HalfedgeMesh& mesh, const ComponentCones& cones, UnfoldMethod asked,
                            std::vector<Finding>& findings) {
   const bool plain_disk =
@@ -37,9 +37,9 @@ UnfoldMethod usable_unfold(const HalfedgeMesh& mesh, const ComponentCones& cones
   return UnfoldMethod::poisson;
 }
 
-// A border without corners is one straight line along its own translation, but the discrete metric knows the angle
-// between two such borders only to the mesh's resolution. Its direction is therefore taken from the map without
-// straight borders, whose translations are consistent.
+// A boundary without corners is one straight line along its own translation, but the discrete metric determines the
+// angle between two such boundaries only to the mesh's resolution. Its direction is therefore taken from the map
+// without straight boundaries, whose translations are consistent.
 // natural: (3m) that map.
 void turn_cornerless_borders(const HalfedgeMesh& mesh, const Array<Index>& corners, const Eigen::VectorXcd& natural,
                              const Array<Index>& edges, Eigen::VectorXd& directions) {
@@ -74,8 +74,8 @@ Eigen::VectorXcd unfold_along_borders(const CutSurface& surface, const Component
   return unfold_aligned(surface, connection.reduction, jacobians, edges, directions);
 }
 
-// The fit to the prescribed Jacobians with every triangle's error relative to its scale: where scales differ much, the
-// plain fit loses what is small to what is large. One more factorization.
+// The fit to the prescribed Jacobians with every triangle's error relative to its scale: if scales differ much, large
+// triangles dominate the plain fit. One more factorization.
 Eigen::VectorXcd unfold_relatively(const CutSurface& surface, const Curvature& curvature,
                                    const ParallelTransport& connection) {
   Jacobians jacobians = prescribed_jacobians(surface.mesh, curvature.log_scale, connection.frames);
@@ -146,7 +146,7 @@ ComponentMap Mapping::attempt(const ComponentCones& cones, Effort effort, std::v
     target.log_scale.array() += std::log(pinned.scale);
   }
   check(map);
-  // Where small triangles vanish in the last digit of the large ones, no repair helps.
+  // No repair helps if small triangles are below the rounding error of the large ones.
   if (map.validity.defects() > 0) require_range(map.curvature, -std::log(std::numeric_limits<double>::epsilon()));
   if (!repair_) {
     repair_ = {static_cast<Index>(map.validity.flipped.size()),

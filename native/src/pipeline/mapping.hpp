@@ -14,10 +14,10 @@ namespace lsgp {
 // Whether defects are to be repaired.
 bool repairs(const Options& options);
 
-// What the attempts at a map share.
+// State shared by the attempts at a map.
 class Mapping {
  public:
-  // repair: counts what the first attempt leaves to repair, and the steps of all.
+  // repair: counts the defects of the first attempt, and the steps of all attempts.
   Mapping(ComponentSystem& system, const ComponentTask& task, const Options& options, ProgressMonitor& monitor,
           std::optional<RepairReport>& repair)
       : system_(system),
@@ -31,37 +31,37 @@ class Mapping {
   // The map with these cones, repaired as far as the effort goes.
   ComponentMap attempt(const ComponentCones& cones, Effort effort, std::vector<Finding>& findings);
 
-  // Angles that were asked for and have no valid map at once can often be reached from others that have one. Where
-  // they cannot, those nearest to them are taken, but for rounded ones.
+  // Prescribed angles for which no valid map is found directly can often be reached by continuation from angles that
+  // have one. If they cannot, takes the nearest angles reached; rounded angles are never changed.
   void approach_angles(ComponentMap& map, std::vector<Finding>& findings);
 
-  // The stretch of a valid map lowered.
+  // Lowers the stretch of a valid map.
   void relax(ComponentMap& map);
 
-  // Lets the conformal barrier take out what other weights or another geometry have left in a valid map.
+  // Smooths the map with the conformal barrier energy after a fit with other weights or another metric.
   void smooth(ComponentMap& map);
 
  private:
   void cut(ComponentMap& map) const;
-  // What decides about a repair; what is returned is checked in the layout.
+  // Finds the defects that decide about a repair; the final result is checked in the layout.
   void check(ComponentMap& map);
   void repair(const ParallelTransportChoice& connections, const ParallelTransport& connection, const Curvature& target,
               Effort effort, ComponentMap& map);
-  // Lets the conformal barrier take out the shear that is left around what was flipped.
+  // Removes the residual shear around formerly flipped triangles with the conformal barrier energy.
   void polish(const ParallelTransport& connection, const Array<Index>& flipped, ComponentMap& map);
-  // Takes the map of the metric's own rotations about handles to the chosen ones; leaves the map as it is where that
-  // does not succeed.
+  // Continues the map from the metric's own rotations about handles to the chosen ones; leaves the map unchanged on
+  // failure.
   void twist_gradually(const ParallelTransportChoice& connections, const Array<char>& fixed, ComponentMap& map);
   void report_adjusted(const ComponentMap& map, const Continuation& end, std::vector<Finding>& findings) const;
   CutSurface open(const ComponentMap& map) const;
-  // The connection that a valid map realises: the metric's where its rotations are those, but about handles they may be
+  // The connection that a valid map realises: the metric's if its rotations match, but rotations about handles may be
   // those of another geometry.
   ParallelTransport connection_of(const ComponentMap& map) const;
-  // Border edges whose direction is imposed.
+  // Boundary edges with an imposed direction.
   Array<Index> aligned_edges() const;
-  // Vertices a repair has to leave where they are.
+  // Vertices that a repair must not move.
   Array<char> fixed_vertices(const ComponentMap& map) const;
-  // Counts the steps of Newton's method. Nobody knows how many there will be.
+  // Counts the steps of Newton's method, the number of which is not known in advance.
   StepHook counter();
 
   ComponentSystem& system_;

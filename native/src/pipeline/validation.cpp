@@ -15,7 +15,7 @@ namespace {
 // Squared areas and their sums must neither overflow nor vanish in double precision.
 constexpr double largest_extent = 1e60;
 constexpr double smallest_extent = 1e-60;
-// What lies so much farther out leaves the rest no digit, in lengths or in angles.
+// Outliers this far away leave no significant digits for the rest, in lengths or angles.
 constexpr double farthest = 1e20;
 constexpr double smallest_cone_angle = 1e-6;  // radians; less is lost beside the angles of triangles
 constexpr double largest_cost = 1e6;          // of a cut per length
@@ -91,7 +91,7 @@ void require_directions(const Surface& surface) {
   if (!bad.empty()) {
     throw Error(Code::wrong_parameter,
                 concat("The direction at ", count(bad.size(), "triangle", "triangles"),
-                       " is no finite vector. Give 0 0 0 where there is none."),
+                       " is not a finite vector. Give 0 0 0 for no direction."),
                 {ElementKind::triangles, bad});
   }
 }
@@ -139,18 +139,18 @@ void require_valid(const Options& options) {
   if (options.compact != Compactness::off && options.seamless) {
     throw Error(
         Code::wrong_parameter,
-        "A seamless layout fills no square, so its islands are not cut for that. Do without compact islands, or "
-        "without the seamless layout.");
+        "A seamless layout does not fill a square, so its islands cannot be compacted. Turn off compact islands or the "
+        "seamless layout.");
   }
   if (options.method != Method::lscm) return;
-  // Its least squares are its own, and it has no transitions that others could keep.
+  // It solves a least squares problem of its own, without transitions.
   const auto refuse = [](const char* what, const char* instead) {
     throw Error(Code::wrong_parameter, concat("The method lscm ", what, ". Choose the method lsgp, or ", instead, "."));
   };
-  if (options.unfold == UnfoldMethod::spectral) refuse("unfolds in its own way, not spectrally", "unfold as usual");
-  if (options.mode == Mode::low_stretch) refuse("keeps no lengths", "the mode conformal");
-  if (options.border == BorderMode::straight) refuse("keeps no border straight", "leave borders free");
-  if (!options.loop_turning.empty()) refuse("keeps no turning of borders", "leave it as it comes out");
+  if (options.unfold == UnfoldMethod::spectral) refuse("excludes spectral unfolding", "the unfolding poisson");
+  if (options.mode == Mode::low_stretch) refuse("supports no low stretch", "the mode conformal");
+  if (options.border == BorderMode::straight) refuse("supports no straight boundaries", "leave boundaries free");
+  if (!options.loop_turning.empty()) refuse("supports no prescribed turning of boundaries", "leave it free");
 }
 
 void require_valid(const Options& options, const Pins& pins) {
@@ -224,7 +224,7 @@ void require_comparable(const Positions& positions) {
   const Eigen::VectorXd distance = (positions.rowwise() - middle).cwiseAbs().rowwise().maxCoeff();
   for (Index v = 0; v < n; ++v) sorted[v] = distance[v];
   std::sort(sorted.begin(), sorted.end());
-  // Where more than a few are apart it is the surface's shape.
+  // If more than a few are distant, it is the surface's shape.
   for (Index reached = n - n / 4; reached < n; ++reached) {
     const double reach = sorted[reached - 1];
     if (!(reach > 0 && sorted[reached] > farthest * reach)) continue;

@@ -9,18 +9,18 @@
 
 namespace lsgp {
 
-// That triangles, edges and seams name vertices. Throws EMPTY_MESH, INDEX_OUT_OF_RANGE, BAD_FACE.
+// Checks that triangles, edges and seams refer to vertices. Throws EMPTY_MESH, INDEX_OUT_OF_RANGE, BAD_FACE.
 void require_connectivity(const Surface& surface);
 
 // Throws EMPTY_MESH, INDEX_OUT_OF_RANGE, BAD_FACE, NON_FINITE_POSITION, SCALE_RANGE, DEGENERATE_MESH,
 // WRONG_PARAMETER.
 void require_valid(const Surface& surface);
 
-// For the vertices of one component. Throws SCALE_RANGE where a few of them lie immeasurably far from all others, as
-// Blender leaves infinite coordinates.
+// For the vertices of one component. Throws SCALE_RANGE if a few of them are so far from all others that distances lose
+// all precision, as in meshes whose infinite coordinates Blender has replaced.
 void require_comparable(const Positions& positions);
 
-// That cones are vertices and have an angle or none each. Throws CONE_INDEX, ANGLE_COUNT.
+// Checks that cones are valid vertices and that angles match cones. Throws CONE_INDEX, ANGLE_COUNT.
 void require_vertices(const Surface& surface, const Cones& cones);
 
 // Throws CONE_INDEX, CONE_DUPLICATE, CONE_NOT_ON_SURFACE, ANGLE_COUNT, CONE_ANGLE_NON_FINITE, CONE_ANGLE_RANGE.
@@ -29,7 +29,7 @@ void require_valid(const Surface& surface, const Cones& cones);
 // Throws WRONG_PARAMETER.
 void require_valid(const Options& options);
 
-// The same for what cannot be kept together with pins as well. Throws PINS_CONFLICT.
+// The same, also for options that are incompatible with pins. Throws PINS_CONFLICT.
 void require_valid(const Options& options, const Pins& pins);
 
 // Throws WRONG_PARAMETER.

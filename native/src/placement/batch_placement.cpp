@@ -17,13 +17,13 @@ namespace lsgp {
 
 namespace {
 
-constexpr int batches_to_double = 6;  // more, and cones of a batch get into each other's way
+constexpr int batches_to_double = 6;  // with larger batches, cones of a batch interfere
 constexpr int exchanged_share = 10;   // one in so many
 constexpr double worthwhile = 0.998;  // of the variance: less is not worth a further round
 constexpr double blocks = 6;          // of H at once: the fit's form, its factor, and one to go back to
 constexpr std::size_t probes = 8;     // sites at which the spread is measured
 
-// Rings that are left free around each of so many cones without crowding them into what is left over.
+// Rings that can be left free around each of so many cones.
 int rings_for(int cones, Index vertices) {
   int rings = free_rings;
   const auto vertices_within = [&] { return 1.0 + 3 * rings * (rings + 1); };  // where all have six neighbours
@@ -53,7 +53,7 @@ void NearestDistance::add(Index vertex) {
     if (distance > far_[v]) continue;
     mesh_.for_each_outgoing(v, [&, from = distance](Index h) {
       reach(mesh_.target(h), from + geometry_.length[h]);
-      // The last edge around a border vertex has no halfedge that leaves it.
+      // The last edge around a boundary vertex has no outgoing halfedge.
       if (mesh_.twin[prev(h)] == none) reach(mesh_.origin(prev(h)), from + geometry_.length[prev(h)]);
     });
   }
@@ -103,16 +103,16 @@ NearestDistance BatchPlacement::distances() const {
   return out;
 }
 
-// By how much half the variance falls with curvature at each site, (sites), less what keeping the sum takes.
+// The decrease of half the variance with curvature at each site, (sites), under a fixed sum.
 Eigen::VectorXd BatchPlacement::slopes() const {
   Eigen::VectorXd slope = -problem_.kernel.gradient() - problem_.kernel.product(state_.sites, curvature());
   if (problem_.balanced) slope.array() -= mean_slope(state_.fit, state_.sites, slope);
   return slope;
 }
 
-// What a unit of curvature at a site adds to the variance when the cones respond falls with the square of the distance
-// to the nearest of them, as the deflection of a thin plate that is held there does. This is the factor, the median
-// over some sites.
+// The increase of the variance by a unit of curvature at a site, after the response of the cones, grows with the square
+// of the distance to the nearest of them, like the deflection of a thin plate supported there. Returns the factor, the
+// median over some sites.
 double BatchPlacement::spread_of(const Array<int>& sites, const Eigen::VectorXd& far) const {
   const LogScaleVariance& kernel = problem_.kernel;
   Array<int> rows = state_.sites;
@@ -130,7 +130,7 @@ double BatchPlacement::spread_of(const Array<int>& sites, const Eigen::VectorXd&
   return factors[factors.size() / 2];
 }
 
-// Sites that gain most, each nearer to a cone that is there already than to another of them.
+// Sites with the largest gain, each nearer to an existing cone than to another of these sites.
 Array<int> BatchPlacement::choose(int cones, double spread, int rings) const {
   const LogScaleVariance& kernel = problem_.kernel;
   const Array<char> open = search_.open_sites(state_.sites, rings);
@@ -183,7 +183,7 @@ void BatchPlacement::grow(int cones) {
   }
 }
 
-// By what the variance would rise, to first order, without each.
+// The increase of the variance, to first order, without each cone.
 Array<int> BatchPlacement::least_needed(int count) const {
   const Eigen::Index k = state_.hessian.rows();
   const DenseCholesky<double> factor(with_ridge(state_.hessian));

@@ -11,7 +11,7 @@
 
 namespace lsgp {
 
-// How far every vertex is from the nearest of some, along edges.
+// Distances of all vertices, along edges, to the nearest of a set.
 class NearestDistance {
  public:
   NearestDistance(const HalfedgeMesh& mesh, const Geometry& geometry);
@@ -42,7 +42,7 @@ class BatchPlacement {
   void add(const Array<int>& sites);  // two back-substitutions each, and a fit
   void grow(int cones);               // until there are so many, or no room is left
 
-  // Takes out the cones that matter least, a tenth of all, and puts them where they gain most, as long as that helps.
+  // Removes the least important tenth of the cones and places them where they gain most, as long as that helps.
   void exchange(int rounds);
 
   const Array<int>& sites() const { return state_.sites; }

@@ -15,7 +15,7 @@ namespace lsgp {
 
 namespace {
 
-// Refuses cones that are too few because cuts do not get to where others could be.
+// Refuses too few cones if cuts cannot reach further sites.
 void require_reachable(const ConeChooser& chooser, const ConeChoice& choice) {
   if (choice.is_possible() || chooser.reaches_all()) return;
   const Index places = chooser.place_count();
@@ -33,7 +33,7 @@ void require_room(const ConeChoice& choice) {
               {ElementKind::vertices, choice.vertices});
 }
 
-// What is off in a map.
+// The defects of a map, as text.
 std::string told(const TriedMap& map) {
   if (map.failed) return "there is no map";
   const auto angles = count(map.wrong_angles, "vertex", "vertices"), seams = count(map.inexact_seams, "edge", "edges");
@@ -42,20 +42,20 @@ std::string told(const TriedMap& map) {
   return concat("angles are off at ", angles, " and the two sides do not match at ", seams, " of cuts");
 }
 
-// Cones that somebody marked stay, and the map says what is wrong with it; others are no result.
+// Marked cones are kept, and the map reports its defects; other cones with defects are refused.
 void require_right(const VerifiedChoice& choice, bool has_marked) {
   const TriedMap& map = choice.map;
   if (!choice.is_mapped || !map.is_off() || !map.is_repaired || has_marked) return;
   throw Error(
       Code::solver_failed,
-      concat("No cones were found with which the angles and seams of this part come out right: with ",
+      concat("No cones were found with correct angles and seams on this component: with ",
              count(choice.cones.vertices.size(), "cone", "cones"), ", ", told(map),
-             ". Place more of them, mark cones at tips and branches, or cut the part into simpler ones along seams."),
+             ". Place more, mark cones at tips and branches, or cut the component into simpler ones along seams."),
       {ElementKind::vertices, choice.cones.vertices});
 }
 
-// A number of cones is none to insist on where the map with them cannot be used: how many there are without it, and
-// what their map is like. Empty where it cannot be used either.
+// If the map with the requested number of cones is unusable: says how many cones are placed without a given number, and
+// how good their map is. Empty if that map is unusable, too.
 std::string told_of_automatic(const PlacementTask& task, PlacementOptions options, ProgressMonitor& monitor,
                               int& maps) {
   options.count.reset();
@@ -70,7 +70,7 @@ std::string told_of_automatic(const PlacementTask& task, PlacementOptions option
                 " placed, and the map has an L2 stretch of ", rounded(choice.map.l2), ".");
 }
 
-// A number of cones that was asked for, but with which the map cannot be used.
+// A requested number of cones with which the map is unusable.
 std::optional<Finding> unusable_map(const PlacementTask& task, const PlacementOptions& options,
                                     const VerifiedChoice& choice, ProgressMonitor& monitor, int& maps) {
   if (!options.count || !choice.is_mapped || choice.map.l2 < high_l2) return std::nullopt;
@@ -105,7 +105,7 @@ PlacedCones place_component(const PlacementTask& task, const PlacementOptions& o
   out.cones = chooser.with_given_angles(choice.cones.vertices);
   require_reachable(chooser, choice.cones);
   out.maps = placement.maps();
-  // Where a number of cones is refused, what would do is told.
+  // If a requested number of cones is refused, the message adds a number that works.
   const auto refuse_with_remedy = [&](auto require) {
     try {
       require();

@@ -12,7 +12,7 @@
 
 namespace lsgp {
 
-// One component's cones and all that is known of them.
+// One component's cones and their measurements.
 struct PlacedCones {
   ComponentCones cones;  // existing ones first, all with angles
   Curvature curvature;
@@ -27,7 +27,7 @@ struct PlacedCones {
 PlacedCones place_component(const PlacementTask& task, const PlacementOptions& options, std::vector<Finding>& findings,
                             ProgressMonitor& monitor);
 
-// What one more cone would do to one component.
+// The effect of one more cone on one component.
 struct ComponentGains {
   double present_l2 = 1;         // infinite where it needs a cone
   Eigen::VectorXd predicted_l2;  // (n) with a cone there, NaN where none may be

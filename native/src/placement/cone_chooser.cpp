@@ -135,7 +135,7 @@ ConeChoice ConeChooser::choice_of(const Set& set) const {
 ConeChoice ConeChooser::choose(int count) {
   const int most = std::max(count, sites_.existing);
   if (most > most_one_by_one) return choose_in_batches(most);
-  // Where so few cones stretch much, stronger ones stretch less.
+  // If so few cones have high stretch, stronger ones have less.
   std::optional<ConeChoice> best;
   for (const double reach : reaches) {
     if (reach > trusted_reach && best->predicted_l2 <= hopeless_l2) break;
@@ -210,7 +210,8 @@ ConeChoice ConeChooser::choose_harmonically(int count) {
   return choice_of(set);
 }
 
-// Curvatures that are multiples of the lattice's turn, and places that suit them, in turn; cones left flat are none.
+// Alternates between curvatures that are multiples of the lattice's rotation and sites for them; flat cones are
+// dropped.
 template <typename Set>
 ConeChoice ConeChooser::rounded(const Set& set, Lattice lattice) {
   const int q = symmetry(lattice);

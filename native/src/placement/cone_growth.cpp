@@ -22,7 +22,7 @@ ConeGrowth::ConeGrowth(ConeChooser& chooser, double reach)
 ConeChoice ConeGrowth::grow_to(double target) {
   while (best_.predicted_l2 > target && advance(target)) {
   }
-  // The best ones that reach the target are the latest: growth stops there.
+  // The latest choice is the best that reaches the target, since growth stops there.
   if (best_.predicted_l2 > target || chooser_.options().lattice || batches_) return best_;
   ConeSet fewer = set_;
   drop_unneeded(fewer, target, isometric_l2);
@@ -57,7 +57,7 @@ bool ConeGrowth::advance(double target) {
   return true;
 }
 
-// The stages go on where Gauss-Bonnet asks for more cones than they have, as on surfaces of many handles.
+// The stages continue if Gauss-Bonnet requires more cones, as on surfaces with many handles.
 void ConeGrowth::advance_in_batches(double target) {
   const int before = batches_->cone_count(), most = most_automatic();
   batches_->grow(std::min(most, static_cast<int>(stage_growth * before)));
@@ -65,19 +65,19 @@ void ConeGrowth::advance_in_batches(double target) {
   has_room_ = has_grown && batches_->cone_count() < most;
   if (!batches_->feasible()) return;
   if (has_grown) batches_->exchange(1);
-  // Rounded angles stretch no less.
+  // Rounding the angles cannot lower the stretch.
   if (chooser_.options().lattice && has_room_ && chooser_.predicted_l2(*batches_) > target) return;
   keep_better(chooser_.settled(*batches_));
 }
 
-// Every surface is worth the stages; beyond them, one of which Gauss-Bonnet asks more has a cone for each quarter turn.
+// Every surface may use all stages; more only if the curvature that Gauss-Bonnet requires has more quarter turns.
 int ConeGrowth::most_automatic() const {
   const PlacementProblem& problem = chooser_.problem();
   const double turns = problem.balanced ? std::abs(problem.required_sum) / usual_turn : 0;
   return std::max(*std::rbegin(cone_stages), static_cast<int>(std::ceil(turns)));
 }
 
-// Of choices that are all impossible, the one with more cones is nearer to a map.
+// Among impossible choices, the one with more cones is nearer to a map.
 void ConeGrowth::keep_better(ConeChoice choice) {
   const bool both_impossible = !best_.is_possible() && !choice.is_possible();
   if (both_impossible ? choice.vertices.size() > best_.vertices.size() : choice.predicted_l2 < best_.predicted_l2) {

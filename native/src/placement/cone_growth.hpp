@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grows a set of cones in stages until it reaches a stretch, and goes on for a lower one.
+// Grows a set of cones in stages until it reaches a target stretch, and continues for a lower one.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ class ConeGrowth {
  public:
   ConeGrowth(ConeChooser& chooser, double reach);
 
-  // As few cones as are predicted to reach the target, or those that come nearest to it.
+  // The fewest cones predicted to reach the target, or those that come nearest to it.
   ConeChoice grow_to(double target);
 
   // After that for a lower target: fewer cones, as long as they are predicted to reach this one.
@@ -35,7 +35,7 @@ class ConeGrowth {
   ConeChoice best_;  // of all stages so far
 };
 
-// Growth within the usual reach, and within wider ones where that does not come to the target.
+// Growth within the usual reach, and within wider ones if that misses the target.
 class AutomaticCones {
  public:
   explicit AutomaticCones(ConeChooser& chooser) : chooser_(chooser) {}

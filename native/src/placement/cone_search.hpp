@@ -14,27 +14,27 @@ constexpr int free_rings = 2;  // around each cone: cones side by side cancel ea
 
 class ConeSearch {
  public:
-  // The first `kept` sites of every set stay.  sharp: sharp corners are taken where they gain nearly as much.
+  // The first `kept` sites of every set are fixed.  sharp: sharp corners are preferred if they gain nearly as much.
   ConeSearch(const HalfedgeMesh& mesh, const PlacementProblem& problem, int kept, bool sharp, ProgressMonitor& monitor);
 
   const HalfedgeMesh& mesh() const { return mesh_; }
   const PlacementProblem& problem() const { return problem_; }
   int kept() const { return kept_; }
 
-  // Adds the site that gains most, again and again, until there are so many cones or no room is left.
+  // Adds the site with the largest gain repeatedly, until there are so many cones or no room is left.
   void grow(ConeSet& set, int cones) const;
 
-  // Takes out every cone in turn, the one that matters least first, and puts it where it gains most.
+  // Removes every cone in turn, the least important first, and places it where it gains most.
   void exchange(ConeSet& set, int sweeps) const;
 
-  // Drops the cone that matters least.
+  // Drops the least important cone.
   void drop(ConeSet& set) const;
   bool can_drop(const ConeSet& set) const { return static_cast<int>(set.sites().size()) > kept_; }
 
-  // The factor by which a gain there counts.
+  // The weight of a gain there.
   double preference(int site) const { return prefers_sharp_ && is_sharp(site) ? 1 / sharp_share : 1; }
 
-  // Sites, (all), near none of some: not within so many rings, or fewer where the mesh has no room.
+  // Marks sites, (all), not within so many rings of given ones, or fewer rings if the mesh has no room.
   Array<char> open_sites(const Array<int>& used, int rings = free_rings) const;
 
  private:

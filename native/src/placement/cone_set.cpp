@@ -48,7 +48,7 @@ CurvatureFit fit_curvature(const PlacementProblem& problem, const Array<int>& si
     if (out.used_reach <= widest_reach) {
       widen(out.used_reach + spare_reach);
       out.used_reach = std::min(out.used_reach, widest_reach);
-    } else if (count > 0) {  // no cones to unwrap with, but others may join them
+    } else if (count > 0) {  // too few to unwrap with, but others may be added
       out.low = out.low.cwiseMin(sum / count);
       out.high = out.high.cwiseMax(sum / count);
     }
@@ -141,7 +141,7 @@ Eigen::MatrixXd ConeSet::inverse_over(const Array<int>& free) const {
   return system.partialPivLu().inverse();
 }
 
-// The first cone of a closed surface takes up all its curvature; where that is none, it is one end of a dipole.
+// The first cone of a closed surface takes up all its curvature; if that is 0, it is one end of a dipole.
 Eigen::VectorXd ConeSet::first_gains() const {
   const LogScaleVariance& kernel = problem_->kernel;
   const double sum = problem_->required_sum;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cones at some sites with the curvatures that make the variance of the log scale least, and what another one would
-// gain or the loss of one cost.
+// Cones at some sites with the curvatures that minimise the variance of the log scale, the gain of another cone, and
+// the cost of removing one.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 
 namespace lsgp {
 
-// What all sets on one component have in common.
+// Data shared by all sets on one component.
 struct PlacementProblem {
   LogScaleVariance& kernel;
   const CurvatureBounds& limits;
@@ -19,7 +19,7 @@ struct PlacementProblem {
   double required_sum;  // then of all curvatures
 };
 
-// The curvatures of cones at some sites that make the variance least, and their bounds.
+// The curvatures of cones at some sites that minimise the variance, and their bounds.
 struct CurvatureFit {
   Eigen::VectorXd low, high, curvature;  // (k)
   double used_reach = 0;                 // of the bounds: widened where Gauss-Bonnet wants more
@@ -33,10 +33,10 @@ struct CurvatureFit {
 CurvatureFit fit_curvature(const PlacementProblem& problem, const Array<int>& sites, double reach,
                            const Eigen::MatrixXd& hessian, Eigen::VectorXd start);
 
-// What the multiplier of Gauss-Bonnet takes off all slopes, (all sites): their mean where curvatures are free.
+// The multiplier of Gauss-Bonnet, subtracted from all slopes, (all sites): their mean over free curvatures.
 double mean_slope(const CurvatureFit& fit, const Array<int>& sites, const Eigen::VectorXd& slope);
 
-// A block of H, symmetric, and its diagonal raised so that cones whose effects nearly agree can be told apart.
+// A symmetric block of H, with its diagonal raised so that cones with nearly equal effects are distinguishable.
 Eigen::MatrixXd with_ridge(const Eigen::MatrixXd& hessian);
 
 class ConeSet {
@@ -54,28 +54,28 @@ class ConeSet {
   const Eigen::VectorXd& curvature() const { return fit_.curvature; }  // of the sites, both of two cones together
   int cone_count() const;
   double variance() const { return fit_.variance; }
-  // The bounds need not be widened further than they can be to satisfy Gauss-Bonnet.
+  // The bounds can be widened enough to satisfy Gauss-Bonnet.
   bool feasible() const { return fit_.feasible(); }
 
-  // By how much the variance would fall with a cone at each site, (sites): exact, but for the estimate of the
-  // diagonal, where no further curvature comes to its bound (orthogonal matching pursuit).
+  // The decrease of the variance with a cone at each site, (sites): exact, up to the estimate of the diagonal, if no
+  // other curvature reaches its bound (orthogonal matching pursuit).
   Eigen::VectorXd gains() const { return gains(explained()); }
-  // The same with what the cones explain of the diagonal of H, (sites), known already.
+  // The same with the explained part of the diagonal of H, (sites), given.
   Eigen::VectorXd gains(const Eigen::VectorXd& explained) const;
 
-  // What all cones explain of the diagonal of H: a curvature added anywhere is taken up in part by theirs.
+  // The part of the diagonal of H explained by all cones: they partly compensate a curvature added anywhere.
   struct Explained {
     Eigen::VectorXd by_all;     // (sites)
     Array<int> free;            // places whose curvatures are at no bound
     Eigen::MatrixXd responses;  // (sites, free) what these do, negative
     Eigen::VectorXd inverse;    // (free) diagonal of the inverse that this comes from
-    // What the others would explain without one.
+    // The part explained by the others without one.
     Eigen::VectorXd without(int place) const;
   };
   Explained explain() const;
   Eigen::VectorXd explained() const;  // what it has by all cones, without memory for the rest
 
-  // By how much it would rise, to first order, without each of the cones, (k).
+  // The increase of the variance, to first order, without each of the cones, (k).
   Eigen::VectorXd losses() const;
 
  private:

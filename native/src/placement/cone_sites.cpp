@@ -14,8 +14,8 @@ constexpr int rings_between_images = 2;    // cones side by side cancel each oth
 constexpr double sharp_defect = M_PI / 6;  // of an angle
 constexpr int most_around = 64;            // triangles: vertices around a hub of more are not near each other
 
-// Vertices that cuts can join to all borders and cones there are, (n): those of the largest network where there are
-// none, or where they are not joined themselves.
+// Vertices that cuts can connect to all boundaries and existing cones, (n): those of the largest network if there are
+// none, or if these are not connected.
 Array<char> find_reachable(const HalfedgeMesh& mesh, const ComponentCones& existing) {
   const Array<Index> network = find_cut_networks(mesh);
   Array<Index> size(mesh.vertex_count(), 0);
@@ -103,7 +103,7 @@ ConeSites find_cone_sites(const PlacementTask& task, int most) {
   const auto usable = [&](Index v) {
     return !taken[v] && task.allowed[v] && mesh.loop_of_vertex[v] == none && reachable[v];
   };
-  // Corners carry what they have, also beside each other.
+  // Corners keep their own curvature, also next to each other.
   const auto is_sharp = [&](Index v) { return std::abs(angle_defect[v]) >= sharp_defect; };
   Array<Site> candidates;
   for (Index v = 0; v < mesh.vertex_count(); ++v) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where cones may go: single vertices, or vertices together with their images in a mirror plane.
+// Sites of cones: single vertices, or vertices together with their mirror images.
 #pragma once
 
 #include <optional>
@@ -10,20 +10,19 @@
 
 namespace lsgp {
 
-// Where a cone may go, or two that mirror each other and share their curvature equally.
+// The site of a cone, or of two that mirror each other and share their curvature equally.
 struct Site {
   Index vertex;
   Index mirrored = none;
   int cones() const { return mirrored == none ? 1 : 2; }
 };
 
-// The vertex at the mirror image of each, (n), none where there is none; empty where the surface is not symmetric, but
-// for a few vertices at most.  plane: none: those through the centroid along the axes and the principal directions are
-// tried.
+// The vertex at the mirror image of each, (n), or none; empty if the surface is not symmetric up to a few vertices.
+// plane: if none, those through the centroid along the axes and the principal directions are tried.
 Array<Index> find_mirror_images(const HalfedgeMesh& mesh, const Geometry& geometry,
                                 const std::optional<MirrorPlane>& plane);
 
-// What cones may be placed on, and where.
+// The surface and the vertices where cones may be placed.
 struct PlacementTask {
   const HalfedgeMesh& mesh;
   const Geometry& geometry;
@@ -35,11 +34,11 @@ struct PlacementTask {
 struct ConeSites {
   Array<Site> sites;
   int existing = 0;         // the first ones, with cones already
-  bool reaches_all = true;  // no vertex was left out because cuts do not get there
+  bool reaches_all = true;  // no vertex was left out because cuts cannot reach it
 };
 
-// Existing cones, then where others may go: allowed vertices inside that cuts can join, all of them or, to have no more
-// than `most`, evenly spread ones and the sharpest of their surroundings.
+// Existing cones, then the sites of others: allowed interior vertices that cuts can reach, all of them or, if there are
+// more than `most`, evenly distributed ones, each the sharpest of its neighbourhood.
 ConeSites find_cone_sites(const PlacementTask& task, int most);
 
 // Marks a vertex and the rings around it, which end at a vertex of more than 64 triangles.

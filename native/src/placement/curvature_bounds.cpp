@@ -9,7 +9,7 @@ namespace lsgp {
 namespace {
 
 constexpr double largest_share = 100 * M_PI / 180;   // of a triangle in the angle of its cone
-constexpr double possible_share = 170 * M_PI / 180;  // where more cones are not to be had
+constexpr double possible_share = 170 * M_PI / 180;  // if more cones are not available
 constexpr double smallest_angle = 0.35 * 2 * M_PI;
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What curvature a cone may have at each site for its map to come out as the log scale predicts.
+// Bounds of a cone's curvature at each site within which maps agree with the prediction of the log scale.
 #pragma once
 
 #include <Eigen/Core>

@@ -34,7 +34,7 @@ std::optional<PlacedCones> place_beside_directions(const PlacementTask& task, co
     const auto corners = trial.corners_of_map(placed.cones);
     return corners ? misalignment_on_lattice(wanted, *corners, turns) : std::numeric_limits<double>::infinity();
   };
-  // As few cones as that takes: there is little room for them.
+  // The fewest cones necessary, since there is little room for them.
   PlacementOptions generous = options;
   generous.target = std::max(options.target, most_stretch);
   try {

@@ -66,7 +66,7 @@ Eigen::VectorXd LogScaleVariance::at_vertices(const Array<int>& sites, const Eig
 }
 
 Eigen::MatrixXd LogScaleVariance::caused_by(Eigen::MatrixXd curvature) const {
-  // Where Gauss-Bonnet has to hold, curvature is taken away evenly over the area.
+  // If Gauss-Bonnet has to hold, curvature is compensated evenly over the area.
   if (scale_.balanced()) curvature -= weight_ * curvature.colwise().sum().eval();
   Eigen::MatrixXd y = scale_.solve_columns(curvature);
   y.rowwise() -= (weight_.transpose() * y).eval();
@@ -119,8 +119,8 @@ Eigen::VectorXd LogScaleVariance::log_scale(const Array<int>& sites, const Eigen
   return caused_by(elsewhere_ + at_vertices(sites, curvature));
 }
 
-// H is nearly that of its largest eigenvalues: H = Y (Omega' Y)^-1 Y' with Y = H Omega for random Omega, and what is
-// missing on the diagonal is about the same everywhere (Gittens and Mahoney 2016).
+// H is nearly of low rank: H = Y (Omega' Y)^-1 Y' with Y = H Omega for random Omega, and the missing part of the
+// diagonal is nearly constant (Gittens and Mahoney 2016).
 void LogScaleVariance::estimate_diagonal(int probes, ProgressMonitor& monitor) {
   const int count = site_count();
   diagonal_ = Eigen::VectorXd::Zero(count);

@@ -10,7 +10,7 @@ namespace lsgp {
 
 namespace {
 
-// More than rounding leaves where a layout shrinks much.
+// More than the rounding error where a layout shrinks much.
 bool is_visible(const SeamQuality& seams) {
   constexpr double visible = 1e-5;  // of an edge's length, radians, and of the layout
   return seams.sister_ratio_max > 1 + visible || seams.rotation_residual > visible ||
@@ -28,7 +28,7 @@ double measured_l2(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners) {
   return measure_triangles(surface, uv, all).l2_stretch;
 }
 
-// The squared L2 stretch of each triangle less 1, by area, shared by its corners.
+// The squared L2 stretch of each triangle minus 1, weighted by area and distributed to its corners.
 Eigen::VectorXd stretch_at_vertices(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map) {
   const Jacobians jacobians = measure_jacobians(mesh, geometry, map.cut_mesh, map.position);
   const Eigen::ArrayXd square = jacobians.f_z.array().abs2(), sheared = jacobians.f_zbar.array().abs2();

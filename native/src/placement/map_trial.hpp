@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trial maps that choices of cones are judged by.
+// Trial maps for judging choices of cones.
 #pragma once
 
 #include <limits>
@@ -10,7 +10,7 @@
 
 namespace lsgp {
 
-// What the map with some cones comes to.
+// The measurements of the map with some cones.
 struct TriedMap {
   double l2 = std::numeric_limits<double>::infinity();  // its L2 stretch; infinite with any of the following
   Index flipped = 0;                                    // triangles
@@ -24,12 +24,11 @@ struct TriedMap {
 
   bool is_valid() const { return l2 < std::numeric_limits<double>::infinity(); }
   Index defects() const { return flipped + wrong_angles + inexact_seams; }
-  // Angles or seams are off, which no texture bears.
+  // Angles or seams are off, which makes the map unusable.
   bool is_off() const { return failed || wrong_angles > 0 || inexact_seams > 0; }
 };
 
-// Makes maps of one component as unwrapping with default options makes them. The linear algebra of these is not
-// counted.
+// Computes maps of one component as unwrapping with default options does. Their linear algebra is not counted.
 class MapTrial {
  public:
   MapTrial(const HalfedgeMesh& mesh, const Geometry& geometry, ProgressMonitor& monitor)

@@ -16,16 +16,16 @@ namespace {
 constexpr double tolerance = 0.1;       // mean edge lengths between a vertex and the image of another
 constexpr double least_matched = 0.98;  // of the vertices of a symmetric surface
 
-// Points by the cells of a grid.
+// Points in the cells of a grid.
 class PointGrid {
  public:
   PointGrid(const Positions& points, double cell) : points_(points), cell_(cell) {
     for (Index v = 0; v < points.rows(); ++v) cells_[key(cell_of(points.row(v)))].push_back(v);
   }
 
-  // The nearest point within a cell's side; none: there is none.
+  // The nearest point within a cell's side, or none.
   Index nearest(const Eigen::RowVector3d& at) const {
-    if (!at.allFinite()) return none;  // mirrored at a plane too far away
+    if (!at.allFinite()) return none;  // the mirror plane is too far away
     const std::array<std::int64_t, 3> center = cell_of(at);
     Index best = none;
     double least = cell_;

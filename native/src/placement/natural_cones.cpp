@@ -16,7 +16,7 @@ constexpr double angle_of_corner = M_PI / 18;     // radians of defect: less is 
 constexpr std::size_t most_natural = 32;          // cones
 constexpr std::size_t most_natural_on_fine = 64;  // where at most half of the vertices have one
 
-// Vertices that the existing cones or others may stand on.
+// Vertices where existing or other cones may be.
 Array<char> find_possible(const ConeChooser& chooser) {
   Array<char> possible(chooser.task().mesh.vertex_count(), 0);
   for (const Site& site : chooser.sites()) {
@@ -27,7 +27,7 @@ Array<char> find_possible(const ConeChooser& chooser) {
   return possible;
 }
 
-// The corners inside, existing cones first; none where other vertices are bent, or corners are many.
+// The interior corners, existing cones first; none if other vertices are bent, or if there are many corners.
 std::optional<Array<Index>> find_corners(const ConeChooser& chooser, Corners kind) {
   const PlacementTask& task = chooser.task();
   const Array<char> possible = find_possible(chooser);
@@ -77,7 +77,7 @@ std::optional<ConeChoice> natural_cones(const ConeChooser& chooser, Corners kind
   for (Eigen::Index i = 0; i < curvature.size(); ++i) {
     const Index v = (*corners)[static_cast<std::size_t>(i)];
     curvature[i] = task.geometry.angle_defect[v];
-    if (std::abs(given[v] - curvature[i]) > angle_of_flat) return std::nullopt;  // not so where none is given
+    if (std::abs(given[v] - curvature[i]) > angle_of_flat) return std::nullopt;  // false for NaN, where none is given
     if (!options.lattice) continue;
     const double rounded = rounded_to(*options.lattice, curvature[i]);
     if (std::abs(rounded - curvature[i]) > angle_of_flat) return std::nullopt;
@@ -85,7 +85,7 @@ std::optional<ConeChoice> natural_cones(const ConeChooser& chooser, Corners kind
   }
   make_symmetric(task.mirrored, *corners, curvature);
   if (curvature.size() > 0 && chooser.scale().balanced()) {
-    // What flat vertices have by rounding.
+    // The rounding errors of flat vertices.
     curvature.array() += (chooser.scale().required_sum() - curvature.sum()) / static_cast<double>(curvature.size());
   }
   return chooser.choice_with(*corners, curvature);

@@ -8,10 +8,10 @@
 
 namespace lsgp {
 
-// All vertices inside that are not flat, each with its own curvature, where these are few enough for an artist to mark:
-// those of boxes, prisms, pyramids, the rims of capped cylinders. The map is isometric then.  sharp: none of them is
-// just a bend, as on a smooth surface of few triangles. None otherwise, nor where one may have no cone, a given angle
-// or the lattice wants another curvature, or the number of cones that is asked for is another.
+// All interior vertices that are not flat, each with its own curvature, if there are few enough for an artist to mark:
+// those of boxes, prisms, pyramids, the rims of capped cylinders. The map is then isometric.  sharp: none of them is a
+// mere bend, as on a smooth surface of few triangles. None otherwise, or if a cone is not allowed at one of them, a
+// given angle or the lattice requires another curvature, or another number of cones is requested.
 enum class Corners { sharp, any };
 std::optional<ConeChoice> natural_cones(const ConeChooser& chooser, Corners corners);
 

@@ -10,7 +10,7 @@ namespace {
 constexpr double worthwhile = 0.002;  // of the variance
 constexpr int tries = 2;              // of new sites for a cone
 
-// What of the variance depends on where a curvature is, the slope of the others' variance being given.
+// The part of the variance that depends on the site of a curvature, given the slope of the others' variance.
 double share(double curvature, double slope, double diagonal) {
   return 2 * curvature * slope + curvature * curvature * diagonal;
 }

@@ -14,13 +14,13 @@ namespace {
 const char* remedy_for(MissingCones::Why why) {
   switch (why) {
     case MissingCones::Why::left_flat:
-      return "the others came out flat when angles were rounded for the lattice, and a flat cone is none. Ask for "
-             "fewer, or choose a lattice of smaller turns.";
+      return "the others became flat when angles were rounded for the lattice. Ask for fewer, or choose a lattice with "
+             "smaller rotations.";
     case MissingCones::Why::only_pairs:
-      return "the places that are left come in mirrored pairs. Ask for one more or one fewer.";
+      return "the remaining sites come in mirrored pairs. Ask for one more or one fewer.";
     case MissingCones::Why::no_room: break;
   }
-  return "no other vertex inside is left where a cone may be. Ask for fewer, or subdivide the mesh there.";
+  return "no other interior vertex remains where a cone may be. Ask for fewer, or subdivide the mesh there.";
 }
 
 void append(Array<Index>& to, const Array<Index>& more) { to.insert(to.end(), more.begin(), more.end()); }
@@ -55,9 +55,9 @@ Finding Shortfalls::told(MissingCones::Why why, const Missing& missing) const {
   const int asked = options_.count.value_or(0);
   const std::string how_many =
       missing.parts == 1 ? concat(missing.placed, " of the ", count(asked, "cone", "cones"), " asked for ",
-                                  missing.placed == 1 ? "was" : "were", " placed on a part of the surface: ")
+                                  missing.placed == 1 ? "was" : "were", " placed on a component of the surface: ")
                          : concat(missing.placed, missing.placed == 1 ? " cone was" : " cones were", " placed on ",
-                                  missing.parts, " parts of the surface instead of ", asked, " on each: ");
+                                  missing.parts, " components of the surface instead of ", asked, " on each: ");
   return {Code::placement_not_reached, how_many + remedy_for(why), {ElementKind::triangles, missing.triangles}};
 }
 
@@ -70,8 +70,8 @@ Finding Shortfalls::told_of_stretch() const {
   const std::string missed =
       parts_ == 1
           ? concat("With ", cones, " the map ", stretch, "; an L2 stretch of ", options_.target, " was asked for. ")
-          : concat("On ", parts_, " parts of the surface the L2 stretch of ", options_.target,
-                   " asked for is not reached: with ", cones, " the worst map ", stretch, ". ");
+          : concat("On ", parts_, " components of the surface the requested L2 stretch of ", options_.target,
+                   " is not reached: with ", cones, " the worst map ", stretch, ". ");
   return {Code::placement_not_reached,
           missed + "Mark cones at thin tips, clean up spikes and thin triangles, or ask for less.",
           {all_have_cones_ ? ElementKind::vertices : ElementKind::triangles, std::move(places)}};

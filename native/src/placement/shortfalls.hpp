@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Collects what placement could not reach, to be reported once for the whole surface.
+// Collects the missed targets of placement, to be reported once for the whole surface.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace lsgp {
 
-// Fewer cones than were asked for.
+// Fewer cones than requested.
 struct MissingCones {
   enum class Why { left_flat, only_pairs, no_room };
   int placed = 0;
@@ -20,11 +20,11 @@ class Shortfalls {
  public:
   explicit Shortfalls(const PlacementOptions& options) : options_(options) {}
 
-  // A part with fewer cones than asked for, and its triangles.
+  // A component with fewer cones than requested, and its triangles.
   void add(const MissingCones& missing, const Array<Index>& triangles);
 
-  // A part that misses the target, its cones and triangles, and the L2 stretch that its map has, infinite where it is
-  // not valid.
+  // A component that misses the target, its cones and triangles, and the L2 stretch of its map, infinite if it is not
+  // valid.
   void add(double l2, const Array<Index>& cones, const Array<Index>& triangles);
 
   // As PLACEMENT_NOT_REACHED: one for each reason why cones are missing, and one for the target.

@@ -24,7 +24,7 @@ constexpr int most_additions = 3, least_added = 2, added_share = 6;
 constexpr double worthwhile = 0.7;
 constexpr double usual_l2 = 1.05;  // of a map that is not worth more than the stages
 
-// Whether one is nearer to a map that can be used.
+// Whether one choice is nearer to a usable map.
 bool is_better(const TriedMap& a, const TriedMap& b) {
   const auto rank = [](const TriedMap& map) { return map.is_off() ? 2 : map.is_valid() ? 0 : 1; };
   return rank(a) != rank(b) ? rank(a) < rank(b) : a.is_valid() ? a.l2 < b.l2 : a.defects() < b.defects();
@@ -70,7 +70,7 @@ VerifiedChoice VerifiedPlacement::verified(ConeChoice cones) {
   return out;
 }
 
-// The angles of another map with the same cones, where they give a better map by themselves.
+// The angles of another map with the same cones, if they give a better map.
 void VerifiedPlacement::take_angles(const TriedMap& other, MapTrial::Repairs repairs, VerifiedChoice& choice) {
   if (!is_better(other, choice.map)) return;
   ConeChoice cones = chooser_.choice_with(choice.cones.vertices, other.curvature);
@@ -90,7 +90,7 @@ VerifiedChoice VerifiedPlacement::place_to_target() {
   const double target = chooser_.options().target;
   AutomaticCones automatic(chooser_);
   VerifiedChoice best{automatic.reach(target), {}, false};
-  // No cone more is best where that will do; corners are next.
+  // No additional cone is best if that suffices; corners are next.
   const bool adds_none = static_cast<int>(best.cones.vertices.size()) <= chooser_.existing_count();
   if (adds_none) best = verified(std::move(best.cones));
   if (best.map.l2 <= target) return best;
@@ -104,10 +104,10 @@ VerifiedChoice VerifiedPlacement::place_to_target() {
   return best;
 }
 
-// Cones where the map itself is stretched, as long as each addition leaves no more than this share of the stretch.
+// Adds cones where the map itself is stretched, as long as each addition reduces the stretch to this share.
 void VerifiedPlacement::add_where_stretched(VerifiedChoice& best, double share) {
   for (int i = 0; i < most_additions && is_short(best) && best.map.is_valid(); ++i) {
-    // At corners of the surface rather than beside them.
+    // Preferably at corners of the surface rather than beside them.
     const Eigen::VectorXd wanted = best.map.stretch.cwiseProduct(chooser_.task().geometry.angle_defect.cwiseAbs());
     const auto present = static_cast<int>(best.cones.vertices.size());
     const int more = std::max(least_added, present / added_share);
@@ -125,7 +125,7 @@ void VerifiedPlacement::lower_target(AutomaticCones& automatic, VerifiedChoice& 
   const double target = chooser_.options().target;
   VerifiedChoice latest = best;
   double lower = target, missed_at = target;
-  int misses = 1;  // the target is lowered by more each time
+  int misses = 1;  // the target is lowered further each time
   for (int i = 0; i < most_lowerings && trial_.made() < most_maps && is_short(best); ++i) {
     if (automatic.is_exhausted(lower)) break;
     const double missed = std::min((target - 1) / (latest.map.l2 - 1), most_lowered);
@@ -184,8 +184,8 @@ VerifiedChoice VerifiedPlacement::place_count(int count) {
   return best;
 }
 
-// Angles that the bounds of cones and the variance know nothing of: those of least distortion. Where angles or seams
-// are off, all that unwrapping would try with the angles left to it.
+// Angles without bounds, independent of the variance: those of least distortion. If angles or seams are off, all
+// attempts of unwrapping with automatic angles.
 void VerifiedPlacement::choose_other_angles(VerifiedChoice& best) {
   const std::size_t count = best.cones.vertices.size();
   if (!chooses_angles() || count == 0 || count > most_one_by_one || !is_worth_trying(best.cones)) return;
@@ -193,13 +193,13 @@ void VerifiedPlacement::choose_other_angles(VerifiedChoice& best) {
   take_angles(trial_.make(chooser_.with_given_angles(best.cones.vertices), repairs), repairs, best);
 }
 
-// Repairs of large surfaces take long where much is stretched.
+// Repairs of large surfaces with high stretch take long.
 bool VerifiedPlacement::is_worth_trying(const ConeChoice& cones) const {
   if (!cones.is_possible()) return false;
   return is_small() || cones.predicted_l2 <= hopeless_l2;
 }
 
-// Rather than a lattice, a mirror plane, or the caller.
+// False with a lattice, a mirror plane, or given angles.
 bool VerifiedPlacement::chooses_angles() const {
   const ComponentCones& existing = chooser_.task().existing;
   return !chooser_.options().lattice && chooser_.task().mirrored.empty() &&

@@ -15,18 +15,18 @@ namespace lsgp {
 struct VerifiedChoice {
   ConeChoice cones;
   TriedMap map;
-  bool is_mapped = true;  // not where more are there or asked for than are chosen one by one
+  bool is_mapped = true;  // false if there are more cones than are chosen one by one
 };
 
-// The log scale predicts the stretch in the limit of fine meshes; coarse ones are stretched more. So the map with the
-// cones chosen is made and measured.
+// The log scale predicts the stretch in the limit of fine meshes; maps of coarse ones have more stretch. So the map
+// with the chosen cones is computed and measured.
 //
-// Without a number of cones the target stands for the map: where it is missed, corners of a polyhedron are taken, cones
-// are added where the map is stretched, or chosen for a lower target, going on from those before, and as few of these
-// as will do. A given number of cones stays, but they are chosen in other ways where the map is not as predicted.
-// Where all of these miss, the angles of least distortion are tried.
+// Without a number of cones the target applies to the map: if it is missed, corners of a polyhedron become cones, cones
+// are added where the map is stretched, or chosen for a lower target, continuing the previous choice, with as few as
+// suffice. A given number of cones is kept, but other choices are tried if the map is worse than predicted. If all of
+// these miss, the angles of least distortion are tried.
 //
-// Some ten maps are made at most, one or two where the prediction is hopeless, most of them with the easy repairs only.
+// At most some ten maps are computed, one or two if the prediction is hopeless, most of them with local repairs only.
 class VerifiedPlacement {
  public:
   // All arguments have to outlive it.

@@ -17,7 +17,7 @@ struct Box {
 };
 
 inline bool meet(const Box& a, const Box& b) {
-  // Without branches, which could not be foretold.
+  // Without branches, which would be unpredictable.
   return static_cast<int>(a.left <= b.right) & static_cast<int>(b.left <= a.right) &
          static_cast<int>(a.bottom <= b.top) & static_cast<int>(b.bottom <= a.top);
 }
@@ -26,8 +26,8 @@ inline Box around(const Box& a, const Box& b) {
   return {std::min(a.left, b.left), std::max(a.right, b.right), std::min(a.bottom, b.bottom), std::max(a.top, b.top)};
 }
 
-// A binary tree of boxes in the order of a space-filling curve, halved by number: it does not mind that they differ
-// much in size or crowd in one place.
+// A binary tree of boxes in the order of a space-filling curve, halved by count: robust to boxes of very different
+// sizes and to clusters.
 class AabbTree {
  public:
   explicit AabbTree(const Array<Box>& boxes);

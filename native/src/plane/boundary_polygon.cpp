@@ -47,8 +47,8 @@ bool BoundaryPolygon::touches_itself() const {
   return touches;
 }
 
-// How often a point is covered is how often the border winds around it. That changes by one across a loop, so it is
-// enough to count beside one point of each, its leftmost.
+// The number of times a point is covered is the winding number of the boundary. It changes by one across a loop, so it
+// suffices to count beside the leftmost point of each.
 bool BoundaryPolygon::encloses_itself() const {
   constexpr double most_tests = 2e7;
   if (static_cast<double>(loops_.size()) * edge_count() > most_tests) return true;
@@ -87,7 +87,7 @@ int BoundaryPolygon::covers_left_of(Complex point, Index loop) const {
   int count = 0;
   for (Index e = 0; e < edge_count(); ++e) {
     if (loop_[e] == loop || (tail_[e].imag() <= point.imag()) == (head_[e].imag() <= point.imag())) continue;
-    // To the left of the point a falling edge begins what is covered, a rising one ends it.
+    // To the left of the point, a falling edge starts a covered interval, a rising edge ends it.
     const bool falls = tail_[e].imag() > point.imag();
     const int beside = side(tail_[e], head_[e], point);
     if (falls ? beside > 0 : beside < 0) count += falls ? 1 : -1;

@@ -12,7 +12,8 @@
 
 namespace lsgp {
 
-// Where c lies beside the line from a to b: 1 left, -1 right, 0 where rounding leaves that open (Shewchuk 1997).
+// The side of the line from a to b on which c lies: 1 left, -1 right, 0 if rounding leaves it undecided (Shewchuk
+// 1997).
 inline int side(Complex a, Complex b, Complex c) {
   constexpr double last_digit = std::numeric_limits<double>::epsilon();
   const Complex along = b - a, to = c - a;
@@ -21,7 +22,7 @@ inline int side(Complex a, Complex b, Complex c) {
   return left - right > bound ? 1 : left - right < -bound ? -1 : 0;
 }
 
-// The directed edges of a layout's border, loop after loop, the layout on their left.
+// The directed boundary edges of a layout, loop by loop, with the layout on their left.
 class BoundaryPolygon {
  public:
   // position, twin: as of has_overlap.
@@ -35,16 +36,16 @@ class BoundaryPolygon {
 
   bool touches_itself() const;
 
-  // Whether the layout lies on itself somewhere, its border being simple curves that do not touch.
+  // Whether the layout overlaps itself, provided that its boundary consists of simple curves that do not touch.
   bool encloses_itself() const;
 
  private:
   bool follows(Index i, Index j) const;
-  // Whether two edges have a point in common, or may have one, but for the corner between an edge and the next.
+  // Whether two edges have, or may have, a common point other than the corner between consecutive edges.
   bool touch(Index i, Index j) const;
-  // Whether an edge turns back onto the one before it.
+  // Whether an edge folds back onto the one before it.
   bool folds_back(Index i, Index j) const;
-  // How often the layout covers what lies just left of the leftmost point of a loop.
+  // How often the layout covers the point just left of the leftmost point of a loop.
   int covers_left_of(Complex point, Index loop) const;
 
   Array<Complex> tail_, head_;  // (edges)

@@ -12,7 +12,7 @@ namespace {
 
 double cross(Complex a, Complex b) { return std::imag(std::conj(a) * b); }
 
-// The points without those inside the polygon of the extreme ones (Akl and Toussaint 1978), hardly any of a layout's.
+// Removes the points inside the polygon of the extreme ones (Akl and Toussaint 1978), which leaves few of a layout.
 Array<Complex> outer_points(const Eigen::VectorXcd& position) {
   std::array<Complex, 8> extreme;  // counter-clockwise, in eight directions
   extreme.fill(position[0]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Convex hulls of points, and how far points extend.
+// Convex hulls and extents of points.
 #pragma once
 
 #include <Eigen/Core>

@@ -19,7 +19,7 @@ struct Box {
   double width, height;
 };
 
-// Puts boxes on shelves about as wide as all together are high; returns where each begins.
+// Puts boxes on shelves about as wide as all of them are high; returns the origin of each.
 struct Shelves {
   Array<Complex> place;
   double size;  // of the square that holds them

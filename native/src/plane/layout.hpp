@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Islands turned, scaled to one texel density and placed side by side in the unit square.
+// Islands rotated, scaled to one texel density and placed side by side in the unit square.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,14 +13,14 @@
 namespace lsgp {
 
 struct Island {
-  Eigen::VectorXcd position;      // u + iv of its points, at the texel density it is to have
-  std::optional<Complex> turn{};  // none: the one that makes its bounding box smallest
-  // Where a pinned point has to end up; only the place of the island follows, not its size or turn.
+  Eigen::VectorXcd position;      // u + iv of its points, at the desired texel density
+  std::optional<Complex> turn{};  // none: the rotation with the smallest bounding box
+  // The required position of a pinned point; determines only the island's position, not its size or rotation.
   std::optional<std::pair<Eigen::Index, Complex>> pin{};
   Index component = 0;
 };
 
-// How an island is moved as a whole.
+// The motion of an island as a whole.
 struct Similarity {
   Complex turn = 1, shift = 0;
   double divisor = 1;
@@ -28,15 +28,15 @@ struct Similarity {
   Complex operator()(Complex z) const { return (z * turn + shift) / divisor + move; }
 };
 
-// Turns every island, puts the islands on shelves without overlap and scales all
-// of them alike into the unit square; then moves those with a pin to it, and the others of their component along.
+// Rotates every island, puts the islands on shelves without overlap and scales all of them alike into the unit square;
+// then moves those with a pin to it, together with the other islands of their component.
 Array<Similarity> arrange(const Array<Island>& islands);
 
 // The unit vector along the longer side of the smallest box around the points.
 Complex upright(const Eigen::VectorXcd& position);
 
-// Moves the parts of layouts side by side without turning or scaling them: each by a lattice point, its coordinates
-// multiples of `step`, into the first quadrant.
+// Moves the parts of layouts side by side without rotating or scaling them: each by a lattice point with coordinates
+// that are multiples of `step`, into the first quadrant.
 struct DividedLayout {
   Eigen::VectorXcd* position;  // u + iv of its points
   Array<Index> part;           // of each of them, 0 .. part_count - 1

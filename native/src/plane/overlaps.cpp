@@ -37,7 +37,7 @@ bool is_parted_by_side(const Corners& a, const Corners& b) {
   return false;
 }
 
-// Cuts `b` down to what lies in `a`, side after side (Sutherland and Hodgman 1974); corners relative to one of them.
+// Clips `b` against `a`, side by side (Sutherland and Hodgman 1974); corners relative to one of them.
 double shared_area(const Corners& a, const Corners& b) {
   constexpr std::size_t most = 6;
   std::array<Complex, most> one, other;
@@ -101,7 +101,7 @@ class Layout {
       checkpoint(operations_a_pair);
       const double area = overlap(i, j);
       if (!(area > 0)) return;
-      // A layout that has collapsed has as many as the square of its triangles.
+      // A collapsed layout can have quadratically many pairs.
       if (out.size() == out.capacity()) require_memory(2.0 * static_cast<double>(out.size() * sizeof(Overlap)));
       out.push_back({triangle_[i], triangle_[j], area});
     });

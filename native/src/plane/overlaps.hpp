@@ -9,22 +9,22 @@
 
 namespace lsgp {
 
-// Two triangles whose insides meet, and the area they share.
+// Two triangles whose interiors intersect, and the shared area.
 struct Overlap {
   Index first, second;  // first < second
   double area;
 };
 
 // All such pairs of a layout, sorted.  position: (3m) u + iv at the corners, NaN for triangles to leave out. Pairs
-// that share less than rounding explains of the smaller one are neighbours and no overlap.
+// that share less of the smaller one than rounding explains are neighbours and do not count.
 Array<Overlap> find_overlaps(const Eigen::VectorXcd& position);
 
-// The same for a layout without flipped triangles, quicker: only where its border winds around a point twice.
-// twin: (3m) the halfedge on the other side of each where the layout runs on, none where it ends.
+// The same for a layout without flipped triangles, faster: only where the winding number of its boundary is 2 or more.
+// twin: (3m) the halfedge on the other side where the layout continues, none at its boundary.
 Array<Overlap> find_overlaps(const Eigen::VectorXcd& position, const Array<Index>& twin);
 
-// Whether there is any such pair in a layout without flipped triangles. Looks at its border alone: an immersed surface
-// whose border neither crosses itself nor encloses another part of it lies on itself nowhere.
+// Whether there is any such pair in a layout without flipped triangles. Inspects only its boundary: an immersed surface
+// with a boundary that neither crosses itself nor encloses another part of it does not overlap itself.
 bool has_overlap(const Eigen::VectorXcd& position, const Array<Index>& twin);
 
 }  // namespace lsgp

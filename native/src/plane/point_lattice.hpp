@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The points that cones and translations of a seamless layout lie on: a + b g with whole a and b.
+// The lattice of cones and translations of a seamless layout: a + b g with integers a and b.
 #pragma once
 
 #include <array>

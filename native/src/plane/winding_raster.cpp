@@ -64,7 +64,7 @@ Index WindingRaster::column_of(double x) const { return cell_of((x - frame_.left
 Index WindingRaster::row_of(double y) const { return cell_of((y - frame_.bottom) * rows_per_unit_, rows_); }
 double WindingRaster::bottom_of(Index row) const { return frame_.bottom + row / rows_per_unit_; }
 
-// Marks the cells of a row that an edge passes, and those it may pass as far as rounding tells.
+// Marks the cells of a row that an edge passes, or may pass within rounding.
 void WindingRaster::pass(const BoundaryPolygon& outline, Index edge, Index row) {
   const Complex tail = outline.tail(edge), along = outline.head(edge) - tail;
   double begin = 0, end = 1;  // of what lies in the row, as shares of the edge
@@ -85,7 +85,7 @@ void WindingRaster::pass(const BoundaryPolygon& outline, Index edge, Index row) 
   }
 }
 
-// Notes by how much the winding number changes from left to right where an edge crosses the lower side of a row.
+// Records the change of the winding number from left to right where an edge crosses the lower side of a row.
 void WindingRaster::wind(Complex tail, Complex head, Index row) {
   const double y = bottom_of(row);
   if ((tail.imag() <= y) == (head.imag() <= y)) return;
@@ -93,8 +93,8 @@ void WindingRaster::wind(Complex tail, Complex head, Index row) {
   winding_[row * (columns_ + 1) + column_of(x) + 1] += tail.imag() > y ? 1 : -1;
 }
 
-// A plain run of edges and a straight line cross from either side in turn, so where nothing else passes a cell, the
-// winding numbers of any two points in it differ by one at most.
+// A plain run of edges crosses a straight line from alternating sides, so if nothing else passes a cell, the winding
+// numbers of any two points in it differ by at most one.
 bool WindingRaster::may_be_covered_twice(Index row, Index column) const {
   const Passage& passage = passage_[row * columns_ + column];
   const Index below = row * (columns_ + 1) + column, above = below + columns_ + 1;

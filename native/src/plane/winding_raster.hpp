@@ -9,8 +9,8 @@
 
 namespace lsgp {
 
-// The cells of a raster that a layout without flipped triangles may cover twice. How often a point is covered is how
-// often the border winds around it.
+// The cells of a raster that a layout without flipped triangles may cover twice. The number of times a point is covered
+// is the winding number of the boundary.
 class WindingRaster {
  public:
   // frame: around the whole layout.

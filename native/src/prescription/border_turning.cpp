@@ -20,8 +20,8 @@ using Turning = Array<std::optional<double>>;  // (loops) radians, where it is n
 
 constexpr double mismatch = 1e-6;  // of Gauss-Bonnet, radians
 
-// Log scales c along the borders (loops) that bring the turning of the wanted ones to the wanted value, the others
-// staying at 0: the turning is affine in c.
+// Log scales c along the boundaries (loops) that give the wanted turning to some of them, and are 0 on the others: the
+// turning is affine in c.
 class LoopScales {
  public:
   explicit LoopScales(const LogScale& scale) : mesh_(scale.mesh()), geometry_(scale.geometry()), scale_(scale) {}
@@ -40,13 +40,13 @@ class LoopScales {
     }
     const Eigen::VectorXd before = turning(log_scale);
     if (loops.size() == wanted.size()) {
-      // Shifting all borders alike changes nothing: the last turning follows from the others.
+      // Shifting all boundaries alike has no effect: the last turning follows from the others.
       double sum = 0;
       for (const auto& turning : wanted) sum += *turning;
       if (!(std::abs(sum - before.sum()) <= mismatch)) {
-        throw Error(Code::loop_turning, concat("The turning prescribed for all borders adds up to ", degrees(sum),
+        throw Error(Code::loop_turning, concat("The turning prescribed for all boundaries adds up to ", degrees(sum),
                                                ", but with these cone angles it has to be ", degrees(before.sum()),
-                                               ". Leave the turning of one border free."));
+                                               ". Leave the turning of one boundary free."));
       }
       loops.pop_back();
     }
@@ -65,7 +65,7 @@ class LoopScales {
   static constexpr int most_iterations = 1000;  // a back-substitution each, about 4 times the root of the loops' number
   static constexpr double accuracy = 1e-14;     // of the missing turning
 
-  // The log scale, (n), that is 0 on all borders but for some shifted ones, and harmonic between them.
+  // The log scale, (n), that is constant on some boundaries, 0 on the others, and harmonic between them.
   Eigen::VectorXd caused_by(const Array<Index>& loops, const Eigen::VectorXd& shift) const {
     Eigen::VectorXd out = Eigen::VectorXd::Zero(mesh_.vertex_count());
     for (std::size_t j = 0; j < loops.size(); ++j) {
@@ -86,7 +86,7 @@ class LoopScales {
   }
 
   // The change of turning is a Schur complement of the Laplacian and so symmetric and positive definite: conjugate
-  // gradients, started again once to win back what rounding lost.
+  // gradients, restarted once to recover rounding errors.
   Eigen::VectorXd solve_iteratively(const Array<Index>& loops, const Eigen::VectorXd& missing) const {
     Eigen::VectorXd shift = Eigen::VectorXd::Zero(missing.size());
     const double enough = accuracy * missing.norm();
@@ -119,7 +119,7 @@ class LoopScales {
   const LogScale& scale_;
 };
 
-// Borders whose scale can be shifted: those with a vertex that is no corner.
+// Boundaries whose scale can be shifted: those with a vertex that is not a corner.
 Array<char> shiftable_loops(const HalfedgeMesh& mesh, const BorderConditions& border) {
   Array<char> out;
   for (const auto& loop : mesh.boundary_loops) {
@@ -128,8 +128,8 @@ Array<char> shiftable_loops(const HalfedgeMesh& mesh, const BorderConditions& bo
   return out;
 }
 
-// The turning of all borders rounded to multiples of 2 pi / symmetry, the sum kept: those whose turning is not
-// prescribed, or all where it is prescribed for all, make up for it, first those that lose most by rounding.
+// The turning of all boundaries rounded to multiples of 2 pi / symmetry with the same sum: boundaries without
+// prescribed turning, or all if it is prescribed for all, compensate, those with the largest rounding error first.
 void quantize_turning(const Eigen::VectorXd& turning, int symmetry, Turning& wanted) {
   const double unit = 2 * M_PI / symmetry;
   Eigen::VectorXd exact = turning / unit;
@@ -146,7 +146,7 @@ void quantize_turning(const Eigen::VectorXd& turning, int symmetry, Turning& wan
   }
   Eigen::VectorXd rounded = exact.array().round();
   double missing = std::round(turning.sum() / unit) - rounded.sum();
-  // What rounding leaves is less than a step for every border; prescribed turning may leave more, evenly shared.
+  // Rounding leaves less than a step for every boundary; prescribed turning may leave more, which is shared evenly.
   const double count = static_cast<double>(adjustable.size()), whole = std::trunc(missing / count);
   for (const Eigen::Index i : adjustable) rounded[i] += whole;
   missing -= whole * count;
@@ -159,12 +159,12 @@ void quantize_turning(const Eigen::VectorXd& turning, int symmetry, Turning& wan
   for (Eigen::Index i = 0; i < turning.size(); ++i) wanted[i] = rounded[i] * unit;
 }
 
-// Holes about which the metric turns almost exactly once are made to turn exactly once where that takes no more than
-// this shift of the log scale along their border: the layout closes around them without a cut.
+// Holes about which the metric turns almost exactly once are made to turn exactly once if that takes no more than this
+// shift of the log scale along their boundary: the layout closes around them without a cut.
 constexpr double largest_hole_shift = 0.1;
 constexpr double nearly_once = 0.5;  // radians off a full turn
 
-// Returns the borders' turning as wanted and that of the holes that close besides, and changes the log scale to it.
+// Returns the boundaries' turning, wanted or of holes that also close, and changes the log scale accordingly.
 Turning close_near_holes(const LoopScales& loops, const Array<char>& shiftable, const Turning& wanted,
                          Eigen::VectorXd& log_scale) {
   const Eigen::VectorXd turning = loops.turning(log_scale);
@@ -175,8 +175,8 @@ Turning close_near_holes(const LoopScales& loops, const Array<char>& shiftable, 
     if (hole) closed[i] = once_around_a_hole;
     left_free += !closed[i] && shiftable[i];
   }
-  if (left_free == 0) return wanted;  // one border has to take up the rest
-  // Without the holes that take too much, until those that are left can be closed.
+  if (left_free == 0) return wanted;  // one boundary has to take up the rest
+  // Drops holes that require too much until the remaining ones can be closed.
   while (true) {
     auto [adjusted, shifts] = loops.adjust(log_scale, closed);
     bool dropped = false;
@@ -191,17 +191,17 @@ Turning close_near_holes(const LoopScales& loops, const Array<char>& shiftable, 
   }
 }
 
-// A part without handles and cones inside can be laid out in the plane as it is: the border that turns most by itself
-// goes around all others, which are holes.
+// A component without handles and interior cones can be laid out in the plane as it is: the boundary with the largest
+// natural turning encloses all others, which are holes.
 bool is_planar(const HalfedgeMesh& mesh, const ComponentCones& cones) {
   return mesh.genus == 0 && inside_only(mesh, cones.vertices).empty();
 }
 
-// The log scale with which all holes of a planar part close, or none where that is not to be had.
+// The log scale with which all holes of a planar component close, or none if there is none.
 std::optional<Eigen::VectorXd> close_all_holes(const LoopScales& loops, const Array<char>& shiftable, Holes holes,
                                                const Eigen::VectorXd& log_scale) {
   constexpr double cheap = 1.1;      // times the L2 stretch without
-  constexpr double worth = 1.5;      // times that with holes whose borders do not lead back to where they began
+  constexpr double worth = 1.5;      // times that with holes whose boundaries have a gap
   constexpr Index most_closed = 20;  // holes; beyond, three back-substitutions each are too many
   const LogScale& scale = loops.scale();
   Eigen::Index outer = 0;
@@ -220,7 +220,7 @@ std::optional<Eigen::VectorXd> close_all_holes(const LoopScales& loops, const Ar
                                : scale.predicted_l2(tried) <= cheap * scale.predicted_l2(log_scale);
   };
   if (!is_taken(closed)) return std::nullopt;
-  // The map takes up what little is missing where the metric turns nearly once by itself.
+  // The map absorbs the small gap where the metric turns nearly once.
   if (shifts.cwiseAbs().maxCoeff() > largest_hole_shift && ssize(inner) <= most_closed) {
     const auto exact = close_translations(scale.mesh(), scale.geometry(), scale, inner, closed);
     const bool pays = exact && is_taken(*exact) && scale.predicted_l2(*exact) <= worth * scale.predicted_l2(closed);
@@ -241,8 +241,8 @@ void prescribe_turning(const LogScale& scale, const ComponentCones& cones, Curva
     if (!cones.loop_turning[i] || shiftable[i]) continue;
     throw Error(
         Code::loop_turning,
-        "The turning of a border cannot be prescribed where the border is straight or all its vertices are corners: "
-        "their angles say how it turns. Leave its turning free.",
+        "The turning of a boundary cannot be prescribed if the boundary is straight or all its vertices are corners: "
+        "their angles determine it. Leave its turning free.",
         {ElementKind::vertices, mesh.boundary_loops[i]});
   }
   if (border.balanced) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The linear systems of one component, factored on first use and kept while its cones stay.
+// The linear systems of one component, factored on first use and kept while its cones do not move.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ namespace lsgp {
 
 class ComponentSystem {
  public:
-  // cones: their angles do not matter here.  memory: of a system that is not needed any more.
+  // cones: their angles have no effect here.  memory: reused from a system that is no longer needed.
   ComponentSystem(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
                   Factorization factorization, Eigen::VectorXd memory = {});
   Eigen::VectorXd take_memory();
@@ -23,19 +23,19 @@ class ComponentSystem {
   const Geometry& geometry() const { return geometry_; }
   const BorderConditions& border() const { return border_; }
 
-  // Cuts through all cones that lie inside and to all borders.
+  // Cuts through all interior cones and to all boundaries.
   const CutGraph& all_cuts();
-  // What is shared by prescription and unfolding, or null where they are better solved one by one.
+  // The factor shared by prescription and unfolding, or null if separate solves are cheaper.
   const CutFactor* factor();
-  // The surface opened along these cuts, with what serves it here: all of it where the cuts are among `all_cuts`.
+  // The surface opened along these cuts, with the reusable data: all of it if the cuts are among `all_cuts`.
   CutSurface open(const CutGraph& cut_graph, const CutMesh& cut_mesh);
-  // That of the component's metric, all cones added.
+  // The log scale of the component's metric, with all cones added.
   const LogScale& log_scale();
-  // A factor of the form that is stiffened around these cones, or null where other cuts are opened than `all_cuts`, or
-  // where it is better solved another way. Stays until it is asked for other cones.
+  // A factor of the form stiffened around these cones, or null if cuts other than `all_cuts` are opened or another
+  // solver is cheaper. Kept until requested for other cones.
   const CutFactor* stiff_factor(const Array<Index>& cones, const CutGraph& cut_graph);
 
-  // Frees what is large and can be made again.
+  // Frees large data that can be recomputed.
   void release();
 
  private:
@@ -63,7 +63,7 @@ class ComponentSystem {
   std::optional<StiffFactor> stiff_factor_;
 };
 
-// Those of the vertices that lie on no border.
+// The interior ones of the vertices.
 Array<Index> inside_only(const HalfedgeMesh& mesh, const Array<Index>& vertices);
 
 }  // namespace lsgp

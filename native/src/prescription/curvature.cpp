@@ -21,9 +21,9 @@ namespace lsgp {
 
 namespace {
 
-// Automatic angles stay where a map with them can be expected to have no flips.
+// Bounds of automatic angles for which maps are expected to have no flips.
 constexpr double largest_share_of_valence = 0.6;  // of pi per triangle
-// Outside these no map exists, or none worth having.
+// Outside these no useful map exists.
 constexpr double impossible_angle = 0.02 * M_PI;
 constexpr double impossible_share_of_valence = 1;
 
@@ -57,7 +57,7 @@ bool all_fixed(const ComponentCones& cones) {
   return std::all_of(cones.angles.begin(), cones.angles.end(), [](const auto& angle) { return angle.has_value(); });
 }
 
-// How a sum of curvatures is bounded: the angles are all given, or some are chosen.
+// Whether a sum of curvatures is fixed by given angles or bounded by chosen ones.
 enum class Sum { is, is_at_most, is_at_least };
 
 [[noreturn]] void throw_gauss_bonnet(const ComponentCones& cones, Sum how, double sum, double required) {
@@ -92,7 +92,7 @@ Eigen::VectorXd least_distortion(const HalfedgeMesh& mesh, const ComponentCones&
   return scale.least_distortion_curvature(bounds.low, bounds.high, std::move(start));
 }
 
-// Where it is a number to compare others with.
+// If it is a number worth comparing.
 std::string expected_stretch(double l2) {
   constexpr double telling = 1e6;
   return l2 < telling ? concat("an L2 stretch of ", rounded(l2), " is expected, 1 being none, and ") : "";
@@ -112,21 +112,21 @@ Eigen::VectorXd harmonic(const HalfedgeMesh& mesh, const ComponentCones& cones, 
   if (!impossible.empty()) {
     throw Error(Code::cone_angle_range,
                 concat("The harmonic angle of ", count(impossible.size(), "cone is", "cones is"),
-                       " one no map can have. Add cones near it, or use the least-distortion prescription."),
+                       " one that no map can have. Add cones near it, or use the least-distortion prescription."),
                 {ElementKind::vertices, impossible});
   }
   return curvature;
 }
 
-// The paper's rule; the angles that junctions of the cut read are handed on to the cones in equal parts.
+// The paper's rule; angles read at junctions of the cut are distributed equally over the cones.
 std::optional<Eigen::VectorXd> straightness(ComponentSystem& system, const ComponentCones& cones,
                                             std::vector<Finding>& findings) {
   const HalfedgeMesh& mesh = system.mesh();
   if (!mesh.closed()) {
-    // With a free border the straightened layout is an arbitrary one of many, and so are its angles.
+    // With a free boundary the straightened layout is one of many, and so are its angles.
     findings.push_back(
         {Code::straightness_failed,
-         "Straight cuts give usable cone angles on closed surfaces only, and this one has an open border. The "
+         "Straight cuts give usable cone angles only on closed surfaces, and this one has a boundary. The "
          "least-distortion angles were used instead.",
          {ElementKind::vertices, cones.vertices}});
     return std::nullopt;
@@ -164,7 +164,7 @@ std::optional<Eigen::VectorXd> straightness(ComponentSystem& system, const Compo
     findings.push_back({Code::junction_share,
                         concat("Straight cuts left a curvature of ", degrees(junctions), " at ",
                                count(junction_vertices.size(), "junction", "junctions"),
-                               " of the cut; it was shared out evenly among the cones."),
+                               " of the cut; it was distributed evenly over the cones."),
                         {ElementKind::vertices, junction_vertices}});
   }
   return curvature;
@@ -212,13 +212,13 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, con
   if (cones.vertices.empty()) {
     if (std::abs(required) < renormalized_mismatch) return;
     if (!mesh.closed()) {
-      throw Error(Code::too_few_cones, concat("A straight border has to turn by ", degrees(required),
-                                              " in all, at marked corners. Mark the border's corners as cones, or "
-                                              "leave the border free."));
+      throw Error(Code::too_few_cones, concat("A straight boundary has to turn by ", degrees(required),
+                                              " in all, at marked corners. Mark the boundary's corners as cones, or "
+                                              "leave the boundary free."));
     }
     throw Error(Code::too_few_cones,
                 concat("A closed surface without cones cannot be unfolded: its curvature of ", degrees(required),
-                       " has to go somewhere. Mark cones at tips and corners, or place them automatically."));
+                       " has to be at cones. Mark cones at tips and corners, or place them automatically."));
   }
   const Bounds widest = widest_bounds(mesh, cones);
   if (all_fixed(cones)) {
@@ -275,7 +275,7 @@ Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, Prescr
   Eigen::VectorXd curvature(asked.vertices.size());
   std::optional<Eigen::VectorXd> straight;
   if (asked.vertices.empty()) {
-    // A closed torus or a surface with border: flat everywhere.
+    // A closed torus or a surface with boundary: flat everywhere.
   } else if (all_fixed(asked)) {
     for (Eigen::Index i = 0; i < curvature.size(); ++i) {
       curvature[i] = mesh.flat_angle(asked.vertices[i]) - *asked.angles[i];
@@ -306,7 +306,7 @@ Curvature impose(const LogScale& scale, const ComponentCones& asked, const Eigen
   out.predicted_l2 = scale.predicted_l2(out.log_scale);
   out.at_vertex = border.curvature;
   for (Eigen::Index i = 0; i < curvature.size(); ++i) out.at_vertex[asked.vertices[i]] += curvature[i];
-  // Where the scale is held, the curvature is what it makes of it: kappa = K + L y.
+  // Where the scale is held, the curvature follows from it: kappa = K + L y.
   const Eigen::VectorXd free = geometry.angle_defect + apply_laplacian(mesh, geometry, out.log_scale);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (border.held[v]) out.at_vertex[v] = free[v];

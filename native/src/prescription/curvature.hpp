@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Curvature prescription (the paper's section 5): how much angle every cone keeps.
+// Curvature prescription (the paper's section 5): the angle of every cone.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,7 +23,7 @@ namespace lsgp {
 // nothing held, y is known up to a constant, Gauss-Bonnet has to hold, and y is held at one vertex, a cone if any.
 class LogScale {
  public:
-  // cones: inside, none twice.  factor: where given, one that is there already and has them on its cuts.
+  // cones: interior, distinct.  factor: if given, an existing one with the cones on its cuts.
   LogScale(const HalfedgeMesh& mesh, const Geometry& geometry, const BorderConditions& border,
            const Array<Index>& cones = {}, const CutFactor* factor = nullptr);
 
@@ -31,12 +31,12 @@ class LogScale {
   const Geometry& geometry() const { return geometry_; }
   const BorderConditions& border() const { return border_; }
 
-  void add_cones(const Array<Index>& vertices);  // none twice, none held
+  void add_cones(const Array<Index>& vertices);  // distinct, not held
   void remove_cones();                           // all of them
   Index cone_count() const { return static_cast<Index>(cones_.size()); }
   const Array<Index>& cones() const { return cones_; }
   bool balanced() const { return border_.balanced; }
-  // What the cone curvatures have to add up to when balanced.
+  // The required sum of the cone curvatures when balanced.
   double required_sum() const { return 2 * M_PI * mesh_.euler - border_.curvature.sum(); }
 
   // y at every vertex (n), shifted to area-weighted mean 0.
@@ -45,7 +45,7 @@ class LogScale {
   Eigen::VectorXd evaluate_held(const Eigen::VectorXd& cone_curvature) const;
   // The same with curvatures at any vertices, which need not be cones; one back-substitution.
   Eigen::VectorXd evaluate_held(const Array<Index>& vertices, const Eigen::VectorXd& curvature) const;
-  // What a cone's curvature adds to that, each unit of it.
+  // The change of that per unit of a cone's curvature.
   auto effect(Index cone) const { return green_.col(cone); }
 
   // Solves L y = right side, (n), where y is not held; the sum of the right side is 0 when balanced.
@@ -60,8 +60,8 @@ class LogScale {
   Eigen::VectorXd least_distortion_curvature(const Eigen::VectorXd& low, const Eigen::VectorXd& high,
                                              Eigen::VectorXd start) const;
 
-  // The L2 stretch of the map, (area-weighted mean e^{2y} mean e^{-2y})^{1/2}: with y at the middles of edges, which
-  // tells it best, and lumped at the vertices, which is quicker and what the prescription minimises.
+  // The L2 stretch of the map, (area-weighted mean e^{2y} mean e^{-2y})^{1/2}: with y at the midpoints of edges, which
+  // is most accurate, and lumped at the vertices, which is faster and minimised by the prescription.
   double predicted_l2(const Eigen::VectorXd& log_scale) const;
   double lumped_l2(const Eigen::VectorXd& log_scale) const;
 
@@ -83,44 +83,44 @@ class LogScale {
   Eigen::MatrixXd green_;          // (n, k) G_c
 };
 
-// Bounds of the angles of automatic cones, radians; widened where Gauss-Bonnet wants more.
+// Bounds of the angles of automatic cones, radians; widened if Gauss-Bonnet requires it.
 struct AngleRange {
   double smallest, largest;
   bool widened = true;  // to the harmonic angles: a sharp tip may need less and a branching limb more
 };
 constexpr AngleRange widest_angles{M_PI / 4, 4 * M_PI};
 
-// An L2 stretch that is warned of.
+// An L2 stretch that causes a warning.
 constexpr double high_l2 = 3;
 
-// From wider ranges of the log scale maps without flips can hardly be computed.
+// For wider ranges of the log scale, maps without flips can hardly be computed.
 constexpr double wide_range = 15;
 
 // The largest L2 stretch that is predicted: its square is a number.
 constexpr double largest_l2 = 1e100;
 
-// Which holes of a planar part, one without handles and cones inside, close without a cut.
+// Which holes of a planar component, one without handles and interior cones, close without a cut.
 enum class Holes {
-  where_cheap,  // those for which that costs hardly any stretch
-  all,          // and the others too, as far as a map can be computed
-  as_they_are,  // those that do so nearly by themselves
+  where_cheap,  // those that cost hardly any stretch
+  all,          // all, as far as a map can be computed
+  as_they_are,  // those about which the metric turns nearly once
 };
 
-// What the caller asks of one component's metric, in its own vertex numbers.
+// The requirements on one component's metric, in its own vertex numbers.
 struct ComponentCones {
-  Array<Index> vertices;                // cones, and corners on a border
+  Array<Index> vertices;                // cones, and corners on a boundary
   Array<std::optional<double>> angles;  // radians, none: automatic
   BorderMode border = BorderMode::free;
-  Array<std::optional<double>> loop_turning;  // (loops) radians, none: as it comes out
+  Array<std::optional<double>> loop_turning;  // (loops) radians, none: free
   Holes holes = Holes::where_cheap;
   AngleRange range = widest_angles;  // of automatic ones
-  int symmetry = 0;                  // q: angles of cones and turning of borders are multiples of 2 pi / q; 0: any
+  int symmetry = 0;                  // q: angles of cones and turning of boundaries are multiples of 2 pi / q; 0: any
 };
 
-// What a component's map has to realise.
+// The target of a component's map.
 struct Curvature {
-  Eigen::VectorXd at_vertex;  // (n) imposed: cones theirs, 0 inside, what comes out on a free border
-  Array<char> is_free;        // (n) border vertices whose angle comes out only about as said here
+  Eigen::VectorXd at_vertex;  // (n) imposed: of cones, 0 in the interior, the resulting one on a free boundary
+  Array<char> is_free;        // (n) boundary vertices with a free angle, at_vertex being approximate there
   Eigen::VectorXd log_scale;  // (n) area-weighted mean 0
   double predicted_l2 = 1;
   // (loops) holes about which the metric turns exactly once: they need no cut.

@@ -10,7 +10,7 @@ namespace lsgp {
 
 namespace {
 
-// The border of a hole in the plane as its log scale y and its curvature kappa make it, both affine in unknowns.
+// The boundary of a hole in the plane, given by log scale y and curvature kappa, both affine in the unknowns.
 struct HoleBorder {
   Eigen::VectorXd length;             // (k) of the edges from vertex to vertex, on the surface
   Eigen::VectorXd y, kappa;           // (k) at the vertices
@@ -21,7 +21,7 @@ struct HoleBorder {
   Eigen::Index size() const { return length.size(); }
   Eigen::Index after(Eigen::Index i) const { return i + 1 < size() ? i + 1 : 0; }
 
-  // What is missing for the border to close, and how that depends on the unknowns, (closings) and (closings, unknowns).
+  // The gap of the boundary and its derivative by the unknowns, (closings) and (closings, unknowns).
   void measure(const Eigen::VectorXd& unknowns, Eigen::Ref<Eigen::VectorXd> missing,
                Eigen::Ref<Eigen::MatrixXd> derivative) const {
     const Eigen::VectorXd scale = y + dy * unknowns, turn = kappa + dkappa * unknowns;
@@ -31,7 +31,7 @@ struct HoleBorder {
     Eigen::RowVectorXcd change = Eigen::RowVectorXcd::Zero(unknowns.size());
     for (Eigen::Index i = 0; i < size(); ++i) {
       const Eigen::Index next = after(i);
-      // Steps too far may end in what is no number, which std::polar does not take.
+      // Overlong steps can produce NaN, which std::polar does not accept.
       const Complex edge = length[i] / perimeter * std::exp((scale[i] + scale[next]) / 2) *
                            Complex(std::cos(direction), std::sin(direction));
       gap += edge;
@@ -44,7 +44,7 @@ struct HoleBorder {
   }
 };
 
-// Newton's method on all borders together, with steps halved while what is missing does not shrink.
+// Newton's method on all boundaries together, with steps halved while the gap does not shrink.
 std::optional<Eigen::VectorXd> close_borders(const Array<HoleBorder>& borders, Eigen::Index unknown_count) {
   constexpr int most_steps = 30, most_halvings = 8;
   constexpr double closed = 1e-11;

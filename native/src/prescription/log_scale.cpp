@@ -18,13 +18,13 @@ namespace {
 
 constexpr int most_newton_steps = 60;
 constexpr double newton_decrement = 1e-20;  // of the objective, a logarithm of order 1
-constexpr double too_small_to_see = 1e-11;  // decreases that rounding of the objective would hide
+constexpr double too_small_to_see = 1e-11;  // decreases below the rounding error of the objective
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double ridge = 1e-13;  // relative: cones so close that their Green's functions nearly agree
 
-// log mean e^{2y} + log mean e^{-2y}, weighted, and what each vertex adds to the two means, (n, 2).
+// log mean e^{2y} + log mean e^{-2y}, weighted, and the contribution of each vertex to the two means, (n, 2).
 double log_stretch(const Eigen::VectorXd& weight, const Eigen::VectorXd& y, Eigen::MatrixXd& shares) {
-  constexpr double most = 700;                              // that e^x can be taken of
+  constexpr double most = 700;                              // e^x is finite up to here
   const double middle = (y.maxCoeff() + y.minCoeff()) / 2;  // cancels
   const Eigen::ArrayXd growth = (2 * (y.array() - middle)).min(most).max(-most).exp();
   shares.resize(y.size(), 2);
@@ -76,12 +76,12 @@ class Stretch {
   Eigen::MatrixXd means_;   // (k, 2) of the Green's functions
 };
 
-// How many more steps that decrease the objective by so much, the one before by that, it takes to the minimum.
+// The number of further steps to the minimum, extrapolated from the last two decreases of the objective.
 double steps_left(double decrease, double before) {
   return decrease < before ? std::log(newton_decrement / decrease) / std::log(decrease / before) : infinity;
 }
 
-// The vertex that fixes the constant: a cone, whose Green's function is 0 then, or another one on the cuts.
+// The vertex that fixes the constant: a cone, whose Green's function is then 0, or another vertex on the cuts.
 Index ground(const Array<Index>& cones, const CutFactor* factor) {
   if (!cones.empty()) return cones.back();
   return factor != nullptr ? factor->cut_mesh().source[factor->retained().front()] : 0;
@@ -159,7 +159,7 @@ Eigen::VectorXd LogScale::harmonic_curvature() const {
   return system.partialPivLu().solve(right).head(k);
 }
 
-// With many cones a Hessian costs as much as dozens of gradients: it is kept while the steps left with it are fewer.
+// With many cones a Hessian costs as much as dozens of gradients: it is reused while fewer steps remain.
 Eigen::VectorXd LogScale::least_distortion_curvature(const Eigen::VectorXd& low, const Eigen::VectorXd& high,
                                                      Eigen::VectorXd start) const {
   const double gradients_of_hessian = 2 + cone_count() / 20.0;

@@ -12,22 +12,22 @@
 namespace lsgp {
 
 struct ParallelTransport {
-  Eigen::VectorXd frames;    // (m) turn of every triangle, radians
+  Eigen::VectorXd frames;    // (m) rotation of every triangle, radians
   Eigen::VectorXd rotation;  // (cuts) radians
   Reduction reduction;       // positions under these rotations
 };
 
-// The connection of the prescribed metric, and where a layout admits only some rotations about handles, those that
-// twist the metric's frames least.
+// The connection of the prescribed metric; if a layout admits only certain rotations about handles, those that twist
+// the metric's frames least.
 class ParallelTransportChoice {
  public:
   ParallelTransportChoice(const CutSurface& surface, const Curvature& curvature, int symmetry);
 
-  // Whether loops about handles turn otherwise than in the metric.
+  // Whether rotations about handles differ from the metric's.
   bool is_twisted() const { return twist_.size() > 0; }
-  const Eigen::VectorXd& twist() const { return twist_; }  // (m) what that adds to the frames
+  const Eigen::VectorXd& twist() const { return twist_; }  // (m) the resulting increment of the frames
 
-  // share: of the twist, 1 for the rotations that were chosen.  curvature: that of a metric with the same cones.
+  // share: of the twist, 1 for the chosen rotations.  curvature: of a metric with the same cones.
   ParallelTransport at(double share, const Curvature& curvature) const;
 
  private:
@@ -36,13 +36,13 @@ class ParallelTransportChoice {
   Eigen::VectorXd twist_, change_;  // of frames and rotations, empty where none
 };
 
-// What a map has to realise: rotations and frames, angles and scale.
+// The target of a map: rotations and frames, angles and scale.
 struct MapTarget {
   const ParallelTransport& connection;
   const Curvature& curvature;
 };
 
-// The connection that a map without flips realises: its rotations, and the turns of its own triangles as frames.
+// The connection that a map without flips realises: its rotations, and the rotations of its triangles as frames.
 ParallelTransport connection_of_map(const CutSurface& surface, const Curvature& curvature,
                                     const Eigen::VectorXd& rotation, const Eigen::VectorXcd& position);
 

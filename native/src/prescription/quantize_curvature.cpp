@@ -14,14 +14,14 @@ namespace lsgp {
 
 namespace {
 
-// Angles a map can be expected to realise: a cone from a quarter of a turn to one and a half turns, or where that
-// distorts less to two, as far as its triangles can share them.
+// Angles that maps can be expected to realise: from a quarter turn to one and a half turns, or to two if that distorts
+// less, as far as the triangles around the cone can share them.
 constexpr double smallest_angle = M_PI / 2;
 constexpr double largest_angles[] = {3 * M_PI, 4 * M_PI};
 constexpr double largest_share = 100 * M_PI / 180;  // of a triangle in the angle of its cone
 constexpr double exact_multiple = 1e-6;             // radians, between a given angle and the multiple it is taken for
 
-// Beyond these no map exists; a corner in a single triangle has none where the turn is half a circle or more.
+// Beyond these no map exists; a corner in a single triangle has none if the rotation is a half turn or more.
 TurnBounds widest_bounds(const HalfedgeMesh& mesh, const ComponentCones& cones, int symmetry) {
   const Index k = static_cast<Index>(cones.vertices.size());
   const double unit = 2 * M_PI / symmetry, slack = 1e-9;
@@ -34,7 +34,7 @@ TurnBounds widest_bounds(const HalfedgeMesh& mesh, const ComponentCones& cones, 
   return bounds;
 }
 
-// Within the widest ones, and so those of given angles where these leave no other.
+// Within the widest bounds, which are those of given angles if nothing else remains.
 TurnBounds usual_bounds(const HalfedgeMesh& mesh, const ComponentCones& cones, int symmetry, double largest_angle,
                         const TurnBounds& widest) {
   const Index k = static_cast<Index>(cones.vertices.size());
@@ -52,7 +52,7 @@ TurnBounds usual_bounds(const HalfedgeMesh& mesh, const ComponentCones& cones, i
   return bounds;
 }
 
-// Given angles that are multiples of the turn are kept.
+// Given angles that are multiples of the lattice's rotation are kept.
 void keep_given(const HalfedgeMesh& mesh, const ComponentCones& cones, int symmetry, TurnBounds& bounds) {
   for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
     if (!cones.angles[i]) continue;
@@ -63,7 +63,7 @@ void keep_given(const HalfedgeMesh& mesh, const ComponentCones& cones, int symme
   }
 }
 
-// Throws where a cone has no angle to choose from.
+// Throws if a cone has no admissible angle.
 void require_some_angle(const ComponentCones& cones, int symmetry, const TurnBounds& widest) {
   Array<Index> without;
   for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
@@ -90,7 +90,7 @@ void require_some_angle(const ComponentCones& cones, int symmetry, const TurnBou
               {ElementKind::vertices, cones.vertices});
 }
 
-// What the cones' turns have to add up to by Gauss-Bonnet; none where a border's turning is free.
+// The sum of the cones' turns that Gauss-Bonnet requires; none if the turning of a boundary is free.
 std::optional<int> required_turns(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale,
                                   int symmetry) {
   if (scale.balanced()) return turns_of(scale.required_sum(), symmetry);
@@ -119,7 +119,7 @@ Eigen::VectorXd quantize_curvature(const HalfedgeMesh& mesh, const ComponentCone
   std::optional<int> required = required_turns(mesh, cones, scale, symmetry);
   if (required && !reaches(widest, *required)) {
     if (scale.balanced()) throw_out_of_reach(cones, symmetry, *required, widest);
-    required.reset();  // borders give way
+    required.reset();  // boundaries are free
   }
   const bool keeps_sum = required.has_value();
   const auto reachable = [&](const TurnBounds& bounds) { return !keeps_sum || reaches(bounds, *required); };

@@ -10,12 +10,12 @@ namespace lsgp {
 
 // The cone curvatures, multiples of 2 pi / symmetry, of small predicted distortion: from `wanted` rounded under
 // Gauss-Bonnet, pairs of cones exchange turns while that lowers the area-weighted variance of the log scale. Given
-// angles that are multiples stay. What an angle may be is bounded by the triangles around it.
+// angles that are multiples are kept. Angles are bounded by the triangles around them.
 // scale: with the cones added, in the same order. Throws SEAMLESS_IMPOSSIBLE.
 Eigen::VectorXd quantize_curvature(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale,
                                    const Eigen::VectorXd& wanted, int symmetry);
 
-// The multiple of 2 pi / symmetry nearest to an angle, and how many of them it is.
+// The multiple of 2 pi / symmetry nearest to an angle, and its factor.
 int turns_of(double angle, int symmetry);
 inline double angle_of_turns(int turns, int symmetry) { return 2 * M_PI * turns / symmetry; }
 

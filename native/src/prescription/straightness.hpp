@@ -12,12 +12,12 @@ namespace lsgp {
 
 struct StraightenedLayout {
   Eigen::VectorXd curvature;  // (n) read at every node of the cut graph, 0 elsewhere
-  std::string failure;        // why the angles cannot be used, empty where they can
+  std::string failure;        // why the angles are unusable, or empty
 };
 
-// Lays the opened surface, closed before, out with every side of every cut straight and least conformal distortion,
-// resolves crossing cuts by swapping the positions of their ends (the paper's Figure 6), and reads each node's angle
-// between its cuts.
+// Lays out the opened, originally closed surface with straight sides of cuts and least conformal distortion, resolves
+// crossing cuts by swapping the positions of their ends (the paper's Figure 6), and measures each node's angle between
+// its cuts.
 StraightenedLayout straighten(const CutSurface& surface);
 
 }  // namespace lsgp

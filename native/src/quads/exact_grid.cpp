@@ -12,7 +12,7 @@ namespace lsgp {
 namespace {
 
 constexpr double tolerance = 1e-3;              // cells, by which two sides of an edge may differ
-constexpr double most_cells = double(1 << 28);  // whose edges can still be numbered
+constexpr double most_cells = double(1 << 28);  // so that edges can be numbered
 constexpr int product_bits = 30;                // of differences, see grid_point.hpp
 constexpr int fewest_bits = 10;                 // no coarser than the tolerance
 constexpr double farthest = 1e9;                // cells from the origin
@@ -28,7 +28,7 @@ Complex turned(Complex z, int turns) {
   }
 }
 
-// Binary digits of a cell with which all differences within a triangle and a cell around it keep to the limit.
+// Binary digits of a cell for which all differences within a triangle and a cell around it stay below the limit.
 int fitting_bits(const HalfedgeMesh& mesh, const Eigen::VectorXcd& uv) {
   double longest = 0, outermost = 0, area = 0;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
@@ -69,7 +69,7 @@ class GridBuilder {
   }
 
  private:
-  // The turn and the whole cells that bring one side of an edge to the other; returns by how much they miss it.
+  // The quarter turn and whole cells that map one side of an edge to the other; returns the deviation.
   double find_transition(Index h) {
     const Index twin = mesh_.twin[h];
     const Complex tail = uv_[h], head = uv_[next(h)], other_tail = uv_[next(twin)], other_head = uv_[twin];
@@ -104,8 +104,8 @@ class GridBuilder {
     throw Error(Code::inexact_seams, what, {ElementKind::edges, std::move(edges)});
   }
 
-  // Puts a vertex to the multiple of `step` that is nearest to its first corner, and its other corners accordingly.
-  // Returns whether they come round to the first one again.
+  // Rounds a vertex to the multiple of `step` nearest to its first corner, and its other corners accordingly. Returns
+  // whether they close around the vertex.
   bool place(Index v, std::int64_t step) {
     const Index first = mesh_.outgoing[v];
     const double scale = static_cast<double>(grid_.cell()) / static_cast<double>(step);
@@ -156,7 +156,7 @@ class GridBuilder {
     const std::string what =
         concat(count(vertices.size(), "cone does", "cones do"),
                " not lie on a corner of the grid. Make the layout without parity, and with smaller cells "
-               "where cones were left off the grid.");
+               "if cones were left off the grid.");
     throw Error(Code::cones_not_snapped, what, {ElementKind::vertices, std::move(vertices)});
   }
 

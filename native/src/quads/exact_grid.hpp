@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A seamless layout in whole numbers, in which both sides of every edge agree to the last bit.
+// A seamless layout in integers, in which both sides of every edge match exactly.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,7 @@
 
 namespace lsgp {
 
-// Every triangle has a chart of its own, in which its corners turn counter-clockwise.
+// Every triangle has its own chart, in which its corners are counter-clockwise.
 struct ExactGrid {
   int bits = 0;                  // a cell's side is 2^bits
   Array<GridPoint> at;           // (3m) corners
@@ -24,7 +24,7 @@ struct ExactGrid {
   GridPoint first_side(Index corner) const { return at[next(corner)] - at[corner]; }
   GridPoint second_side(Index corner) const { return at[prev(corner)] - at[corner]; }
   // Whether a grid direction leads from a corner into its triangle or along the first side: around a vertex each
-  // belongs to one corner.
+  // direction belongs to one corner.
   bool leads_into(Index corner, int direction) const {
     const GridPoint way = axis(direction);
     return is_from(first_side(corner), way) && cross(way, second_side(corner)) > 0;
@@ -35,8 +35,8 @@ struct ExactGrid {
 
 // mesh: closed. uv: (3m) of its corners, in cells. Each vertex is rounded once, and its other corners follow from the
 // first by the turns and whole cells that the layout has across its edges.
-// Throws INEXACT_SEAMS where these are others, FLIPPED_TRIANGLES, CONES_NOT_SNAPPED, CONE_ANGLE_RANGE; WRONG_PARAMETER
-// where there are too many cells.
+// Throws INEXACT_SEAMS for other transitions, FLIPPED_TRIANGLES, CONES_NOT_SNAPPED, CONE_ANGLE_RANGE; WRONG_PARAMETER
+// if there are too many cells.
 ExactGrid build_exact_grid(const HalfedgeMesh& mesh, const Eigen::VectorXcd& uv);
 
 }  // namespace lsgp

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double operations_a_triangle = 50;
 
-// A straight line of the grid on its way through the triangles, in the chart of the present one.
+// A straight line of the grid traced through the triangles, in the chart of the current one.
 struct Ray {
   Index triangle;
   int direction;
@@ -71,7 +71,7 @@ class Tracer {
     }
   }
 
-  // Those in the directions of one triangle that are its, counter-clockwise.
+  // The ports in the directions that belong to one triangle, counter-clockwise.
   template <typename IsIts>
   void add_ports(Port port, IsIts is_its) {
     int first = 0;
@@ -96,7 +96,7 @@ class Tracer {
     }
   }
 
-  // Into the triangle that the ray goes to from its present one.
+  // Advances the ray into the next triangle.
   void leave(Ray& ray) const {
     std::array<std::int64_t, 3> side{};
     for (int c = 0; c < 3; ++c) {
@@ -116,8 +116,8 @@ class Tracer {
     fail();
   }
 
-  // Through a vertex of the surface between two corners of cells, which is no cone: once around it there is one
-  // triangle in the direction of the ray.
+  // Through a vertex of the surface between two corners of cells, which is not a cone: exactly one triangle around it
+  // lies in the direction of the ray.
   void pass(Ray& ray, Index corner) const {
     for (int visited = 0; !grid_.leads_into(corner, ray.direction); ++visited) {
       if (visited > mesh_.triangle_count()) fail();
@@ -127,7 +127,7 @@ class Tracer {
     ray.from = grid_.at[corner];
   }
 
-  // That back along a ray which has come to its end at a place of its triangle.
+  // The port back along a ray that has ended at a place of its triangle.
   Index port_at(Ray ray, const Place& place) const {
     const Index vertex = vertices_.find(ray.triangle, ray.to, place);
     if (vertex == none) fail();

@@ -9,7 +9,7 @@
 
 namespace lsgp {
 
-// Where a side of cells leaves a corner of cells.
+// The end of a side of cells at a corner of cells.
 struct Port {
   Index vertex;    // of the grid
   Index triangle;  // into which, or along whose edge, on its left
@@ -29,7 +29,7 @@ struct GridEdges {
   }
 };
 
-// Each side is traced from both of its ends. Throws SOLVER_FAILED where these disagree.
+// Each side is traced from both of its ends. Throws SOLVER_FAILED if these disagree.
 GridEdges trace_edges(const HalfedgeMesh& mesh, const ExactGrid& grid, const GridVertices& vertices);
 
 }  // namespace lsgp

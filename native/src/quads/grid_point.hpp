@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points of a layout in whole numbers, the moves that leave its grid as it is, and exact predicates.
+// Points of a layout in integers, the motions that preserve its grid, and exact predicates.
 //
 // Coordinates are in binary fractions of a cell. Those of points that a predicate compares differ by less than 2^30, so
 // that 64 bits hold its products.
@@ -24,7 +24,7 @@ inline std::int64_t dot(GridPoint a, GridPoint b) { return a.x * b.x + a.y * b.y
 // Twice the area of a triangle: positive where c is left of the line from a to b.
 inline std::int64_t orient(GridPoint a, GridPoint b, GridPoint c) { return cross(b - a, c - a); }
 
-// Counter-clockwise about the origin by so many quarter turns.
+// Rotates counter-clockwise about the origin by quarter turns.
 inline GridPoint turned(GridPoint p, int turns) {
   switch (turns & 3) {
     case 1: return {-p.y, p.x};
@@ -50,7 +50,7 @@ struct GridTransition {
   }
 };
 
-// Whether a direction is that of `side` or less than half a turn counter-clockwise from it.
+// Whether a direction is that of `side` or less than a half turn counter-clockwise from it.
 inline bool is_from(GridPoint side, GridPoint direction) {
   const std::int64_t turn = cross(side, direction);
   return turn > 0 || (turn == 0 && dot(side, direction) > 0);

@@ -11,7 +11,7 @@ namespace lsgp {
 
 namespace {
 
-// Rounded down; b > 0.
+// Quotient rounded down; b > 0.
 std::int64_t floor_divide(std::int64_t a, std::int64_t b) { return a / b - (a % b < 0 ? 1 : 0); }
 std::int64_t ceil_divide(std::int64_t a, std::int64_t b) { return -floor_divide(-a, b); }
 

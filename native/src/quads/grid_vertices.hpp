@@ -10,13 +10,13 @@
 
 namespace lsgp {
 
-// Where in a closed triangle a point is: inside, or
+// The position of a point in a closed triangle: in the interior, or
 struct Place {
   Index edge = none;    // on this halfedge, between its ends
   Index corner = none;  // at this corner
 };
 
-// None where the point is outside.
+// None if the point is outside.
 std::optional<Place> find_place(const ExactGrid& grid, Index triangle, GridPoint p);
 
 struct GridVertex {

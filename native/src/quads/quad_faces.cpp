@@ -15,7 +15,7 @@ namespace {
   throw Error(Code::solver_failed, "The grid's cells do not close over the surface. Please report this mesh.");
 }
 
-// Vertices of which two are the same corner of a cell, or joined by more than one side.
+// Vertices that occur twice in a cell, or pairs joined by more than one side.
 Array<Index> find_doubled(const GridEdges& edges) {
   Array<Index> out;
   Array<std::pair<Index, Index>> sides;

@@ -8,9 +8,9 @@
 
 namespace lsgp {
 
-// Walks around every cell, vertices as the grid's are numbered. Makes sure that all have four sides and the mesh the
-// surface's Euler characteristic: otherwise throws SOLVER_FAILED. Throws GRID_TOO_COARSE where a quad would have a
-// vertex twice or two vertices more than one edge, and names the surface's triangles that these vertices are on.
+// Walks around every cell; vertices have the grid's numbers. Checks that all cells have four sides and the mesh the
+// surface's Euler characteristic, otherwise throws SOLVER_FAILED. Throws GRID_TOO_COARSE if a quad would have a vertex
+// twice or two vertices share more than one edge, with the surface's triangles that contain these vertices.
 Quads walk_faces(const HalfedgeMesh& mesh, const GridVertices& vertices, const GridEdges& edges);
 
 }  // namespace lsgp

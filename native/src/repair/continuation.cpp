@@ -17,7 +17,7 @@ constexpr double first_step = 0.25, shortest_step = 0.02;
 constexpr int most_steps = 24;
 constexpr int barrier_steps = 2;  // so that shear does not pile up on the way
 
-// The Jacobians of a map, changed as the metric and its frames are.
+// The Jacobians of a map, transformed like the metric and its frames.
 Jacobians carry_over(const CutSurface& surface, const Waypoint& from, const Waypoint& to,
                      const Eigen::VectorXcd& position) {
   Jacobians out = measure_jacobians(surface.mesh, surface.geometry, surface.cut_mesh, position);

@@ -11,7 +11,7 @@
 
 namespace lsgp {
 
-// What a map on the way realises.
+// A point of the path: curvatures and connection of the map there.
 struct Waypoint {
   Curvature curvature;
   ParallelTransport connection;
@@ -20,14 +20,14 @@ using Path = std::function<Waypoint(double share)>;  // 0 at its beginning, 1 at
 
 struct Continuation {
   double reached;             // share of the path up to which there is a valid map
-  Waypoint at;                // the path there
+  Waypoint at;                // the path at that share
   Eigen::VectorXcd position;  // (copies) the map
 };
 
-// Moves a map along a path in steps over which it stays valid: its Jacobians, scaled and turned as the metric is from
-// one point to the next, are fitted again under the next transitions, and what flips is repaired. Longer steps where
-// that succeeds, shorter ones where it does not.
-// map: valid at the beginning of the path; repairs leave its fixed vertices where they are.
+// Continues a map along a path in steps over which it stays valid: its Jacobians, scaled and rotated like the metric
+// from one point to the next, are fitted again under the next transitions, and flips are repaired. Steps grow on
+// success and shrink on failure.
+// map: valid at the beginning of the path; repairs do not move its fixed vertices.
 Continuation follow(const CutSurface& surface, const Path& path, Effort effort, const StepHook& before_step,
                     const HeldMap& map);
 

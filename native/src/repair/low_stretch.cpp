@@ -54,7 +54,7 @@ Eigen::VectorXcd lower_stretch(const CutSurface& surface, const MapTarget& targe
   const Curvature& curvature = target.curvature;
   const Eigen::VectorXd rest = scale_at_rest(surface, curvature, options.stretch, map.position);
   Eigen::VectorXcd best = map.position;
-  // One linear step takes a map without fixed vertices almost there: frames stay, lengths are those wanted.
+  // One linear step brings a map without fixed vertices close: frames are kept, lengths are the target's.
   if (std::find(map.fixed.begin(), map.fixed.end(), 1) == map.fixed.end()) {
     before_step();
     Eigen::VectorXcd fitted =

@@ -16,12 +16,12 @@ struct StretchOptions {
 };
 
 // Least symmetric Dirichlet energy against the surface's triangles scaled by e^{(1 - stretch) y}, y being the target's
-// log scale, that of the conformal map. Translations move as well, but where fixed vertices hold them. The map has to
-// be valid; so is what is returned.
+// log scale, that of the conformal map. Translations move as well, unless held by fixed vertices. Takes and returns a
+// valid map.
 Eigen::VectorXcd lower_stretch(const CutSurface& surface, const MapTarget& target, const StretchOptions& options,
                                const StepHook& before_step, const HeldMap& map);
 
-// The log scale that is aimed at, (n), with the area of the map at hand.
+// The target log scale, (n), with the area of the current map.
 Eigen::VectorXd scale_at_rest(const CutSurface& surface, const Curvature& curvature, double stretch,
                               const Eigen::VectorXcd& position);
 

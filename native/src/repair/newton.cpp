@@ -103,7 +103,7 @@ NewtonMinimizer::NewtonMinimizer(const CutSurface& surface, const RestShapes& re
     shape.begin = static_cast<Index>(slopes_.size());
     for (int c = 0; c < 3; ++c) {
       // f_z = sum g_j z_j and f_zbar = sum h_j z_j with g = -i conj(e) / (4 A), h = i e / (4 A), e opposite corner j;
-      // a turn of f_zbar changes no energy.
+      // a rotation of f_zbar changes no energy.
       const Complex edge = edge_vector(geometry, next(3 * f + c)) / (4 * geometry.area[f] * scale);
       shape.g[c] = std::polar(1.0, -rest.frames[f]) * Complex(0, -1) * std::conj(edge);
       shape.h[c] = Complex(0, 1) * edge;

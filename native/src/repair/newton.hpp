@@ -16,41 +16,41 @@
 
 namespace lsgp {
 
-// What may move: displacements of all copies as functions of a few unknowns, and the triangles that move.
+// Degrees of freedom: displacements of all copies as functions of the unknowns, and the triangles that move.
 struct DegreesOfFreedom {
   Reduction displacement;
   Array<Index> triangles;
 };
 
-// The vertices marked, (n); translations stay.  motion: (copies) as from motion_of_copies.
+// The marked vertices, (n); translations are fixed.  motion: (copies) as from motion_of_copies.
 DegreesOfFreedom free_vertices(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Eigen::VectorXcd& motion,
                                const Array<char>& marked);
 
-// All positions and translations but those that vertices marked as fixed, (n), depend on.
+// All positions and translations except those that vertices marked as fixed, (n), depend on.
 DegreesOfFreedom free_all(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Reduction& reduction,
                           const Array<char>& fixed);
 
 // The vertices within some rings of triangles, those of the triangles themselves being the first ring; (n).
 Array<char> mark_around(const HalfedgeMesh& mesh, const Array<Index>& triangles, int rings);
 
-// Called before every step of Newton's method; what it throws ends the method.
+// Called before every step of Newton's method; its exceptions propagate.
 using StepHook = std::function<void()>;
 
-// The shapes that triangles are compared with: the surface's own, scaled by e^{log_scale} and turned by frames.
+// Rest shapes of triangles: those of the surface, scaled by e^{log_scale} and rotated by frames.
 struct RestShapes {
   const Eigen::VectorXd& log_scale;  // (n)
   const Eigen::VectorXd& frames;     // (m) radians
 };
 
-// A map, and what of it stays.
+// A map and its fixed vertices.
 struct HeldMap {
   const Eigen::VectorXcd& position;  // (copies) u + iv
-  const Array<char>& fixed;          // (n) vertices that stay where they are
+  const Array<char>& fixed;          // (n) vertices that do not move
 };
 
 class NewtonMinimizer {
  public:
-  // Every triangle weighs as much as its area.  position: (copies) u + iv, which is moved.
+  // Triangles are weighted by area.  position: (copies) u + iv, which is modified.
   NewtonMinimizer(const CutSurface& surface, const RestShapes& rest, DegreesOfFreedom freedom, StepHook before_step,
                   Eigen::VectorXcd& position);
 
@@ -61,8 +61,8 @@ class NewtonMinimizer {
   // framed one within 90 degrees of its frame. Returns whether that was reached.
   bool unfold(DistortionEnergy::Kind kind, int most_steps);
 
-  // Newton steps on a barrier from a map without flips; none arises on the way. At most `steps`, fewer where the
-  // energy falls by less than a share of itself or where a step cannot be computed.
+  // Newton steps on a barrier from a map without flips, which stays free of flips. At most `steps`, fewer if the
+  // relative decrease of the energy is small or a step cannot be computed.
   void smooth(DistortionEnergy::Kind barrier, int steps, double least_share = 0);
 
  private:
@@ -73,7 +73,7 @@ class NewtonMinimizer {
     double weight;
   };
 
-  // How f_z and f_zbar of a triangle change with one unknown.
+  // The derivatives of a triangle's f_z and f_zbar by one unknown.
   struct Slope {
     Index unknown;
     Complex f_z, f_zbar;
@@ -89,14 +89,14 @@ class NewtonMinimizer {
   double smallest_determinant(const DistortionEnergy& energy) const;
 
   double total(const DistortionEnergy& energy) const;
-  // None where the Hessian cannot be factored.
+  // None if the Hessian cannot be factored.
   std::optional<Eigen::VectorXcd> newton_direction(const DistortionEnergy& energy);
 
-  // Halves the step until the energy falls; leaves the positions as they were where it never does.
+  // Halves the step until the energy falls; leaves the positions unchanged if it never does.
   bool search(const DistortionEnergy& energy, const Eigen::VectorXcd& direction, double longest, double before,
               double& after);
 
-  // The step along a direction at which the first triangle has no area any more.
+  // The step along a direction at which the first triangle degenerates.
   double collapse_step(const Eigen::VectorXcd& direction) const;
 
   const Reduction displacement_;

@@ -16,15 +16,15 @@ namespace {
 using Kind = DistortionEnergy::Kind;
 
 constexpr std::array<int, 3> neighbourhoods{2, 5, 10};  // rings of vertices around flipped triangles
-constexpr double hopeless_share = 0.005;                // of the triangles flipped: not a place is tangled but the map
-// Of Newton's method, which takes a few where little is wrong, and of smoothing afterwards.
+constexpr double hopeless_share = 0.005;                // of the triangles flipped: the defect is global, not local
+// Iterations of Newton's method, which needs few for small defects, and of smoothing afterwards.
 struct Steps {
   int unfolding, smoothing;
 };
 constexpr Steps local_steps{30, 3}, global_steps{25, 10};
 constexpr double least_decrease = 1e-3;  // of the energy in a step of smoothing
 
-// How a map is turned as a whole against frames.
+// The rotation of a whole map against frames.
 double turn_against(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
                     const Eigen::VectorXd& frames, const Eigen::VectorXcd& position) {
   const Jacobians jacobians = measure_jacobians(mesh, geometry, cut_mesh, position);
@@ -35,7 +35,7 @@ double turn_against(const HalfedgeMesh& mesh, const Geometry& geometry, const Cu
   return std::arg(along);
 }
 
-// Those that are flipped, and those around vertices whose angles are wrong.
+// Flipped triangles, and those around vertices with wrong angle sums.
 Array<Index> defective_triangles(const HalfedgeMesh& mesh, const Validity& validity) {
   Array<Index> out = validity.flipped;
   for (const Index v : validity.wrong_angle_sums) mesh.for_each_outgoing(v, [&](Index h) { out.push_back(h / 3); });
@@ -84,7 +84,7 @@ Eigen::VectorXcd untangle(const CutSurface& surface, const MapTarget& target, co
     }
   }
   if (options.effort == Effort::local) return best;
-  // The framed energy knows the angles; the plain one gets out where no map keeps to the frames.
+  // The framed energy controls angles; the plain one works even if no map can follow the frames.
   for (const Kind energy : {Kind::framed_foldover_free, Kind::foldover_free}) {
     try_out(free_all(mesh, cut_mesh, connection.reduction, map.fixed), energy, global_steps);
   }

@@ -14,21 +14,21 @@
 namespace lsgp {
 
 enum class Effort {
-  local,   // growing neighbourhoods of what is flipped; cones and translations stay
-  global,  // and if these do not suffice everything at once, at the cost of some whole unfoldings
+  local,   // growing neighbourhoods of flipped triangles; cones and translations are fixed
+  global,  // and if these do not suffice, everything at once, at the cost of some whole unfoldings
 };
 
 struct UntangleOptions {
   Effort effort = Effort::local;
-  // The energy that is tried first on neighbourhoods: the plain one disturbs a map less that is almost right, the
-  // framed one keeps to the frames.
+  // The energy tried first on neighbourhoods: the plain one perturbs an almost valid map less, the framed one stays
+  // close to the frames.
   DistortionEnergy::Kind first = DistortionEnergy::Kind::framed_foldover_free;
 };
 
 // Moves a map until no triangle is flipped, by Newton's method on the foldover-free energies (Garanzha et al. 2021)
-// with rest shapes scaled to the target's metric and turned by its frames, then smooths what was moved with a conformal
-// barrier. The transitions' rotations stay, so the seams stay exact. The connection's reduction is used by the global
-// effort alone. Returns the positions with the fewest defects found.
+// with rest shapes scaled to the target's metric and rotated by its frames, then smooths the moved region with a
+// conformal barrier. The transitions' rotations are fixed, so the seams stay exact. Only the global effort uses the
+// connection's reduction. Returns the positions with the fewest defects found.
 Eigen::VectorXcd untangle(const CutSurface& surface, const MapTarget& target, const UntangleOptions& options,
                           const StepHook& before_step, const HeldMap& map);
 

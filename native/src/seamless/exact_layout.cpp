@@ -10,15 +10,15 @@ namespace lsgp {
 
 namespace {
 
-// The spacing of the binary fractions below which float32 holds all coordinates of the layout exactly, a bit left for
-// later moves by whole cells.
+// The spacing of binary fractions that float32 represents exactly over the layout's range, with a spare bit for later
+// moves by whole cells.
 double fraction_for(double largest) { return std::exp2(std::ceil(std::log2(largest + 1)) + 1 - 24); }
 
 Complex round_to(Complex z, double fraction) {
   return {std::round(z.real() / fraction) * fraction, std::round(z.imag() / fraction) * fraction};
 }
 
-// Volatile: GCC 12 takes two conversions to float and back, side by side, for no conversion at all.
+// Volatile: GCC 12 removes two adjacent conversions to float and back.
 double stored_number(double x) {
   const volatile float stored = static_cast<float>(x);
   return stored;
@@ -49,7 +49,7 @@ void ExactLayout::snap() {
   for (Index v = 0; v < mesh_.vertex_count(); ++v) {
     if (!on_cut[v]) {
       if (!lattice_.square()) continue;
-      // On a border as on a cut, so that the two sides of an open seam stay together.
+      // On a boundary as on a cut, so that the two sides of an open seam stay together.
       position_[v] = mesh_.loop_of_vertex[v] == none ? as_stored(position_[v]) : round_to(position_[v], fraction);
       continue;
     }

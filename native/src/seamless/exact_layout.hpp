@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A layout in numbers that single precision holds, on whose lattice transitions are exact.
+// A layout in numbers representable in single precision, with exact transitions on its lattice.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,15 +13,15 @@ namespace lsgp {
 // As single precision stores it.
 Complex as_stored(Complex z);
 
-// Replaces what is almost on the lattice by what is, and everything else by numbers that float32 holds.
+// Replaces points almost on the lattice by lattice points, and all others by numbers representable in float32.
 class ExactLayout {
  public:
   ExactLayout(const SeamlessPart& part, const PointLattice& lattice, Complex shift, Eigen::VectorXcd& position);
 
   void snap();
 
-  // The cut edges, as vertex pairs, whose two sides as stored are not nearest to the turn of their cut: some have
-  // collapsed to a point.
+  // The cut edges, as vertex pairs, whose stored sides do not determine the rotation of their cut: some have collapsed
+  // to a point.
   Array<Index> find_unreadable() const;
 
   // Errors as stored: see SeamlessCut.

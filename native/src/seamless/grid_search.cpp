@@ -27,10 +27,10 @@ void report_growth(double growth, std::vector<Finding>& findings) {
   findings.push_back({Code::grid_distorts,
                       concat("No grid of up to ", most_tiles,
                              " cells was found that costs at most a tenth in "
-                             "distortion; this one makes that of a part ",
+                             "distortion; this one multiplies that of a component by ",
                              rounded(growth, 3),
-                             " times as large. Move cones that "
-                             "are close to each other apart, use fewer, or unwrap small parts by themselves."),
+                             ". Move cones that are close to "
+                             "each other apart, use fewer, or unwrap small components separately."),
                       {}});
 }
 
@@ -84,7 +84,7 @@ std::optional<Grid> GridSearch::refine(double tiles, const LayoutEffort& effort)
 
 std::optional<Grid> GridSearch::find_coarsest() {
   if (auto grid = refine(coarsest_tiles, {acceptable_growth, acceptable_turn, true})) return grid;
-  // What needs more repair takes longer: by halves between sizes, as finer grids cost less.
+  // Layouts that need more repair take longer: bisects the sizes, since finer grids cost less.
   Array<double> sizes;
   for (double tiles = coarsest_tiles; tiles <= most_tiles; tiles = next_size(tiles)) sizes.push_back(tiles);
   std::optional<Grid> best = lay_out(sizes.back(), {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The size of the grid that all parts of a seamless layout share.
+// The size of the common grid of all components of a seamless layout.
 #pragma once
 
 #include <cmath>
@@ -21,7 +21,7 @@ struct Grid {
   Array<QuantizedLayout> layouts;
 };
 
-// The layouts of all parts on one grid after another. What is given has to outlive it.
+// The layouts of all components on a sequence of grids. All arguments have to outlive it.
 class GridSearch {
  public:
   GridSearch(bool parity, const PointLattice& lattice, Array<SeamlessPart>& parts, ProgressMonitor& monitor);
@@ -32,25 +32,25 @@ class GridSearch {
 
   double energy(std::size_t part, const Eigen::VectorXcd& position) const;
 
-  // The most that a part's energy has grown by.
+  // The largest growth of a component's energy.
   double growth(const Grid& grid) const;
 
-  // None where a part has no valid layout, or one that is distorted more than allowed.
+  // None if a component has no valid layout, or only one with too much distortion.
   std::optional<Grid> lay_out(double tiles, const LayoutEffort& effort);
 
   // The first of the sizes from `tiles` on that can be laid out.
   std::optional<Grid> refine(double tiles, const LayoutEffort& effort);
 
-  // The coarsest grid that costs no more than is acceptable, or where none does, hardly more than the finest.
+  // The coarsest grid of acceptable cost, or if there is none, of hardly more cost than the finest.
   std::optional<Grid> find_coarsest();
 
-  // Throws `error` for the parts that have no layout on the finest grid; where none has one, for all together.
+  // Throws `error` for the components without layout on the finest grid; if all fail, for all together.
   [[noreturn]] void give_up(const Error& error);
 
   void lower_stretch(double stretch, Grid& grid) const;
 
-  // Merges the two nearest cones of the part that could not be laid out. Returns whether there are any so near on a
-  // grid of so many tiles.
+  // Merges the two nearest cones of the component that could not be laid out. Returns whether there are any so near on
+  // a grid of so many tiles.
   bool merge_nearest(double tiles, const Options& options);
 
   void restore_relaxed();
@@ -75,13 +75,13 @@ class GridSearch {
   Array<std::unique_ptr<LayoutQuantizer>> quantizers_;
   Array<Array<Index>> relaxed_;  // by part
   std::size_t failed_ = 0;
-  // Nobody knows how many steps there will be.
+  // The number of steps is not known in advance.
   int steps_ = 0;
   const StepHook step_ = [this] { monitor_.advance(1 - std::pow(0.99, ++steps_)); };
 };
 
-// The grid that is asked for, or one nearby that has a layout.  unit_scale: of the components' positions to the
-// caller's. Throws WRONG_PARAMETER, GRID_TOO_COARSE.
+// The requested grid, or one nearby that has a layout.  unit_scale: from the components' positions to the caller's.
+// Throws WRONG_PARAMETER, GRID_TOO_COARSE.
 Grid find_grid(const Options& options, double unit_scale, GridSearch& search, std::vector<Finding>& findings);
 
 }  // namespace lsgp

@@ -15,7 +15,7 @@ class LatticeEnergy {
   virtual ~LatticeEnergy() = default;
   // The Schur complement of the Dirichlet form on the integers, (d, d), Hermitian: change^H schur change is the energy.
   const Eigen::MatrixXcd& schur() const { return schur_; }
-  // The displacement of all copies, (copies), where the integers change by that much, (d).
+  // The displacement of all copies, (copies), for a change of the integers, (d).
   virtual Eigen::VectorXcd displacement(const Eigen::VectorXcd& change) const = 0;
 
  protected:
@@ -24,8 +24,8 @@ class LatticeEnergy {
 
 // One complex factorization and a back-substitution for every integer.  lattice has to outlive the response.
 std::unique_ptr<LatticeEnergy> sparse_response(const CutSurface& surface, const LatticeReduction& lattice);
-// On a factor that is there already, of cuts that those of the cut mesh are among: dense problems alone. All but the
-// cut mesh have to outlive the response.
+// With an existing factor whose cuts include those of the cut mesh: only dense problems. All but the cut mesh have to
+// outlive the response.
 std::unique_ptr<LatticeEnergy> response_on_cut(const HalfedgeMesh& mesh, const CutMesh& cut_mesh,
                                                const CutFactor& factor, const LatticeReduction& lattice);
 

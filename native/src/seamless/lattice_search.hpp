@@ -20,8 +20,8 @@ struct MovingTriangle {
   std::array<Eigen::RowVectorXcd, 3> slope;  // (d)
 };
 
-// Looks for tuples x of lattice points with small (x - wanted)^H form (x - wanted) that leave every triangle a doubled
-// area of at least a lattice cell's.
+// Searches tuples x of lattice points with small (x - wanted)^H form (x - wanted) for which every triangle has a
+// doubled area of at least a lattice cell.
 class LatticeSearch {
  public:
   LatticeSearch(Eigen::MatrixXcd form, Array<MovingTriangle> triangles, const PointLattice& lattice);
@@ -36,8 +36,8 @@ class LatticeSearch {
   // The nearest plane's point (Babai 1986).
   Choice nearest(const Eigen::VectorXcd& wanted) const;
 
-  // Moves a choice by single steps along short vectors, with growing penalties for missing areas, until none is
-  // missing and no step lowers the cost.
+  // Moves a choice by single steps along short vectors, with growing penalties for missing area, until none is missing
+  // and no step lowers the cost.
   Choice improve(const Eigen::VectorXcd& wanted, Choice choice) const;
 
  private:

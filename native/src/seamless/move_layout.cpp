@@ -15,7 +15,7 @@ namespace lsgp {
 
 namespace {
 
-// Following them.
+// Continuation.
 constexpr int most_moves = 20;
 constexpr double shortest_step = 0.01;  // of the way
 // Smoothing by the symmetric Dirichlet energy.
@@ -31,7 +31,7 @@ Validity LayoutQuantizer::check(const Eigen::VectorXcd& position) const {
   return check_map(mesh_, at_corners(cut_mesh_, position), curvature_.at_vertex, curvature_.is_free);
 }
 
-// before: a valid map from which the present one was moved.
+// before: a valid map from which the current one was moved.
 bool LayoutQuantizer::repair(double scale, const Eigen::VectorXcd& before, Eigen::VectorXcd& position) const {
   Curvature target = curvature_;
   target.log_scale = rest_.array() + std::log(scale);
@@ -50,7 +50,7 @@ void LayoutQuantizer::smooth(double scale, Array<char> marked, int steps, Eigen:
       .smooth(DistortionEnergy::Kind::symmetric_dirichlet, steps, least_decrease);
 }
 
-// Against the scale at rest, 4 for an isometry.
+// Relative to the rest scale, 4 for an isometry.
 Eigen::VectorXd LayoutQuantizer::triangle_energies(double scale, const Jacobians& jacobians) const {
   constexpr DistortionEnergy energy{DistortionEnergy::Kind::symmetric_dirichlet};
   Eigen::VectorXd out(mesh_.triangle_count());
@@ -63,7 +63,8 @@ Eigen::VectorXd LayoutQuantizer::triangle_energies(double scale, const Jacobians
   return out;
 }
 
-// Triangles that are much more distorted than the start, whose own may be: coarse meshes have no conformal maps.
+// Triangles that are much more distorted than in the initial map, which may be distorted itself: coarse meshes have no
+// conformal maps.
 Array<Index> LayoutQuantizer::find_stretched(double scale, const Jacobians& jacobians) const {
   const Eigen::VectorXd energies = triangle_energies(scale, jacobians);
   Array<Index> out;
@@ -73,7 +74,7 @@ Array<Index> LayoutQuantizer::find_stretched(double scale, const Jacobians& jaco
   return out;
 }
 
-// Whether a little smoothing may bring a layout to that energy, which tells early that a grid is too coarse.
+// Whether a little smoothing may lower a layout to that energy, which detects too coarse grids early.
 bool LayoutQuantizer::looks_easy(double scale, double most_energy, const Validity& validity,
                                  const Eigen::VectorXcd& position) const {
   if (static_cast<double>(validity.flipped.size()) > 1 + easy_share * mesh_.triangle_count()) return false;
@@ -100,7 +101,7 @@ bool LayoutQuantizer::move(double scale, const LayoutEffort& effort, const Eigen
   return true;
 }
 
-// The same in steps over which the map stays valid.
+// The same in steps over which the map stays valid (continuation).
 bool LayoutQuantizer::follow(double scale, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const {
   double reached = 0;
   double step = 0.5;

@@ -21,14 +21,14 @@ namespace lsgp {
 
 namespace {
 
-// Matrices of the lattice's unknowns at once: the response, its restriction, reduced bases and moves along them.
+// Number of simultaneous matrices over the lattice's unknowns: the response, its restriction, reduced bases and moves.
 constexpr double lattice_blocks = 8;
 // Choices of lattice points.
 constexpr int tried_angles = 16;          // of the layout, within one turn of the lattice
 constexpr int few_angles = 4;             // of those that are searched from on an automatic grid
 constexpr std::size_t tried_targets = 4;  // that are worth a repair
 constexpr std::size_t few_targets = 2;    // that are worth following, and all that are tried on an automatic grid
-// A start that is smoothed first.
+// An initial map that is smoothed first.
 constexpr double poor_energy = 1.5;  // 1 for an isometry
 constexpr int poor_steps = 20;
 
@@ -38,7 +38,7 @@ Array<int> turns_of_cuts(const Eigen::VectorXd& rotation, int symmetry) {
   return out;
 }
 
-// Roots from which all cones come out on the lattice: the nearer 1 - e^{i curvature} is to a unit the better.
+// Roots for which all cones are on the lattice: the nearer 1 - e^{i curvature} is to a unit, the better.
 double rank_of_root(double curvature) {
   const double gap = std::abs(1.0 - std::polar(1.0, curvature));
   return gap < 1e-6 ? 0 : 1 / (1 + gap);
@@ -67,7 +67,7 @@ LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, const ComponentMap& ma
       before_step_(std::move(before_step)),
       rotation_(*map.rotation) {
   const Array<Index>& relaxed = demands.relaxed;
-  // With relaxed cones the root leaves the lattice too: best it is one of a pair that is too close.
+  // With relaxed cones the root leaves the lattice, too: preferably one of a pair that is too close.
   const NodeGraph nodes = build_node_graph(mesh_, map.cut_graph, [&](Index v) {
     return !relaxed.empty() && v == relaxed.front() ? 1 : rank_of_root(map.curvature.at_vertex[v]);
   });
@@ -125,12 +125,12 @@ UpwardTurn LayoutQuantizer::find_upward_turn(const Eigen::VectorXcd& position) c
   return upward_turn(demands_.directions, at_corners(cut_mesh_, position), lattice_.symmetry());
 }
 
-// By a turn of the lattice, which leaves every point of it on it.
+// Rotates by a rotation of the lattice, which preserves it.
 void LayoutQuantizer::turn_upwards(Eigen::VectorXcd& position) const {
   if (is_turned_) position *= lattice_.unit(find_upward_turn(position).turns_on_lattice());
 }
 
-// The mean angle between directions and v, up to the lattice's turns, radians; 0 where there are none.
+// The mean angle between directions and v, modulo the lattice's rotations, radians; 0 without directions.
 double LayoutQuantizer::measure_misalignment(const Eigen::VectorXcd& position) const {
   if (!is_turned_) return 0;
   return mean_angle_to_v(demands_.directions, at_corners(cut_mesh_, position), lattice_.symmetry());
@@ -166,7 +166,7 @@ Array<MovingTriangle> LayoutQuantizer::moving_triangles(const ComponentMap& map)
       }
       triangle.slope[c] = slope * reduction_.basis;
     }
-    // Relaxed cones may be anywhere, so no triangle can be told to collapse.
+    // Relaxed cones may be anywhere, so collapsing triangles cannot be detected.
     if (demands_.relaxed.empty()) out.push_back(std::move(triangle));
     for (std::size_t c = 0; c < 3; ++c) {
       const auto [first, second] = std::minmax(corners[c].cone, corners[(c + 1) % 3].cone);
@@ -209,7 +209,7 @@ Array<LayoutQuantizer::Target> LayoutQuantizer::find_targets(double density, int
     const Complex motion = std::polar(density, 2 * M_PI / lattice_.symmetry() * i / tried_angles);
     candidates.push_back({motion, search_->nearest(motion * wanted)});
   }
-  // The cheapest are taken as they are where they are valid; where few are, they are worth a search.
+  // The cheapest ones are used directly if they are valid; if few are, they are worth a search.
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.choice.cost < b.choice.cost; });
   for (Candidate& candidate : candidates) {
@@ -217,7 +217,7 @@ Array<LayoutQuantizer::Target> LayoutQuantizer::find_targets(double density, int
       candidate.choice = search_->improve(candidate.motion * wanted, candidate.choice);
     }
     if (!candidate.choice.valid()) continue;
-    // What a similarity of the whole layout does costs nothing.
+    // A similarity of the whole layout costs nothing.
     Target target{0, reduction_.basis * candidate.choice.x, candidate.choice.cost};
     target.motion = pull.dot(target.integers) / pull.dot(integers_);
     const double growth = std::abs(target.motion) / density;
@@ -236,7 +236,7 @@ double LayoutQuantizer::measure_energy(const Eigen::VectorXcd& position) const {
 std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, const LayoutEffort& effort) const {
   const bool quick = effort.quick;
   const Array<Target> targets = find_targets(density, quick ? few_angles : tried_angles);
-  // Beside relaxed cones nothing tells whether the points can be reached, and following them would take too long.
+  // With relaxed cones it is unknown whether the points can be reached, and continuation would take too long.
   const int ways = !demands_.relaxed.empty() || quick ? 1 : 2;
   for (int in_steps = 0; in_steps < ways; ++in_steps) {
     const std::size_t count = std::min(targets.size(), in_steps || quick ? few_targets : tried_targets);

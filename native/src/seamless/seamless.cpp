@@ -14,7 +14,7 @@ namespace lsgp {
 
 namespace {
 
-// Takes parts out and reports them; throws where none is left.
+// Removes components and reports them; throws if none is left.
 void leave_out(const Array<Failure>& failures, Array<SeamlessPart>& parts, std::vector<Finding>& findings) {
   const auto has_failed = [&](const SeamlessPart& part) {
     return std::any_of(failures.begin(), failures.end(),
@@ -25,14 +25,14 @@ void leave_out(const Array<Failure>& failures, Array<SeamlessPart>& parts, std::
   report_skipped(failures, findings);
 }
 
-// None where single precision holds the part's cuts.
+// None if single precision can represent the component's cuts.
 std::optional<Error> refusal_of(const ExactLayout& exact) {
   Array<Index> edges = exact.find_unreadable();
   if (edges.empty()) return std::nullopt;
-  const std::string what = concat(
-      count(edges.size() / 2, "cut edge is", "cut edges are"),
-      " so short in the layout that single precision cannot hold how the two sides are turned. Merge vertices by "
-      "distance, or unwrap small parts by themselves.");
+  const std::string what =
+      concat(count(edges.size() / 2, "cut edge is", "cut edges are"),
+             " so short in the layout that single precision cannot represent the rotation between the two sides. Merge "
+             "vertices by distance, or unwrap small components separately.");
   return Error(Code::seamless_impossible, what, {ElementKind::edges, std::move(edges)});
 }
 
@@ -53,7 +53,7 @@ void report_cones_given_up(const SeamlessReport& report, std::vector<Finding>& f
   }
 }
 
-// Parts that cuts close off are placed one by one.
+// Regions enclosed by cuts are placed individually.
 DividedLayout divide(const HalfedgeMesh& mesh, ComponentMap& map) {
   Array<Index> part_of_triangle;
   DividedLayout out{&map.position, Array<Index>(map.cut_mesh.copy_count()), 0};
@@ -64,7 +64,7 @@ DividedLayout divide(const HalfedgeMesh& mesh, ComponentMap& map) {
   return out;
 }
 
-// The layouts as maps in cells, split where they overlap. A part that cannot be split leaves all maps as they are.
+// The layouts as maps in cells, split where they overlap. If a component cannot be split, all maps are left unchanged.
 void split_layouts(const GridSearch& search, Complex shift, const Grid& grid, Array<SeamlessPart>& parts,
                    ProgressMonitor& monitor) {
   Array<ComponentMap> maps(parts.size());
@@ -72,7 +72,7 @@ void split_layouts(const GridSearch& search, Complex shift, const Grid& grid, Ar
     const HalfedgeMesh& mesh = parts[i].component->mesh;
     maps[i] = *parts[i].map;
     maps[i].position = grid.layouts[i].position.array() + shift;
-    // Cones off the lattice leave translations off it, across which nothing may move.
+    // Cones off the lattice have translations off it, across which no part may move.
     const Array<char> nowhere(mesh.halfedge_count(), 0), everywhere(mesh.halfedge_count(), 1);
     split_map({mesh, parts[i].system->geometry(), nowhere}, search.relaxed(i).empty() ? mesh.seam : everywhere, monitor,
               maps[i]);
@@ -121,7 +121,7 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
     }
     area += part.system->geometry().total_area;
     before += part.system->geometry().total_area * search.energy(i);
-    // Triangles that single precision has folded to nothing, which are named, have none.
+    // Triangles that collapsed in single precision, which are reported, have none.
     const double stored_energy = search.energy(i, part.map->position);
     after +=
         part.system->geometry().total_area * (std::isfinite(stored_energy) ? stored_energy : grid.layouts[i].energy);
@@ -159,17 +159,17 @@ void require_valid(const Seamless& seamless, const Options& options, const Pins&
     refuse(concat("The cell's side is ", seamless.cell, "."), "Choose a power of two, 1 or less.");
   }
   if (seamless.parity && seamless.lattice != Lattice::square) {
-    refuse("Only square cells can be told black from white.", "Choose the square lattice, or no parity.");
+    refuse("Parity requires square cells.", "Choose the square lattice, or no parity.");
   }
   if (options.method == Method::lscm) {
     refuse("Least squares conformal maps have no transitions to round.", "Choose the method lsgp.");
   }
   if (options.border == BorderMode::straight) {
-    refuse("Straight borders cannot be kept in a seamless layout.", "Leave the borders free.");
+    refuse("Straight boundaries cannot be kept in a seamless layout.", "Leave the boundaries free.");
   }
   if (!pins.corners.empty()) {
     throw Error(Code::pins_conflict,
-                "Pinned texture coordinates cannot be kept in a seamless layout, whose places are the lattice's. "
+                "Pinned texture coordinates cannot be kept in a seamless layout, which is aligned with a lattice. "
                 "Unpin them.");
   }
 }
@@ -183,8 +183,8 @@ void require_quantizable(const HalfedgeMesh& mesh, const ComponentMap& map) {
   throw Error(
       Code::seamless_impossible,
       concat("With angles rounded for the lattice ", count(map.validity.flipped.size(), "triangle is", "triangles are"),
-             " flipped and ", count(map.validity.wrong_angle_sums.size(), "vertex turns", "vertices turn"),
-             " wrongly, so there is no layout to start from. Move or add cones nearby."),
+             " flipped and ", count(map.validity.wrong_angle_sums.size(), "vertex has", "vertices have"),
+             " a wrong angle sum, so there is no valid initial layout. Move or add cones nearby."),
       {ElementKind::vertices, std::move(where)});
 }
 

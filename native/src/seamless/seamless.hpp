@@ -19,12 +19,12 @@ void require_valid(const Seamless& seamless, const Options& options, const Pins&
 // Throws SEAMLESS_IMPOSSIBLE for a map that has flipped triangles or wrong angles.
 void require_quantizable(const HalfedgeMesh& mesh, const ComponentMap& map);
 
-// Brings the cuts of all maps onto one grid and the maps into texture coordinates: side by side, cut vertices on
+// Rounds the cuts of all maps to one grid and places the maps side by side in texture coordinates, with cut vertices at
 // binary fractions, so that transitions hold exactly in float32 (on triangular lattices, whose points are irrational,
-// to its last digit). Maps are made again where cones are merged.  unit_scale: of the components' positions to the
-// caller's. Parts that have no layout on any grid, or so small a one beside the others that single precision cannot
-// hold its cuts, are taken out of `parts` and reported as COMPONENT_SKIPPED; where that are all, the first error is
-// thrown in the caller's numbering: GRID_TOO_COARSE, SEAMLESS_IMPOSSIBLE.
+// to its last digit). Maps are recomputed if cones are merged.  unit_scale: from the components' positions to the
+// caller's. Components that have no layout on any grid, or one too small beside the others for single precision to
+// hold its cuts, are removed from `parts` and reported as COMPONENT_SKIPPED. If all components fail, the first error is
+// rethrown, in the caller's numbering: GRID_TOO_COARSE, SEAMLESS_IMPOSSIBLE.
 SeamlessReport make_seamless(const Options& options, double unit_scale, Array<SeamlessPart>& parts,
                              std::vector<Finding>& findings, ProgressMonitor& monitor);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parts of a seamless layout.
+// The components of a seamless layout.
 #pragma once
 
 #include <memory>
@@ -10,23 +10,23 @@
 
 namespace lsgp {
 
-// A component's map, its angles multiples of the lattice's turn, and what it was made from.
+// A component's map, with angles that are multiples of the lattice's rotation, and its origin.
 struct SeamlessPart {
   const Component* component;
   ComponentTask* task;
   ComponentMap* map;
   ComponentSystem* system;  // of the map
-  // Cones given up for others, the caller's vertices, and the system of those that are left.
+  // Cones merged with others, as the caller's vertices, and the system of the remaining ones.
   Array<Index> merged{};
   std::unique_ptr<ComponentSystem> merged_system{};
 };
 
-// Thrown where parts cannot go on, so that the others are laid out without them.
+// Thrown if components fail, so that the others are laid out without them.
 struct PartsFailed {
   Array<Failure> failures;
 };
 
-// Runs step(part) for all parts. Throws PartsFailed.
+// Runs step(part) for all components. Throws PartsFailed.
 template <typename Step>
 void for_each_part(const Array<SeamlessPart>& parts, Step step) {
   PartsFailed failed;

@@ -66,9 +66,9 @@ bool BoxProgram::factorize_block(const Array<int>& free) {
   return true;
 }
 
-// Solves for the free variables, the others at their bounds, and changes the side of all that come out wrong: free ones
-// out of bounds, others that the objective pulls inwards. When their number has not fallen for a while, only the last
-// one is changed until it does, which ends the cycles that are possible otherwise.
+// Solves for the free variables with the others at their bounds, and changes the side of all infeasible ones: free ones
+// out of bounds, bounded ones that the objective pulls inwards. If their number has not fallen for a while, only the
+// last one is changed until it does, which prevents cycles.
 std::optional<Eigen::VectorXd> BoxProgram::pivot_blocks(const Eigen::VectorXd& gradient, const Eigen::VectorXd& low,
                                                         const Eigen::VectorXd& high) {
   const int size = static_cast<int>(gradient.size());

@@ -257,7 +257,7 @@ void Cholesky<Scalar>::Factor::eliminate(int width, Scalar* x) const {
   for (int i = 0; i < plan.front_count(); ++i) {
     const Front<Scalar> front = this->front(i);
     Scalar* own = x + product(plan.first[i], width);
-    // Impulses reach the fronts above them alone.
+    // A sparse right-hand side only affects ancestor fronts.
     if (std::all_of(own, own + front.columns * width, [](const Scalar& value) { return value == Scalar(0); })) continue;
     others.resize(std::max(others.size(), product(front.below, width)));
     kernels.substitute_forward(front, width, own, others.data());

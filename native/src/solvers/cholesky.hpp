@@ -28,7 +28,7 @@ class Cholesky {
 
   Eigen::Index size() const;
 
-  // One right side a column; nothing may be retained.
+  // One right-hand side per column; nothing may be retained.
   Vector solve(const Vector& right_side) const;
   Matrix solve(const Matrix& right_sides) const;
 
@@ -41,9 +41,9 @@ class Cholesky {
   static constexpr int solve_width = 8;
   static Eigen::Index width_for(Eigen::Index sides) { return sides > 2 ? solve_width : sides; }
   int place(int row) const;  // of a row in that order
-  // Leaves what half a solve makes of right sides, the last rows being those of the retained rows' own system.
+  // Performs half a solve on right-hand sides; the last rows become the right-hand sides of the retained rows' system.
   void eliminate(Rows& right_sides) const;
-  // Takes the solution of that system in their place and leaves the rest's.  sides: how many count.
+  // Takes the solution of that system in their place and computes the rest.  sides: number of right-hand sides in use.
   void substitute(Rows& half_solved, Eigen::Index sides) const;
 
  private:

@@ -25,7 +25,7 @@ namespace {
 #ifdef _MSC_VER
 bool is_set(unsigned long long bits, int bit) { return ((bits >> bit) & 1) != 0; }
 
-// By Intel's manual: the instructions are there, and the system keeps their registers from thread to thread.
+// As in Intel's manual: the instructions exist, and the system saves their registers on context switches.
 bool has_avx2() {
   int leaf[4];  // EAX, EBX, ECX, EDX
   __cpuid(leaf, 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled once for every instruction set: LSGP_INSTRUCTIONS is the namespace that its code lives in. Eigen is renamed
-// alike, or the linker might take what was compiled for one machine to run on another.
+// Compiled once for every instruction set: LSGP_INSTRUCTIONS is the namespace of its code. Eigen is renamed likewise;
+// otherwise the linker might choose code compiled for another instruction set.
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <complex>
@@ -81,7 +81,7 @@ void divide_rows(const Scalar* factor, int size, Scalar* block, int rows, std::p
 template <typename Scalar>
 bool factor_wide(Scalar* panel, int rows, int columns) {
   Block<Scalar> square(panel, columns, columns, Eigen::OuterStride<>(rows));
-  // What Eigen::LLT calls, without the norm it adds up besides.
+  // Called by Eigen::LLT, which also computes a norm.
   Eigen::internal::llt_inplace<Scalar, Eigen::Lower>::blocked(square);
   if (!is_positive(square)) return false;
   divide_rows(panel, columns, panel + columns, rows - columns, rows);

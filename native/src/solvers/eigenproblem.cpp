@@ -104,16 +104,16 @@ Eigen::VectorXcd find_smallest(const Matrix& form, const Matrix& norm) {
     solver.init(real_start.data());
     solver.compute(Spectra::SortRule::LargestMagn, most_restarts, tolerance);
     converged = solver.info() == Spectra::CompInfo::Successful;
-  } catch (const std::runtime_error&) {     // Spectra's own word for a small eigenproblem that failed
-  } catch (const std::invalid_argument&) {  // or for a start vector that the norm does not see
+  } catch (const std::runtime_error&) {     // thrown by Spectra if a small eigenproblem fails
+  } catch (const std::invalid_argument&) {  // or if the start vector has norm zero
   }
   if (!converged) {
     throw Error(Code::solver_failed,
                 "The spectral unfolding did not converge: several maps are about equally conformal. "
                 "Use the Poisson unfolding.");
   }
-  // Where the form is singular the inverse is so large in one direction that the Krylov basis loses the others' digits;
-  // two plain inverse iterations win them back.
+  // For a singular form the inverse is so large in one direction that the Krylov basis loses the digits of the others;
+  // two plain inverse iterations recover them.
   Eigen::VectorXd vector = solver.eigenvectors(1), image(2 * n);
   for (int i = 0; i < 2; ++i) {
     product.perform_op(vector.data(), image.data());

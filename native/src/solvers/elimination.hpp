@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The symbolic part of a sparse Cholesky factorization: in which order, and in which fronts, a matrix is eliminated.
+// The symbolic part of a sparse Cholesky factorization: elimination order and fronts.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace lsgp {
 
-// Where the entries of a symmetric matrix are: the neighbours of every row, and which stored entry joins them.
+// The pattern of a symmetric matrix: the neighbours of every row, and the stored entry for each.
 struct Adjacency {
   Array<int> begin;      // (n + 1)
   Array<int> neighbour;  // without the row itself

@@ -6,7 +6,7 @@
 
 namespace lsgp {
 
-// Counts what this thread does with sparse matrices while it lives, but for what another counter inside it counts.
+// Counts the operations of this thread on sparse matrices during its lifetime, without those of nested counters.
 class LinearAlgebraCounter {
  public:
   LinearAlgebraCounter();
@@ -19,7 +19,7 @@ class LinearAlgebraCounter {
   LinearAlgebra around_;
 };
 
-// Adds to what the innermost counter of this thread counts.
+// Adds to the innermost counter of this thread.
 void count_factorization();
 void count_back_substitutions(int sides);
 

@@ -56,7 +56,7 @@ Array<char> FlowNetwork::reachable(int source) const {
   return reached;
 }
 
-// Counted from the sink, so that no way of falling distance is a dead end before flow has blocked it.
+// Levels are distances to the sink, so every level-decreasing path reaches it until blocked.
 bool FlowNetwork::find_distances(int source, int sink) {
   distance_.assign(first_.size(), -1);
   distance_[sink] = 0;
@@ -71,7 +71,7 @@ bool FlowNetwork::find_distances(int source, int sink) {
   return distance_[source] >= 0;
 }
 
-// A blocking flow: walks towards the sink, sends what the walk can carry, goes on from where it is blocked.
+// A blocking flow: walks towards the sink, sends the walk's capacity, continues from the saturated arc.
 FlowNetwork::Units FlowNetwork::send_along_shortest(int source, int sink) {
   current_ = first_;
   Array<int> walk;  // arcs from the source

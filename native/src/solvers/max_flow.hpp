@@ -18,12 +18,12 @@ class FlowNetwork {
   // An arc and the one back; returns its number.
   int add_arc(int from, int to, Units capacity, Units capacity_back = 0);
 
-  // Sends as much as possible on top of what flows already; returns how much more.
+  // Augments the flow to a maximum; returns the increase.
   Units maximize(int source, int sink);
 
   Units flow(int arc) const;  // net, from its first node to its second
 
-  // (nodes) which of them `source` can still send to: its side of a minimum cut once the flow is maximal.
+  // (nodes) those reachable from `source` in the residual network: its side of a minimum cut once the flow is maximal.
   Array<char> reachable(int source) const;
 
  private:

@@ -43,8 +43,8 @@ Eigen::Matrix<Scalar, Eigen::Dynamic, 1> minimize_under(const Eigen::SparseMatri
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<Scalar>, Eigen::Lower> factor(assembly.build());
   if (factor.info() != Eigen::Success) {
     throw Error(Code::solver_failed,
-                "The border could not be straightened: it has edges too short to compute with. Clean the mesh (merge "
-                "by distance, dissolve degenerate faces) and try again.");
+                "The boundary could not be straightened: some of its edges are too short. Clean the mesh (merge by "
+                "distance, dissolve degenerate faces) and try again.");
   }
 
   // Refinement against the equations without regularisation.

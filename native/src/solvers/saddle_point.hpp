@@ -8,7 +8,7 @@ namespace lsgp {
 
 // Minimises  x^H form x / 2 - Re(x^H right_side)  subject to  rows x = values.
 // form: lower triangle, Hermitian positive definite, (n, n); rows: (r, n), dependent ones allowed where consistent.
-// The equations are met to rounding where they can be met; the caller checks where they may contradict each other.
+// Consistent equations are satisfied to rounding; the caller checks whether they may contradict each other.
 // Throws SOLVER_FAILED.
 template <typename Scalar>
 Eigen::Matrix<Scalar, Eigen::Dynamic, 1> minimize_under(const Eigen::SparseMatrix<Scalar>& form,

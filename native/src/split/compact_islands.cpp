@@ -19,7 +19,7 @@ namespace lsgp {
 
 namespace {
 
-// Of the area of all islands: what is smaller is not cut.
+// As a fraction of the area of all islands: smaller islands are not cut.
 constexpr double least_island = 0.02;
 constexpr int cells_across = 40;
 
@@ -76,7 +76,7 @@ class Compactor {
   Array<Complex> hull_of(const Array<Index>& faces) const;
   // The connected faces of one class each.  faces: those that are divided.  class_of: by their place among them.
   Array<Array<Index>> pieces_of(const Array<Index>& faces, const Array<Index>& class_of);
-  // The faces of the pieces into which an island is best cut; fewer than two pieces where it is best left whole.
+  // The faces of the pieces of the best division of an island; fewer than two if it is best left whole.
   Array<Array<Index>> divide(const Array<Index>& island);
   IslandCells cells_of(const Array<Index>& island, Complex along);
   Array<Index> cut_along(const Array<Line>& lines, const Array<Index>& island, double band);
@@ -96,7 +96,7 @@ class Compactor {
   MinimumCutter cutter_;
   Array<Index> triangle_begin_, triangles_;  // of every face
   Array<Complex> center_;                    // (faces)
-  Array<Index> place_;                       // (faces) among those in hand, none elsewhere
+  Array<Index> place_;                       // (faces) index in the current island, none elsewhere
   Array<char> is_near_cut_;                  // (faces) may change sides
 };
 
@@ -170,8 +170,8 @@ IslandCells Compactor::cells_of(const Array<Index>& island, Complex along) {
   return cells;
 }
 
-// The side of every face, by its place in the island, after a cut near each of the lines, short and rather along sharp
-// edges.
+// The side of every face, by its index in the island, after a cut near each of the lines, short and preferably along
+// sharp edges.
 Array<Index> Compactor::cut_along(const Array<Line>& lines, const Array<Index>& island, double band) {
   Array<Index> class_of(island.size(), 0);
   Index classes = 1;
@@ -204,7 +204,7 @@ Array<Index> Compactor::cut_along(const Array<Line>& lines, const Array<Index>& 
   return class_of;
 }
 
-// Pieces too small to be islands join the neighbour that they share the longest border with.
+// Pieces too small to be islands join the neighbour with the longest common boundary.
 Array<Index> Compactor::without_scraps(const Array<Index>& island, const Array<Index>& class_of) {
   const Array<Array<Index>> pieces = pieces_of(island, class_of);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -258,7 +258,7 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& island) {
   Array<Array<Index>> pieces = pieces_of(island, class_of);
   double after = 0;
   for (const Array<Index>& piece : pieces) after += search_.demand(hull_of(piece));
-  // The cells have shown it roughly.
+  // The cells only gave an estimate of the gain.
   const bool is_worth_it = search_.worth(before - after, length_between(island, class_of), pieces.size()) > 0;
   return is_worth_it ? pieces : Array<Array<Index>>{};
 }

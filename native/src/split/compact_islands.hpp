@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Additional cuts after which the islands of a layout fill a square better.
+// Additional cuts with which the islands of a layout fill a square better.
 #pragma once
 
 #include "base/array.hpp"
@@ -9,10 +9,10 @@
 
 namespace lsgp {
 
-// Cuts islands that are far from convex, or long beside the square, where that saves more of its area than it costs in
-// cut length and islands; rather along sharp edges. The parts keep their places, so the transitions stay what they are,
-// and those across the further cuts are the identity.
-// surface: where the layout ends, besides the cuts.
+// Cuts islands that are far from convex, or long compared with the square, if the area saved outweighs the additional
+// cut length and islands; sharp edges are preferred. The parts do not move, so transitions are unchanged, and those
+// across the additional cuts are the identity.
+// surface: its open edges, besides the cuts.
 void compact_islands(const OpenedSurface& surface, const SharedSquare& square, ComponentMap& map);
 
 }  // namespace lsgp

@@ -15,13 +15,13 @@ namespace lsgp {
 
 namespace {
 
-// Parts of the area of all islands that have to be saved: by a cut as long as the square root of that area, and by each
-// further island.
+// Least saving, as a fraction of the area of all islands: for a cut as long as the square root of that area, and for
+// each additional island.
 constexpr double cost_of_cut = 0.15, cost_of_island = 0.01;
-// Times as much for those who would rather have few cuts.
+// Multiplies both with Compactness::sparing.
 constexpr double sparing_factor = 8;
-// An island takes what is halfway between its convex hull and its smallest box. Where the smallest square around it is
-// larger than a part of the square that all share, it keeps others out of that square as well.
+// An island is assumed to occupy the mean area of its convex hull and its smallest box. If its smallest bounding square
+// exceeds a fraction of the shared square, it also blocks part of that square for others.
 constexpr double fill = 0.62, large = 0.7, cost_of_large = 0.5;
 constexpr Index most_pieces = 8;  // of one division
 constexpr int directions = 12;
@@ -49,7 +49,7 @@ double DivisionSearch::demand(const Array<Complex>& hull) const {
 double DivisionSearch::worth(double gain, double length, std::size_t pieces) const {
   const double price = price_factor_ * (area_ * cost_of_island * static_cast<double>(pieces - 1) +
                                         std::sqrt(area_) * cost_of_cut * length);
-  // Between what gains most and what gains most for its price.
+  // A compromise between the largest gain and the largest gain per cost.
   return gain > price ? gain / std::sqrt(price) : 0;
 }
 

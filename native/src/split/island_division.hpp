@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where an island is best divided, so that all islands fill a square better.
+// The best division of an island, with which all islands fill a square better.
 #pragma once
 
 #include <complex>
@@ -10,14 +10,14 @@
 
 namespace lsgp {
 
-// The square that the islands of a map are to share with all others.
+// The square that the islands of a map share with all others.
 struct SharedSquare {
   double area;   // of all islands, on the surface
   double scale;  // of the map to the surface
   Compactness filling;
 };
 
-// Of the area of all islands: nothing is cut off that is smaller.
+// As a fraction of the area of all islands: smaller pieces are not cut off.
 constexpr double least_piece = 0.01;
 constexpr int division_positions = 12;  // that are tried across an island
 

@@ -15,7 +15,7 @@ namespace lsgp {
 namespace {
 
 constexpr double same_place = 1e-9;            // of the layout's size
-constexpr double operations_a_triangle = 200;  // to find out whether it lies on another
+constexpr double operations_a_triangle = 200;  // of the overlap test
 constexpr double narrowest_joint = 0.25;       // of the square root of the smaller part's area
 
 class Joiner {
@@ -24,11 +24,11 @@ class Joiner {
          MapParts& parts);
 
   void join() {
-    while (join_next()) continue;  // each makes two groups one
+    while (join_next()) continue;  // each step joins two groups
   }
 
  private:
-  // Open edges along one cut between two parts: where the left one has to go to meet the right one.
+  // Open edges along one cut between two parts, and the motion that brings the left one to the right one.
   struct Border {
     Index left, right;  // parts
     Motion across;
@@ -39,7 +39,7 @@ class Joiner {
 
   bool join_next();
   bool try_to_join(const Border& border);
-  // Two groups that could not be joined cannot be before either has grown.
+  // Two groups that could not be joined cannot be joined before one of them has grown.
   Array<Index> state_of(const Border& border) const {
     const Index left = group_[border.left], right = group_[border.right];
     return {left, joins_[left], right, joins_[right]};
@@ -59,9 +59,9 @@ class Joiner {
   Array<Index> group_;             // (parts) joined ones share one
   Array<Array<Index>> triangles_;  // (groups)
   Array<double> area_;             // (groups)
-  Array<Index> joins_;             // (groups) how many others they have taken up
+  Array<Index> joins_;             // (groups) number of groups merged into each
 
-  // Scratch, as it is here between calls.
+  // Scratch memory with these values between calls.
   Array<char> is_closed_;  // (3m) 0
   Array<Index> place_;     // (m) none
 };
@@ -126,7 +126,7 @@ bool Joiner::join_next() {
 bool Joiner::try_to_join(const Border& border) {
   const Index left = group_[border.left], right = group_[border.right];
   const Motion motion = to_meet(border);
-  // Whatever else meets then is closed as well.
+  // Other edges that then coincide are closed as well.
   Array<Index> closed;
   double length = 0;
   for (const Border& other : borders_) {

@@ -8,17 +8,17 @@
 
 namespace lsgp {
 
-// The parts that a map is divided into.
+// A map divided into parts.
 struct MapParts {
-  Array<char> open;      // (3m) halfedges at which they end, on both sides of an edge
+  Array<char> open;      // (3m) halfedges between parts, on both sides of an edge
   Array<Index> part;     // (m) of every triangle
-  Array<Motion> motion;  // (parts) how each moves
+  Array<Motion> motion;  // (parts)
 };
 
-// Puts a layout that is divided into parts, each of which lies on itself nowhere, together to fewer: parts move across
-// a common cut, which closes, where that leaves them beside each other. Longer cuts are closed first; where parts
-// would hang on a few edges alone, they stay apart. map: its cuts and transitions.  kept: (3m) edges that stay open.
-// parts: loses open halfedges that are closed, and gets how it moves.
+// Merges overlap-free parts across shared cuts, longest first, wherever the union stays overlap-free. Parts whose
+// shared cut is only a few edges long are not merged.
+// map: its cuts and transitions.  kept: (3m) edges that stay open.  parts: closed halfedges are cleared from `open`,
+// and `motion` gets the motion of each part.
 void merge_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, const Array<char>& kept,
                    MapParts& parts);
 

@@ -14,12 +14,12 @@ namespace {
 
 using Units = FaceGraph::Units;
 
-constexpr double enough_area = 0.02;  // of the surface: a part so large need not be larger
-constexpr double least_area = 1e-16;  // of the surface: the sum of areas has lost what is smaller
+constexpr double enough_area = 0.02;  // of the surface: parts of this size need not be larger
+constexpr double least_area = 1e-16;  // of the surface: smaller areas are lost in the sum
 constexpr Index most_cells = 10000;   // among which a cut is searched before its neighbourhood is
 constexpr double cell_detour = 1.5;   // by which a cut between cells may be longer than it has to be
 
-constexpr Index first_cell = 0, second_cell = 1;  // what is to be separated
+constexpr Index first_cell = 0, second_cell = 1;  // the cells to be separated
 
 struct Edge {
   Index cells[2];
@@ -28,7 +28,7 @@ struct Edge {
 
 }  // namespace
 
-// Faces taken together. The first two are what is to be separated.
+// Cells of faces. The first two are to be separated.
 struct MinimumCutter::Cells {
   Array<double> area;
   Array<Edge> edges;  // one between any two neighbours, sorted
@@ -59,7 +59,7 @@ struct MinimumCutter::Cells {
     }
   }
 
-  // For every cell its edges: where they begin in the list, and the list.
+  // The edges of every cell: offsets into the list, and the list.
   std::pair<Array<Index>, Array<Index>> by_cell() const {
     Array<Index> begin(count() + 1, 0), list(2 * edges.size());
     for (const Edge& edge : edges) {
@@ -73,8 +73,8 @@ struct MinimumCutter::Cells {
     return {std::move(begin), std::move(list)};
   }
 
-  // Takes neighbours together two by two, those with the longest common border for their size. Returns the new cell of
-  // every cell.
+  // Merges pairs of neighbours, preferring those with the longest common boundary for their size. Returns the new cell
+  // of every cell.
   Array<Index> coarsen() {
     const auto [begin, list] = by_cell();
     Array<Index> order(count()), merged(count(), none);
@@ -202,7 +202,7 @@ Array<MinimumCutter::CellCut> MinimumCutter::cut_cells(const Cells& cells, doubl
   const Units least = network.maximize(first_cell, second_cell);
   const std::array<double, 2> least_areas = judge(network, least, is_held);
   if (rule_ == CutCost::shortest) return out;
-  // Cuts further away from what they part, on one side or on both, which leave larger parts.
+  // Cuts further away from the sets to be separated, on one side or on both, which leave larger parts.
   const std::array<Array<Index>, 2> nearest = cells.by_distance();
   for (const std::array<bool, 2> grows : {std::array{true, false}, std::array{false, true}, std::array{true, true}}) {
     FlowNetwork grown = network;
@@ -268,7 +268,7 @@ MinimumCut MinimumCutter::cut(const Array<Index>& scope, const Array<Index>& fir
   return best;
 }
 
-// The shortest cut among those within so many faces of a coarse one.
+// The shortest cut within a given number of faces of a coarse one.
 MinimumCut MinimumCutter::refine(const Array<Index>& scope, const Array<char>& is_held, const MinimumCut& coarse,
                                  int rings, double cost_to_beat) const {
   Array<Index> cell(scope.size()), band;

@@ -18,15 +18,15 @@ struct MinimumCut {
 // The shortest cut hugs the faces to be separated and leaves slivers.
 enum class CutCost {
   shortest,
-  no_slivers,      // short for the width of the smaller of the two parts that are left
-  no_small_parts,  // short for its area
+  no_slivers,      // short relative to the width of the smaller of the two resulting parts
+  no_small_parts,  // short relative to its area
 };
 
 class MinimumCutter {
  public:
   MinimumCutter(const FaceGraph& graph, CutCost rule) : graph_(graph), rule_(rule), place_(graph.face_count(), none) {}
 
-  // first, second: faces of the scope to be separated. The cost is infinite where no cut can do that.
+  // first, second: faces of the scope to be separated. The cost is infinite if no cut can do that.
   MinimumCut cut(const Array<Index>& scope, const Array<Index>& first, const Array<Index>& second);
 
   // Of a cut so long.

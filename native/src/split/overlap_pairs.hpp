@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faces of a layout that lie on each other, and the parts that faces belong to.
+// Overlapping faces of a layout, and the parts of faces.
 #pragma once
 
 #include <algorithm>
@@ -10,15 +10,15 @@
 
 namespace lsgp {
 
-// Each pair of faces is an entry of either of them; sorted by face, then partner.
+// Each pair of faces is an entry of both; sorted by face, then partner.
 struct OverlapPairs {
   Array<Index> begin;        // (faces + 1) entries of a face
   Array<Index> of, partner;  // (entries) faces
   Array<double> shared;      // (entries) area
 
-  Index find(Index face, Index partner) const;  // none where they do not lie on each other
+  Index find(Index face, Index partner) const;  // none if they do not overlap
 
-  // Whether is(partner) for any face that lies on this one.
+  // Whether is(partner) holds for any face that overlaps this one.
   template <typename Is>
   bool any_partner(Index face, Is is) const {
     return std::any_of(partner.begin() + begin[face], partner.begin() + begin[face + 1], is);

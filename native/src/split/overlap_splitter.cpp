@@ -53,7 +53,7 @@ OverlapSplitter::Conflict OverlapSplitter::find_conflict(Index seed) {
   return out;
 }
 
-// Of entries, sorted, that no conflict has.
+// Adds the conflicts of those of the sorted entries that no conflict contains yet.
 void OverlapSplitter::add_conflicts(const Array<Index>& entries, Array<Part>& parts) {
   for (const Index seed : entries) {
     const Index part = parts_.of_face[pairs_.of[seed]];
@@ -62,7 +62,7 @@ void OverlapSplitter::add_conflicts(const Array<Index>& entries, Array<Part>& pa
   for (const Index entry : entries) is_seen_[entry] = 0;
 }
 
-// The largest conflict of two sides, or where there is none a piece of the largest of all.
+// The largest conflict between two sides, or if there is none, a piece of the largest of all.
 OverlapSplitter::Region OverlapSplitter::find_region(const Array<Part>& parts) {
   const Conflict *two_sided = nullptr, *largest = nullptr;
   for (const Part& part : parts) {
@@ -81,7 +81,7 @@ OverlapSplitter::Region OverlapSplitter::find_region(const Array<Part>& parts) {
   return region;
 }
 
-// From the pair that shares most, half as far as the two sides stay apart.
+// Grows from the pair with the largest shared area to half the distance at which the two sides would meet.
 OverlapSplitter::Region OverlapSplitter::grow_region(const Conflict& conflict) {
   const Index seed = *std::max_element(conflict.entries.begin(), conflict.entries.end(),
                                        [&](Index a, Index b) { return pairs_.shared[a] < pairs_.shared[b]; });
@@ -118,7 +118,7 @@ OverlapSplitter::Region OverlapSplitter::grow_region(const Conflict& conflict) {
   return region;
 }
 
-// Makes parts of the connected faces on either side of a cut; the first of them keeps the number.
+// Turns the connected faces on either side of a cut into parts; the first of them keeps the number.
 void OverlapSplitter::divide(Index part, const Array<char>& is_first, Array<Part>& parts) {
   const Array<Index> faces = std::move(parts[part].faces);
   Array<Conflict> conflicts = std::move(parts[part].conflicts);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fewer and shorter cuts between the parts of a layout that lie on each other.
+// Fewer and shorter cuts between the overlapping parts of a layout.
 #pragma once
 
 #include <functional>
@@ -14,13 +14,13 @@ namespace lsgp {
 
 class PartMerger {
  public:
-  // parts: no two faces of one lie on each other, which stays so.  before_cut: called before every cut; what it throws
-  // ends the work. What is given has to outlive it.
+  // parts: no two faces of a part overlap, which is preserved.  before_cut: called before every cut; its exceptions
+  // propagate. All arguments have to outlive it.
   PartMerger(const FaceGraph& graph, const OverlapPairs& pairs, MinimumCutter& cutter,
              const std::function<void()>& before_cut, FaceParts& parts)
       : graph_(graph), pairs_(pairs), cutter_(cutter), before_cut_(before_cut), parts_(parts) {}
 
-  // Closes what was opened between two parts that do not lie on each other, the longest cut first.
+  // Closes cuts between two parts that do not overlap, the longest first.
   void merge_back();
 
   // Chooses the cuts between neighbours again.
@@ -35,7 +35,7 @@ class PartMerger {
 
   PartLengths measure_borders() const;         // of what was opened between any two parts
   Array<Array<Index>> faces_of_parts() const;  // sorted
-  // Chooses the cut between two neighbours, all others given. Returns whether there was a better one.
+  // Optimises the cut between two neighbours, all others fixed. Returns whether there was a better one.
   // scope: the faces of both, sorted.
   bool improve(Index a, Index b, const Array<Index>& scope, FaceGraph::Units length);
 

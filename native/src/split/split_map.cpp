@@ -14,7 +14,7 @@ namespace lsgp {
 
 namespace {
 
-// Of every island, of one that is a scrap on top, and of cuts as long as the square root of the surface's area.
+// Cost of every island, additional cost of a sliver, and cost of cuts as long as the square root of the surface's area.
 constexpr double cost_of_island = 0.5, cost_of_scrap = 2, cost_of_cut = 1;
 constexpr double scrap = 0.005;  // of the area
 
@@ -32,13 +32,13 @@ double cost(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char
          cost_of_cut * length / std::sqrt(geometry.total_area);
 }
 
-// A way to divide a map.
+// A division of a map.
 struct Division {
   MapParts parts;
   double cost;
 };
 
-// The ways to divide a map that overlaps itself.
+// The candidate divisions of a map that overlaps itself.
 class MapDivider {
  public:
   // surface: where the map is open, cuts included.  kept: (3m).
@@ -96,7 +96,7 @@ bool split_map(const OpenedSurface& surface, const Array<char>& kept, ProgressMo
       is_cut[h] = 0;
       continue;
     }
-    // What was open before stays open, but becomes a cut where its sides move differently.
+    // Open edges stay open, but become cuts if their sides move differently.
     const Motion &here = motion[part[h / 3]], &there = motion[part[mesh.twin[h] / 3]];
     is_cut[h] = is_cut[h] || !open[h] || here.angle != there.angle || here.shift != there.shift;
   }

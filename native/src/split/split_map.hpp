@@ -8,10 +8,10 @@
 
 namespace lsgp {
 
-// Opens a map along further cuts (split_overlaps.hpp) and joins its parts across others (merge_islands.hpp) until none
-// overlaps itself. Transitions stay what they were but for how the parts moved. Flipped triangles lie on their
-// neighbours by nature and are let be.
-// surface: where the layout ends, besides the cuts.  kept: (3m) halfedges that may not be closed.
+// Adds cuts (split_overlaps.hpp) and merges the parts across others (merge_islands.hpp) until no island overlaps
+// itself. Transitions change only by the motions of the parts. Flipped triangles necessarily overlap their neighbours
+// and are ignored.
+// surface: its open edges, besides the cuts.  kept: (3m) halfedges that may not be closed.
 // Returns whether anything changed.
 bool split_map(const OpenedSurface& surface, const Array<char>& kept, ProgressMonitor& monitor, ComponentMap& map);
 

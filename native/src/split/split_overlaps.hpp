@@ -11,9 +11,9 @@
 
 namespace lsgp {
 
-// Finds edges to open so that no two triangles of one part overlap: minimum cuts between what lies on what, so few and
-// short, and rather along marked seams and sharp edges. The parts keep their places, so the transitions stay what they
-// are. Returns a halfedge of every edge.
+// Finds edges to open so that no two triangles of one part overlap: minimum cuts between overlapping sets, few and
+// short, preferably along marked seams and sharp edges. The parts do not move, so the transitions are unchanged.
+// Returns a halfedge of every edge.
 Array<Index> split_overlaps(const OpenedSurface& surface, const Array<Overlap>& overlaps, CutCost rule,
                             const std::function<void()>& before_cut);
 

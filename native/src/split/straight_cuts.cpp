@@ -49,7 +49,7 @@ class Straightener {
       std::fill(has_moved.begin(), has_moved.end(), 0);
       for (const Path& path : trace()) {
         const Index a = part(path.front()), b = part(mesh_.twin[path.front()]);
-        if (has_moved[a] || has_moved[b] || !straighten(path)) continue;  // where others end may have moved
+        if (has_moved[a] || has_moved[b] || !straighten(path)) continue;  // the ends of others may have moved
         has_moved[a] = has_moved[b] = 1;
         goes_on = true;
       }
@@ -60,7 +60,7 @@ class Straightener {
   Index part(Index h) const { return part_[graph_.face_of[h / 3]]; }
   bool parts_differ(Index h) const { return part(h) != part(mesh_.twin[h]); }
 
-  // While one path is looked at: whether a halfedge bounds the two parts on either side of it, taken together.
+  // For the current path: whether a halfedge bounds the union of the two parts on either side of it.
   bool is_border(Index h) const {
     if (mesh_.twin[h] == none || open_[h]) return true;
     return parts_differ(h) && !on_path_[h];
@@ -87,14 +87,14 @@ class Straightener {
   const Array<char>& open_;
   const IsHeld& is_held_;
   Array<Index>& part_;
-  Array<double> length_;            // (3m) what an edge costs, 0 where none may be cut
+  Array<double> length_;            // (3m) cost of an edge, 0 if it may not be cut
   Array<char> on_path_, is_end_;    // (3m)
   mutable Array<double> distance_;  // (3m)
   mutable Array<Index> before_;     // (3m)
   Array<char> in_band_;             // (faces)
 };
 
-// The cuts between any two parts, from border to border or where three parts meet; the lower part is on the left.
+// The cuts between any two parts, from boundary to boundary or between junctions; the lower part is on the left.
 Array<Path> Straightener::trace() const {
   Array<Index> next_on(mesh_.halfedge_count(), none);
   Array<char> has_before(mesh_.halfedge_count(), 0);
@@ -116,7 +116,7 @@ Array<Path> Straightener::trace() const {
   return paths;
 }
 
-// Calls visit(g, turn) for the halfedges that leave where h arrives; none if that is on a border.
+// Calls visit(g, turn) for the halfedges that leave the target of h; none if that is on a boundary.
 template <typename Visit>
 void Straightener::for_each_way_on(Index h, Visit visit) const {
   double all = 0;
@@ -133,7 +133,7 @@ void Straightener::for_each_way_on(Index h, Visit visit) const {
   }
 }
 
-// The halfedge on the border that leaves where h arrives; none inside.
+// The boundary halfedge that leaves the target of h; none in the interior.
 Index Straightener::border_after(Index h) const {
   for (Index g = next(h);; g = next(mesh_.twin[g])) {
     if (is_border(g)) return g;
@@ -141,7 +141,7 @@ Index Straightener::border_after(Index h) const {
   }
 }
 
-// Border halfedges that leave from a vertex of the border and from those next to it, within the band.
+// Boundary halfedges that leave a boundary vertex and those next to it, within the band.
 Array<Index> Straightener::slide(Index border) const {
   Array<Index> out{border};
   Index g = border;
@@ -186,7 +186,7 @@ bool Straightener::straighten(const Path& path) {
   for (const Index h : path) on_path_[h] = on_path_[mesh_.twin[h]] = 1;
   Array<Index> band;
   mark_band(path, band);
-  // A border halfedge that leaves where the path begins, and one where it ends.
+  // Boundary halfedges that leave the path's start and end.
   const Index tail = border_after(mesh_.twin[path.front()]), head = border_after(path.back());
   if (tail != none && head != none && tail != head) {
     Array<Index> starts = slide(tail), ends = slide(head);
@@ -257,7 +257,7 @@ double Straightener::cost(const Path& path) const {
   return sum;
 }
 
-// Divides the two parts along another path. Leaves them as they are where that does not part what has to be separated.
+// Divides the two parts along another path. Leaves them unchanged if that does not separate overlapping faces.
 bool Straightener::move(const Path& before, const Path& after) {
   const Index a = part(before.front()), b = part(mesh_.twin[before.front()]);
   Array<char> is_open(mesh_.halfedge_count(), 0);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The factorization of the opened surface's Dirichlet form, shared by prescription and unfolding.
 //
-// The form is real and the same for u and v. Cone angles, transitions across cuts and conditions along borders touch
-// the copies on cuts and borders alone: with all others eliminated, prescription and unfolding are dense problems of
-// their number.
+// The form is real and the same for u and v. Cone angles, transitions across cuts and conditions along boundaries
+// involve
+// only the copies on cuts and boundaries: after elimination of all others, prescription and unfolding are dense
+// problems of their number.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,18 +21,18 @@ namespace lsgp {
 
 class CutFactor {
  public:
-  // cut_graph: has to outlive it.  memory: of a factor that is not needed any more.
+  // cut_graph: has to outlive it.  memory: reused from a factor that is no longer needed.
   CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph, Eigen::VectorXd memory = {});
   Eigen::VectorXd take_memory() { return factor_->take_memory(); }
 
-  // Whether systems are to be solved with such a factor: as asked, or else where cuts and borders are short enough for
-  // the dense problems to be worth while.
+  // Whether to solve systems with such a factor: as requested, otherwise if cuts and boundaries are short enough for
+  // the dense problems to pay off.
   static bool is_chosen(Factorization asked, const HalfedgeMesh& mesh, const CutGraph& cut_graph);
 
   const CutGraph& cut_graph() const { return cut_graph_; }
   const CutMesh& cut_mesh() const { return cut_mesh_; }
 
-  // Copies that are not eliminated: those on cuts and borders.
+  // Copies that are not eliminated: those on cuts and boundaries.
   const Array<Index>& retained() const { return retained_; }
   Index eliminated_count() const { return cut_mesh_.copy_count() - retained_count(); }
   Index retained_count() const { return static_cast<Index>(retained_.size()); }
@@ -39,7 +40,7 @@ class CutFactor {
   // The discrete Dirichlet-to-Neumann operator of the retained copies.
   const Eigen::MatrixXd& schur() const { return factor_->schur(); }
 
-  // A solve in two halves, as of Cholesky. Values come by rows, those of retained copies last.
+  // A solve in two halves, as in Cholesky. Values are by rows, those of retained copies last.
   using Rows = Cholesky<double>::Rows;
   Index row_of_copy(Index copy) const { return row_of_copy_[copy]; }
   void eliminate(Rows& right_sides) const { factor_->eliminate(right_sides); }

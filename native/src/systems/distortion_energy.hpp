@@ -55,9 +55,9 @@ struct EnergyExpansion {
 struct DistortionEnergy {
   enum class Kind {
     foldover_free,
-    // |f_z - 1|^2 + q + 1 / chi(D), D = Re f_z - sqrt(q + delta^2): where D is positive the triangle is upright and
-    // turned by less than 90 degrees against the frame in which f_z is given (Lipman 2012). Convex, so such a map is
-    // found where there is one.
+    // |f_z - 1|^2 + q + 1 / chi(D), D = Re f_z - sqrt(q + delta^2): if D is positive, the triangle is upright and
+    // rotated by less than 90 degrees against the frame in which f_z is given (Lipman 2012). Convex, so such a map is
+    // found if it exists.
     framed_foldover_free,
     conformal_barrier,
     symmetric_dirichlet,
@@ -65,7 +65,7 @@ struct DistortionEnergy {
   Kind kind;
   double epsilon = 0;  // of the foldover-free ones
 
-  // What the foldover-free ones make positive.
+  // The quantity that the foldover-free energies make positive.
   double determinant(std::complex<double> f_z, std::complex<double> f_zbar) const;
   double value(std::complex<double> f_z, std::complex<double> f_zbar) const;
   EnergyExpansion expand(std::complex<double> f_z, std::complex<double> f_zbar) const;

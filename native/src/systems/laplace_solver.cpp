@@ -24,7 +24,7 @@ Eigen::MatrixXd LaplaceSolver::solve(const Eigen::MatrixXd& right_sides) const {
   return out;
 }
 
-// Half a solve costs next to nothing where there is an impulse alone, so the right side is taken that far by itself.
+// Half a solve costs next to nothing for a single impulse, so the right-hand side is processed separately up to there.
 LaplaceSolver::Response LaplaceSolver::solve(const Eigen::VectorXd& right_side, const Array<Index>& impulses) const {
   const Eigen::Index n = right_side.size();
   Response out{Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(impulses.size()))};
@@ -93,7 +93,7 @@ class LaplaceOnCut final : public LaplaceSolver {
   }
 
  private:
-  // A right side acts on the first copy of each vertex: all of them are one.
+  // A right-hand side acts on the first copy of each vertex, since all of them are the same unknown.
   static Array<Index> rows_of_vertices(const CutFactor& factor, const Array<char>& held) {
     Array<Index> row(held.size(), none);
     for (Index copy = factor.cut_mesh().copy_count(); copy-- > 0;) {

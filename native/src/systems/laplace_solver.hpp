@@ -13,9 +13,9 @@ namespace lsgp {
 class LaplaceSolver {
  public:
   virtual ~LaplaceSolver() = default;
-  // right_sides: (n, k), one a column.  0 where y is held.
+  // right_sides: (n, k), one per column.  The solution is 0 where y is held.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right_sides) const;
-  // The same for one right side, (n), and for impulses of 1 at vertices, (n, vertices).
+  // The same for one right-hand side, (n), and for unit impulses at vertices, (n, vertices).
   struct Response {
     Eigen::VectorXd to_right_side;
     Eigen::MatrixXd to_impulses;
@@ -44,10 +44,10 @@ class LaplaceSolver {
   const Array<Index> row_of_vertex_;  // (n) none where y is 0
 };
 
-// held: (n) where y is 0, somewhere at least.
+// held: (n) where y is 0, at least at one vertex.
 std::unique_ptr<LaplaceSolver> sparse_laplace(const HalfedgeMesh& mesh, const Geometry& geometry,
                                               const Array<char>& held);
-// The same on a factor that is there already; held vertices lie on cuts or borders.
+// The same with an existing factor; held vertices lie on cuts or boundaries.
 std::unique_ptr<LaplaceSolver> laplace_on_cut(const CutFactor& factor, const Array<char>& held);
 
 }  // namespace lsgp

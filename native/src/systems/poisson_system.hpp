@@ -15,12 +15,12 @@ struct Jacobians {
   Eigen::VectorXcd f_z, f_zbar;  // (m)
 };
 
-// What target Jacobians pull at the copies with, (copies).
+// The right-hand side of the fit to target Jacobians, (copies).
 Eigen::VectorXcd pull_of(const CutSurface& surface, const Jacobians& jacobians);
 
 class PoissonSystem {
  public:
-  // Solved on the cut where the surface comes with a factor, sparse otherwise.
+  // Solved on the cut if the surface has a factor, sparse otherwise.
   PoissonSystem(const CutSurface& surface, const Reduction& reduction);
   ~PoissonSystem();
 

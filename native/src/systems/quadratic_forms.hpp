@@ -20,7 +20,7 @@ enum class Form {
 Eigen::SparseMatrix<Complex> assemble_form(Form form, const HalfedgeMesh& mesh, const Geometry& geometry,
                                            const CutMesh& cut_mesh, const Reduction& reduction);
 
-// The geometry whose Dirichlet form weighs triangles, (m).
+// The geometry whose Dirichlet form is weighted by triangle, (m).
 Geometry with_weights(const Geometry& geometry, const Eigen::VectorXd& weight);
 
 // The cotangent Laplacian of the surface itself, positive semidefinite, without the rows and columns of `held`

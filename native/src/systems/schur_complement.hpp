@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The forms of a map under transitions, condensed onto the cuts: transitions touch the copies that a CutFactor retains
-// alone, so with all others eliminated what is left is dense, over the unknowns behind the retained copies (static
-// condensation, Guyan 1965).
+// The forms of a map under transitions, condensed onto the cuts: transitions involve only the copies that a CutFactor
+// retains, so eliminating all others leaves a dense form over the unknowns of the retained copies (static condensation,
+// Guyan 1965).
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +18,7 @@ class SchurComplement {
   SchurComplement(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const CutFactor& factor,
                   const Reduction& reduction);
 
-  // The condensed unknowns, numbered anew; that of an unknown of the reduction, none where it has been eliminated.
+  // The condensed unknowns, numbered anew; the number of an unknown of the reduction, none if it is eliminated.
   Index unknown_count() const { return unknown_count_; }
   Index number_of(Index unknown) const { return number_of_[unknown]; }
 
@@ -26,14 +26,14 @@ class SchurComplement {
   Eigen::MatrixXcd dirichlet_form() const;
   Eigen::MatrixXcd conformal_form(Eigen::MatrixXcd dirichlet_form) const;
 
-  // A solve with the Dirichlet form in two halves.  pull: (the factor's copies). The first half leaves the right side
-  // for the condensed unknowns, (unknowns); the other takes their values and leaves the positions of the copies,
-  // (copies) of the cut mesh.
+  // A solve with the Dirichlet form in two halves.  pull: (the factor's copies). The first half returns the right-hand
+  // side for the condensed unknowns, (unknowns); the second takes their values and returns the positions, (copies) of
+  // the cut mesh.
   CutFactor::Rows eliminate(const Eigen::VectorXcd& pull) const;
   Eigen::VectorXcd right_side(const CutFactor::Rows& half_solved) const;
   Eigen::VectorXcd substitute(CutFactor::Rows half_solved, const Eigen::VectorXcd& unknowns) const;
 
-  // The positions, (copies), of least Dirichlet energy where those unknowns have these values.
+  // The positions, (copies), of least Dirichlet energy for given values of those unknowns.
   Eigen::VectorXcd extend(const Eigen::VectorXcd& unknowns) const;
 
  private:

@@ -7,9 +7,9 @@
 
 namespace lsgp {
 
-// The geometry whose Dirichlet form weighs triangles the more the nearer they are to a cone, by the inverse square of
-// the distance. A harmonic displacement has a pole where a single vertex is moved; with these weights all that
-// surrounds a cone moves with it, and the displacement fades over its whole neighbourhood.
+// The geometry whose Dirichlet form weights triangles by the inverse square of their distance to the nearest cone. A
+// harmonic displacement has a pole where a single vertex is moved; with these weights the surroundings of a cone move
+// with it, and the displacement fades over its whole neighbourhood.
 Geometry stiffen_around(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<Index>& cones);
 
 }  // namespace lsgp

@@ -54,7 +54,7 @@ Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, 
     const double largest_square = both * both / (4 * square);  // of the singular values
     // The product of both by the area, not as a difference, which would lose the digits of thin images.
     const double uv_doubled = std::abs(std::imag(std::conj(along) * (z[2] - z[0])));
-    const bool is_point = !(largest_square > 0);  // whose directions have no ratio: as bad as a line
+    const bool is_point = !(largest_square > 0);  // no ratio of directions: as bad as a line
     const double shrinkage = doubled / uv_doubled, ratio = is_point ? unlimited : largest_square * shrinkage;
     area += doubled / 2;
     uv_area += uv_doubled / 2;
@@ -107,7 +107,7 @@ SeamQuality measure_seams(const HalfedgeMesh& mesh, const Array<SisterEdges>& se
       const Complex left = z[1] - z[0], right = z[3] - z[2];
       const double longer = std::max(std::abs(left), std::abs(right)),
                    shorter = std::min(std::abs(left), std::abs(right));
-      // An edge that has collapsed counts as short as a number can be, so that the figure stays one.
+      // A collapsed edge counts as the smallest number, so that the ratio stays finite.
       out.sister_ratio_max =
           std::max(out.sister_ratio_max, longer / std::max(shorter, std::numeric_limits<double>::min()));
       turn += std::conj(left) * right;
@@ -142,7 +142,7 @@ SeamQuality worse(const SeamQuality& a, const SeamQuality& b) {
 }
 
 Eigen::VectorXd angle_sums(const HalfedgeMesh& mesh, const CornerPositions& position) {
-  // Around a vertex where the layout runs on, upright triangles make whole turns: it is enough to count how often they
+  // Around a vertex where the layout continues, upright triangles make full turns: it suffices to count how often they
   // sweep over one direction. Elsewhere angles have to be measured.
   Array<char> is_parted(mesh.vertex_count(), 0), is_measured(mesh.vertex_count(), 0);
   for (const auto& loop : mesh.boundary_loops) {
@@ -190,7 +190,7 @@ Validity check_map(const HalfedgeMesh& mesh, const CornerPositions& position, co
   }
   const Eigen::VectorXd sums = angle_sums(mesh, position);
   const auto excess = [&](Index v) { return sums[v] - (mesh.flat_angle(v) - curvature[v]); };
-  // Along a free border angles come out as they do; only its turning as a whole is known.
+  // Along a free boundary single angles are free; only the total turning is known.
   Array<double> excess_of_loop(mesh.boundary_loops.size(), 0.0), largest(excess_of_loop);
   Array<Index> at_largest(excess_of_loop.size(), none);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {

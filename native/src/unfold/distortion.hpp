@@ -17,7 +17,7 @@ namespace lsgp {
 
 using CornerPositions = Eigen::Ref<const Eigen::VectorXcd>;  // (3m) u + iv
 
-// triangles: those to measure, others are left out; triangles without 3D area are skipped.  corner_uv: (3m, 2).
+// triangles: those to measure; triangles without 3D area are skipped.  corner_uv: (3m, 2).
 Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, const Array<Index>& triangles);
 
 // The smallest upright box around positions.
@@ -37,8 +37,8 @@ class PositionBox {
 // Cut edges whose two sides are related by one rotation and one translation.
 struct SisterEdges {
   Array<Index> halfedges;          // on the left
-  std::optional<double> rotation;  // imposed, radians; none: their own best
-  double size;                     // of the layout that they lie in
+  std::optional<double> rotation;  // imposed, radians; none: the best fit
+  double size;                     // of their layout
 };
 
 // position: at the component's corners.  inexact: where given, receives the halfedges whose two sides differ in length
@@ -46,11 +46,11 @@ struct SisterEdges {
 SeamQuality measure_seams(const HalfedgeMesh& mesh, const Array<SisterEdges>& seams, const CornerPositions& position,
                           Array<Index>* inexact = nullptr);
 
-// The same for every cut of a layout in one piece.  rotation: (cuts) imposed, radians.
+// The same for every cut of a connected layout.  rotation: (cuts) imposed, radians.
 SeamQuality measure_seams(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CornerPositions& position,
                           const Eigen::VectorXd* rotation, Array<Index>* inexact = nullptr);
 
-// The worse of two in every figure.
+// The maximum of two in every figure.
 SeamQuality worse(const SeamQuality& a, const SeamQuality& b);
 
 // Twice the signed UV area of a triangle.
@@ -59,9 +59,9 @@ inline double doubled_area(const CornerPositions& position, Index triangle) {
   return std::imag(std::conj(position[3 * triangle + 1] - a) * (position[3 * triangle + 2] - a));
 }
 
-// A map is valid when no triangle is flipped and the angles around every vertex add up to what was imposed, angles of
-// flipped triangles counted below 0. Where seams are exact a sum can only be off by whole turns, since transitions
-// know angles modulo 2 pi; where they are not, by anything.
+// A map is valid if no triangle is flipped and the angles around every vertex add up to the imposed sum, with negative
+// angles for flipped triangles. If seams are exact, a sum can only be off by full turns, since transitions determine
+// angles modulo 2 pi; otherwise by any amount.
 struct Validity {
   Array<Index> flipped;           // triangles with UV area <= 0
   Array<Index> wrong_angle_sums;  // vertices off by more than a degree

@@ -87,7 +87,7 @@ PinnedMap move_onto_pins(const CutSurface& surface, const Reduction& reduction, 
   const Similarity similarity = fit(pins, position);
   if (!(size > one_point)) {
     throw_conflict(cut_mesh, pins,
-                   "All pinned corners lie on one point, which leaves no size for the layout. Spread "
+                   "All pinned corners coincide, which leaves no size for the layout. Spread "
                    "the pins or unpin all but one.");
   }
   double fitted = 0;
@@ -95,7 +95,7 @@ PinnedMap move_onto_pins(const CutSurface& surface, const Reduction& reduction, 
     fitted = std::max(fitted, std::abs(similarity.factor * (position[pin.copy] - position[pins.front().copy])));
   if (!(fitted > mirrored * size)) {
     throw_conflict(cut_mesh, pins,
-                   "The pins mirror the surface or fold it up, so that no turn and size fit them. Mirror them back or "
+                   "The pins reflect or fold the surface, so that no rotation and size fit them. Mirror them back or "
                    "unpin all but two.");
   }
   PinnedMap out{similarity.factor * position, std::abs(similarity.factor)};
@@ -104,8 +104,8 @@ PinnedMap move_onto_pins(const CutSurface& surface, const Reduction& reduction, 
   if (similarity_only) {
     throw_conflict(
         cut_mesh, pins,
-        "Corners and straight borders leave the pins nothing but the layout's place, size and turn, which two "
-        "pins give. Unpin all but two, or leave the border free.");
+        "With corners and straight boundaries pins only determine the layout's position, size and rotation, for which "
+        "two suffice. Unpin all but two, or leave the boundary free.");
   }
 
   // Displacement d = B x + one constant. The constant is taken up by shifting the pins: the first becomes the origin.

@@ -17,13 +17,13 @@ struct Pin {
   Complex position;
 };
 
-// Brings pinned corners together by copies. Throws PINS_CONFLICT where one copy is pinned to two places.
+// Merges pinned corners by copies. Throws PINS_CONFLICT if a copy is pinned to two positions.
 Array<Pin> pins_of_copies(const CutMesh& cut_mesh, const Array<std::pair<Index, Complex>>& pinned_corners);
 
 // The map moved onto its pins: by a similarity first, which satisfies two pins, then by the displacement of least
 // Dirichlet energy under the transitions. Returns the positions (copies) and the factor by which lengths grew.
-// At least two pins.  similarity_only: nothing but the similarity is allowed, as where border directions are imposed.
-// Throws PINS_CONFLICT where the transitions leave no map through all of them.
+// At least two pins.  similarity_only: only the similarity is allowed, as with imposed boundary directions.
+// Throws PINS_CONFLICT if the transitions admit no map through all of them.
 struct PinnedMap {
   Eigen::VectorXcd position;
   double scale;

@@ -14,7 +14,7 @@ namespace {
 
 const Complex upwards(0, 1);
 constexpr double rounding = 1e-9;
-constexpr double least_inside = 1e-9;  // of a direction in its triangle: less is rounding
+constexpr double least_inside = 1e-9;  // relative component of a direction in its triangle; less is rounding
 constexpr double least_weight = std::numeric_limits<double>::min();
 
 Eigen::Vector3d edge_in_space(const HalfedgeMesh& mesh, Index h) {
@@ -30,7 +30,7 @@ std::optional<double> angle_from_direction(const HalfedgeMesh& mesh, const Posit
   return std::atan2(across, along);
 }
 
-// Whether a direction says where to go in its triangle, rather than away from it.
+// Whether a direction has a significant component in its triangle's plane.
 bool lies_in_triangle(const HalfedgeMesh& mesh, const Positions& vectors, Index f) {
   constexpr double least_part = 0.2;
   const Eigen::Vector3d normal = area_normal(mesh.positions, mesh.triangles, f).normalized();
@@ -95,7 +95,7 @@ TextureDirections directions_in_triangles(const HalfedgeMesh& mesh, const Positi
     if (!(inside.norm() > least_inside)) continue;
     out.along_first[f] = unit.dot(inside.cross(last)) / doubled_area;
     out.along_last[f] = unit.dot(first.cross(inside)) / doubled_area;
-    // One that is nothing beside others still has an error.
+    // A direction of negligible weight still has an error.
     out.weight[f] = std::max(doubled_area / 2 * inside.norm() * (largest / longest), least_weight);
   }
   return out;

@@ -13,12 +13,12 @@ namespace lsgp {
 
 namespace {
 
-// The edge's direction in the frame on its left, less that in the frame on its right, radians.
+// The edge's direction in the frame on its left minus that in the frame on its right, radians.
 double turn_across(const HalfedgeMesh& mesh, const Geometry& geometry, Index h) {
   return edge_direction(geometry, h) - (edge_direction(geometry, mesh.twin[h]) + M_PI);
 }
 
-// The copies along the open border that contains the border copy with the lowest number.
+// The copies along the open boundary that contains the lowest-numbered boundary copy.
 Array<Index> open_border(const HalfedgeMesh& mesh, const CutMesh& cut_mesh) {
   Array<Index> next_copy(cut_mesh.copy_count(), none);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
@@ -73,7 +73,7 @@ Eigen::VectorXd read_rotations(const HalfedgeMesh& mesh, const Geometry& geometr
   return rotation;
 }
 
-// Differences across edges weigh as much as the edge is longer than the path between centroids that crosses it.
+// Differences across edges are weighted by the ratio of the edge's length to that of the path between centroids.
 double HarmonicOneForm::weight(Index h) const {
   return geometry_.length[h] * geometry_.length[h] / (geometry_.area[h / 3] + geometry_.area[mesh_.twin[h] / 3]);
 }
@@ -117,7 +117,7 @@ Eigen::VectorXd HarmonicOneForm::spread(const Eigen::VectorXd& change) const {
 Eigen::MatrixXd HarmonicOneForm::energy(const Eigen::MatrixXd& changes) const {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(changes.cols(), changes.cols());
   for (Eigen::Index k = 0; k < changes.cols(); ++k) {
-    // What is left between change and spread is orthogonal to every spread.
+    // The remainder of change minus spread is orthogonal to every spread.
     const Eigen::VectorXd turned = spread(changes.col(k));
     for_each_crossing([&](Eigen::Index cut, Index left, Index right, double weight) {
       out.col(k) += weight * (changes(cut, k) - turned[right] + turned[left]) * changes.row(cut).transpose();
@@ -129,7 +129,7 @@ Eigen::MatrixXd HarmonicOneForm::energy(const Eigen::MatrixXd& changes) const {
 Jacobians prescribed_jacobians(const HalfedgeMesh& mesh, const Eigen::VectorXd& log_scale,
                                const Eigen::VectorXd& frames) {
   Jacobians out{Eigen::VectorXcd(frames.size()), Eigen::VectorXcd::Zero(frames.size())};
-  const Eigen::VectorXd share = (log_scale / 3).array().exp();  // of a corner in its triangle's scale
+  const Eigen::VectorXd share = (log_scale / 3).array().exp();  // contribution of a corner to its triangle's scale
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
     const double scale = share[mesh.triangles(f, 0)] * share[mesh.triangles(f, 1)] * share[mesh.triangles(f, 2)];
     out.f_z[f] = std::polar(scale, frames[f]);
@@ -226,7 +226,7 @@ Eigen::VectorXcd unfold_lscm(const HalfedgeMesh& mesh, const Geometry& geometry,
   const Reduction reduction = leave_free(cut_mesh, first);
   const auto conformal = assemble_form(Form::conformal, mesh, geometry, cut_mesh, reduction);
   const auto dirichlet = assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction);
-  // With one pin at the origin, pulling at the other alone gives the map with both pinned, up to its scale and turn.
+  // With one pin at the origin, a load at the other gives the map with both pinned, up to scale and rotation.
   Eigen::VectorXcd pull = Eigen::VectorXcd::Zero(reduction.unknown_count);
   pull[reduction.terms[reduction.begin[second]].unknown] = 1;
   const Cholesky<Complex> factor(regularized(conformal, dirichlet));

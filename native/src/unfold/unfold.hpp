@@ -14,7 +14,7 @@
 
 namespace lsgp {
 
-// How far the flat metric e^{2y} turns every triangle's frame: the connection
+// The rotation of every triangle's frame in the flat metric e^{2y}: the connection
 //   phi_g = phi_f + theta_f - theta_g - w (y_j - y_i)
 // across the edge from i to j with f on its left and g on its right (theta: its direction in each frame), integrated
 // along a spanning tree of the triangles that crosses no cut.
@@ -36,20 +36,20 @@ class FrameTree {
   Array<Step> steps_;  // outwards from the first triangle
 };
 
-// The rotation of every cut that those frames imply, radians modulo 2 pi: curvature fixes it but for the loops about
-// handles, where this is the rotation with least distortion.
+// The rotation of every cut that those frames imply, radians modulo 2 pi: curvature determines it except for the loops
+// about handles, where this is the rotation with least distortion.
 Eigen::VectorXd read_rotations(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
                                const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames);
 
-// Turns the frames so that the rotations of the cuts change: the smoothest way there is, a harmonic form.
+// Rotates the frames so that the rotations of the cuts change, in the smoothest way: a harmonic form.
 class HarmonicOneForm {
  public:
   HarmonicOneForm(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph);
 
-  // What to add to the frames, (m).  change: (cuts) of the rotations, radians; it closes around every node.
+  // The increment of the frames, (m).  change: (cuts) of the rotations, radians; it closes around every node.
   Eigen::VectorXd spread(const Eigen::VectorXd& change) const;
 
-  // How much the frames are twisted by each of several changes, (cuts, k): their products in the Dirichlet energy.
+  // The Gram matrix, in the Dirichlet energy, of the twists by several changes, (cuts, k).
   Eigen::MatrixXd energy(const Eigen::MatrixXd& changes) const;
 
  private:
@@ -72,21 +72,21 @@ Jacobians measure_jacobians(const HalfedgeMesh& mesh, const Geometry& geometry, 
 
 // Each returns the positions u + iv of all copies.
 
-// The direction the metric gives to border edges (halfedges with the surface on their left), radians.
+// The direction of boundary edges in the metric (halfedges with the surface on their left), radians.
 Eigen::VectorXd metric_directions(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& log_scale,
                                   const Eigen::VectorXd& frames, const Array<Index>& edges);
 
-// The fit to Jacobians (PoissonSystem::fit) with border edges exactly aligned: each of `edges` has the direction given,
-// radians. A real problem of twice the size.
+// The fit to Jacobians (PoissonSystem::fit) with exactly aligned boundary edges: each of `edges` has the given
+// direction, radians. A real problem of twice the size.
 Eigen::VectorXcd unfold_aligned(const CutSurface& surface, const Reduction& reduction, const Jacobians& jacobians,
                                 const Array<Index>& edges, const Eigen::VectorXd& directions);
 
 // The map of least conformal energy at a given Dirichlet energy (Mullen et al. 2008, with a norm that transitions
-// leave invariant). Solved on the cut where the surface comes with a factor, sparse otherwise.
+// leave invariant). Solved on the cut if the surface has a factor, sparse otherwise.
 Eigen::VectorXcd unfold_spectral(const CutSurface& surface, const Reduction& reduction);
 
 // Least squares conformal map of the opened surface with two pinned copies, no transitions (Levy et al. 2002).
-// The pins are the first copy on the open border with the lowest number and the one half the border's edges away.
+// The pins are the lowest-numbered copy on the open boundary and the one half the boundary's edges away.
 Eigen::VectorXcd unfold_lscm(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh);
 
 }  // namespace lsgp

@@ -214,8 +214,8 @@ def test_tiles_without_a_density_are_filled(scaled, tmp_path, preset):
     out = tmp_path / "out"
     how = [*preset, "--udim", 2, "--margin", 8, "--texture-size", 512, "--overlaps", "split"]
     if addon.core.native.lsgp.packer_name() is None:
-        assert run(scaled, "--out", out, *how, "--no-pictures") == 3
-        assert lines_of(out)[0]["code"] == "PACKER_NOT_INSTALLED"
+        assert run(scaled, "--out", out, *how, "--no-pictures") == 2
+        assert not out.exists()
         return
     assert run(scaled, "--out", out, *how, "--no-pictures") == 0
     bpy.ops.wm.open_mainfile(filepath=str(out / "scaled.blend"))
@@ -240,7 +240,8 @@ def test_other_ways_to_pack_are_refused(scaled, tmp_path, options):
 
 def test_tiles_are_shared_by_all_objects(scaled, tmp_path):
     out = tmp_path / "out"
-    how = ["--preset", "bake", "--texel-density", 60, "--texture-size", 1024, "--udim", 4, "--margin", 8]
+    # 6 faces of 120 and 12 of 240 texels a side: however they are joined, one tile of 1024 does not hold them.
+    how = ["--preset", "bake", "--texel-density", 60, "--texture-size", 1024, "--udim", 4, "--margin", 24]
     assert run(scaled, "--out", out, *how, "--no-pictures") == 0
     bpy.ops.wm.open_mainfile(filepath=str(out / "scaled.blend"))
     maps = [UvMap(bpy.data.objects[name]) for name in ("Plain", "Scaled", "Twin")]
@@ -248,7 +249,7 @@ def test_tiles_are_shared_by_all_objects(scaled, tmp_path):
     assert len(tiles) > 1
     for uv_map in maps:
         inside = uv_map.uv % 1
-        assert inside.min() > 7.9 / 1024 and inside.max() < 1 - 7.9 / 1024
+        assert inside.min() > 23.9 / 1024 and inside.max() < 1 - 23.9 / 1024
     beside = np.array([0, 1e-4])  # of points of the raster, which lie on diagonals of the squares
     for tile in tiles:
         for uv_map in maps:

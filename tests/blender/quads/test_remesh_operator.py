@@ -309,7 +309,7 @@ def test_of_two_objects_one_may_be_refused(reports):
     assert bpy.ops.object.cone_remesh_to_quads(count=96) == {"FINISHED"}
     said = reports()
     assert "Cube: 96 quads, 8 irregular vertices" in said
-    assert "Warning: Grid: The surface has a border" in said
+    assert "Warning: Grid: The surface has a boundary" in said
     assert {obj.name for obj in bpy.data.objects} == {"Grid", "Cube", "Cube Quads"}
     # The refused one stays selected, and active.
     assert {obj.name for obj in bpy.context.selected_objects} == {"Grid", "Cube Quads"}

@@ -134,7 +134,7 @@ def test_closed_sphere_is_opened_along_its_seams_without_cones(reports):
     reports()
     assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
     # Not a warning: it is what was asked for.
-    assert "Info: Sphere: A part has seams but no cones" in reports()
+    assert "Info: Sphere: A component has seams but no cones" in reports()
     assert UvMap(sphere).islands() == 2
     with refused("TOO_FEW_CONES"):
         bpy.ops.uv.cone_unwrap(seams="IGNORE")

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import lsgp
 import meshes
 import numpy as np
@@ -100,7 +102,9 @@ def test_islands_that_may_not_be_turned_are_only_shifted() -> None:
 
 def test_presets_take_tiles() -> None:
     found = lsgp.auto_unwrap(PARTS, preset="bake", udim=3, margin=0.02)
-    assert np.array_equal(found.corner_uv, lsgp.pack_islands(GIVEN.corner_uv, GIVEN.island, 0.02, udim=3))
+    shared = dataclasses.replace(lsgp.preset_options("bake"), square_share=3.0)
+    given = lsgp.auto_unwrap(PARTS, preset="bake", options=shared, pack="shelves")
+    assert np.array_equal(found.corner_uv, lsgp.pack_islands(given.corner_uv, given.island, 0.02, udim=3))
     assert found == lsgp.auto_unwrap(PARTS, preset="bake", pack="tight", udim=3, margin=0.02)
 
 

@@ -166,7 +166,7 @@ def test_one_finding_names_all_parts_that_miss_the_target() -> None:
     ball = meshes.bumpy_sphere(2)
     placed = place(meshes.merge([ball] * 3), target=1.000001)
     finding = only(placed.warnings, "PLACEMENT_NOT_REACHED")
-    assert finding.message.startswith("On 3 parts of the surface")
+    assert finding.message.startswith("On 3 components of the surface")
     assert finding.elements.indices.tolist() == sorted(placed.cones.tolist())
 
 
@@ -174,7 +174,7 @@ def test_one_finding_names_all_parts_without_room() -> None:
     triangle = meshes.make([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     placed = place(meshes.merge([triangle] * 50), count=8)
     finding = only(placed.warnings, "PLACEMENT_NOT_REACHED")
-    assert finding.message.startswith("0 cones were placed on 50 parts of the surface instead of 8 on each")
+    assert finding.message.startswith("0 cones were placed on 50 components of the surface instead of 8 on each")
     assert finding.elements.indices.tolist() == list(range(50))
 
 
