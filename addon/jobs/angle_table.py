@@ -7,6 +7,7 @@ Panels are redrawn often, so tables are cached until their mesh changes.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -66,10 +67,44 @@ class TablePart:
 _tables: dict[int, tuple[tuple[int, int], TableSettings, list[TablePart]]] = {}
 
 
+class FollowedTable:
+    """The table of a mesh whose cones are edited and not stored yet."""
+
+    def __init__(self, surface: lsgp.Surface, cones: Callable[[], ConeAngles]) -> None:
+        """surface: the whole mesh. cones: returns those of the moment."""
+        self._surface, self._cones = surface, cones
+        self._known: tuple[object, list[TablePart]] | None = None
+
+    def current(self, settings: TableSettings) -> list[TablePart]:
+        """Built only if the cones have changed."""
+        cones = self._cones()
+        now = cones.cones.tolist(), cones.angles, cones.kinds, settings
+        if self._known is None or self._known[0] != now:
+            self._known = now, build_table(self._surface, cones, settings.options())
+        return self._known[1]
+
+
+# By session_uid of the mesh.
+_followed: dict[int, FollowedTable] = {}
+
+
+def follow(uid: int, table: FollowedTable) -> None:
+    """Show this table of a mesh, named by its session_uid, until `unfollow`."""
+    _followed[uid] = table
+
+
+def unfollow(uid: int) -> None:
+    """Show the table of what is stored on the mesh again."""
+    _followed.pop(uid, None)
+
+
 def current_table(
     obj: bpy.types.Object, settings: TableSettings, *, on_request: bool = False
 ) -> list[TablePart] | None:
     """The table of the current mesh; None where building it takes long and was not requested."""
+    followed = _followed.get(obj.data.session_uid)
+    if followed is not None:
+        return followed.current(settings)
     now = (changes.version(obj.data), settings)
     *then, table = _tables.get(obj.data.session_uid, (None,))
     if then == [*now]:

@@ -9,6 +9,7 @@ or got in the first step.
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -17,24 +18,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import native
-from ..mesh import reports
+from ..core.errors import object_errors
+from ..mesh import changes, reports
 from ..mesh.angles import require_attributes
 from ..mesh.reader import readable_mesh
 from ..mesh.region_read import Faces, Groups, build_region, require_editable
 from ..mesh.stored_mesh import FrozenMesh
 from ..mesh.subdivided import places_on_subdivision
 from ..mesh.uv_write import EditedUv
+from .angle_table import FollowedTable
 from .cuts import with_cut_costs
 from .edited_cones import EditedCones
+from .edited_layout import Layout, Placement
 from .maps import report_on
-from .picking import Picker
+from .texels import map_density
 from .unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap, unwrap_task
 
 if TYPE_CHECKING:
     import lsgp
 
     from ..core.region import Region
-    from ..core.screen import Screen
     from .solving import Progress
 
 
@@ -77,6 +80,7 @@ class ConeSession:
             places = places_on_subdivision(obj, copy) if settings.subdivided else None
             region = build_region(obj, self.mesh, Faces.ALL, groups, places)
         self._obj, self._group = obj, settings.cone_group
+        self._era, self._doubted = changes.era(), False
         task = unwrap_task(region, settings)
         self._whole = replace(task, region=with_cut_costs(task.region, task.cuts))
         self._part_of = _parts(region.surface)
@@ -88,15 +92,27 @@ class ConeSession:
         known = self._whole.pinned if self._earlier is None else np.ones_like(self._whole.pinned)
         self._places = np.where(known[:, :, None], region.corner_uv, np.nan)
         self._uv = EditedUv(obj.data)
-        self._picker = Picker(self.mesh)
 
-    def vertex_at(self, screen: Screen, x: float, y: float) -> int | None:
-        """As `Picker.vertex_at`."""
-        return self._picker.vertex_at(screen, x, y)
+    def doubt(self) -> None:
+        """Something else may have changed the mesh."""
+        self._doubted = True
 
-    def cone_at(self, screen: Screen, x: float, y: float, radius: float) -> int | None:
-        """As `Picker.cone_at`."""
-        return self._picker.cone_at(screen, self.cones.vertices, x, y, radius)
+    def is_intact(self) -> bool:
+        """Whether the mesh can still be written to."""
+        if changes.era() != self._era:
+            return False
+        try:
+            if self._doubted:
+                self._uv.find_again(self.mesh.loop_vertices)
+                self._doubted = False
+            return self._uv.is_open
+        except ReferenceError:
+            # The mesh was removed.
+            return False
+
+    def table(self) -> FollowedTable:
+        """The table of the cones as they are edited."""
+        return FollowedTable(self._whole.region.surface, self.cones.current)
 
     def angle(self, vertex: int) -> float | None:
         """The angle chosen for a cone, or computed for it in the last step; None where none is known."""
@@ -116,9 +132,18 @@ class ConeSession:
         places = self._places[step.triangles]
         self._places[step.triangles] = np.where(np.isnan(places), unwrapped.corner_uv, places)
         self._uv.write(unwrapped.region, unwrapped.result.solved, unwrapped.corner_uv)
-        self.mesh.uv = self._uv.now
         self._shown = unwrapped
-        self._report = reports.joined(self._earlier, report_on(unwrapped), unwrapped.region)
+        self._took(reports.joined(self._earlier, report_on(unwrapped), unwrapped.region))
+
+    def show_before(self) -> None:
+        """Write the map as it was before the session."""
+        self._uv.reset()
+        self._shown = None
+        self._took(self._earlier)
+
+    def _took(self, report: reports.Report | None) -> None:
+        self.mesh.uv = self._uv.now
+        self._report = report
 
     def report(self) -> reports.Report | None:
         """On the map as shown, without the cones that were removed since."""
@@ -135,23 +160,54 @@ class ConeSession:
 
     def restore(self) -> None:
         """Leave the mesh as it was before the session."""
-        self._uv.restore()
+        self._shown, self._report = None, self._earlier
+        if changes.era() == self._era:
+            with suppress(ReferenceError):
+                self._uv.restore()
 
-    def finish(self) -> Unwrapped:
-        """Unwrap with all chosen options and store the cones, as one change.
+    def unwrap(self) -> Unwrapped:
+        """Unwrap with all chosen options.
 
-        Raises LsgpError where that is impossible; then the map is as before the session and the cones are stored.
+        Raises LsgpError and MemoryError where that is impossible; then the map is as before the session.
         """
         try:
             step = self._step()
             self.show(step, step.solve())
-        except native.lsgp.LsgpError:
+        except object_errors():
             self.restore()
             raise
-        finally:
-            self.cones.store(self._obj, self._group)
-        reports.store(self._obj.data, self.report())
         return self._shown
+
+    def store(self) -> None:
+        """Store the cones, and the report on the map where it was written."""
+        self.cones.store(self._obj, self._group)
+        report = self.report()
+        if report is not None and (self._shown is not None or self._uv.is_changed):
+            region = self._whole.region if self._shown is None else self._shown.region
+            corner_uv = self._uv.now[region.triangle_loops].astype(np.float64)
+            reports.store(self._obj.data, replace(report, texel_density=map_density(region, corner_uv)))
+
+    def placement(self) -> Placement:
+        """Where the islands are now and where they were before the session."""
+        whole = self._whole.region
+        edited = np.zeros(len(whole.triangle_loops), bool)
+        if self._shown is not None:
+            edited[self._scope.triangles] = True
+        # Where the map is not one of ours, what else it has may be on anything.
+        counts = edited if self._earlier is None else np.ones_like(edited)
+        now, before = (self._layout(uv, counts) for uv in (self._uv.now, self._uv.before))
+        return Placement(whole.surface.triangles, now, before, edited, self._whole.pinned, self._whole.aspect)
+
+    def place(self, layout: Layout) -> None:
+        """Write the coordinates of all islands of a layout."""
+        self._uv.write(self._whole.region, layout.island >= 0, layout.corner_uv)
+        self.mesh.uv = self._uv.now
+
+    def _layout(self, loop_uv: NDArray[np.float32], counts: NDArray[np.bool_]) -> Layout:
+        whole = self._whole.region
+        uv = loop_uv[whole.triangle_loops].astype(np.float64)
+        island = native.lsgp.measure_distortion(whole.surface, uv).island
+        return Layout(uv, np.where(counts, island, -1).astype(np.int32))
 
     def _step(self, **draft: object) -> Step:
         scope = self._current_scope()

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, field
 
 import bpy
 import numpy as np
@@ -13,6 +14,15 @@ from ..core.cone_angles import ConeAngles, Kind
 from ..mesh import angles, cones
 
 LEAST_ANGLE = math.radians(1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class ConesState:
+    """Angle and kind of each cone, the connected parts with edited ones and the active one; equal by the cones."""
+
+    cones: dict[int, tuple[float | None, Kind]]
+    touched: frozenset[int] = field(compare=False)
+    active: int | None = field(compare=False)
 
 
 class EditedCones:
@@ -53,6 +63,13 @@ class EditedCones:
         chosen = [self._cones[vertex] for vertex in vertices]
         return ConeAngles(np.array(vertices, np.int32), [angle for angle, _ in chosen], [kind for _, kind in chosen])
 
+    def state(self) -> ConesState:
+        return ConesState(dict(self._cones), self.touched, self.active)
+
+    def put(self, state: ConesState) -> None:
+        """Go back, or forward, to a state."""
+        self._cones, self._touched, self.active = dict(state.cones), set(state.touched), state.active
+
     def add(self, vertex: int) -> None:
         """Add a cone with an automatic angle, unless there is one already, and make it the active one."""
         if vertex not in self._cones:
@@ -67,11 +84,11 @@ class EditedCones:
             self.active = None
 
     def move(self, vertex: int) -> bool:
-        """Move the active cone with its angle to a vertex, unless there is a cone.  Returns whether it moved."""
-        if vertex in self._cones:
+        """Move the active cone with its angle to a vertex, unless there is a cone, or another connected part, which may
+        merely be in front.  Returns whether it moved."""
+        if vertex in self._cones or self._part_of[vertex] != self._part_of[self.active]:
             return False
         self._touch(vertex)
-        self._touch(self.active)
         self._cones[vertex] = self._cones.pop(self.active)
         self.active = vertex
         return True

@@ -33,6 +33,11 @@ class Follower:
         if not self.outdated:
             return False
         self.outdated = False
+        if not self._session.cones.touched:
+            # All steps are undone.
+            self._session.show_before()
+            self.problem = ""
+            return True
         self._step = self._session.draft()
         self._computation = Computation(self._step.solve)
         return self._take(SOON)

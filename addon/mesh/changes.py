@@ -22,6 +22,11 @@ def version(mesh: bpy.types.Mesh) -> tuple[int, int]:
     return _all_changed, _changes[mesh.session_uid]
 
 
+def era() -> int:
+    """Another number after undo, redo and the opening of a file, by which references into Blender's data end."""
+    return _all_changed
+
+
 def mark_changed(mesh: bpy.types.Mesh) -> None:
     """To be called after a change that Blender does not notice, such as one of the add-on's properties."""
     _changes[mesh.session_uid] += 1
@@ -31,6 +36,11 @@ def mark_changed(mesh: bpy.types.Mesh) -> None:
 def suspend(mesh: bpy.types.Mesh) -> None:
     """Treat the mesh as unchanged until `resume`, so that nothing is recomputed while its cones are dragged."""
     _suspended.add(mesh.session_uid)
+
+
+def is_suspended(mesh: bpy.types.Mesh) -> bool:
+    """Whether the cones of the mesh are being edited."""
+    return mesh.session_uid in _suspended
 
 
 def resume(uid: int) -> None:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .arrays import rows
 from .manifold_triangles import manifold_triangles
-from .mesh_reader import FloatArray, MeshReader, triangulated
+from .mesh_reader import FloatArray, MeshReader, each_once, triangulated
 
 
 class EditedMesh(MeshReader):
@@ -68,6 +68,17 @@ class EditedMesh(MeshReader):
         loops = [loop for face in faces for loop in self._bm.faces[face].loops]
         uv = [] if layer is None else [loop[layer].uv[:] for loop in loops]
         return [loop.vert.index for loop in loops], np.array(uv, np.float32)
+
+    def vertex_uv(self, vertices: Sequence[int]) -> tuple[NDArray[np.int64], FloatArray]:
+        layer = self._uv_layer()
+        found = [
+            (row, *loop[layer].uv)
+            for row, vertex in enumerate(vertices)
+            for loop in ([] if layer is None else self._bm.verts[vertex].link_loops)
+            if not loop.face.hide
+        ]
+        table = rows(found, 3, np.float64)
+        return each_once(table[:, 0], table[:, 1:])
 
     def side_normals(self, pairs: Sequence[tuple[int, int]]) -> FloatArray:
         normals = np.full((len(pairs), 3), np.nan, np.float32)

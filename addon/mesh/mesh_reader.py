@@ -43,6 +43,10 @@ class MeshReader(Protocol):
     def corners(self, faces: Sequence[int]) -> tuple[list[int], FloatArray]:
         """(c,) vertices and (c, 2) UVs in the active layer of the corners of faces; (0,) UVs without a layer."""
 
+    def vertex_uv(self, vertices: Sequence[int]) -> tuple[NDArray[np.int64], FloatArray]:
+        """(c,) rows of vertices and (c, 2) where these are in the active UV layer, each place once, without those of
+        faces that are hidden in edit mode; none without a layer."""
+
     def side_normals(self, pairs: Sequence[tuple[int, int]]) -> FloatArray:
         """(k, 3) normal of the face to the left of each directed edge; NaN where there is none."""
 
@@ -64,3 +68,9 @@ def triangulated(vertices: list[int], positions: list) -> list[tuple[int, int, i
     if len(vertices) == 3:
         return [tuple(vertices)]
     return [tuple(vertices[i] for i in triangle) for triangle in tessellate_polygon([positions])]
+
+
+def each_once(rows: NDArray[np.int64], uv: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
+    """(c,) and (c, 2), in the order of rows, without repetitions."""
+    found = np.unique(np.c_[rows, uv.reshape(-1, 2)], axis=0)
+    return found[:, 0].astype(np.int64), found[:, 1:].astype(np.float32)

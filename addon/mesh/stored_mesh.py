@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..core import versions
 from .arrays import read_array
 from .manifold_triangles import manifold_triangles
-from .mesh_reader import FloatArray, MeshReader, triangulated
+from .mesh_reader import FloatArray, MeshReader, each_once, triangulated
 
 
 class StoredMesh(MeshReader):
@@ -184,6 +184,14 @@ class StoredMesh(MeshReader):
         uv = [] if stored is None else [stored[loop].vector[:] for loop in loops]
         return [self._mesh.loops[loop].vertex_index for loop in loops], np.array(uv, np.float32)
 
+    def vertex_uv(self, vertices: Sequence[int]) -> tuple[NDArray[np.int64], FloatArray]:
+        if self.uv is None:
+            return np.empty(0, np.int64), np.empty((0, 2), np.float32)
+        row_of = np.full(len(self.places), -1)
+        row_of[np.asarray(vertices, int)] = np.arange(len(vertices))
+        loops = np.flatnonzero((row_of[self.loop_vertices] >= 0) & self._shown[self.loop_faces])
+        return each_once(row_of[self.loop_vertices[loops]], self.uv[loops])
+
     def side_normals(self, pairs: Sequence[tuple[int, int]]) -> FloatArray:
         loops = self._loops(pairs)
         found = self.face_normals[self.loop_faces[loops]]
@@ -219,6 +227,11 @@ class StoredMesh(MeshReader):
             return None
         return read_array(attribute.data, "value", np.float32)
 
+    @property
+    def _shown(self) -> NDArray[np.bool_]:
+        """(f,) the faces that are not hidden; out of edit mode all of them."""
+        return np.ones(len(self.loop_start), bool)
+
     def _key(self, first: NDArray, second: NDArray) -> NDArray[np.int64]:
         return first.astype(np.int64) * len(self.places) + second
 
@@ -245,11 +258,20 @@ class FrozenMesh(StoredMesh):
         for name, member in vars(StoredMesh).items():
             if isinstance(member, cached_property):
                 getattr(self, name)
-        drawn = ~self.is_hidden[self.triangle_faces]
+        drawn = self._shown[self.triangle_faces]
         self._drawn = self.loop_vertices[self.drawn_loops[drawn]], self.triangle_faces[drawn]
+
+    @property
+    def _shown(self) -> NDArray[np.bool_]:
+        return ~self.is_hidden
 
     def drawn_triangles(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
         return self._drawn
+
+    def layout_loops(self, *, selected: bool) -> NDArray[np.int32]:
+        """(t, 3) loops of the triangles that a UV editor shows.  selected: only those of faces that were selected."""
+        shown = self._shown & self.is_selected if selected else self._shown
+        return self.drawn_loops[shown[self.triangle_faces]]
 
     def _loops(self, pairs: Sequence[tuple[int, int]] | NDArray) -> NDArray[np.int64]:
         loops = super()._loops(pairs)

@@ -82,6 +82,22 @@ class EditedUv:
         self._loops = [loop[layer] for face in self._bm.faces for loop in face.loops]
         self._before = np.array([loop.uv[:] for loop in self._loops], np.float32).reshape(-1, 2)
         self._now = self._before.copy()
+        self._lost = False
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the mesh is in edit mode as it was, as far as that is known."""
+        return not self._lost and self._mesh.is_editmode and self._bm.is_valid
+
+    @property
+    def is_changed(self) -> bool:
+        """Whether the values differ from those before anything was written."""
+        return not np.array_equal(self._now, self._before)
+
+    @property
+    def before(self) -> NDArray[np.float32]:
+        """(l, 2), as before anything was written."""
+        return self._before
 
     @property
     def now(self) -> NDArray[np.float32]:
@@ -89,17 +105,43 @@ class EditedUv:
         return self._now
 
     def write(self, region: Region, solved: NDArray[np.bool_], corner_uv: NDArray[np.float64]) -> None:
-        """As `write_uv`; earlier values of other triangles stay."""
-        uv = self._now.copy()
+        """As `write_uv`; all other triangles are as they were before anything was written."""
+        uv = self._before.copy()
         uv[region.triangle_loops[solved].ravel()] = corner_uv[solved].reshape(-1, 2)
         self._set(uv)
 
-    def restore(self) -> None:
-        """Leave the layer as it was before."""
-        if not self._bm.is_valid:
+    def find_again(self, loop_vertices: NDArray[np.int32]) -> None:
+        """To be called where something else may have changed the mesh: layers may have moved, and loops may be gone.
+
+        loop_vertices: (l,) of the loops as they were.
+        """
+        if not self.is_open:
             return
+        layer = self._bm.loops.layers.uv.get(self._name)
+        self._bm.verts.index_update()
+        loops = [loop for face in self._bm.faces for loop in face.loops]
+        self._lost = layer is None or [loop.vert.index for loop in loops] != loop_vertices.tolist()
+        self._loops = [] if self._lost else [loop[layer] for loop in loops]
+
+    def reset(self) -> None:
+        """Put back the values that there were before anything was written."""
         self._set(self._before)
-        if self._created:
+
+    def restore(self) -> None:
+        """Leave the layer as it was before, unless the loops of the mesh are others."""
+        if self.is_open:
+            self.reset()
+        elif (
+            not self._mesh.is_editmode
+            and self._name in self._mesh.uv_layers
+            and len(self._mesh.loops) == len(self._before)
+        ):
+            # Something else has left edit mode.
+            self._mesh.attributes[self._name].data.foreach_set("vector", self._before.ravel())
+            self._mesh.update_tag()
+        else:
+            return
+        if self._created and self._name in self._mesh.uv_layers:
             self._mesh.uv_layers.remove(self._mesh.uv_layers[self._name])
 
     def _set(self, uv: NDArray[np.float32]) -> None:

@@ -43,13 +43,16 @@ class Cone:
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """cone_places: (k, 3) positions of the cones. cut_lines: (s, 2, 3) segments along both sides of every cut, and
-    cut_paths: (s,) the number of the path that each belongs to. cut_uv: (s, 2, 2) the same segments in the layout.
+    """cone_places: (k, 3) positions of the cones. cone_uv: (c, 2) all their places in the layout, and cone_rows: (c,)
+    which of the cones each is of. cut_lines: (s, 2, 3) segments along both sides of every cut, and cut_paths: (s,) the
+    number of the path that each belongs to. cut_uv: (s, 2, 2) the same segments in the layout.
     flipped, overlapping: (t, 3, 3) triangles. active: the vertex of the active cone, None for none.
     """
 
     cones: list[Cone] = field(default_factory=list)
     cone_places: FloatArray = field(default_factory=lambda: np.empty((0, 3), np.float32))
+    cone_uv: FloatArray = field(default_factory=lambda: np.empty((0, 2), np.float32))
+    cone_rows: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
     cut_lines: FloatArray = field(default_factory=lambda: np.empty((0, 2, 3), np.float32))
     cut_paths: NDArray[np.int32] = field(default_factory=lambda: np.empty(0, np.int32))
     cut_uv: FloatArray = field(default_factory=lambda: np.empty((0, 2, 2), np.float32))
@@ -72,10 +75,13 @@ def build_content(
     mesh = reader(obj.data) if mesh is None else mesh
     found = find_cones(obj, report, mesh, marked)
     vertices = [cone.vertex for cone in found]
+    cone_rows, cone_uv = mesh.vertex_uv(vertices)
     lines, numbers, uv = _cut_sides(mesh, [] if report is None else report.paths)
     return Content(
         cones=found,
         cone_places=mesh.positions(vertices),
+        cone_uv=cone_uv,
+        cone_rows=cone_rows,
         cut_lines=lines,
         cut_paths=numbers,
         cut_uv=uv,

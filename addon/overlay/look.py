@@ -8,6 +8,8 @@ from ..core.identifiers import EXTENSION
 from . import cache
 
 CUT_COLORS = ("#d6336c", "#2b9348", "#7b4fc9", "#e3b505", "#12a0a0", "#c23fb5", "#87991a", "#3c9be0", "#c2703d")
+# Size of the active cone relative to the others.
+ACTIVE_SIZE = 1.5
 CUT_NAMES = [f"cut_{number}" for number in range(1, len(CUT_COLORS) + 1)]
 
 

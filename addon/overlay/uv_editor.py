@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws cuts in UV editors, in the same colors as in 3D views."""
+"""Draws cuts and cones in UV editors, in the same colors as in 3D views."""
 
 from __future__ import annotations
+
+from functools import partial
 
 import bpy
 import gpu
@@ -9,29 +11,52 @@ import numpy as np
 
 from . import cache, colors, shaders
 from .content import Content
-from .look import OverlayLook, overlay_look
+from .look import ACTIVE_SIZE, OverlayLook, overlay_look
 from .settings import settings
 
 
 def draw() -> None:
     context = bpy.context
     chosen, space = settings(context), context.space_data
-    if not (chosen.show and chosen.cuts and space.show_uvedit and space.overlay.show_overlays):
+    if not (chosen.show and space.show_uvedit and space.overlay.show_overlays):
         return
     look = overlay_look(context)
-    shader = shaders.lines()
     gpu.state.blend_set("ALPHA")
     with gpu.matrix.push_pop():
         _load_layout_space(context.region)
-        for obj in context.objects_in_mode_unique_data:
-            entry = cache.entry(obj)
-            if not len(entry.content.cut_uv):
-                continue
-            shader.bind()
-            shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
-            shader.uniform_float("lineWidth", look.line_width * context.preferences.system.pixel_size)
-            entry.batch("layout", lambda content=entry.content: _batch(content, look)).draw(shader)
+        for is_shown, draw_part in ((chosen.cuts, _draw_cuts), (chosen.cones, _draw_cones)):
+            for obj in context.objects_in_mode_unique_data if is_shown else ():
+                draw_part(cache.entry(obj), look)
     gpu.state.blend_set("NONE")
+
+
+def _draw_cuts(entry: cache.Entry, look: OverlayLook) -> None:
+    if not len(entry.content.cut_uv):
+        return
+    shader = shaders.lines()
+    shader.bind()
+    shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
+    shader.uniform_float("lineWidth", look.line_width * bpy.context.preferences.system.pixel_size)
+    entry.batch("layout", lambda: _batch(entry.content, look)).draw(shader)
+
+
+def _draw_cones(entry: cache.Entry, look: OverlayLook) -> None:
+    """Each where it is in the layout, which may be at several places."""
+    content, pixel = entry.content, bpy.context.preferences.system.pixel_size
+    if not len(content.cone_uv):
+        return
+    active = np.array([cone.vertex == content.active for cone in content.cones])[content.cone_rows]
+    tints = colors.of_cones(content.cones, look)[content.cone_rows]
+    places = np.c_[content.cone_uv, np.zeros(len(content.cone_uv))]
+    gpu.state.program_point_size_set(True)
+    shader = shaders.discs()
+    for number, (rows, size) in enumerate(((~active, 1.0), (active, ACTIVE_SIZE))):
+        if rows.any():
+            batch = entry.batch(f"cones {number}", partial(shaders.disc_batch, places[rows], tints[rows]))
+            shader.bind()
+            shader.uniform_float("size", size * look.cone_size * pixel)
+            batch.draw(shader)
+    gpu.state.program_point_size_set(False)
 
 
 def _batch(content: Content, look: OverlayLook) -> gpu.types.GPUBatch:

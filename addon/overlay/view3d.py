@@ -21,14 +21,12 @@ from ..mesh.reader import reader
 from . import cache, colors, labels, shaders
 from .content import Content
 from .heat import SCALES
-from .look import OverlayLook, overlay_look
+from .look import ACTIVE_SIZE, OverlayLook, overlay_look
 from .settings import ConeUnwrapOverlay, settings
 
 # How much nearer the overlay is drawn, relative to depth, as Blender does for wires; faces stay behind those.
 NEARER_PERSPECTIVE, NEARER_PARALLEL = 0.0025, 1e-5
 FACES_NEARER = 0.2
-# Size of the active cone relative to the others.
-ACTIVE_SIZE = 1.5
 
 # By session_uid of the mesh, for the view being drawn: (k, 3) pixels and depths of its cones in the region, and (k,)
 # which of them are visible.

@@ -49,10 +49,10 @@ def until(condition: Callable[[], bool], seconds: float = 20.0) -> Iterator[floa
         yield STEP
 
 
-def place_of(obj: bpy.types.Object, vertex: int) -> Place:
-    """Pixels of a vertex in the window; the mesh as it was when edit mode began."""
-    view, within = area().spaces.active.region_3d, region()
-    corner = view.perspective_matrix @ obj.matrix_world @ obj.data.vertices[vertex].co.to_4d()
+def place_of(obj: bpy.types.Object, vertex: int, within: bpy.types.Region | None = None) -> Place:
+    """Pixels of a vertex in the window; the mesh as it was when edit mode began.  within: by default the first view."""
+    within = region() if within is None else within
+    corner = within.data.perspective_matrix @ obj.matrix_world @ obj.data.vertices[vertex].co.to_4d()
     across, up = np.array(corner.xy) / corner.w
     return within.x + round((across + 1) / 2 * within.width), within.y + round((up + 1) / 2 * within.height)
 

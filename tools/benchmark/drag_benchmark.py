@@ -90,7 +90,7 @@ def watch_tool(watch: Stopwatch) -> None:
     session = import_module(f"{demo_scene.ADDON}.jobs.cone_session")
     write = import_module(f"{demo_scene.ADDON}.mesh.uv_write")
     tool = import_module(f"{demo_scene.ADDON}.operators.cones.edit")
-    watch.watch(session.ConeSession, "vertex_at", "pick")
+    watch.watch(import_module(f"{demo_scene.ADDON}.jobs.picking").Picker, "vertex_at", "pick")
     watch.watch(lsgp.Solver, "parameterize", "solve")
     watch.watch(session.Step, "solve", "place")
     watch.watch(write.EditedUv, "write", "write UVs")

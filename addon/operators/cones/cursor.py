@@ -1,46 +1,66 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is under the cursor in a 3D view."""
+"""What is under the cursor in a window."""
 
 from __future__ import annotations
+
+from functools import partial
 
 import bpy
 import numpy as np
 
 from ...core.screen import Screen
-from ...jobs.cone_session import ConeSession
+from ...jobs.edited_objects import EditedObjects, Pick, Sight
+from .views import View, view_at
 
 # Pixels, at a scale of 1.
 RADIUS = 14
 
 
 class Cursor:
-    """The cursor over an object in the 3D view of an area."""
+    """The cursor over objects in the views of a window."""
 
-    def __init__(self, obj: bpy.types.Object, area: bpy.types.Area) -> None:
-        self._obj, self._area = obj, area
-        self._region = next(region for region in area.regions if region.type == "WINDOW")
-        self._window_place = 0, 0
+    def __init__(self) -> None:
+        self._place = 0, 0
 
     def follow(self, event: bpy.types.Event) -> None:
-        self._window_place = event.mouse_x, event.mouse_y
+        self._place = event.mouse_x, event.mouse_y
 
-    def vertex(self, session: ConeSession) -> int | None:
-        """The vertex under the cursor; None where there is no face."""
-        return session.vertex_at(self._screen(), *self._place()) if self._is_inside() else None
+    def view(self) -> View | None:
+        """The view at the cursor; None where there is something else."""
+        # Areas may be gone by the next event.
+        return view_at(bpy.context.window, *self._place)
 
-    def cone(self, session: ConeSession) -> int | None:
-        """The visible cone at the cursor; None where there is none."""
+    def vertex(self, objects: EditedObjects) -> Pick | None:
+        """The vertex under the cursor, and its object; None where there is no face."""
+        view = self.view()
+        return None if view is None else objects.vertex_at(_sight(view), *view.place)
+
+    def cone(self, objects: EditedObjects) -> Pick | None:
+        """The visible cone at the cursor, and its object; None where there is none."""
+        view = self.view()
         radius = RADIUS * bpy.context.preferences.system.pixel_size
-        return session.cone_at(self._screen(), *self._place(), radius) if self._is_inside() else None
+        return None if view is None else objects.cone_at(_sight(view), *view.place, radius)
 
-    def _screen(self) -> Screen:
-        matrix = self._area.spaces.active.region_3d.perspective_matrix @ self._obj.matrix_world
-        return Screen(np.array(matrix, np.float64), self._region.width, self._region.height)
 
-    def _place(self) -> tuple[int, int]:
-        """In pixels from the lower left corner of the view."""
-        return self._window_place[0] - self._region.x, self._window_place[1] - self._region.y
+def _sight(view: View) -> Sight:
+    if view.area.type == "VIEW_3D":
+        return Sight(partial(_in_scene, view))
+    # Without synchronization a UV editor shows the selected faces.
+    return Sight(partial(_in_layout, view), layout=True, selected=not bpy.context.tool_settings.use_uv_select_sync)
 
-    def _is_inside(self) -> bool:
-        x, y = self._place()
-        return 0 <= x < self._region.width and 0 <= y < self._region.height
+
+def _in_scene(view: View, obj: bpy.types.Object) -> Screen | None:
+    """None outside a local view, for example."""
+    if not obj.visible_in_viewport_get(view.area.spaces.active):
+        return None
+    matrix = view.region.data.perspective_matrix @ obj.matrix_world
+    return Screen(np.array(matrix, np.float64), view.region.width, view.region.height)
+
+
+def _in_layout(view: View, _obj: bpy.types.Object) -> Screen:
+    """Of texture coordinates with z = 0."""
+    width, height = view.region.width, view.region.height
+    low, high = (np.array(view.region.view2d.region_to_view(*corner)) for corner in ((0, 0), (width, height)))
+    matrix = np.diag([*(2 / (high - low)), -0.5, 1.0])
+    matrix[:2, 3] = -(high + low) / (high - low)
+    return Screen(matrix, width, height)

@@ -4,23 +4,34 @@
 import bpy
 
 from ...core import native
+from ...mesh import changes
 from ...mesh.targets import target_objects
+
+
+def _poll_targets(operator: type[bpy.types.Operator], context: bpy.types.Context, wanted: str) -> bool:
+    """True where there are meshes to work on, and none is being worked on by Edit Cones.  wanted: what to do if not."""
+    objects = target_objects(context)
+    if not objects:
+        operator.poll_message_set(wanted)
+        return False
+    if any(changes.is_suspended(obj.data) for obj in objects):
+        operator.poll_message_set("Finish Edit Cones first: Enter, or Esc to cancel")
+        return False
+    return True
 
 
 def poll_edit_mesh(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
     """True where a mesh is in edit mode."""
+    wanted = "Enter edit mode on a mesh first"
     if context.mode != "EDIT_MESH":
-        operator.poll_message_set("Enter edit mode on a mesh first")
+        operator.poll_message_set(wanted)
         return False
-    return True
+    return _poll_targets(operator, context, wanted)
 
 
 def poll_meshes(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
     """True where meshes are in edit mode, or selected in object mode."""
-    if not target_objects(context):
-        operator.poll_message_set("Enter edit mode on a mesh, or select mesh objects in object mode")
-        return False
-    return True
+    return _poll_targets(operator, context, "Enter edit mode on a mesh, or select mesh objects in object mode")
 
 
 def poll_computation(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:

@@ -18,7 +18,7 @@ from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
 from ..shared.properties import BorderProperty, ConeGroupProperty, CutsProperty, SeamsProperty
 from .low_stretch import LowStretchProperties
-from .properties import UnwrapProperties, unwrap_settings
+from .properties import UnwrapProperties, pack_settings, unwrap_settings
 from .seamless import SeamlessProperties
 from .sections import section
 
@@ -75,7 +75,7 @@ class UV_OT_cone_unwrap(
         return unwrap_all_once(tasks, progress)
 
     def write(self, solved: Solved) -> list[str]:
-        layouts = final_layouts([unwrapped for _, _, unwrapped in solved], self.pack_settings())
+        layouts = final_layouts([unwrapped for _, _, unwrapped in solved], pack_settings(self))
         for (obj, _, unwrapped), corner_uv in zip(solved, layouts, strict=True):
             write_map(obj, unwrapped, corner_uv)
         return [unwrap_summary(unwrapped) for _, _, unwrapped in solved]

@@ -108,11 +108,6 @@ class UnwrapProperties(DirectionProperty):
             layout.prop(self, "margin_method")
             layout.prop(self, "margin")
 
-    def pack_settings(self) -> PackSettings:
-        pack = self.pack and not self.keep_placement
-        turned = not chosen_direction(self.direction, tiles=self.seamless).is_any
-        return PackSettings(pack, self.seamless, self.margin_method, self.margin, turned)
-
 
 def unwrap_settings(chosen: bpy.types.OperatorProperties) -> UnwrapSettings:
     """What these properties of the operator, present or last used, ask for.  Raises InputError."""
@@ -140,3 +135,10 @@ def unwrap_settings(chosen: bpy.types.OperatorProperties) -> UnwrapSettings:
         direction=chosen_direction(chosen.direction, tiles=chosen.seamless),
         subdivided=chosen.use_subsurf_data,
     )
+
+
+def pack_settings(chosen: bpy.types.OperatorProperties) -> PackSettings:
+    """How these properties ask islands to be placed."""
+    pack = chosen.pack and not chosen.keep_placement
+    turned = not chosen_direction(chosen.direction, tiles=chosen.seamless).is_any
+    return PackSettings(pack, chosen.seamless, chosen.margin_method, chosen.margin, turned)

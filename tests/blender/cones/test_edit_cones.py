@@ -20,6 +20,7 @@ from scenes import (
     add_sphere,
     changed,
     corners,
+    covered_twice,
     edit,
     mark,
     marked,
@@ -31,11 +32,16 @@ from scenes import (
 )
 
 cone_session, unwrapping, content = addon.jobs.cone_session, addon.jobs.unwrapping, addon.overlay.content
-following = addon.jobs.following
+hints, finishing = addon.operators.cones.hints, addon.jobs.finishing
+angle_table, picking, edited_objects = addon.jobs.angle_table, addon.jobs.picking, addon.jobs.edited_objects
+following, edit_history = addon.jobs.following, addon.jobs.edit_history
+changes = addon.mesh.changes
 reports, screens, typed_number = addon.mesh.reports, addon.core.screen, addon.operators.cones.typed_number
 lsgp = addon.core.native.lsgp
 
 SIZE = 400
+AS_THEY_ARE = addon.jobs.maps.PackSettings(False, False, "SCALED", 0.001)
+PACKED = replace(AS_THEY_ARE, pack=True)
 
 
 def begin(obj, **options):
@@ -52,6 +58,24 @@ def follow(session):
     unwrapped = step.solve()
     session.show(step, unwrapped)
     return unwrapped
+
+
+def finish(session, placing):
+    """Raises what kept the mesh from being unwrapped."""
+    (outcome,) = finishing.finish([session], [], placing)
+    if isinstance(outcome, Exception):
+        raise outcome
+    return outcome
+
+
+def vertex_at(session, x, y):
+    hit = picking.Picker.of_mesh(session.mesh).vertex_at(from_above(), x, y)
+    return None if hit is None else hit.vertex
+
+
+def cone_at(session, x, y, radius):
+    hit = picking.Picker.of_mesh(session.mesh).cone_at(from_above(), session.cones.vertices, x, y, radius)
+    return None if hit is None else hit.vertex
 
 
 def from_above():
@@ -92,9 +116,9 @@ def test_the_vertex_under_the_cursor_is_the_nearest_of_the_face_there():
     cube = add_cone_cube()
     session = begin(cube)
     expected = vertex_near(cube, 0.5, -0.5, 1.0)
-    assert session.vertex_at(from_above(), *pixel(0.5, -0.5)) == expected
-    assert session.vertex_at(from_above(), *pixel(0.3, -0.68)) == expected
-    assert session.vertex_at(from_above(), *pixel(1.5, 0.0)) is None
+    assert vertex_at(session, *pixel(0.5, -0.5)) == expected
+    assert vertex_at(session, *pixel(0.3, -0.68)) == expected
+    assert vertex_at(session, *pixel(1.5, 0.0)) is None
     session.restore()
 
 
@@ -104,9 +128,9 @@ def test_the_cone_under_the_cursor_is_seen_and_near():
     session = begin(cube)
     x, y = pixel(1.0, 1.0)
     # Right behind it is another one.
-    assert session.cone_at(from_above(), x + 5, y, 10) == vertex_near(cube, 1.0, 1.0, 1.0)
-    assert session.cone_at(from_above(), x + 15, y, 10) is None
-    assert session.cone_at(from_above(), *pixel(0.0, 0.0), 10) is None
+    assert cone_at(session, x + 5, y, 10) == vertex_near(cube, 1.0, 1.0, 1.0)
+    assert cone_at(session, x + 15, y, 10) is None
+    assert cone_at(session, *pixel(0.0, 0.0), 10) is None
     session.restore()
 
 
@@ -115,7 +139,7 @@ def test_hidden_faces_are_not_picked():
     edit(cube)
     bpy.ops.mesh.hide(unselected=False)
     session = begin(cube)
-    assert session.vertex_at(from_above(), *pixel(0.5, 0.5)) is None
+    assert vertex_at(session, *pixel(0.5, 0.5)) is None
     session.restore()
 
 
@@ -179,7 +203,7 @@ def test_finishing_changes_the_map_the_cones_and_their_angles_alone():
     session.cones.add(start[0])
     session.cones.move(neighbor(ball, start[0]))
     session.cones.set_angle(math.radians(300))
-    session.finish()
+    finish(session, AS_THEY_ARE)
     expected = sorted({*start[1:], session.cones.active})
     assert marked(ball) == expected and selected(ball) == []
     assert stored_angle(ball, session.cones.active) == np.float32(math.radians(300))
@@ -195,7 +219,7 @@ def test_the_finished_map_is_that_of_the_operator():
     bpy.ops.uv.cone_unwrap()
     session = begin(ball)
     session.cones.remove(session.cones.vertices[0])
-    session.finish()
+    finish(session, AS_THEY_ARE)
     edited = UvMap(ball)
     bpy.ops.mesh.select_all(action="SELECT")
     bpy.ops.uv.cone_unwrap()
@@ -274,7 +298,7 @@ def test_what_cannot_be_unwrapped_leaves_the_map_and_keeps_the_cones():
     with pytest.raises(lsgp.LsgpError):
         follow(session)
     with pytest.raises(lsgp.LsgpError):
-        session.finish()
+        finish(session, AS_THEY_ARE)
     assert marked(sphere) == [30]
     assert uv_key() not in changed(before, snapshot(sphere))
 
@@ -307,7 +331,7 @@ def test_found_angles_are_automatic_once_the_cones_of_their_part_are_others():
     assert None not in found
     session.cones.remove(first)
     assert session.cones.current().angles == [None] * 7
-    session.finish()
+    finish(session, AS_THEY_ARE)
     assert stored_angle(ball, second) == 0.0
 
 
@@ -317,7 +341,7 @@ def test_open_borders_need_no_cone():
     middle = vertex_near(grid, 0.0, 0.0, 0.0)
     session.cones.add(middle)
     session.cones.set_angle(math.radians(330))
-    session.finish()
+    finish(session, AS_THEY_ARE)
     assert abs(UvMap(grid).angle_sum(middle) - math.radians(330)) < 1e-3
 
 
@@ -348,7 +372,16 @@ def test_a_session_shows_what_the_overlay_shows_of_the_same_map(build):
         expected = content.build_content(obj, report, marked=session.cones.current())
         found = content.build_content(obj, report, session.mesh, session.cones.current())
         assert found.cones == expected.cones
-        for name in ("cone_places", "cut_lines", "cut_paths", "cut_uv", "flipped", "overlapping"):
+        for name in (
+            "cone_places",
+            "cone_uv",
+            "cone_rows",
+            "cut_lines",
+            "cut_paths",
+            "cut_uv",
+            "flipped",
+            "overlapping",
+        ):
             np.testing.assert_allclose(getattr(found, name), getattr(expected, name), atol=1e-6)
         session.cones.add(vertex_near(obj, 0.4, 0.3, 0.5))
         follow(session)
@@ -417,3 +450,462 @@ def test_stopping_leaves_no_computation_and_shows_nothing(monkeypatch):
     assert not follower.is_busy and not follower.follow()
     np.testing.assert_array_equal(UvMap(ball).uv, before)
     session.restore()
+
+
+def history_of(session):
+    return edit_history.EditHistory(session.cones.state, session.cones.put)
+
+
+def test_steps_are_undone_and_redone_with_the_angles_the_active_cone_and_the_map():
+    ball = add_ball()
+    bpy.ops.mesh.cone_place(automatic=False, count=8)
+    bpy.ops.uv.cone_unwrap()
+    session = begin(ball)
+    history, follower = history_of(session), following.Follower(session)
+    seen = [(session.cones.current(), session.cones.active, UvMap(ball).uv)]
+
+    def change(name, work):
+        history.begin(name)
+        work()
+        follower.outdated = True
+        until_idle(follower)
+        seen.append((session.cones.current(), session.cones.active, UvMap(ball).uv))
+
+    first = session.cones.vertices[0]
+    free = next(v for v in range(len(ball.data.vertices)) if v not in session.cones)
+    change("Add Cone", lambda: session.cones.add(free))
+    change("Set Angle", lambda: session.cones.set_angle(math.radians(350)))
+    change("Remove Cone", lambda: session.cones.remove(first))
+
+    def compare(expected):
+        follower.outdated = True
+        until_idle(follower)
+        cones, active, uv = expected
+        assert session.cones.current().angles == cones.angles and session.cones.active == active
+        np.testing.assert_array_equal(session.cones.current().cones, cones.cones)
+        np.testing.assert_allclose(UvMap(ball).uv, uv, atol=1e-5)
+
+    names = ["Add Cone", "Set Angle", "Remove Cone"]
+    for number in (2, 1, 0):
+        assert history.undoes == names[number] and history.undo()
+        compare(seen[number])
+    assert not session.cones.changed and not history.undo() and history.undoes is None
+    np.testing.assert_array_equal(UvMap(ball).uv, seen[0][2])
+    for number in (1, 2, 3):
+        assert history.redoes == names[number - 1] and history.redo()
+        compare(seen[number])
+    assert not history.redo()
+    assert history.undo()
+    change("Turn Angle", lambda: session.turn_angle(math.radians(15), 1))
+    assert history.redoes is None and history.undoes == "Turn Angle"
+    session.restore()
+
+
+def test_steps_that_change_nothing_are_none():
+    session = begin(add_ball())
+    history = history_of(session)
+    first = session.cones.vertices[0]
+    history.begin("Remove Cone")
+    session.cones.remove(first)
+    history.begin("Move Cone")
+    session.cones.add(session.cones.vertices[0])
+    assert history.undoes == "Remove Cone" and history.undo()
+    assert first in session.cones and history.undoes is None
+    session.restore()
+
+
+def test_undone_steps_give_the_parts_they_touched_back():
+    cube, other = add_cone_cube("Cube"), add_cube("Other")
+    mark(other, corners(other))
+    other.location.x = 5
+    bpy.ops.object.select_all(action="SELECT")
+    bpy.context.view_layer.objects.active = cube
+    bpy.ops.object.join()
+    bpy.ops.uv.cone_unwrap()
+    before = UvMap(cube).uv
+    session = begin(cube)
+    history = history_of(session)
+    near, far = session.cones.vertices[0], session.cones.vertices[-1]
+    for cone in (near, far):
+        history.begin("Remove Cone")
+        session.cones.remove(cone)
+        follow(session)
+    history.undo()
+    follow(session)
+    uv = UvMap(cube)
+    same = (uv.uv == before).all(axis=1)
+    is_near = uv.positions[uv.vertex][:, 0] < 2
+    assert same[~is_near].all() and not same[is_near].any()
+    session.restore()
+
+
+def is_in_tile(uv, column=0, row=0):
+    return bool((uv >= (column - 1e-5, row - 1e-5)).all() and (uv <= (column + 1 + 1e-5, row + 1 + 1e-5)).all())
+
+
+def with_a_sharp_cone(build, placing):
+    """The map of an object that was unwrapped and then got a sharp cone in place of two blunt ones."""
+    obj = build()
+    bpy.ops.uv.cone_unwrap()
+    assert is_in_tile(UvMap(obj).uv)
+    session = begin(obj)
+    session.cones.remove(session.cones.vertices[0])
+    session.cones.remove(session.cones.vertices[-1])
+    session.cones.add(session.cones.vertices[2])
+    session.cones.set_angle(math.radians(120))
+    finish(session, placing)
+    report = reports.find(obj.data)
+    assert report.texel_density is not None and sorted(report.cones) == marked(obj)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    return UvMap(obj)
+
+
+@pytest.mark.parametrize("build", [add_ball, add_cone_cube])
+def test_what_does_not_fit_into_its_place_is_packed_again(build):
+    left, packed = (with_a_sharp_cone(build, placing) for placing in (AS_THEY_ARE, PACKED))
+    assert not is_in_tile(left.uv) and is_in_tile(packed.uv)
+    assert packed.sister_difference() < 4 * UV_ROUNDING
+    assert packed.split_edges() == left.split_edges()
+    assert packed.l2_stretch() == pytest.approx(left.l2_stretch(), abs=1e-4)
+
+
+def two_cubes(place):
+    """Two cubes in one mesh, unwrapped; place: where their UVs go then."""
+    cube, other = add_cone_cube("Cube", 1), add_cone_cube("Other", 1)
+    other.location.x = 5
+    bpy.ops.object.select_all(action="SELECT")
+    bpy.context.view_layer.objects.active = cube
+    bpy.ops.object.join()
+    bpy.ops.uv.cone_unwrap()
+    uv_map = UvMap(cube)
+    is_near = uv_map.positions[uv_map.vertex][:, 0] < 2
+    uv = place(uv_map.uv, is_near).astype(np.float32)
+    cube.data.attributes["UVMap"].data.foreach_set("vector", uv.ravel())
+    # The report is on the map that was.
+    reports.store(cube.data, reports._parsed(cube.data.cone_unwrap_report.partition("\n")[2]))
+    return cube
+
+
+def overlap_after(place, placing):
+    """How much of the map of two cubes lies on itself once one of them is edited; and the map."""
+    cube = two_cubes(place)
+    session = begin(cube)
+    near = [cone for cone in session.cones.vertices if cube.data.vertices[cone].co.x < 2]
+    for cone in near[4:]:
+        session.cones.remove(cone)
+    finish(session, placing)
+    uv_map = UvMap(cube)
+    return covered_twice([uv_map], 150), uv_map
+
+
+def placed(*middles):
+    """Moves the UVs of the two cubes so that these are the middles of their boxes."""
+
+    def place(uv, is_near):
+        out = uv.copy()
+        for part, middle in zip((is_near, ~is_near), middles, strict=True):
+            low, high = uv[part].min(axis=0), uv[part].max(axis=0)
+            out[part] = middle + (uv[part] - (low + high) / 2) * (0.25 / (high - low).max())
+        return out
+
+    return place
+
+
+def test_islands_that_came_to_lie_on_others_are_packed():
+    overlap, _ = overlap_after(lambda uv, _near: uv, AS_THEY_ARE)
+    assert overlap > 0
+    bpy.ops.object.mode_set(mode="OBJECT")
+    overlap, uv_map = overlap_after(lambda uv, _near: uv, PACKED)
+    assert overlap == 0 and is_in_tile(uv_map.uv)
+
+
+def test_islands_that_lay_on_each_other_stay_so():
+    """Both are in the middle of the square, where edited ones have room."""
+    overlap, uv_map = overlap_after(placed((0.5, 0.5), (0.5, 0.5)), PACKED)
+    assert overlap > 0
+    assert np.abs(uv_map.uv - 0.5).max() < 0.3
+
+
+def test_maps_on_another_tile_stay_there():
+    _, uv_map = overlap_after(placed((3.25, 1.5), (3.75, 1.5)), PACKED)
+    assert is_in_tile(uv_map.uv, 3, 1)
+
+
+SETTINGS = angle_table.TableSettings("uv_cones", "follow", "free")
+
+
+def test_the_table_of_angles_follows():
+    ball = add_ball()
+    edit(ball, select="DESELECT")
+    uid = ball.data.session_uid
+    stored = angle_table.current_table(ball, SETTINGS)
+    session = begin(ball)
+    angle_table.follow(uid, session.table())
+    assert angle_table.current_table(ball, SETTINGS) == stored
+    first, *others = session.cones.vertices
+    session.cones.add(first)
+    session.cones.set_angle(math.radians(200))
+    (part,) = angle_table.current_table(ball, SETTINGS)
+    assert [row.vertex for row in part.rows] == [first, *others]
+    assert part.rows[0].angle == math.radians(200) and part.ledger.assigned == pytest.approx(math.radians(160))
+    assert angle_table.current_table(ball, SETTINGS)[0] is part
+    session.cones.remove(others[0])
+    assert len(angle_table.current_table(ball, SETTINGS)[0].rows) == len(others)
+    session.restore()
+    angle_table.unfollow(uid)
+    assert angle_table.current_table(ball, SETTINGS) == stored
+
+
+def seen_from_above(obj):
+    """As `from_above`, of an object anywhere."""
+    screen = from_above()
+    return screens.Screen(screen.matrix @ np.array(obj.matrix_world, np.float64), SIZE, SIZE)
+
+
+FROM_ABOVE = edited_objects.Sight(seen_from_above)
+
+
+def alone(shown):
+    """As in a local view."""
+    return edited_objects.Sight(lambda obj: seen_from_above(obj) if obj == shown else None)
+
+
+def begin_together(*objects, **options):
+    if objects[0].mode != "EDIT":
+        edit(*objects, select="DESELECT")
+    cuts = addon.jobs.cuts.CutChoice()
+    settings = unwrapping.UnwrapSettings(lsgp.Options(**options), "uv_cones", None, 0.0, True, False, True, cuts)
+    return edited_objects.EditedObjects(objects, settings)
+
+
+def add_upper_and_lower():
+    """Two cubes over each other, the upper one half as wide and twice as flat."""
+    lower, upper = add_cone_cube("Lower"), add_cone_cube("Upper")
+    upper.scale, upper.location = (0.5, 0.5, 0.25), (0.0, 0.0, 3.0)
+    bpy.context.view_layer.update()
+    return lower, upper
+
+
+def test_the_nearest_object_in_the_world_is_picked():
+    lower, upper = add_upper_and_lower()
+    objects = begin_together(lower, upper)
+    edited, hit = objects.vertex_at(FROM_ABOVE, *pixel(0.2, 0.25))
+    assert edited.obj == upper and hit.vertex == vertex_near(upper, 0.5, 0.5, 1.0)
+    edited, hit = objects.vertex_at(FROM_ABOVE, *pixel(0.8, 0.9))
+    assert edited.obj == lower and hit.vertex == vertex_near(lower, 1.0, 1.0, 1.0)
+    assert objects.vertex_at(FROM_ABOVE, *pixel(1.5, 0.0)) is None
+    only_lower = objects.vertex_at(alone(lower), *pixel(0.2, 0.25))
+    assert only_lower[0].obj == lower
+    assert objects.begun == []
+    objects.end()
+
+
+def test_cones_behind_another_object_are_not_picked():
+    lower, upper = add_upper_and_lower()
+    hidden = vertex_near(lower, 0.0, 0.0, 1.0)
+    mark(lower, [hidden])
+    objects = begin_together(lower, upper)
+    edited, hit = objects.cone_at(FROM_ABOVE, *pixel(0.5, 0.5), 10)
+    assert edited.obj == upper and hit.vertex == vertex_near(upper, 1.0, 1.0, 1.0)
+    edited, hit = objects.cone_at(FROM_ABOVE, *pixel(1.0, 1.0), 10)
+    assert edited.obj == lower and hit.vertex == vertex_near(lower, 1.0, 1.0, 1.0)
+    assert objects.cone_at(FROM_ABOVE, *pixel(0.0, 0.0), 10) is None
+    found = objects.cone_at(alone(lower), *pixel(0.0, 0.0), 10)
+    assert found[0].obj == lower and found[1].vertex == hidden
+    objects.end()
+
+
+def until_all_idle(objects):
+    while any(edited.follower.outdated or edited.follower.is_busy for edited in objects.begun):
+        objects.follow()
+
+
+def test_objects_are_edited_undone_and_put_back_together():
+    first, second, third = add_ball("First"), add_ball("Second"), add_ball("Third")
+    second.scale = 1.0, 1.0, 2.0
+    bpy.ops.object.select_all(action="SELECT")
+    bpy.ops.uv.cone_unwrap()
+    edit(first, second, third, select="DESELECT")
+    before = [snapshot(obj) for obj in (first, second, third)]
+    objects = begin_together(first, second, third)
+    assert changes.is_suspended(third.data)
+    for edited in objects._all[:2]:
+        objects.activate(edited)
+        objects.history.begin("Remove Cone")
+        edited.session.cones.remove(edited.cones[0])
+        edited.follower.outdated = True
+    until_all_idle(objects)
+    assert len(objects.begun) == 2 and objects.count() == 22 and objects.active.obj == second
+    maps = [UvMap(obj).uv for obj in (first, second)]
+    assert objects.history.undo()
+    until_all_idle(objects)
+    assert objects.count() == 23 and objects.active_cones is None
+    assert uv_key() not in changed(before[1], snapshot(second))
+    np.testing.assert_array_equal(UvMap(first).uv, maps[0])
+    assert objects.history.redo()
+    until_all_idle(objects)
+    np.testing.assert_allclose(UvMap(second).uv, maps[1], atol=1e-5)
+    objects.restore()
+    objects.end()
+    assert not changes.is_suspended(third.data)
+    for obj, state in zip((first, second, third), before, strict=True):
+        assert changed(state, snapshot(obj)) == set()
+
+
+def test_one_object_that_cannot_be_unwrapped_does_not_keep_others_from_it():
+    good, bad = add_ball("Good"), add_cone_cube("Bad")
+    objects = begin_together(good, bad)
+    for edited in objects._all:
+        objects.activate(edited)
+        for cone in edited.cones[1 if edited.obj == good else 0 :][: 1 if edited.obj == good else 7]:
+            edited.session.cones.remove(cone)
+    finished = objects.finish(PACKED)
+    objects.end()
+    assert [isinstance(outcome, Exception) for _, outcome in finished] == [False, True]
+    assert len(marked(good)) == 7 and len(marked(bad)) == 1
+    assert reports.find(good.data) is not None
+
+
+def test_a_dragged_cone_stays_on_its_connected_part():
+    cube, other = add_cone_cube("Cube"), add_cone_cube("Other")
+    other.location.x = 5
+    bpy.ops.object.select_all(action="SELECT")
+    bpy.context.view_layer.objects.active = cube
+    bpy.ops.object.join()
+    session = begin(cube)
+    near, far = vertex_near(cube, 0.0, 0.0, 1.0), vertex_near(cube, 5.0, 0.0, 1.0)
+    session.cones.add(session.cones.vertices[0])
+    assert session.cones.move(near)
+    assert not session.cones.move(far)
+    assert session.cones.active == near and far not in session.cones
+    session.restore()
+
+
+class StatusBar:
+    """Stands for a header and its layout, and keeps its labels."""
+
+    def __init__(self):
+        self.layout, self.labels = self, []
+
+    def label(self, text, icon):
+        self.labels.append((text, icon))
+
+    def separator_spacer(self):
+        pass
+
+    template_reports_banner = template_running_jobs = separator_spacer
+
+
+def test_the_status_bar_has_icons_where_blender_has_them_and_names_the_steps():
+    shown = hints.hints("Add Cone", None)
+    wheel = next(hint for hint in shown if hint.keys == "Wheel")
+    icons = bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items
+    present = [hint for hint in shown if all(icon in icons for icon in hint.icons)]
+    bar = StatusBar()
+    hints.status(present)(bar, bpy.context)
+    assert ("", "EVENT_CTRL") in bar.labels and ("Undo Add Cone", "EVENT_Z") in bar.labels
+    assert [text for text, _ in bar.labels if text] == [hint.text for hint in present]
+    missing = replace(wheel, icons=("NO_SUCH_ICON",))
+    text = hints.status([*present, missing])
+    assert text.startswith("Click: Add  |  Drag: Move") and text.endswith("Wheel: Angle")
+    assert "Ctrl-Shift-Z: Redo" not in text
+    assert [hint.text for hint in hints.hints(None, "Move Cone")].count("Redo Move Cone") == 1
+
+
+def shared_square(place):
+    """Three cubes in a mesh each, unwrapped together, their islands then moved; place: the middles of their boxes."""
+    cubes = [add_cone_cube(name, 1) for name in ("First", "Second", "Third")]
+    bpy.ops.object.select_all(action="SELECT")
+    bpy.ops.uv.cone_unwrap()
+    for cube, middle in zip(cubes, place, strict=True):
+        uv = UvMap(cube).uv
+        low, high = uv.min(axis=0), uv.max(axis=0)
+        uv = middle + (uv - (low + high) / 2) * (0.3 / (high - low).max())
+        cube.data.attributes["UVMap"].data.foreach_set("vector", uv.astype(np.float32).ravel())
+        reports.store(cube.data, reports._parsed(cube.data.cone_unwrap_report.partition("\n")[2]))
+    return cubes
+
+
+def with_fewer_cones_on_the_first(place):
+    """The maps of three cubes before and after one of them gets another shape in the map."""
+    cubes = shared_square(place)
+    before = [UvMap(cube).uv for cube in cubes]
+    objects = begin_together(*cubes)
+    objects.activate(objects._all[0])
+    for cone in objects._all[0].cones[4:]:
+        objects.active.session.cones.remove(cone)
+    objects.finish(PACKED)
+    objects.end()
+    assert all(reports.find(cube.data) is not None for cube in cubes)
+    return before, [UvMap(cube) for cube in cubes]
+
+
+def test_objects_that_share_the_square_make_room():
+    _, maps = with_fewer_cones_on_the_first([(0.2, 0.5), (0.5, 0.5), (0.8, 0.5)])
+    assert covered_twice(maps, 100) == 0
+    assert all(is_in_tile(uv_map.uv) for uv_map in maps)
+
+
+def test_objects_that_do_not_share_the_square_stay():
+    before, maps = with_fewer_cones_on_the_first([(0.5, 0.5)] * 3)
+    for uv, uv_map in zip(before[1:], maps[1:], strict=True):
+        np.testing.assert_array_equal(uv_map.uv, uv)
+    assert is_in_tile(maps[0].uv)
+
+
+def over_the_layout(*, selected=False):
+    """A UV editor that shows the unit square, SIZE pixels wide."""
+    matrix = np.array([(2.0, 0, 0, -1), (0, 2.0, 0, -1), (0, 0, -0.5, 0), (0, 0, 0, 1)])
+    return edited_objects.Sight(lambda _obj: screens.Screen(matrix, SIZE, SIZE), layout=True, selected=selected)
+
+
+def test_vertices_and_cones_are_picked_in_the_layout():
+    ball = add_ball(cuts=2)
+    bpy.ops.uv.cone_unwrap()
+    uv = UvMap(ball)
+    objects = begin_together(ball)
+    for triangle in uv.triangles[::7]:
+        corners_uv = uv.uv[triangle]
+        near = 0.5 * corners_uv[1] + 0.25 * (corners_uv[0] + corners_uv[2])
+        nearest = triangle[np.linalg.norm(corners_uv - near, axis=1).argmin()]
+        _, hit = objects.vertex_at(over_the_layout(), *(SIZE * near))
+        assert hit.vertex == uv.vertex[nearest]
+    for loop in np.flatnonzero(np.isin(uv.vertex, marked(ball))):
+        _, hit = objects.cone_at(over_the_layout(), *(SIZE * uv.uv[loop] + (1, 0)), 3)
+        assert hit.vertex == uv.vertex[loop]
+    assert objects.vertex_at(over_the_layout(selected=True), *(SIZE * near)) is None
+    objects.end()
+
+
+def test_the_layout_is_picked_as_it_was_while_a_cone_is_dragged_in_it():
+    ball = add_ball()
+    bpy.ops.uv.cone_unwrap()
+    before = UvMap(ball)
+    objects = begin_together(ball)
+    (edited,) = objects._all
+    place = before.uv[before.triangles[10]].mean(axis=0)
+    _, first = objects.vertex_at(over_the_layout(), *(SIZE * place))
+    objects.hold_layouts(True)
+    objects.activate(edited)
+    edited.session.cones.add(first.vertex)
+    edited.session.cones.set_angle(math.radians(200))
+    edited.follower.outdated = True
+    until_all_idle(objects)
+    after = UvMap(ball)
+    triangle = after.triangles[40]
+    held = objects.vertex_at(over_the_layout(), *(SIZE * before.uv[triangle].mean(axis=0)))
+    assert held[1].vertex in before.vertex[triangle]
+    objects.hold_layouts(False)
+    now = objects.vertex_at(over_the_layout(), *(SIZE * after.uv[triangle].mean(axis=0)))
+    assert now[1].vertex in after.vertex[triangle]
+    assert np.abs(after.uv - before.uv).max() > 0.05
+    objects.restore()
+    objects.end()
+
+
+def test_a_mesh_without_a_layout_is_not_picked_there():
+    ball = add_ball()
+    ball.data.uv_layers.remove(ball.data.uv_layers[0])
+    objects = begin_together(ball, add_ball("Other"))
+    assert objects.vertex_at(over_the_layout(), SIZE / 2, SIZE / 2) is None
+    objects.end()

@@ -211,10 +211,34 @@ def test_the_uv_editor_shows_the_cuts_in_the_same_colors():
     yield 0.3
     with bpy.context.temp_override(area=place, region=region("WINDOW", "IMAGE_EDITOR")):
         bpy.ops.image.view_all(fit_view=True)
+    # In an editor this small they cover the cuts.
+    chosen().cones = False
     in_layout = yield from pixels(within="IMAGE_EDITOR")
+    chosen().cones = True
     shown = [number > 10 for number in cut_pixels(in_layout)]
     # All cuts are in the layout, some of them in front.
     assert sum(shown) == len(reports.find(cube.data).paths), cut_pixels(in_layout)
     assert all(shown[i] for i, number in enumerate(cut_pixels(in_view)) if number > 100)
+    place.ui_type = before
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_the_uv_editor_shows_cones_in_the_color_of_the_3d_view():
+    cube = unwrapped(add_cone_cube)
+    edit(cube)
+    place = max((a for a in bpy.context.screen.areas if a.type != "VIEW_3D"), key=lambda a: a.height)
+    before, place.ui_type = place.ui_type, "UV"
+    yield 0.3
+    with bpy.context.temp_override(area=place, region=region("WINDOW", "IMAGE_EDITOR")):
+        bpy.ops.image.view_all(fit_view=True)
+    chosen().cuts = False
+    numbers = []
+    for chosen().cones in (True, False):
+        in_layout = yield from pixels(within="IMAGE_EDITOR")
+        numbers.append(count(in_layout, look().tip))
+    take_picture("cones_in_the_uv_editor")
+    chosen().cones = chosen().cuts = True
+    # All have the curvature from which on cones have this color.
+    assert numbers[0] > 20 * len(cache.entry(cube).content.cones) and numbers[1] == 0, numbers
     place.ui_type = before
     bpy.ops.object.mode_set(mode="OBJECT")

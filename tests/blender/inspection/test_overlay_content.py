@@ -63,7 +63,7 @@ def test_edit_mode_shows_the_same(build):
     edit(obj)
     after = shown(obj)
     assert after.cones == before.cones
-    for name in ("cone_places", "cut_lines", "cut_paths", "cut_uv"):
+    for name in ("cone_places", "cone_uv", "cone_rows", "cut_lines", "cut_paths", "cut_uv"):
         np.testing.assert_allclose(getattr(after, name), getattr(before, name), atol=1e-6)
 
 
@@ -88,6 +88,17 @@ def test_segments_in_the_layout_are_the_split_edges_there():
     split = [pair for edge in uv.split_edges() for pair in uv.sides[edge]]
     expected = {frozenset(map(tuple, uv.uv[list(pair)].round(5))) for pair in split}
     assert {frozenset(map(tuple, segment.astype(float).round(5))) for segment in shown(ball).cut_uv} == expected
+
+
+def test_cones_are_at_all_their_places_in_the_layout():
+    cube = add_cone_cube()
+    bpy.ops.uv.cone_unwrap()
+    found, uv = shown(cube), UvMap(cube)
+    for row, cone in enumerate(found.cones):
+        expected = {tuple(place) for place in uv.uv[uv.vertex == cone.vertex].round(6)}
+        assert {tuple(place) for place in found.cone_uv[found.cone_rows == row].astype(float).round(6)} == expected
+    # Where cuts end there is one, where they meet there are several.
+    assert len(found.cone_uv) > len(found.cones)
 
 
 def test_a_hidden_side_is_left_out():
