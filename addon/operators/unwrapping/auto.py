@@ -20,6 +20,7 @@ from ...jobs.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_all
 from ...mesh.angles import require_attributes
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
+from ..shared.cut_choices import chosen_cuts
 from ..shared.properties import (
     SEAMS,
     Choices,
@@ -29,7 +30,6 @@ from ..shared.properties import (
     SeamsProperty,
     enum_items,
 )
-from .cut_choices import chosen_cuts
 from .direction_choices import chosen_direction
 from .seamless import TEXTURE_SIZES, TileSizeProperties
 from .sections import section

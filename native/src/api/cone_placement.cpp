@@ -114,7 +114,6 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
   Array<std::optional<double>> angle(surface.positions.rows());
   Array<Index> placed, shared;
   double stretched_area = 0, stretched_in_maps = 0, total_area = 0;
-  bool all_mapped = true;
   Shortfalls shortfalls(options);
   work.for_each([&](const Component& component, const Geometry& geometry, const ComponentCones& cones,
                     const Array<char>& allowed, std::vector<Finding>& findings) {
@@ -141,20 +140,19 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
     // Islands get the same area in 2D as in 3D, so their squared stretches add up by area.
     stretched_area += found.curvature.predicted_l2 * found.curvature.predicted_l2 * geometry.total_area;
     total_area += geometry.total_area;
-    all_mapped &= found.mapped_l2.has_value();
-    if (found.mapped_l2) stretched_in_maps += *found.mapped_l2 * *found.mapped_l2 * geometry.total_area;
+    stretched_in_maps += found.mapped_l2 * found.mapped_l2 * geometry.total_area;
     out.maps += found.maps;
     out.reached &= found.reached;
     if (found.missing) shortfalls.add(*found.missing, component.source_triangle);
     if (!options.count && !found.reached) {
-      shortfalls.add(found.mapped_l2.value_or(found.curvature.predicted_l2), own, component.source_triangle);
+      shortfalls.add(found.mapped_l2, own, component.source_triangle);
     }
   });
   shortfalls.report(out.warnings);
   report_shared(std::move(shared), out.warnings);
   out.linear_algebra = counter.counted();
   out.predicted_l2 = std::sqrt(stretched_area / total_area);
-  if (all_mapped) out.mapped_l2 = std::sqrt(stretched_in_maps / total_area);
+  out.mapped_l2 = std::sqrt(stretched_in_maps / total_area);
   std::vector<Index> all = existing.vertices;
   all.insert(all.end(), placed.begin(), placed.end());
   for (const Index v : all) {
