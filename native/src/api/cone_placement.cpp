@@ -71,21 +71,12 @@ class PlacementWork {
 };
 
 Array<Index> mirror_images(const Component& component, const Geometry& geometry, const PlacementOptions& options,
-                           double unit_scale, std::vector<Finding>& findings) {
+                           double unit_scale, Shortfalls& shortfalls) {
   if (!options.symmetric) return {};
   std::optional<MirrorPlane> plane = options.mirror;
   if (plane) plane->point *= unit_scale;
   Array<Index> images = find_mirror_images(component.mesh, geometry, plane);
-  if (images.empty()) {
-    Array<Index> all(component.source_triangle.size());
-    for (std::size_t f = 0; f < all.size(); ++f) all[f] = static_cast<Index>(f);
-    findings.push_back({Code::not_symmetric,
-                        concat("A component of the surface is not its own mirror image in ",
-                               options.mirror ? "the given plane" : "any plane that was tried",
-                               "; its cones were placed without regard to symmetry. Symmetrize the mesh, or give its "
-                               "mirror plane."),
-                        {ElementKind::triangles, std::move(all)}});
-  }
+  if (images.empty()) shortfalls.add_asymmetric(component.source_triangle);
   return images;
 }
 
@@ -117,7 +108,7 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
   Shortfalls shortfalls(options);
   work.for_each([&](const Component& component, const Geometry& geometry, const ComponentCones& cones,
                     const Array<char>& allowed, std::vector<Finding>& findings) {
-    const Array<Index> mirrored = mirror_images(component, geometry, options, work.unit_scale(), findings);
+    const Array<Index> mirrored = mirror_images(component, geometry, options, work.unit_scale(), shortfalls);
     const PlacementTask task{component.mesh, geometry, cones, allowed, mirrored};
     PlacedCones found = place_component(task, options, findings, work.monitor());
     if (surface.directions.rows() > 0 && options.lattice && !options.count) {
