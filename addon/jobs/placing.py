@@ -16,6 +16,7 @@ import numpy as np
 from ..core import native
 from ..core.cone_angles import Kind
 from ..mesh import angles, cones
+from .cuts import CutChoice, with_cut_costs
 from .solving import solve_all
 
 if TYPE_CHECKING:
@@ -44,13 +45,15 @@ class PlacementSettings:
 class PlacementTask:
     """Everything that the cones of one region are placed from.
 
-    marked: the present cones of the region. keep: whether they stay; otherwise they are replaced.
+    marked: the present cones of the region. keep: whether they stay; otherwise they are replaced. cuts: where those
+    that cones ask for should run.
     """
 
     region: Region
     marked: ConeAngles
     keep: bool
     settings: PlacementSettings
+    cuts: CutChoice
 
 
 def place_all(tasks: Sequence[PlacementTask], progress: Progress | None = None) -> list[lsgp.Placement | Exception]:
@@ -60,9 +63,8 @@ def place_all(tasks: Sequence[PlacementTask], progress: Progress | None = None) 
 
 def _place(task: PlacementTask, progress: Progress | None) -> lsgp.Placement:
     present, present_angles = (task.marked.cones, task.marked.fixed()) if task.keep else ((), None)
-    return native.lsgp.place_cones(
-        task.region.surface, present, present_angles, **asdict(task.settings), progress=progress
-    )
+    surface = with_cut_costs(task.region, task.cuts).surface
+    return native.lsgp.place_cones(surface, present, present_angles, **asdict(task.settings), progress=progress)
 
 
 def write_placement(obj: bpy.types.Object, group: str, task: PlacementTask, placement: lsgp.Placement) -> int:

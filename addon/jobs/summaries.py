@@ -38,9 +38,7 @@ def unwrap_summary(unwrapped: Unwrapped) -> str:
 def placement_summary(placement: lsgp.Placement, new: int) -> str:
     """new: how many of the cones were not marked before."""
     count = counted(len(placement.cones), "cone")
-    measured = placement.mapped_l2 is not None
-    told = f"stretch {placement.mapped_l2:.3f}" if measured else f"expected stretch {placement.predicted_l2:.3f}"
-    return f"{count}, {new} of them new, {told} (1 is none)"
+    return f"{count}, {new} of them new, stretch {placement.mapped_l2:.3f} (1 is none)"
 
 
 def quad_summary(mesh: lsgp.QuadMesh) -> str:

@@ -48,7 +48,7 @@ class Surface(EqualByContent, ShortRepr):
     importance: (n,) float64, at least 0: the weight of stretch at each vertex in the mode "low-stretch"; None: equal
         weights.
     cut_costs: (e,) float64, 0 to 1e6: cost per length of a cut along each of `edges`; None: 1. Costs determine the
-        routes of cuts and do not change the map.
+        routes of cuts, which does not change the map, and the sites of cones that are placed.
     borders: (b, 2) int32, edges at which surface and texture end, whatever the meaning of seams.
     directions: (m, 3) float64, the desired direction of the texture's v at each triangle, in space: its component in
         the triangle's plane counts, with a weight given by its length, and (0, 0, 0) means none; or (3,), the same for
@@ -436,9 +436,8 @@ class Placement(EqualByContent, ShortRepr):
         angle. `parameterize` with both gives the map that was measured here.
     log_scale: (n,) float64, predicted, area-weighted mean 0 on an island. predicted_l2: the L2 stretch that follows
         from it, 1 being none, exact in the limit of fine triangles.
-    mapped_l2: the L2 stretch of the map itself; infinite if the map has flipped triangles or wrong angles, None if no
-        map was computed, as for components with more than 60 given or requested (`count`) cones.
-    reached: whether mapped_l2, or predicted_l2 without a map, is within the target on every component.
+    mapped_l2: the L2 stretch of the map itself; infinite if the map has flipped triangles or wrong angles.
+    reached: whether that is within the target on every component.
     maps: number of maps of components computed for this. factorizations, back_substitutions: the linear algebra of the
         choice, without that of these maps.
     """
@@ -447,7 +446,7 @@ class Placement(EqualByContent, ShortRepr):
     cone_angles: FloatArray
     log_scale: FloatArray
     predicted_l2: float
-    mapped_l2: float | None
+    mapped_l2: float
     reached: bool
     maps: int
     warnings: list[Finding]
@@ -674,6 +673,8 @@ def place_cones(
         None, detected.
     seams, progress: as for `parameterize`, which treats the placed cones and angles as assumed here: with "follow" a
         component that gets cones is not opened along its seams. threads: as in `Options`.
+    If the surface has cut_costs, cones are placed where cuts reach them cheaply, provided that the stretch stays within
+    the target or that of as many cones elsewhere; without `count` there may be a quarter more of them.
     No cone is placed on a boundary, at a vertex that cuts cannot reach, or, if the mesh has room, within two rings of
     another.
     Raises InputError, TopologyError, CurvatureError, SolverError, Cancelled.

@@ -17,7 +17,8 @@ from ...jobs.summaries import placement_summary
 from ...mesh.angles import require_attributes
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
-from ..shared.properties import LATTICES, SEAMS, ConeGroupProperty, LatticeProperty, SeamsProperty
+from ..shared.cut_choices import chosen_cuts
+from ..shared.properties import LATTICES, SEAMS, ConeGroupProperty, CutsProperty, LatticeProperty, SeamsProperty
 
 if TYPE_CHECKING:
     import lsgp
@@ -34,7 +35,9 @@ MIRRORS = {
 ORIGIN = (0.0, 0.0, 0.0)
 
 
-class MESH_OT_cone_place(ConeGroupProperty, SeamsProperty, LatticeProperty, BackgroundOperator, bpy.types.Operator):
+class MESH_OT_cone_place(
+    ConeGroupProperty, SeamsProperty, CutsProperty, LatticeProperty, BackgroundOperator, bpy.types.Operator
+):
     """Place Cones."""
 
     bl_idname = identifiers.PLACE
@@ -101,6 +104,7 @@ class MESH_OT_cone_place(ConeGroupProperty, SeamsProperty, LatticeProperty, Back
         if self.seamless:
             layout.prop(self, "lattice")
         layout.separator()
+        layout.prop(self, "cuts")
         layout.prop(self, "seams")
         self.draw_vertex_group(layout, context)
 
@@ -116,10 +120,11 @@ class MESH_OT_cone_place(ConeGroupProperty, SeamsProperty, LatticeProperty, Back
             seams=SEAMS[self.seams][0],
             threads=chosen_threads(),
         )
+        cuts = chosen_cuts(self.cuts)
 
         def make_task(obj: bpy.types.Object, region: Region) -> PlacementTask:
             require_attributes(obj.data)
-            return PlacementTask(region, region.own_cones, self.keep, settings)
+            return PlacementTask(region, region.own_cones, self.keep, settings, cuts)
 
         return Groups(cones=self.vertex_group), make_task
 

@@ -88,7 +88,8 @@ class CutsProperty:
 
     cuts: bpy.props.EnumProperty(
         name="Cuts",
-        description="Where cuts run; the faces keep their shapes in the UV map. Weights in the vertex group "
+        description="Where cuts run. The faces keep the shapes in the UV map that the cones give them; automatic cones "
+        "go where such cuts get to. Weights in the vertex group "
         f'"{SEAM_COST_GROUP}" keep cuts away where they are above 0.5, and draw them near where they are below',
         items=enum_items(CUTS),
     )

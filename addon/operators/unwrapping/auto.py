@@ -23,8 +23,8 @@ from ...jobs.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_tas
 from ...mesh.angles import require_attributes
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
+from ..shared.cut_choices import chosen_cuts
 from ..shared.properties import SEAMS, ConeGroupProperty, CutsProperty, SeamsProperty
-from .cut_choices import chosen_cuts
 from .direction_choices import chosen_direction
 from .seamless import TileSizeProperties
 from .sections import section

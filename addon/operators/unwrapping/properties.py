@@ -8,8 +8,8 @@ from ...core.choices import Choices, DirectionProperty, enum_items
 from ...core.threads import chosen_threads
 from ...jobs.maps import PackSettings
 from ...jobs.unwrapping import UnwrapSettings
+from ..shared.cut_choices import chosen_cuts
 from ..shared.properties import BORDERS, SEAMS
-from .cut_choices import chosen_cuts
 from .direction_choices import chosen_direction
 from .low_stretch import MODES
 from .seamless import SeamlessProperties

@@ -36,10 +36,9 @@ struct Placement {
   std::vector<double> cone_angles;  // (k) radians: unwrapping with these gives the map that was measured
   Eigen::VectorXd log_scale;        // (n) predicted, area-weighted mean 0 on every island
   double predicted_l2 = 1;          // over the whole surface, of that log scale
-  // The same measured on the map with these cones; infinite if it has flipped triangles or wrong angles, none if no map
-  // was computed: for components with more than 60 requested or marked cones.
-  std::optional<double> mapped_l2;
-  bool reached = true;  // the target, on every component: by its map, or by prediction without a map
+  // The same measured on the map with these cones; infinite if it has flipped triangles or wrong angles.
+  double mapped_l2 = 1;
+  bool reached = true;  // the target, by the map of every component
   int maps = 0;         // number of trial maps of components
   std::vector<Finding> warnings;
   LinearAlgebra linear_algebra;  // of the choice, without those maps

@@ -91,8 +91,7 @@ def summary(args: argparse.Namespace, placement: Placement) -> str:
     count = len(placement.cones)
     told = f"{args.output}: {count} {'cone' if count == 1 else 'cones'}"
     told += f", an L2 stretch of {placement.predicted_l2:.4f} predicted"
-    if placement.mapped_l2 is not None:
-        told += f" and {placement.mapped_l2:.4f} in the map"
+    told += f" and {placement.mapped_l2:.4f} in the map"
     if args.count is None:
         told += f", the target was {'' if placement.reached else 'not '}reached"
     work = placement.factorizations

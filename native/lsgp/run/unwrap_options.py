@@ -173,8 +173,8 @@ def add_cut_options(command: argparse.ArgumentParser) -> None:
         "--cuts",
         choices=["hidden", "sharp", "shortest"],
         default="hidden",
-        help="route of the cuts: hidden from the front and along creases, along creases only, or the shortest; the map "
-        "is the same (default: hidden)",
+        help="route of the cuts: hidden from the front and along creases, along creases only, or the shortest; "
+        "automatic cones are placed accordingly, and the map of given cones is the same (default: hidden)",
     )
     command.add_argument(
         "--front",

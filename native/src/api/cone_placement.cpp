@@ -71,21 +71,12 @@ class PlacementWork {
 };
 
 Array<Index> mirror_images(const Component& component, const Geometry& geometry, const PlacementOptions& options,
-                           double unit_scale, std::vector<Finding>& findings) {
+                           double unit_scale, Shortfalls& shortfalls) {
   if (!options.symmetric) return {};
   std::optional<MirrorPlane> plane = options.mirror;
   if (plane) plane->point *= unit_scale;
   Array<Index> images = find_mirror_images(component.mesh, geometry, plane);
-  if (images.empty()) {
-    Array<Index> all(component.source_triangle.size());
-    for (std::size_t f = 0; f < all.size(); ++f) all[f] = static_cast<Index>(f);
-    findings.push_back({Code::not_symmetric,
-                        concat("A component of the surface is not its own mirror image in ",
-                               options.mirror ? "the given plane" : "any plane that was tried",
-                               "; its cones were placed without regard to symmetry. Symmetrize the mesh, or give its "
-                               "mirror plane."),
-                        {ElementKind::triangles, std::move(all)}});
-  }
+  if (images.empty()) shortfalls.add_asymmetric(component.source_triangle);
   return images;
 }
 
@@ -114,11 +105,10 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
   Array<std::optional<double>> angle(surface.positions.rows());
   Array<Index> placed, shared;
   double stretched_area = 0, stretched_in_maps = 0, total_area = 0;
-  bool all_mapped = true;
   Shortfalls shortfalls(options);
   work.for_each([&](const Component& component, const Geometry& geometry, const ComponentCones& cones,
                     const Array<char>& allowed, std::vector<Finding>& findings) {
-    const Array<Index> mirrored = mirror_images(component, geometry, options, work.unit_scale(), findings);
+    const Array<Index> mirrored = mirror_images(component, geometry, options, work.unit_scale(), shortfalls);
     const PlacementTask task{component.mesh, geometry, cones, allowed, mirrored};
     PlacedCones found = place_component(task, options, findings, work.monitor());
     if (surface.directions.rows() > 0 && options.lattice && !options.count) {
@@ -141,20 +131,19 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
     // Islands get the same area in 2D as in 3D, so their squared stretches add up by area.
     stretched_area += found.curvature.predicted_l2 * found.curvature.predicted_l2 * geometry.total_area;
     total_area += geometry.total_area;
-    all_mapped &= found.mapped_l2.has_value();
-    if (found.mapped_l2) stretched_in_maps += *found.mapped_l2 * *found.mapped_l2 * geometry.total_area;
+    stretched_in_maps += found.mapped_l2 * found.mapped_l2 * geometry.total_area;
     out.maps += found.maps;
     out.reached &= found.reached;
     if (found.missing) shortfalls.add(*found.missing, component.source_triangle);
     if (!options.count && !found.reached) {
-      shortfalls.add(found.mapped_l2.value_or(found.curvature.predicted_l2), own, component.source_triangle);
+      shortfalls.add(found.mapped_l2, own, component.source_triangle);
     }
   });
   shortfalls.report(out.warnings);
   report_shared(std::move(shared), out.warnings);
   out.linear_algebra = counter.counted();
   out.predicted_l2 = std::sqrt(stretched_area / total_area);
-  if (all_mapped) out.mapped_l2 = std::sqrt(stretched_in_maps / total_area);
+  out.mapped_l2 = std::sqrt(stretched_in_maps / total_area);
   std::vector<Index> all = existing.vertices;
   all.insert(all.end(), placed.begin(), placed.end());
   for (const Index v : all) {

@@ -46,13 +46,11 @@ void describe_opened(const Component& component, const PlacementOptions& options
   Prescription prescription = prescribe_curvature(surface, {}, {}, progress);
   placed.curvature.log_scale = std::move(prescription.log_scale);
   placed.curvature.predicted_l2 = prescription.predicted_l2;
-  if (placed.mapped_l2) {
-    const Result map = parameterize(surface, {}, {}, {}, progress);
-    const bool is_valid = map.flipped.empty() && map.wrong_angle_sums.empty();
-    placed.mapped_l2 = is_valid ? map.distortion.l2_stretch : std::numeric_limits<double>::infinity();
-    ++placed.maps;
-  }
-  placed.reached = placed.mapped_l2.value_or(placed.curvature.predicted_l2) <= options.target;
+  const Result map = parameterize(surface, {}, {}, {}, progress);
+  const bool is_valid = map.flipped.empty() && map.wrong_angle_sums.empty();
+  placed.mapped_l2 = is_valid ? map.distortion.l2_stretch : std::numeric_limits<double>::infinity();
+  ++placed.maps;
+  placed.reached = placed.mapped_l2 <= options.target;
 }
 
 }  // namespace lsgp

@@ -59,12 +59,6 @@ void NearestDistance::add(Index vertex) {
   }
 }
 
-int BatchPlacement::cone_count() const {
-  int count = 0;
-  for (const int site : state_.sites) count += problem_.kernel.sites()[site].cones();
-  return count;
-}
-
 void BatchPlacement::add(const Array<int>& sites) {
   const Eigen::Index before = static_cast<Eigen::Index>(state_.sites.size());
   const Eigen::Index added = static_cast<Eigen::Index>(sites.size());
@@ -130,11 +124,12 @@ double BatchPlacement::spread_of(const Array<int>& sites, const Eigen::VectorXd&
   return factors[factors.size() / 2];
 }
 
-// Sites with the largest gain, each nearer to an existing cone than to another of these sites.
+// Sites with the largest gain less their price, each nearer to an existing cone than to another of these sites.
 Array<int> BatchPlacement::choose(int cones, double spread, int rings) const {
   const LogScaleVariance& kernel = problem_.kernel;
   const Array<char> open = search_.open_sites(state_.sites, rings);
   const Eigen::VectorXd slope = slopes();
+  const auto price = problem_.price_among(cone_count() + cones);
   NearestDistance nearest = distances();
   const Eigen::VectorXd before = nearest.all();
   Array<std::pair<double, int>> gains;
@@ -143,7 +138,8 @@ Array<int> BatchPlacement::choose(int cones, double spread, int rings) const {
     const double distance = before[kernel.sites()[i].vertex];
     const double d = std::clamp(spread * distance * distance, 1e-12 * kernel.diagonal().mean(), kernel.diagonal()[i]);
     const double t = std::clamp(slope[i] / d, problem_.limits.low(i, reach_), problem_.limits.high(i, reach_));
-    gains.emplace_back(-search_.preference(i) * (2 * t * slope[i] - t * t * d) / kernel.sites()[i].cones(), i);
+    const double gain = search_.preference(i) * (2 * t * slope[i] - t * t * d) - price[i];
+    gains.emplace_back(-gain / kernel.sites()[i].cones(), i);
   }
   std::sort(gains.begin(), gains.end());
   Array<int> chosen;
@@ -196,10 +192,7 @@ Array<int> BatchPlacement::least_needed(int count) const {
     inverse.segment(begin, width) = factor.solve(units).middleRows(begin, width).diagonal();
     checkpoint(static_cast<double>(2 * k * k * width));
   }
-  Array<int> places(k - kept_);
-  std::iota(places.begin(), places.end(), kept_);
-  const auto loss = [&](int place) { return curvature()[place] * curvature()[place] / inverse[place]; };
-  std::stable_sort(places.begin(), places.end(), [&](int a, int b) { return loss(a) < loss(b); });
+  Array<int> places = search_.by_need(state_.sites, curvature().cwiseAbs2().cwiseQuotient(inverse));
   places.resize(std::min(places.size(), static_cast<std::size_t>(count)));
   return places;
 }
@@ -209,10 +202,11 @@ void BatchPlacement::exchange(int rounds) {
   for (int round = 0; exchanged > 0 && round < rounds; ++round) {
     const int cones = cone_count();
     const State before = state_;
+    const double objective_before = objective();
     remove(least_needed(exchanged));
     grow(cones);
-    if (cone_count() == cones && variance() < worthwhile * before.fit.variance) continue;
-    if (!(cone_count() == cones && variance() < before.fit.variance)) state_ = before;
+    if (cone_count() == cones && objective() < worthwhile * objective_before) continue;
+    if (!(cone_count() == cones && objective() < objective_before)) state_ = before;
     return;
   }
 }

@@ -47,9 +47,8 @@ class BatchPlacement {
 
   const Array<int>& sites() const { return state_.sites; }
   const Eigen::VectorXd& curvature() const { return state_.fit.curvature; }
-  double variance() const { return state_.fit.variance; }
   bool feasible() const { return state_.fit.feasible(); }
-  int cone_count() const;
+  int cone_count() const { return problem_.cone_count(state_.sites); }
 
  private:
   struct State {
@@ -60,6 +59,7 @@ class BatchPlacement {
 
   void remove(const Array<int>& places);
   Array<int> least_needed(int count) const;  // places
+  double objective() const { return state_.fit.variance + problem_.mean_price(state_.sites); }
   NearestDistance distances() const;
   Eigen::VectorXd slopes() const;
   double spread_of(const Array<int>& sites, const Eigen::VectorXd& far) const;

@@ -45,7 +45,7 @@ std::string told(const TriedMap& map) {
 // Marked cones are kept, and the map reports its defects; other cones with defects are refused.
 void require_right(const VerifiedChoice& choice, bool has_marked) {
   const TriedMap& map = choice.map;
-  if (!choice.is_mapped || !map.is_off() || !map.is_repaired || has_marked) return;
+  if (!map.is_off() || !map.is_repaired || has_marked) return;
   throw Error(
       Code::solver_failed,
       concat("No cones were found with correct angles and seams on this component: with ",
@@ -73,7 +73,7 @@ std::string told_of_automatic(const PlacementTask& task, PlacementOptions option
 // A requested number of cones with which the map is unusable.
 std::optional<Finding> unusable_map(const PlacementTask& task, const PlacementOptions& options,
                                     const VerifiedChoice& choice, ProgressMonitor& monitor, int& maps) {
-  if (!options.count || !choice.is_mapped || choice.map.l2 < high_l2) return std::nullopt;
+  if (!options.count || choice.map.l2 < high_l2) return std::nullopt;
   const std::string map = choice.map.is_valid() ? concat("has an L2 stretch of ", rounded(choice.map.l2))
                                                 : "has flipped triangles or wrong angles";
   const std::string automatic = told_of_automatic(task, options, monitor, maps);
@@ -125,9 +125,9 @@ PlacedCones place_component(const PlacementTask& task, const PlacementOptions& o
                          chooser.scale().evaluate_held(choice.cones.vertices, choice.cones.curvature), findings);
   connect_cones(task.mesh, task.geometry, inside_only(task.mesh, choice.cones.vertices), out.curvature.needs_no_cut);
   refuse_with_remedy([&] { require_right(choice, !task.existing.vertices.empty()); });
-  if (choice.is_mapped) out.mapped_l2 = choice.map.l2;
+  out.mapped_l2 = choice.map.l2;
   if (auto finding = unusable_map(task, options, choice, monitor, out.maps)) findings.push_back(std::move(*finding));
-  out.reached = out.mapped_l2.value_or(out.curvature.predicted_l2) <= options.target;
+  out.reached = out.mapped_l2 <= options.target;
   return out;
 }
 

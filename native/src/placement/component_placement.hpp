@@ -16,8 +16,8 @@ namespace lsgp {
 struct PlacedCones {
   ComponentCones cones;  // existing ones first, all with angles
   Curvature curvature;
-  std::optional<double> mapped_l2;  // of the map, infinite where it is not valid; none where it was not made
-  int maps = 0;                     // that were made
+  double mapped_l2 = 1;  // of the map, infinite where it is not valid
+  int maps = 0;          // that were made
   std::optional<MissingCones> missing;
   bool reached = true;
 };

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "placement/relocation.hpp"
+#include "placement/site_prices.hpp"
 #include "plane/point_lattice.hpp"
 #include "prescription/quantize_curvature.hpp"
 
@@ -40,8 +41,19 @@ ConeChooser::ConeChooser(const PlacementTask& task, const PlacementOptions& opti
       sites_(find_cone_sites(task, effort.sites)),
       kernel_(make_kernel()),
       limits_(task.mesh, task.geometry, kernel_.sites(), given_curvature()),
-      problem_{kernel_, limits_, scale_.balanced(), scale_.required_sum()},
-      search_(task.mesh, problem_, sites_.existing, options.prefer_sharp, monitor) {}
+      prices_(site_prices(task.mesh, task.geometry, kernel_.sites())),
+      problem_{kernel_, limits_, scale_.balanced(), scale_.required_sum(), {}},
+      search_(task.mesh, problem_, sites_.existing, options.prefer_sharp, monitor) {
+  weigh_prices(0);
+}
+
+// e^{2 J} is the L2 stretch to leading order.
+void ConeChooser::weigh_prices(double weight) { problem_.price = prices_ * (weight * std::log(options_.target) / 2); }
+
+void ConeChooser::forget_prices() {
+  prices_.setZero();
+  weigh_prices(0);
+}
 
 int ConeChooser::existing_count() const { return static_cast<int>(vertices_of(existing_sites()).size()); }
 
@@ -92,7 +104,8 @@ ConeChoice ConeChooser::choose_more(const ConeChoice& present, const Eigen::Vect
   Array<int> sites, others;
   for (int i = 0; i < kernel_.site_count(); ++i) (is_cone[all[i].vertex] ? sites : others).push_back(i);
   const auto wanted_at = [&](int i) {
-    return wanted[all[i].vertex] + (all[i].mirrored == none ? 0 : wanted[all[i].mirrored]);
+    const double at_both = wanted[all[i].vertex] + (all[i].mirrored == none ? 0 : wanted[all[i].mirrored]);
+    return problem_.price.isZero(0) ? at_both : at_both * (1 - prices_[i] / all[i].cones());
   };
   std::stable_sort(others.begin(), others.end(), [&](int a, int b) { return wanted_at(a) > wanted_at(b); });
   for (const int i : others) {

@@ -55,6 +55,12 @@ class ConeChooser {
   // The same cones with these curvatures, one for each.
   ConeChoice choice_with(const Array<Index>& vertices, const Eigen::VectorXd& curvature) const;
 
+  // Whether sites have prices, since costs of cuts differ, and how much these weigh from now on; at first nothing.
+  // weight: of the dearest cones, as a share of the variance with which the target is just reached.
+  bool has_prices() const { return (prices_.array() > 0).any(); }
+  void weigh_prices(double weight);
+  void forget_prices();
+
   // What sets of cones are made of.
   ConeSet existing(double reach) const;
   BatchPlacement batches(double reach) { return {task_.geometry, search_, reach, monitor_}; }
@@ -104,6 +110,7 @@ class ConeChooser {
   ConeSites sites_;
   LogScaleVariance kernel_;
   CurvatureBounds limits_;
+  Eigen::VectorXd prices_;  // (sites) of `site_prices`
   PlacementProblem problem_;
   ConeSearch search_;
 };

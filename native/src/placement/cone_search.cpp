@@ -62,18 +62,18 @@ void ConeSearch::grow(ConeSet& set, int cones) const {
     for (std::size_t i = 0; i < open.size(); ++i) {
       open[i] = open[i] && problem_.kernel.sites()[i].cones() <= cones - set.cone_count();
     }
-    const std::optional<int> best = best_site(set.gains(), open);
+    const std::optional<int> best = best_site(set.gains() - problem_.price_among(cones), open);
     if (!best) break;
     set.add(*best);
     monitor_.tick();
   }
 }
 
-Array<int> ConeSearch::by_loss(const ConeSet& set) const {
-  Array<int> places(static_cast<int>(set.sites().size()) - kept_);
+Array<int> ConeSearch::by_need(const Array<int>& sites, const Eigen::VectorXd& losses) const {
+  Array<int> places(sites.size() - static_cast<std::size_t>(kept_));
   std::iota(places.begin(), places.end(), kept_);
-  const Eigen::VectorXd losses = set.losses();
-  std::stable_sort(places.begin(), places.end(), [&](int a, int b) { return losses[a] < losses[b]; });
+  const Eigen::VectorXd need = losses - problem_.price_among(problem_.cone_count(sites))(sites);
+  std::stable_sort(places.begin(), places.end(), [&](int a, int b) { return need[a] < need[b]; });
   return places;
 }
 
@@ -81,7 +81,7 @@ void ConeSearch::exchange(ConeSet& set, int sweeps) const {
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     bool moved = false;
     Array<int> sites;
-    for (const int place : by_loss(set)) sites.push_back(set.sites()[place]);
+    for (const int place : by_need(set.sites(), set.losses())) sites.push_back(set.sites()[place]);
     ConeSet::Explained explained = set.explain();
     for (const int site : sites) {
       monitor_.tick();
@@ -98,14 +98,16 @@ bool ConeSearch::exchange_one(ConeSet& set, const ConeSet::Explained& explained,
   const int place = static_cast<int>(std::find(set.sites().begin(), set.sites().end(), site) - set.sites().begin());
   ConeSet rest = set;
   rest.remove(place);
-  const Eigen::VectorXd gains = rest.gains(explained.without(place));
+  const auto price = problem_.price_among(set.cone_count());
+  const Eigen::VectorXd gains = rest.gains(explained.without(place)), priced = gains - price;
   Array<char> open = open_sites(rest.sites());
   for (std::size_t i = 0; i < open.size(); ++i) open[i] = open[i] && sites[i].cones() == sites[site].cones();
   for (int i = 0; i < tries; ++i) {
-    const std::optional<int> best = best_site(gains, open);
+    const std::optional<int> best = best_site(priced, open);
     if (!best || *best == site) return false;
     const bool sharper = prefers_sharp_ && is_sharp(*best) && !is_sharp(site);
-    const double most = set.variance() * (sharper ? sharp_price : worthwhile);
+    const double saved = price[site] - price[*best];
+    const double most = set.variance() * (sharper ? sharp_price : worthwhile) + saved;
     if (rest.variance() - gains[*best] >= most) return false;
     ConeSet moved = rest;
     moved.add(*best);
@@ -118,6 +120,6 @@ bool ConeSearch::exchange_one(ConeSet& set, const ConeSet::Explained& explained,
   return false;
 }
 
-void ConeSearch::drop(ConeSet& set) const { set.remove(by_loss(set).front()); }
+void ConeSearch::drop(ConeSet& set) const { set.remove(by_need(set.sites(), set.losses()).front()); }
 
 }  // namespace lsgp

@@ -34,6 +34,9 @@ class ConeSearch {
   // The weight of a gain there.
   double preference(int site) const { return prefers_sharp_ && is_sharp(site) ? 1 / sharp_share : 1; }
 
+  // Places in a set that may change, the least needed one first.  losses: (k) of variance without each site.
+  Array<int> by_need(const Array<int>& sites, const Eigen::VectorXd& losses) const;
+
   // Marks sites, (all), not within so many rings of given ones, or fewer rings if the mesh has no room.
   Array<char> open_sites(const Array<int>& used, int rings = free_rings) const;
 
@@ -42,7 +45,6 @@ class ConeSearch {
 
   std::optional<int> best_site(const Eigen::VectorXd& gains, const Array<char>& open) const;
   bool exchange_one(ConeSet& set, const ConeSet::Explained& explained, int site) const;
-  Array<int> by_loss(const ConeSet& set) const;  // places that may change
   bool is_sharp(int site) const;
 
   const HalfedgeMesh& mesh_;

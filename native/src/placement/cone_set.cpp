@@ -66,6 +66,10 @@ CurvatureFit fit_curvature(const PlacementProblem& problem, const Array<int>& si
   return out;
 }
 
+double PlacementProblem::mean_price(const Array<int>& sites) const {
+  return sites.empty() ? 0 : price(sites).sum() / cone_count(sites);
+}
+
 Array<int> CurvatureFit::free_places() const {
   Array<int> free;
   for (int i = 0; i < curvature.size(); ++i) {
@@ -88,9 +92,9 @@ Eigen::MatrixXd with_ridge(const Eigen::MatrixXd& hessian) {
   return out;
 }
 
-int ConeSet::cone_count() const {
+int PlacementProblem::cone_count(const Array<int>& sites) const {
   int count = 0;
-  for (const int site : sites_) count += problem_->kernel.sites()[site].cones();
+  for (const int site : sites) count += kernel.sites()[site].cones();
   return count;
 }
 

@@ -17,6 +17,13 @@ struct PlacementProblem {
   const CurvatureBounds& limits;
   bool balanced;        // Gauss-Bonnet has to hold
   double required_sum;  // then of all curvatures
+  // (sites) A set is chosen for its variance and the mean of this over its cones.
+  Eigen::VectorXd price;
+
+  int cone_count(const Array<int>& sites) const;
+  // The sites' shares in that mean, (all sites), in a set of so many cones.
+  auto price_among(int cones) const { return price / cones; }
+  double mean_price(const Array<int>& sites) const;
 };
 
 // The curvatures of cones at some sites that minimise the variance, and their bounds.
@@ -52,7 +59,7 @@ class ConeSet {
 
   const Array<int>& sites() const { return sites_; }
   const Eigen::VectorXd& curvature() const { return fit_.curvature; }  // of the sites, both of two cones together
-  int cone_count() const;
+  int cone_count() const { return problem_->cone_count(sites_); }
   double variance() const { return fit_.variance; }
   // The bounds can be widened enough to satisfy Gauss-Bonnet.
   bool feasible() const { return fit_.feasible(); }

@@ -7,7 +7,7 @@ namespace lsgp {
 
 namespace {
 
-constexpr double worthwhile = 0.002;  // of the variance
+constexpr double worthwhile = 0.002;  // of the objective
 constexpr int tries = 2;              // of new sites for a cone
 
 // The part of the variance that depends on the site of a curvature, given the slope of the others' variance.
@@ -24,9 +24,9 @@ bool relocate(const PlacementProblem& problem, const ConeSearch& search, int kep
   for (std::size_t i = 0; i < sites.size(); ++i) {
     slope += curvature[static_cast<Eigen::Index>(i)] * kernel.column(sites[i]);
   }
-  double variance = kernel.without_cones();
+  double objective = kernel.without_cones() + problem.mean_price(sites);
   for (std::size_t i = 0; i < sites.size(); ++i) {
-    variance += curvature[static_cast<Eigen::Index>(i)] * (kernel.gradient()[sites[i]] + slope[sites[i]]);
+    objective += curvature[static_cast<Eigen::Index>(i)] * (kernel.gradient()[sites[i]] + slope[sites[i]]);
   }
   bool moved = false;
   for (Eigen::Index i = kept; i < ssize(sites); ++i) {
@@ -37,20 +37,21 @@ bool relocate(const PlacementProblem& problem, const ConeSearch& search, int kep
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
     Array<char> open = search.open_sites(others);
     const int cones = kernel.sites()[sites[i]].cones();
+    const auto price = problem.price_among(problem.cone_count(sites));
     for (int tried = 0; tried < tries; ++tried) {
-      const double present = share(kappa, slope[sites[i]], kernel.diagonal()[sites[i]]);
-      const auto at = [&](int site) { return share(kappa, slope[site], kernel.diagonal()[site]); };
+      const auto at = [&](int site) { return share(kappa, slope[site], kernel.diagonal()[site]) + price[site]; };
+      const double present = at(sites[i]);
       int best = sites[i];
       for (int site = 0; site < kernel.site_count(); ++site) {
         if (!open[site] || kernel.sites()[site].cones() != cones || !(at(site) < at(best))) continue;
         if (problem.limits.low(site, wider_reach) > kappa || problem.limits.high(site, wider_reach) < kappa) continue;
         best = site;
       }
-      const double wanted = present - worthwhile * variance;
+      const double wanted = present - worthwhile * objective;
       if (best == sites[i] || at(best) > wanted) break;
       open[best] = 0;
-      if (share(kappa, slope[best], kernel.column(best)[best]) > wanted) continue;
-      variance += at(best) - present;
+      if (share(kappa, slope[best], kernel.column(best)[best]) + price[best] > wanted) continue;
+      objective += at(best) - present;
       sites[i] = best;
       moved = true;
       break;

@@ -44,7 +44,13 @@ void Shortfalls::add(double l2, const Array<Index>& cones, const Array<Index>& t
   append(triangles_, triangles);
 }
 
+void Shortfalls::add_asymmetric(const Array<Index>& triangles) {
+  ++asymmetric_parts_;
+  append(asymmetric_, triangles);
+}
+
 void Shortfalls::report(std::vector<Finding>& findings) const {
+  if (asymmetric_parts_ > 0) findings.push_back(told_of_asymmetry());
   for (int i = 0; i < reasons; ++i) {
     if (missing_[i].parts > 0) findings.push_back(told(static_cast<MissingCones::Why>(i), missing_[i]));
   }
@@ -59,6 +65,17 @@ Finding Shortfalls::told(MissingCones::Why why, const Missing& missing) const {
                          : concat(missing.placed, missing.placed == 1 ? " cone was" : " cones were", " placed on ",
                                   missing.parts, " components of the surface instead of ", asked, " on each: ");
   return {Code::placement_not_reached, how_many + remedy_for(why), {ElementKind::triangles, missing.triangles}};
+}
+
+Finding Shortfalls::told_of_asymmetry() const {
+  const bool is_one = asymmetric_parts_ == 1;
+  const std::string which = is_one ? "A component of the surface is not its own mirror image"
+                                   : concat(asymmetric_parts_, " components are not their own mirror images");
+  return {Code::not_symmetric,
+          concat(which, " in ", options_.mirror ? "the given plane" : "any plane that was tried", "; ",
+                 is_one ? "its" : "their",
+                 " cones were placed without regard to symmetry. Symmetrize the mesh, or give its mirror plane."),
+          {ElementKind::triangles, asymmetric_}};
 }
 
 Finding Shortfalls::told_of_stretch() const {

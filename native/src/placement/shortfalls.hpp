@@ -27,7 +27,11 @@ class Shortfalls {
   // valid.
   void add(double l2, const Array<Index>& cones, const Array<Index>& triangles);
 
-  // As PLACEMENT_NOT_REACHED: one for each reason why cones are missing, and one for the target.
+  // The triangles of a component that should get symmetric cones but is not symmetric.
+  void add_asymmetric(const Array<Index>& triangles);
+
+  // One NOT_SYMMETRIC for all of these, and PLACEMENT_NOT_REACHED: one for each reason why cones are missing, and one for
+  // the target.
   void report(std::vector<Finding>& findings) const;
 
  private:
@@ -39,10 +43,13 @@ class Shortfalls {
 
   Finding told(MissingCones::Why why, const Missing& missing) const;
   Finding told_of_stretch() const;
+  Finding told_of_asymmetry() const;
 
   const PlacementOptions& options_;
   Missing missing_[reasons];
-  int parts_ = 0;  // that miss the target
+  int asymmetric_parts_ = 0;
+  Array<Index> asymmetric_;  // their triangles
+  int parts_ = 0;            // that miss the target
   double worst_l2_ = 1;
   std::size_t worst_cones_ = 0;
   bool all_have_cones_ = true;

@@ -23,6 +23,8 @@ constexpr double least_lowered = 0.4, most_lowered = 0.9, lowered_when_invalid =
 constexpr int most_additions = 3, least_added = 2, added_share = 6;
 constexpr double worthwhile = 0.7;
 constexpr double usual_l2 = 1.05;  // of a map that is not worth more than the stages
+constexpr double much_fewer = 0.8;  // cones, that prices are not worth
+constexpr double price_weights[] = {10, 1};
 
 // Whether one choice is nearer to a usable map.
 bool is_better(const TriedMap& a, const TriedMap& b) {
@@ -38,12 +40,14 @@ VerifiedPlacement::VerifiedPlacement(ConeChooser& chooser, ProgressMonitor& moni
     : chooser_(chooser), monitor_(monitor), trial_(chooser.task().mesh, chooser.task().geometry, monitor) {}
 
 VerifiedChoice VerifiedPlacement::place() {
-  const std::optional<int> count = chooser_.options().count;
-  const int most = std::max(count.value_or(0), chooser_.existing_count());
-  if (most > most_one_by_one) return {chooser_.choose(most), {}, false};
-  VerifiedChoice out = count ? place_count(*count) : place_to_target();
-  const bool misses = count ? !is_as_predicted(out) : out.map.l2 > chooser_.options().target;
-  if (misses) choose_other_angles(out);
+  VerifiedChoice out = place_as_asked();
+  if (has_many()) return out;
+  if (misses(out) && chooser_.has_prices()) {
+    chooser_.forget_prices();
+    VerifiedChoice anywhere = place_as_asked();
+    if (is_better(anywhere.map, out.map)) out = std::move(anywhere);
+  }
+  if (misses(out)) choose_other_angles(out);
   if (out.map.l2 > hopeless_l2 && is_worth_trying(out.cones)) {
     const auto present = static_cast<int>(out.cones.vertices.size());
     VerifiedChoice weaker = verified(chooser_.choose_within(usual_reach, present));
@@ -51,6 +55,19 @@ VerifiedChoice VerifiedPlacement::place() {
     if (is_better(weaker.map, out.map)) out = std::move(weaker);
   }
   return out;
+}
+
+VerifiedChoice VerifiedPlacement::place_as_asked() {
+  const std::optional<int> count = chooser_.options().count;
+  if (has_many()) {
+    std::optional<AutomaticCones> none_automatic;
+    return verified(choose_where_cheap(none_automatic));
+  }
+  return count ? place_count(*count) : place_to_target();
+}
+
+bool VerifiedPlacement::misses(const VerifiedChoice& choice) const {
+  return chooser_.options().count ? !is_as_predicted(choice) : choice.map.l2 > chooser_.options().target;
 }
 
 VerifiedChoice VerifiedPlacement::verified(ConeChoice cones) {
@@ -88,20 +105,44 @@ std::optional<VerifiedChoice> VerifiedPlacement::placed_naturally(Corners corner
 
 VerifiedChoice VerifiedPlacement::place_to_target() {
   const double target = chooser_.options().target;
-  AutomaticCones automatic(chooser_);
-  VerifiedChoice best{automatic.reach(target), {}, false};
+  std::optional<AutomaticCones> automatic;
+  VerifiedChoice best{choose_where_cheap(automatic), {}};
   // No additional cone is best if that suffices; corners are next.
   const bool adds_none = static_cast<int>(best.cones.vertices.size()) <= chooser_.existing_count();
   if (adds_none) best = verified(std::move(best.cones));
   if (best.map.l2 <= target) return best;
   if (std::optional<VerifiedChoice> natural = placed_naturally(Corners::sharp)) return std::move(*natural);
-  if (!best.is_mapped) best = verified(std::move(best.cones));
+  if (!adds_none) best = verified(std::move(best.cones));
   if (!is_as_predicted(best)) add_where_stretched(best, worthwhile);
-  lower_target(automatic, best);
+  lower_target(*automatic, best);
   add_where_stretched(best, 1);
   if (best.map.l2 <= target) return best;
   if (std::optional<VerifiedChoice> natural = placed_naturally(Corners::any)) return std::move(*natural);
   return best;
+}
+
+// The requested number of cones, or as many as the target takes.  automatic: receives the growth that led to these.
+ConeChoice VerifiedPlacement::choose(std::optional<AutomaticCones>& automatic) {
+  if (chooser_.options().count || has_many()) return chooser_.choose(chooser_.options().count.value_or(0));
+  automatic.emplace(chooser_);
+  return automatic->reach(chooser_.options().target);
+}
+
+// Cones that cuts reach cheaply, if these stretch no more than others and are not many more.
+ConeChoice VerifiedPlacement::choose_where_cheap(std::optional<AutomaticCones>& automatic) {
+  ConeChoice anywhere = choose(automatic);
+  if (!chooser_.has_prices()) return anywhere;
+  const double most_l2 = std::max(chooser_.options().target, anywhere.predicted_l2);
+  for (const double weight : price_weights) {
+    chooser_.weigh_prices(weight);
+    std::optional<AutomaticCones> growth;
+    ConeChoice cheap = choose(growth);
+    if (cheap.predicted_l2 > most_l2 || much_fewer * ssize(cheap.vertices) > ssize(anywhere.vertices)) continue;
+    if (growth) automatic.emplace(std::move(*growth));
+    return cheap;
+  }
+  chooser_.weigh_prices(0);
+  return anywhere;
 }
 
 // Adds cones where the map itself is stretched, as long as each addition reduces the stretch to this share.
@@ -159,13 +200,18 @@ void VerifiedPlacement::take_fewer(const AutomaticCones& automatic, double misse
 
 bool VerifiedPlacement::is_small() const { return chooser_.task().mesh.triangle_count() <= small; }
 
+bool VerifiedPlacement::has_many() const {
+  return std::max(chooser_.options().count.value_or(0), chooser_.existing_count()) > most_one_by_one;
+}
+
 bool VerifiedPlacement::is_short(const VerifiedChoice& choice) const {
   return choice.map.l2 > chooser_.options().target && choice.cones.predicted_l2 <= hopeless_l2;
 }
 
 VerifiedChoice VerifiedPlacement::place_count(int count) {
   if (std::optional<VerifiedChoice> natural = placed_naturally(Corners::sharp)) return std::move(*natural);
-  VerifiedChoice best = verified(chooser_.choose(count));
+  std::optional<AutomaticCones> none_automatic;
+  VerifiedChoice best = verified(choose_where_cheap(none_automatic));
   const auto is_settled = [&] {
     const bool adds_none = static_cast<int>(best.cones.vertices.size()) <= chooser_.existing_count();
     return is_as_predicted(best) || adds_none || !best.cones.is_possible();

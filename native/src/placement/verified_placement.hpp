@@ -15,7 +15,6 @@ namespace lsgp {
 struct VerifiedChoice {
   ConeChoice cones;
   TriedMap map;
-  bool is_mapped = true;  // false if there are more cones than are chosen one by one
 };
 
 // The log scale predicts the stretch in the limit of fine meshes; maps of coarse ones have more stretch. So the map
@@ -26,7 +25,8 @@ struct VerifiedChoice {
 // suffice. A given number of cones is kept, but other choices are tried if the map is worse than predicted. If all of
 // these miss, the angles of least distortion are tried.
 //
-// At most some ten maps are computed, one or two if the prediction is hopeless, most of them with local repairs only.
+// At most some ten maps are computed, most of them with local repairs only; one or two if the prediction is hopeless or
+// there are more cones, existing or requested, than are chosen one by one.
 class VerifiedPlacement {
  public:
   // All arguments have to outlive it.
@@ -39,11 +39,16 @@ class VerifiedPlacement {
   VerifiedChoice place_to_target();
   VerifiedChoice place_count(int count);
   VerifiedChoice verified(ConeChoice cones);
+  VerifiedChoice place_as_asked();
+  ConeChoice choose(std::optional<AutomaticCones>& automatic);
+  ConeChoice choose_where_cheap(std::optional<AutomaticCones>& automatic);
+  bool misses(const VerifiedChoice& choice) const;
   std::optional<VerifiedChoice> placed_naturally(Corners corners);
   void add_where_stretched(VerifiedChoice& best, double share);
   void lower_target(AutomaticCones& automatic, VerifiedChoice& best);
   void take_fewer(const AutomaticCones& automatic, double missed, double reached, VerifiedChoice& best);
   bool is_small() const;
+  bool has_many() const;  // cones there or asked for
   bool is_worth_trying(const ConeChoice& cones) const;
   bool chooses_angles() const;
   bool is_short(const VerifiedChoice& choice) const;  // of the target, and not hopelessly

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Mark, clear, select and place cones: what changes, and that nothing else does."""
 
+import math
+
 import bmesh
 import bpy
 import pytest
@@ -9,6 +11,7 @@ from scenes import (
     add_cone_cube,
     add_cube,
     add_grid,
+    add_object,
     changed,
     corners,
     edit,
@@ -235,6 +238,24 @@ def test_place_looks_at_selected_faces_only():
     bpy.ops.mesh.cone_place(automatic=False, count=4)
     top = [v for v in corners(first) if first.data.vertices[v].co.z > 0]
     assert marked(first) == top
+
+
+@pytest.mark.parametrize("turned", [0, math.pi])
+def test_place_keeps_cones_out_of_what_the_front_view_shows(turned):
+    def build(bm):
+        bmesh.ops.create_icosphere(bm, subdivisions=4, radius=1.0)
+        bmesh.ops.scale(bm, vec=(1.0, depth, 1.3), verts=bm.verts)
+
+    depth = 0.7
+    egg = add_object("Egg", build)
+    egg.rotation_euler.z = turned
+    bpy.context.view_layer.update()
+    foremost = {}
+    for cuts in ("SHORTEST", "FRONT"):
+        bpy.ops.mesh.cone_place(target=1.06, keep=False, cuts=cuts)
+        foremost[cuts] = max(-(egg.matrix_world @ egg.data.vertices[v].co).y for v in marked(egg))
+    assert foremost["FRONT"] < math.cos(math.pi / 4) * depth
+    assert foremost["FRONT"] != foremost["SHORTEST"]
 
 
 def test_place_without_selected_faces_is_refused():

@@ -7,7 +7,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
-from map_checks import assert_curvature_adds_up, codes, surface
+from map_checks import assert_curvature_adds_up, codes, only, surface
 from meshes import Mesh, make
 from placement_checks import place
 
@@ -79,3 +79,13 @@ def test_without_symmetry_it_says_so_and_places_as_usual() -> None:
     assert placed.cones.tolist() == place(mesh, count=9).cones.tolist()
     wrong = place(MESH, count=9, symmetric=True, mirror=([0, 0, 0], [0, 1, 0]))
     assert codes(wrong.warnings) == ["NOT_SYMMETRIC"]
+
+
+def test_one_finding_names_all_components_without_symmetry() -> None:
+    odd, even = meshes.bumpy_sphere(2), meshes.icosphere(2)
+    placed = place(meshes.merge([odd, even, odd]), count=4, symmetric=True)
+    finding = only(placed.warnings, "NOT_SYMMETRIC")
+    assert finding.message.startswith("2 components are not their own mirror images in any plane that was tried; their")
+    count = len(odd.triangles)
+    triangles = np.arange(3 * count)
+    assert finding.elements.indices.tolist() == triangles[triangles // count != 1].tolist()

@@ -157,9 +157,23 @@ def test_what_choosing_takes_does_not_count_the_maps() -> None:
     assert placed.factorizations == 1 and placed.maps >= 1
 
 
-def test_no_map_is_made_of_many_cones_that_were_asked_for() -> None:
-    placed = place(meshes.bumpy_sphere(3), count=61)
-    assert placed.mapped_l2 is None and placed.maps == 0
+@pytest.mark.parametrize("name", ["flower", "pipe", "spring", "screw"])
+def test_the_map_of_many_cones_that_were_asked_for_is_measured(name: str) -> None:
+    """Beyond 60 the cones stay as they are chosen, and one map tells what it is worth."""
+    mesh = meshes.subdivide(COARSE[name])
+    placed = place(mesh, count=61)
+    result = unwrapped(mesh, placed)
+    assert len(placed.cones) == 61 and placed.maps == 1
+    assert len(result.flipped) == len(result.wrong_angle_sums) == 0
+    assert result.distortion.l2_stretch == pytest.approx(placed.mapped_l2, rel=1e-6)
+
+
+def test_many_cones_that_are_marked_are_mapped_as_well() -> None:
+    mesh = meshes.bumpy_sphere(3)
+    cones = place(mesh, count=61).cones
+    marked = place(mesh, cones)
+    assert (marked.cones == cones).all() and marked.maps == 1
+    assert marked.mapped_l2 == pytest.approx(unwrapped(mesh, marked).distortion.l2_stretch, rel=1e-6)
 
 
 def test_one_finding_names_all_parts_that_miss_the_target() -> None:

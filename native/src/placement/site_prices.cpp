@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "placement/site_prices.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/union_find.hpp"
+#include "cut/shortest_paths.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr std::size_t cheap_share = 4;  // one edge in so many is cheap
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+double factor_of(const HalfedgeMesh& mesh, Index h) { return mesh.seam[h] ? 0 : mesh.cut_factor[h]; }
+
+// Edges that cuts may follow, one halfedge each.
+Array<Index> cut_edges(const HalfedgeMesh& mesh) {
+  Array<Index> out;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (may_cut(mesh, h) && h < mesh.twin[h]) out.push_back(h);
+  }
+  return out;
+}
+
+// The vertices of the largest network of edges of at most this factor.
+PathStarts largest_network(const HalfedgeMesh& mesh, const Array<Index>& edges, double cheap) {
+  UnionFind networks(mesh.vertex_count());
+  for (const Index h : edges) {
+    if (factor_of(mesh, h) <= cheap) networks.unite(mesh.origin(h), mesh.target(h));
+  }
+  Array<Index> size(mesh.vertex_count(), 0);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) ++size[networks.find(v)];
+  const Index largest = static_cast<Index>(std::max_element(size.begin(), size.end()) - size.begin());
+  PathStarts out;
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (networks.find(v) == largest) out.emplace_back(0, v);
+  }
+  return out;
+}
+
+// 0 to 1, (n).
+Eigen::VectorXd vertex_prices(const HalfedgeMesh& mesh, const Geometry& geometry) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(mesh.vertex_count());
+  const Array<Index> edges = cut_edges(mesh);
+  if (edges.empty()) return out;
+  Array<double> factors;
+  for (const Index h : edges) factors.push_back(factor_of(mesh, h));
+  std::sort(factors.begin(), factors.end());
+  const double cheap = factors[(factors.size() - 1) / cheap_share], dearest = factors.back();
+  if (!(cheap < dearest)) return out;
+  const PathStarts starts = largest_network(mesh, edges, cheap);
+  Array<Reached> reached(mesh.vertex_count());
+  for (const auto& [distance, v] : starts) reached[v] = {distance, none, v};
+  grow_paths(mesh, geometry, starts, [](Index) { return true; }, reached);
+  double farthest = 0;
+  for (const Reached& at : reached) {
+    if (at.distance < unlimited) farthest = std::max(farthest, at.distance);
+  }
+  if (farthest == 0) return out;
+  // Costs that hardly differ are hardly a reason.
+  const double contrast = 1 - cheap / dearest;
+  for (Index v = 0; v < out.size(); ++v) out[v] = contrast * std::min(reached[v].distance / farthest, 1.0);
+  return out;
+}
+
+}  // namespace
+
+Eigen::VectorXd site_prices(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<Site>& sites) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(sites.size()));
+  if (mesh.cut_factor.empty()) return out;
+  const Eigen::VectorXd at = vertex_prices(mesh, geometry);
+  for (Eigen::Index i = 0; i < out.size(); ++i) {
+    const Site& site = sites[static_cast<std::size_t>(i)];
+    out[i] = at[site.vertex] + (site.mirrored == none ? 0 : at[site.mirrored]);
+  }
+  return out;
+}
+
+}  // namespace lsgp

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where cuts have costs, cones go where cuts get to cheaply, as far as the stretch allows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import lsgp
+import meshes
+import numpy as np
+import pytest
+from map_checks import surface
+from meshes import Mesh, edges_of
+from numpy.typing import NDArray
+
+TARGET = 1.05
+BALL, EGG, RING = meshes.icosphere(3), meshes.ellipsoid(3), meshes.torus(24, 12)
+MESHES = {"ball": BALL, "egg": EGG, "ring": RING, "bumpy": meshes.bumpy_sphere(3), "flower": meshes.flower(3)}
+FRONTS = [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (0.6, 0.8, 0.0)]
+
+
+def without_costs(mesh: Mesh) -> lsgp.Surface:
+    return replace(surface(mesh), edges=edges_of(mesh.triangles))
+
+
+def hidden(mesh: Mesh, front: tuple[float, float, float]) -> lsgp.Surface:
+    plain = without_costs(mesh)
+    return replace(plain, cut_costs=lsgp.cut_costs(plain, front, creases=False))
+
+
+def towards(mesh: Mesh, front: tuple[float, float, float], vertices: NDArray[np.integer]) -> NDArray[np.float64]:
+    """How far at the front some vertices are, 1 being the foremost vertex."""
+    along = mesh.positions @ np.array(front)
+    return along[vertices] / along.max()
+
+
+def cost_of_cuts(costly: lsgp.Surface, placed: lsgp.Placement) -> float:
+    """Of the cuts through these cones as the map is cut: edges whose sides are apart in the plane."""
+    uv = lsgp.parameterize(costly, placed.cones, placed.cone_angles).corner_uv.reshape(-1, 3, 2)
+    at: dict[tuple[int, int], list[NDArray[np.float64]]] = {}
+    for corners, points in zip(costly.triangles.tolist(), uv, strict=True):
+        for c in range(3):
+            (a, p), (b, q) = sorted([(corners[c], c), (corners[c - 2], (c + 1) % 3)])
+            at.setdefault((a, b), []).append(points[[p, q]])
+    cost = 0.0
+    for edge, factor in zip(costly.edges.tolist(), costly.cut_costs, strict=True):
+        sides = at[tuple(sorted(edge))]
+        if np.abs(sides[0] - sides[-1]).max() > 1e-9:
+            cost += factor * float(np.linalg.norm(np.subtract(*costly.positions[edge])))
+    return cost
+
+
+@pytest.mark.parametrize("cost", [0.0, 1.0, 7.0])
+@pytest.mark.parametrize("options", [{}, {"count": 70}, {"lattice": "square"}, {"symmetric": True}])
+def test_costs_that_are_the_same_everywhere_are_none(cost: float, options: dict[str, object]) -> None:
+    plain = without_costs(MESHES["flower"])
+    same = lsgp.place_cones(replace(plain, cut_costs=np.full(len(plain.edges), cost)), **options)
+    alone = lsgp.place_cones(plain, **options)
+    for name in ("cones", "cone_angles", "log_scale"):
+        assert getattr(same, name).tobytes() == getattr(alone, name).tobytes()
+
+
+@pytest.mark.parametrize("front", FRONTS)
+@pytest.mark.parametrize(("mesh", "target"), [(BALL, 1.1), (EGG, 1.06)])
+def test_no_cone_is_in_the_middle_of_what_is_seen(mesh: Mesh, target: float, front: tuple[float, float, float]) -> None:
+    placed = lsgp.place_cones(hidden(mesh, front), target=target)
+    assert placed.reached and len(placed.cones) >= 4
+    assert towards(mesh, front, placed.cones).max() < np.cos(np.pi / 4)
+
+
+@pytest.mark.parametrize("front", FRONTS)
+@pytest.mark.parametrize("name", MESHES)
+def test_the_target_is_kept_with_at_most_a_quarter_more_cones(name: str, front: tuple[float, float, float]) -> None:
+    alone, placed = (lsgp.place_cones(on(MESHES[name])) for on in (without_costs, lambda mesh: hidden(mesh, front)))
+    assert placed.reached and placed.mapped_l2 <= TARGET
+    assert len(placed.cones) <= 1.25 * len(alone.cones)
+    result = lsgp.parameterize(surface(MESHES[name]), placed.cones, placed.cone_angles)
+    assert result.distortion.l2_stretch == pytest.approx(placed.mapped_l2, rel=1e-6)
+
+
+@pytest.mark.parametrize("count", [8, 70])
+@pytest.mark.parametrize("name", MESHES)
+def test_a_number_of_cones_stays_and_stretches_within_the_target(name: str, count: int) -> None:
+    placed = lsgp.place_cones(hidden(MESHES[name], FRONTS[0]), count=count)
+    assert len(placed.cones) == count and placed.mapped_l2 <= TARGET
+
+
+@pytest.mark.parametrize("options", [{}, {"count": 70}, {"lattice": "square"}, {"symmetric": True}])
+@pytest.mark.parametrize("name", ["egg", "ring"])
+def test_cuts_cost_less_than_those_of_cones_placed_without_regard(name: str, options: dict[str, object]) -> None:
+    costly = hidden(MESHES[name], FRONTS[0])
+    alone, placed = (lsgp.place_cones(on, **options) for on in (replace(costly, cut_costs=None), costly))
+    assert cost_of_cuts(costly, placed) < 0.9 * cost_of_cuts(costly, alone)
+
+
+def test_cones_leave_what_is_painted() -> None:
+    alone = lsgp.place_cones(without_costs(EGG))
+    near = np.linalg.norm(EGG.positions - EGG.positions[alone.cones[0]], axis=1) < 0.45
+    plain = without_costs(EGG)
+    paint = np.where(near, 1.0, 0.5)
+    placed = lsgp.place_cones(replace(plain, cut_costs=lsgp.cut_costs(plain, None, creases=False, paint=paint)))
+    assert placed.reached and near[alone.cones].any() and not near[placed.cones].any()
