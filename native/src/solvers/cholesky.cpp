@@ -62,7 +62,7 @@ struct Cholesky<Scalar>::Factor {
 
   bool has_room_for_threads = false;
 
-  int threads() const;
+  void prepare(Workspace& work) const;
   std::size_t outer_size() const;  // numbers of the outer products that are computed at once
   void factorize(const Eigen::SparseMatrix<Scalar>& lower);
   void run_task(const Eigen::SparseMatrix<Scalar>& lower, int task, Workspace& work, Array<Vector>& kept,
@@ -105,6 +105,15 @@ void Cholesky<Scalar>::Factor::fill(const Eigen::SparseMatrix<Scalar>& lower, in
       column[local[at]] += other > row ? value : Eigen::numext::conj(value);
     }
   }
+}
+
+// Of a thread that has a task for the first time.
+template <typename Scalar>
+void Cholesky<Scalar>::Factor::prepare(Workspace& work) const {
+  if (ssize(work.local) == size()) return;
+  work.stack.resize(static_cast<Eigen::Index>(plan.stack_size));
+  prefer_huge_pages(work.stack.data(), plan.stack_size * sizeof(Scalar));
+  work.local.resize(size());
 }
 
 // The fronts of a task, from the first to the last.
@@ -220,11 +229,6 @@ void Cholesky<Scalar>::Factor::add_outer(int front, const Scalar* outer, int par
 }
 
 template <typename Scalar>
-int Cholesky<Scalar>::Factor::threads() const {
-  return has_room_for_threads ? std::clamp(thread_count(), 1, std::max(1, plan.task_count())) : 1;
-}
-
-template <typename Scalar>
 std::size_t Cholesky<Scalar>::Factor::outer_size() const {
   std::size_t all = 0, largest = 0;
   for (const int count : plan.retained_rows) {
@@ -238,15 +242,14 @@ template <typename Scalar>
 void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lower) {
   count_factorization();
   start_schur(lower);
-  ThreadTeam team(threads());
+  ThreadTeam alone(1);
+  ThreadTeam& team = has_room_for_threads ? team_of_this_call() : alone;
   Array<Workspace> work(team.size());
-  for (Workspace& own : work) {
-    own.stack.resize(static_cast<Eigen::Index>(plan.stack_size));
-    prefer_huge_pages(own.stack.data(), plan.stack_size * sizeof(Scalar));
-    own.local.resize(size());
-  }
   Array<Vector> kept(plan.task_count());
-  team.run_forest(plan.task_parent, [&](int task, int thread) { run_task(lower, task, work[thread], kept, team); });
+  team.run_forest(plan.task_parent, [&](int task, int thread) {
+    prepare(work[thread]);
+    run_task(lower, task, work[thread], kept, team);
+  });
   work.clear();
   complete_schur(team);
 }

@@ -15,7 +15,7 @@ namespace lsgp {
 
 namespace {
 
-constexpr int least_rows_of_threads = 1000;  // which take time to start
+constexpr int least_rows_of_threads = 500;  // which take time to start
 
 // A front that is the whole matrix.
 template <typename Scalar>
@@ -42,8 +42,8 @@ template <typename Scalar>
 bool DenseCholesky<Scalar>::factorize() {
   const Front<Scalar> front = whole(factor_);
   if (has_blocks(front)) {
-    ThreadTeam team(front.columns < least_rows_of_threads ? 1 : thread_count());
-    return eliminate_by_blocks(front, team);
+    ThreadTeam alone(1);
+    return eliminate_by_blocks(front, front.columns < least_rows_of_threads ? alone : team_of_this_call());
   }
   const double size = static_cast<double>(factor_.rows());
   const bool done = factor_.size() == 0 || dense_kernels<Scalar>().eliminate(front);
