@@ -7,7 +7,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING
 
 import bpy
@@ -51,6 +51,13 @@ class PlacementTask:
     marked: ConeAngles
     keep: bool
     settings: PlacementSettings
+
+    @property
+    def threads(self) -> int:
+        return self.settings.threads
+
+    def with_threads(self, count: int) -> PlacementTask:
+        return replace(self, settings=replace(self.settings, threads=count))
 
 
 def place_all(tasks: Sequence[PlacementTask], progress: Progress | None = None) -> list[lsgp.Placement | Exception]:

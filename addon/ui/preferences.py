@@ -5,7 +5,6 @@ import bpy
 
 from ..core import native
 from ..core.identifiers import EXTENSION
-from ..core.threads import MOST
 from ..overlay.look import CUT_NAMES, OverlayLook
 
 
@@ -18,7 +17,7 @@ class ConeUnwrapPreferences(OverlayLook, bpy.types.AddonPreferences):
         "Blender. The UV map is the same for any number",
         default=0,
         min=0,
-        max=MOST,
+        max=native.MOST_THREADS,
         soft_max=64,
     )
 
