@@ -68,6 +68,8 @@ def _outcome(task: T, solve: Callable[[T, Progress | None], R], progress: Progre
     except native.lsgp.Cancelled:
         raise
     except (native.lsgp.LsgpError, MemoryError) as error:
+        if progress is not None:
+            progress(1.0)  # nothing of it is left to do
         return error
 
 

@@ -142,9 +142,11 @@ def test_errors_stay_with_their_object_and_a_stop_ends_all():
             raise lsgp.InputError("WRONG_PARAMETER", "no")
         return task.name
 
-    outcomes = solving.solve_all([Work("a", 1), Work("b", 1), Work("c", 1)], refuse)
+    told = []
+    outcomes = solving.solve_all([Work("a", 1), Work("b", 1), Work("c", 1)], refuse, told.append)
     assert [outcomes[0], outcomes[2]] == ["a", "c"]
     assert isinstance(outcomes[1], lsgp.InputError)
+    assert told == [pytest.approx(1 / 3)]
 
     solved = []
 
