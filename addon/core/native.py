@@ -12,11 +12,22 @@ from importlib import import_module, metadata
 from types import ModuleType
 
 NATIVE_FILES = (".so", ".dylib", ".pyd")
+MOST_THREADS = 1024
+"""That the library takes."""
 
 
 def _leave_one_core() -> None:
     """To Blender while the library computes, unless the artist's environment says how many threads it takes."""
     os.environ.setdefault("LSGP_THREADS", str(max(1, (os.cpu_count() or 1) - 1)))
+
+
+def thread_count(chosen: int) -> int:
+    """The threads that the library takes where `chosen` is passed as their number, 0 being its default."""
+    try:
+        default = int(os.environ.get("LSGP_THREADS", ""))
+    except ValueError:
+        default = 0
+    return chosen or (default if 1 <= default <= MOST_THREADS else os.cpu_count() or 1)
 
 
 def _require_whole_native_files() -> None:

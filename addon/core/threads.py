@@ -5,9 +5,6 @@ import bpy
 
 from .identifiers import EXTENSION
 
-MOST = 1024
-"""That the library takes."""
-
 
 def chosen_threads() -> int:
     """0 for the library's default, see `native`.  Only in Blender's main thread."""

@@ -7,7 +7,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING
 
 import bpy
@@ -54,6 +54,13 @@ class PlacementTask:
     keep: bool
     settings: PlacementSettings
     cuts: CutChoice
+
+    @property
+    def threads(self) -> int:
+        return self.settings.threads
+
+    def with_threads(self, count: int) -> PlacementTask:
+        return replace(self, settings=replace(self.settings, threads=count))
 
 
 def place_all(tasks: Sequence[PlacementTask], progress: Progress | None = None) -> list[lsgp.Placement | Exception]:

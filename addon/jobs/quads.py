@@ -50,6 +50,13 @@ class QuadTask:
     target: int | None
     size: float | None
 
+    @property
+    def threads(self) -> int:
+        return self.options.threads
+
+    def with_threads(self, count: int) -> QuadTask:
+        return replace(self, options=replace(self.options, threads=count))
+
 
 def quad_task(region: Region, settings: QuadSettings) -> QuadTask:
     """What the quads of the region are computed from.  Raises Refused."""

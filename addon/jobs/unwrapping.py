@@ -79,6 +79,13 @@ class UnwrapTask:
     count: int | None = None
     creases_of: str | None = None
 
+    @property
+    def threads(self) -> int:
+        return self.options.threads
+
+    def with_threads(self, count: int) -> UnwrapTask:
+        return replace(self, options=replace(self.options, threads=count))
+
 
 @dataclass(frozen=True, slots=True)
 class Unwrapped:

@@ -7,7 +7,6 @@ import bpy
 from ..core import native
 from ..core.choices import FirstPressProperties
 from ..core.identifiers import EXTENSION
-from ..core.threads import MOST
 from ..overlay.look import CUT_NAMES, OverlayLook
 
 
@@ -20,7 +19,7 @@ class ConeUnwrapPreferences(FirstPressProperties, OverlayLook, bpy.types.AddonPr
         "Blender. The UV map is the same for any number",
         default=0,
         min=0,
-        max=MOST,
+        max=native.MOST_THREADS,
         soft_max=64,
     )
 

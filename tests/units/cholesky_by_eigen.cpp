@@ -92,8 +92,7 @@ void Cholesky<Scalar>::eliminate(Rows& right_sides) const {
 
 // x1 = L^-H (x1 - L^-1 P B^H x2).
 template <typename Scalar>
-void Cholesky<Scalar>::substitute(Rows& half_solved, Eigen::Index sides) const {
-  count_back_substitutions(static_cast<int>(sides));
+void Cholesky<Scalar>::substitute(Rows& half_solved) const {
   if (factor_->eliminated == 0) return;
   Matrix top = half_solved.topRows(factor_->eliminated);
   if (factor_->schur.size() > 0) {

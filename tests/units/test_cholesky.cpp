@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
+#include <utility>
 
 #include "base/thread_team.hpp"
 #include "lsgp/errors.hpp"
@@ -104,7 +105,7 @@ TEST_CASE_TEMPLATE("two half solves about the Schur complement's own make a whol
     factor.eliminate(half);
     const Matrix reduced = half.bottomRows(retained);
     half.bottomRows(retained) = factor.schur().llt().solve(reduced);
-    factor.substitute(half, sides);
+    factor.substitute(half);
     Matrix solution(size, sides);
     for (int row = 0; row < size; ++row) solution.row(row) = half.row(factor.place(row)).head(sides);
     CHECK((solution - oracle(lower, right)).norm() < rounding * right.norm() * size);
@@ -172,6 +173,37 @@ TEST_CASE_TEMPLATE("any number of threads gives the same bytes", Scalar, double,
     CAPTURE(threads);
     CHECK(factored(threads, 0).solve(right) == whole);
     CHECK(factored(threads, grid_width).schur() == schur);
+  }
+}
+
+TEST_CASE_TEMPLATE("solves on any number of threads give the same bytes", Scalar, double, std::complex<double>) {
+  Random random(11);
+  const auto lower = grid_definite<Scalar>(random, grid_width, grid_height);
+  const int size = static_cast<int>(lower.rows());
+  const auto right = random_matrix<Scalar>(random, size, 19);
+  // All of them with nothing retained, and the first two in halves with the last rows retained.
+  const auto solve = [&](int threads) {
+    const lsgp::ThreadCount count(threads);
+    const lsgp::LinearAlgebraCounter counter;
+    auto whole = lsgp::Cholesky<Scalar>(lower).solve(right);
+    CHECK(counter.counted().back_substitutions == 19);
+    const lsgp::Cholesky<Scalar> factor(lower, grid_width);
+    typename lsgp::Cholesky<Scalar>::Rows half(size, 2);
+    for (int row = 0; row < size; ++row) half.row(factor.place(row)) = right.row(row).head(2);
+    factor.eliminate(half);
+    const auto reduced = half.bottomRows(grid_width).eval();
+    half.bottomRows(grid_width) = factor.schur().llt().solve(reduced);
+    factor.substitute(half);
+    Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> in_halves(size, 2);
+    for (int row = 0; row < size; ++row) in_halves.row(row) = half.row(factor.place(row));
+    return std::pair(whole, in_halves);
+  };
+  const auto alone = solve(1);
+  CHECK((lower.template selfadjointView<Eigen::Lower>() * alone.first - right).norm() < rounding * right.norm());
+  CHECK((alone.second - alone.first.leftCols(2)).norm() < rounding * alone.second.norm());
+  for (const int threads : thread_counts) {
+    CAPTURE(threads);
+    CHECK(solve(threads) == alone);
   }
 }
 

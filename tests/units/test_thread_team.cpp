@@ -159,6 +159,61 @@ TEST_CASE("a team ends whose last task ends while the caller visits a checkpoint
   }
 }
 
+TEST_CASE("what a loop within a loop throws reaches the caller, after which the team goes on") {
+  for (const int threads : team_sizes) {
+    CAPTURE(threads);
+    lsgp::ThreadTeam team(threads);
+    const auto outer = [&](int i) {
+      if (i == 5) team.run_each(20, [](int k) { k == 3 ? throw std::runtime_error("within") : void(); });
+    };
+    CHECK_THROWS_WITH_AS(team.run_each(10, outer), "within", std::runtime_error);
+    std::atomic<int> sum = 0;
+    team.run_each(10, [&](int) { team.run_each(10, [&](int k) { sum += k; }); });
+    CHECK(sum == 450);
+  }
+}
+
+TEST_CASE("ranges make up the whole, and long ones alone are divided") {
+  for (const int threads : team_sizes) {
+    CAPTURE(threads);
+    const lsgp::ThreadCount count(threads);
+    for (const int size : {0, 1, 4096, 32767, 32768, 100001}) {
+      CAPTURE(size);
+      lsgp::Array<int> visits(size, 0);
+      std::atomic<int> ranges = 0;
+      lsgp::run_in_ranges(size, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+        ++ranges;
+        for (std::ptrdiff_t i = begin; i < end; ++i) ++visits[i];
+      });
+      CHECK(visits == lsgp::Array<int>(size, 1));
+      CHECK((ranges > 1) == (threads > 1 && size >= 32768));
+    }
+  }
+}
+
+TEST_CASE("a call keeps its team, and other threads have none") {
+  const lsgp::ThreadCount count(3);
+  lsgp::ThreadTeam& team = lsgp::team_of_this_call();
+  CHECK(team.size() == 3);
+  CHECK(&lsgp::team_of_this_call() == &team);
+  {
+    const lsgp::ThreadCount inner(2);
+    CHECK(lsgp::team_of_this_call().size() == 2);
+  }
+  CHECK(&lsgp::team_of_this_call() == &team);
+  std::atomic<int> elsewhere = 0, wrong = 0;
+  const auto caller = std::this_thread::get_id();
+  while (elsewhere == 0) {
+    team.run_each(64, [&](int) {
+      const bool is_caller = std::this_thread::get_id() == caller;
+      elsewhere += !is_caller;
+      wrong += lsgp::team_of_this_call().size() != (is_caller ? 3 : 1);
+      std::this_thread::yield();
+    });
+  }
+  CHECK(wrong == 0);
+}
+
 TEST_CASE("the number of threads is that of the innermost scope, or the default") {
   const int otherwise = lsgp::thread_count();
   CHECK(otherwise >= 1);

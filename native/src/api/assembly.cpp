@@ -9,6 +9,7 @@
 #include "api/doubled_triangles.hpp"
 #include "api/report_defects.hpp"
 #include "base/text.hpp"
+#include "base/thread_team.hpp"
 #include "plane/overlaps.hpp"
 #include "seamless/exact_layout.hpp"
 #include "split/compact_islands.hpp"
@@ -157,13 +158,13 @@ void Assembly::place(const Array<Similarity>& placement) {
     };
     const bool is_whole = solved.part_count == 1;  // its copies are moved just once each
     Eigen::VectorXcd moved = solved.map.position;
-    if (is_whole) moved = moved.unaryExpr([&](Complex z) { return move(0, z); });
-    for (Index corner = 0; corner < component.mesh.halfedge_count(); ++corner) {
+    if (is_whole) for_each_at_once(moved.size(), [&](Eigen::Index copy) { moved[copy] = move(0, moved[copy]); });
+    for_each_at_once(component.mesh.halfedge_count(), [&](Index corner) {
       Complex z = moved[solved.map.cut_mesh.copy_of_corner[corner]];
       if (!is_whole) z = move(solved.part[corner / 3], z);
       layout_[solved.first_corner + corner] = z;
       result_.corner_uv.row(component.source_corner(corner)) << z.real(), z.imag();
-    }
+    });
   }
   if (layout_.allFinite()) return;
   throw Error(Code::solver_failed,

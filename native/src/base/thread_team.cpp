@@ -12,9 +12,12 @@ namespace lsgp {
 
 namespace {
 
-int& count_of_this_thread() {
-  thread_local int count = 0;
-  return count;
+constexpr std::ptrdiff_t range_size = 4096;  // for triangles a tenth of a millisecond, ten times what waking up takes
+constexpr std::ptrdiff_t least_ranges = 8;   // threads take time to start
+
+ThreadCount*& innermost_of_this_thread() {
+  thread_local ThreadCount* innermost = nullptr;
+  return innermost;
 }
 
 int default_count() {
@@ -26,13 +29,35 @@ int default_count() {
 
 }  // namespace
 
-ThreadCount::ThreadCount(int count) : around_(std::exchange(count_of_this_thread(), count)) {}
-ThreadCount::~ThreadCount() { count_of_this_thread() = around_; }
+ThreadCount::ThreadCount(int count) : around_(std::exchange(innermost_of_this_thread(), this)), count_(count) {}
+ThreadCount::~ThreadCount() { innermost_of_this_thread() = around_; }
 
 int thread_count() {
   static const int otherwise = default_count();
-  const int count = count_of_this_thread();
-  return count == 0 ? otherwise : count;
+  const ThreadCount* innermost = innermost_of_this_thread();
+  return innermost == nullptr || innermost->count_ == 0 ? otherwise : innermost->count_;
+}
+
+ThreadTeam& team_of_this_call() {
+  ThreadCount* innermost = innermost_of_this_thread();
+  if (innermost == nullptr) {
+    thread_local ThreadTeam alone(1);
+    return alone;
+  }
+  if (!innermost->team_) innermost->team_ = std::make_unique<ThreadTeam>(thread_count());
+  return *innermost->team_;
+}
+
+void run_in_ranges(std::ptrdiff_t count, const std::function<void(std::ptrdiff_t begin, std::ptrdiff_t end)>& work) {
+  const std::ptrdiff_t ranges = count / range_size;  // the last one has the rest
+  ThreadTeam* team = ranges < least_ranges || thread_count() == 1 ? nullptr : &team_of_this_call();
+  if (team == nullptr || team->size() == 1) {
+    work(0, count);
+    return;
+  }
+  team->run_each(static_cast<int>(ranges), [&](int i) {
+    work(i * range_size, i + 1 == ranges ? count : (i + 1) * range_size);
+  });
 }
 
 ThreadTeam::ThreadTeam(int count) {
@@ -48,7 +73,7 @@ ThreadTeam::~ThreadTeam() {
     const Lock lock(mutex_);
     is_over_ = true;
   }
-  changed_.notify_all();
+  new_work_.notify_all();
   for (std::thread& other : others_) other.join();
 }
 
@@ -68,7 +93,7 @@ void ThreadTeam::run_forest(const Array<int>& parent, const std::function<void(i
   }
   Lock lock(mutex_);
   forest_ = &forest;
-  changed_.notify_all();
+  new_work_.notify_all();
   while (forest.left > 0 && !failure_) {
     if (!visit(lock) && !take_work(lock, 0)) changed_.wait(lock);
   }
@@ -85,6 +110,7 @@ void ThreadTeam::run_each(int count, const std::function<void(int)>& work) {
   Loop loop{&work, count};
   Lock lock(mutex_);
   loops_.push_back(&loop);
+  for (int i = 1; i < std::min(count, size()); ++i) new_work_.notify_one();
   changed_.notify_all();
   while (loop.next < loop.count && !failure_) {
     run_one(lock, loop);
@@ -97,7 +123,8 @@ void ThreadTeam::run_each(int count, const std::function<void(int)>& work) {
   }
   loops_.erase(std::find(loops_.begin(), loops_.end(), &loop));
   if (!failure_) return;
-  const std::exception_ptr failure = forest_ == nullptr ? std::exchange(failure_, nullptr) : failure_;
+  const bool is_outermost = forest_ == nullptr && loops_.empty();
+  const std::exception_ptr failure = is_outermost ? std::exchange(failure_, nullptr) : failure_;
   std::rethrow_exception(failure);
 }
 
@@ -106,7 +133,7 @@ void ThreadTeam::serve(int thread) {
   const CheckpointVisitor visitor([this] { tell_caller(); });
   Lock lock(mutex_);
   while (!is_over_) {
-    if (!take_work(lock, thread)) changed_.wait(lock);
+    if (!take_work(lock, thread)) new_work_.wait(lock);
   }
 }
 
@@ -144,6 +171,7 @@ void ThreadTeam::run_task(Lock& lock, int thread) {
   if (above != -1 && --forest.children[above] == 0) {
     forest.ready.push_back(above);
     std::push_heap(forest.ready.begin(), forest.ready.end(), std::greater<>());
+    new_work_.notify_one();
   }
   changed_.notify_all();
 }
@@ -159,7 +187,7 @@ void ThreadTeam::run_one(Lock& lock, Loop& loop) {
     lock.lock();
     fail();
   }
-  if (--loop.running == 0) changed_.notify_all();
+  if (--loop.running == 0 && loop.next == loop.count) changed_.notify_all();
 }
 
 // In the handler of an exception: the first one counts, the others may follow from it.

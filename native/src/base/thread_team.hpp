@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <thread>
 
@@ -14,6 +15,8 @@
 namespace lsgp {
 
 constexpr int most_threads = 1024;
+
+class ThreadTeam;
 
 // While it lives, long work of this thread takes that many threads, itself included; 0: as many as LSGP_THREADS says,
 // or else as there are processors.
@@ -25,10 +28,31 @@ class ThreadCount {
   ThreadCount& operator=(const ThreadCount&) = delete;
 
  private:
-  const int around_;
+  friend ThreadTeam& team_of_this_call();
+  friend int thread_count();
+
+  ThreadCount* const around_;
+  const int count_;
+  std::unique_ptr<ThreadTeam> team_;
 };
 
 int thread_count();
+
+// That of the innermost ThreadCount of this thread, which starts it when it is first asked for and keeps it. Where there
+// is none, as on the other threads of a team: this thread alone.
+ThreadTeam& team_of_this_call();
+
+// Calls work(begin, end) for ranges that make up 0 to count - 1, in any order and at the same time; a short one is not
+// divided.
+void run_in_ranges(std::ptrdiff_t count, const std::function<void(std::ptrdiff_t begin, std::ptrdiff_t end)>& work);
+
+// Calls visit(i) for 0 to count - 1 in such ranges. What one does must not depend on another.
+template <typename Integer, typename Visit>
+void for_each_at_once(Integer count, const Visit& visit) {
+  run_in_ranges(count, [&visit](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i) visit(static_cast<Integer>(i));
+  });
+}
 
 // The thread that makes it, and others, which end with it. What work throws ends the rest of it and is thrown to the
 // caller. Checkpoints that others reach are those of the caller, who visits them as soon as it has a moment.
@@ -74,7 +98,8 @@ class ThreadTeam {
 
   const std::thread::id caller_ = std::this_thread::get_id();
   std::mutex mutex_;  // of all that follows but the threads
-  std::condition_variable changed_;
+  std::condition_variable new_work_;  // for threads without any
+  std::condition_variable changed_;   // for those that wait for others
   Forest* forest_ = nullptr;
   Array<Loop*> loops_;
   std::exception_ptr failure_;

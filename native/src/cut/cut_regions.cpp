@@ -2,25 +2,42 @@
 #include "cut/cut_regions.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <utility>
 
 namespace lsgp {
 
-CutRegions::CutRegions(const CutNetwork& network)
+namespace {
+
+// A path between two regions is cheapest where it crosses from one to the other within half its cost from both ends, so
+// that nothing beyond matters; a little more, for rounding.
+double half_of(double cost) { return (0.5 + 1e-9) * cost; }
+
+}  // namespace
+
+CutRegions::CutRegions(const CutNetwork& network, double below)
     : network_(network),
-      reached_(network.mesh.vertex_count()),
+      was_cut_(network.is_cut),
       again_(network.mesh.vertex_count()),
       redone_(network.mesh.vertex_count(), 0) {
-  const HalfedgeMesh& mesh = network.mesh;
+  for (Index v = 0; v < network.mesh.vertex_count(); ++v) {
+    if (network.holds(v)) sources_.push_back(v);
+  }
+  grow(below);
+}
+
+void CutRegions::grow(double below) {
+  const HalfedgeMesh& mesh = network_.mesh;
+  below_ = below;
+  reached_.assign(mesh.vertex_count(), {});
   PathStarts starts;
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    if (!network.holds(v)) continue;
+  for (const Index v : sources_) {
     reached_[v] = {0, none, v};
     starts.emplace_back(0.0, v);
   }
-  grow_paths(
-      mesh, network.geometry, std::move(starts), [&](Index v) { return !network_.is_avoided[v]; }, reached_);
+  const auto admits = [&](Index v) { return !network_.is_avoided[v]; };
+  grow_paths(mesh, network_.geometry, std::move(starts), admits, reached_, half_of(below));
   first_.assign(mesh.vertex_count() + 1, 0);
   for (const Reached& there : reached_) {
     if (there.source != none) ++first_[there.source + 1];
@@ -31,8 +48,8 @@ CutRegions::CutRegions(const CutNetwork& network)
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (reached_[v].source != none) members_[cursor[reached_[v].source]++] = v;
   }
-  bridges_ = sorted_bridges(mesh, network.geometry, reached_, [&](Index h) {
-    return !network.is_cut[h] && reached_[mesh.origin(h)].source != reached_[mesh.target(h)].source;
+  bridges_ = sorted_bridges(mesh, network_.geometry, reached_, [&](Index h) {
+    return !was_cut_[h] && reached_[mesh.origin(h)].source != reached_[mesh.target(h)].source;
   });
 }
 
@@ -57,12 +74,12 @@ void CutRegions::redo(const CutPath& closed, double below) {
       const Reached& there = reached_[mesh.origin(h)];
       if (there.source == none || !network_.holds(there.source)) return;
       const double through = there.distance + cut_cost(mesh, network_.geometry, h);
-      if (through < below && through < again_[v].distance) again_[v] = {through, h, there.source};
+      if (through < half_of(below) && through < again_[v].distance) again_[v] = {through, h, there.source};
     });
     if (again_[v].source != none) starts.emplace_back(again_[v].distance, v);
   }
-  grow_paths(
-      mesh, network_.geometry, std::move(starts), [&](Index v) { return redone_[v] == round_; }, again_);
+  const auto admits = [&](Index v) { return redone_[v] == round_; };
+  grow_paths(mesh, network_.geometry, std::move(starts), admits, again_, half_of(below));
 }
 
 CutPath CutRegions::find(const CutPath& closed, const Array<Index>& is_apart, Index mark, double below) {
@@ -72,6 +89,7 @@ CutPath CutRegions::find(const CutPath& closed, const Array<Index>& is_apart, In
     return a.source != none && b.source != none && (is_apart[a.source] == mark) != (is_apart[b.source] == mark) &&
            network_.holds(a.source) && network_.holds(b.source);
   };
+  if (below > below_) grow(std::numeric_limits<double>::infinity());
   redo(closed, below);
   for (const Bridge& bridge : bridges_) {
     if (!(bridge.cost < below)) break;
@@ -81,6 +99,7 @@ CutPath CutRegions::find(const CutPath& closed, const Array<Index>& is_apart, In
     best = bridge.halfedge;
   }
   for (const Index v : around_) {
+    if (!(at(v).distance < half_of(below))) continue;
     mesh.for_each_outgoing(v, [&](Index h) {
       const Reached &a = at(v), &b = at(mesh.target(h));
       if (!may_cut(mesh, h) || !joins(a, b)) return;

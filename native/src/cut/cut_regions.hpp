@@ -11,7 +11,8 @@ namespace lsgp {
 // through them stay valid while the cuts at their ends exist (Mehlhorn 1988; Uchoa and Werneck 2012).
 class CutRegions {
  public:
-  explicit CutRegions(const CutNetwork& network);
+  // below: what paths cost that are going to be looked for; dearer ones take longer.
+  CutRegions(const CutNetwork& network, double below);
 
   // The cheapest path between the two parts of the cuts after closing a path, with the regions of the path's vertices
   // distributed over the others; empty if none is below a cost.
@@ -19,11 +20,15 @@ class CutRegions {
   CutPath find(const CutPath& closed, const Array<Index>& is_apart, Index mark, double below);
 
  private:
+  void grow(double below);
   const Reached& at(Index v) const { return redone_[v] == round_ ? again_[v] : reached_[v]; }
   void redo(const CutPath& closed, double below);
   CutPath path_through(Index bridge) const;
 
   const CutNetwork& network_;
+  const Array<char> was_cut_;     // (3m)
+  Array<Index> sources_;          // the vertices of the cuts
+  double below_ = 0;              // what the paths cost whose halves are all reached
   Array<Reached> reached_;        // (n)
   Array<Index> first_, members_;  // the vertices of each region
   Array<Bridge> bridges_;         // cheapest first

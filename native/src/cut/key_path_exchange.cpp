@@ -118,7 +118,7 @@ double KeyPathExchange::try_all() {
   std::sort(order.begin(), order.end());
   if (order.empty()) return 0;
   ++rounds_;
-  CutRegions regions(network_);
+  CutRegions regions(network_, -order.front().first);
   for (const auto& [_, h] : order) {
     if (!network_.is_cut[h] || traced_[h] == rounds_) continue;
     const CutPath path = trace(h), cheaper = find_cheaper(path, regions);

@@ -26,10 +26,11 @@ struct Reached {
 // Vertices from which paths start, at the distances they have already.
 using PathStarts = std::vector<std::pair<double, Index>>;
 
-// Dijkstra's algorithm over the vertices that admits(v).  reached: (n) with the starts entered; receives the others.
+// Dijkstra's algorithm over the vertices that admits(v), as far as a distance.  reached: (n) with the starts entered;
+// receives the others.
 template <typename Admits>
 void grow_paths(const HalfedgeMesh& mesh, const Geometry& geometry, PathStarts starts, Admits admits,
-                Array<Reached>& reached) {
+                Array<Reached>& reached, double below = std::numeric_limits<double>::infinity()) {
   constexpr double operations_a_vertex = 100;
   std::priority_queue<PathStarts::value_type, PathStarts, std::greater<>> queue(std::greater<>(), std::move(starts));
   while (!queue.empty()) {
@@ -42,7 +43,7 @@ void grow_paths(const HalfedgeMesh& mesh, const Geometry& geometry, PathStarts s
       const Index w = mesh.target(h);
       if (!may_cut(mesh, h) || !admits(w)) return;
       const double through = distance + cut_cost(mesh, geometry, h);
-      if (!(through < reached[w].distance)) return;
+      if (!(through < std::min(reached[w].distance, below))) return;
       reached[w] = {through, h, reached[v].source};
       queue.emplace(through, w);
     });

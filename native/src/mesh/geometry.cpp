@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/thread_team.hpp"
+
 namespace lsgp {
 
 namespace {
@@ -12,6 +14,8 @@ namespace {
 // A triangle counts as degenerate when its height is below this share of its longest edge.
 constexpr double degenerate_height = 1e-8;
 constexpr double least_margin = 1e-4;  // of triangle inequalities where there are degenerate triangles
+
+Index triangle_count(const Geometry& geometry) { return static_cast<Index>(geometry.area.size()); }
 
 // Angles, half cotangents and area of one triangle from its three edge lengths (Kahan's stable area).
 void measure_from_lengths(Geometry& geometry, Index f) {
@@ -29,6 +33,25 @@ void measure_from_lengths(Geometry& geometry, Index f) {
   }
 }
 
+// From the positions. Returns whether the triangle is degenerate.
+bool measure_from_positions(const HalfedgeMesh& mesh, Geometry& geometry, Index f) {
+  Eigen::Vector3d corner[3], edge[3];
+  for (int c = 0; c < 3; ++c) corner[c] = mesh.positions.row(mesh.triangles(f, c));
+  for (int c = 0; c < 3; ++c) {
+    edge[c] = corner[(c + 1) % 3] - corner[c];
+    geometry.length[3 * f + c] = edge[c].norm();
+  }
+  const double doubled_area = edge[0].cross(edge[1]).norm();
+  const double longest = geometry.length.segment<3>(3 * f).maxCoeff();
+  geometry.area[f] = doubled_area / 2;
+  for (int c = 0; c < 3; ++c) {
+    const double dot = -edge[(c + 1) % 3].dot(edge[(c + 2) % 3]);  // at the corner opposite halfedge c
+    geometry.half_cotangent[3 * f + c] = dot / (2 * doubled_area);
+    geometry.angle[3 * f + (c + 2) % 3] = std::atan2(doubled_area, dot);
+  }
+  return !(doubled_area > degenerate_height * longest * longest);
+}
+
 // margin: in mean edge lengths.
 void mollify(Geometry& geometry, double margin) {
   const double mean = geometry.length.mean();
@@ -38,15 +61,15 @@ void mollify(Geometry& geometry, double margin) {
     added = std::max(added, margin * mean - slack);
   }
   geometry.length.array() += added;
-  for (Index f = 0; f < geometry.area.size(); ++f) measure_from_lengths(geometry, f);
+  for_each_at_once(triangle_count(geometry), [&](Index f) { measure_from_lengths(geometry, f); });
 }
 
 void place_apexes(Geometry& geometry) {
   geometry.apex.resize(geometry.area.size());
-  for (Index f = 0; f < geometry.area.size(); ++f) {
+  for_each_at_once(triangle_count(geometry), [&](Index f) {
     const double height = 2 * geometry.area[f] / geometry.length[3 * f];
     geometry.apex[f] = {2 * height * geometry.half_cotangent[3 * f + 1], height};
-  }
+  });
 }
 
 void add_up_vertices(const HalfedgeMesh& mesh, Geometry& geometry) {
@@ -66,28 +89,16 @@ void add_up_vertices(const HalfedgeMesh& mesh, Geometry& geometry) {
 }  // namespace
 
 Geometry build_geometry(const HalfedgeMesh& mesh) {
-  const Index triangle_count = mesh.triangle_count(), halfedge_count = mesh.halfedge_count();
+  const Index halfedge_count = mesh.halfedge_count();
   Geometry geometry;
   geometry.length.resize(halfedge_count);
   geometry.angle.resize(halfedge_count);
   geometry.half_cotangent.resize(halfedge_count);
-  geometry.area.resize(triangle_count);
-  for (Index f = 0; f < triangle_count; ++f) {
-    Eigen::Vector3d corner[3], edge[3];
-    for (int c = 0; c < 3; ++c) corner[c] = mesh.positions.row(mesh.triangles(f, c));
-    for (int c = 0; c < 3; ++c) {
-      edge[c] = corner[(c + 1) % 3] - corner[c];
-      geometry.length[3 * f + c] = edge[c].norm();
-    }
-    const double doubled_area = edge[0].cross(edge[1]).norm();
-    const double longest = geometry.length.segment<3>(3 * f).maxCoeff();
-    if (!(doubled_area > degenerate_height * longest * longest)) geometry.degenerate.push_back(f);
-    geometry.area[f] = doubled_area / 2;
-    for (int c = 0; c < 3; ++c) {
-      const double dot = -edge[(c + 1) % 3].dot(edge[(c + 2) % 3]);  // at the corner opposite halfedge c
-      geometry.half_cotangent[3 * f + c] = dot / (2 * doubled_area);
-      geometry.angle[3 * f + (c + 2) % 3] = std::atan2(doubled_area, dot);
-    }
+  geometry.area.resize(mesh.triangle_count());
+  Array<char> is_degenerate(mesh.triangle_count());
+  for_each_at_once(mesh.triangle_count(), [&](Index f) { is_degenerate[f] = measure_from_positions(mesh, geometry, f); });
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    if (is_degenerate[f]) geometry.degenerate.push_back(f);
   }
   if (!geometry.degenerate.empty()) mollify(geometry, least_margin);
   place_apexes(geometry);

@@ -7,6 +7,7 @@
 #include "base/array.hpp"
 #include "base/checkpoint.hpp"
 #include "base/memory.hpp"
+#include "base/thread_team.hpp"
 #include "prescription/curvature.hpp"
 #include "solvers/box_qp.hpp"
 #include "solvers/dense_kernels.hpp"
@@ -33,17 +34,37 @@ double log_stretch(const Eigen::VectorXd& weight, const Eigen::VectorXd& y, Eige
   return shares.colwise().sum().array().log().sum();
 }
 
-// columns^T diag(weight) columns, lower triangle; some rows at a time, which stay in the cache.
-Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& columns, const Eigen::VectorXd& weight) {
+// The part of a weighted Gram matrix that some rows make up; a few rows at a time, which stay in the cache.
+Eigen::MatrixXd gram_of_rows(const Eigen::MatrixXd& columns, const Eigen::VectorXd& weight, Eigen::Index first,
+                             Eigen::Index end) {
   constexpr Eigen::Index rows_at_once = 512;
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
-  for (Eigen::Index begin = 0; begin < columns.rows(); begin += rows_at_once) {
-    const Eigen::Index count = std::min(rows_at_once, columns.rows() - begin);
+  for (Eigen::Index begin = first; begin < end; begin += rows_at_once) {
+    const Eigen::Index count = std::min(rows_at_once, end - begin);
     const Eigen::MatrixXd scaled =
         weight.segment(begin, count).cwiseSqrt().asDiagonal() * columns.middleRows(begin, count);
     dense_kernels<double>().add_gram(scaled.data(), static_cast<int>(count), static_cast<int>(columns.cols()),
                                      sum.data());
     checkpoint(static_cast<double>(count * columns.cols() * columns.cols()));
+  }
+  return sum;
+}
+
+// columns^T diag(weight) columns, lower triangle. The rows of each thread's parts and the order in which these are added
+// depend on the size alone.
+Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& columns, const Eigen::VectorXd& weight) {
+  constexpr Eigen::Index rows_of_part = 16384, parts_at_once = 8, rows_at_once = rows_of_part * parts_at_once;
+  const Eigen::Index rows = columns.rows();
+  if (rows <= rows_of_part) return gram_of_rows(columns, weight, 0, rows);
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  Array<Eigen::MatrixXd> parts(parts_at_once);
+  for (Eigen::Index begin = 0; begin < rows; begin += rows_at_once) {
+    const Eigen::Index left = (rows - begin + rows_of_part - 1) / rows_of_part, count = std::min(left, parts_at_once);
+    team_of_this_call().run_each(static_cast<int>(count), [&](int i) {
+      const Eigen::Index first = begin + i * rows_of_part;
+      parts[i] = gram_of_rows(columns, weight, first, std::min(first + rows_of_part, rows));
+    });
+    for (Eigen::Index i = 0; i < count; ++i) sum += parts[i];
   }
   return sum;
 }

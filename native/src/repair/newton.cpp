@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "base/thread_team.hpp"
 #include "lsgp/errors.hpp"
 
 namespace lsgp {
@@ -15,6 +16,8 @@ namespace {
 constexpr double smallest_epsilon = 1e-3;
 constexpr double ridge = 1e-9;         // of the diagonal
 constexpr double barrier_share = 0.9;  // of the step at which the first triangle would collapse
+
+constexpr std::ptrdiff_t shapes_at_once = 32768;  // whose derivatives are kept until they are added up
 
 }  // namespace
 
@@ -163,6 +166,13 @@ void NewtonMinimizer::add_slope(Index begin, const Slope& slope) {
   slopes_.push_back(slope);
 }
 
+template <typename Of>
+Array<double> NewtonMinimizer::of_shapes(Of of) const {
+  Array<double> out(shapes_.size());
+  for_each_at_once(ssize(shapes_), [&](std::ptrdiff_t i) { out[i] = of(shapes_[i]); });
+  return out;
+}
+
 NewtonMinimizer::Jacobian NewtonMinimizer::jacobian(const Shape& shape) const {
   Jacobian out{0, 0};
   for (int c = 0; c < 3; ++c) {
@@ -183,52 +193,85 @@ NewtonMinimizer::Jacobian NewtonMinimizer::change(const Shape& shape, const Eige
 
 double NewtonMinimizer::smallest_determinant(const DistortionEnergy& energy) const {
   double lowest = std::numeric_limits<double>::infinity();
-  for (const Shape& shape : shapes_) {
+  const auto determinant = [&](const Shape& shape) {
     const Jacobian at = jacobian(shape);
-    lowest = std::min(lowest, energy.determinant(at.f_z, at.f_zbar));
-  }
+    return energy.determinant(at.f_z, at.f_zbar);
+  };
+  for (const double one : of_shapes(determinant)) lowest = std::min(lowest, one);
   return lowest;
 }
 
 double NewtonMinimizer::total(const DistortionEnergy& energy) const {
-  double sum = 0;
-  for (const Shape& shape : shapes_) {
+  const auto value = [&](const Shape& shape) {
     const Jacobian at = jacobian(shape);
-    sum += shape.weight * energy.value(at.f_z, at.f_zbar);
+    return shape.weight * energy.value(at.f_z, at.f_zbar);
+  };
+  const Array<double> values = of_shapes(value);
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+std::ptrdiff_t NewtonMinimizer::derivative_size(const Shape& shape) {
+  const std::ptrdiff_t unknowns = shape.end - shape.begin;
+  return 2 * unknowns + 2 * unknowns * (unknowns + 1);
+}
+
+void NewtonMinimizer::differentiate(const DistortionEnergy& energy, const Shape& shape, double* out) const {
+  const Jacobian at = jacobian(shape);
+  const EnergyExpansion expansion = energy.expand(at.f_z, at.f_zbar);
+  // Real form of (f_z, f_zbar) as functions of an unknown.
+  const auto map_of = [&](Index slope) {
+    const Complex a = slopes_[slope].f_z, b = slopes_[slope].f_zbar;
+    Eigen::Matrix<double, 4, 2> map;
+    map << a.real(), -a.imag(), a.imag(), a.real(), b.real(), -b.imag(), b.imag(), b.real();
+    return map;
+  };
+  for (Index i = shape.begin; i < shape.end; ++i, out += 2) {
+    Eigen::Map<Eigen::Vector2d>{out} = shape.weight * map_of(i).transpose() * expansion.gradient;
   }
-  return sum;
+  for (Index i = shape.begin; i < shape.end; ++i) {
+    const Eigen::Matrix<double, 2, 4> left = shape.weight * map_of(i).transpose() * expansion.hessian;
+    for (Index j = shape.begin; j <= i; ++j, out += 4) Eigen::Map<Eigen::Matrix2d>{out} = left * map_of(j);
+  }
+}
+
+template <typename Add>
+void NewtonMinimizer::add_derivatives(const Shape& shape, const double* derivatives, Eigen::VectorXd& gradient,
+                                      const Add& add) const {
+  const double* slope = derivatives;
+  const double* block = derivatives + 2 * (shape.end - shape.begin);
+  for (Index i = shape.begin; i < shape.end; ++i, slope += 2) {
+    const int row = 2 * slopes_[i].unknown;
+    gradient.segment<2>(row) += Eigen::Map<const Eigen::Vector2d>(slope);
+    for (Index j = shape.begin; j <= i; ++j, block += 4) {
+      const int column = 2 * slopes_[j].unknown;
+      const Eigen::Map<const Eigen::Matrix2d> bend(block);
+      if (i == j) {
+        add(row, row, (1 + ridge) * bend(0, 0));
+        add(row + 1, row, bend(1, 0));
+        add(row + 1, row + 1, (1 + ridge) * bend(1, 1));
+      } else {
+        for (int k = 0; k < 4; ++k) add(row + k / 2, column + k % 2, bend(k / 2, k % 2));
+      }
+    }
+  }
 }
 
 std::optional<Eigen::VectorXcd> NewtonMinimizer::newton_direction(const DistortionEnergy& energy) {
   const Index count = displacement_.unknown_count;
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(2 * count);
-  Array<Eigen::Matrix<double, 4, 2>> maps;
+  Array<double> derivatives;
+  Array<std::ptrdiff_t> offset;
+  // Computed on all threads, and added up in the order of the triangles.
   const auto add_up = [&](const auto& add) {
-    for (const Shape& shape : shapes_) {
-      const Jacobian at = jacobian(shape);
-      const EnergyExpansion expansion = energy.expand(at.f_z, at.f_zbar);
-      // Real form of (f_z, f_zbar) as functions of each unknown.
-      maps.clear();
-      for (Index i = shape.begin; i < shape.end; ++i) {
-        const Complex a = slopes_[i].f_z, b = slopes_[i].f_zbar;
-        maps.emplace_back();
-        maps.back() << a.real(), -a.imag(), a.imag(), a.real(), b.real(), -b.imag(), b.imag(), b.real();
-      }
-      for (Index i = 0; i < ssize(maps); ++i) {
-        const int row = 2 * slopes_[shape.begin + i].unknown;
-        gradient.segment<2>(row) += shape.weight * maps[i].transpose() * expansion.gradient;
-        const Eigen::Matrix<double, 2, 4> left = shape.weight * maps[i].transpose() * expansion.hessian;
-        for (Index j = 0; j <= i; ++j) {
-          const int column = 2 * slopes_[shape.begin + j].unknown;
-          const Eigen::Matrix2d bend = left * maps[j];
-          if (i == j) {
-            add(row, row, (1 + ridge) * bend(0, 0));
-            add(row + 1, row, bend(1, 0));
-            add(row + 1, row + 1, (1 + ridge) * bend(1, 1));
-          } else {
-            for (int k = 0; k < 4; ++k) add(row + k / 2, column + k % 2, bend(k / 2, k % 2));
-          }
-        }
+    for (std::ptrdiff_t begin = 0; begin < ssize(shapes_); begin += shapes_at_once) {
+      const Shape* some = shapes_.data() + begin;
+      const std::ptrdiff_t some_count = std::min(shapes_at_once, ssize(shapes_) - begin);
+      offset.assign(1, 0);
+      for (std::ptrdiff_t i = 0; i < some_count; ++i) offset.push_back(offset.back() + derivative_size(some[i]));
+      derivatives.resize(offset.back());
+      for_each_at_once(some_count, [&](std::ptrdiff_t i) { differentiate(energy, some[i], derivatives.data() + offset[i]); });
+      for (std::ptrdiff_t i = 0; i < some_count; ++i) {
+        add_derivatives(some[i], derivatives.data() + offset[i], gradient, add);
       }
     }
   };
@@ -263,19 +306,22 @@ bool NewtonMinimizer::search(const DistortionEnergy& energy, const Eigen::Vector
 }
 
 double NewtonMinimizer::collapse_step(const Eigen::VectorXcd& direction) const {
-  double shortest = std::numeric_limits<double>::infinity();
-  for (const Shape& shape : shapes_) {
+  constexpr double never = std::numeric_limits<double>::infinity();
+  const auto time = [&](const Shape& shape) {
     const Jacobian at = jacobian(shape), moved = change(shape, direction);
     const double a = std::norm(moved.f_z) - std::norm(moved.f_zbar);
     const double b = 2 * (std::real(std::conj(at.f_z) * moved.f_z) - std::real(std::conj(at.f_zbar) * moved.f_zbar));
     const double c = std::norm(at.f_z) - std::norm(at.f_zbar), discriminant = b * b - 4 * a * c;
-    if (discriminant < 0) continue;
+    if (discriminant < 0) return never;
     const double q = -(b + std::copysign(std::sqrt(discriminant), b)) / 2;
+    double first = never;
     for (const double root : {q / a, c / q}) {
-      if (root > 0) shortest = std::min(shortest, root);
+      if (root > 0) first = std::min(first, root);
     }
-  }
-  return shortest;
+    return first;
+  };
+  const Array<double> times = of_shapes(time);
+  return std::accumulate(times.begin(), times.end(), never, [](double a, double b) { return std::min(a, b); });
 }
 
 }  // namespace lsgp

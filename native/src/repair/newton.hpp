@@ -84,11 +84,20 @@ class NewtonMinimizer {
   struct Jacobian {
     Complex f_z, f_zbar;
   };
+  // of(shape) of every shape, in their order.
+  template <typename Of>
+  Array<double> of_shapes(Of of) const;
   Jacobian jacobian(const Shape& shape) const;
   Jacobian change(const Shape& shape, const Eigen::VectorXcd& direction) const;
   double smallest_determinant(const DistortionEnergy& energy) const;
 
   double total(const DistortionEnergy& energy) const;
+  // What a triangle adds to the gradient, 2 numbers for each of its unknowns, and then to the Hessian, 2 x 2 numbers
+  // for each of its unknowns and every one up to it.
+  static std::ptrdiff_t derivative_size(const Shape& shape);
+  void differentiate(const DistortionEnergy& energy, const Shape& shape, double* out) const;
+  template <typename Add>
+  void add_derivatives(const Shape& shape, const double* derivatives, Eigen::VectorXd& gradient, const Add& add) const;
   // None if the Hessian cannot be factored.
   std::optional<Eigen::VectorXcd> newton_direction(const DistortionEnergy& energy);
 

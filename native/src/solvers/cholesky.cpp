@@ -12,6 +12,7 @@
 #include "solvers/failure.hpp"
 #include "solvers/front_blocks.hpp"
 #include "solvers/linear_algebra_counter.hpp"
+#include "solvers/solve_blocks.hpp"
 
 namespace lsgp {
 
@@ -62,7 +63,7 @@ struct Cholesky<Scalar>::Factor {
 
   bool has_room_for_threads = false;
 
-  int threads() const;
+  void prepare(Workspace& work) const;
   std::size_t outer_size() const;  // numbers of the outer products that are computed at once
   void factorize(const Eigen::SparseMatrix<Scalar>& lower);
   void run_task(const Eigen::SparseMatrix<Scalar>& lower, int task, Workspace& work, Array<Vector>& kept,
@@ -76,6 +77,12 @@ struct Cholesky<Scalar>::Factor {
   // x: (size, width) by rows, in the order of elimination.
   void eliminate(int width, Scalar* x) const;
   void substitute(int width, Scalar* x) const;
+  template <typename Work>
+  void run_leaves(const Work& work) const;
+  bool is_leaf(int task) const { return plan.last_child[task] == -1; }
+  bool eliminate_front(int front, int width, Scalar* x, Array<Scalar>& others) const;
+  Array<Scalar> eliminate_task(int task, int width, Scalar* x) const;
+  void substitute_task(int task, int width, Scalar* x) const;
 };
 
 template <typename Scalar>
@@ -105,6 +112,15 @@ void Cholesky<Scalar>::Factor::fill(const Eigen::SparseMatrix<Scalar>& lower, in
       column[local[at]] += other > row ? value : Eigen::numext::conj(value);
     }
   }
+}
+
+// Of a thread that has a task for the first time.
+template <typename Scalar>
+void Cholesky<Scalar>::Factor::prepare(Workspace& work) const {
+  if (ssize(work.local) == size()) return;
+  work.stack.resize(static_cast<Eigen::Index>(plan.stack_size));
+  prefer_huge_pages(work.stack.data(), plan.stack_size * sizeof(Scalar));
+  work.local.resize(size());
 }
 
 // The fronts of a task, from the first to the last.
@@ -220,11 +236,6 @@ void Cholesky<Scalar>::Factor::add_outer(int front, const Scalar* outer, int par
 }
 
 template <typename Scalar>
-int Cholesky<Scalar>::Factor::threads() const {
-  return has_room_for_threads ? std::clamp(thread_count(), 1, std::max(1, plan.task_count())) : 1;
-}
-
-template <typename Scalar>
 std::size_t Cholesky<Scalar>::Factor::outer_size() const {
   std::size_t all = 0, largest = 0;
   for (const int count : plan.retained_rows) {
@@ -238,42 +249,92 @@ template <typename Scalar>
 void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lower) {
   count_factorization();
   start_schur(lower);
-  ThreadTeam team(threads());
+  ThreadTeam alone(1);
+  ThreadTeam& team = has_room_for_threads ? team_of_this_call() : alone;
   Array<Workspace> work(team.size());
-  for (Workspace& own : work) {
-    own.stack.resize(static_cast<Eigen::Index>(plan.stack_size));
-    prefer_huge_pages(own.stack.data(), plan.stack_size * sizeof(Scalar));
-    own.local.resize(size());
-  }
   Array<Vector> kept(plan.task_count());
-  team.run_forest(plan.task_parent, [&](int task, int thread) { run_task(lower, task, work[thread], kept, team); });
+  team.run_forest(plan.task_parent, [&](int task, int thread) {
+    prepare(work[thread]);
+    run_task(lower, task, work[thread], kept, team);
+  });
   work.clear();
   complete_schur(team);
 }
 
+// Calls work(task) for the tasks that have no children, at the same time where there is room. They hold most of the
+// numbers of a factor; those above them are few, and one half solve has little to do in each.
+template <typename Scalar>
+template <typename Work>
+void Cholesky<Scalar>::Factor::run_leaves(const Work& work) const {
+  Array<int> leaves;
+  for (int task = 0; task < plan.task_count(); ++task) {
+    if (is_leaf(task)) leaves.push_back(task);
+  }
+  ThreadTeam alone(1);
+  ThreadTeam& team = has_room_for_threads ? team_of_this_call() : alone;
+  team.run_each(static_cast<int>(leaves.size()), [&](int i) { work(leaves[i]); });
+}
+
+// others: receives what the rows below lose. False where there is nothing: impulses reach the fronts above them alone.
+template <typename Scalar>
+bool Cholesky<Scalar>::Factor::eliminate_front(int front, int width, Scalar* x, Array<Scalar>& others) const {
+  const Front<Scalar> own = this->front(front);
+  Scalar* values = x + product(plan.first[front], width);
+  const auto is_zero = [](const Scalar& value) { return value == Scalar(0); };
+  if (std::all_of(values, values + own.columns * width, is_zero)) return false;
+  others.resize(std::max(others.size(), product(own.below, width)));
+  kernels.substitute_forward(own, width, values, others.data());
+  return true;
+}
+
+// The fronts of a task. Returns what the rows below its last front change by: all rows below any of its fronts are among
+// them, or else columns of the task, and tasks that run at the same time have some of them in common.
+template <typename Scalar>
+Array<Scalar> Cholesky<Scalar>::Factor::eliminate_task(int task, int width, Scalar* x) const {
+  const int last = plan.task_begin[task + 1] - 1;
+  const int end = plan.task_count() == 1 ? size() : plan.first[last + 1];  // of the rows that no other task has
+  Array<Scalar> change, others;
+  const auto subtract = [&](Scalar* to, int row) {
+    const Scalar* from = others.data() + product(row, width);
+    for (int w = 0; w < width; ++w) to[w] -= from[w];
+  };
+  for (int i = plan.task_begin[task]; i <= last; ++i) {
+    if (!eliminate_front(i, width, x, others)) continue;
+    const int *below = rows(i), *outside = rows(last), count = plan.below(i);
+    if (end < size()) change.resize(product(plan.below(last), width), Scalar(0));
+    for (int r = 0; r < count; ++r) {
+      if (below[r] < end) {
+        subtract(x + product(below[r], width), r);
+      } else {
+        outside = std::lower_bound(outside, rows(last) + plan.below(last), below[r]);
+        subtract(change.data() + product(static_cast<int>(outside - rows(last)), width), r);
+      }
+    }
+  }
+  return change;
+}
+
 template <typename Scalar>
 void Cholesky<Scalar>::Factor::eliminate(int width, Scalar* x) const {
-  Array<Scalar> others;
-  for (int i = 0; i < plan.front_count(); ++i) {
-    const Front<Scalar> front = this->front(i);
-    Scalar* own = x + product(plan.first[i], width);
-    // A sparse right-hand side only affects ancestor fronts.
-    if (std::all_of(own, own + front.columns * width, [](const Scalar& value) { return value == Scalar(0); })) continue;
-    others.resize(std::max(others.size(), product(front.below, width)));
-    kernels.substitute_forward(front, width, own, others.data());
-    const int* below = rows(i);
-    for (int r = 0; r < front.below; ++r) {
+  Array<Array<Scalar>> changes(plan.task_count());
+  run_leaves([&](int task) { changes[task] = eliminate_task(task, width, x); });
+  for (int task = 0; task < plan.task_count(); ++task) {
+    if (!is_leaf(task)) changes[task] = eliminate_task(task, width, x);
+    const int* below = rows(plan.task_begin[task + 1] - 1);
+    const int count = static_cast<int>(ssize(changes[task]) / width);
+    for (int r = 0; r < count; ++r) {
       Scalar* to = x + product(below[r], width);
-      const Scalar* from = others.data() + product(r, width);
-      for (int w = 0; w < width; ++w) to[w] -= from[w];
+      const Scalar* change = changes[task].data() + product(r, width);
+      for (int w = 0; w < width; ++w) to[w] += change[w];
     }
   }
 }
 
 template <typename Scalar>
-void Cholesky<Scalar>::Factor::substitute(int width, Scalar* x) const {
+void Cholesky<Scalar>::Factor::substitute_task(int task, int width, Scalar* x) const {
   Array<Scalar> others;
-  for (int i = plan.front_count(); i-- > 0;) {
+  const int first = plan.task_begin[task], last = plan.task_begin[task + 1] - 1;
+  for (int i = last; i >= first; --i) {
     const Front<Scalar> front = this->front(i);
     others.resize(std::max(others.size(), product(front.below, width)));
     const int* below = rows(i);
@@ -282,6 +343,14 @@ void Cholesky<Scalar>::Factor::substitute(int width, Scalar* x) const {
     }
     kernels.substitute_backward(front, width, x + product(plan.first[i], width), others.data());
   }
+}
+
+template <typename Scalar>
+void Cholesky<Scalar>::Factor::substitute(int width, Scalar* x) const {
+  for (int task = plan.task_count(); task-- > 0;) {
+    if (!is_leaf(task)) substitute_task(task, width, x);
+  }
+  run_leaves([&](int task) { substitute_task(task, width, x); });
 }
 
 template <typename Scalar>
@@ -337,20 +406,19 @@ typename Cholesky<Scalar>::Vector Cholesky<Scalar>::solve(const Vector& right_si
 
 template <typename Scalar>
 typename Cholesky<Scalar>::Matrix Cholesky<Scalar>::solve(const Matrix& right_sides) const {
+  count_back_substitutions(static_cast<int>(right_sides.cols()));
   Matrix out(right_sides.rows(), right_sides.cols());
-  for (Eigen::Index begin = 0, used; begin < out.cols(); begin += used) {
-    const Eigen::Index width = width_for(out.cols() - begin);
-    used = std::min(out.cols() - begin, width);
-    Rows x = Rows::Zero(size(), width);
+  for_each_block(out.cols(), size(), [&](const SolveBlock& block) {
+    Rows x = Rows::Zero(size(), block.width);
     for (Eigen::Index row = 0; row < out.rows(); ++row) {
-      x.row(factor_->plan.position[row]).head(used) = right_sides.row(row).segment(begin, used);
+      x.row(factor_->plan.position[row]).head(block.used) = right_sides.row(row).segment(block.begin, block.used);
     }
     eliminate(x);
-    substitute(x, used);
+    substitute(x);
     for (Eigen::Index row = 0; row < out.rows(); ++row) {
-      out.row(row).segment(begin, used) = x.row(factor_->plan.position[row]).head(used);
+      out.row(row).segment(block.begin, block.used) = x.row(factor_->plan.position[row]).head(block.used);
     }
-  }
+  });
   return out;
 }
 
@@ -370,8 +438,7 @@ void Cholesky<Scalar>::eliminate(Rows& right_sides) const {
 }
 
 template <typename Scalar>
-void Cholesky<Scalar>::substitute(Rows& half_solved, Eigen::Index sides) const {
-  count_back_substitutions(static_cast<int>(sides));
+void Cholesky<Scalar>::substitute(Rows& half_solved) const {
   checkpoint(2.0 * static_cast<double>(factor_->panels.size() * half_solved.cols()));
   factor_->substitute(static_cast<int>(half_solved.cols()), half_solved.data());
 }

@@ -43,8 +43,9 @@ class Cholesky {
   int place(int row) const;  // of a row in that order
   // Performs half a solve on right-hand sides; the last rows become the right-hand sides of the retained rows' system.
   void eliminate(Rows& right_sides) const;
-  // Takes the solution of that system in their place and computes the rest.  sides: number of right-hand sides in use.
-  void substitute(Rows& half_solved, Eigen::Index sides) const;
+  // Takes the solution of that system in their place and computes the rest. The caller counts the back-substitutions,
+  // on the thread of the call.
+  void substitute(Rows& half_solved) const;
 
  private:
   struct Factor;

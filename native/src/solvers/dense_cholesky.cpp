@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solvers/dense_cholesky.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "base/checkpoint.hpp"
@@ -10,12 +9,13 @@
 #include "solvers/dense_kernels.hpp"
 #include "solvers/failure.hpp"
 #include "solvers/front_blocks.hpp"
+#include "solvers/solve_blocks.hpp"
 
 namespace lsgp {
 
 namespace {
 
-constexpr int least_rows_of_threads = 1000;  // which take time to start
+constexpr int least_rows_of_threads = 500;  // which take time to start
 
 // A front that is the whole matrix.
 template <typename Scalar>
@@ -42,8 +42,8 @@ template <typename Scalar>
 bool DenseCholesky<Scalar>::factorize() {
   const Front<Scalar> front = whole(factor_);
   if (has_blocks(front)) {
-    ThreadTeam team(front.columns < least_rows_of_threads ? 1 : thread_count());
-    return eliminate_by_blocks(front, team);
+    ThreadTeam alone(1);
+    return eliminate_by_blocks(front, front.columns < least_rows_of_threads ? alone : team_of_this_call());
   }
   const double size = static_cast<double>(factor_.rows());
   const bool done = factor_.size() == 0 || dense_kernels<Scalar>().eliminate(front);
@@ -54,15 +54,14 @@ bool DenseCholesky<Scalar>::factorize() {
 template <typename Scalar>
 typename DenseCholesky<Scalar>::Matrix DenseCholesky<Scalar>::solve(const Eigen::Ref<const Matrix>& right_sides) const {
   Matrix out(right_sides.rows(), right_sides.cols());
-  for (Eigen::Index begin = 0, used; begin < out.cols(); begin += used) {
-    const int width = static_cast<int>(Cholesky<Scalar>::width_for(out.cols() - begin));
-    used = std::min<Eigen::Index>(out.cols() - begin, width);
-    typename Cholesky<Scalar>::Rows block = Cholesky<Scalar>::Rows::Zero(out.rows(), width);
-    block.leftCols(used) = right_sides.middleCols(begin, used);
-    dense_kernels<Scalar>().substitute_forward(whole(factor_), width, block.data(), nullptr);
-    dense_kernels<Scalar>().substitute_backward(whole(factor_), width, block.data(), nullptr);
-    out.middleCols(begin, used) = block.leftCols(used);
-  }
+  for_each_block(out.cols(), out.rows(), [&](const SolveBlock& block) {
+    typename Cholesky<Scalar>::Rows x = Cholesky<Scalar>::Rows::Zero(out.rows(), block.width);
+    x.leftCols(block.used) = right_sides.middleCols(block.begin, block.used);
+    const int width = static_cast<int>(block.width);
+    dense_kernels<Scalar>().substitute_forward(whole(factor_), width, x.data(), nullptr);
+    dense_kernels<Scalar>().substitute_backward(whole(factor_), width, x.data(), nullptr);
+    out.middleCols(block.begin, block.used) = x.leftCols(block.used);
+  });
   return out;
 }
 

@@ -44,7 +44,7 @@ class CutFactor {
   using Rows = Cholesky<double>::Rows;
   Index row_of_copy(Index copy) const { return row_of_copy_[copy]; }
   void eliminate(Rows& right_sides) const { factor_->eliminate(right_sides); }
-  void substitute(Rows& half_solved, Eigen::Index sides) const { factor_->substitute(half_solved, sides); }
+  void substitute(Rows& half_solved) const { factor_->substitute(half_solved); }
 
  private:
   const CutGraph& cut_graph_;

@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "systems/laplace_solver.hpp"
 
-#include <algorithm>
-#include <array>
 #include <optional>
 
 #include "solvers/dense_cholesky.hpp"
+#include "solvers/linear_algebra_counter.hpp"
+#include "solvers/solve_blocks.hpp"
 #include "systems/quadratic_forms.hpp"
 
 namespace lsgp {
 
 Eigen::MatrixXd LaplaceSolver::solve(const Eigen::MatrixXd& right_sides) const {
+  count_back_substitutions(static_cast<int>(right_sides.cols()));
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(right_sides.rows(), right_sides.cols());
-  for (Eigen::Index begin = 0, used; begin < out.cols(); begin += used) {
-    const Eigen::Index width = Cholesky<double>::width_for(out.cols() - begin);
-    used = std::min(out.cols() - begin, width);
-    Rows x = Rows::Zero(row_count_, width);
-    for_each_row([&](Index v, Index row) { x.row(row).head(used) = right_sides.row(v).segment(begin, used); });
+  for_each_block(out.cols(), row_count_, [&](const SolveBlock& block) {
+    Rows x = Rows::Zero(row_count_, block.width);
+    for_each_row([&](Index v, Index row) {
+      x.row(row).head(block.used) = right_sides.row(v).segment(block.begin, block.used);
+    });
     eliminate(x);
-    substitute(x, used);
-    for_each_row([&](Index v, Index row) { out.row(v).segment(begin, used) = x.row(row).head(used); });
-  }
+    substitute(x);
+    for_each_row([&](Index v, Index row) { out.row(v).segment(block.begin, block.used) = x.row(row).head(block.used); });
+  });
   return out;
 }
 
@@ -40,22 +41,20 @@ LaplaceSolver::Response LaplaceSolver::solve(const Eigen::VectorXd& right_side, 
   Rows half_solved = Rows::Zero(row_count_, 1);
   for_each_row([&](Index v, Index row) { half_solved(row, 0) = right_side[v]; });
   eliminate(half_solved);
-  const Eigen::Index count = static_cast<Eigen::Index>(sides.size());
-  for (Eigen::Index begin = 0, used; begin < count; begin += used) {
-    const Eigen::Index width = Cholesky<double>::width_for(count - begin);
-    used = std::min(count - begin, width);
-    const Side* own = sides.data() + begin;
-    Rows x = Rows::Zero(row_count_, width);
-    for (Eigen::Index k = 0; k < used; ++k) {
+  count_back_substitutions(static_cast<int>(sides.size()));
+  for_each_block(ssize(sides), row_count_, [&](const SolveBlock& block) {
+    const Side* own = sides.data() + block.begin;
+    Rows x = Rows::Zero(row_count_, block.width);
+    for (Eigen::Index k = 0; k < block.used; ++k) {
       if (own[k].row != none) x(own[k].row, k) = 1;
     }
     eliminate(x);
-    if (begin == 0) x.col(0) = half_solved;
-    substitute(x, used);
+    if (block.begin == 0) x.col(0) = half_solved;
+    substitute(x);
     for_each_row([&](Index v, Index row) {
-      for (Eigen::Index k = 0; k < used; ++k) own[k].solution[v] = x(row, k);
+      for (Eigen::Index k = 0; k < block.used; ++k) own[k].solution[v] = x(row, k);
     });
-  }
+  });
   return out;
 }
 
@@ -74,7 +73,7 @@ class SparseLaplace final : public LaplaceSolver {
     return rows;
   }
   void eliminate(Rows& right_sides) const override { factor_.eliminate(right_sides); }
-  void substitute(Rows& half_solved, Eigen::Index sides) const override { factor_.substitute(half_solved, sides); }
+  void substitute(Rows& half_solved) const override { factor_.substitute(half_solved); }
 
   Cholesky<double> factor_;
 };
@@ -117,7 +116,7 @@ class LaplaceOnCut final : public LaplaceSolver {
 
   void eliminate(Rows& right_sides) const override { factor_.eliminate(right_sides); }
 
-  void substitute(Rows& half_solved, Eigen::Index sides) const override {
+  void substitute(Rows& half_solved) const override {
     auto retained = half_solved.bottomRows(factor_.retained_count());
     Eigen::MatrixXd glued = Eigen::MatrixXd::Zero(glued_count_, half_solved.cols());
     for (std::size_t i = 0; i < place_.size(); ++i) {
@@ -131,7 +130,7 @@ class LaplaceOnCut final : public LaplaceSolver {
       else
         row = glued.row(place_[i]);
     }
-    factor_.substitute(half_solved, sides);
+    factor_.substitute(half_solved);
   }
 
   const CutFactor& factor_;

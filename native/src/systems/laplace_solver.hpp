@@ -30,7 +30,7 @@ class LaplaceSolver {
 
   // A solve in two halves, as of Cholesky.
   virtual void eliminate(Rows& right_sides) const = 0;
-  virtual void substitute(Rows& half_solved, Eigen::Index sides) const = 0;
+  virtual void substitute(Rows& half_solved) const = 0;
 
  private:
   template <typename Visit>

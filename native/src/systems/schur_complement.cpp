@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/memory.hpp"
+#include "solvers/linear_algebra_counter.hpp"
 
 namespace lsgp {
 
@@ -100,7 +101,8 @@ Eigen::VectorXcd SchurComplement::substitute(CutFactor::Rows half_solved, const 
   Eigen::VectorXcd retained = Eigen::VectorXcd::Zero(factor_.retained_count());
   for_each_term([&](Index i, const Term& term) { retained[i] += term.coefficient * unknowns[term.unknown]; });
   half_solved.bottomRows(retained.size()) << retained.real(), retained.imag();
-  factor_.substitute(half_solved, 2);
+  count_back_substitutions(2);
+  factor_.substitute(half_solved);
   Eigen::VectorXcd position(copy_count_);
   for (Index copy = 0; copy < static_cast<Index>(own_copy_.size()); ++copy) {
     const Index row = factor_.row_of_copy(copy);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/thread_team.hpp"
 #include "plane/boundary_polygon.hpp"
 
 namespace lsgp {
@@ -30,6 +31,40 @@ double percentile(Array<double>& values, double share) {
   return low + beyond * (high - low);
 }
 
+// A triangle on the surface and in the plane.
+struct Measured {
+  double doubled, uv_doubled;  // areas; the one on the surface is 0 where there is nothing to measure
+  double ratio;                // of the singular values, the larger one to the smaller one
+  double shrinkage;            // of the areas, that on the surface to that in the plane
+  double largest_square;       // of the singular values
+};
+
+Measured measure(const Surface& surface, const CornerUv& corner_uv, Index f) {
+  Eigen::Vector3d p[3];
+  Complex z[3];
+  for (int c = 0; c < 3; ++c) {
+    p[c] = surface.positions.row(surface.triangles(f, c));
+    z[c] = {corner_uv(3 * f + c, 0), corner_uv(3 * f + c, 1)};
+  }
+  const Eigen::Vector3d first = p[1] - p[0], second = p[2] - p[0];
+  const double square = first.squaredNorm();
+  Measured out{};
+  const double doubled = first.cross(second).norm();
+  if (!(doubled > 0)) return out;
+  out.doubled = doubled;
+  // The derivatives along the first edge and across it, times the edge's length.
+  const Complex along = z[1] - z[0], across = ((z[2] - z[0]) * square - along * first.dot(second)) / doubled;
+  const double both =
+      std::sqrt(std::norm(along - Complex(0, 1) * across)) + std::sqrt(std::norm(along + Complex(0, 1) * across));
+  out.largest_square = both * both / (4 * square);
+  // The product of both by the area, not as a difference, which would lose the digits of thin images.
+  out.uv_doubled = std::abs(std::imag(std::conj(along) * (z[2] - z[0])));
+  const bool is_point = !(out.largest_square > 0);  // no ratio of directions: as bad as a line
+  out.shrinkage = doubled / out.uv_doubled;
+  out.ratio = is_point ? unlimited : out.largest_square * out.shrinkage;
+  return out;
+}
+
 }  // namespace
 
 Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, const Array<Index>& triangles) {
@@ -37,31 +72,17 @@ Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, 
   Array<double> ratios;  // of the areas on the surface to those in the plane
   ratios.reserve(triangles.size());
   double area = 0, uv_area = 0, stretch = 0;
-  for (const Index f : triangles) {
-    Eigen::Vector3d p[3];
-    Complex z[3];
-    for (int c = 0; c < 3; ++c) {
-      p[c] = surface.positions.row(surface.triangles(f, c));
-      z[c] = {corner_uv(3 * f + c, 0), corner_uv(3 * f + c, 1)};
-    }
-    const Eigen::Vector3d first = p[1] - p[0], second = p[2] - p[0];
-    const double square = first.squaredNorm(), doubled = first.cross(second).norm();
-    if (!(doubled > 0)) continue;
-    // The derivatives along the first edge and across it, times the edge's length.
-    const Complex along = z[1] - z[0], across = ((z[2] - z[0]) * square - along * first.dot(second)) / doubled;
-    const double both =
-        std::sqrt(std::norm(along - Complex(0, 1) * across)) + std::sqrt(std::norm(along + Complex(0, 1) * across));
-    const double largest_square = both * both / (4 * square);  // of the singular values
-    // The product of both by the area, not as a difference, which would lose the digits of thin images.
-    const double uv_doubled = std::abs(std::imag(std::conj(along) * (z[2] - z[0])));
-    const bool is_point = !(largest_square > 0);  // no ratio of directions: as bad as a line
-    const double shrinkage = doubled / uv_doubled, ratio = is_point ? unlimited : largest_square * shrinkage;
-    area += doubled / 2;
-    uv_area += uv_doubled / 2;
-    out.quasi_conformal += ratio;
-    out.quasi_conformal_area_weighted += ratio * doubled / 2;
-    stretch += (1 / largest_square + ratio * shrinkage) * doubled / 4;
-    ratios.push_back(shrinkage);
+  Array<Measured> measured(triangles.size());
+  for_each_at_once(ssize(triangles),
+                   [&](std::ptrdiff_t i) { measured[i] = measure(surface, corner_uv, triangles[i]); });
+  for (const Measured& one : measured) {
+    if (!(one.doubled > 0)) continue;
+    area += one.doubled / 2;
+    uv_area += one.uv_doubled / 2;
+    out.quasi_conformal += one.ratio;
+    out.quasi_conformal_area_weighted += one.ratio * one.doubled / 2;
+    stretch += (1 / one.largest_square + one.ratio * one.shrinkage) * one.doubled / 4;
+    ratios.push_back(one.shrinkage);
   }
   if (ratios.empty()) return out;
   // Everything on one line or point.
@@ -150,14 +171,23 @@ Eigen::VectorXd angle_sums(const HalfedgeMesh& mesh, const CornerPositions& posi
   }
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(mesh.vertex_count());
   const Eigen::VectorXcd at_vertex = position(mesh.outgoing);  // in one of its corners
-  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+  constexpr int parted = 1, sweeps = 8, turned = 64;  // bits; the first two for each corner
+  Array<char> seen(mesh.triangle_count());
+  for_each_at_once(mesh.triangle_count(), [&](Index f) {
     const Complex z[]{position[3 * f], position[3 * f + 1], position[3 * f + 2]};
-    const bool is_upright = side(z[0], z[1], z[2]) > 0;
+    int bits = side(z[0], z[1], z[2]) > 0 ? 0 : turned;
+    for (int c = 0; c < 3; ++c) {
+      if (z[c] != at_vertex[mesh.triangles(f, c)]) bits |= parted << c;
+      if (z[(c + 1) % 3].imag() < z[c].imag() && z[(c + 2) % 3].imag() >= z[c].imag()) bits |= sweeps << c;
+    }
+    seen[f] = static_cast<char>(bits);
+  });
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
     for (int c = 0; c < 3; ++c) {
       const Index v = mesh.triangles(f, c);
-      is_parted[v] |= z[c] != at_vertex[v];
-      is_measured[v] |= !is_upright;
-      if (z[(c + 1) % 3].imag() < z[c].imag() && z[(c + 2) % 3].imag() >= z[c].imag()) sums[v] += 2 * M_PI;
+      if (seen[f] & (parted << c)) is_parted[v] = 1;
+      if (seen[f] & (sweeps << c)) sums[v] += 2 * M_PI;
+      if (seen[f] & turned) is_measured[v] = 1;
     }
   }
   for (Index f = 0; f < mesh.triangle_count(); ++f) {  // the layout ends at edges of parted vertices

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/thread_team.hpp"
 #include "solvers/eigenproblem.hpp"
 #include "solvers/saddle_point.hpp"
 #include "solvers/sparse_assembly.hpp"
@@ -37,19 +38,25 @@ Array<Index> open_border(const HalfedgeMesh& mesh, const CutMesh& cut_mesh) {
 FrameTree::FrameTree(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph)
     : triangle_count_(mesh.triangle_count()) {
   steps_.reserve(triangle_count_);
+  Array<Index> across;  // (steps) the halfedge that each one crosses
+  across.reserve(triangle_count_);
   Array<char> reached(triangle_count_, 0);
   const auto leave = [&](Index f) {
     for (Index h = 3 * f; h < 3 * f + 3; ++h) {
       const Index twin = mesh.twin[h];
       if (twin == none || cut_graph.is_cut[h] || reached[twin / 3]) continue;
       reached[twin / 3] = 1;
-      steps_.push_back({f, twin / 3, mesh.origin(h), mesh.target(h), turn_across(mesh, geometry, h),
-                        cotangent_weight(mesh, geometry, h)});
+      steps_.push_back({f, twin / 3, mesh.origin(h), mesh.target(h), 0, 0});
+      across.push_back(h);
     }
   };
   reached[0] = 1;
   leave(0);
   for (std::size_t i = 0; i < steps_.size(); ++i) leave(steps_[i].to);
+  for_each_at_once(ssize(steps_), [&](std::ptrdiff_t i) {
+    steps_[i].turn = turn_across(mesh, geometry, across[i]);
+    steps_[i].weight = cotangent_weight(mesh, geometry, across[i]);
+  });
 }
 
 Eigen::VectorXd FrameTree::integrate(const Eigen::VectorXd& log_scale) const {
@@ -130,23 +137,24 @@ Jacobians prescribed_jacobians(const HalfedgeMesh& mesh, const Eigen::VectorXd& 
                                const Eigen::VectorXd& frames) {
   Jacobians out{Eigen::VectorXcd(frames.size()), Eigen::VectorXcd::Zero(frames.size())};
   const Eigen::VectorXd share = (log_scale / 3).array().exp();  // contribution of a corner to its triangle's scale
-  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+  for_each_at_once(mesh.triangle_count(), [&](Index f) {
     const double scale = share[mesh.triangles(f, 0)] * share[mesh.triangles(f, 1)] * share[mesh.triangles(f, 2)];
     out.f_z[f] = std::polar(scale, frames[f]);
-  }
+  });
   return out;
 }
 
 Jacobians measure_jacobians(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
                             const Eigen::VectorXcd& position) {
   Jacobians out{Eigen::VectorXcd::Zero(mesh.triangle_count()), Eigen::VectorXcd::Zero(mesh.triangle_count())};
-  for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
-    const Index f = corner / 3;
-    const Complex edge = edge_vector(geometry, next(corner)) / (4 * geometry.area[f]);
-    const Complex z = position[cut_mesh.copy_of_corner[corner]];
-    out.f_z[f] += Complex(0, -1) * std::conj(edge) * z;
-    out.f_zbar[f] += Complex(0, 1) * edge * z;
-  }
+  for_each_at_once(mesh.triangle_count(), [&](Index f) {
+    for (Index corner = 3 * f; corner < 3 * f + 3; ++corner) {
+      const Complex edge = edge_vector(geometry, next(corner)) / (4 * geometry.area[f]);
+      const Complex z = position[cut_mesh.copy_of_corner[corner]];
+      out.f_z[f] += Complex(0, -1) * std::conj(edge) * z;
+      out.f_zbar[f] += Complex(0, 1) * edge * z;
+    }
+  });
   return out;
 }
 
