@@ -25,10 +25,11 @@ constexpr int cells_across = 40;
 
 class Compactor {
  public:
-  // position: at the corners, on the scale of the surface.
-  Compactor(const HalfedgeMesh& mesh, const FaceGraph& graph, const Eigen::VectorXcd& position,
+  // graph: of the surface.  position: at the corners, on the scale of the surface.
+  Compactor(const OpenedSurface& surface, const FaceGraph& graph, const Eigen::VectorXcd& position,
             const SharedSquare& square)
-      : graph_(graph),
+      : geometry_(surface.geometry),
+        graph_(graph),
         position_(position),
         area_(square.area),
         search_(square),
@@ -36,6 +37,7 @@ class Compactor {
         center_(graph.face_count(), 0),
         place_(graph.face_count(), none),
         is_near_cut_(graph.face_count(), 0) {
+    const HalfedgeMesh& mesh = surface.mesh;
     Array<Index> triangles(graph.face_count() + 1, 0);
     for (const Index face : graph.face_of) ++triangles[face + 1];
     std::partial_sum(triangles.begin(), triangles.end(), triangles.begin());
@@ -82,6 +84,11 @@ class Compactor {
   Array<Index> cut_along(const Array<Line>& lines, const Array<Index>& island, double band);
   Array<Index> without_scraps(const Array<Index>& island, const Array<Index>& class_of);
   double length_between(const Array<Index>& faces, const Array<Index>& class_of);
+  // What an edge counts in the price of a division: dear edges, which a cut keeps clear of as far as it can, are no
+  // reason to leave an island as it is.
+  double priced_length(const FaceGraph::Link& link) const {
+    return std::min(graph_.unit * static_cast<double>(link.cost), geometry_.length[link.halfedge]);
+  }
   void set_places(const Array<Index>& faces) {
     for (std::size_t i = 0; i < faces.size(); ++i) place_[faces[i]] = static_cast<Index>(i);
   }
@@ -89,6 +96,7 @@ class Compactor {
     for (const Index face : faces) place_[face] = none;
   }
 
+  const Geometry& geometry_;
   const FaceGraph& graph_;
   const Eigen::VectorXcd& position_;
   const double area_;
@@ -163,7 +171,7 @@ IslandCells Compactor::cells_of(const Array<Index>& island, Complex along) {
   for (const Index face : island) {
     graph_.for_each_link(face, [&](Index other, const FaceGraph::Link& link) {
       if (place_[other] == none || place_[other] <= place_[face]) return;
-      cells.links.push_back({{place_[face], place_[other]}, graph_.unit * static_cast<double>(link.cost)});
+      cells.links.push_back({{place_[face], place_[other]}, priced_length(link)});
     });
   }
   clear_places(island);
@@ -236,7 +244,7 @@ double Compactor::length_between(const Array<Index>& faces, const Array<Index>& 
   for (std::size_t i = 0; i < faces.size(); ++i) {
     graph_.for_each_link(faces[i], [&](Index other, const FaceGraph::Link& link) {
       const Index at = place_[other];
-      if (at != none && class_of[at] < class_of[i]) length += graph_.unit * static_cast<double>(link.cost);
+      if (at != none && class_of[at] < class_of[i]) length += priced_length(link);
     });
   }
   clear_places(faces);
@@ -272,7 +280,7 @@ void compact_islands(const OpenedSurface& surface, const SharedSquare& square, C
   const OpenedSurface islands{mesh, surface.geometry, ends};
   const FaceGraph graph = build_face_graph(islands);
   const Eigen::VectorXcd position = square.scale * at_corners(map.cut_mesh, map.position);
-  Compactor compactor(mesh, graph, position, square);
+  Compactor compactor(islands, graph, position, square);
   Array<Index> part = compactor.divide_all();
   straighten_cuts(
       islands, graph, [&](Index face, Index) { return !compactor.is_near_cut(face); }, part);

@@ -3,23 +3,39 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace lsgp {
 
 namespace {
 
-constexpr double seam_discount = 0.2, sharp_discount = 0.5;
+constexpr double seam_factor = 0.2, sharp_factor = 0.5;
 const double sharp_angle = M_PI / 6;
+// Of what the surface's median edge costs as a cut: none is cheaper than a seam, none keeps cuts away at any length.
+constexpr double least_factor = seam_factor, largest_factor = 10;
 constexpr double units_of_mean_edge = 1e4;
 
-double discount(const HalfedgeMesh& mesh, Index h) {
-  if (mesh.seam[h]) return seam_discount;
+double sharpness_factor(const HalfedgeMesh& mesh, Index h) {
   const auto normal = [&](Index f) { return area_normal(mesh.positions, mesh.triangles, f); };
-  return angle_between(normal(h / 3), normal(mesh.twin[h] / 3)) > sharp_angle ? sharp_discount : 1.0;
+  return angle_between(normal(h / 3), normal(mesh.twin[h] / 3)) > sharp_angle ? sharp_factor : 1.0;
 }
 
 }  // namespace
+
+Array<double> relative_cut_factors(const HalfedgeMesh& mesh) {
+  Array<double> factor = mesh.cut_factor, of_edges;
+  for (Index h = 0; h < ssize(factor); ++h) {
+    if (mesh.twin[h] > h && mesh.cuttable[h]) of_edges.push_back(factor[h]);
+  }
+  if (of_edges.empty()) return {};
+  const auto median = of_edges.begin() + static_cast<std::ptrdiff_t>(of_edges.size() / 2);
+  std::nth_element(of_edges.begin(), median, of_edges.end());
+  // Most edges may cost nothing.
+  const double unit = std::max(*median, std::numeric_limits<double>::min());
+  for (double& own : factor) own = std::clamp(own / unit, least_factor, largest_factor);
+  return factor;
+}
 
 FaceGraph build_face_graph(const OpenedSurface& surface) {
   const HalfedgeMesh& mesh = surface.mesh;
@@ -32,11 +48,13 @@ FaceGraph build_face_graph(const OpenedSurface& surface) {
   for (Index f = 0; f < mesh.triangle_count(); ++f) graph.area[graph.face_of[f]] += geometry.area[f];
   graph.total_area = geometry.total_area;
   graph.unit = geometry.length.mean() / units_of_mean_edge;
+  const Array<double> factor = relative_cut_factors(mesh);
   graph.link_begin.assign(graph.face_count() + 1, 0);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     const Index twin = mesh.twin[h];
     if (twin < h || open[h] || graph.face_of[h / 3] == graph.face_of[twin / 3]) continue;
-    const double units = geometry.length[h] * discount(mesh, h) / graph.unit;
+    const double weight = mesh.seam[h] ? seam_factor : factor.empty() ? sharpness_factor(mesh, h) : factor[h];
+    const double units = geometry.length[h] * weight / graph.unit;
     graph.links.push_back(
         {{graph.face_of[h / 3], graph.face_of[twin / 3]}, h, std::max<FaceGraph::Units>(1, std::llround(units))});
     for (const Index face : graph.links.back().faces) ++graph.link_begin[face + 1];

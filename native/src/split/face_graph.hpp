@@ -22,7 +22,7 @@ struct FaceGraph {
   struct Link {
     Index faces[2];
     Index halfedge;  // in the first of them
-    Units cost;      // the edge's length, less along marked seams and sharp edges
+    Units cost;      // its length times its factor as a cut; without factors less along sharp edges; least on seams
   };
 
   Array<Index> face_of;  // (triangles) those that no cut may part are one face
@@ -43,6 +43,9 @@ struct FaceGraph {
     }
   }
 };
+
+// What an edge's length counts as a cut, of the median edge's and within bounds, (3m); empty where all cost the same.
+Array<double> relative_cut_factors(const HalfedgeMesh& mesh);
 
 FaceGraph build_face_graph(const OpenedSurface& surface);
 

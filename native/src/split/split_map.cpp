@@ -18,10 +18,11 @@ namespace {
 constexpr double cost_of_island = 0.5, cost_of_scrap = 2, cost_of_cut = 1;
 constexpr double scrap = 0.005;  // of the area
 
-double cost(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& ends) {
+// factor: as from relative_cut_factors.
+double cost(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<double>& factor, const Array<char>& ends) {
   double length = 0;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    if (ends[h] && mesh.twin[h] > h) length += geometry.length[h];
+    if (ends[h] && mesh.twin[h] > h) length += geometry.length[h] * (factor.empty() ? 1 : factor[h]);
   }
   Array<Index> island;
   Array<double> area(label_parts(mesh, ends, island), 0);
@@ -44,7 +45,12 @@ class MapDivider {
   // surface: where the map is open, cuts included.  kept: (3m).
   MapDivider(const OpenedSurface& surface, const ComponentMap& map, const Array<Overlap>& overlaps,
              const Array<char>& kept, ProgressMonitor& monitor)
-      : surface_(surface), map_(map), overlaps_(overlaps), kept_(kept), monitor_(monitor) {}
+      : surface_(surface),
+        map_(map),
+        overlaps_(overlaps),
+        kept_(kept),
+        monitor_(monitor),
+        factor_(relative_cut_factors(surface.mesh)) {}
 
   Division divide(CutCost rule) const {
     const auto& [mesh, geometry, open] = surface_;
@@ -53,7 +59,7 @@ class MapDivider {
     for (const Index h : opened) parts.open[h] = parts.open[mesh.twin[h]] = 1;
     parts.motion.resize(label_parts(mesh, parts.open, parts.part));
     if (map_.rotation) merge_islands(mesh, geometry, map_, kept_, parts);
-    const double total = cost(mesh, geometry, parts.open);
+    const double total = cost(mesh, geometry, factor_, parts.open);
     return {std::move(parts), total};
   }
 
@@ -63,6 +69,7 @@ class MapDivider {
   const Array<Overlap>& overlaps_;
   const Array<char>& kept_;
   ProgressMonitor& monitor_;
+  const Array<double> factor_;  // (3m) of edges as cuts
 };
 
 }  // namespace

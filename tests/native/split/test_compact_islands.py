@@ -161,6 +161,15 @@ def test_cuts_run_along_sharp_edges() -> None:
     assert crease[unwrap(bent, COMPACT).cut_edges].all()
 
 
+@pytest.mark.parametrize("column", [6, 7])
+def test_cuts_run_where_they_cost_least(column: int) -> None:
+    mesh = flat(np.ones((3, 13), bool))
+    edges = meshes.edges_of(mesh.triangles)
+    is_cheap = (mesh.positions[:, 0] == column)[edges].all(axis=1)
+    result = unwrap(mesh, COMPACT, edges=edges, cut_costs=np.where(is_cheap, 0.2, 1.0))
+    assert pairs(result.cut_edges) == pairs(edges[is_cheap])
+
+
 def test_faces_of_polygons_are_not_cut() -> None:
     mesh = flat(cells_of("cross"))
     quads = quads_of(mesh)

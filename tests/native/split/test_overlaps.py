@@ -238,6 +238,20 @@ def test_split_prefers_sharp_edges(crease: int) -> None:
     assert pairs(result.cut_edges) == ruling(mesh, crease)
 
 
+@pytest.mark.parametrize("crease", [14, 29])
+def test_split_keeps_to_the_cheap_side_whatever_is_sharp(crease: int) -> None:
+    """From ruling 10 to 40 each parts the strip as well as any other; those of the crease's half are thrice as dear."""
+    mesh, middle = wound(50, crease=crease), 25
+    edges = meshes.edges_of(mesh.triangles)
+    on_first_side = edges.max(axis=1) // 9 < middle
+    is_dear = on_first_side == (crease < middle)
+    for unit in (1e-3, 1.0, 1e3):  # what counts are the ratios
+        surface = lsgp.Surface(mesh.positions, mesh.triangles, edges, cut_costs=np.where(is_dear, 3 * unit, unit))
+        result = lsgp.parameterize(surface, [], options=SPLIT)
+        assert len(result.overlapping) == 0 and result.island.max() == 1
+        assert not pairs(result.cut_edges) & pairs(edges[is_dear])
+
+
 def test_cuts_that_split_run_along_edges_that_may_be_cut() -> None:
     mesh = wound(100)
     allowed = quads_of(mesh)
