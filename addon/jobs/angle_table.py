@@ -70,9 +70,9 @@ _tables: dict[int, tuple[tuple[int, int], TableSettings, list[TablePart]]] = {}
 class FollowedTable:
     """The table of a mesh whose cones are edited and not stored yet."""
 
-    def __init__(self, surface: lsgp.Surface, cones: Callable[[], ConeAngles]) -> None:
-        """surface: the whole mesh. cones: returns those of the moment."""
-        self._surface, self._cones = surface, cones
+    def __init__(self, obj: bpy.types.Object, surface: lsgp.Surface, cones: Callable[[], ConeAngles]) -> None:
+        """surface: the whole mesh of the object. cones: returns the cones as they are now."""
+        self._obj, self._surface, self._cones = obj, surface, cones
         self._known: tuple[object, list[TablePart]] | None = None
 
     def current(self, settings: TableSettings) -> list[TablePart]:
@@ -80,7 +80,7 @@ class FollowedTable:
         cones = self._cones()
         now = cones.cones.tolist(), cones.angles, cones.kinds, settings
         if self._known is None or self._known[0] != now:
-            self._known = now, build_table(self._surface, cones, settings.options())
+            self._known = now, _named(build_table(self._surface, cones, settings.options()), self._obj)
         return self._known[1]
 
 
@@ -116,15 +116,15 @@ def current_table(
     # The ledger needs no positions.
     surface = native.lsgp.Surface(np.zeros((vertices, 3)), mesh.all_triangles(), seams=mesh.seams())
     table = build_table(surface, angles_in(obj, settings.group, mesh), settings.options())
-    places = mesh.positions([row.vertex for part in table for row in part.rows])
-    table = _named(table, place_names(places, obj.bound_box))
+    table = _named(table, obj)
     _tables[obj.data.session_uid] = (*now, table)
     return table
 
 
-def _named(table: list[TablePart], names: list[str]) -> list[TablePart]:
-    """The table with these names of its rows, in order."""
-    following = iter(names)
+def _named(table: list[TablePart], obj: bpy.types.Object) -> list[TablePart]:
+    """The table with its rows named by their places on the object."""
+    places = reader(obj.data).positions([row.vertex for part in table for row in part.rows])
+    following = iter(place_names(places, obj.bound_box))
     return [replace(part, rows=[replace(row, place=next(following)) for row in part.rows]) for part in table]
 
 

@@ -112,7 +112,7 @@ class ConeSession:
 
     def table(self) -> FollowedTable:
         """The table of the cones as they are edited."""
-        return FollowedTable(self._whole.region.surface, self.cones.current)
+        return FollowedTable(self._obj, self._whole.region.surface, self.cones.current)
 
     def angle(self, vertex: int) -> float | None:
         """The angle chosen for a cone, or computed for it in the last step; None where none is known."""

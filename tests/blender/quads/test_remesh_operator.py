@@ -292,7 +292,7 @@ def test_an_open_mesh_is_refused_and_its_border_can_be_selected():
     sides = Counter(tuple(sorted(key)) for face in monkey.data.polygons for key in face.edge_keys)
     border = {edge for edge, count in sides.items() if count == 1}
     # Of the first of its parts, one eye.
-    with refused("OPEN_SURFACE", "border of 8 edges"):
+    with refused("OPEN_SURFACE", "boundary of 8 edges"):
         bpy.ops.object.cone_remesh_to_quads()
     assert changed(before, snapshot(monkey)) == set()
     edit(monkey, select="DESELECT")

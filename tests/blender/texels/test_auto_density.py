@@ -29,11 +29,12 @@ def unwrap(**options):
 
 
 @pytest.mark.parametrize("preset", ["PAINT", "BAKE"])
-@pytest.mark.parametrize("asked, udim, tiles", [(18, 1, 1), (18, 4, 1), (50, 4, 2)])
-def test_all_objects_get_the_density_in_as_few_tiles_as_hold_them(preset, asked, udim, tiles):
-    objects = cubes(4)
+@pytest.mark.parametrize("number, asked, udim, tiles", [(4, 18, 1, 1), (4, 18, 4, 1), (10, 31, 4, 2)])
+def test_all_objects_get_the_density_in_as_few_tiles_as_hold_them(preset, number, asked, udim, tiles):
+    """At 31 any net of the largest cube, 16 units long at most, has room in a tile, and all ten cubes have not."""
+    objects = cubes(number)
     assert unwrap(preset=preset, density=asked, udim=udim) == {"FINISHED"}
-    assert [density(obj, 512) for obj in objects] == pytest.approx([asked] * 4, rel=1e-4)
+    assert [density(obj, 512) for obj in objects] == pytest.approx([asked] * number, rel=1e-4)
     maps = [UvMap(obj) for obj in objects]
     used = set()
     for uv_map in maps:
@@ -49,11 +50,11 @@ def test_all_objects_get_the_density_in_as_few_tiles_as_hold_them(preset, asked,
 
 
 def test_what_the_tiles_do_not_hold_is_refused_with_their_number():
-    objects = cubes(4)
+    objects = cubes(10)
     before = [snapshot(obj) for obj in objects]
     with pytest.raises(RuntimeError, match=r"the islands take \d tiles of 512 x 512 texels, and there is 1"):
-        unwrap(density=41)
-    assert [changed(one, snapshot(obj)) for one, obj in zip(before, objects, strict=True)] == [set()] * 4
+        unwrap(density=31)
+    assert [changed(one, snapshot(obj)) for one, obj in zip(before, objects, strict=True)] == [set()] * 10
 
 
 def test_the_density_is_that_of_the_scene_in_its_unit_where_none_is_given():

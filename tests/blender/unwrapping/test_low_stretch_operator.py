@@ -15,7 +15,7 @@ def suzanne():
     obj = bpy.context.object
     obj.modifiers.new("Subdivision", "SUBSURF").levels = 1
     bpy.ops.object.modifier_apply(modifier="Subdivision")
-    bpy.ops.mesh.cone_place()
+    bpy.ops.mesh.cone_place(cuts="SHORTEST")
     return obj
 
 
