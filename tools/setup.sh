@@ -8,7 +8,7 @@ venv=$root/build/venv
 at_once=(-n auto --maxprocesses 8)  # arguments of pytest-xdist
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/cone-unwrap
 
-say() { printf '\n== %s\n' "$*"; }
+say() { printf '\n== %(%T)T %s\n' -1 "$*"; }
 fail() { printf '%s: %s\n' "$(basename "$0")" "$*" >&2; exit 1; }
 
 # Installs Debian packages; says which ones to install where it may not.
