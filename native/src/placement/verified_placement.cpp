@@ -137,7 +137,8 @@ ConeChoice VerifiedPlacement::choose_where_cheap(std::optional<AutomaticCones>& 
     chooser_.weigh_prices(weight);
     std::optional<AutomaticCones> growth;
     ConeChoice cheap = choose(growth);
-    if (cheap.predicted_l2 > most_l2 || much_fewer * ssize(cheap.vertices) > ssize(anywhere.vertices)) continue;
+    const auto count = [](const ConeChoice& choice) { return static_cast<double>(choice.vertices.size()); };
+    if (cheap.predicted_l2 > most_l2 || much_fewer * count(cheap) > count(anywhere)) continue;
     if (growth) automatic.emplace(std::move(*growth));
     return cheap;
   }
