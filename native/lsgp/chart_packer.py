@@ -11,6 +11,7 @@ Places are complex numbers, u + iv.
 from __future__ import annotations
 
 import math
+import time
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -39,6 +40,9 @@ _NARROWED = 0.01
 _NO_AREA = 1e-5
 _LEAST_BOX = 0.01
 _MOST_AROUND = 2000
+# Seconds. When an atlas is freed, xatlas wakes its threads without their lock, and waits for ever for one that is just
+# falling asleep, as all are after the last chart. Nothing else can free it safely, or pack without threads.
+_SETTLING = 0.005
 _QUARTER_TURNS = np.array([1, 1j, -1, -1j])
 _TINY = np.finfo(float).tiny
 
@@ -241,11 +245,12 @@ def _run(charts: Islands, inside: int, padding: int) -> ComplexArray | None:
     # It would mirror islands where it exchanges u and v.
     options.rotate_charts = options.rotate_charts_to_axis = False
     atlas.generate(pack_options=options)
-    if atlas.atlas_count != 1 or max(atlas.width, atlas.height) > inside:
-        return None
-    vertices, _, uv = atlas[0]
-    found = np.empty(len(charts.place), np.complex128)
-    found[vertices] = uv[:, 0].astype(np.float64) * atlas.width + 1j * (uv[:, 1].astype(np.float64) * atlas.height)
+    found = None
+    if atlas.atlas_count == 1 and max(atlas.width, atlas.height) <= inside:
+        vertices, _, uv = atlas[0]
+        found = np.empty(len(charts.place), np.complex128)
+        found[vertices] = uv[:, 0].astype(np.float64) * atlas.width + 1j * (uv[:, 1].astype(np.float64) * atlas.height)
+    time.sleep(_SETTLING)
     return found
 
 

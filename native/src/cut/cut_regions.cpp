@@ -37,7 +37,7 @@ void CutRegions::grow(double below) {
     starts.emplace_back(0.0, v);
   }
   const auto admits = [&](Index v) { return !network_.is_avoided[v]; };
-  grow_paths(mesh, network_.geometry, std::move(starts), admits, reached_, half_of(below));
+  grow_paths(mesh, network_.geometry, {std::move(starts), half_of(below)}, admits, reached_);
   first_.assign(mesh.vertex_count() + 1, 0);
   for (const Reached& there : reached_) {
     if (there.source != none) ++first_[there.source + 1];
@@ -79,7 +79,7 @@ void CutRegions::redo(const CutPath& closed, double below) {
     if (again_[v].source != none) starts.emplace_back(again_[v].distance, v);
   }
   const auto admits = [&](Index v) { return redone_[v] == round_; };
-  grow_paths(mesh, network_.geometry, std::move(starts), admits, again_, half_of(below));
+  grow_paths(mesh, network_.geometry, {std::move(starts), half_of(below)}, admits, again_);
 }
 
 CutPath CutRegions::find(const CutPath& closed, const Array<Index>& is_apart, Index mark, double below) {

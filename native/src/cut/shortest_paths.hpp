@@ -26,13 +26,19 @@ struct Reached {
 // Vertices from which paths start, at the distances they have already.
 using PathStarts = std::vector<std::pair<double, Index>>;
 
-// Dijkstra's algorithm over the vertices that admits(v), as far as a distance.  reached: (n) with the starts entered;
-// receives the others.
+// Where paths start, and the distance below which they are followed.
+struct PathSearch {
+  PathStarts starts;
+  double below = std::numeric_limits<double>::infinity();
+};
+
+// Dijkstra's algorithm over the vertices that admits(v).  reached: (n) with the starts entered; receives the others.
 template <typename Admits>
-void grow_paths(const HalfedgeMesh& mesh, const Geometry& geometry, PathStarts starts, Admits admits,
-                Array<Reached>& reached, double below = std::numeric_limits<double>::infinity()) {
+void grow_paths(const HalfedgeMesh& mesh, const Geometry& geometry, PathSearch search, Admits admits,
+                Array<Reached>& reached) {
   constexpr double operations_a_vertex = 100;
-  std::priority_queue<PathStarts::value_type, PathStarts, std::greater<>> queue(std::greater<>(), std::move(starts));
+  std::priority_queue<PathStarts::value_type, PathStarts, std::greater<>> queue(std::greater<>(),
+                                                                                    std::move(search.starts));
   while (!queue.empty()) {
     checkpoint(operations_a_vertex);
     const double distance = queue.top().first;
@@ -43,7 +49,7 @@ void grow_paths(const HalfedgeMesh& mesh, const Geometry& geometry, PathStarts s
       const Index w = mesh.target(h);
       if (!may_cut(mesh, h) || !admits(w)) return;
       const double through = distance + cut_cost(mesh, geometry, h);
-      if (!(through < std::min(reached[w].distance, below))) return;
+      if (!(through < std::min(reached[w].distance, search.below))) return;
       reached[w] = {through, h, reached[v].source};
       queue.emplace(through, w);
     });
