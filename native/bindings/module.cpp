@@ -245,6 +245,7 @@ lsgp::Options to_options(const py::dict& values) {
   using lsgp::Compactness, lsgp::Factorization, lsgp::Mode, lsgp::Overlaps;
   options.mode = choose<Mode>(text("mode"), {{"conformal", Mode::conformal}, {"low-stretch", Mode::low_stretch}});
   options.stretch = values["stretch"].cast<double>();
+  options.straighten = values["straighten"].cast<bool>();
   options.repair = values["repair"].cast<bool>();
   options.overlaps = choose<Overlaps>(text("overlaps"), {{"keep", Overlaps::keep}, {"split", Overlaps::split}});
   options.compact = choose<Compactness>(

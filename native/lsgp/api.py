@@ -177,6 +177,9 @@ class Options:
     seamless: round angles and translations so that a tileable texture shows no seam; None: no rounding.
     mode: "conformal" preserves angles; "low-stretch" preserves lengths as far as the cone angles permit.
     stretch: with "low-stretch", from 0, the conformal map, to 1, the map of least stretch.
+    straighten: with "low-stretch" and free boundaries: boundaries and cuts that are nearly straight in the map become
+        exactly straight, and those nearly at right angles are aligned with u and v, unless that costs noticeable
+        stretch. Not in seamless layouts.
     repair: untangle flipped triangles and correct angles that are off by a full turn.
     overlaps: "keep" islands that overlap themselves, or "split" them along further cuts until none does; transitions
         stay exact.
@@ -205,6 +208,7 @@ class Options:
     seamless: Seamless | None = None
     mode: Mode = "conformal"
     stretch: float = 1.0
+    straighten: bool = False
     repair: bool = True
     overlaps: Overlaps = "keep"
     compact: Compactness = "off"
@@ -220,6 +224,7 @@ class Options:
         if not (self.seamless is None or isinstance(self.seamless, Seamless)):
             arguments.refuse("seamless", self.seamless, "pass a Seamless, or None")
         _set(self, "stretch", arguments.number("stretch", self.stretch, "pass a number from 0 to 1"))
+        _set(self, "straighten", arguments.flag("straighten", self.straighten))
         _set(self, "repair", arguments.flag("repair", self.repair))
         share = arguments.number("square_share", self.square_share, "pass a number above 0, up to 100")
         _set(self, "square_share", share)

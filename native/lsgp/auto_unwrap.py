@@ -44,9 +44,9 @@ _MOST_CORNERS: dict[Preset, int | None] = {"paint": 24, "tile": None, "bake": 0}
 # Islands are split in all of them: what lies on itself can neither be painted nor baked, and the cuts of a seamless
 # layout show nowhere.
 _PRESETS: dict[Preset, Options] = {
-    "paint": Options(mode="low-stretch", overlaps="split", compact="sparing"),
+    "paint": Options(mode="low-stretch", straighten=True, overlaps="split", compact="sparing"),
     "tile": Options(seamless=Seamless(lattice="square"), overlaps="split"),
-    "bake": Options(mode="low-stretch", overlaps="split", compact="full"),
+    "bake": Options(mode="low-stretch", straighten=True, overlaps="split", compact="full"),
 }
 
 

@@ -76,6 +76,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
     add_cut_options(unwrap)
     _add_direction_options(unwrap)
     _add_crease_option(unwrap)
+    _add_straighten_option(unwrap)
     unwrap.add_argument(
         "--border",
         choices=["free", "straight"],
@@ -120,6 +121,16 @@ def _add_crease_option(unwrap: argparse.ArgumentParser) -> None:
         action="store_false",
         help="with --preset: do not cut hard surfaces at their creases, so that the texture continues across them; by "
         "default paint and bake cut there where hardly any stretch remains",
+    )
+
+
+def _add_straighten_option(unwrap: argparse.ArgumentParser) -> None:
+    unwrap.add_argument(
+        "--no-straighten",
+        dest="straighten",
+        action="store_false",
+        help="with --preset: leave nearly straight boundaries and cuts of the layout as they are; by default paint and "
+        "bake make them exactly straight and align them with u and v where that costs hardly any stretch",
     )
 
 
@@ -437,6 +448,8 @@ def library_options(args: argparse.Namespace) -> Options:
         raise UsageError("--up takes finite numbers; give the model's up, as 0 1 0")
     if args.preset is None and not args.creases:
         raise UsageError("--no-creases is for presets; add --preset paint or bake")
+    if args.preset is None and not args.straighten:
+        raise UsageError("--no-straighten is for presets; add --preset paint or bake")
     texel_layout(args)
     packing_of(args)
     base = Options() if args.preset is None else preset_options(args.preset)
@@ -456,6 +469,7 @@ def library_options(args: argparse.Namespace) -> Options:
         seamless=seamless,
         mode=mode,
         stretch=base.stretch if args.stretch is None else args.stretch,
+        straighten=base.straighten and args.straighten,
         repair=args.repair,
         overlaps=base.overlaps if args.overlaps is None else args.overlaps,
         compact=(base.compact if seamless is None else "off") if args.compact is None else args.compact,

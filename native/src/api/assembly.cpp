@@ -255,6 +255,7 @@ void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
         island.pin = {static_cast<Eigen::Index>(k), map.pins.front().position};
       }
     }
+    island.has_axes = map.is_along_axes;
     islands_.push_back(std::move(island));
   }
 }

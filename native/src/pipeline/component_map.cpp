@@ -119,7 +119,10 @@ ComponentMap map_component(ComponentSystem& system, const ComponentTask& task, c
   if (map.validity.defects() > 0 && repairs(options) && (any_given(task.cones) || task.cones.symmetry > 0)) {
     mapping.approach_angles(map, found);
   }
-  if (options.mode == Mode::low_stretch && options.stretch > 0 && map.validity.defects() == 0) mapping.relax(map);
+  if (options.mode == Mode::low_stretch && options.stretch > 0 && map.validity.defects() == 0) {
+    mapping.relax(map);
+    mapping.straighten(map);
+  }
   map.repair = repair.value_or(RepairReport{});
   findings.insert(findings.end(), found.begin(), found.end());
   return map;

@@ -29,7 +29,8 @@ struct ComponentMap {
   std::optional<Eigen::VectorXd> rotation;  // (cuts) imposed, radians; none without transitions
   Eigen::VectorXcd position;                // (copies) u + iv
   Array<Pin> pins;
-  double uv_area = 0;  // signed
+  bool is_along_axes = false;  // most straight sides of `position` are along u and v
+  double uv_area = 0;          // signed
   SeamQuality seams;
   Array<Index> inexact_seams;  // halfedges
   Validity validity;

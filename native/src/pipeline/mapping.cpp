@@ -7,9 +7,11 @@
 
 #include "base/text.hpp"
 #include "mesh/border.hpp"
+#include "plane/overlaps.hpp"
 #include "prescription/border_turning.hpp"
 #include "prescription/parallel_transport.hpp"
 #include "repair/low_stretch.hpp"
+#include "repair/straighten.hpp"
 #include "repair/untangle.hpp"
 #include "systems/quadratic_forms.hpp"
 #include "unfold/unfold.hpp"
@@ -86,6 +88,20 @@ Eigen::VectorXcd unfold_relatively(const CutSurface& surface, const Curvature& c
   jacobians.f_z = jacobians.f_z.cwiseProduct(weight);
   const CutSurface weighted_surface{surface.mesh, weighted, surface.cut_graph, surface.cut_mesh};
   return PoissonSystem(weighted_surface, connection.reduction).fit(jacobians);
+}
+
+// The largest bend of sides that are straightened, radians; the smaller, the closer the map is to an isometry, whose
+// angles are those of the surface up to the precision of the file.
+double most_bend(double l2) {
+  constexpr double widest = 10 * M_PI / 180, beside_stretch = 30, rounding = 1e-3;
+  return std::min(widest, rounding + beside_stretch * std::sqrt(std::max(0.0, l2 - 1)));
+}
+
+// The L2 stretch that straight sides may cost: hardly any more if the map is isometric.
+double largest_l2_straight(double l2) {
+  constexpr double share = 0.1, least = 0.002, most_times = 20, rounding = 1e-6;
+  const double excess = std::max(0.0, l2 - 1);
+  return l2 + std::min(std::max(share * excess, least), most_times * excess) + rounding;
 }
 
 // Lengths in the layout may differ by no more than e^widest.
@@ -199,6 +215,84 @@ void Mapping::relax(ComponentMap& map) {
   map.position = lower_stretch(surface, {connection, map.curvature}, {options_.stretch, task_.importance}, counter(),
                                {map.position, fixed_vertices(map)});
   check(map);
+}
+
+bool Mapping::may_straighten(const ComponentMap& map) const {
+  return options_.straighten && task_.cones.symmetry == 0 && !mesh_.closed() && map.validity.defects() == 0 &&
+         map.rotation && map.pins.size() < 2 && aligned_edges().empty();
+}
+
+void Mapping::straighten(ComponentMap& map) {
+  if (!may_straighten(map)) return;
+  const double natural_l2 = l2_of(map);
+  std::optional<ComponentMap> found;
+  if (const std::optional<ComponentMap> turned = with_quarter_turns(map)) found = straightened(*turned, natural_l2);
+  if (!found) found = straightened(map, natural_l2);
+  if (found) map = std::move(*found);
+}
+
+std::optional<ComponentMap> Mapping::straightened(const ComponentMap& map, double natural_l2) {
+  constexpr int attempts = 6;
+  const ProgressMonitor::Stage stage(monitor_, "relax");
+  const CutSurface surface = open(map);
+  StraightOutline outline = find_straight_sides(surface, *map.rotation, map.position, most_bend(natural_l2));
+  if (!outline.is_bent() && !outline.has_axes) return std::nullopt;
+  const ParallelTransport connection = connection_of(map);
+  const double most_l2 = largest_l2_straight(natural_l2);
+  for (int attempt = 0; attempt < attempts && !outline.sides.empty(); ++attempt) {
+    ComponentMap straight = map;
+    straight.is_along_axes = outline.has_axes;
+    try {
+      straight.position = lsgp::straighten(surface, {connection, map.curvature}, {options_.stretch, task_.importance},
+                                           counter(), {map.position, outline});
+      check(straight);
+      const bool is_good = straight.validity.defects() == 0 && l2_of(straight) <= most_l2;
+      if (is_good && (!overlaps(straight) || overlaps(map))) return straight;
+    } catch (const Error& error) {
+      if (error.code() != Code::solver_failed) throw;
+    }
+    release_bent_sides(outline);
+  }
+  return std::nullopt;
+}
+
+std::optional<ComponentMap> Mapping::with_quarter_turns(const ComponentMap& map) {
+  constexpr double nearly = 3 * M_PI / 180, exactly = 1e-9;
+  if (!map.cones.empty() || mesh_.genus > 0 || mesh_.boundary_loops.size() < 2) return std::nullopt;
+  Eigen::VectorXd turning = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(mesh_.boundary_loops.size()));
+  for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+    if (mesh_.loop_of_vertex[v] != none) turning[mesh_.loop_of_vertex[v]] += map.curvature.at_vertex[v];
+  }
+  ComponentTask rounded = task_;
+  double most = 0;
+  for (Eigen::Index loop = 0; loop < turning.size(); ++loop) {
+    const double quarters = M_PI / 2 * std::round(turning[loop] / (M_PI / 2));
+    most = std::max(most, std::abs(turning[loop] - quarters));
+    rounded.cones.loop_turning[loop] = quarters;
+  }
+  if (most < exactly || most > nearly) return std::nullopt;
+  Options plain = options_;
+  plain.straighten = false;
+  std::vector<Finding> unsaid;
+  try {
+    ComponentMap out = map_component(system_, rounded, plain, unsaid, monitor_);
+    if (may_straighten(out)) return out;
+  } catch (const Error& error) {
+    if (error.code() != Code::loop_turning && error.code() != Code::solver_failed) throw;
+  }
+  return std::nullopt;
+}
+
+double Mapping::l2_of(const ComponentMap& map) const {
+  return l2_stretch(geometry_, measure_jacobians(mesh_, geometry_, map.cut_mesh, map.position));
+}
+
+bool Mapping::overlaps(const ComponentMap& map) const {
+  Array<Index> twin = mesh_.twin;
+  for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
+    if (is_open(mesh_, map.cut_mesh, h)) twin[h] = none;
+  }
+  return has_overlap(at_corners(map.cut_mesh, map.position), twin);
 }
 
 void Mapping::smooth(ComponentMap& map) {

@@ -38,6 +38,10 @@ class Mapping {
   // Lowers the stretch of a valid map.
   void relax(ComponentMap& map);
 
+  // Straightens the nearly straight sides of the outline of a valid map of low stretch and aligns them with the axes;
+  // leaves the map unchanged if that costs noticeable stretch.
+  void straighten(ComponentMap& map);
+
   // Smooths the map with the conformal barrier energy after a fit with other weights or another metric.
   void smooth(ComponentMap& map);
 
@@ -63,6 +67,15 @@ class Mapping {
   Array<char> fixed_vertices(const ComponentMap& map) const;
   // Counts the steps of Newton's method, the number of which is not known in advance.
   StepHook counter();
+  bool may_straighten(const ComponentMap& map) const;
+  // None if no attempt stays within its bounds or if there is nothing to straighten.
+  std::optional<ComponentMap> straightened(const ComponentMap& map, double natural_l2);
+  // The map of low stretch whose boundaries turn by multiples of a quarter turn, if they nearly do; none if they already
+  // do or if they are far from it.
+  std::optional<ComponentMap> with_quarter_turns(const ComponentMap& map);
+  double l2_of(const ComponentMap& map) const;
+  // Whether the layout overlaps itself, judged by its outline.
+  bool overlaps(const ComponentMap& map) const;
 
   ComponentSystem& system_;
   const HalfedgeMesh& mesh_;

@@ -18,6 +18,7 @@ struct Island {
   // The required position of a pinned point; determines only the island's position, not its size or rotation.
   std::optional<std::pair<Eigen::Index, Complex>> pin{};
   Index component = 0;
+  bool has_axes = false;  // most of its straight sides are along u and v: prefers turns by quarters
 };
 
 // The motion of an island as a whole.
@@ -28,8 +29,8 @@ struct Similarity {
   Complex operator()(Complex z) const { return (z * turn + shift) / divisor + move; }
 };
 
-// Rotates every island, puts the islands on shelves without overlap and scales all of them alike into the unit square;
-// then moves those with a pin to it, together with the other islands of their component.
+// Rotates every island as given or into the smallest box, puts the islands on shelves without overlap and scales all of
+// them alike into the unit square; then moves those with a pin to it, together with the other islands of their component.
 Array<Similarity> arrange(const Array<Island>& islands);
 
 // The unit vector along the longer side of the smallest box around the points.

@@ -32,6 +32,10 @@ Eigen::VectorXd importance_of_triangles(const HalfedgeMesh& mesh, const Geometry
   return (out / mean).cwiseMax(least_weight);
 }
 
+void relax_stretch(NewtonMinimizer& relaxation) {
+  relaxation.smooth(Kind::symmetric_dirichlet, most_steps, least_decrease);
+}
+
 Eigen::VectorXd scale_at_rest(const CutSurface& surface, const Curvature& curvature, double stretch,
                               const Eigen::VectorXcd& position) {
   const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
@@ -67,7 +71,7 @@ Eigen::VectorXcd lower_stretch(const CutSurface& surface, const MapTarget& targe
   NewtonMinimizer relaxation(surface, {rest, connection.frames},
                              free_all(mesh, cut_mesh, connection.reduction, map.fixed), before_step, best);
   relaxation.weigh(importance_of_triangles(mesh, geometry, options.importance));
-  relaxation.smooth(Kind::symmetric_dirichlet, most_steps, least_decrease);
+  relax_stretch(relaxation);
   return best;
 }
 

@@ -21,6 +21,9 @@ struct StretchOptions {
 Eigen::VectorXcd lower_stretch(const CutSurface& surface, const MapTarget& target, const StretchOptions& options,
                                const StepHook& before_step, const HeldMap& map);
 
+// Newton's method on the symmetric Dirichlet energy, from a map without flips, until further steps gain little.
+void relax_stretch(NewtonMinimizer& relaxation);
+
 // The target log scale, (n), with the area of the current map.
 Eigen::VectorXd scale_at_rest(const CutSurface& surface, const Curvature& curvature, double stretch,
                               const Eigen::VectorXcd& position);

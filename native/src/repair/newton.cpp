@@ -19,6 +19,16 @@ constexpr double barrier_share = 0.9;  // of the step at which the first triangl
 
 constexpr std::ptrdiff_t shapes_at_once = 32768;  // whose derivatives are kept until they are added up
 
+// First row of every unknown in the real system: two rows for a complex unknown, one for a real one.
+Array<Index> first_rows(const DegreesOfFreedom& freedom) {
+  Array<Index> out(freedom.displacement.unknown_count + 1, 0);
+  for (Index k = 0; k < freedom.displacement.unknown_count; ++k) {
+    const bool is_real = !freedom.is_real.empty() && freedom.is_real[k];
+    out[k + 1] = out[k] + (is_real ? 1 : 2);
+  }
+  return out;
+}
+
 }  // namespace
 
 DegreesOfFreedom free_vertices(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Eigen::VectorXcd& motion,
@@ -90,10 +100,11 @@ Array<char> mark_around(const HalfedgeMesh& mesh, const Array<Index>& triangles,
 
 NewtonMinimizer::NewtonMinimizer(const CutSurface& surface, const RestShapes& rest, DegreesOfFreedom freedom,
                                  StepHook before_step, Eigen::VectorXcd& position)
-    : displacement_(std::move(freedom.displacement)),
+    : first_row_(first_rows(freedom)),
+      displacement_(std::move(freedom.displacement)),
       before_step_(std::move(before_step)),
       position_(position),
-      hessian_(2 * displacement_.unknown_count) {
+      hessian_(first_row_.back()) {
   const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
   const Eigen::VectorXd& log_scale = rest.log_scale;
   shapes_.reserve(freedom.triangles.size());
@@ -240,17 +251,14 @@ void NewtonMinimizer::add_derivatives(const Shape& shape, const double* derivati
   const double* slope = derivatives;
   const double* block = derivatives + 2 * (shape.end - shape.begin);
   for (Index i = shape.begin; i < shape.end; ++i, slope += 2) {
-    const int row = 2 * slopes_[i].unknown;
-    gradient.segment<2>(row) += Eigen::Map<const Eigen::Vector2d>(slope);
+    const auto [row, rows] = rows_of(slopes_[i].unknown);
+    for (int k = 0; k < rows; ++k) gradient[row + k] += slope[k];
     for (Index j = shape.begin; j <= i; ++j, block += 4) {
-      const int column = 2 * slopes_[j].unknown;
+      const auto [column, columns] = rows_of(slopes_[j].unknown);
       const Eigen::Map<const Eigen::Matrix2d> bend(block);
-      if (i == j) {
-        add(row, row, (1 + ridge) * bend(0, 0));
-        add(row + 1, row, bend(1, 0));
-        add(row + 1, row + 1, (1 + ridge) * bend(1, 1));
-      } else {
-        for (int k = 0; k < 4; ++k) add(row + k / 2, column + k % 2, bend(k / 2, k % 2));
+      for (int k = 0; k < rows; ++k) {
+        const int end = i == j ? k + 1 : columns;  // the lower triangle
+        for (int l = 0; l < end; ++l) add(row + k, column + l, i == j && k == l ? (1 + ridge) * bend(k, l) : bend(k, l));
       }
     }
   }
@@ -258,7 +266,7 @@ void NewtonMinimizer::add_derivatives(const Shape& shape, const double* derivati
 
 std::optional<Eigen::VectorXcd> NewtonMinimizer::newton_direction(const DistortionEnergy& energy) {
   const Index count = displacement_.unknown_count;
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(2 * count);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(first_row_.back());
   Array<double> derivatives;
   Array<std::ptrdiff_t> offset;
   // Computed on all threads, and added up in the order of the triangles.
@@ -288,7 +296,10 @@ std::optional<Eigen::VectorXcd> NewtonMinimizer::newton_direction(const Distorti
     return std::nullopt;
   }
   Eigen::VectorXcd out(count);
-  for (Index i = 0; i < count; ++i) out[i] = {step[2 * i], step[2 * i + 1]};
+  for (Index i = 0; i < count; ++i) {
+    const auto [row, rows] = rows_of(i);
+    out[i] = {step[row], rows == 2 ? step[row + 1] : 0};
+  }
   return out;
 }
 

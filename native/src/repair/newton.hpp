@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <optional>
+#include <utility>
 
 #include "base/array.hpp"
 #include "cut/cut_mesh.hpp"
@@ -20,6 +21,7 @@ namespace lsgp {
 struct DegreesOfFreedom {
   Reduction displacement;
   Array<Index> triangles;
+  Array<char> is_real;  // (unknowns) those with real values only; empty: none
 };
 
 // The marked vertices, (n); translations are fixed.  motion: (copies) as from motion_of_copies.
@@ -108,6 +110,12 @@ class NewtonMinimizer {
   // The step along a direction at which the first triangle degenerates.
   double collapse_step(const Eigen::VectorXcd& direction) const;
 
+  // The first row of an unknown in the Hessian, and their number.
+  std::pair<Index, int> rows_of(Index unknown) const {
+    return {first_row_[unknown], first_row_[unknown + 1] - first_row_[unknown]};
+  }
+
+  const Array<Index> first_row_;  // (unknowns + 1) of the Hessian
   const Reduction displacement_;
   const StepHook before_step_;
   Eigen::VectorXcd& position_;

@@ -193,6 +193,15 @@ REVIEWED = {
         ("for (int visited = 0; !grid_.leads_into(corner, ray.direction); ++visited)", AROUND_A_VERTEX, SHORT),
     ],
     "repair/newton.cpp": [("for (double length = longest; length > 1e-8; length /= 2)", "27 halvings", SHORT)],
+    "repair/straight_outline.cpp": [
+        ("for (Index h = first; !is_listed[h];)", SIDES, SHORT),
+        ("while (!is_open(mesh, cut_mesh, h))", AROUND_A_VERTEX, SHORT),
+        (
+            "for (Complex turn = out.turn; !found.empty(); turn = turn_to_axes(found, most_bend))",
+            "takes sides away each time, all within an angle of 0.06 degrees at least",
+            SHORT,
+        ),
+    ],
     "seamless/grid_search.cpp": [
         ("for (; tiles <= most_tiles; tiles = next_size(tiles))", "27 sizes up to 16384", WITHIN),
         (

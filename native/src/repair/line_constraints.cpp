@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "repair/line_constraints.hpp"
+
+#include <cmath>
+#include <map>
+#include <numeric>
+
+namespace lsgp {
+
+namespace {
+
+// A sum of real variables: 2 k and 2 k + 1 are the real and the imaginary part of unknown k. Ordered by variable.
+using Sum = std::map<Index, double>;
+
+constexpr double cancelled = 1e-11;  // of coefficients, which are around 1
+
+// Solves equations one after the other, each for one of its free variables.
+class Elimination {
+ public:
+  explicit Elimination(Index variable_count) : is_used_(variable_count, 0) {}
+
+  // sum = 0
+  void add(const Sum& sum) {
+    Sum left = resolve(sum);
+    Index pivot = none;
+    for (const auto& [variable, coefficient] : left) {
+      if (pivot == none || is_better(variable, coefficient, pivot, left[pivot])) pivot = variable;
+    }
+    if (pivot == none) return;
+    const double divisor = -left[pivot];
+    left.erase(pivot);
+    for (auto& [variable, coefficient] : left) {
+      coefficient /= divisor;
+      is_used_[variable] = 1;
+    }
+    solved_[pivot] = std::move(left);
+  }
+
+  bool is_free(Index variable) const { return solved_.find(variable) == solved_.end(); }
+  // Whether others depend on it.
+  bool is_used(Index variable) const { return is_used_[variable] != 0; }
+
+  // In terms of free variables.
+  Sum resolve(const Sum& sum) {
+    Sum out;
+    for (const auto& [variable, coefficient] : sum) {
+      if (is_free(variable)) {
+        out[variable] += coefficient;
+        continue;
+      }
+      Sum& solution = solved_[variable];
+      solution = resolve(solution);
+      for (const auto& [other, share] : solution) out[other] += coefficient * share;
+    }
+    Sum left;
+    for (const auto& [variable, coefficient] : out) {
+      if (!(std::abs(coefficient) < cancelled)) left.emplace_hint(left.end(), variable, coefficient);
+    }
+    return left;
+  }
+
+ private:
+  // Among variables with coefficients of similar size, those on which nothing depends are preferred: this keeps the
+  // expressions short.
+  bool is_better(Index variable, double coefficient, Index than, double its) const {
+    const double ratio = std::abs(coefficient / its);
+    if (ratio > 2 || ratio < 0.5) return ratio > 2;
+    return is_used_[variable] <= is_used_[than];
+  }
+
+  Array<char> is_used_;
+  std::map<Index, Sum> solved_;
+};
+
+// The factor of an unknown's real or imaginary part in the position of a copy, from that of the unknown.
+Complex factor_of(Index variable, Complex of_unknown) {
+  return variable % 2 == 0 ? of_unknown : of_unknown * Complex(0, 1);
+}
+
+}  // namespace
+
+DegreesOfFreedom free_along(const CutSurface& surface, const Reduction& reduction, const DirectedEdges& edges) {
+  const CutMesh& cut_mesh = surface.cut_mesh;
+  Elimination elimination(2 * reduction.unknown_count);
+  for (Index i = 0; i < ssize(edges.halfedges); ++i) {
+    const Index h = edges.halfedges[i];
+    Sum across;  // the component of the edge across its direction
+    const auto add = [&](Index corner, Complex factor) {
+      reduction.for_each_term(cut_mesh.copy_of_corner[corner], [&](const Term& term) {
+        for (const Index variable : {2 * term.unknown, 2 * term.unknown + 1}) {
+          across[variable] += factor_of(variable, factor * term.coefficient).imag();
+        }
+      });
+    };
+    const Complex back = std::conj(edges.directions[i]);
+    add(next(h), back);
+    add(h, -back);
+    elimination.add(across);
+  }
+
+  DegreesOfFreedom out;
+  Array<Index> number(2 * reduction.unknown_count, none);  // of free variables; a whole unknown has one
+  Array<char> is_whole(reduction.unknown_count, 0);
+  for (Index k = 0; k < reduction.unknown_count; ++k) {
+    const Index re = 2 * k, im = 2 * k + 1;
+    is_whole[k] = elimination.is_free(re) && elimination.is_free(im) && !elimination.is_used(re) &&
+                  !elimination.is_used(im);
+    for (const Index variable : {re, im}) {
+      if (!elimination.is_free(variable) || (is_whole[k] && variable == im)) continue;
+      number[variable] = out.displacement.unknown_count++;
+      out.is_real.push_back(!is_whole[k]);
+    }
+  }
+  out.displacement.begin.assign(1, 0);
+  for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
+    std::map<Index, Complex> moved;
+    reduction.for_each_term(copy, [&](const Term& term) {
+      if (is_whole[term.unknown]) {
+        moved[number[2 * term.unknown]] += term.coefficient;
+        return;
+      }
+      for (const Index variable : {2 * term.unknown, 2 * term.unknown + 1}) {
+        for (const auto& [of, share] : elimination.resolve({{variable, 1.0}})) {
+          moved[number[of]] += factor_of(variable, term.coefficient) * share;
+        }
+      }
+    });
+    for (const auto& [unknown, coefficient] : moved) out.displacement.terms.push_back({unknown, coefficient});
+    out.displacement.begin.push_back(static_cast<Index>(out.displacement.terms.size()));
+  }
+  out.triangles.resize(surface.mesh.triangle_count());
+  std::iota(out.triangles.begin(), out.triangles.end(), 0);
+  return out;
+}
+
+}  // namespace lsgp
