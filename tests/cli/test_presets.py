@@ -6,7 +6,11 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import meshes
+import numpy as np
 import pytest
+from command import uv_of
+from polygon_meshes import obj_text
 
 UNWRAP = ("unwrap", "ball.obj", "-o", "out.obj", "--report", "report.json")
 
@@ -51,6 +55,24 @@ def test_a_stretch_goes_with_presets_that_keep_lengths(lsgp, ball_files: Path) -
     assert half["distortion"]["l2_stretch"] > full["distortion"]["l2_stretch"]
     refused = lsgp(*UNWRAP, "--preset", "tile", "--stretch", 0.3)
     assert refused.code == 2 and "add --mode low-stretch" in refused.err
+
+
+def test_nearly_straight_sides_become_straight_unless_that_is_turned_off(lsgp, tmp_path: Path) -> None:
+    panel = meshes.grid(12, 16, lambda x, y: np.sin(np.pi * x / 12) * np.sin(np.pi * y / 16))
+    (tmp_path / "panel.obj").write_text(obj_text(panel.positions, panel.triangles))
+
+    def covered_share(*options: str) -> float:
+        """Of the layout's bounding box."""
+        done = lsgp("unwrap", "panel.obj", "-o", "out.obj", *options)
+        assert done.code == 0, done.err
+        uv = uv_of(tmp_path / "out.obj").reshape(-1, 3, 2)
+        (a, b), (c, d) = (uv[:, 1] - uv[:, 0]).T, (uv[:, 2] - uv[:, 0]).T
+        return float(np.abs(a * d - b * c).sum() / 2 / np.ptp(uv, axis=(0, 1)).prod())
+
+    assert covered_share("--preset", "bake") == pytest.approx(1, abs=1e-6)
+    assert covered_share("--preset", "bake", "--no-straighten") < 0.99
+    refused = lsgp("unwrap", "panel.obj", "-o", "out.obj", "--no-straighten")
+    assert refused.code == 2 and "add --preset paint or bake" in refused.err
 
 
 def test_cones_of_a_file_are_completed_with_a_preset_alone(lsgp, ball_files: Path) -> None:

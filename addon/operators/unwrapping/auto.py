@@ -88,6 +88,12 @@ class UV_OT_cone_auto_unwrap(
         "are left alone",
         default=True,
     )
+    straighten: bpy.props.BoolProperty(
+        name="Straight Sides",
+        description="Make sides of islands that are nearly straight exactly straight, and align them with the axes of "
+        "the UV map, wherever that takes hardly any stretch. Round sides stay round",
+        default=True,
+    )
     compact: bpy.props.BoolProperty(
         name="Compact Islands",
         description="Cut islands further that would leave much of the square empty, such as long strips, rings and "
@@ -137,6 +143,7 @@ class UV_OT_cone_auto_unwrap(
             body.prop(self, "seams")
             if self.preset != "TILE":
                 body.prop(self, "creases")
+                body.prop(self, "straighten")
                 body.prop(self, "compact")
             body.prop(self, "use_subsurf_data")
             body.prop(self, "mark")
@@ -194,9 +201,14 @@ class UV_OT_cone_auto_unwrap(
     def _options(self) -> lsgp.Options:
         """Raises InputError."""
         options = native.lsgp.preset_options(PRESETS[self.preset][0])
-        compact = options.compact if self.compact else "off"
-        options = replace(options, seams=SEAMS[self.seams][0], compact=compact, square_share=float(self.udim))
-        options = replace(options, threads=chosen_threads())
+        options = replace(
+            options,
+            seams=SEAMS[self.seams][0],
+            straighten=options.straighten and self.straighten,
+            compact=options.compact if self.compact else "off",
+            square_share=float(self.udim),
+            threads=chosen_threads(),
+        )
         if options.seamless is not None:
             options = replace(options, seamless=replace(options.seamless, **self.tile_size_options()))
         return options

@@ -30,7 +30,8 @@ struct Similarity {
 };
 
 // Rotates every island as given or into the smallest box, puts the islands on shelves without overlap and scales all of
-// them alike into the unit square; then moves those with a pin to it, together with the other islands of their component.
+// them alike into the unit square; then moves those with a pin to it, together with the other islands of their
+// component.
 Array<Similarity> arrange(const Array<Island>& islands);
 
 // The unit vector along the longer side of the smallest box around the points.

@@ -103,8 +103,8 @@ DegreesOfFreedom free_along(const CutSurface& surface, const Reduction& reductio
   Array<char> is_whole(reduction.unknown_count, 0);
   for (Index k = 0; k < reduction.unknown_count; ++k) {
     const Index re = 2 * k, im = 2 * k + 1;
-    is_whole[k] = elimination.is_free(re) && elimination.is_free(im) && !elimination.is_used(re) &&
-                  !elimination.is_used(im);
+    is_whole[k] =
+        elimination.is_free(re) && elimination.is_free(im) && !elimination.is_used(re) && !elimination.is_used(im);
     for (const Index variable : {re, im}) {
       if (!elimination.is_free(variable) || (is_whole[k] && variable == im)) continue;
       number[variable] = out.displacement.unknown_count++;

@@ -258,7 +258,8 @@ void NewtonMinimizer::add_derivatives(const Shape& shape, const double* derivati
       const Eigen::Map<const Eigen::Matrix2d> bend(block);
       for (int k = 0; k < rows; ++k) {
         const int end = i == j ? k + 1 : columns;  // the lower triangle
-        for (int l = 0; l < end; ++l) add(row + k, column + l, i == j && k == l ? (1 + ridge) * bend(k, l) : bend(k, l));
+        for (int l = 0; l < end; ++l)
+          add(row + k, column + l, i == j && k == l ? (1 + ridge) * bend(k, l) : bend(k, l));
       }
     }
   }
@@ -277,7 +278,8 @@ std::optional<Eigen::VectorXcd> NewtonMinimizer::newton_direction(const Distorti
       offset.assign(1, 0);
       for (std::ptrdiff_t i = 0; i < some_count; ++i) offset.push_back(offset.back() + derivative_size(some[i]));
       derivatives.resize(offset.back());
-      for_each_at_once(some_count, [&](std::ptrdiff_t i) { differentiate(energy, some[i], derivatives.data() + offset[i]); });
+      for_each_at_once(some_count,
+                       [&](std::ptrdiff_t i) { differentiate(energy, some[i], derivatives.data() + offset[i]); });
       for (std::ptrdiff_t i = 0; i < some_count; ++i) {
         add_derivatives(some[i], derivatives.data() + offset[i], gradient, add);
       }

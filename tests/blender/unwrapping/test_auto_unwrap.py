@@ -315,6 +315,19 @@ def test_cuts_keep_out_of_sight_from_the_front():
     assert face[0] < 0.9 * face[1]
 
 
+@pytest.mark.parametrize("preset", ["PAINT", "BAKE"])
+@pytest.mark.parametrize("straighten", [True, False])
+def test_the_sides_of_a_domed_panel_are_made_straight(straighten, preset):
+    panel = add_grid(segments=10)
+    for vertex in panel.data.vertices:
+        vertex.co.z = 0.15 * np.cos(np.pi / 2 * vertex.co.x) * np.cos(np.pi / 2 * vertex.co.y)
+    unwrap(preset=preset, straighten=straighten)
+    uv = UvMap(panel)
+    off_axis = np.abs(np.remainder(uv.border_directions() + np.pi / 4, np.pi / 2) - np.pi / 4)
+    assert off_axis.max() < 1e-5 if straighten else off_axis.max() > 1e-3
+    assert uv.l2_stretch() < 1.01
+
+
 @pytest.mark.parametrize(("creases", "islands"), [(True, 3), (False, 1)])
 def test_a_cylinder_ends_at_its_rims(creases, islands):
     """A rectangle and two disks without stretch; to run on over the rims takes a cone at each vertex there."""
