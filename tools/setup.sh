@@ -69,14 +69,34 @@ set_up_clang_tidy() {
     command -v "$CLANG_TIDY" >/dev/null || install_packages "$CLANG_TIDY"
 }
 
+# Runs the command after $1, which says what it does; while it takes, a line says so every eight seconds.
+patiently() {
+    local what=$1 status=0 talker began=$SECONDS
+    shift
+    (
+        trap 'kill "$pause"; exit' TERM
+        while kill -0 $$; do
+            sleep 8 &
+            pause=$!
+            wait "$pause"
+            printf '   %s: %d s\n' "$what" $((SECONDS - began))
+        done
+    ) >&2 &
+    talker=$!
+    "$@" || status=$?
+    kill "$talker"
+    wait "$talker" 2>/dev/null || true
+    return "$status"
+}
+
 # Makes a virtual environment, once: $1 its folder, then what to install there.
 set_up_python() {
     local folder=$1
     shift
     if [ "$(cat "$folder/installed" 2>/dev/null)" != "$*" ]; then
         say "installing $* in $folder"
-        [ -x "$folder/bin/python" ] || "$python" -m venv "$folder"
-        "$folder/bin/pip" install -q "$@"
+        [ -x "$folder/bin/python" ] || patiently "making $folder" "$python" -m venv "$folder"
+        patiently "installing" "$folder/bin/pip" install -q "$@"
         printf '%s\n' "$*" >"$folder/installed"
     fi
 }
@@ -112,14 +132,27 @@ set_up_real_blender() {
     printf '%s\n' "$folder"
 }
 
-# Builds the wheel for our own Python into folder $2 with virtual environment $1, unless one is newer than all sources.
-build_wheel() {
-    local sources=("$root"/native "$root"/CMakeLists.txt "$root"/pyproject.toml "$root"/blender_manifest.toml)
-    if [ -d "$2" ] && [ -z "$(find "${sources[@]}" -newer "$2" -print -quit)" ]; then
+# A digest of all that a wheel is made of.
+digest_of_sources() {
+    local sources=(native CMakeLists.txt pyproject.toml blender_manifest.toml)
+    (cd "$root" && find "${sources[@]}" -type f ! -name '*.pyc' -print0 | LC_ALL=C sort -z | xargs -0 sha256sum) |
+        sha256sum | cut -d' ' -f1
+}
+
+# Builds the wheel into folder $1 with the command that follows, unless one of the same sources is there.
+build_wheel_by() {
+    local folder=$1 digest
+    shift
+    digest=$(digest_of_sources)
+    if [ "$(cat "$folder/sources" 2>/dev/null)" = "$digest" ]; then
+        say "taking the lsgp wheel in $folder, which is of these sources"
         return
     fi
     say "building the lsgp wheel"
-    rm -rf "$2"
-    "$1/bin/pip" wheel -q "$root" --no-deps -w "$2"
-    touch "$2"
+    rm -rf "$folder"
+    patiently "building" "$@" || return
+    printf '%s\n' "$digest" >"$folder/sources"
 }
+
+# Builds the wheel for our own Python into folder $2 with virtual environment $1, unless one of the same sources is there.
+build_wheel() { build_wheel_by "$2" "$1/bin/python" -m pip wheel -q "$root" --no-deps -w "$2"; }

@@ -61,8 +61,8 @@ def main() -> None:
         print(as_table(measure_shares(case, repetitions) for case in small))
     if "stretch" in arguments.tables:
         print(
-            "\nLow stretch beside Blender's Minimum Stretch with 10 iterations, on the same cut; sisters: largest "
-            "ratio of the two sides of a cut edge:\n"
+            "\nLow stretch beside Blender's Minimum Stretch with 10 iterations, on the same cut; mismatch: largest "
+            "relative difference in length of the two sides of a cut edge:\n"
         )
         print(as_table(measure_low_stretch(case, min(3, repetitions), blender) for case in dense_cases()))
 

@@ -20,36 +20,52 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
 import demo_picture
+from demo_table import ANGLES, AREA, AREA_P10, AREA_P90, FLIPPED, MISMATCH, OVERLAPPING, STRETCH, table
 
 ADDON = "bl_ext.user_default.cone_unwrap"
 CONE_GROUP = "uv_cones"
 BLENDER_METHODS = {"CONFORMAL": "Conformal", "ANGLE_BASED": "Angle Based", "MINIMUM_STRETCH": "Minimum Stretch"}
-COLUMNS = ("QC", "area", "p10", "p90", "L2", "sister ratio", "flips")
+COLUMNS = (ANGLES, AREA, AREA_P10, AREA_P90, STRETCH, MISMATCH, FLIPPED, OVERLAPPING)
 
 
 def main() -> None:
     arguments = parse_arguments()
     lsgp = install_extension(arguments.extension)
-    suzanne = add_suzanne(subdivisions=2)
-    run_in_edit_mode(suzanne, bpy.ops.mesh.cone_place)
-    run_in_edit_mode(suzanne, bpy.ops.uv.cone_unwrap)
+    suzanne = unwrapped_suzanne()
     surface, measured = measure(lsgp, suzanne)
     cones = marked_cones(suzanne)
 
-    rows = [("Unwrap from Cones", measured)]
+    rows = [("Unwrap from Cones", figures(measured, suzanne))]
     for method, label in BLENDER_METHODS.items():
         if method in bpy.ops.uv.unwrap.get_rna_type().properties["method"].enum_items:
+            say(f"unwrapping by Blender's {label}, through the same cuts")
             rows.append((f"Blender {label}", unwrapped_by_blender(lsgp, suzanne, measured.cut_edges, method)))
     islands = len(np.unique(measured.island))
     print(
         f"\nSuzanne, {len(surface.triangles):,} triangles, {islands} islands, {len(cones)} cones, "
         f"{len(measured.cut_edges)} cut edges, the same cuts for all (Blender {bpy.app.version_string})\n"
     )
-    print_table(rows)
+    print(table("method", COLUMNS, rows), end="\n\n", flush=True)
 
+    say("rendering the picture")
     demo_picture.add_checker(suzanne)
     bpy.ops.wm.save_as_mainfile(filepath=str(arguments.out / "suzanne.blend"))
     demo_picture.render_picture(suzanne, measured.cut_edges, cones, arguments.out / "suzanne.png", arguments.samples)
+
+
+def say(step: str) -> None:
+    """Print what is done next; tools/demo repeats it while it takes."""
+    print(f"   {step}", flush=True)
+
+
+def unwrapped_suzanne() -> bpy.types.Object:
+    """The model of the picture: subdivided Suzanne, with automatic cones marked, unwrapped from them."""
+    suzanne = add_suzanne(subdivisions=2)
+    say("placing cones")
+    run_in_edit_mode(suzanne, bpy.ops.mesh.cone_place)
+    say("unwrapping from them")
+    run_in_edit_mode(suzanne, bpy.ops.uv.cone_unwrap)
+    return suzanne
 
 
 def parse_arguments() -> argparse.Namespace:
@@ -119,13 +135,13 @@ def measure(lsgp, obj: bpy.types.Object):
     return surface, lsgp.measure_distortion(surface, corner_uv)
 
 
-def unwrapped_by_blender(lsgp, obj: bpy.types.Object, cut_edges: np.ndarray, method: str):
-    """What Blender makes of the mesh with seams on the given cuts, measured."""
+def unwrapped_by_blender(lsgp, obj: bpy.types.Object, cut_edges: np.ndarray, method: str) -> tuple[float, ...]:
+    """The figures of what Blender makes of the mesh with seams on the given cuts."""
     copy = add_copy_unwrapped_by_blender(obj, cut_edges, method)
-    measured = measure(lsgp, copy)[1]
+    found = figures(measure(lsgp, copy)[1], copy)
     bpy.data.meshes.remove(copy.data)
     bpy.context.view_layer.objects.active = obj
-    return measured
+    return found
 
 
 def add_copy_unwrapped_by_blender(obj: bpy.types.Object, cut_edges: np.ndarray, method: str) -> bpy.types.Object:
@@ -141,16 +157,21 @@ def add_copy_unwrapped_by_blender(obj: bpy.types.Object, cut_edges: np.ndarray, 
     return copy
 
 
-def print_table(rows: list[tuple[str, object]]) -> None:
-    """Per-triangle means; the sister ratio is the worst over all cut edges."""
-    print("| " + f"{'method':24}" + "".join(f"| {column:>12} " for column in COLUMNS) + "|")
-    print("|" + "-" * 25 + ("|" + "-" * 13 + ":") * len(COLUMNS) + "|")
-    for label, measured in rows:
-        d = measured.distortion
-        values = (d.quasi_conformal, d.area, d.area_p10, d.area_p90, d.l2_stretch, measured.seams.sister_ratio_max)
-        cells = [f"{value:.3f}" for value in values] + [str(len(measured.flipped))]
-        print(f"| {label:24}" + "".join(f"| {cell:>12} " for cell in cells) + "|")
-    print(flush=True)
+def figures(measured, obj: bpy.types.Object) -> tuple[float, ...]:
+    """Those of COLUMNS; distortions are means over the triangles, the mismatch is the worst of all cut edges."""
+    d, mismatch = measured.distortion, measured.seams.sister_ratio_max - 1
+    distortions = (d.quasi_conformal, d.area, d.area_p10, d.area_p90, d.l2_stretch)
+    return (*distortions, mismatch, len(measured.flipped), overlapping_faces(obj))
+
+
+def overlapping_faces(obj: bpy.types.Object) -> int:
+    """How many faces lie on others in the active UV layer, as Blender sees it."""
+    settings = bpy.context.scene.tool_settings
+    was_synchronized = settings.use_uv_select_sync
+    settings.use_uv_select_sync = True  # the faces of the mesh are selected
+    run_in_edit_mode(obj, bpy.ops.uv.select_overlap)
+    settings.use_uv_select_sync = was_synchronized
+    return sum(polygon.select for polygon in obj.data.polygons)
 
 
 def run_as_program(job: Callable[[], None]) -> None:

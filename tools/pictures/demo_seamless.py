@@ -21,10 +21,13 @@ import demo_closeup
 import demo_picture
 import demo_scene
 import demo_texture
+from demo_table import MISMATCH, STRETCH, Column, table
 
 MESHES = Path(__file__).resolve().parents[3] / "shared" / "meshes"
 TEXTURE_SIZE = 1024
-COLUMNS = ("L2", "sister ratio", "colours off", "at most")
+COLORS_OFF = Column(("colors off,", "of 255"), 0)
+COLORS_OFF_MOST = Column(("at most,", "of 255"), 0)
+COLUMNS = (STRETCH, MISMATCH, COLORS_OFF, COLORS_OFF_MOST)
 
 
 @dataclass(frozen=True)
@@ -48,6 +51,7 @@ def main() -> None:
     material = demo_closeup.texture_material(texture)
     rows, shots = [], []
     for shape in COLLECTION if MESHES.is_dir() else GENERATED:
+        demo_scene.say(f"unwrapping the {shape.name}")
         ours = add(shape, material)
         count = {"automatic": True} if shape.cones is None else {"automatic": False, "count": shape.cones}
         demo_scene.run_in_edit_mode(ours, bpy.ops.mesh.cone_place, **count)
@@ -59,9 +63,10 @@ def main() -> None:
         shots.append((ours, demo_closeup.whole(ours, view), "whole"))
         for label, obj in (("seamless", ours), ("blender", theirs)):
             uv = demo_picture.read_uv(obj.data)[demo_closeup.sister_loops(obj.data, measured.cut_edges)]
-            rows.append((f"{shape.name}, {label}", demo_scene.measure(lsgp, obj)[1], uv))
+            rows.append((f"{shape.name}, {label}", figures(demo_scene.measure(lsgp, obj)[1], uv, texture)))
             shots.append((obj, view, label))
-    print_table(rows, texture)
+    print("\n" + table("layout", COLUMNS, rows), end="\n\n", flush=True)
+    demo_scene.say("rendering the pictures")
     bpy.ops.wm.save_as_mainfile(filepath=str(arguments.out / "seamless.blend"))
     for number, (obj, view, label) in enumerate(shots):
         demo_closeup.render_view(obj, view, arguments.out / f"seamless-{number}-{label}.png", arguments.samples)
@@ -96,18 +101,13 @@ def add_fan() -> bpy.types.Object:
     return fan
 
 
-def print_table(rows: list[tuple[str, object, np.ndarray]], texture: np.ndarray) -> None:
-    """Stretch, the worst sister ratio, and by how much of 255 colours differ across cuts, on average and at most."""
+def figures(measured, uv: np.ndarray, texture: np.ndarray) -> tuple[float, ...]:
+    """Those of COLUMNS.  uv: both sides of every cut edge; colours are compared at nine points of each."""
     part = np.linspace(0, 1, 9)[:, None]
-    print("\n| " + f"{'layout':20}" + "".join(f"| {column:>12} " for column in COLUMNS) + "|")
-    print("|" + "-" * 21 + ("|" + "-" * 13 + ":") * len(COLUMNS) + "|")
-    for label, measured, uv in rows:
-        places = uv[:, :, :1] * (1 - part) + uv[:, :, 1:] * part
-        left, right = (demo_texture.bilinear(texture, side.reshape(-1, 2)) for side in places.transpose(1, 0, 2, 3))
-        off = 255 * np.abs(right - left).max(axis=1)
-        values = (measured.distortion.l2_stretch, measured.seams.sister_ratio_max, off.mean(), off.max())
-        print(f"| {label:20}" + "".join(f"| {value:12.3f} " for value in values) + "|")
-    print(flush=True)
+    places = uv[:, :, :1] * (1 - part) + uv[:, :, 1:] * part
+    left, right = (demo_texture.bilinear(texture, side.reshape(-1, 2)) for side in places.transpose(1, 0, 2, 3))
+    off = 255 * np.abs(right - left).max(axis=1)
+    return measured.distortion.l2_stretch, measured.seams.sister_ratio_max - 1, off.mean(), off.max()
 
 
 SHARP, ROUND = np.radians(35), np.pi

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The picture at the top of the README shows what Unwrap from Cones makes today."""
+
+import sys
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+sys.path.append(str(Path(__file__).resolve().parents[3] / "tools" / "pictures"))
+import demo_picture
+import demo_scene
+
+PICTURE = Path(__file__).resolve().parents[3] / "docs" / "images" / "suzanne.png"
+
+COLORFUL = 0.25  # of 1: the difference of the channels in lines and cones, greater than in paper and checker
+NEAR = 12  # pixels, along both axes: half as wide as a cone is drawn, and rounding
+
+
+def colorful_pixels() -> np.ndarray:
+    """(height, width) bool, row 0 at the bottom: the pixels of cuts and cones in the picture."""
+    image = bpy.data.images.load(str(PICTURE))
+    pixels = np.empty(4 * image.size[0] * image.size[1], np.float32)
+    image.pixels.foreach_get(pixels)
+    colors = pixels.reshape(image.size[1], image.size[0], 4)[..., :3]
+    return colors.max(axis=2) - colors.min(axis=2) > COLORFUL
+
+
+def drawn_cuts(obj: bpy.types.Object, shape: tuple[int, int]) -> np.ndarray:
+    """(n, 2) rows and columns of points, a pixel apart or less, on both sides of all cuts in the layout's half."""
+    import lsgp
+
+    board = demo_picture.layout_places(demo_picture.read_uv(obj.data))[:, [2, 0]]
+    _, measured = demo_scene.measure(lsgp, obj)
+    sides = demo_picture.Sides(obj.data)
+    edges = [side for edge in measured.cut_edges for side in sides.of_path(edge)]
+    start, end = board[np.array(edges)].transpose(1, 0, 2)
+    unit = shape[1] / 8  # pixels; the picture is 8 units wide and 4 high, its middle at the origin
+    points = start[:, None] + np.linspace(0, 1, 40)[:, None] * (end - start)[:, None]
+    return (points.reshape(-1, 2) * unit + np.array(shape) / 2).astype(int)
+
+
+def grown(mask: np.ndarray, by: int) -> np.ndarray:
+    """The mask and all that is nearer than `by` along both axes."""
+    padded = np.pad(mask.astype(np.int32), ((by + 1, by), (by + 1, by))).cumsum(0).cumsum(1)
+    side = 2 * by + 1
+    return padded[side:, side:] - padded[:-side, side:] - padded[side:, :-side] + padded[:-side, :-side] > 0
+
+
+def test_cuts_of_the_layout_are_where_the_readme_shows_them():
+    colorful = colorful_pixels()
+    cuts = drawn_cuts(demo_scene.unwrapped_suzanne(), colorful.shape)
+    # A fifth of the cuts have pale colors; of a stale picture hardly any place fits.
+    assert colorful[tuple(cuts.T)].mean() > 0.7, "the picture is stale: run tools/demo and copy build/demo/suzanne.png"
+    colorful[:, : colorful.shape[1] // 2] = False  # the model's half
+    near_cuts = np.zeros_like(colorful)
+    near_cuts[tuple(cuts.T)] = True
+    assert (colorful & grown(near_cuts, NEAR)).sum() > 0.95 * colorful.sum()
