@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every code block of README.md and docs/ does what it says.
 
-The blocks of a document run one after the other in one folder, which has model.obj, a bumpy ball, to begin with, and a
-folder library with a small one; Python blocks share their variables and find `positions` and `triangles` of the ball.
+The blocks of a document run one after the other in one folder, which has examples/model.obj to begin with, and a folder
+library with a small ball; Python blocks share their variables and find `positions` and `triangles` of the model.
 Blocks for Blender's Python are run by tests/blender/extension/test_documented_scripts.py; those that import a package
 that is not installed are left out, and the test of their document then counts as skipped.
 """
@@ -16,11 +16,13 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
+import lsgp
 import meshes
 import numpy as np
 import pytest
 from code_blocks import LEFT_OUT, ROOT, Block, blocks_of, documents
 
+MODEL = ROOT / "examples" / "model.obj"
 LANGUAGES = {"sh", "python", "text", "cpp", "cmake", "mermaid"}
 
 
@@ -41,11 +43,11 @@ def test_blocks_say_what_they_are_and_why_they_are_left_out(document):
 
 @pytest.mark.parametrize("document", documents(), ids=names(documents()))
 def test_blocks_run_and_print_what_is_shown(document, tmp_path):
-    ball = meshes.bumpy_sphere(3)
-    write_obj(tmp_path / "model.obj", ball)
+    shutil.copy(MODEL, tmp_path)
+    model = lsgp.read_mesh_file(MODEL)
     (tmp_path / "library").mkdir()
     write_obj(tmp_path / "library" / "small.obj", meshes.bumpy_sphere(1))
-    variables = {"__name__": "example", "positions": ball.positions, "triangles": ball.triangles}
+    variables = {"__name__": "example", "positions": model.mesh.positions, "triangles": model.triangulation.triangles}
     printed: str | None = ""
     missing: set[str] = set()
     for block in blocks_of(document):
