@@ -33,8 +33,11 @@ PARTS: tuple[tuple[Box, Box], ...] = (
 
 def boxes() -> set[Box]:
     """All boxes of all parts."""
-    ranges = ([range(low, high + 1) for low, high in zip(first, last, strict=True)] for first, last in PARTS)
-    return {box for part in ranges for box in product(*part)}
+    found: set[Box] = set()
+    for first, last in PARTS:
+        columns, rows, places = (range(low, high + 1) for low, high in zip(first, last, strict=True))
+        found |= set(product(columns, rows, places))
+    return found
 
 
 def cage() -> tuple[FloatArray, IntArray]:
@@ -54,7 +57,7 @@ def _side(box: Box, axis: int, step: int) -> list[Box]:
     """Corners of a box's side, counter-clockwise from outside."""
     first, second = (axis + 1) % 3, (axis + 2) % 3
     ring = ((0, 0), (1, 0), (1, 1), (0, 1)) if step > 0 else ((0, 0), (0, 1), (1, 1), (1, 0))
-    corners = []
+    corners: list[Box] = []
     for along_first, along_second in ring:
         corner = list(box)
         corner[axis] += step > 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -65,6 +65,20 @@ class Surface(EqualByContent, ShortRepr):
     borders: IndexArray | None = None
     directions: FloatArray | None = None
 
+    if TYPE_CHECKING:  # what may be passed, which becomes what the fields are
+
+        def __init__(
+            self,
+            positions: ArrayLike,
+            triangles: ArrayLike,
+            edges: ArrayLike | None = None,
+            seams: ArrayLike | None = None,
+            importance: ArrayLike | None = None,
+            cut_costs: ArrayLike | None = None,
+            borders: ArrayLike | None = None,
+            directions: ArrayLike | None = None,
+        ) -> None: ...
+
     def __post_init__(self) -> None:
         _set(self, "positions", arguments.float_rows("positions", self.positions, 3))
         _set(self, "triangles", arguments.index_rows("triangles", self.triangles, 3))
@@ -99,6 +113,10 @@ class Pins(EqualByContent, ShortRepr):
 
     corners: IndexArray
     uv: FloatArray
+
+    if TYPE_CHECKING:
+
+        def __init__(self, corners: ArrayLike, uv: ArrayLike) -> None: ...
 
     def __post_init__(self) -> None:
         _set(self, "corners", arguments.index_vector("corners", self.corners))
@@ -495,7 +513,7 @@ class Measurement(EqualByContent, ShortRepr):
 def parameterize(
     surface: Surface,
     cones: ArrayLike,
-    angles: Sequence[float | None] | None = None,
+    angles: Sequence[float | None] | FloatArray | None = None,
     options: Options = Options(),
     pins: Pins | None = None,
     progress: Progress | None = None,
@@ -532,7 +550,7 @@ class Solver:
     def parameterize(
         self,
         cones: ArrayLike,
-        angles: Sequence[float | None] | None = None,
+        angles: Sequence[float | None] | FloatArray | None = None,
         options: Options = Options(),
         pins: Pins | None = None,
         progress: Progress | None = None,
@@ -544,7 +562,7 @@ class Solver:
 
 def _call(
     cones: ArrayLike,
-    angles: Sequence[float | None] | None,
+    angles: Sequence[float | None] | FloatArray | None,
     options: Options,
     pins: Pins | None,
     progress: Progress | None,
@@ -639,7 +657,7 @@ def cut_costs(
 def prescribe_curvature(
     surface: Surface,
     cones: ArrayLike,
-    angles: Sequence[float | None] | None = None,
+    angles: Sequence[float | None] | FloatArray | None = None,
     options: Options = Options(),
     progress: Progress | None = None,
 ) -> Prescription:
@@ -652,7 +670,7 @@ def prescribe_curvature(
 def place_cones(
     surface: Surface,
     cones: ArrayLike = (),
-    angles: Sequence[float | None] | None = None,
+    angles: Sequence[float | None] | FloatArray | None = None,
     *,
     count: int | None = None,
     target: float = 1.05,
@@ -707,7 +725,7 @@ def place_cones(
 def cone_gains(
     surface: Surface,
     cones: ArrayLike = (),
-    angles: Sequence[float | None] | None = None,
+    angles: Sequence[float | None] | FloatArray | None = None,
     *,
     seams: SeamMode = "follow",
     progress: Progress | None = None,
@@ -746,7 +764,7 @@ def surface_arrays(surface: Surface) -> tuple[Any, ...]:
 
 
 def _given_cones(
-    cones: ArrayLike, angles: Sequence[float | None] | None
+    cones: ArrayLike, angles: Sequence[float | None] | FloatArray | None
 ) -> tuple[IndexArray, FloatArray, NDArray[np.bool_]]:
     """Vertices, angles, and which of them are given."""
     vertices = arguments.index_vector("cones", cones)
@@ -762,7 +780,7 @@ def _mirror_numbers(mirror: tuple[ArrayLike, ArrayLike]) -> list[float]:
 
 
 def cone_arrays(
-    cones: ArrayLike, angles: Sequence[float | None] | None, options: Options
+    cones: ArrayLike, angles: Sequence[float | None] | FloatArray | None, options: Options
 ) -> tuple[tuple[IndexArray, FloatArray, NDArray[np.bool_]], dict[str, Any]]:
     """The cones, and the options with the rule for the angles that are not given."""
     arguments.require_type("options", options, Options)

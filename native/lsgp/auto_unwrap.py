@@ -23,7 +23,7 @@ from .api import (
     parameterize,
     place_cones,
 )
-from .arguments import IndexArray
+from .arguments import FloatArray, IndexArray
 from .errors import Cancelled, Finding, InputError, LsgpError
 from .ledger import LedgerPart, build_ledger, surface_of_triangles
 from .packing import Pack, Packing, laid_out
@@ -66,7 +66,7 @@ def preset_options(preset: Preset) -> Options:
 def auto_unwrap(
     surface: Surface,
     cones: ArrayLike = (),
-    angles: Sequence[float | None] | None = None,
+    angles: Sequence[float | None] | FloatArray | None = None,
     *,
     preset: Preset = "paint",
     options: Options | None = None,
@@ -184,7 +184,7 @@ class CompletedCones:
 def complete_cones(
     surface: Surface,
     cones: ArrayLike,
-    angles: Sequence[float | None] | None,
+    angles: Sequence[float | None] | FloatArray | None,
     options: Options,
     count: int | None = None,
     progress: Progress | None = None,

@@ -72,7 +72,7 @@ class LedgerPart(EqualByContent, ShortRepr):
 def build_ledger(
     surface: Surface,
     cones: ArrayLike,
-    angles: Sequence[float | None] | None = None,
+    angles: Sequence[float | None] | FloatArray | None = None,
     options: Options | None = None,
     *,
     gets_cones: bool = False,
@@ -98,7 +98,7 @@ def build_ledger(
 def hold_complete(
     surface: Surface,
     cones: ArrayLike,
-    angles: Sequence[float | None],
+    angles: Sequence[float | None] | FloatArray,
     tentative: ArrayLike,
     options: Options | None = None,
 ) -> list[float | None]:

@@ -114,7 +114,7 @@ def extract_quads(
 def remesh_to_quads(
     surface: Surface,
     cones: ArrayLike = (),
-    angles: Sequence[float | None] | None = None,
+    angles: Sequence[float | None] | FloatArray | None = None,
     *,
     target: int | None = None,
     size: float | None = None,
@@ -215,7 +215,7 @@ def _side(surface: Surface, target: int | None, size: float | None) -> float | N
 def _wide_cones(
     surface: Surface,
     cones: ArrayLike,
-    angles: Sequence[float | None] | None,
+    angles: Sequence[float | None] | FloatArray | None,
     options: Options,
     count: int | None,
     progress: Progress | None,
