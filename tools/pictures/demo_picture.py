@@ -33,9 +33,15 @@ POSITIVE_CONE, NEGATIVE_CONE = (0.93, 0.33, 0.10), (0.10, 0.30, 0.85)
 def render_picture(
     model: bpy.types.Object, cut_edges: np.ndarray, cones: np.ndarray, path: Path, samples: int, width: int = WIDTH
 ) -> None:
-    """Build the scene round a copy of `model`, which has its checker, and write it to `path`.
+    """Write the picture of `model`, as `compose` has it, to `path`.  width: pixels; it is half as high."""
+    compose(model, cut_edges, cones)
+    render(path, samples, width, width // 2)
 
-    cut_edges: (c, 2) vertex pairs where the layout is open. cones: (k,) vertices. width: pixels; it is half as high.
+
+def compose(model: bpy.types.Object, cut_edges: np.ndarray, cones: np.ndarray) -> None:
+    """Build the scene round a copy of `model`, which has its checker.
+
+    cut_edges: (c, 2) vertex pairs where the layout is open. cones: (k,) vertices.
     """
     import lsgp  # comes with the extension
 
@@ -64,7 +70,6 @@ def render_picture(
         places = np.vstack([positions[cone], board[sides.places(cone, uv)]])
         add_balls(places, cone_colour(sides.curvature(cone, uv)))
     add_studio()
-    render(path, samples, width, width // 2)
 
 
 def add_checker(model: bpy.types.Object) -> None:
