@@ -35,7 +35,7 @@ void Cholesky<Scalar>::refactor(const Eigen::SparseMatrix<Scalar>& lower) {
   factor_->schur = Matrix(lower.bottomRightCorner(retained, retained)).template selfadjointView<Eigen::Lower>();
   if (eliminated == 0) return;
   factor_->rest.compute(lower.topLeftCorner(eliminated, eliminated));
-  if (factor_->rest.info() != Eigen::Success) throw_unsolvable();
+  if (factor_->rest.info() != Eigen::Success) throw SolverFailure(SolverFailure::Cause::not_positive_definite);
   if (retained == 0) return;
   factor_->coupling = lower.bottomLeftCorner(retained, eliminated);
   const Matrix across = Matrix(factor_->coupling).adjoint();

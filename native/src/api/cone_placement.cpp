@@ -12,6 +12,7 @@
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
 #include "pipeline/validation.hpp"
+#include "pipeline/wording.hpp"
 #include "placement/component_placement.hpp"
 #include "placement/directed_placement.hpp"
 #include "solvers/linear_algebra_counter.hpp"
@@ -94,7 +95,7 @@ void report_shared(Array<Index> vertices, std::vector<Finding>& findings) {
 }  // namespace
 
 Placement place_cones(const Surface& surface, const Cones& existing, const PlacementOptions& options,
-                      const Progress& progress) {
+                      const Progress& progress) try {
   require_valid(options);
   Placement out;
   const LinearAlgebraCounter counter;
@@ -153,9 +154,11 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
     angle[v].reset();  // listed
   }
   return out;
+} catch (const Error& error) {
+  throw in_words(error);
 }
 
-ConeGains cone_gains(const Surface& surface, const Cones& existing, SeamMode seams, const Progress& progress) {
+ConeGains cone_gains(const Surface& surface, const Cones& existing, SeamMode seams, const Progress& progress) try {
   constexpr double unlimited = std::numeric_limits<double>::infinity();
   ConeGains out;
   PlacementWork work({surface, existing, seams, MoreCones::some}, out.warnings, progress);
@@ -182,6 +185,8 @@ ConeGains cone_gains(const Surface& surface, const Cones& existing, SeamMode sea
   });
   out.present_l2 = std::sqrt(stretched_area / total_area);
   return out;
+} catch (const Error& error) {
+  throw in_words(error);
 }
 
 }  // namespace lsgp

@@ -13,6 +13,7 @@
 #include "cut/cut_cost.hpp"
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
+#include "pipeline/wording.hpp"
 
 namespace lsgp {
 
@@ -41,7 +42,7 @@ bool is_marked(const HalfedgeMesh& mesh, const ComponentTask& task) {
 }  // namespace
 
 VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& cones, const CreaseOptions& options,
-                           const Progress& progress) {
+                           const Progress& progress) try {
   if (!(options.angle > 0 && options.angle <= M_PI) || options.most_corners < 0) {
     throw Error(Code::wrong_parameter,
                 concat("Creases begin at an angle of ", options.angle, " radians and more than ", options.most_corners,
@@ -80,6 +81,8 @@ VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& con
   });
   monitor.advance(1);
   return Eigen::Map<VertexPairs>(edges.data(), static_cast<Eigen::Index>(edges.size() / 2), 2);
+} catch (const Error& error) {
+  throw in_words(error);
 }
 
 }  // namespace lsgp

@@ -12,6 +12,7 @@
 #include "mesh/geometry.hpp"
 #include "mesh/visibility.hpp"
 #include "pipeline/validation.hpp"
+#include "pipeline/wording.hpp"
 
 namespace lsgp {
 
@@ -86,7 +87,7 @@ void require_preferences(const Surface& surface, const CutPreferences& preferenc
 
 }  // namespace
 
-Eigen::VectorXd cut_costs(const Surface& surface, const CutPreferences& preferences, const Progress& progress) {
+Eigen::VectorXd cut_costs(const Surface& surface, const CutPreferences& preferences, const Progress& progress) try {
   constexpr double least_visible = 0.1;  // so that hidden cuts are short as well
   constexpr double decades = 2;          // between paint of 0 and of 1
   StageSeconds seconds;
@@ -113,6 +114,8 @@ Eigen::VectorXd cut_costs(const Surface& surface, const CutPreferences& preferen
   }
   monitor.advance(1);
   return out;
+} catch (const Error& error) {
+  throw in_words(error);
 }
 
 }  // namespace lsgp

@@ -9,6 +9,7 @@
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
 #include "pipeline/validation.hpp"
+#include "pipeline/wording.hpp"
 #include "quads/exact_grid.hpp"
 #include "quads/grid_edges.hpp"
 #include "quads/grid_vertices.hpp"
@@ -127,12 +128,14 @@ void extract(const Component& component, const Eigen::VectorXcd& uv, Collector& 
 
 }  // namespace
 
-void require_closed(const Surface& surface) {
+void require_closed(const Surface& surface) try {
   require_valid(surface);
   build_closed_topology(surface);
+} catch (const Error& error) {
+  throw in_words(error);
 }
 
-QuadMesh extract_quads(const Surface& surface, const CornerUv& corner_uv, double cell, const Progress& progress) {
+QuadMesh extract_quads(const Surface& surface, const CornerUv& corner_uv, double cell, const Progress& progress) try {
   StageSeconds seconds;
   ProgressMonitor monitor(progress, seconds);
   require_valid(surface, corner_uv, cell);
@@ -154,6 +157,8 @@ QuadMesh extract_quads(const Surface& surface, const CornerUv& corner_uv, double
   }
   monitor.advance(1);
   return out.collect();
+} catch (const Error& error) {
+  throw in_words(error);
 }
 
 }  // namespace lsgp

@@ -6,12 +6,13 @@
 #include "base/progress_monitor.hpp"
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
+#include "pipeline/wording.hpp"
 #include "prescription/component_system.hpp"
 
 namespace lsgp {
 
 CutPaths find_cuts(const Surface& surface, const std::vector<Index>& cones, const Options& options,
-                   const Progress& progress) {
+                   const Progress& progress) try {
   StageSeconds seconds;
   ProgressMonitor monitor(progress, seconds);
   const Cones automatic{cones, Array<std::optional<double>>(cones.size())};
@@ -34,6 +35,8 @@ CutPaths find_cuts(const Surface& surface, const std::vector<Index>& cones, cons
   monitor.advance(1);
   out.edges = Eigen::Map<VertexPairs>(edges.data(), static_cast<Eigen::Index>(edges.size() / 2), 2);
   return out;
+} catch (const Error& error) {
+  throw in_words(error);
 }
 
 }  // namespace lsgp

@@ -5,6 +5,7 @@
 
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
+#include "pipeline/wording.hpp"
 #include "prescription/curvature.hpp"
 
 namespace lsgp {
@@ -39,7 +40,8 @@ LedgerPart account(const Component& component, ComponentCones cones, const Optio
 
 }  // namespace
 
-std::vector<LedgerPart> build_ledger(const Surface& surface, const Cones& cones, const Options& options, LedgerOf of) {
+std::vector<LedgerPart> build_ledger(const Surface& surface, const Cones& cones, const Options& options,
+                                     LedgerOf of) try {
   const Work work =
       prepare_topology({surface, cones, options}, of == LedgerOf::map ? MoreCones::none : MoreCones::some);
   Array<Index> place_of(surface.positions.rows(), none);
@@ -50,6 +52,8 @@ std::vector<LedgerPart> build_ledger(const Surface& surface, const Cones& cones,
     out.push_back(account(work.topology.components[i], work.tasks[i].cones, options, place_of));
   }
   return out;
+} catch (const Error& error) {
+  throw in_words(error);
 }
 
 }  // namespace lsgp

@@ -8,6 +8,7 @@
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
 #include "pipeline/validation.hpp"
+#include "pipeline/wording.hpp"
 #include "plane/boundary_polygon.hpp"
 #include "unfold/distortion.hpp"
 
@@ -129,7 +130,7 @@ Array<char> find_open_edges(const HalfedgeMesh& mesh, const Eigen::VectorXcd& po
 }  // namespace
 
 Measurement measure_distortion(const Surface& surface, const CornerUv& corner_uv, const std::vector<Index>* cones,
-                               const Progress& progress) {
+                               const Progress& progress) try {
   StageSeconds seconds;
   ProgressMonitor monitor(progress, seconds);
   require_valid(surface);
@@ -199,6 +200,8 @@ Measurement measure_distortion(const Surface& surface, const CornerUv& corner_uv
   out.cut_edges = Eigen::Map<VertexPairs>(cut_edges.data(), static_cast<Eigen::Index>(cut_edges.size() / 2), 2);
   monitor.advance(1);
   return out;
+} catch (const Error& error) {
+  throw in_words(error);
 }
 
 }  // namespace lsgp

@@ -7,12 +7,13 @@
 #include "base/thread_team.hpp"
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
+#include "pipeline/wording.hpp"
 #include "prescription/component_system.hpp"
 
 namespace lsgp {
 
 Prescription prescribe_curvature(const Surface& surface, const Cones& cones, const Options& options,
-                                 const Progress& progress) {
+                                 const Progress& progress) try {
   Prescription out;
   const ThreadCount threads(options.threads);
   StageSeconds seconds;
@@ -50,6 +51,8 @@ Prescription prescribe_curvature(const Surface& surface, const Cones& cones, con
     out.cone_angles.push_back(angle[v]);
   }
   return out;
+} catch (const Error& error) {
+  throw in_words(error);
 }
 
 }  // namespace lsgp

@@ -14,6 +14,7 @@
 #include "lsgp/lsgp.hpp"
 #include "pipeline/component_map.hpp"
 #include "pipeline/components.hpp"
+#include "pipeline/wording.hpp"
 #include "prescription/component_system.hpp"
 #include "seamless/seamless.hpp"
 #include "solvers/linear_algebra_counter.hpp"
@@ -196,14 +197,19 @@ Solver::Solver(Surface surface) : surface_(std::move(surface)), kept_(std::make_
 Solver::~Solver() = default;
 Solver::Solver(Solver&&) noexcept = default;
 
-Result Solver::parameterize(const Cones& cones, const Options& options, const Pins& pins, const Progress& progress) {
+Result Solver::parameterize(const Cones& cones, const Options& options, const Pins& pins,
+                            const Progress& progress) try {
   const Turn turn(kept_->is_busy);
   return kept_->pipeline.run(surface_, cones, options, pins, progress);
+} catch (const Error& error) {
+  throw in_words(error);
 }
 
 Result parameterize(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
-                    const Progress& progress) {
+                    const Progress& progress) try {
   return Pipeline(false).run(surface, cones, options, pins, progress);
+} catch (const Error& error) {
+  throw in_words(error);
 }
 
 }  // namespace lsgp

@@ -2,12 +2,8 @@
 #include "base/memory.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <limits>
-
-#include "base/text.hpp"
-#include "lsgp/errors.hpp"
 
 #if defined(__linux__)
 #include <sys/mman.h>
@@ -147,14 +143,11 @@ double left_to_the_process() { return no_limit; }
 
 double memory_left() { return std::min({left_on_the_machine(), left_in_the_container(), left_to_the_process()}); }
 
-void require_memory(double bytes, const char* remedy) {
+void require_memory(double bytes, GrowsWith grows_with) {
   constexpr double small = 16 << 20;  // not worth a query
   if (bytes < small) return;
   const double left = memory_left();
-  if (bytes <= left) return;
-  constexpr double megabyte = 1e6;
-  throw Error(Code::out_of_memory, concat("This surface needs ", std::ceil(bytes / megabyte), " MB of memory, and ",
-                                          std::max(0.0, std::floor(left / megabyte)), " MB are left. ", remedy));
+  if (!(bytes <= left)) throw MemoryShortage(bytes, left, grows_with);
 }
 
 #if defined(__linux__)

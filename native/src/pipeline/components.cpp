@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "cut/parts.hpp"
 #include "pipeline/validation.hpp"
+#include "pipeline/wording.hpp"
 #include "plane/point_lattice.hpp"
 
 namespace lsgp {
@@ -340,7 +341,7 @@ void report_border_cones(const Component& component, const Array<Index>& border_
 
 Failure failure_of(const Component& component, const Error& error) {
   if (error.code() == Code::cancelled) throw error;
-  return {&component, Error(error.code(), error.what(), in_source(component, error.elements()))};
+  return {&component, Error(error.code(), in_words(error).what(), in_source(component, error.elements()))};
 }
 
 void report_skipped(const Array<Failure>& failures, std::vector<Finding>& findings) {

@@ -98,7 +98,7 @@ struct Failure {
   const Component* component;
   Error error;
 };
-// Rethrows CANCELLED.
+// Puts the message into words for artists. Rethrows CANCELLED.
 Failure failure_of(const Component& component, const Error& error);
 
 // Reports failures as COMPONENT_SKIPPED.

@@ -62,7 +62,8 @@ void NearestDistance::add(Index vertex) {
 void BatchPlacement::add(const Array<int>& sites) {
   const Eigen::Index before = static_cast<Eigen::Index>(state_.sites.size());
   const Eigen::Index added = static_cast<Eigen::Index>(sites.size());
-  require_matrix_memory(static_cast<double>(before + added), blocks * static_cast<double>(before + added), fewer_cones);
+  require_matrix_memory(static_cast<double>(before + added), blocks * static_cast<double>(before + added),
+                        GrowsWith::conditions);
   state_.sites.insert(state_.sites.end(), sites.begin(), sites.end());
   const Eigen::MatrixXd columns = problem_.kernel.entries(state_.sites, sites);
   state_.hessian.conservativeResize(before + added, before + added);

@@ -100,7 +100,8 @@ int PlacementProblem::cone_count(const Array<int>& sites) const {
 
 void ConeSet::add(const Array<int>& sites) {
   const Eigen::Index before = columns_.cols(), added = static_cast<Eigen::Index>(sites.size());
-  require_matrix_memory(static_cast<double>(columns_.rows()), 2.0 * static_cast<double>(before + added), fewer_cones);
+  require_matrix_memory(static_cast<double>(columns_.rows()), 2.0 * static_cast<double>(before + added),
+                        GrowsWith::conditions);
   columns_.conservativeResize(Eigen::NoChange, before + added);
   for (Eigen::Index i = 0; i < added; ++i) {
     columns_.col(before + i) = problem_->kernel.column(sites[static_cast<std::size_t>(i)]);

@@ -119,7 +119,7 @@ LogScale::LogScale(const HalfedgeMesh& mesh, const Geometry& geometry, const Bor
       weight_(geometry.vertex_area / geometry.total_area) {
   Array<char> held = border.held;
   if (border.balanced) held[ground(cones, factor)] = 1;
-  require_matrix_memory(mesh.vertex_count(), static_cast<double>(cones.size()), fewer_cones);
+  require_matrix_memory(mesh.vertex_count(), static_cast<double>(cones.size()), GrowsWith::conditions);
   laplace_ = factor != nullptr ? laplace_on_cut(*factor, held) : sparse_laplace(mesh, geometry, held);
   LaplaceSolver::Response response = laplace_->solve(border.curvature - geometry.angle_defect, cones);
   without_cones_ = std::move(response.to_right_side);
@@ -133,7 +133,7 @@ Eigen::MatrixXd LogScale::solve_columns(const Eigen::MatrixXd& right_sides) cons
 }
 
 void LogScale::add_cones(const Array<Index>& vertices) {
-  require_matrix_memory(mesh_.vertex_count(), 3.0 * static_cast<double>(vertices.size()), fewer_cones);
+  require_matrix_memory(mesh_.vertex_count(), 3.0 * static_cast<double>(vertices.size()), GrowsWith::conditions);
   Eigen::MatrixXd impulses = Eigen::MatrixXd::Zero(mesh_.vertex_count(), static_cast<Eigen::Index>(vertices.size()));
   for (std::size_t i = 0; i < vertices.size(); ++i) impulses(vertices[i], static_cast<Eigen::Index>(i)) = 1;
   const Eigen::MatrixXd added = laplace_->solve(impulses);

@@ -78,7 +78,7 @@ LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, const ComponentMap& ma
   integers_ = integers_of(start_);
 
   const double integers = static_cast<double>(integers_.size());
-  require_memory(lattice_blocks * sizeof(Complex) * integers * integers, fewer_cones);
+  require_memory(lattice_blocks * sizeof(Complex) * integers * integers, GrowsWith::conditions);
   if (const CutFactor* factor = system.stiff_factor(map.cones, map.cut_graph)) {
     response_ = response_on_cut(mesh_, cut_mesh_, *factor, reduction_);
   } else {

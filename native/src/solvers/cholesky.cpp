@@ -154,7 +154,8 @@ void Cholesky<Scalar>::Factor::run_task(const Eigen::SparseMatrix<Scalar>& lower
       kept[child].resize(0);
     }
     const bool by_blocks = has_blocks(front);
-    if (!(by_blocks ? eliminate_by_blocks(front, team) : kernels.eliminate(front))) throw_unsolvable();
+    if (!(by_blocks ? eliminate_by_blocks(front, team) : kernels.eliminate(front)))
+      throw SolverFailure(SolverFailure::Cause::not_positive_definite);
     if (i < last && plan.parent[i] != -1) {
       std::copy_n(front.update, update_size, work.stack.data() + base);
       update_end.push_back(base + update_size);

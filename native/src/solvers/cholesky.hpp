@@ -17,7 +17,7 @@ class Cholesky {
 
   // lower: the lower triangle with its diagonal.  retained: that many of the last rows are not eliminated; what the
   // elimination of the others makes of them is their Schur complement.  memory: of a factor that is no longer needed.
-  // Throws SOLVER_FAILED where the eliminated part is not positive definite.
+  // Throws SolverFailure where the eliminated part is not positive definite.
   explicit Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retained = 0, Vector memory = {});
   // Gives up the factor's memory; the factor cannot be used afterwards.
   Vector take_memory();

@@ -27,7 +27,7 @@ Front<Scalar> whole(const Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>&
 
 template <typename Scalar>
 DenseCholesky<Scalar>::DenseCholesky(Matrix lower) : factor_(std::move(lower)) {
-  if (!factorize()) throw_unsolvable();
+  if (!factorize()) throw SolverFailure(SolverFailure::Cause::not_positive_definite);
 }
 
 template <typename Scalar>

@@ -13,7 +13,7 @@ class DenseCholesky {
  public:
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 
-  // lower: its lower triangle is read. Throws SOLVER_FAILED where it is not positive definite.
+  // lower: its lower triangle is read. Throws SolverFailure where it is not positive definite.
   explicit DenseCholesky(Matrix lower);
   // None where it is not positive definite.
   static std::optional<DenseCholesky> factored(Matrix lower);

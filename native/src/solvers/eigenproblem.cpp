@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "lsgp/errors.hpp"
 #include "solvers/cholesky.hpp"
 #include "solvers/dense_cholesky.hpp"
+#include "solvers/failure.hpp"
 
 namespace lsgp {
 
@@ -107,11 +107,7 @@ Eigen::VectorXcd find_smallest(const Matrix& form, const Matrix& norm) {
   } catch (const std::runtime_error&) {     // thrown by Spectra if a small eigenproblem fails
   } catch (const std::invalid_argument&) {  // or if the start vector has norm zero
   }
-  if (!converged) {
-    throw Error(Code::solver_failed,
-                "The spectral unfolding did not converge: several maps are about equally conformal. "
-                "Use the Poisson unfolding.");
-  }
+  if (!converged) throw SolverFailure(SolverFailure::Cause::no_convergence);
   // For a singular form the inverse is so large in one direction that the Krylov basis loses the digits of the others;
   // two plain inverse iterations recover them.
   Eigen::VectorXd vector = solver.eigenvectors(1), image(2 * n);

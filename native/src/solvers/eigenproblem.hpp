@@ -9,7 +9,7 @@ namespace lsgp {
 
 // The eigenvector of  form x = lambda norm x  with the smallest lambda.
 // form: Hermitian positive semidefinite; norm: Hermitian positive definite; both lower triangles, (n, n).
-// Throws SOLVER_FAILED where the iteration does not converge.
+// Throws SolverFailure where the iteration does not converge.
 Eigen::VectorXcd smallest_eigenvector(const Eigen::SparseMatrix<std::complex<double>>& form,
                                       const Eigen::SparseMatrix<std::complex<double>>& norm);
 Eigen::VectorXcd smallest_eigenvector(const Eigen::MatrixXcd& form, const Eigen::MatrixXcd& norm);

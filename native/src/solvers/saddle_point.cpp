@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <complex>
 
-#include "lsgp/errors.hpp"
+#include "solvers/failure.hpp"
 #include "solvers/sparse_assembly.hpp"
 
 namespace lsgp {
@@ -41,11 +41,7 @@ Eigen::Matrix<Scalar, Eigen::Dynamic, 1> minimize_under(const Eigen::SparseMatri
   }
   // Quasi-definite: a factorization with a diagonal exists in any order (Vanderbei 1995).
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<Scalar>, Eigen::Lower> factor(assembly.build());
-  if (factor.info() != Eigen::Success) {
-    throw Error(Code::solver_failed,
-                "The boundary could not be straightened: some of its edges are too short. Clean the mesh (merge by "
-                "distance, dissolve degenerate faces) and try again.");
-  }
+  if (factor.info() != Eigen::Success) throw SolverFailure(SolverFailure::Cause::dependent_constraints);
 
   // Refinement against the equations without regularisation.
   Vector solution = Vector::Zero(n + r);

@@ -9,7 +9,7 @@ namespace lsgp {
 // Minimises  x^H form x / 2 - Re(x^H right_side)  subject to  rows x = values.
 // form: lower triangle, Hermitian positive definite, (n, n); rows: (r, n), dependent ones allowed where consistent.
 // Consistent equations are satisfied to rounding; the caller checks whether they may contradict each other.
-// Throws SOLVER_FAILED.
+// Throws SolverFailure.
 template <typename Scalar>
 Eigen::Matrix<Scalar, Eigen::Dynamic, 1> minimize_under(const Eigen::SparseMatrix<Scalar>& form,
                                                         const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& right_side,

@@ -37,7 +37,7 @@ Eigen::MatrixXcd SchurComplement::dirichlet_form() const {
   Array<Array<Use>> uses(unknown_count_);
   for_each_term([&](Index i, const Term& term) { uses[term.unknown].push_back({i, term.coefficient}); });
   // This form and its factor.
-  require_memory(2.0 * sizeof(Complex) * unknown_count_ * unknown_count_, fewer_cones);
+  require_memory(2.0 * sizeof(Complex) * unknown_count_ * unknown_count_, GrowsWith::conditions);
   Eigen::MatrixXcd out = Eigen::MatrixXcd::Zero(unknown_count_, unknown_count_);
   Eigen::VectorXd real(factor_.retained_count()), imaginary(factor_.retained_count());
   for (Index unknown = 0; unknown < unknown_count_; ++unknown) {
