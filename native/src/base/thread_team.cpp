@@ -55,9 +55,8 @@ void run_in_ranges(std::ptrdiff_t count, const std::function<void(std::ptrdiff_t
     work(0, count);
     return;
   }
-  team->run_each(static_cast<int>(ranges), [&](int i) {
-    work(i * range_size, i + 1 == ranges ? count : (i + 1) * range_size);
-  });
+  team->run_each(static_cast<int>(ranges),
+                 [&](int i) { work(i * range_size, i + 1 == ranges ? count : (i + 1) * range_size); });
 }
 
 ThreadTeam::ThreadTeam(int count) {

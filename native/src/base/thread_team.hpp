@@ -38,8 +38,8 @@ class ThreadCount {
 
 int thread_count();
 
-// That of the innermost ThreadCount of this thread, which starts it when it is first asked for and keeps it. Where there
-// is none, as on the other threads of a team: this thread alone.
+// That of the innermost ThreadCount of this thread, which starts it when it is first asked for and keeps it. Where
+// there is none, as on the other threads of a team: this thread alone.
 ThreadTeam& team_of_this_call();
 
 // Calls work(begin, end) for ranges that make up 0 to count - 1, in any order and at the same time; a short one is not
@@ -97,7 +97,7 @@ class ThreadTeam {
   bool visit(Lock& lock);
 
   const std::thread::id caller_ = std::this_thread::get_id();
-  std::mutex mutex_;  // of all that follows but the threads
+  std::mutex mutex_;                  // of all that follows but the threads
   std::condition_variable new_work_;  // for threads without any
   std::condition_variable changed_;   // for those that wait for others
   Forest* forest_ = nullptr;

@@ -66,8 +66,7 @@ Forest grow_forest(const HalfedgeMesh& mesh, const Geometry& geometry, const Arr
     if (forest.region[v] == none && !is_avoided[v]) add_source(v, forest.region_count++);
   }
   if (forest.region_count == 0) add_source(0, forest.region_count++);  // a closed surface with handles alone
-  grow_paths(
-      mesh, geometry, {std::move(starts)}, [&](Index v) { return !is_avoided[v]; }, forest.reached);
+  grow_paths(mesh, geometry, {std::move(starts)}, [&](Index v) { return !is_avoided[v]; }, forest.reached);
   for (Index v = 0; v < n; ++v) {
     const Index source = forest.reached[v].source;
     if (source != none) forest.region[v] = forest.region[source];

@@ -38,7 +38,7 @@ void grow_paths(const HalfedgeMesh& mesh, const Geometry& geometry, PathSearch s
                 Array<Reached>& reached) {
   constexpr double operations_a_vertex = 100;
   std::priority_queue<PathStarts::value_type, PathStarts, std::greater<>> queue(std::greater<>(),
-                                                                                    std::move(search.starts));
+                                                                                std::move(search.starts));
   while (!queue.empty()) {
     checkpoint(operations_a_vertex);
     const double distance = queue.top().first;

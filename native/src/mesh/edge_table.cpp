@@ -24,9 +24,8 @@ EdgeTable::EdgeTable(const Surface& surface, const Array<char>& skip) {
   const Index used = bucket_.back();
   entries_.resize(used);
   Array<Index> cursor(bucket_.begin(), bucket_.end() - 1);
-  for_each_halfedge([&](Index h, Index tail, Index head) {
-    entries_[cursor[std::min(tail, head)]++] = {std::max(tail, head), h};
-  });
+  for_each_halfedge(
+      [&](Index h, Index tail, Index head) { entries_[cursor[std::min(tail, head)]++] = {std::max(tail, head), h}; });
   edge_of_entry_.resize(used);
   edge_of_halfedge_.assign(3 * triangles.rows(), none);
   for (std::size_t v = 0; v + 1 < bucket_.size(); ++v) {

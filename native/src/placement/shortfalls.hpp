@@ -30,8 +30,8 @@ class Shortfalls {
   // The triangles of a component that should get symmetric cones but is not symmetric.
   void add_asymmetric(const Array<Index>& triangles);
 
-  // One NOT_SYMMETRIC for all of these, and PLACEMENT_NOT_REACHED: one for each reason why cones are missing, and one for
-  // the target.
+  // One NOT_SYMMETRIC for all of these, and PLACEMENT_NOT_REACHED: one for each reason why cones are missing, and one
+  // for the target.
   void report(std::vector<Finding>& findings) const;
 
  private:

@@ -22,7 +22,7 @@ constexpr double least_lowered = 0.4, most_lowered = 0.9, lowered_when_invalid =
 // Additions, of one cone for so many, and what one may leave of the stretch above 1 to come before lower targets.
 constexpr int most_additions = 3, least_added = 2, added_share = 6;
 constexpr double worthwhile = 0.7;
-constexpr double usual_l2 = 1.05;  // of a map that is not worth more than the stages
+constexpr double usual_l2 = 1.05;   // of a map that is not worth more than the stages
 constexpr double much_fewer = 0.8;  // cones, that prices are not worth
 constexpr double price_weights[] = {10, 1};
 

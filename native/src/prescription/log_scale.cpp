@@ -50,8 +50,8 @@ Eigen::MatrixXd gram_of_rows(const Eigen::MatrixXd& columns, const Eigen::Vector
   return sum;
 }
 
-// columns^T diag(weight) columns, lower triangle. The rows of each thread's parts and the order in which these are added
-// depend on the size alone.
+// columns^T diag(weight) columns, lower triangle. The rows of each thread's parts and the order in which these are
+// added depend on the size alone.
 Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& columns, const Eigen::VectorXd& weight) {
   constexpr Eigen::Index rows_of_part = 16384, parts_at_once = 8, rows_at_once = rows_of_part * parts_at_once;
   const Eigen::Index rows = columns.rows();

@@ -288,8 +288,8 @@ bool Cholesky<Scalar>::Factor::eliminate_front(int front, int width, Scalar* x, 
   return true;
 }
 
-// The fronts of a task. Returns what the rows below its last front change by: all rows below any of its fronts are among
-// them, or else columns of the task, and tasks that run at the same time have some of them in common.
+// The fronts of a task. Returns what the rows below its last front change by: all rows below any of its fronts are
+// among them, or else columns of the task, and tasks that run at the same time have some of them in common.
 template <typename Scalar>
 Array<Scalar> Cholesky<Scalar>::Factor::eliminate_task(int task, int width, Scalar* x) const {
   const int last = plan.task_begin[task + 1] - 1;

@@ -13,8 +13,8 @@ struct SolveBlock {
   Eigen::Index width;  // with padding, see Cholesky
 };
 
-// Calls work for all blocks, in any order and at the same time where there is memory for that.  rows: numbers of a right
-// side. Each block needs numbers of its own, rows times width of them, complex at most.
+// Calls work for all blocks, in any order and at the same time where there is memory for that.  rows: numbers of a
+// right side. Each block needs numbers of its own, rows times width of them, complex at most.
 void for_each_block(Eigen::Index sides, Eigen::Index rows, const std::function<void(const SolveBlock&)>& work);
 
 }  // namespace lsgp

@@ -282,8 +282,7 @@ void compact_islands(const OpenedSurface& surface, const SharedSquare& square, C
   const Eigen::VectorXcd position = square.scale * at_corners(map.cut_mesh, map.position);
   Compactor compactor(islands, graph, position, square);
   Array<Index> part = compactor.divide_all();
-  straighten_cuts(
-      islands, graph, [&](Index face, Index) { return !compactor.is_near_cut(face); }, part);
+  straighten_cuts(islands, graph, [&](Index face, Index) { return !compactor.is_near_cut(face); }, part);
   bool has_opened = false;
   for (const FaceGraph::Link& link : graph.links) {
     if (part[link.faces[0]] == part[link.faces[1]]) continue;

@@ -15,12 +15,12 @@ Eigen::MatrixXd LaplaceSolver::solve(const Eigen::MatrixXd& right_sides) const {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(right_sides.rows(), right_sides.cols());
   for_each_block(out.cols(), row_count_, [&](const SolveBlock& block) {
     Rows x = Rows::Zero(row_count_, block.width);
-    for_each_row([&](Index v, Index row) {
-      x.row(row).head(block.used) = right_sides.row(v).segment(block.begin, block.used);
-    });
+    for_each_row(
+        [&](Index v, Index row) { x.row(row).head(block.used) = right_sides.row(v).segment(block.begin, block.used); });
     eliminate(x);
     substitute(x);
-    for_each_row([&](Index v, Index row) { out.row(v).segment(block.begin, block.used) = x.row(row).head(block.used); });
+    for_each_row(
+        [&](Index v, Index row) { out.row(v).segment(block.begin, block.used) = x.row(row).head(block.used); });
   });
   return out;
 }

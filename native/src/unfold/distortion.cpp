@@ -171,7 +171,7 @@ Eigen::VectorXd angle_sums(const HalfedgeMesh& mesh, const CornerPositions& posi
   }
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(mesh.vertex_count());
   const Eigen::VectorXcd at_vertex = position(mesh.outgoing);  // in one of its corners
-  constexpr int parted = 1, sweeps = 8, turned = 64;  // bits; the first two for each corner
+  constexpr int parted = 1, sweeps = 8, turned = 64;           // bits; the first two for each corner
   Array<char> seen(mesh.triangle_count());
   for_each_at_once(mesh.triangle_count(), [&](Index f) {
     const Complex z[]{position[3 * f], position[3 * f + 1], position[3 * f + 2]};
