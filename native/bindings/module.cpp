@@ -325,6 +325,14 @@ py::dict to_dict(const lsgp::Result& result) {
   return out;
 }
 
+// Corners and their positions.
+using PinArrays = std::tuple<IndexArray, FloatArray>;
+
+lsgp::Pins to_pins(const PinArrays& arrays) {
+  const auto& [corners, uv] = arrays;
+  return {to_vector(corners), to_matrix<lsgp::CornerUv>(uv)};
+}
+
 // What the verb and the method of the solver take after the surface.
 struct Call {
   lsgp::Cones cones;
@@ -332,25 +340,24 @@ struct Call {
   lsgp::Pins pins;
   lsgp::Progress progress;
 
-  Call(const ConeArrays& cones, const py::dict& option_values, const IndexArray& pinned_corners,
-       const FloatArray& pinned_uv, const py::object& progress)
+  Call(const ConeArrays& cones, const py::dict& option_values, const PinArrays& pins, const py::object& progress)
       : cones(to_cones(cones)),
         options(to_options(option_values)),
-        pins{to_vector(pinned_corners), to_matrix<lsgp::CornerUv>(pinned_uv)},
+        pins(to_pins(pins)),
         progress(to_progress(progress)) {}
 };
 
 py::dict parameterize(const SurfaceArrays& surface_arrays, const ConeArrays& cones, const py::dict& option_values,
-                      const IndexArray& pinned_corners, const FloatArray& pinned_uv, const py::object& progress) {
+                      const PinArrays& pins, const py::object& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
-  const Call call(cones, option_values, pinned_corners, pinned_uv, progress);
+  const Call call(cones, option_values, pins, progress);
   return to_dict(
       without_gil([&] { return lsgp::parameterize(surface, call.cones, call.options, call.pins, call.progress); }));
 }
 
 py::dict parameterize_again(lsgp::Solver& solver, const ConeArrays& cones, const py::dict& option_values,
-                            const IndexArray& pinned_corners, const FloatArray& pinned_uv, const py::object& progress) {
-  const Call call(cones, option_values, pinned_corners, pinned_uv, progress);
+                            const PinArrays& pins, const py::object& progress) {
+  const Call call(cones, option_values, pins, progress);
   return to_dict(without_gil([&] { return solver.parameterize(call.cones, call.options, call.pins, call.progress); }));
 }
 
@@ -369,23 +376,35 @@ py::dict find_cuts(const SurfaceArrays& surface_arrays, const IndexArray& cones,
   return out;
 }
 
-py::array_t<double> cut_costs(const SurfaceArrays& surface_arrays, const std::optional<std::array<double, 3>>& front,
-                              bool creases, const IndexArray& sharp, const FloatArray& paint,
-                              const py::object& progress) {
-  const lsgp::Surface surface = to_surface(surface_arrays);
+// Front, creases, sharp edges and paint.
+using CutPreferenceArrays = std::tuple<std::optional<std::array<double, 3>>, bool, IndexArray, FloatArray>;
+
+lsgp::CutPreferences to_cut_preferences(const CutPreferenceArrays& arrays) {
+  const auto& [front, creases, sharp, paint] = arrays;
   lsgp::CutPreferences preferences;
   if (front) preferences.front = Eigen::Vector3d((*front)[0], (*front)[1], (*front)[2]);
   preferences.creases = creases;
   preferences.sharp = to_matrix<lsgp::VertexPairs>(sharp);
   preferences.paint = to_vector_of_numbers(paint);
+  return preferences;
+}
+
+py::array_t<double> cut_costs(const SurfaceArrays& surface_arrays, const CutPreferenceArrays& preference_arrays,
+                              const py::object& progress) {
+  const lsgp::Surface surface = to_surface(surface_arrays);
+  const lsgp::CutPreferences preferences = to_cut_preferences(preference_arrays);
   const lsgp::Progress tell = to_progress(progress);
   return to_array(without_gil([&] { return lsgp::cut_costs(surface, preferences, tell); }));
 }
 
-py::array_t<Index> crease_borders(const SurfaceArrays& surface_arrays, const IndexArray& cones, double angle,
-                                  const IndexArray& sharp, Index most_corners, const py::object& progress) {
+// Angle, sharp edges and the number of corners.
+using CreaseOptionArrays = std::tuple<double, IndexArray, Index>;
+
+py::array_t<Index> crease_borders(const SurfaceArrays& surface_arrays, const IndexArray& cones,
+                                  const CreaseOptionArrays& option_arrays, const py::object& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
   const std::vector<Index> marked = to_vector(cones);
+  const auto& [angle, sharp, most_corners] = option_arrays;
   const lsgp::CreaseOptions options{angle, to_matrix<lsgp::VertexPairs>(sharp), most_corners};
   const lsgp::Progress tell = to_progress(progress);
   return to_array(without_gil([&] { return lsgp::crease_borders(surface, marked, options, tell); }));
@@ -540,16 +559,13 @@ PYBIND11_MODULE(_lsgp, module) {
     }
   });
   using py::literals::operator""_a;
-  module.def("parameterize", &parameterize, "surface"_a, "cones"_a, "options"_a, "pinned_corners"_a, "pinned_uv"_a,
-             "progress"_a);
+  module.def("parameterize", &parameterize, "surface"_a, "cones"_a, "options"_a, "pins"_a, "progress"_a);
   py::class_<lsgp::Solver>(module, "Solver")
       .def(py::init([](const SurfaceArrays& surface) { return lsgp::Solver(to_surface(surface)); }), "surface"_a)
-      .def("parameterize", &parameterize_again, "cones"_a, "options"_a, "pinned_corners"_a, "pinned_uv"_a,
-           "progress"_a);
+      .def("parameterize", &parameterize_again, "cones"_a, "options"_a, "pins"_a, "progress"_a);
   module.def("find_cuts", &find_cuts, "surface"_a, "cones"_a, "options"_a, "progress"_a);
-  module.def("crease_borders", &crease_borders, "surface"_a, "cones"_a, "angle"_a, "sharp"_a, "most_corners"_a,
-             "progress"_a);
-  module.def("cut_costs", &cut_costs, "surface"_a, "front"_a, "creases"_a, "sharp"_a, "paint"_a, "progress"_a);
+  module.def("crease_borders", &crease_borders, "surface"_a, "cones"_a, "options"_a, "progress"_a);
+  module.def("cut_costs", &cut_costs, "surface"_a, "preferences"_a, "progress"_a);
   module.def("prescribe_curvature", &prescribe_curvature, "surface"_a, "cones"_a, "options"_a, "progress"_a);
   module.def("build_ledger", &build_ledger, "surface"_a, "cones"_a, "options"_a, "gets_cones"_a);
   module.def("place_cones", &place_cones, "surface"_a, "cones"_a, "options"_a, "progress"_a);

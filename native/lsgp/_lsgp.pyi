@@ -14,14 +14,20 @@ _Surface = tuple[_Floats, _Indices, _Indices | None, _Indices, _Floats, _Floats,
 """Positions, triangles, edges, seams, importance, costs of cuts along the edges, borders, and directions."""
 _Cones = tuple[_Indices, _Floats, _Flags]
 """Vertices, angles, and which of them are given."""
+_Pins = tuple[_Indices, _Floats]
+"""Corners and their positions."""
+_CreaseOptions = tuple[float, _Indices, int]
+"""Angle, sharp edges and the number of corners."""
+_CutPreferences = tuple[tuple[float, float, float] | None, bool, _Indices, _Floats]
+"""Front, creases, sharp edges and paint."""
+_Progress = Callable[[float], bool | None] | None
 
 def parameterize(
     surface: _Surface,
     cones: _Cones,
     options: dict[str, Any],
-    pinned_corners: _Indices,
-    pinned_uv: _Floats,
-    progress: Callable[[float], bool | None] | None,
+    pins: _Pins,
+    progress: _Progress,
 ) -> dict[str, Any]: ...
 
 class Solver:
@@ -33,38 +39,32 @@ class Solver:
         self,
         cones: _Cones,
         options: dict[str, Any],
-        pinned_corners: _Indices,
-        pinned_uv: _Floats,
-        progress: Callable[[float], bool | None] | None,
+        pins: _Pins,
+        progress: _Progress,
     ) -> dict[str, Any]: ...
 
 def find_cuts(
     surface: _Surface,
     cones: _Indices,
     options: dict[str, Any],
-    progress: Callable[[float], bool | None] | None,
+    progress: _Progress,
 ) -> dict[str, Any]: ...
 def crease_borders(
     surface: _Surface,
     cones: _Indices,
-    angle: float,
-    sharp: _Indices,
-    most_corners: int,
-    progress: Callable[[float], bool | None] | None,
+    options: _CreaseOptions,
+    progress: _Progress,
 ) -> _Indices: ...
 def cut_costs(
     surface: _Surface,
-    front: tuple[float, float, float] | None,
-    creases: bool,
-    sharp: _Indices,
-    paint: _Floats,
-    progress: Callable[[float], bool | None] | None,
+    preferences: _CutPreferences,
+    progress: _Progress,
 ) -> _Floats: ...
 def prescribe_curvature(
     surface: _Surface,
     cones: _Cones,
     options: dict[str, Any],
-    progress: Callable[[float], bool | None] | None,
+    progress: _Progress,
 ) -> dict[str, Any]: ...
 def build_ledger(
     surface: _Surface,
@@ -76,24 +76,24 @@ def place_cones(
     surface: _Surface,
     cones: _Cones,
     options: dict[str, Any],
-    progress: Callable[[float], bool | None] | None,
+    progress: _Progress,
 ) -> dict[str, Any]: ...
 def cone_gains(
     surface: _Surface,
     cones: _Cones,
     seam_mode: str,
-    progress: Callable[[float], bool | None] | None,
+    progress: _Progress,
 ) -> dict[str, Any]: ...
 def measure_distortion(
     surface: _Surface,
     corner_uv: _Floats,
     cones: _Indices | None,
-    progress: Callable[[float], bool | None] | None,
+    progress: _Progress,
 ) -> dict[str, Any]: ...
 def require_closed(surface: _Surface) -> None: ...
 def extract_quads(
     surface: _Surface,
     corner_uv: _Floats,
     cell: float,
-    progress: Callable[[float], bool | None] | None,
+    progress: _Progress,
 ) -> dict[str, Any]: ...

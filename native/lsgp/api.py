@@ -570,8 +570,8 @@ def _call(
     arguments.require_callable(progress)
     if not (pins is None or isinstance(pins, Pins)):
         arguments.refuse("pins", pins, "pass Pins, or None")
-    corners, uv = (np.empty(0, np.int32), np.empty((0, 2))) if pins is None else (pins.corners, pins.uv)
-    return *cone_arrays(cones, angles, options), corners, uv, progress
+    pin_arrays = (np.empty(0, np.int32), np.empty((0, 2))) if pins is None else (pins.corners, pins.uv)
+    return *cone_arrays(cones, angles, options), pin_arrays, progress
 
 
 def _to_result(out: dict[str, Any], borders: IndexArray) -> Result:
@@ -623,7 +623,7 @@ def crease_borders(
     start = arguments.positive("angle", angle, "pass an angle above 0, at most pi")
     corners = arguments.whole_number("most_corners", most_corners, 0, "pass a whole number from 0")
     vertices = arguments.index_vector("cones", cones)
-    return _lsgp.crease_borders(surface_arrays(surface), vertices, start, marked, corners, progress)
+    return _lsgp.crease_borders(surface_arrays(surface), vertices, (start, marked, corners), progress)
 
 
 def cut_costs(
@@ -651,7 +651,7 @@ def cut_costs(
     marked = np.empty((0, 2), np.int32) if sharp is None else arguments.index_rows("sharp", sharp, 2)
     painted = np.empty(0) if paint is None else arguments.floats_of_shape("paint", paint, (len(surface.positions),))
     bends = arguments.flag("creases", creases)
-    return _lsgp.cut_costs(arrays, direction, bends, marked, painted, progress)
+    return _lsgp.cut_costs(arrays, (direction, bends, marked, painted), progress)
 
 
 def prescribe_curvature(

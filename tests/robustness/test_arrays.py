@@ -220,7 +220,8 @@ def _parameterize(arguments: dict[str, object]) -> dict[str, object]:
     return _lsgp.parameterize(
         surface=surface_arrays,
         cones=tuple(arguments[name] for name in ("cones", "angles", "has_angle")),
-        **{name: arguments[name] for name in ("options", "pinned_corners", "pinned_uv")},
+        options=arguments["options"],
+        pins=tuple(arguments[name] for name in ("pinned_corners", "pinned_uv")),
         progress=None,
     )
 

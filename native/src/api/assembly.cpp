@@ -8,6 +8,7 @@
 #include "api/divided_seams.hpp"
 #include "api/doubled_triangles.hpp"
 #include "api/report_defects.hpp"
+#include "api/vertex_pairs.hpp"
 #include "base/text.hpp"
 #include "base/thread_team.hpp"
 #include "plane/overlaps.hpp"
@@ -131,7 +132,7 @@ void Assembly::finish(const Cones& cones, const Array<std::pair<Index, Index>>& 
   report_flat_cones();
   if (directed_ > 0) result_.direction_error = misalignment_ / directed_;
   added_cuts_.report(result_.warnings);
-  result_.cut_edges = Eigen::Map<VertexPairs>(cut_edges_.data(), static_cast<Eigen::Index>(cut_edges_.size() / 2), 2);
+  result_.cut_edges = to_vertex_pairs(cut_edges_);
   for (const Index v : cones.vertices) {
     if (std::isnan(cone_angle_[v])) continue;
     result_.cones.push_back(v);
@@ -220,11 +221,7 @@ void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
   Array<char> open = open_seams(mesh);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) open[h] = open[h] || map.cut_graph.is_cut[h];
   solved.part_count = label_parts(mesh, open, solved.part);
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    if (!open[h] || mesh.twin[h] < h) continue;
-    cut_edges_.push_back(component.source_vertex[mesh.origin(h)]);
-    cut_edges_.push_back(component.source_vertex[mesh.target(h)]);
-  }
+  append_ends(component, open, cut_edges_);
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
     element(result_.island, component.source_triangle[f]) = island_count_ + solved.part[f];
   }

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "api/vertex_pairs.hpp"
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
 #include "base/text.hpp"
@@ -63,24 +64,17 @@ VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& con
     if (!component.orientable || is_marked(mesh, work.tasks[i])) return;
     const Geometry geometry = require_geometry(component, findings);
     const Eigen::VectorXd bend = bends(mesh);
-    const auto source_edge = [&](Index h) {
-      return std::pair(component.source_vertex[mesh.origin(h)], component.source_vertex[mesh.target(h)]);
-    };
     Array<char> crease(mesh.halfedge_count(), 0);
     for (Index h = 0; h < mesh.halfedge_count(); ++h) {
       if (!may_cut(mesh, h)) continue;
-      const auto [a, b] = source_edge(h);
+      const Index a = component.source_vertex[mesh.origin(h)], b = component.source_vertex[mesh.target(h)];
       crease[h] = bend[h] >= options.angle || (!sharp.empty() && sharp.count(std::minmax(a, b)) > 0);
     }
     const Array<char> open = find_crease_borders(mesh, geometry, crease, bend, options.most_corners);
-    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-      if (!open[h] || h > mesh.twin[h]) continue;
-      const auto [a, b] = source_edge(h);
-      edges.insert(edges.end(), {a, b});
-    }
+    append_ends(component, open, edges);
   });
   monitor.advance(1);
-  return Eigen::Map<VertexPairs>(edges.data(), static_cast<Eigen::Index>(edges.size() / 2), 2);
+  return to_vertex_pairs(edges);
 } catch (const Error& error) {
   throw in_words(error);
 }

@@ -2,6 +2,7 @@
 #include <optional>
 #include <utility>
 
+#include "api/vertex_pairs.hpp"
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
 #include "lsgp/lsgp.hpp"
@@ -33,7 +34,7 @@ CutPaths find_cuts(const Surface& surface, const std::vector<Index>& cones, cons
     }
   });
   monitor.advance(1);
-  out.edges = Eigen::Map<VertexPairs>(edges.data(), static_cast<Eigen::Index>(edges.size() / 2), 2);
+  out.edges = to_vertex_pairs(edges);
   return out;
 } catch (const Error& error) {
   throw in_words(error);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "api/vertex_pairs.hpp"
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
 #include "base/text.hpp"
@@ -109,7 +110,7 @@ Topology build_two_sided(Part& part, const CornerUv& uv, Array<Index>& cut_edges
     }
     if (seams.size() == before) continue;
     if (wanted == Between::different) cut_edges.insert(cut_edges.end(), seams.begin(), seams.end());
-    part.surface.seams = Eigen::Map<VertexPairs>(seams.data(), static_cast<Eigen::Index>(seams.size() / 2), 2);
+    part.surface.seams = to_vertex_pairs(seams);
     topology = build_topology(part.surface, open, ignored);
   }
   return topology;
@@ -188,16 +189,12 @@ Measurement measure_distortion(const Surface& surface, const CornerUv& corner_uv
     }
     const CutGraph graph = trace_cuts(mesh, is_node, is_cut);
     out.seams = worse(out.seams, measure_seams(mesh, graph, position, nullptr));
-    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-      if (!is_cut[h] || mesh.twin[h] < h) continue;
-      cut_edges.push_back(component.source_vertex[mesh.origin(h)]);
-      cut_edges.push_back(component.source_vertex[mesh.target(h)]);
-    }
+    append_ends(component, is_cut, cut_edges);
   }
   for (const auto& [f, original] : topology.duplicates)
     element(out.island, part.triangles[f]) = element(out.island, part.triangles[original]);
   std::sort(out.flipped.begin(), out.flipped.end());
-  out.cut_edges = Eigen::Map<VertexPairs>(cut_edges.data(), static_cast<Eigen::Index>(cut_edges.size() / 2), 2);
+  out.cut_edges = to_vertex_pairs(cut_edges);
   monitor.advance(1);
   return out;
 } catch (const Error& error) {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "api/vertex_pairs.hpp"
 #include "lsgp/lsgp.hpp"
 
 namespace lsgp {
@@ -17,14 +18,11 @@ Surface surface_of(const HalfedgeMesh& mesh) {
     if (mesh.twin[h] > h && mesh.seam[h]) seams.insert(seams.end(), {mesh.origin(h), mesh.target(h)});
     if (mesh.twin[h] < h && mesh.cuttable[h]) edges.insert(edges.end(), {mesh.origin(h), mesh.target(h)});
   }
-  const auto pairs = [](Array<Index>& ends) {
-    return VertexPairs(Eigen::Map<VertexPairs>(ends.data(), static_cast<Eigen::Index>(ends.size() / 2), 2));
-  };
   Surface surface;
   surface.positions = mesh.positions;
   surface.triangles = mesh.triangles;
-  surface.seams = pairs(seams);
-  surface.edges = pairs(edges);
+  surface.seams = to_vertex_pairs(seams);
+  surface.edges = to_vertex_pairs(edges);
   return surface;
 }
 
