@@ -4,17 +4,13 @@
 import bpy
 
 from ..core import redraw
-from ..core.identifiers import EXTENSION
+from ..core.preferences import preferences
 from . import cache
 
 CUT_COLORS = ("#d6336c", "#2b9348", "#7b4fc9", "#e3b505", "#12a0a0", "#c23fb5", "#87991a", "#3c9be0", "#c2703d")
 # Size of the active cone relative to the others.
 ACTIVE_SIZE = 1.5
 CUT_NAMES = [f"cut_{number}" for number in range(1, len(CUT_COLORS) + 1)]
-
-
-def overlay_look(context: bpy.types.Context) -> "OverlayLook":
-    return context.preferences.addons[EXTENSION].preferences
 
 
 def _redraw(_preferences: bpy.types.AddonPreferences, _context: bpy.types.Context) -> None:
@@ -76,3 +72,16 @@ class OverlayLook(_CutColors):
     def cut_colors(self) -> list[bpy.types.bpy_prop_array]:
         """The colors that cuts take in turn."""
         return [getattr(self, name) for name in CUT_NAMES]
+
+
+class _DefaultLook(OverlayLook):
+    """The defaults of the properties as plain values."""
+
+    def __init__(self) -> None:
+        for properties in (OverlayLook, _CutColors):
+            for name, deferred in properties.__annotations__.items():
+                setattr(self, name, deferred.keywords["default"])
+
+
+def overlay_look() -> OverlayLook:
+    return preferences() or _DefaultLook()

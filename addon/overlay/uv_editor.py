@@ -20,7 +20,7 @@ def draw() -> None:
     chosen, space = settings(context), context.space_data
     if not (chosen.show and space.show_uvedit and space.overlay.show_overlays):
         return
-    look = overlay_look(context)
+    look = overlay_look()
     gpu.state.blend_set("ALPHA")
     with gpu.matrix.push_pop():
         _load_layout_space(context.region)

@@ -61,7 +61,7 @@ def draw_in_scene() -> None:
                 for obj in shown_objects(context):
                     with gpu.matrix.push_pop():
                         gpu.matrix.multiply_matrix(obj.matrix_world)
-                        draw(obj, chosen, overlay_look(context))
+                        draw(obj, chosen, overlay_look())
     finally:
         gpu.state.depth_test_set("NONE")
         gpu.state.depth_mask_set(False)
@@ -171,7 +171,7 @@ def _draw_angles(context: bpy.types.Context, obj: bpy.types.Object) -> None:
     pixels, seen = _seen.get(obj.data.session_uid, (None, None))
     if pixels is None:
         return
-    content, look, system = cache.entry(obj).content, overlay_look(context), context.preferences.system
+    content, look, system = cache.entry(obj).content, overlay_look(), context.preferences.system
     labels.draw_labels(
         [labels.label(cone) for cone, show in zip(content.cones, seen, strict=True) if show],
         pixels[seen],
@@ -183,7 +183,7 @@ def _draw_angles(context: bpy.types.Context, obj: bpy.types.Object) -> None:
 
 def _draw_scale(context: bpy.types.Context, measure: str) -> None:
     """A bar with the colors of the scale at the bottom left, and what they mean."""
-    scale, look = SCALES[measure], overlay_look(context)
+    scale, look = SCALES[measure], overlay_look()
     pixel = context.preferences.system.ui_scale
     size = round(look.text_size * pixel)
     left = labels.BAR_MARGIN * pixel + sum(

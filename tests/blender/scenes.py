@@ -152,6 +152,17 @@ def add_cone_cube(name: str = "Cube", cuts: int = 3) -> bpy.types.Object:
     return cube
 
 
+def joined(first: bpy.types.Object, second: bpy.types.Object) -> bpy.types.Object:
+    """The first object, with the second one's mesh as a part beside its own."""
+    second.location.x = 5
+    bpy.ops.object.select_all(action="DESELECT")
+    for obj in (first, second):
+        obj.select_set(True)
+    bpy.context.view_layer.objects.active = first
+    bpy.ops.object.join()
+    return first
+
+
 def marked(obj: bpy.types.Object, group: str = GROUP) -> list[int]:
     """Vertices with a weight in the group, read from a copy of the mesh in any mode."""
     if group not in obj.vertex_groups:

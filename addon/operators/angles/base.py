@@ -10,8 +10,8 @@ import bpy
 from ...core import findings, native
 from ...core.cone_angles import ConeAngles
 from ...core.errors import Refused, object_errors
+from ...core.preferences import chosen_threads
 from ...core.region import Region
-from ...core.threads import chosen_threads
 from ...mesh.angles import require_attributes
 from ...mesh.region_read import Faces, Groups, read_region
 from ...mesh.targets import target_objects

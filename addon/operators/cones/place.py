@@ -10,8 +10,8 @@ import bpy
 
 from ...core import identifiers
 from ...core.choices import enum_items
+from ...core.preferences import chosen_threads
 from ...core.region import Region
-from ...core.threads import chosen_threads
 from ...jobs.placing import PlacementSettings, PlacementTask, place_all, write_placement
 from ...jobs.summaries import placement_summary
 from ...mesh.angles import require_attributes

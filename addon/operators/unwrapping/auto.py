@@ -12,8 +12,8 @@ import bpy
 from ...core import identifiers, native
 from ...core.choices import PRESETS, Choices, FirstPressProperties, enum_items
 from ...core.length_units import length_unit
+from ...core.preferences import chosen_threads, preferences
 from ...core.region import Region
-from ...core.threads import chosen_threads
 from ...jobs.directions import DirectionChoice
 from ...jobs.maps import PackSettings, final_layouts, packing_of_preset, write_map
 from ...jobs.placing import mark_placed
@@ -108,15 +108,14 @@ class UV_OT_cone_auto_unwrap(
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        # None: registered by a script, without preferences.
-        if (extension := context.preferences.addons.get(identifiers.EXTENSION)) is not None:
-            self._take_defaults(extension.preferences)
+        if (found := preferences()) is not None:
+            self._take_defaults(found)
         return super().invoke(context, event)
 
-    def _take_defaults(self, preferences: bpy.types.AddonPreferences) -> None:
+    def _take_defaults(self, defaults: bpy.types.AddonPreferences) -> None:
         """Take from the preferences what neither the caller says nor the artist chose since Blender was started."""
         for name in FirstPressProperties.NAMES:
-            given = getattr(preferences, name)
+            given = getattr(defaults, name)
             said = self.properties.is_property_set(name)
             chosen = self.properties.is_property_set(name, ghost=False) and getattr(self, name) != _taken.get(name)
             if not (said or chosen):

@@ -5,7 +5,7 @@ import bpy
 
 from ...core import native
 from ...core.choices import Choices, DirectionProperty, enum_items
-from ...core.threads import chosen_threads
+from ...core.preferences import chosen_threads
 from ...jobs.maps import PackSettings
 from ...jobs.unwrapping import UnwrapSettings
 from ..shared.cut_choices import chosen_cuts

@@ -15,13 +15,13 @@ from scenes import (
     UvMap,
     add_ball,
     add_cone_cube,
-    add_cube,
     add_grid,
     add_sphere,
     changed,
     corners,
     covered_twice,
     edit,
+    joined,
     mark,
     marked,
     plain_copy,
@@ -304,12 +304,7 @@ def test_what_cannot_be_unwrapped_leaves_the_map_and_keeps_the_cones():
 
 
 def test_parts_whose_cones_are_not_edited_keep_their_map():
-    cube, other = add_cone_cube("Cube"), add_cube("Other")
-    mark(other, corners(other))
-    other.location.x = 5
-    bpy.ops.object.select_all(action="SELECT")
-    bpy.context.view_layer.objects.active = cube
-    bpy.ops.object.join()
+    cube = joined(add_cone_cube("Cube"), add_cone_cube("Other"))
     before = UvMap(cube).uv
     session = begin(cube)
     first = session.cones.vertices[0]
@@ -515,12 +510,7 @@ def test_steps_that_change_nothing_are_none():
 
 
 def test_undone_steps_give_the_parts_they_touched_back():
-    cube, other = add_cone_cube("Cube"), add_cube("Other")
-    mark(other, corners(other))
-    other.location.x = 5
-    bpy.ops.object.select_all(action="SELECT")
-    bpy.context.view_layer.objects.active = cube
-    bpy.ops.object.join()
+    cube = joined(add_cone_cube("Cube"), add_cone_cube("Other"))
     bpy.ops.uv.cone_unwrap()
     before = UvMap(cube).uv
     session = begin(cube)
@@ -571,11 +561,7 @@ def test_what_does_not_fit_into_its_place_is_packed_again(build):
 
 def two_cubes(place):
     """Two cubes in one mesh, unwrapped; place: where their UVs go then."""
-    cube, other = add_cone_cube("Cube", 1), add_cone_cube("Other", 1)
-    other.location.x = 5
-    bpy.ops.object.select_all(action="SELECT")
-    bpy.context.view_layer.objects.active = cube
-    bpy.ops.object.join()
+    cube = joined(add_cone_cube("Cube", 1), add_cone_cube("Other", 1))
     bpy.ops.uv.cone_unwrap()
     uv_map = UvMap(cube)
     is_near = uv_map.positions[uv_map.vertex][:, 0] < 2
@@ -767,11 +753,7 @@ def test_one_object_that_cannot_be_unwrapped_does_not_keep_others_from_it():
 
 
 def test_a_dragged_cone_stays_on_its_connected_part():
-    cube, other = add_cone_cube("Cube"), add_cone_cube("Other")
-    other.location.x = 5
-    bpy.ops.object.select_all(action="SELECT")
-    bpy.context.view_layer.objects.active = cube
-    bpy.ops.object.join()
+    cube = joined(add_cone_cube("Cube"), add_cone_cube("Other"))
     session = begin(cube)
     near, far = vertex_near(cube, 0.0, 0.0, 1.0), vertex_near(cube, 5.0, 0.0, 1.0)
     session.cones.add(session.cones.vertices[0])

@@ -42,7 +42,7 @@ def count(picture, color, off=0.03):
 
 
 def look():
-    return addon.overlay.look.overlay_look(bpy.context)
+    return addon.overlay.look.overlay_look()
 
 
 def chosen():

@@ -176,7 +176,7 @@ def test_labels_that_would_lie_on_others_are_left_out():
 
 
 def test_cut_colors_take_turns_and_then_lighter_ones():
-    look = addon.overlay.look.overlay_look(bpy.context)
+    look = addon.overlay.look.overlay_look()
     count = len(look.cut_colors())
     found = colors.of_paths(np.array([0, 1, count, count + 1, 2 * count], np.int32), look)
     assert found[0] == pytest.approx(look.cut_1[:], abs=1e-6)
@@ -186,10 +186,21 @@ def test_cut_colors_take_turns_and_then_lighter_ones():
 
 
 def test_colors_in_the_preferences_are_those_that_are_drawn():
-    look = addon.overlay.look.overlay_look(bpy.context)
+    look = addon.overlay.look.overlay_look()
     half = np.pi / 4
     drawn = colors.of_cones([content.Cone(0, None, c) for c in (4.0, -4.0, 0.0, None, half, -half)], look)
     for row, name in zip(drawn, ("tip", "saddle", "flat", "automatic"), strict=False):
         assert row == pytest.approx(getattr(look, name)[:], abs=1e-6)
     np.testing.assert_allclose(drawn[4], (drawn[0] + drawn[2]) / 2, atol=1e-6)
     np.testing.assert_allclose(drawn[5], (drawn[1] + drawn[2]) / 2, atol=1e-6)
+
+
+def test_without_preferences_the_overlay_has_the_default_look(monkeypatch):
+    preferences = addon.core.preferences.preferences()
+    monkeypatch.setattr(addon.overlay.look, "preferences", lambda: None)
+    look = addon.overlay.look.overlay_look()
+    for name in (*addon.overlay.look.CUT_NAMES, "tip", "flipped"):
+        assert getattr(look, name) == pytest.approx(getattr(preferences, name)[:], abs=1e-6)
+    for name in ("line_width", "cone_size", "text_size"):
+        assert getattr(look, name) == getattr(preferences, name)
+    assert look.cut_colors() == [getattr(look, name) for name in addon.overlay.look.CUT_NAMES]

@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 import pytest
 from installed import addon
-from scenes import GROUP, UvMap, add_ball, add_cone_cube, add_ramp, corners, edit, mark, select_elements, set_uv
+from scenes import GROUP, UvMap, add_ball, add_cone_cube, add_ramp, corners, edit, joined, mark, select_elements, set_uv
 
 reports, changes = addon.mesh.reports, addon.mesh.changes
 
@@ -137,10 +137,7 @@ def test_the_report_is_the_same_in_edit_mode():
 
 
 def test_faces_unwrapped_one_after_the_other_are_all_told_of():
-    first, second = add_cone_cube("Cube"), add_cone_cube("Second")
-    second.location.x = 5
-    bpy.context.view_layer.objects.active = first
-    bpy.ops.object.join()
+    first = joined(add_cone_cube("Cube"), add_cone_cube("Second"))
     half = len(first.data.polygons) // 2
     edit(first, select="DESELECT")
     select_elements(first, "faces", range(half))
