@@ -139,7 +139,8 @@ digest_of_sources() {
         sha256sum | cut -d' ' -f1
 }
 
-# Builds the wheel into folder $1 with the command that follows, unless one of the same sources is there.
+# Builds the wheel into folder $1 with the command that follows, unless one of the same sources is there. Its files have
+# the time of the last commit, so that the same sources give the same bytes; SOURCE_DATE_EPOCH names another.
 build_wheel_by() {
     local folder=$1 digest
     shift
@@ -150,7 +151,8 @@ build_wheel_by() {
     fi
     say "building the lsgp wheel"
     rm -rf "$folder"
-    patiently "building" "$@" || return
+    SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git -C "$root" log -1 --format=%ct 2>/dev/null || echo 315532800)} \
+        patiently "building" "$@" || return
     printf '%s\n' "$digest" >"$folder/sources"
 }
 

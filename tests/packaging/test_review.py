@@ -65,6 +65,15 @@ def test_manifest_says_what_it_is_in_the_form_the_platform_wants():
     assert all(value not in ("", [], {}) for value in MANIFEST.values()), "optional keys are left out, not empty"
 
 
+def test_everything_that_names_the_version_names_this_one():
+    version, minor = MANIFEST["version"], MANIFEST["version"].rpartition(".")[0]
+    assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert re.search(r"^## \[(\d.*)\]", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), re.MULTILINE)[1] == version
+    developing = (ROOT / "docs" / "how-to" / "developing.md").read_text(encoding="utf-8")
+    assert f"find_package(lsgp {minor} " in developing and f"`liblsgp.so.{minor}`" in developing
+    assert (ROOT / "docs" / "releases" / f"{version}.md").is_file()
+
+
 def test_licence_is_part_of_the_sources_and_named_in_every_module():
     assert "GNU GENERAL PUBLIC LICENSE" in (ROOT / "LICENSE").read_text(encoding="utf-8")
     for path in MODULES:
