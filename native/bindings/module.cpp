@@ -547,6 +547,30 @@ py::dict extract_quads(const SurfaceArrays& surface_arrays, const FloatArray& co
   return to_dict(without_gil([&] { return lsgp::extract_quads(surface, uv, cell, tell); }));
 }
 
+// A path, triangles and powers, and pairs of corners.
+py::dict move_through(const lsgp::GrabbedCut& grabbed, Index vertex) {
+  const lsgp::ReroutedCut moved = without_gil([&] { return grabbed.through(vertex); });
+  py::dict out;
+  out["path"] = to_array(moved.path);
+  out["triangles"] = to_array(moved.triangles);
+  out["powers"] = to_array(moved.powers);
+  out["joins"] = to_array(moved.joins.data(), {static_cast<py::ssize_t>(moved.joins.size() / 2), 2});
+  return out;
+}
+
+lsgp::GrabbedCut grab(const lsgp::CutRouter& router, const IndexArray& cuts, const IndexArray& path,
+                      const IndexArray& nodes) {
+  const auto edges = to_matrix<lsgp::VertexPairs>(cuts);
+  const std::vector<Index> vertices = to_vector(path), kept_off = to_vector(nodes);
+  return without_gil([&] { return router.grab(edges, vertices, kept_off); });
+}
+
+py::array_t<Index> overlapping_triangles(const FloatArray& corner_uv) {
+  if (corner_uv.size() % 6 != 0) throw py::value_error("array of the wrong shape");
+  const lsgp::CornerUv uv = Eigen::Map<const lsgp::CornerUv>(corner_uv.data(), corner_uv.size() / 2, 2);
+  return to_array(without_gil([&] { return lsgp::overlapping_triangles(uv); }));
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_lsgp, module) {
@@ -563,6 +587,18 @@ PYBIND11_MODULE(_lsgp, module) {
   py::class_<lsgp::Solver>(module, "Solver")
       .def(py::init([](const SurfaceArrays& surface) { return lsgp::Solver(to_surface(surface)); }), "surface"_a)
       .def("parameterize", &parameterize_again, "cones"_a, "options"_a, "pins"_a, "progress"_a);
+  py::class_<lsgp::GrabbedCut>(module, "GrabbedCut")
+      .def_property_readonly("left", [](const lsgp::GrabbedCut& grabbed) { return to_array(grabbed.left()); })
+      .def_property_readonly("right", [](const lsgp::GrabbedCut& grabbed) { return to_array(grabbed.right()); })
+      .def("through", &move_through, "vertex"_a);
+  py::class_<lsgp::CutRouter>(module, "CutRouter")
+      .def(py::init([](const SurfaceArrays& surface) {
+             lsgp::Surface given = to_surface(surface);
+             return without_gil([&] { return lsgp::CutRouter(std::move(given)); });
+           }),
+           "surface"_a)
+      .def("grab", &grab, "cuts"_a, "path"_a, "nodes"_a);
+  module.def("overlapping_triangles", &overlapping_triangles, "corner_uv"_a);
   module.def("find_cuts", &find_cuts, "surface"_a, "cones"_a, "options"_a, "progress"_a);
   module.def("crease_borders", &crease_borders, "surface"_a, "cones"_a, "options"_a, "progress"_a);
   module.def("cut_costs", &cut_costs, "surface"_a, "preferences"_a, "progress"_a);

@@ -57,6 +57,7 @@ from .api import (
     prescribe_curvature,
 )
 from .auto_unwrap import auto_unwrap, preset_options
+from .cut_moving import CutMover, GrabbedCut, MovedCut, Transition, overlapping_triangles
 from .cut_paths import split_into_paths
 from .errors import (
     Cancelled,
@@ -84,15 +85,18 @@ __all__ = [
     "Cancelled",
     "ConeGains",
     "CurvatureError",
+    "CutMover",
     "CutPaths",
     "Distortion",
     "Elements",
     "Finding",
+    "GrabbedCut",
     "InputError",
     "LedgerPart",
     "LsgpError",
     "Measurement",
     "MeshFile",
+    "MovedCut",
     "Options",
     "Pins",
     "Placement",
@@ -111,6 +115,7 @@ __all__ = [
     "TexelDensity",
     "TexelLayout",
     "TopologyError",
+    "Transition",
     "TriangleDistortion",
     "at_texel_density",
     "auto_unwrap",
@@ -127,6 +132,7 @@ __all__ = [
     "index_uv",
     "lattice",
     "measure_distortion",
+    "overlapping_triangles",
     "pack_islands",
     "packer_name",
     "pad_image",

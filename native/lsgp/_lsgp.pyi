@@ -43,6 +43,26 @@ class Solver:
         progress: _Progress,
     ) -> dict[str, Any]: ...
 
+class GrabbedCut:
+    @property
+    def left(self) -> _Indices: ...
+    @property
+    def right(self) -> _Indices: ...
+    def through(self, vertex: int) -> dict[str, Any]: ...
+
+class CutRouter:
+    def __init__(
+        self,
+        surface: _Surface,
+    ) -> None: ...
+    def grab(
+        self,
+        cuts: _Indices,
+        path: _Indices,
+        nodes: _Indices,
+    ) -> GrabbedCut: ...
+
+def overlapping_triangles(corner_uv: _Floats) -> _Indices: ...
 def find_cuts(
     surface: _Surface,
     cones: _Indices,

@@ -157,6 +157,7 @@ API = (
     "auto_unwrap",
     "certificate",
     "chart_packer",
+    "cut_moving",
     "cut_paths",
     "equality",
     "errors",

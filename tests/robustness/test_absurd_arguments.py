@@ -97,6 +97,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         lsgp.measure_distortion,
         {"surface": WHOLE, "corner_uv": RESULT.corner_uv, "cones": BALL.cones, "progress": None},
     ),
+    "overlapping_triangles": (lsgp.overlapping_triangles, {"corner_uv": RESULT.corner_uv}),
     "extract_quads": (
         lsgp.extract_quads,
         {"surface": WHOLE, "corner_uv": FINE_RESULT.corner_uv, "cell": 1.0, "progress": None},

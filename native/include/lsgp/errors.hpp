@@ -43,6 +43,7 @@ enum class Code {
   not_orientable,
   too_few_cones,
   cuts_blocked,
+  cut_not_movable,
   open_surface,
   // CurvatureError
   cone_angle_range,

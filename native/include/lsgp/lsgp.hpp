@@ -7,6 +7,7 @@
 
 #include "lsgp/crease_borders.hpp"
 #include "lsgp/cut_costs.hpp"
+#include "lsgp/cut_router.hpp"
 #include "lsgp/errors.hpp"
 #include "lsgp/export.hpp"
 #include "lsgp/ledger.hpp"

@@ -26,6 +26,7 @@ const char* name(Code code) {
     case Code::not_orientable: return "NOT_ORIENTABLE";
     case Code::too_few_cones: return "TOO_FEW_CONES";
     case Code::cuts_blocked: return "CUTS_BLOCKED";
+    case Code::cut_not_movable: return "CUT_NOT_MOVABLE";
     case Code::open_surface: return "OPEN_SURFACE";
     case Code::cone_angle_range: return "CONE_ANGLE_RANGE";
     case Code::gauss_bonnet: return "GAUSS_BONNET";
@@ -81,6 +82,7 @@ ErrorKind error_kind(Code code) {
     case Code::not_orientable:
     case Code::too_few_cones:
     case Code::cuts_blocked:
+    case Code::cut_not_movable:
     case Code::open_surface: return ErrorKind::topology;
     case Code::cone_angle_range:
     case Code::gauss_bonnet:

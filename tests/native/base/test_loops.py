@@ -83,6 +83,9 @@ REVIEWED = {
         ),
         ("while (found)", "each round but the last opens a tube, which joins two borders", OWN),
     ],
+    "cut/cut_reroute.cpp": [
+        ("for (Index h = reached[v].by; h != none; h = reached[mesh_.origin(h)].by)", LINKED, SHORT),
+    ],
     "cut/cut_network.cpp": [
         ("while (!is_node(mesh.origin(h)))", "edges of the cuts, each once, to a node or back to the start", SHORT),
         (
