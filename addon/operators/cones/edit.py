@@ -12,29 +12,24 @@ import bpy
 from ...core import findings, identifiers
 from ...core.errors import object_errors
 from ...core.text import counted, degrees
-from ...jobs.edited_objects import EditedObject, EditedObjects
+from ...jobs.edited_objects import EditedObject, EditedObjects, Pick
 from ...mesh.targets import target_objects
 from ...overlay import cache
 from ...overlay.content import session_content
 from ..shared.conclusion import conclude
-from ..shared.polling import poll_computation, poll_edit_mesh
+from ..shared.modal_edit import ENTER, ModalEdit
 from ..unwrapping.properties import pack_settings, unwrap_settings
 from . import hints
-from .cursor import Cursor
 from .typed_number import TypedNumber
-from .views import shows_meshes
 
 if TYPE_CHECKING:
     from ...jobs.cone_session import ConeSession
 
-INTERVAL = 1 / 60
 WHEEL_STEP, FINE_STEP = math.radians(15.0), math.radians(1.0)
-NAVIGATION = {"MIDDLEMOUSE", "TRACKPADPAN", "TRACKPADZOOM", "MOUSEROTATE", "MOUSESMARTZOOM", "NDOF_MOTION"}
-BUTTONS = {"LEFTMOUSE", "RIGHTMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE"}
 WHEEL = {"WHEELUPMOUSE": 1, "WHEELDOWNMOUSE": -1}
 
 
-class MESH_OT_cone_edit(bpy.types.Operator):
+class MESH_OT_cone_edit(ModalEdit, bpy.types.Operator):
     """Passes events on to `EditedObjects`."""
 
     bl_idname = identifiers.EDIT
@@ -45,83 +40,33 @@ class MESH_OT_cone_edit(bpy.types.Operator):
     )
     bl_options = {"UNDO"}
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if not (poll_computation(cls, context) and poll_edit_mesh(cls, context)):
-            return False
-        if context.space_data is None or not shows_meshes(context.space_data):
-            cls.poll_message_set("Move the mouse over a 3D view or UV editor first")
-            return False
-        return True
-
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         objects = target_objects(context)
         try:
             chosen = context.window_manager.operator_properties_last(identifiers.UNWRAP)
-            self._objects, self._placing = EditedObjects(objects, unwrap_settings(chosen)), pack_settings(chosen)
+            edited, self._placing = EditedObjects(objects, unwrap_settings(chosen)), pack_settings(chosen)
         except object_errors() as error:
             return conclude(self, [], {}, {objects[0].name: error})
-        self._cursor = Cursor()
-        self._cursor.follow(event)
         self._typed = TypedNumber()
-        self._dragging = self._moved = False
-        self._refusal = ""
-        self._last_operator = _last_operator(context)
-        self._timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
-        context.window_manager.modal_handler_add(self)
-        self._draw(self._objects.begun)
-        return {"RUNNING_MODAL"}
-
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        self._cursor.follow(event)
-        if not self._is_intact(context):
-            return self._give_up(context)
-        if event.type == "TIMER":
-            self._follow()
-            return {"PASS_THROUGH"}
-        if event.type in {"RET", "NUMPAD_ENTER"} and event.value == "PRESS" and not self._typed.text:
-            return self._finish(context)
-        if event.type in NAVIGATION or event.alt:
-            return {"PASS_THROUGH"}
-        if event.type in BUTTONS and not self._dragging and self._cursor.view() is None:
-            # It may change anything.
-            self._objects.doubt()
-            return {"PASS_THROUGH"}
-        if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
-            self.cancel(context)
-            return {"CANCELLED"}
-        return self._handle(event)
+        return self._start(context, event, edited)
 
     def _handle(self, event: bpy.types.Event) -> set[str]:
-        if event.type == "MOUSEMOVE":
-            self._moved = True
-            # What is beside the view lights up under the mouse.
-            return {"RUNNING_MODAL"} if self._dragging else {"PASS_THROUGH"}
         if event.type in WHEEL:
             return self._turn(event)
         if event.type == "LEFTMOUSE":
             return self._click(event)
-        if event.type in {"RET", "NUMPAD_ENTER"} and event.value == "PRESS":
+        if event.type in ENTER and event.value == "PRESS":
             self._typed.clear()
             self._draw()
         elif event.value == "PRESS":
             self._type(event)
         return {"RUNNING_MODAL"}
 
-    def cancel(self, context: bpy.types.Context) -> None:
-        """Also called by Blender where it ends the operator, for example before another file is opened."""
-        self._objects.restore()
-        self._end(context)
+    def _may_finish(self) -> bool:
+        # It ends the typing first.
+        return not self._typed.text
 
     # Events
-
-    def _is_intact(self, context: bpy.types.Context) -> bool:
-        """Whether no other operator has changed the mesh, as those do that are started from panels and menus."""
-        last = _last_operator(context)
-        if last != self._last_operator:
-            self._last_operator = last
-            self._objects.doubt()
-        return self._objects.is_intact()
 
     def _click(self, event: bpy.types.Event) -> set[str]:
         if event.value == "RELEASE":
@@ -135,8 +80,8 @@ class MESH_OT_cone_edit(bpy.types.Operator):
 
     def _press(self, event: bpy.types.Event) -> None:
         self._typed.clear()
-        cone = self._cursor.cone(self._objects)
-        pick = cone if cone is not None or event.ctrl else self._cursor.vertex(self._objects)
+        cone = self._cone()
+        pick = cone if cone is not None or event.ctrl else self._vertex()
         if pick is None or not self._begin(pick[0]):
             return
         edited, hit = pick
@@ -151,10 +96,6 @@ class MESH_OT_cone_edit(bpy.types.Operator):
             self._changed()
         else:
             self._draw([edited])
-
-    def _drag(self, dragging: bool) -> None:
-        self._dragging = dragging
-        self._objects.hold_layouts(dragging)
 
     def _begin(self, edited: EditedObject) -> bool:
         """Make an object the active one.  Returns whether its cones can be edited."""
@@ -172,7 +113,7 @@ class MESH_OT_cone_edit(bpy.types.Operator):
     def _turn(self, event: bpy.types.Event) -> set[str]:
         """Away from cones, the wheel zooms."""
         if not self._dragging:
-            pick = self._cursor.cone(self._objects)
+            pick = self._cone()
             if pick is None or not self._begin(pick[0]):
                 return {"PASS_THROUGH"}
             pick[0].session.cones.active = pick[1].vertex
@@ -207,15 +148,9 @@ class MESH_OT_cone_edit(bpy.types.Operator):
         self._draw()
 
     def _go_back(self, event: bpy.types.Event) -> None:
-        """Undo or redo one step."""
-        redo = (event.type == "Z" and event.shift) or event.type == "Y"
-        if not redo and event.type != "Z":
-            return
-        self._typed.clear()
-        self._drag(False)
-        history = self._objects.history
-        if history.redo() if redo else history.undo():
-            self._draw(self._objects.begun)
+        if event.type in {"Z", "Y"}:
+            self._typed.clear()
+        super()._go_back(event)
 
     def _changed(self) -> None:
         """To be called after a change of the active object's cones."""
@@ -226,7 +161,7 @@ class MESH_OT_cone_edit(bpy.types.Operator):
         """Move the dragged cone to the cursor, and let the map follow."""
         active, moved = self._objects.active, False
         if self._dragging and self._moved:
-            pick = self._cursor.vertex(self._objects)
+            pick = self._vertex()
             moved = pick is not None and pick[0] is active and active.session.cones.move(pick[1].vertex)
             active.follower.outdated |= moved
         self._moved = False
@@ -237,19 +172,24 @@ class MESH_OT_cone_edit(bpy.types.Operator):
         if shown:
             self._draw(shown)
 
+    def _vertex(self) -> Pick | None:
+        """The vertex under the cursor, and its object; None where there is no face."""
+        seen = self._cursor.sight()
+        return None if seen is None else self._objects.vertex_at(seen[0], *seen[1])
+
+    def _cone(self) -> Pick | None:
+        """The visible cone at the cursor, and its object; None where there is none."""
+        seen = self._cursor.sight()
+        return None if seen is None else self._objects.cone_at(seen[0], *seen[1], self._cursor.radius())
+
     # What is shown
 
     def _draw(self, objects: Iterable[EditedObject] = ()) -> None:
         """objects: those whose cones or maps have changed."""
         for edited in objects:
             cache.show(edited.obj, session_content(edited.obj, edited.session))
-        self._show_header(self._header())
         history = self._objects.history
-        bpy.context.workspace.status_text_set(hints.status(hints.hints(history.undoes, history.redoes)))
-
-    def _show_header(self, text: str | None) -> None:
-        for area in _view_areas():
-            area.header_text_set(text)
+        self._show(self._header(), hints.hints(history.undoes, history.redoes))
 
     def _header(self) -> str:
         texts = [f"Edit Cones: {counted(self._objects.count(), 'cone')}"]
@@ -287,29 +227,3 @@ class MESH_OT_cone_edit(bpy.types.Operator):
             findings.keep(edited.obj, None if failed else outcome.region, warnings[edited.name])
             done.append(f"{edited.name}: {counted(len(edited.cones), 'cone')}")
         return conclude(self, done, warnings, {})
-
-    def _give_up(self, context: bpy.types.Context) -> set[str]:
-        """End where another operator has changed the mesh."""
-        self.cancel(context)
-        self.report({"WARNING"}, "Edit Cones has ended, since something else changed the mesh")
-        # Blender's last step of undo has the map as it was meanwhile.
-        return {"FINISHED"}
-
-    def _end(self, context: bpy.types.Context) -> None:
-        context.window_manager.event_timer_remove(self._timer)
-        for workspace in bpy.data.workspaces:
-            with context.temp_override(workspace=workspace):
-                workspace.status_text_set(None)
-        self._show_header(None)
-        self._objects.end()
-
-
-def _last_operator(context: bpy.types.Context) -> int:
-    """Identifies the operator that ran last; 0 for none."""
-    operators = context.window_manager.operators
-    return operators[-1].as_pointer() if operators else 0
-
-
-def _view_areas() -> Iterator[bpy.types.Area]:
-    """Of all screens, also those that are not shown."""
-    return (area for screen in bpy.data.screens for area in screen.areas if area.type in {"VIEW_3D", "IMAGE_EDITOR"})

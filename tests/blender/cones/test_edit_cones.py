@@ -33,6 +33,7 @@ from scenes import (
 
 cone_session, unwrapping, content = addon.jobs.cone_session, addon.jobs.unwrapping, addon.overlay.content
 hints, finishing = addon.operators.cones.hints, addon.jobs.finishing
+status_bar = addon.operators.shared.status_bar
 angle_table, picking, edited_objects = addon.jobs.angle_table, addon.jobs.picking, addon.jobs.edited_objects
 following, edit_history = addon.jobs.following, addon.jobs.edit_history
 changes = addon.mesh.changes
@@ -784,11 +785,11 @@ def test_the_status_bar_has_icons_where_blender_has_them_and_names_the_steps():
     icons = bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items
     present = [hint for hint in shown if all(icon in icons for icon in hint.icons)]
     bar = StatusBar()
-    hints.status(present)(bar, bpy.context)
+    status_bar.status(present)(bar, bpy.context)
     assert ("", "EVENT_CTRL") in bar.labels and ("Undo Add Cone", "EVENT_Z") in bar.labels
     assert [text for text, _ in bar.labels if text] == [hint.text for hint in present]
     missing = replace(wheel, icons=("NO_SUCH_ICON",))
-    text = hints.status([*present, missing])
+    text = status_bar.status([*present, missing])
     assert text.startswith("Click: Add  |  Drag: Move") and text.endswith("Wheel: Angle")
     assert "Ctrl-Shift-Z: Redo" not in text
     assert [hint.text for hint in hints.hints(None, "Move Cone")].count("Redo Move Cone") == 1

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from ...core.screen import Screen
-from ...jobs.edited_objects import EditedObjects, Pick, Sight
+from ...jobs.picked_objects import Sight
 from .views import View, view_at
 
 # Pixels, at a scale of 1.
@@ -30,16 +30,15 @@ class Cursor:
         # Areas may be gone by the next event.
         return view_at(bpy.context.window, *self._place)
 
-    def vertex(self, objects: EditedObjects) -> Pick | None:
-        """The vertex under the cursor, and its object; None where there is no face."""
+    def sight(self) -> tuple[Sight, tuple[int, int]] | None:
+        """What the view at the cursor shows, and the cursor's pixel in it; None where there is something else."""
         view = self.view()
-        return None if view is None else objects.vertex_at(_sight(view), *view.place)
+        return None if view is None else (_sight(view), view.place)
 
-    def cone(self, objects: EditedObjects) -> Pick | None:
-        """The visible cone at the cursor, and its object; None where there is none."""
-        view = self.view()
-        radius = RADIUS * bpy.context.preferences.system.pixel_size
-        return None if view is None else objects.cone_at(_sight(view), *view.place, radius)
+    @staticmethod
+    def radius() -> float:
+        """How far, in pixels, what is picked may be from the cursor."""
+        return RADIUS * bpy.context.preferences.system.pixel_size
 
 
 def _sight(view: View) -> Sight:
