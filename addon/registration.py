@@ -17,6 +17,7 @@ from .operators.cones.edit import MESH_OT_cone_edit
 from .operators.cones.mark import MESH_OT_cone_mark
 from .operators.cones.place import MESH_OT_cone_place
 from .operators.cones.select import MESH_OT_cone_select
+from .operators.cuts.edit import MESH_OT_cone_edit_cuts
 from .operators.cuts.extend_image import UV_OT_cone_extend_image
 from .operators.cuts.mark_seams import MESH_OT_cone_seams_from_cuts
 from .operators.cuts.select import MESH_OT_cone_select_cuts
@@ -39,6 +40,7 @@ CLASSES = (
     ConeUnwrapPreferences,
     MESH_OT_cone_mark,
     MESH_OT_cone_edit,
+    MESH_OT_cone_edit_cuts,
     MESH_OT_cone_select,
     MESH_OT_cone_place,
     MESH_OT_cone_select_cuts,

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import bpy
 import numpy as np
@@ -187,10 +187,15 @@ class StoredMesh(MeshReader):
     def vertex_uv(self, vertices: Sequence[int]) -> tuple[NDArray[np.int64], FloatArray]:
         if self.uv is None:
             return np.empty(0, np.int64), np.empty((0, 2), np.float32)
+        rows, loops = self._corners_at(tuple(vertices))
+        return each_once(rows, self.uv[loops])
+
+    def _corners_at(self, vertices: tuple[int, ...]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """The loops of visible faces at some vertices, and which of the vertices each is at."""
         row_of = np.full(len(self.places), -1)
         row_of[np.asarray(vertices, int)] = np.arange(len(vertices))
         loops = np.flatnonzero((row_of[self.loop_vertices] >= 0) & self._shown[self.loop_faces])
-        return each_once(row_of[self.loop_vertices[loops]], self.uv[loops])
+        return row_of[self.loop_vertices[loops]], loops
 
     def side_normals(self, pairs: Sequence[tuple[int, int]]) -> FloatArray:
         loops = self._loops(pairs)
@@ -258,6 +263,8 @@ class FrozenMesh(StoredMesh):
         for name, member in vars(StoredMesh).items():
             if isinstance(member, cached_property):
                 getattr(self, name)
+        # To look for loops takes longer than all else that is drawn while something is dragged.
+        self._corners_at = lru_cache(maxsize=1)(self._corners_at)
         drawn = self._shown[self.triangle_faces]
         self._drawn = self.loop_vertices[self.drawn_loops[drawn]], self.triangle_faces[drawn]
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections import deque
-from itertools import compress
 
 import bmesh
 import bpy
@@ -110,6 +109,13 @@ class EditedUv:
         uv[region.triangle_loops[solved].ravel()] = corner_uv[solved].reshape(-1, 2)
         self._set(uv)
 
+    def write_loops(self, loops: NDArray[np.int32], uv: NDArray[np.float64]) -> None:
+        """Write these loops, (k,), (k, 2); all others stay as they were last written."""
+        now = self._now.copy()
+        now[loops] = uv
+        changed = np.unique(loops[(now[loops] != self._now[loops]).any(axis=1)])
+        self._put(changed, now)
+
     def find_again(self, loop_vertices: NDArray[np.int32]) -> None:
         """To be called where something else may have changed the mesh: layers may have moved, and loops may be gone.
 
@@ -145,8 +151,11 @@ class EditedUv:
             self._mesh.uv_layers.remove(self._mesh.uv_layers[self._name])
 
     def _set(self, uv: NDArray[np.float32]) -> None:
-        changed = (uv != self._now).any(axis=1)
-        loops, values = compress(self._loops, changed.tolist()), zip(*uv[changed].T.tolist(), strict=True)
+        self._put(np.flatnonzero((uv != self._now).any(axis=1)), uv)
+
+    def _put(self, changed: NDArray[np.integer], uv: NDArray[np.float32]) -> None:
+        """Write all of the values, (l, 2), of which these loops, (k,), have others."""
+        loops, values = map(self._loops.__getitem__, changed.tolist()), zip(*uv[changed].T.tolist(), strict=True)
         # Takes half the time of a loop of assignments.
         deque(map(bmesh.types.BMLoopUV.uv.__set__, loops, values), maxlen=0)
         self._now = uv

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -19,13 +20,20 @@ from ..mesh.reader import reader
 if TYPE_CHECKING:
     from ..core.cone_angles import ConeAngles
     from ..jobs.cone_session import ConeSession
+    from ..jobs.cut_session import CutSession
     from ..mesh.mesh_reader import MeshReader
     from ..mesh.reports import Report
 
 FloatArray = NDArray[np.float32]
 
+CutSides = tuple[FloatArray, FloatArray]
+"""Segments along both sides of a cut, (s, 2, 3), and the same in the layout, (s, 2, 2)."""
+
 # Distance of the two lines of a cut from it, one on each side, relative to its mean edge length.
 SIDE_OFFSET = 0.12
+
+# Of the lines of the active cut, relative to others.
+ACTIVE_WIDTH = 2.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +54,8 @@ class Content:
     """cone_places: (k, 3) positions of the cones. cone_uv: (c, 2) all their places in the layout, and cone_rows: (c,)
     which of the cones each is of. cut_lines: (s, 2, 3) segments along both sides of every cut, and cut_paths: (s,) the
     number of the path that each belongs to. cut_uv: (s, 2, 2) the same segments in the layout.
-    flipped, overlapping: (t, 3, 3) triangles. active: the vertex of the active cone, None for none.
+    flipped, overlapping: (t, 3, 3) triangles. active: the vertex of the active cone, None for none. active_path: the
+    number of the path that is drawn wider, None for none.
     """
 
     cones: list[Cone] = field(default_factory=list)
@@ -59,6 +68,14 @@ class Content:
     flipped: FloatArray = field(default_factory=lambda: np.empty((0, 3, 3), np.float32))
     overlapping: FloatArray = field(default_factory=lambda: np.empty((0, 3, 3), np.float32))
     active: int | None = None
+    active_path: int | None = None
+
+    def cut_widths(self) -> Iterator[tuple[str, NDArray[np.bool_], float]]:
+        """The segments drawn with one width: a name, (s,) which they are, and the width relative to the usual one."""
+        active = self.cut_paths == self.active_path
+        for name, rows, size in (("cuts", ~active, 1.0), ("active cut", active, ACTIVE_WIDTH)):
+            if rows.any():
+                yield name, rows, size
 
 
 def build_content(
@@ -96,6 +113,30 @@ def session_content(obj: bpy.types.Object, session: ConeSession) -> Content:
     return replace(content, active=session.cones.active)
 
 
+def cuts_content(
+    obj: bpy.types.Object, session: CutSession, drawn: dict[tuple[int, ...], CutSides] | None = None
+) -> Content:
+    """What to show of a mesh while its cuts are edited.
+
+    drawn: the sides of cuts by their vertices, which stay the same while others move; receives those that are not there
+    yet.
+    """
+    report = session.report()
+    drawn = {} if drawn is None else drawn
+    for path in session.paths:
+        if path not in drawn:
+            drawn[path] = _sides_of(session.mesh, list(path))
+    sides = [drawn[path] for path in session.paths]
+    without = None if report is None else replace(report, paths=[])
+    return replace(
+        build_content(obj, without, session.mesh, session.cones),
+        cut_lines=np.concatenate([lines for lines, _ in sides]),
+        cut_uv=np.concatenate([uv for _, uv in sides]),
+        cut_paths=np.repeat(np.arange(len(sides), dtype=np.int32), [len(lines) for lines, _ in sides]),
+        active_path=session.active,
+    )
+
+
 def find_cones(
     obj: bpy.types.Object,
     report: Report | None,
@@ -117,24 +158,29 @@ def find_cones(
 
 
 def _cut_sides(mesh: MeshReader, paths: list[list[int]]) -> tuple[FloatArray, NDArray[np.int32], FloatArray]:
-    """Segments along both sides of every path, offset into the adjacent faces; their paths; and their UVs."""
-    lines, numbers, uvs = [], [], []
-    for number, path in enumerate(paths):
-        places = mesh.positions(path)
-        steps = np.diff(places, axis=0)
-        offset = SIDE_OFFSET * np.linalg.norm(steps, axis=1).mean()
-        for side in (1, -1):
-            pairs = [pair[::side] for pair in pairwise(path)]
-            inward = _unit(np.cross(mesh.side_normals(pairs), side * steps))
-            uv = mesh.side_uv(pairs)[:, ::side]
-            moved = places + offset * _along_path(inward, closed=path[0] == path[-1])
-            present = ~np.isnan(inward).any(axis=1)
-            lines.append(np.stack([moved[:-1], moved[1:]], axis=1)[present])
-            uvs.append(uv[present])
-            numbers.append(np.full(present.sum(), number, np.int32))
-    if not lines:
+    """Segments along both sides of every path; their paths; and their UVs."""
+    if not paths:
         return np.empty((0, 2, 3), np.float32), np.empty(0, np.int32), np.empty((0, 2, 2), np.float32)
-    return np.concatenate(lines).astype(np.float32), np.concatenate(numbers), np.concatenate(uvs)
+    lines, uvs = zip(*(_sides_of(mesh, path) for path in paths), strict=True)
+    numbers = np.repeat(np.arange(len(paths), dtype=np.int32), [len(segments) for segments in lines])
+    return np.concatenate(lines), numbers, np.concatenate(uvs)
+
+
+def _sides_of(mesh: MeshReader, path: list[int]) -> CutSides:
+    """Segments along both sides of a path, offset into the adjacent faces, and their UVs."""
+    lines, uvs = [], []
+    places = mesh.positions(path)
+    steps = np.diff(places, axis=0)
+    offset = SIDE_OFFSET * np.linalg.norm(steps, axis=1).mean()
+    for side in (1, -1):
+        pairs = [pair[::side] for pair in pairwise(path)]
+        inward = _unit(np.cross(mesh.side_normals(pairs), side * steps))
+        uv = mesh.side_uv(pairs)[:, ::side]
+        moved = places + offset * _along_path(inward, closed=path[0] == path[-1])
+        present = ~np.isnan(inward).any(axis=1)
+        lines.append(np.stack([moved[:-1], moved[1:]], axis=1)[present])
+        uvs.append(uv[present])
+    return np.concatenate(lines).astype(np.float32), np.concatenate(uvs)
 
 
 def _along_path(inward: FloatArray, *, closed: bool) -> FloatArray:

@@ -8,6 +8,7 @@ from functools import partial
 import bpy
 import gpu
 import numpy as np
+from numpy.typing import NDArray
 
 from . import cache, colors, shaders
 from .content import Content
@@ -36,8 +37,10 @@ def _draw_cuts(entry: cache.Entry, look: OverlayLook) -> None:
     shader = shaders.lines()
     shader.bind()
     shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
-    shader.uniform_float("lineWidth", look.line_width * bpy.context.preferences.system.pixel_size)
-    entry.batch("layout", lambda: _batch(entry.content, look)).draw(shader)
+    pixel = bpy.context.preferences.system.pixel_size
+    for name, rows, size in entry.content.cut_widths():
+        shader.uniform_float("lineWidth", size * look.line_width * pixel)
+        entry.batch(f"layout of {name}", partial(_batch, entry.content, rows, look)).draw(shader)
 
 
 def _draw_cones(entry: cache.Entry, look: OverlayLook) -> None:
@@ -59,10 +62,10 @@ def _draw_cones(entry: cache.Entry, look: OverlayLook) -> None:
     gpu.state.program_point_size_set(False)
 
 
-def _batch(content: Content, look: OverlayLook) -> gpu.types.GPUBatch:
-    segments = np.zeros((len(content.cut_uv), 2, 3), np.float32)
-    segments[..., :2] = content.cut_uv
-    return shaders.line_batch(segments, colors.of_paths(content.cut_paths, look))
+def _batch(content: Content, rows: NDArray[np.bool_], look: OverlayLook) -> gpu.types.GPUBatch:
+    segments = np.zeros((rows.sum(), 2, 3), np.float32)
+    segments[..., :2] = content.cut_uv[rows]
+    return shaders.line_batch(segments, colors.of_paths(content.cut_paths[rows], look))
 
 
 def _load_layout_space(region: bpy.types.Region) -> None:

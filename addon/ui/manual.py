@@ -20,6 +20,7 @@ PAGES = {
     identifiers.SELECT: CONES,
     identifiers.EDIT: CONES,
     identifiers.PLACE: CONES,
+    identifiers.EDIT_CUTS: CUTS,
     identifiers.SELECT_CUTS: CUTS,
     identifiers.SEAMS_FROM_CUTS: CUTS,
     identifiers.SET_ANGLE: ANGLES,

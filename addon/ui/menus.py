@@ -53,7 +53,7 @@ class VIEW3D_MT_cone_unwrap(bpy.types.Menu):
 
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
-        # Edit Cones needs events, and so does the progress of long runs.
+        # Edit Cones and Edit Cuts need events, and so does the progress of long runs.
         layout.operator_context = "INVOKE_DEFAULT"
         layout.operator(identifiers.AUTO_UNWRAP)
         layout.operator(identifiers.UNWRAP)
@@ -66,6 +66,7 @@ class VIEW3D_MT_cone_unwrap(bpy.types.Menu):
         layout.operator(identifiers.PLACE)
         layout.menu(VIEW3D_MT_cone_angles.bl_idname)
         layout.separator()
+        layout.operator(identifiers.EDIT_CUTS)
         layout.operator(identifiers.SELECT_CUTS)
         layout.operator(identifiers.SEAMS_FROM_CUTS)
         layout.separator()

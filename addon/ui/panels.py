@@ -73,6 +73,7 @@ class VIEW3D_PT_cone_unwrap_cones(ConeUnwrapSubPanel, bpy.types.Panel):
         row.operator(identifiers.SELECT)
         row.operator(identifiers.PLACE)
         column.operator(identifiers.EDIT, icon="EMPTY_SINGLE_ARROW")
+        column.operator(identifiers.EDIT_CUTS, icon="EDGESEL")
 
 
 class VIEW3D_PT_cone_unwrap_problems(ConeUnwrapSubPanel, bpy.types.Panel):

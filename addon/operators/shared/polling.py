@@ -9,13 +9,13 @@ from ...mesh.targets import target_objects
 
 
 def _poll_targets(operator: type[bpy.types.Operator], context: bpy.types.Context, wanted: str) -> bool:
-    """True where there are meshes to work on, and none is being worked on by Edit Cones.  wanted: what to do if not."""
+    """True where there are meshes to work on, and none is being edited with the mouse.  wanted: what to do if not."""
     objects = target_objects(context)
     if not objects:
         operator.poll_message_set(wanted)
         return False
     if any(changes.is_suspended(obj.data) for obj in objects):
-        operator.poll_message_set("Finish Edit Cones first: Enter, or Esc to cancel")
+        operator.poll_message_set("Finish Edit Cones or Edit Cuts first: Enter, or Esc to cancel")
         return False
     return True
 
