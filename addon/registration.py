@@ -21,6 +21,7 @@ from .operators.cuts.edit import MESH_OT_cone_edit_cuts
 from .operators.cuts.extend_image import UV_OT_cone_extend_image
 from .operators.cuts.mark_seams import MESH_OT_cone_seams_from_cuts
 from .operators.cuts.select import MESH_OT_cone_select_cuts
+from .operators.cuts.steer import MESH_OT_cone_steer_cuts
 from .operators.inspection.measure_distortion import UV_OT_cone_measure
 from .operators.inspection.select_reported import MESH_OT_cone_select_reported
 from .operators.inspection.show_texture import UV_OT_cone_texture
@@ -43,6 +44,7 @@ CLASSES = (
     MESH_OT_cone_edit_cuts,
     MESH_OT_cone_select,
     MESH_OT_cone_place,
+    MESH_OT_cone_steer_cuts,
     MESH_OT_cone_select_cuts,
     MESH_OT_cone_seams_from_cuts,
     MESH_OT_cone_select_reported,

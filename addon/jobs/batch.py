@@ -99,8 +99,8 @@ def _require_fitting(args: argparse.Namespace) -> None:
     """Raise UsageError where options name files with vertices or edges, which can only belong to a single mesh, and
     where they are for another way to place islands."""
     cones = native.part("run.unwrap_options").cones_file(args)
-    others = {"seam-edges": args.seam_edges, "directions": args.directions, "importance": args.importance}
-    for name, value in ({"cones": cones} | others).items():
+    others = ("seam_edges", "directions", "importance", "cut_costs")
+    for name, value in ({"cones": cones} | {name.replace("_", "-"): getattr(args, name) for name in others}).items():
         if value is not None:
             raise native.part("io.side_files").UsageError(
                 f"--{name} with a file is for lsgp batch; here cones, seams and weights are those of the meshes"

@@ -6,15 +6,17 @@ No map is computed: a piece of the layout moves rigidly from one side of a cut t
 
 from __future__ import annotations
 
+from collections import Counter
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core import native
+from ..core import cut_kinds, native
 from ..core.errors import Refused
 from ..core.identifiers import CONE_GROUP
 from ..mesh import changes, reports
@@ -91,6 +93,7 @@ class CutSession:
         self.paths = tuple(tuple(path.tolist()) for path in native.lsgp.split_into_paths(cuts, self._nodes))
         if not self.paths:
             raise Refused("no edge is cut in the UV map; unwrap the mesh first")
+        self._first_kinds = _kinds_of(self.paths, self._earlier)
         self._pulls: tuple[frozenset[int], ...] = (frozenset(),) * len(self.paths)
         self.active: int | None = None
         self._grip: _Grip | None = None
@@ -248,7 +251,14 @@ class CutSession:
             return self._earlier
         overlaps = {} if self.overlapping else {"overlap_area": 0.0}
         paths = [list(path) for path in self.paths]
-        return replace(self._earlier, paths=paths, overlapping=self.overlapping, **overlaps)
+        return replace(self._earlier, paths=paths, kinds=self.kinds(), overlapping=self.overlapping, **overlaps)
+
+    def kinds(self) -> list[str]:
+        """Of the cuts as they are; empty where the last unwrap is not known."""
+        return [
+            kind if now == then else cut_kinds.MOVED
+            for kind, now, then in zip(self._first_kinds, self.paths, self._begun_with.paths, strict=False)
+        ]
 
     def restore(self) -> None:
         """Leave the mesh as it was before the session."""
@@ -270,6 +280,15 @@ class CutSession:
 
 def _is_inside(corner_uv: NDArray[np.float64]) -> bool:
     return not ((corner_uv < -OUTSIDE) | (corner_uv > 1 + OUTSIDE)).any()
+
+
+def _kinds_of(paths: tuple[tuple[int, ...], ...], report: reports.Report | None) -> list[str]:
+    """Of each path that of most of its edges in a report; empty where it does not know."""
+    if report is None or not report.kinds:
+        return []
+    known = {frozenset(edge): kind for kind in cut_kinds.KINDS for edge in report.edges_of(kind)}
+    counts = [Counter(known.get(frozenset(edge), cut_kinds.ADDED) for edge in pairwise(path)) for path in paths]
+    return [max(cut_kinds.KINDS, key=count.__getitem__) for count in counts]
 
 
 def _replaced(items: tuple, number: int, item: object) -> tuple:

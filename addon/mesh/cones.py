@@ -39,6 +39,11 @@ def weights_in(
 
 def mark_cones(obj: bpy.types.Object, group_name: str, vertices: Iterable[int]) -> None:
     """Add vertices to the group, which is created if it does not exist."""
+    write_weights(obj, group_name, vertices, CONE_WEIGHT)
+
+
+def write_weights(obj: bpy.types.Object, group_name: str, vertices: Iterable[int], weight: float) -> None:
+    """Give vertices a weight in the group, which is created if it does not exist."""
     group = obj.vertex_groups.get(group_name)
     if group is None:
         had_groups, active = bool(obj.vertex_groups), obj.vertex_groups.active_index
@@ -51,10 +56,10 @@ def mark_cones(obj: bpy.types.Object, group_name: str, vertices: Iterable[int]) 
         deform = bm.verts.layers.deform.verify()
         bm.verts.ensure_lookup_table()
         for vertex in vertices:
-            bm.verts[vertex][deform][group.index] = CONE_WEIGHT
+            bm.verts[vertex][deform][group.index] = weight
         bmesh.update_edit_mesh(obj.data, loop_triangles=False, destructive=False)
     else:
-        group.add([int(vertex) for vertex in vertices], CONE_WEIGHT, "REPLACE")
+        group.add([int(vertex) for vertex in vertices], weight, "REPLACE")
 
 
 def clear_cones(obj: bpy.types.Object, group_name: str, vertices: Iterable[int]) -> None:

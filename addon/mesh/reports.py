@@ -11,7 +11,8 @@ import base64
 import json
 import zlib
 from collections import OrderedDict
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
+from itertools import pairwise
 from typing import Any
 
 import bpy
@@ -27,7 +28,8 @@ from .uv_digest import uv_digest
 class Report:
     """What is kept of a map, as lists and numbers that fit into JSON. Indices are those of the mesh.
 
-    paths: the cuts and the borders inside, each as the vertices from node to node. cones, cone_angles: as imposed, in
+    paths: the cuts and the borders inside, each as the vertices from node to node. kinds: of each path one of
+    `cut_kinds`; empty in reports of earlier versions. cones, cone_angles: as imposed, in
     radians. flipped, overlapping: faces. faces: how many were unwrapped. islands, distortion, seams, overlap_area,
     certificate: as in the library's result of the last unwrap; certificate is None for layouts that are not seamless.
     texel_density: of the last unwrap in its final place the least, the median and the largest length in the map of a
@@ -48,6 +50,16 @@ class Report:
     certificate: dict[str, Any] | None
     texel_density: list[float] | None = None
     overlaps_known: bool = True
+    kinds: list[str] = field(default_factory=list)
+
+    def edges_of(self, kind: str) -> list[tuple[int, int]]:
+        """The vertex pairs of the edges that were cut for this reason."""
+        return [
+            pair
+            for path, of_path in zip(self.paths, self.kinds, strict=False)
+            if of_path == kind
+            for pair in pairwise(path)
+        ]
 
 
 ELEMENTS = ("cones", "flipped", "overlapping")
@@ -67,9 +79,12 @@ def joined(earlier: Report | None, report: Report, region: Region) -> Report:
     again, faces = region.vertex_used, np.zeros(len(region.face_loop_start), bool)
     faces[region.triangle_faces] = True
     kept = [i for i, cone in enumerate(earlier.cones) if not again[cone]]
+    known = len(earlier.kinds) == len(earlier.paths)
+    others = [i for i, path in enumerate(earlier.paths) if not again[path].all()]
     return replace(
         report,
-        paths=[path for path in earlier.paths if not again[path].all()] + report.paths,
+        paths=[earlier.paths[i] for i in others] + report.paths,
+        kinds=[earlier.kinds[i] for i in others] + report.kinds if known or not others else [],
         cones=[earlier.cones[i] for i in kept] + report.cones,
         cone_angles=[earlier.cone_angles[i] for i in kept] + report.cone_angles,
         flipped=[face for face in earlier.flipped if not faces[face]] + report.flipped,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from .content import Cone
+from .content import Cone, Content
 
 if TYPE_CHECKING:
     from .look import OverlayLook
@@ -35,6 +35,15 @@ def _of_cone(curvature: float | None, look: OverlayLook) -> FloatArray:
         return np.array(look.automatic, np.float32)
     share = min(abs(curvature) / FULL, 1.0)
     return share * np.array(look.tip if curvature > 0 else look.saddle) + (1 - share) * np.array(look.flat)
+
+
+def of_cuts(content: Content, rows: NDArray[np.bool_], look: OverlayLook, by: str) -> FloatArray:
+    """Of these segments of cuts.  by: one of `settings.CUT_COLORS`."""
+    numbers = content.cut_paths[rows]
+    if by != "KIND" or not content.kinds:
+        return of_paths(numbers, look)
+    of_path = np.array([getattr(look, f"{kind}_cut")[:] for kind in content.kinds], np.float32)
+    return of_path[numbers]
 
 
 def of_paths(numbers: NDArray[np.int32], look: OverlayLook) -> FloatArray:

@@ -54,6 +54,7 @@ class Content:
     """cone_places: (k, 3) positions of the cones. cone_uv: (c, 2) all their places in the layout, and cone_rows: (c,)
     which of the cones each is of. cut_lines: (s, 2, 3) segments along both sides of every cut, and cut_paths: (s,) the
     number of the path that each belongs to. cut_uv: (s, 2, 2) the same segments in the layout.
+    kinds: of each path one of `cut_kinds`; empty where they are not known.
     flipped, overlapping: (t, 3, 3) triangles. active: the vertex of the active cone, None for none. active_path: the
     number of the path that is drawn wider, None for none.
     """
@@ -69,6 +70,7 @@ class Content:
     overlapping: FloatArray = field(default_factory=lambda: np.empty((0, 3, 3), np.float32))
     active: int | None = None
     active_path: int | None = None
+    kinds: list[str] = field(default_factory=list)
 
     def cut_widths(self) -> Iterator[tuple[str, NDArray[np.bool_], float]]:
         """The segments drawn with one width: a name, (s,) which they are, and the width relative to the usual one."""
@@ -102,6 +104,7 @@ def build_content(
         cut_lines=lines,
         cut_paths=numbers,
         cut_uv=uv,
+        kinds=[] if report is None else report.kinds,
         flipped=_triangles(mesh, [] if report is None else report.flipped),
         overlapping=_triangles(mesh, [] if report is None else report.overlapping),
     )
@@ -134,6 +137,7 @@ def cuts_content(
         cut_uv=np.concatenate([uv for _, uv in sides]),
         cut_paths=np.repeat(np.arange(len(sides), dtype=np.int32), [len(lines) for lines, _ in sides]),
         active_path=session.active,
+        kinds=session.kinds(),
     )
 
 

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..core import redraw
+from ..core import cut_kinds, redraw
 from ..core.preferences import preferences
 from . import cache
 
@@ -56,6 +56,10 @@ class OverlayLook(_CutColors):
     saddle: _color("Saddles", "Cones of more than a full turn, as between fingers", (0.20, 0.55, 1.0, 1.0))
     flat: _color("Flat", "Cones of exactly a full turn, which are flat; others fade to this", (0.75, 0.75, 0.75, 1.0))
     automatic: _color("Automatic", "Cones whose angle is chosen on unwrapping", (1.0, 1.0, 1.0, 1.0))
+    seam_cut: _color("Seams", cut_kinds.KINDS["seam"][1], (0.90, 0.20, 0.20, 1.0))
+    required_cut: _color("Required", cut_kinds.KINDS["required"][1], (0.20, 0.55, 1.0, 1.0))
+    added_cut: _color("Added", cut_kinds.KINDS["added"][1], (1.0, 0.75, 0.10, 1.0))
+    moved_cut: _color("By Hand", cut_kinds.KINDS["moved"][1], (0.25, 0.80, 0.35, 1.0))
     flipped: _color("Flipped", "Faces that are upside down in the UV map", (1.0, 0.05, 0.05, 0.6))
     overlapping: _color("Overlapping", "Faces that overlap others in the UV map", (0.85, 0.10, 0.95, 0.35))
     text: _color("Text", "Angles next to cones", (1.0, 1.0, 1.0, 1.0))

@@ -13,6 +13,16 @@ MEASURES = (
 )
 
 
+CUT_COLORS = (
+    ("MATCHING", "Matching", "Both sides of a cut have one color, so that you see where each edge continues"),
+    (
+        "KIND",
+        "By Kind",
+        "Seams, cuts that cones and handles need, further cuts and those moved by hand differ in color",
+    ),
+)
+
+
 def _redraw(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
     redraw.views()
 
@@ -37,6 +47,9 @@ class ConeUnwrapOverlay(bpy.types.PropertyGroup):
         description="Show both sides of every cut in the same color, on the mesh and in the UV editor",
         default=True,
         update=_redraw,
+    )
+    cut_colors: bpy.props.EnumProperty(
+        name="Cut Colors", description="What the colors of cuts tell", items=CUT_COLORS, update=_redraw
     )
     flipped: bpy.props.BoolProperty(
         name="Flipped Faces", description="Show faces that are upside down in the UV map", default=True, update=_redraw

@@ -25,13 +25,14 @@ def draw() -> None:
     gpu.state.blend_set("ALPHA")
     with gpu.matrix.push_pop():
         _load_layout_space(context.region)
-        for is_shown, draw_part in ((chosen.cuts, _draw_cuts), (chosen.cones, _draw_cones)):
+        draw_cuts = partial(_draw_cuts, by=chosen.cut_colors)
+        for is_shown, draw_part in ((chosen.cuts, draw_cuts), (chosen.cones, _draw_cones)):
             for obj in context.objects_in_mode_unique_data if is_shown else ():
                 draw_part(cache.entry(obj), look)
     gpu.state.blend_set("NONE")
 
 
-def _draw_cuts(entry: cache.Entry, look: OverlayLook) -> None:
+def _draw_cuts(entry: cache.Entry, look: OverlayLook, by: str) -> None:
     if not len(entry.content.cut_uv):
         return
     shader = shaders.lines()
@@ -40,7 +41,7 @@ def _draw_cuts(entry: cache.Entry, look: OverlayLook) -> None:
     pixel = bpy.context.preferences.system.pixel_size
     for name, rows, size in entry.content.cut_widths():
         shader.uniform_float("lineWidth", size * look.line_width * pixel)
-        entry.batch(f"layout of {name}", partial(_batch, entry.content, rows, look)).draw(shader)
+        entry.batch((f"layout of {name}", by), partial(_batch, entry.content, rows, look, by)).draw(shader)
 
 
 def _draw_cones(entry: cache.Entry, look: OverlayLook) -> None:
@@ -62,10 +63,10 @@ def _draw_cones(entry: cache.Entry, look: OverlayLook) -> None:
     gpu.state.program_point_size_set(False)
 
 
-def _batch(content: Content, rows: NDArray[np.bool_], look: OverlayLook) -> gpu.types.GPUBatch:
+def _batch(content: Content, rows: NDArray[np.bool_], look: OverlayLook, by: str) -> gpu.types.GPUBatch:
     segments = np.zeros((rows.sum(), 2, 3), np.float32)
     segments[..., :2] = content.cut_uv[rows]
-    return shaders.line_batch(segments, colors.of_paths(content.cut_paths[rows], look))
+    return shaders.line_batch(segments, colors.of_cuts(content, rows, look, by))
 
 
 def _load_layout_space(region: bpy.types.Region) -> None:

@@ -105,7 +105,8 @@ def _draw_cuts(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: OverlayLo
         shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
         for name, rows, size in content.cut_widths():
             shader.uniform_float("lineWidth", size * look.line_width * pixel)
-            entry.batch(name, partial(_cut_batch, content, rows, look)).draw(shader)
+            build = partial(_cut_batch, content, rows, look, chosen.cut_colors)
+            entry.batch((name, chosen.cut_colors), build).draw(shader)
 
 
 def _draw_cones(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: OverlayLook) -> None:
@@ -134,8 +135,8 @@ def _face_batch(corners: NDArray[np.float32], color: Sequence[float]) -> gpu.typ
     return shaders.triangle_batch(corners, colors.repeated(color, len(corners)))
 
 
-def _cut_batch(content: Content, rows: NDArray[np.bool_], look: OverlayLook) -> gpu.types.GPUBatch:
-    return shaders.line_batch(content.cut_lines[rows], colors.of_paths(content.cut_paths[rows], look))
+def _cut_batch(content: Content, rows: NDArray[np.bool_], look: OverlayLook, by: str) -> gpu.types.GPUBatch:
+    return shaders.line_batch(content.cut_lines[rows], colors.of_cuts(content, rows, look, by))
 
 
 def _heat_batch(entry: cache.Entry, obj: bpy.types.Object, measure: str) -> gpu.types.GPUBatch | None:

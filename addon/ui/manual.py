@@ -21,6 +21,7 @@ PAGES = {
     identifiers.EDIT: CONES,
     identifiers.PLACE: CONES,
     identifiers.EDIT_CUTS: CUTS,
+    identifiers.STEER_CUTS: CUTS,
     identifiers.SELECT_CUTS: CUTS,
     identifiers.SEAMS_FROM_CUTS: CUTS,
     identifiers.SET_ANGLE: ANGLES,

@@ -67,6 +67,7 @@ class VIEW3D_MT_cone_unwrap(bpy.types.Menu):
         layout.menu(VIEW3D_MT_cone_angles.bl_idname)
         layout.separator()
         layout.operator(identifiers.EDIT_CUTS)
+        layout.operator_menu_enum(identifiers.STEER_CUTS, "effect")
         layout.operator(identifiers.SELECT_CUTS)
         layout.operator(identifiers.SEAMS_FROM_CUTS)
         layout.separator()

@@ -6,11 +6,13 @@ from __future__ import annotations
 import bpy
 
 from ..core import findings, identifiers, native
+from ..core.cut_kinds import KINDS
 from ..core.text import counted
 from ..mesh import distortion, reports, texture
 from ..mesh.image_aspect import active_image
 from ..mesh.texel_settings import density_unit, texel_settings, texture_size
 from ..overlay.heat import SCALES
+from ..overlay.look import overlay_look
 from ..overlay.settings import settings
 from . import tables
 from .text import draw_table, draw_wrapped
@@ -158,6 +160,15 @@ class VIEW3D_PT_cone_unwrap_overlay(ConeUnwrapSubPanel, bpy.types.Panel):
             part = grid.row()
             part.active = name != "angles" or chosen.cones
             part.prop(chosen, name, text={"flipped": "Flipped", "overlapping": "Overlapping"}.get(name))
+        column = layout.column()
+        column.active = chosen.cuts
+        column.row(align=True).prop(chosen, "cut_colors", expand=True)
+        report = reports.current(context.object.data)
+        if chosen.cut_colors == "KIND" and report is not None:
+            for kind, (label, _) in KINDS.items():
+                row = column.row()
+                row.label(text=f"{label}: {counted(len(report.edges_of(kind)), 'edge')}")
+                row.prop(overlay_look(context), f"{kind}_cut", text="")
 
 
 class VIEW3D_PT_cone_unwrap_distortion(ConeUnwrapSubPanel, bpy.types.Panel):

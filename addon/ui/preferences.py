@@ -6,6 +6,7 @@ import bpy
 
 from ..core import native
 from ..core.choices import FirstPressProperties
+from ..core.cut_kinds import KINDS
 from ..core.identifiers import EXTENSION
 from ..overlay.look import CUT_NAMES, OverlayLook
 
@@ -49,6 +50,10 @@ class ConeUnwrapPreferences(FirstPressProperties, OverlayLook, bpy.types.AddonPr
             column.label(text=heading)
             for name in names:
                 column.prop(self, name)
+        layout.label(text="Cuts, by kind")
+        row = layout.row()
+        for kind in KINDS:
+            row.prop(self, f"{kind}_cut")
         layout.label(text="Cuts, in turn")
         row = layout.row(align=True)
         for name in CUT_NAMES:

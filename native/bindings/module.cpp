@@ -303,6 +303,7 @@ py::dict to_dict(const lsgp::Result& result) {
   out["solved"] = solved;
   out["island"] = to_array(result.island);
   out["cut_edges"] = to_array(result.cut_edges);
+  out["required_cuts"] = to_array(result.required_cuts);
   out["cones"] = to_array(result.cones);
   out["cone_angles"] = to_array(result.cone_angles);
   out["distortion"] = to_dict(result.distortion);

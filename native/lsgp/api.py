@@ -362,7 +362,8 @@ class Result(EqualByContent, ShortRepr):
     island: (m,) int32, the island of each triangle, -1 where not solved.
     cut_edges: (c, 2) int32 vertex pairs along which the layout is open, without mesh boundaries and the seams of
         "boundary"; on components with cones, seams that end in the interior are included, although their two sides
-        coincide.
+        coincide. required_cuts: (r, 2) int32, those of them that cones, handles and boundaries need, also along seams;
+        the others are seams, or split overlaps and islands.
     borders: (b, 2) int32 vertex pairs, those of `Surface.borders`.
     cones, cone_angles: (k,) int32 and (k,) float64, radians, the angles that were imposed.
     flipped: indices of triangles with UV area <= 0. wrong_angle_sums: vertices whose UV angle sum, with negative angles
@@ -389,6 +390,7 @@ class Result(EqualByContent, ShortRepr):
     solved: NDArray[np.bool_]
     island: IndexArray
     cut_edges: IndexArray
+    required_cuts: IndexArray
     borders: IndexArray
     cones: IndexArray
     cone_angles: FloatArray

@@ -85,6 +85,7 @@ struct Result {
   CornerUv corner_uv;               // (3m, 2), NaN where not solved
   std::vector<Index> island;        // (m), -1 where not solved
   VertexPairs cut_edges;            // (c, 2)
+  VertexPairs required_cuts;        // (r, 2) those of them that cones, handles and boundaries need
   std::vector<Index> cones;         // (k) those of solved components
   std::vector<double> cone_angles;  // (k) imposed, radians
   Distortion distortion;

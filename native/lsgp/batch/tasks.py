@@ -17,7 +17,7 @@ from ..run.unwrap_options import add_unwrap_options, library_options
 from .assets import Asset, picture_name
 
 # Options that name a file beside each mesh; "{}" in them stands for the mesh's own path without its suffix.
-SIDE_FILES = ("cones", "seam_edges", "directions", "importance")
+SIDE_FILES = ("cones", "seam_edges", "directions", "importance", "cut_costs")
 MESH = "{}"
 
 

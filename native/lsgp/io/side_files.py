@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The files beside a mesh on the command line: cones and their angles, seam edges, directions, importance."""
+"""The files beside a mesh on the command line: cones and their angles, seam edges, directions, importance, cut
+costs."""
 
 from __future__ import annotations
 
@@ -9,6 +10,7 @@ import math
 import os
 import stat
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from .mesh_text import Rows, content_lines
+from .mesh_text import Rows, content_lines, malformed
 
 
 class UsageError(Exception):
@@ -90,6 +92,52 @@ def directions_in(content: Any, path: Path, face_count: int) -> NDArray[np.float
     directions = np.zeros((face_count, 3))
     np.add.at(directions, faces, np.array([[_as_float(x) for x in row[1:]] for row in content]).reshape(-1, 3))
     return directions
+
+
+@dataclass(frozen=True, slots=True)
+class CutCostFile:
+    """The content of a file of cut costs: `paint`, (n,), one number for each vertex, or `costs`, (c,), one for each of
+    `pairs`, (c, 2) vertices. lines: (c,) those of the file, or of the list in it, counted from 1."""
+
+    paint: NDArray[np.float64] | None
+    pairs: NDArray[np.int64]
+    costs: NDArray[np.float64]
+    lines: list[int]
+
+
+def load_cut_costs(path: Path) -> CutCostFile:
+    """A file of cut costs: "a b cost" on each line, or one number for each vertex; or the same as a JSON list.
+
+    Raises OSError, UsageError, InputError.
+    """
+    data = read_regular(path)
+    if data.lstrip()[:1] in (b"[", b"{"):
+        data = _as_lines(_parsed(data, path), path)
+    rows = Rows.split(*content_lines(data))
+    try:
+        width = 3 if len(rows.counts) and rows.counts[0] == 3 else 1
+        wrong = np.flatnonzero(rows.counts != width)
+        if len(wrong):
+            form = "Give two vertices and a cost" if width == 3 else "Give one number"
+            raise malformed(f"{form}, as on the line before.", rows.lines[wrong[0]])
+        every = np.arange(len(rows.tokens)).reshape(-1, width)
+        if width == 1:
+            return CutCostFile(rows.floats(every.ravel()), np.empty((0, 2), np.int64), np.empty(0), rows.lines)
+        pairs = rows.integers(every[:, :2].ravel()).reshape(-1, 2)
+        return CutCostFile(None, pairs, rows.floats(every[:, 2]), rows.lines)
+    except InputError as error:
+        raise InputError(error.code, f"'{path}' does not hold the costs of cuts. {error.message}") from error
+
+
+def _as_lines(content: Any, path: Path) -> bytes:
+    """The entries of a JSON list, one to a line."""
+    if _is_list_of(content, _is_number):
+        rows = [[value] for value in content]
+    elif _is_list_of(content, lambda row: _is_list_of(row, _is_number) and len(row) == 3):
+        rows = content
+    else:
+        raise _unlike(path, "[[a, b, cost], ...] with vertices counted from 0, or [number, ...], one for each vertex")
+    return "\n".join(" ".join(map(repr, row)) for row in rows).encode()
 
 
 def load_importance(path: Path) -> NDArray[np.float64]:

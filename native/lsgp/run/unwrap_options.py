@@ -17,7 +17,8 @@ import numpy as np
 from ..api import Compactness, Options, Progress, Seamless, Surface, cut_costs
 from ..arguments import FloatArray
 from ..auto_unwrap import Preset, preset_options
-from ..io.side_files import UsageError
+from ..errors import InputError
+from ..io.side_files import CutCostFile, UsageError, load_cut_costs
 from ..packing import SHELVES, Pack, Packing
 from ..texels import DEFAULT_MARGIN, MOST_TILES, TexelLayout
 
@@ -30,6 +31,9 @@ LATTICES = ["square", "stripe", "translation", "triangle", "hexagon"]
 # Of most exporters of OBJ and of glTF.
 DEFAULT_FRONT = (0.0, 0.0, 1.0)
 DEFAULT_UP = (0.0, 1.0, 0.0)
+
+# Of a cut per length.
+MOST_COST = 1e6
 
 AUTO, AUTO_COUNT = "auto", "auto:"
 
@@ -194,6 +198,13 @@ def add_cut_options(command: argparse.ArgumentParser) -> None:
         type=float,
         help="with --cuts hidden: the direction from the model to the viewer (default: 0 0 1)",
     )
+    command.add_argument(
+        "--cut-costs",
+        metavar="FILE",
+        help='lines "a b cost": cost per length, 0 to 1e6, of a cut along the edge between two vertices, counted from '
+        "0, in place of that by --cuts, which is 0.01 to 1.1; or one number for each vertex, from 0, which attracts "
+        "cuts, to 1, which repels them; or the same as [[a, b, cost], ...] or [number, ...]",
+    )
 
 
 def require_cut_options(args: argparse.Namespace) -> None:
@@ -203,11 +214,47 @@ def require_cut_options(args: argparse.Namespace) -> None:
 
 
 def cut_costs_of(args: argparse.Namespace, surface: Surface, progress: Progress | None = None) -> FloatArray | None:
-    """What cuts along the surface's edges cost, for `Surface.cut_costs`.  Raises LsgpError."""
-    if args.cuts == "shortest":
+    """What cuts along the surface's edges cost, for `Surface.cut_costs`.  Raises OSError, UsageError, LsgpError."""
+    given = None if args.cut_costs is None else load_cut_costs(Path(args.cut_costs))
+    if args.cuts == "shortest" and given is None:
         return None
-    front = None if args.cuts == "sharp" else args.front or DEFAULT_FRONT
-    return cut_costs(surface, front, progress=progress)
+    front = None if args.cuts in {"sharp", "shortest"} else args.front or DEFAULT_FRONT
+    paint = None if given is None else given.paint
+    if paint is not None and len(paint) != len(surface.positions):
+        raise InputError(
+            "WRONG_PARAMETER",
+            f"'{args.cut_costs}' has {len(paint)} numbers for {len(surface.positions)} vertices. Give one for each, or "
+            "lines of two vertices and a cost.",
+        )
+    costs = cut_costs(surface, front, creases=args.cuts != "shortest", paint=paint, progress=progress)
+    return costs if given is None else _with_given_costs(surface, costs, given, args.cut_costs)
+
+
+def _with_given_costs(surface: Surface, costs: FloatArray, given: CutCostFile, path: str) -> FloatArray:
+    """Costs with those of a file in their place.  Raises InputError."""
+    edges, pairs = np.sort(surface.edges, axis=1).astype(np.int64), np.sort(given.pairs, axis=1)
+    keys = edges[:, 0] << 32 | edges[:, 1]
+    order = np.argsort(keys, kind="stable")
+    outside = ((pairs < 0) | (pairs >= len(surface.positions))).any(axis=1)
+    wanted = np.where(outside, -1, pairs[:, 0] << 32 | pairs[:, 1])
+    place = np.minimum(np.searchsorted(keys, wanted, sorter=order), len(keys) - 1)
+    rows = order[place]
+    for row in np.flatnonzero(keys[rows] != wanted)[:1].tolist():
+        a, b = given.pairs[row].tolist()
+        raise InputError(
+            "EDGE_NOT_IN_MESH",
+            f"'{path}' does not hold the costs of cuts. Line {given.lines[row]}: there is no edge from vertex {a} to "
+            f"{b}. Name edges of the file's faces by vertices counted from 0.",
+        )
+    for row in np.flatnonzero(~((given.costs >= 0) & (given.costs <= MOST_COST)))[:1].tolist():
+        raise InputError(
+            "WRONG_PARAMETER",
+            f"'{path}' does not hold the costs of cuts. Line {given.lines[row]}: {given.costs[row]:.6g} does not lie "
+            "between 0 and 1e6. Correct the file.",
+        )
+    costs = costs.copy()
+    costs[rows] = given.costs
+    return costs
 
 
 def add_threads_option(command: argparse.ArgumentParser) -> None:

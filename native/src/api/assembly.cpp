@@ -133,6 +133,7 @@ void Assembly::finish(const Cones& cones, const Array<std::pair<Index, Index>>& 
   if (directed_ > 0) result_.direction_error = misalignment_ / directed_;
   added_cuts_.report(result_.warnings);
   result_.cut_edges = to_vertex_pairs(cut_edges_);
+  result_.required_cuts = to_vertex_pairs(required_cuts_);
   for (const Index v : cones.vertices) {
     if (std::isnan(cone_angle_[v])) continue;
     result_.cones.push_back(v);
@@ -222,6 +223,12 @@ void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
   for (Index h = 0; h < mesh.halfedge_count(); ++h) open[h] = open[h] || map.cut_graph.is_cut[h];
   solved.part_count = label_parts(mesh, open, solved.part);
   append_ends(component, open, cut_edges_);
+  for (const Index h : map.required_cuts) {
+    // Islands may have been moved across some.
+    if (!open[h]) continue;
+    required_cuts_.push_back(component.source_vertex[mesh.origin(h)]);
+    required_cuts_.push_back(component.source_vertex[mesh.target(h)]);
+  }
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
     element(result_.island, component.source_triangle[f]) = island_count_ + solved.part[f];
   }

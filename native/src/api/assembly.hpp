@@ -78,7 +78,7 @@ class Assembly {
   Result& result_;
   double surface_area_ = 0;   // of all components
   Array<double> cone_angle_;  // by the caller's vertex, NaN where none was imposed
-  Array<Index> cut_edges_;    // vertex pairs
+  Array<Index> cut_edges_, required_cuts_;  // vertex pairs
   Defects defects_;
   AddedCuts added_cuts_;
   Array<Index> flat_cones_;

@@ -107,6 +107,8 @@ def test_only_the_map_and_the_report_on_it_change():
     session.store()
     assert {name for name in changed(before, snapshot(ball)) if "report" not in name} == {uv_key()}
     report = reports.find(ball.data)
+    moved = {tuple(sorted(edge)) for edge in report.edges_of("moved")}
+    assert UvMap(ball).split_edges() - along(earlier.paths) <= moved < UvMap(ball).split_edges()
     assert along(report.paths) == UvMap(ball).split_edges() != along(earlier.paths)
     assert report.overlapping == sorted(UvMap(ball).overlapping())
     assert (report.cones, report.distortion) == (earlier.cones, earlier.distortion)

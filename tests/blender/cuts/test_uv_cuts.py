@@ -5,6 +5,7 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
+from installed import addon
 from scenes import (
     UvMap,
     add_ball,
@@ -19,6 +20,8 @@ from scenes import (
     select_elements,
     snapshot,
 )
+
+stored_reports, cut_kinds = addon.mesh.reports, addon.core.cut_kinds
 
 
 def seams_of(obj):
@@ -101,6 +104,58 @@ def test_cuts_are_selected_in_edge_select_mode():
     further.select_set(True)
     assert bpy.ops.mesh.cone_select_cuts(extend=True) == {"FINISHED"}
     assert selected_edges(ball) == cuts | {tuple(sorted(v.index for v in further.verts))}
+
+
+def test_seams_and_cuts_that_cones_need_are_told_apart():
+    ball = add_ball()
+    bpy.ops.uv.cone_unwrap()
+    marked = sorted(UvMap(ball).split_edges())[::2]
+    mark_seams(ball, marked)
+    bpy.ops.uv.cone_unwrap()
+    edit(ball)
+    cuts = UvMap(ball).split_edges()
+    report = stored_reports.find(ball.data)
+    of_kind = {kind: {tuple(sorted(edge)) for edge in report.edges_of(kind)} for kind in cut_kinds.KINDS}
+    assert of_kind["seam"] == set(marked) & cuts != set()
+    assert of_kind["required"] == cuts - set(marked) != set()
+    assert of_kind["added"] == of_kind["moved"] == set()
+    for kind, edges in of_kind.items():
+        if not edges:
+            assert bpy.ops.mesh.cone_select_cuts(kind=kind.upper()) == {"CANCELLED"}
+            continue
+        assert bpy.ops.mesh.cone_select_cuts(kind=kind.upper()) == {"FINISHED"}
+        assert selected_edges(ball) == edges
+
+
+def islands_between(uv, cuts):
+    """How many islands the faces are in if the map is cut along these edges."""
+    root = list(range(len(uv.loops_of_face)))
+    face_of = {loop: face for face, loops in enumerate(uv.loops_of_face) for loop in loops}
+    for edge in uv.sides.keys() - cuts:
+        one, other = (root[face_of[side[0]]] for side in uv.sides[edge])
+        root = [one if number == other else number for number in root]
+    return len(set(root))
+
+
+def test_cuts_that_divide_an_island_are_added_ones():
+    cube = add_cone_cube(cuts=1)
+    bpy.ops.uv.cone_auto_unwrap(preset="PAINT")
+    edit(cube)
+    report, uv = stored_reports.find(cube.data), UvMap(cube)
+    added = {tuple(sorted(edge)) for edge in report.edges_of("added")}
+    required = {tuple(sorted(edge)) for edge in report.edges_of("required")}
+    assert added and added | required == uv.split_edges()
+    assert islands_between(uv, added | required) == uv.islands() == 2
+    assert islands_between(uv, required) == 1
+
+
+def test_kinds_are_those_of_the_map_as_it_was_unwrapped():
+    ball = unwrapped_ball()
+    bm = bmesh.from_edit_mesh(ball.data)
+    next(iter(bm.faces)).loops[0][bm.loops.layers.uv.active].uv.x += 0.1
+    bmesh.update_edit_mesh(ball.data)
+    with pytest.raises(RuntimeError, match="unwrap it again"):
+        bpy.ops.mesh.cone_select_cuts(kind="REQUIRED")
 
 
 def test_several_objects_and_one_without_a_map(reports):

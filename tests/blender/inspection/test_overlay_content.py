@@ -175,6 +175,20 @@ def test_labels_that_would_lie_on_others_are_left_out():
     assert labels.without_overlaps(boxes, [1, 0, 2, 3]) == [1, 2, 3]
 
 
+def test_cuts_of_one_kind_have_one_color():
+    look, blank = addon.overlay.look.overlay_look(bpy.context), np.zeros((3, 2, 3), np.float32)
+    shown = content.Content(cut_lines=blank, cut_paths=np.array([0, 1, 2], np.int32), kinds=["seam", "added", "seam"])
+    found = colors.of_cuts(shown, np.array([True, True, True]), look, "KIND")
+    np.testing.assert_array_equal(found, np.array([look.seam_cut, look.added_cut, look.seam_cut], np.float32))
+    some = colors.of_cuts(shown, np.array([False, True, False]), look, "KIND")
+    np.testing.assert_array_equal(some, found[1:2])
+    for unknown in (
+        colors.of_cuts(replace(shown, kinds=[]), np.ones(3, bool), look, "KIND"),
+        colors.of_cuts(shown, np.ones(3, bool), look, "MATCHING"),
+    ):
+        np.testing.assert_array_equal(unknown, colors.of_paths(shown.cut_paths, look))
+
+
 def test_cut_colors_take_turns_and_then_lighter_ones():
     look = addon.overlay.look.overlay_look()
     count = len(look.cut_colors())

@@ -410,3 +410,15 @@ def test_real_meshes_are_split_with_exact_transitions(name: str, seamless: bool)
     # No island is a scrap.
     area = np.bincount(split.island, oracle.triangle_areas(mesh.positions, mesh.triangles))
     assert area.min() >= 0.005 * area.sum()
+
+
+@pytest.mark.parametrize("options", [SPLIT, SEAMLESS_SPLIT], ids=["conformal", "seamless"])
+def test_cuts_that_split_overlaps_are_not_required_ones(options: lsgp.Options) -> None:
+    strip = wound(60)
+    surface = lsgp.Surface(strip.positions, strip.triangles)
+    assert len(lsgp.parameterize(surface, [], None, PLAIN).cut_edges) == 0
+    result = lsgp.parameterize(surface, [], None, options)
+    assert len(result.cut_edges) > 0 and len(result.required_cuts) == 0
+    ball = meshes.bumpy_sphere(2)
+    whole = lsgp.parameterize(lsgp.Surface(ball.positions, ball.triangles), ball.cones, None, options)
+    assert pairs(whole.required_cuts) == pairs(whole.cut_edges)
