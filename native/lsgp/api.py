@@ -695,7 +695,8 @@ def place_cones(
         most 7 degrees off them and the stretch within 1.2: around the bottom of a vase, and none in a sleeve.
     prefer_sharp: prefer sharp corners to smooth regions if that costs little.
     symmetric: the same cones on both sides of a plane, given by `mirror`, a point on it and its normal, or, if that is
-        None, detected.
+        None, detected; also on surfaces that are symmetric only up to 2 % of their extent, and on components that
+        mirror each other.
     seams, progress: as for `parameterize`, which treats the placed cones and angles as assumed here: with "follow" a
         component that gets cones is not opened along its seams. threads: as in `Options`.
     If the surface has cut_costs, cones are placed where cuts reach them cheaply, provided that the stretch stays within

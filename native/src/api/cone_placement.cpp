@@ -15,6 +15,8 @@
 #include "pipeline/wording.hpp"
 #include "placement/component_placement.hpp"
 #include "placement/directed_placement.hpp"
+#include "placement/mirror.hpp"
+#include "placement/twin_placement.hpp"
 #include "solvers/linear_algebra_counter.hpp"
 
 namespace lsgp {
@@ -71,14 +73,32 @@ class PlacementWork {
   Array<Index> copies_;  // (n) components' vertices that are one of the caller's
 };
 
-Array<Index> mirror_images(const Component& component, const Geometry& geometry, const PlacementOptions& options,
-                           double unit_scale, Shortfalls& shortfalls) {
-  if (!options.symmetric) return {};
+// The given mirror plane in the components' unit.
+std::optional<MirrorPlane> mirror_plane(const PlacementOptions& options, double unit_scale) {
   std::optional<MirrorPlane> plane = options.mirror;
   if (plane) plane->point *= unit_scale;
-  Array<Index> images = find_mirror_images(component.mesh, geometry, plane);
-  if (images.empty()) shortfalls.add_asymmetric(component.source_triangle);
-  return images;
+  return plane;
+}
+
+// What the cones of all components are placed by.
+struct PlacementRules {
+  const Surface& surface;
+  const PlacementOptions& options;
+  TwinPlacement& twins;
+  ProgressMonitor& monitor;
+};
+
+PlacedCones place_on(const Component& component, const PlacementTask& task, const PlacementRules& rules,
+                     std::vector<Finding>& findings) {
+  if (auto copied = rules.twins.place(component, task, rules.monitor)) return std::move(*copied);
+  PlacedCones found = place_component(task, rules.options, findings, rules.monitor);
+  if (rules.surface.directions.rows() > 0 && rules.options.lattice && !rules.options.count) {
+    const Positions directions = directions_on(component, rules.surface.directions);
+    auto beside = place_beside_directions(task, directions, rules.options, found, rules.monitor);
+    if (beside) found = std::move(*beside);
+  }
+  rules.twins.keep(component, task, found);
+  return found;
 }
 
 // A vertex has one angle in the result, even if different ones are best on the components that touch there.
@@ -107,16 +127,17 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
   Array<Index> placed, shared;
   double stretched_area = 0, stretched_in_maps = 0, total_area = 0;
   Shortfalls shortfalls(options);
+  const std::optional<MirrorPlane> plane = mirror_plane(options, work.unit_scale());
+  TwinPlacement twins(work.components(), options, plane);
   work.for_each([&](const Component& component, const Geometry& geometry, const ComponentCones& cones,
                     const Array<char>& allowed, std::vector<Finding>& findings) {
-    const Array<Index> mirrored = mirror_images(component, geometry, options, work.unit_scale(), shortfalls);
-    const PlacementTask task{component.mesh, geometry, cones, allowed, mirrored};
-    PlacedCones found = place_component(task, options, findings, work.monitor());
-    if (surface.directions.rows() > 0 && options.lattice && !options.count) {
-      const Positions directions = directions_on(component, surface.directions);
-      auto beside = place_beside_directions(task, directions, options, found, work.monitor());
-      if (beside) found = std::move(*beside);
+    Array<Index> mirrored;
+    if (options.symmetric) mirrored = find_mirror_images(component.mesh, geometry, plane);
+    if (options.symmetric && mirrored.empty() && !twins.is_mirrored(component)) {
+      shortfalls.add_asymmetric(component.source_triangle);
     }
+    const PlacementTask task{component.mesh, geometry, cones, allowed, mirrored};
+    PlacedCones found = place_on(component, task, {surface, options, twins, work.monitor()}, findings);
     if (is_opened(component, found, options)) describe_opened(component, options, work.monitor(), found);
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
       out.log_scale[component.source_vertex[v]] = found.curvature.log_scale[v];

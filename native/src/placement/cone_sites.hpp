@@ -2,8 +2,6 @@
 // Sites of cones: single vertices, or vertices together with their mirror images.
 #pragma once
 
-#include <optional>
-
 #include "base/array.hpp"
 #include "lsgp/placement.hpp"
 #include "prescription/curvature.hpp"
@@ -16,11 +14,6 @@ struct Site {
   Index mirrored = none;
   int cones() const { return mirrored == none ? 1 : 2; }
 };
-
-// The vertex at the mirror image of each, (n), or none; empty if the surface is not symmetric up to a few vertices.
-// plane: if none, those through the centroid along the axes and the principal directions are tried.
-Array<Index> find_mirror_images(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                const std::optional<MirrorPlane>& plane);
 
 // The surface and the vertices where cones may be placed.
 struct PlacementTask {

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import lsgp
 import meshes
 import numpy as np
@@ -12,13 +14,23 @@ from meshes import Mesh, make
 from placement_checks import place
 
 
-def two_horned(levels: int = 3) -> Mesh:
-    """A ball with two horns and a snout, its own mirror image in x = 0 and in no other plane."""
+def two_horned(levels: int = 3, turn: float = 0.0) -> Mesh:
+    """A ball with two horns and a snout, its own mirror image in x = 0 and in no other plane.
+
+    turn: of the triangulation about an axis across that plane, which makes it another one on each side.
+    """
     ball = meshes.icosphere(levels)
-    p = ball.positions
+    p = ball.positions @ rotation([1, 2, 3], turn).T
     horn = np.exp(-6 * ((np.abs(p[:, 0]) - 0.6) ** 2 + (p[:, 1] - 0.7) ** 2 + (p[:, 2] - 0.2) ** 2))
     snout = np.exp(-5 * (p[:, 0] ** 2 + (p[:, 1] + 0.3) ** 2 + (p[:, 2] - 0.9) ** 2))
     return make(p * (1 + 0.9 * horn + 0.7 * snout)[:, None], ball.triangles)
+
+
+def rotation(axis: Sequence[float], angle: float) -> np.ndarray:
+    """By Rodrigues' formula."""
+    x, y, z = np.array(axis) / np.linalg.norm(axis)
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
 
 
 def images_in_x(mesh: Mesh) -> np.ndarray:
@@ -70,6 +82,43 @@ def test_existing_cones_get_their_image() -> None:
     assert placed.cones[0] == v and IMAGE[v] in placed.cones
     assert_symmetric(placed)
     assert placed.cone_angles[placed.cones.tolist().index(int(IMAGE[v]))] == 5.0
+
+
+def assert_nearly_symmetric(positions: np.ndarray, placed: lsgp.Placement, within: float) -> None:
+    """Each cone has one of the same angle near its image in x = 0."""
+    assert "NOT_SYMMETRIC" not in codes(placed.warnings)
+    cones = positions[placed.cones]
+    apart = np.linalg.norm(cones[:, None] * [-1, 1, 1] - cones[None], axis=2)
+    image = apart.argmin(axis=1)
+    assert apart.min(axis=1).max() <= within
+    assert image[image].tolist() == list(range(len(cones)))
+    assert placed.cone_angles[image] == pytest.approx(placed.cone_angles, abs=1e-9)
+
+
+@pytest.mark.parametrize("tilt", [0.0, 0.4])
+def test_noise_and_other_triangles_on_either_side_leave_it_symmetric(tilt: float) -> None:
+    mesh = two_horned(turn=0.7)
+    extent = np.linalg.norm(np.ptp(mesh.positions, axis=0))
+    noise = np.random.default_rng(3).uniform(-0.005, 0.005, mesh.positions.shape) * extent
+    tilted = rotation([3, 1, -2], tilt)
+    placed = place(make((mesh.positions + noise) @ tilted.T, mesh.triangles), count=12, symmetric=True)
+    edge = np.linalg.norm(mesh.positions[mesh.triangles] - mesh.positions[mesh.triangles[:, [1, 2, 0]]], axis=2).mean()
+    assert len(placed.cones) >= 11
+    assert_nearly_symmetric(mesh.positions, placed, 0.75 * edge)
+
+
+def mirrored(mesh: Mesh) -> Mesh:
+    return make(mesh.positions * [-1, 1, 1], mesh.triangles[:, ::-1])
+
+
+@pytest.mark.parametrize("count", [None, 7])
+def test_parts_that_mirror_each_other_get_mirrored_cones(count: int | None) -> None:
+    odd = meshes.bumpy_sphere(2)
+    both = meshes.merge([odd, meshes.renumber(mirrored(odd), 5)[0]])
+    placed = place(both, count=count, symmetric=True)
+    assert len(placed.cones) == 2 * np.sum(placed.cones < len(odd.positions)) > 0
+    middle = (both.positions.min(axis=0) + both.positions.max(axis=0)) / 2
+    assert_nearly_symmetric(both.positions - middle * [1, 0, 0], placed, 1e-9)
 
 
 def test_without_symmetry_it_says_so_and_places_as_usual() -> None:

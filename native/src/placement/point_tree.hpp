@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Nearest points in space.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "base/array.hpp"
+#include "lsgp/surface.hpp"
+
+namespace lsgp {
+
+// A k-d tree over points, halved by count.
+class PointTree {
+ public:
+  // points: (n, 3), finite; they have to outlive it.
+  explicit PointTree(const Positions& points);
+
+  // The nearest point, of several the one with the least index, and its distance; -1 where there is none or `at` is not
+  // finite.
+  struct Nearest {
+    Index point = -1;
+    double distance = 0;
+  };
+  Nearest nearest(const Eigen::RowVector3d& at) const;
+
+ private:
+  static constexpr Index leaf = 8;  // points
+
+  // The axis along which the points order_[begin, end) are halved.
+  int widest_axis(Index begin, Index end) const;
+  void build(Index begin, Index end);
+  void search(const Eigen::RowVector3d& at, Index begin, Index end, Nearest& best) const;
+
+  const Positions& points_;
+  Array<Index> order_;
+  Array<char> axis_;  // by the middle of a range
+};
+
+}  // namespace lsgp
