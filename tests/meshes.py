@@ -149,6 +149,25 @@ def flower(levels: int = 3, height: float = 0.35) -> Mesh:
 # --- surfaces with boundary -----------------------------------------------------------------------------------------
 
 
+def two_horned(levels: int = 3, turn: float = 0.0) -> Mesh:
+    """A ball with two horns and a snout, its own mirror image in x = 0 and in no other plane.
+
+    turn: of the triangulation about an axis across that plane, which makes it another one on each side.
+    """
+    ball = icosphere(levels)
+    p = ball.positions @ rotation([1, 2, 3], turn).T
+    horn = np.exp(-6 * ((np.abs(p[:, 0]) - 0.6) ** 2 + (p[:, 1] - 0.7) ** 2 + (p[:, 2] - 0.2) ** 2))
+    snout = np.exp(-5 * (p[:, 0] ** 2 + (p[:, 1] + 0.3) ** 2 + (p[:, 2] - 0.9) ** 2))
+    return make(p * (1 + 0.9 * horn + 0.7 * snout)[:, None], ball.triangles)
+
+
+def rotation(axis: Sequence[float], angle: float) -> FloatArray:
+    """By Rodrigues' formula."""
+    x, y, z = np.array(axis) / np.linalg.norm(axis)
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
 def grid(nx: int = 6, ny: int = 5, height: Callable[[FloatArray, FloatArray], FloatArray] | None = None) -> Mesh:
     """A disk: the rectangle [0, nx] x [0, ny] in unit cells, lifted to z = height(x, y)."""
     x, y = (a.ravel().astype(np.float64) for a in np.meshgrid(np.arange(nx + 1), np.arange(ny + 1), indexing="xy"))

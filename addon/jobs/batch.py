@@ -135,8 +135,13 @@ def _unwrap_task(obj: bpy.types.Object, args: argparse.Namespace) -> UnwrapTask:
     task = unwrap_task(region, settings)
     if len(task.cones.cones) and args.preset is None:
         return task
-    creases_of = args.preset if args.creases else None
-    return replace(task, completes=True, count=unwrap_options.cone_count(args), creases_of=creases_of)
+    return replace(
+        task,
+        completes=True,
+        count=unwrap_options.cone_count(args),
+        symmetric=unwrap_options.tries_symmetry(args),
+        creases_of=args.preset if args.creases else None,
+    )
 
 
 def _layouts(

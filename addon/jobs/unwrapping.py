@@ -65,7 +65,8 @@ class UnwrapTask:
     whether islands stay where the old UVs of the region are. aspect: of the image that the coordinates are for; 1 where
     they are not corrected for one. cuts: where they should run. completes: whether cones are placed where those of the
     region do not suffice; count: how many on each connected part that gets some, None for as few as keep the stretch
-    low. creases_of: the preset of `lsgp.auto_unwrap` in whose way hard surfaces then end at creases; None: in no way.
+    low; symmetric: whether they are placed alike on both sides of a mirror plane, if that costs little. creases_of: the
+    preset of `lsgp.auto_unwrap` in whose way hard surfaces then end at creases; None: in no way.
     """
 
     region: Region
@@ -77,6 +78,7 @@ class UnwrapTask:
     cuts: CutChoice
     completes: bool = False
     count: int | None = None
+    symmetric: bool = False
     creases_of: str | None = None
 
     @property
@@ -202,6 +204,7 @@ def _completed(task: UnwrapTask, cones: ConeAngles, pins: lsgp.Pins | None, prog
         preset=task.creases_of or "paint",
         options=task.options,
         count=task.count,
+        symmetric=task.symmetric,
         creases=task.creases_of is not None,
         sharp=task.region.sharp,
         pins=pins,

@@ -26,6 +26,7 @@ from .api import (
 from .arguments import FloatArray, IndexArray
 from .errors import Cancelled, Finding, InputError, LsgpError
 from .ledger import LedgerPart, build_ledger, surface_of_triangles
+from .map_comparison import may_replace_map
 from .packing import Pack, Packing, laid_out
 from .texels import TexelLayout, at_texel_density
 
@@ -37,6 +38,10 @@ TARGET = 1.05
 PLACING = 0.6
 # And with making the map, where islands are packed afterwards.
 PACKING = 0.9
+# Of the time of placing cones, and of mapping: what two attempts, with and without symmetry, have each.
+TRYING = 0.5
+# What tells that a component is not symmetric.
+_ODD = "NOT_SYMMETRIC"
 # Hard surfaces end at their creases where their curvature sits at more corners than these, at which cones serve as
 # well and the texture runs on; None: it has to run on everywhere.
 _MOST_CORNERS: dict[Preset, int | None] = {"paint": 24, "tile": None, "bake": 0}
@@ -71,6 +76,7 @@ def auto_unwrap(
     preset: Preset = "paint",
     options: Options | None = None,
     count: int | None = None,
+    symmetric: bool = True,
     creases: bool = True,
     sharp: ArrayLike | None = None,
     pins: Pins | None = None,
@@ -86,6 +92,9 @@ def auto_unwrap(
         requires, which may be 0; one whose cones cannot take up its curvature gets more.
     options: instead of `preset_options(preset)`. count: cones on each component that gets some, as for `place_cones`;
         None: the fewest that bring the L2 stretch to 1.05.
+    symmetric: whether cones are placed alike on both sides of a mirror plane, and on parts that mirror each other, as
+        by `place_cones`, if that costs little: at most 1 % of L2 stretch, one island for ten, a quarter of the edges
+        cut, and some 3 % of the filled part of the square. Only without cones and `count`.
     creases: whether hard surfaces may be cut at their creases, as in `with_crease_borders`, which takes `sharp`.
     pack: "tight": as by `pack_islands`; "shelves": in rows; None: tight if `packer_name` returns a packer. Layouts that
         are seamless, pinned or in UDIM tiles at a texel density are never packed.
@@ -111,9 +120,10 @@ def auto_unwrap(
     if udim is not None:
         chosen = replace(chosen, square_share=float(udim))
     packs = _may_pack(packing, chosen, pins, texels)
-    completed = complete_cones(surface, cones, angles, chosen, count, part_of(progress, 0.0, PLACING))
-    rest = part_of(progress, PLACING, PACKING if packs else 1.0)
-    result = completed.told(parameterize(surface, completed.cones, completed.angles, chosen, pins, rest), chosen)
+    placing, mapping = part_of(progress, 0.0, PLACING), part_of(progress, PLACING, PACKING if packs else 1.0)
+    is_free = arguments.flag("symmetric", symmetric) and count is None
+    choices = possible_cones(surface, cones, angles, chosen, count, is_free, placing)
+    _, result = best_map(surface, choices, chosen, pins, mapping)
     if packs:
         return laid_out(surface, result, packing, texels, part_of(progress, PACKING, 1.0))[0]
     return result if texels is None else at_texel_density(surface, result, texels)
@@ -188,16 +198,19 @@ def complete_cones(
     options: Options,
     count: int | None = None,
     progress: Progress | None = None,
+    *,
+    symmetric: bool = False,
 ) -> CompletedCones:
     """Cones for a map with these options: the given ones, and automatic ones where they do not suffice.
 
     Components without cones get some as far as they need them, and so do those whose ledger does not close.
-    cones, angles, count, progress and errors as of `place_cones`.
+    cones, angles, count, progress and errors as of `place_cones`, symmetric as well if no cones are given.
     """
     given = arguments.index_vector("cones", cones)
     held = list(arguments.cone_angles("angles", angles, len(given)))
     if not len(given):
-        return _completed(given, held, options, count, _place(surface, given, held, options, count, progress))
+        placed = _place(surface, given, held, options, count, progress, symmetric)
+        return _completed(given, held, options, count, placed)
     lacking = [part for part in build_ledger(surface, given, held, options, gets_cones=True) if _lacks(part)]
     if not lacking:
         return CompletedCones(given, held, None)
@@ -213,6 +226,64 @@ def complete_cones(
         return CompletedCones(given, held, None)
     placed = replace(placed, warnings=_renumbered(placed.warnings, triangles))
     return _completed(given, held, options, count, placed)
+
+
+def possible_cones(
+    surface: Surface,
+    cones: ArrayLike,
+    angles: Sequence[float | None] | None,
+    options: Options,
+    count: int | None,
+    symmetric: bool,
+    progress: Progress | None = None,
+) -> list[CompletedCones]:
+    """Those of `complete_cones`, and symmetric ones after them where there are others.
+
+    symmetric: whether to try, where no cones are given. Errors as of `complete_cones`.
+    """
+    if not symmetric or len(arguments.index_vector("cones", cones)):
+        return [complete_cones(surface, cones, angles, options, count, progress)]
+    try:
+        alike = complete_cones(surface, cones, angles, options, count, part_of(progress, 0.0, TRYING), symmetric=True)
+    except Cancelled:
+        raise
+    except LsgpError:
+        alike = None
+    if alike is not None:
+        odd = [finding for finding in alike.placement.warnings if finding.code == _ODD]
+        others = [finding for finding in alike.placement.warnings if finding.code != _ODD]
+        alike = replace(alike, placement=replace(alike.placement, warnings=others))
+        if sum(len(finding.elements.indices) for finding in odd) == len(surface.triangles):
+            return [alike]
+    usual = complete_cones(surface, cones, angles, options, count, part_of(progress, TRYING, 1.0))
+    is_same = alike is None or set(alike.cones.tolist()) == set(usual.cones.tolist())
+    return [usual] if is_same else [usual, alike]
+
+
+def best_map(
+    surface: Surface,
+    choices: Sequence[CompletedCones],
+    options: Options,
+    pins: Pins | None = None,
+    progress: Progress | None = None,
+) -> tuple[CompletedCones, Result]:
+    """The map through the cones of `possible_cones`: the symmetric ones if that costs little.
+
+    pins, progress, errors: as for `parameterize`.
+    """
+    usual, *others = choices
+    most = 1.0 if not others else TRYING
+    best = usual, parameterize(surface, usual.cones, usual.angles, options, pins, part_of(progress, 0.0, most))
+    for alike in others:
+        try:
+            result = parameterize(surface, alike.cones, alike.angles, options, pins, part_of(progress, most, 1.0))
+        except Cancelled:
+            raise
+        except LsgpError:
+            continue
+        if may_replace_map(result, best[1]):
+            best = alike, result
+    return best[0], best[0].told(best[1], options)
 
 
 def joined_warnings(of_placement: Sequence[Finding], of_map: Sequence[Finding]) -> list[Finding]:
@@ -233,6 +304,7 @@ def _place(
     options: Options,
     count: int | None,
     progress: Progress | None,
+    symmetric: bool = False,
 ) -> Placement:
     lattice = None if options.seamless is None else options.seamless.lattice
     return place_cones(
@@ -242,6 +314,7 @@ def _place(
         count=count,
         target=TARGET,
         lattice=lattice,
+        symmetric=symmetric,
         seams=options.seams,
         threads=options.threads,
         progress=progress,

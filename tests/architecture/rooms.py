@@ -168,6 +168,7 @@ API = (
     "lattice",
     "layout_search",
     "ledger",
+    "map_comparison",
     "packing",
     "quads",
     "short_repr",

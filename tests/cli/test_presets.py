@@ -86,6 +86,19 @@ def test_cones_of_a_file_are_completed_with_a_preset_alone(lsgp, ball_files: Pat
     assert enough["placement"] is None
 
 
+def test_cones_are_symmetric_with_a_preset_unless_told_otherwise(lsgp, ball_files: Path) -> None:
+    horned = meshes.two_horned()
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in horned.positions.tolist()]
+    lines += ["f {} {} {}".format(*row) for row in (horned.triangles + 1).tolist()]
+    (ball_files / "ball.obj").write_text("\n".join(lines) + "\n")
+    paint = ("--preset", "paint", "--cuts", "shortest")
+    free, alike = (report_of(lsgp, *paint, *option)["cones"] for option in (("--no-symmetric",), ()))
+    right_less_left = np.sign(horned.positions[:, 0].round(9))
+    assert right_less_left[alike].sum() == 0 != right_less_left[free].sum()
+    refused = lsgp(*UNWRAP, "--no-symmetric")
+    assert refused.code == 2 and "--no-symmetric is for presets" in refused.err
+
+
 def test_a_batch_takes_presets_and_makes_the_bytes_of_single_runs(lsgp, ball_files: Path) -> None:
     done = lsgp("batch", "ball.obj", "--out", "many", "--preset", "bake", "--no-pictures")
     assert done.code == 0, done.err

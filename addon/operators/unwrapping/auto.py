@@ -101,6 +101,12 @@ class UV_OT_cone_auto_unwrap(
         "seams are marked",
         default=True,
     )
+    symmetric: bpy.props.BoolProperty(
+        name="Symmetric",
+        description="Place cones alike on both sides of a mirror plane, and on parts that mirror each other, if that "
+        "hardly stretches the map more or takes more islands; only where no cones are marked",
+        default=True,
+    )
     mark: bpy.props.BoolProperty(
         name="Mark Cones",
         description="Mark the cones that are placed, so that they can be edited and are kept by the next run",
@@ -144,6 +150,7 @@ class UV_OT_cone_auto_unwrap(
                 body.prop(self, "creases")
                 body.prop(self, "straighten")
                 body.prop(self, "compact")
+            body.prop(self, "symmetric")
             body.prop(self, "use_subsurf_data")
             body.prop(self, "mark")
             self.draw_vertex_group(body, context)
@@ -168,7 +175,8 @@ class UV_OT_cone_auto_unwrap(
             if self.mark:
                 require_attributes(obj.data)
             creases_of = PRESETS[self.preset][0] if self.creases else None
-            return replace(unwrap_task(region, settings), completes=True, creases_of=creases_of)
+            task = unwrap_task(region, settings)
+            return replace(task, completes=True, symmetric=self.symmetric, creases_of=creases_of)
 
         return Groups(settings.cone_group), make_task
 

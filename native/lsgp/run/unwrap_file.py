@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..api import Options, Placement, Progress, Result, Surface, parameterize
-from ..auto_unwrap import PACKING, PLACING, complete_cones, part_of, with_crease_borders
+from ..auto_unwrap import PACKING, PLACING, best_map, part_of, possible_cones, with_crease_borders
 from ..errors import Finding, InputError, LsgpError
 from ..io.mesh_files import MeshFile, format_mesh, parse_mesh, triangulated
 from ..io.mesh_formats import output_format
@@ -25,7 +25,16 @@ from ..io.whole_files import write_output
 from ..packing import laid_out
 from ..texels import TexelDensity, at_texel_density, texel_density
 from ..triangles import uv_area
-from .unwrap_options import cone_count, cones_file, cut_costs_of, library_options, packing_of, texel_layout, up_of
+from .unwrap_options import (
+    cone_count,
+    cones_file,
+    cut_costs_of,
+    library_options,
+    packing_of,
+    texel_layout,
+    tries_symmetry,
+    up_of,
+)
 
 # Warnings of results that are not what was asked for, which --strict refuses.
 FLAWS = frozenset(
@@ -178,9 +187,10 @@ def _map(
         result = parameterize(surface, *given, options, progress=progress)
         run.stage_seconds.update(result.stage_seconds)
         return file, result
+    placing, mapping = part_of(progress, 0.0, PLACING), part_of(progress, PLACING, 1.0)
     with run.stage("place_cones"):
-        completed = complete_cones(surface, *given, options, cone_count(args), part_of(progress, 0.0, PLACING))
+        choices = possible_cones(surface, *given, options, cone_count(args), tries_symmetry(args), placing)
+    completed, result = best_map(surface, choices, options, progress=mapping)
     run.placement = completed.placement
-    result = parameterize(surface, completed.cones, completed.angles, options, progress=part_of(progress, PLACING, 1.0))
     run.stage_seconds.update(result.stage_seconds)
-    return file, completed.told(result, options)
+    return file, result

@@ -81,6 +81,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
     _add_direction_options(unwrap)
     _add_crease_option(unwrap)
     _add_straighten_option(unwrap)
+    _add_symmetry_option(unwrap)
     unwrap.add_argument(
         "--border",
         choices=["free", "straight"],
@@ -135,6 +136,16 @@ def _add_straighten_option(unwrap: argparse.ArgumentParser) -> None:
         action="store_false",
         help="with --preset: leave nearly straight boundaries and cuts of the layout as they are; by default paint and "
         "bake make them exactly straight and align them with u and v where that costs hardly any stretch",
+    )
+
+
+def _add_symmetry_option(unwrap: argparse.ArgumentParser) -> None:
+    unwrap.add_argument(
+        "--no-symmetric",
+        dest="symmetric",
+        action="store_false",
+        help="with --preset: place cones without regard to symmetry; by default they are alike on both sides of a "
+        "mirror plane where that costs little",
     )
 
 
@@ -430,6 +441,11 @@ def cone_count(args: argparse.Namespace) -> int | None:
     return int(args.cones.removeprefix(AUTO_COUNT)) if args.cones.startswith(AUTO_COUNT) else None
 
 
+def tries_symmetry(args: argparse.Namespace) -> bool:
+    """Whether cones are placed symmetrically where that costs little."""
+    return bool(args.symmetric) and args.preset is not None and cone_count(args) is None
+
+
 def _is_seamless(args: argparse.Namespace) -> bool:
     return bool(args.seamless) or args.preset == "tile"
 
@@ -497,6 +513,8 @@ def library_options(args: argparse.Namespace) -> Options:
         raise UsageError("--no-creases is for presets; add --preset paint or bake")
     if args.preset is None and not args.straighten:
         raise UsageError("--no-straighten is for presets; add --preset paint or bake")
+    if args.preset is None and not args.symmetric:
+        raise UsageError("--no-symmetric is for presets; add --preset paint, tile or bake")
     texel_layout(args)
     packing_of(args)
     base = Options() if args.preset is None else preset_options(args.preset)

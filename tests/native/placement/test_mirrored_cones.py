@@ -3,34 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import replace
 
 import lsgp
 import meshes
 import numpy as np
 import pytest
+from lsgp.map_comparison import may_replace_map
 from map_checks import assert_curvature_adds_up, codes, only, surface
 from meshes import Mesh, make
 from placement_checks import place
-
-
-def two_horned(levels: int = 3, turn: float = 0.0) -> Mesh:
-    """A ball with two horns and a snout, its own mirror image in x = 0 and in no other plane.
-
-    turn: of the triangulation about an axis across that plane, which makes it another one on each side.
-    """
-    ball = meshes.icosphere(levels)
-    p = ball.positions @ rotation([1, 2, 3], turn).T
-    horn = np.exp(-6 * ((np.abs(p[:, 0]) - 0.6) ** 2 + (p[:, 1] - 0.7) ** 2 + (p[:, 2] - 0.2) ** 2))
-    snout = np.exp(-5 * (p[:, 0] ** 2 + (p[:, 1] + 0.3) ** 2 + (p[:, 2] - 0.9) ** 2))
-    return make(p * (1 + 0.9 * horn + 0.7 * snout)[:, None], ball.triangles)
-
-
-def rotation(axis: Sequence[float], angle: float) -> np.ndarray:
-    """By Rodrigues' formula."""
-    x, y, z = np.array(axis) / np.linalg.norm(axis)
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
 
 
 def images_in_x(mesh: Mesh) -> np.ndarray:
@@ -39,7 +21,7 @@ def images_in_x(mesh: Mesh) -> np.ndarray:
     return np.array([keys[tuple(row)] for row in np.round(mesh.positions * [-1, 1, 1], 9) + 0.0])
 
 
-MESH = two_horned()
+MESH = meshes.two_horned()
 IMAGE = images_in_x(MESH)
 
 
@@ -97,10 +79,10 @@ def assert_nearly_symmetric(positions: np.ndarray, placed: lsgp.Placement, withi
 
 @pytest.mark.parametrize("tilt", [0.0, 0.4])
 def test_noise_and_other_triangles_on_either_side_leave_it_symmetric(tilt: float) -> None:
-    mesh = two_horned(turn=0.7)
+    mesh = meshes.two_horned(turn=0.7)
     extent = np.linalg.norm(np.ptp(mesh.positions, axis=0))
     noise = np.random.default_rng(3).uniform(-0.005, 0.005, mesh.positions.shape) * extent
-    tilted = rotation([3, 1, -2], tilt)
+    tilted = meshes.rotation([3, 1, -2], tilt)
     placed = place(make((mesh.positions + noise) @ tilted.T, mesh.triangles), count=12, symmetric=True)
     edge = np.linalg.norm(mesh.positions[mesh.triangles] - mesh.positions[mesh.triangles[:, [1, 2, 0]]], axis=2).mean()
     assert len(placed.cones) >= 11
@@ -138,3 +120,49 @@ def test_one_finding_names_all_components_without_symmetry() -> None:
     count = len(odd.triangles)
     triangles = np.arange(3 * count)
     assert finding.elements.indices.tolist() == triangles[triangles // count != 1].tolist()
+
+
+def test_the_first_press_is_symmetric_unless_that_is_turned_off_or_cones_are_given() -> None:
+    given = surface(MESH)
+    placed = {symmetric: place(MESH, symmetric=symmetric).cones.tolist() for symmetric in (True, False)}
+    assert set(placed[True]) != set(placed[False])
+    assert lsgp.auto_unwrap(given).cones.tolist() == placed[True]
+    assert lsgp.auto_unwrap(given, symmetric=False).cones.tolist() == placed[False]
+    count = len(placed[False])
+    counted = lsgp.auto_unwrap(given, count=count)
+    assert counted.cones.tolist() == place(MESH, count=count).cones.tolist()
+    v = placed[False][0]
+    assert lsgp.auto_unwrap(given, [v]) == lsgp.auto_unwrap(given, [v], symmetric=False)
+
+
+def test_where_nothing_is_symmetric_the_first_press_says_nothing_of_it() -> None:
+    given = surface(meshes.bumpy_sphere(2))
+    assert lsgp.auto_unwrap(given) == lsgp.auto_unwrap(given, symmetric=False)
+
+
+def test_a_symmetric_map_replaces_another_only_at_a_small_cost() -> None:
+    usual = lsgp.auto_unwrap(surface(meshes.merge([MESH] * 10)), count=4, preset="bake", pack="shelves")
+    islands = int(usual.island.max()) + 1
+    assert islands >= 10
+
+    def with_islands(more: int) -> lsgp.Result:
+        island = usual.island.copy()
+        island[:more] = islands + np.arange(more)
+        return replace(usual, island=island)
+
+    def with_l2(factor: float) -> lsgp.Result:
+        l2 = factor * usual.distortion.l2_stretch
+        return replace(usual, distortion=replace(usual.distortion, l2_stretch=l2))
+
+    assert may_replace_map(usual, usual)
+    assert may_replace_map(with_islands(islands // 10), usual)
+    assert not may_replace_map(with_islands(islands // 10 + 1), usual)
+    assert may_replace_map(with_l2(1.009), usual) and not may_replace_map(with_l2(1.011), usual)
+    assert not may_replace_map(replace(usual, flipped=np.array([3], np.int32)), usual)
+
+
+def test_a_single_island_may_fill_little_less_of_the_square() -> None:
+    usual = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
+    assert usual.island.max() == 0
+    for side, may in ((0.99, True), (0.98, False)):
+        assert may_replace_map(replace(usual, corner_uv=side * usual.corner_uv), usual) == may

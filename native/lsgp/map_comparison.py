@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a map with symmetric cones may cost compared with the map that it replaces."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .api import Result
+from .triangles import uv_area
+
+# Of the L2 stretch that the other one has, of the edges that it cuts, and of what it fills of the square; one island
+# more for so many.
+_MOST_L2 = 1.01
+_LEAST_FILLED = 0.97
+_MOST_CUTS = 1.25
+_ISLANDS_FOR_ONE = 10
+_FEW_ISLANDS = 3
+
+
+def may_replace_map(symmetric: Result, usual: Result) -> bool:
+    """Whether a map through symmetric cones costs little: L2 stretch up to 1 % more, a quarter more of edges cut, one
+    island more for ten, the square filled at most 3 % less, and no further defects.
+
+    Both as from `parameterize`, with islands on shelves. How far these fill the square says how far they do once they
+    are packed tightly only where they are few, and how far they fill their boxes only where they are more.
+    """
+    islands = len(np.unique(usual.island[usual.solved]))
+    filled = _filled_boxes if islands > _FEW_ISLANDS or usual.seamless is not None else _filled_square
+    return (
+        symmetric.solved.tolist() == usual.solved.tolist()
+        and _defects(symmetric) <= _defects(usual)
+        and symmetric.distortion.l2_stretch <= _MOST_L2 * usual.distortion.l2_stretch
+        and len(symmetric.cut_edges) <= _MOST_CUTS * len(usual.cut_edges)
+        and len(np.unique(symmetric.island[symmetric.solved])) <= islands + islands // _ISLANDS_FOR_ONE
+        and filled(symmetric) >= _LEAST_FILLED * filled(usual)
+    )
+
+
+def _defects(result: Result) -> int:
+    return len(result.flipped) + len(result.wrong_angle_sums) + len(result.overlapping)
+
+
+def _filled_square(result: Result) -> float:
+    """The part of the unit square that the islands fill."""
+    return uv_area(result.corner_uv[result.solved])
+
+
+def _filled_boxes(result: Result) -> float:
+    """The part of the boxes of all islands that these fill."""
+    uv = result.corner_uv[result.solved]
+    if not len(uv):
+        return 1.0
+    _, island = np.unique(result.island[result.solved], return_inverse=True)
+    low, high = np.full((island.max() + 1, 2), np.inf), np.full((island.max() + 1, 2), -np.inf)
+    np.minimum.at(low, island.ravel(), uv.min(axis=1))
+    np.maximum.at(high, island.ravel(), uv.max(axis=1))
+    boxes = float((high - low).prod(axis=1).sum())
+    return uv_area(uv) / boxes if boxes > 0 else 1.0
