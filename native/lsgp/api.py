@@ -199,8 +199,8 @@ class Options:
         exactly straight, and those nearly at right angles are aligned with u and v, unless that costs noticeable
         stretch. Not in seamless layouts.
     repair: untangle flipped triangles and correct angles that are off by a full turn.
-    overlaps: "keep" islands that overlap themselves, or "split" them along further cuts until none does; transitions
-        stay exact.
+    overlaps: "keep" islands that overlap themselves, or "split" them until none does: first along other cuts for the
+        same cones, unless seams are marked, then along further cuts. Transitions stay exact.
     compact: further cuts of islands that would leave much of a square empty, such as long strips, rings and islands
         with arms: "off"; "sparing", only where a short cut fills much of the square, and in no component with marked
         seams; "full", wherever the filled area outweighs the cost of the cut and the additional island. Transitions

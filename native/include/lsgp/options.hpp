@@ -38,7 +38,7 @@ enum class Mode {
 // The treatment of islands that overlap themselves, as those with cones of negative curvature do.
 enum class Overlaps {
   keep,
-  split,  // along further cuts, until no island overlaps itself; transitions stay exact
+  split,  // along other cuts for the same cones, then further ones, until no island does; transitions stay exact
 };
 
 // Whether islands that would leave much of a square empty are cut further; transitions stay exact. Not in seamless

@@ -322,6 +322,7 @@ void Mapping::cut(ComponentMap& map) const {
   for (const Cut& cut : map.cut_graph.cuts) {
     map.required_cuts.insert(map.required_cuts.end(), cut.halfedges.begin(), cut.halfedges.end());
   }
+  map.has_straight_cuts = options_.prescription == PrescriptionRule::straightness;
   map.cut_mesh = cut_open(mesh_, map.cut_graph);
   map.pins = pins_of_copies(map.cut_mesh, task_.pinned_corners);
 }

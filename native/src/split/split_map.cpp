@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <utility>
 
 #include "split/cut_apart.hpp"
 #include "split/merge_islands.hpp"
+#include "split/recut.hpp"
 #include "split/split_overlaps.hpp"
 
 namespace lsgp {
@@ -39,18 +41,32 @@ struct Division {
   double cost;
 };
 
+Array<Overlap> find_own_overlaps(const HalfedgeMesh& mesh, const ComponentMap& map) {
+  Array<Index> twin = mesh.twin;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (map.cut_graph.is_cut[h]) twin[h] = none;
+  }
+  Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
+  for (const Index f : map.validity.flipped) {
+    corners.segment<3>(3 * f).setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return find_overlaps(corners, twin);
+}
+
 // The candidate divisions of a map that overlaps itself.
 class MapDivider {
  public:
   // surface: where the map is open, cuts included.  kept: (3m).
-  MapDivider(const OpenedSurface& surface, const ComponentMap& map, const Array<Overlap>& overlaps,
-             const Array<char>& kept, ProgressMonitor& monitor)
+  MapDivider(const OpenedSurface& surface, const ComponentMap& map, const Array<char>& kept, ProgressMonitor& monitor)
       : surface_(surface),
         map_(map),
-        overlaps_(overlaps),
         kept_(kept),
         monitor_(monitor),
+        overlaps_(find_own_overlaps(surface.mesh, map)),
         factor_(relative_cut_factors(surface.mesh)) {}
+
+  bool is_whole() const { return overlaps_.empty(); }
+  double cost_before() const { return cost(surface_.mesh, surface_.geometry, factor_, surface_.open); }
 
   Division divide(CutCost rule) const {
     const auto& [mesh, geometry, open] = surface_;
@@ -64,40 +80,62 @@ class MapDivider {
   }
 
  private:
-  const OpenedSurface& surface_;
+  const OpenedSurface surface_;
   const ComponentMap& map_;
-  const Array<Overlap>& overlaps_;
   const Array<char>& kept_;
   ProgressMonitor& monitor_;
+  const Array<Overlap> overlaps_;
   const Array<double> factor_;  // (3m) of edges as cuts
 };
 
-}  // namespace
+// Where a map is open: where it was before, and along its cuts.
+Array<char> ends_of(const OpenedSurface& surface, const ComponentMap& map) {
+  Array<char> ends = surface.open;
+  for (std::size_t h = 0; h < ends.size(); ++h) ends[h] = ends[h] || map.cut_graph.is_cut[h];
+  return ends;
+}
 
-bool split_map(const OpenedSurface& surface, const Array<char>& kept, ProgressMonitor& monitor, ComponentMap& map) {
-  const auto& [mesh, geometry, open] = surface;
-  const ProgressMonitor::Stage stage(monitor, "split");
-  Array<char> is_cut = map.cut_graph.is_cut, ends = open;
-  Array<Index> twin = mesh.twin;
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    if (!is_cut[h]) continue;
-    ends[h] = 1;
-    twin[h] = none;
+// The cheapest division of maps that differ by their cuts.
+class WaySearch {
+ public:
+  WaySearch(const OpenedSurface& surface, const Array<char>& kept, ProgressMonitor& monitor)
+      : surface_(surface), kept_(kept), monitor_(monitor) {}
+
+  // least: dividing an overlapping layout is assumed to add at least this cost.
+  void divide(const ComponentMap& way, std::initializer_list<CutCost> rules, double least) {
+    const Array<char> ends = ends_of(surface_, way);
+    const MapDivider divider({surface_.mesh, surface_.geometry, ends}, way, kept_, monitor_);
+    for (const CutCost rule : rules) {
+      if (chosen_ && divider.cost_before() + (divider.is_whole() ? 0 : least) >= best_.cost) break;
+      Division other = divider.divide(rule);
+      if (chosen_ && !(other.cost < best_.cost)) continue;
+      best_ = std::move(other);
+      chosen_ = &way;
+    }
   }
-  Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
-  for (const Index f : map.validity.flipped) {
-    corners.segment<3>(3 * f).setConstant(std::numeric_limits<double>::quiet_NaN());
-  }
-  const Array<Overlap> overlaps = find_overlaps(corners, twin);
-  if (overlaps.empty()) return false;
-  const OpenedSurface opened{mesh, geometry, ends};
-  const MapDivider divider(opened, map, overlaps, kept, monitor);
-  Division best = divider.divide(CutCost::shortest);
-  for (const CutCost rule : {CutCost::no_slivers, CutCost::no_small_parts}) {
-    Division other = divider.divide(rule);
-    if (other.cost < best.cost) best = std::move(other);
-  }
-  const auto& [parts_open, part, motion] = best.parts;
+
+  const Division& best() const { return best_; }
+  const ComponentMap* chosen() const { return chosen_; }
+
+ private:
+  const OpenedSurface& surface_;
+  const Array<char>& kept_;
+  ProgressMonitor& monitor_;
+  Division best_{};
+  const ComponentMap* chosen_ = nullptr;  // none so far
+};
+
+// Marked seams, straight cuts and pinned islands stay as they are.
+bool may_recut(const Array<char>& kept, const ComponentMap& map) {
+  return map.rotation && !map.has_straight_cuts && map.pins.empty() && !map.cut_graph.cuts.empty() &&
+         std::find(kept.begin(), kept.end(), 1) == kept.end();
+}
+
+// The map of the pieces that a division leaves.
+void apply(const OpenedSurface& surface, const MapParts& parts, ComponentMap& map) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const auto& [parts_open, part, motion] = parts;
+  Array<char> is_cut = map.cut_graph.is_cut;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (mesh.twin[h] == none || !parts_open[h]) {
       is_cut[h] = 0;
@@ -105,9 +143,27 @@ bool split_map(const OpenedSurface& surface, const Array<char>& kept, ProgressMo
     }
     // Open edges stay open, but become cuts if their sides move differently.
     const Motion &here = motion[part[h / 3]], &there = motion[part[mesh.twin[h] / 3]];
-    is_cut[h] = is_cut[h] || !open[h] || here.angle != there.angle || here.shift != there.shift;
+    is_cut[h] = is_cut[h] || !surface.open[h] || here.angle != there.angle || here.shift != there.shift;
   }
   cut_apart(mesh, std::move(is_cut), part, motion, map);
+}
+
+}  // namespace
+
+bool split_map(const OpenedSurface& surface, const Array<char>& kept, ProgressMonitor& monitor, ComponentMap& map) {
+  const auto& [mesh, geometry, open] = surface;
+  const ProgressMonitor::Stage stage(monitor, "split");
+  if (find_own_overlaps(mesh, map).empty()) return false;
+  // The fastest rule selects among the recut maps. The map's own cuts compete with every rule, so that recutting never
+  // costs more.
+  const Array<ComponentMap> ways = may_recut(kept, map) ? recut(mesh, geometry, map) : Array<ComponentMap>{};
+  WaySearch search(surface, kept, monitor);
+  for (const ComponentMap& way : ways) search.divide(way, {CutCost::shortest}, cost_of_island);
+  if (search.chosen()) search.divide(*search.chosen(), {CutCost::no_slivers, CutCost::no_small_parts}, 0);
+  search.divide(map, {CutCost::shortest, CutCost::no_slivers, CutCost::no_small_parts}, 0);
+  ComponentMap chosen = *search.chosen();
+  apply(surface, search.best().parts, chosen);
+  map = std::move(chosen);
   return true;
 }
 

@@ -260,6 +260,13 @@ REVIEWED = {
         ("while (column < entry.column)", "columns, each once", SHORT),
         ("while (column < size_)", "columns, each once", SHORT),
     ],
+    "split/candidate_cuts.cpp": [
+        (
+            "for (Index by = reached[end].by; by != none && !out[by]; by = reached[mesh.origin(by)].by)",
+            LINKED,
+            SHORT,
+        ),
+    ],
     "split/compact_islands.cpp": [("while (!pending.empty())", "each division pays a price out of a sum", WITHIN)],
     "split/merge_islands.cpp": [("while (join_next())", "each round makes two groups one", WITHIN)],
     "split/minimum_cut.cpp": [
@@ -281,6 +288,25 @@ REVIEWED = {
     "split/part_merger.cpp": [
         ("while (!borders.empty())", "each round makes two parts one", OWN),
         ("for (auto border = borders.begin(); border != borders.end();)", "erases what it does not step over", SHORT),
+    ],
+    "split/piece_graph.cpp": [
+        (
+            "for (Index smallest = find_smallest(); smallest != none; smallest = find_smallest())",
+            "each round makes two groups one, or one as large as need be",
+            OWN,
+        ),
+    ],
+    "split/recut.cpp": [
+        (
+            "for (Index at = node; degree[at] == 1 && !graph_.is_end[at];)",
+            "each round closes a path",
+            SHORT,
+        ),
+        (
+            "for (Index p = 0, tried = 0; tried < count && work_ < most_work; p = (p + 1) % count, ++tried)",
+            "all paths in turn, again only after one that lowers the score by least_gain",
+            OWN,
+        ),
     ],
     "split/straight_cuts.cpp": [
         ("while (mesh_.twin[g] != none && !open_[g] && !parts_differ(g))", AROUND_A_VERTEX, SHORT),

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "split/piece_graph.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "base/checkpoint.hpp"
+#include "base/union_find.hpp"
+#include "cut/cut_cost.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr double least_piece = 0.004;  // of the surface
+constexpr double operations_a_border = 20;
+
+// Merges small pieces across paths that are not cut.
+class PieceMerger {
+ public:
+  PieceMerger(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& is_cut, Array<char>& network)
+      : mesh_(mesh),
+        is_cut_(is_cut),
+        network_(network),
+        least_area_(least_piece * geometry.total_area),
+        area_(label_parts(mesh, network, piece_), 0),
+        groups_(static_cast<Index>(area_.size())) {
+    for (Index f = 0; f < mesh.triangle_count(); ++f) area_[piece_[f]] += geometry.area[f];
+    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+      if (!is_candidate(h) || mesh.twin[h] < h) continue;
+      borders_[std::minmax(piece_[h / 3], piece_[mesh.twin[h] / 3])] += geometry.length[h];
+    }
+  }
+
+  // The smallest first, with the neighbour of the longest shared border. Paths inside pieces leave the network.
+  void merge_small() {
+    for (Index smallest = find_smallest(); smallest != none; smallest = find_smallest()) {
+      checkpoint(operations_a_border * static_cast<double>(borders_.size()));
+      const Index other = nearest_to(smallest);
+      const double both = other == none ? least_area_ : area_[smallest] + area_[other];  // a lone piece stays
+      if (other != none) groups_.unite(smallest, other);
+      area_[groups_.find(smallest)] = both;
+    }
+    for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
+      if (is_candidate(h) && groups_.find(piece_[h / 3]) == groups_.find(piece_[mesh_.twin[h] / 3])) network_[h] = 0;
+    }
+  }
+
+ private:
+  bool is_candidate(Index h) const { return network_[h] && !is_cut_[h]; }
+
+  // `none` if all are large enough.
+  Index find_smallest() {
+    Index smallest = none;
+    for (Index g = 0; g < ssize(area_); ++g) {
+      if (groups_.find(g) != g || area_[g] >= least_area_) continue;
+      if (smallest == none || area_[g] < area_[smallest]) smallest = g;
+    }
+    return smallest;
+  }
+
+  Index nearest_to(Index group) {
+    std::map<Index, double> shared;  // with other groups
+    for (const auto& [pieces, length] : borders_) {
+      const Index a = groups_.find(pieces.first), b = groups_.find(pieces.second);
+      if (a != b && (a == group || b == group)) shared[a == group ? b : a] += length;
+    }
+    const auto longest = std::max_element(shared.begin(), shared.end(),
+                                          [](const auto& a, const auto& b) { return a.second < b.second; });
+    return longest == shared.end() ? none : longest->first;
+  }
+
+  const HalfedgeMesh& mesh_;
+  const Array<char>& is_cut_;
+  Array<char>& network_;
+  const double least_area_;
+  Array<Index> piece_;  // (m)
+  Array<double> area_;  // of the groups
+  UnionFind groups_;
+  std::map<std::pair<Index, Index>, double> borders_;  // length by pieces, the lower first
+};
+
+class Builder {
+ public:
+  Builder(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, double resolution)
+      : mesh_(mesh),
+        geometry_(geometry),
+        map_(map),
+        corners_(at_corners(map.cut_mesh, map.position)),
+        resolution_(resolution),
+        is_cone_(mesh.vertex_count(), 0),
+        node_of_(mesh.vertex_count(), none) {
+    for (const Index v : map.cones) is_cone_[v] = 1;
+  }
+
+  PieceGraph build(Array<char> network) {
+    graph_.outline.resize(label_parts(mesh_, network, graph_.piece_of));
+    for (Cut& path : trace_cuts(mesh_, is_cone_, std::move(network)).cuts) add(std::move(path));
+    for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
+      if (mesh_.twin[h] == none) outline_of(h).push_back({corners_[h], corners_[next(h)]});
+    }
+    return std::move(graph_);
+  }
+
+ private:
+  Array<PieceGraph::Side>& outline_of(Index h) { return graph_.outline[graph_.piece_of[h / 3]]; }
+
+  Index node(Index v) {
+    if (node_of_[v] == none) {
+      node_of_[v] = static_cast<Index>(graph_.is_end.size());
+      graph_.is_end.push_back(is_cone_[v] || mesh_.loop_of_vertex[v] != none);
+    }
+    return node_of_[v];
+  }
+
+  void add(Cut traced) {
+    const Index first = traced.halfedges.front(), twin = mesh_.twin[first], cut = map_.cut_graph.cut_of[first];
+    PieceGraph::Path path{{},
+                          graph_.piece_of[first / 3],
+                          graph_.piece_of[twin / 3],
+                          {},
+                          0,
+                          {node(traced.tail), node(traced.head)},
+                          cut != none};
+    if (cut != none) {
+      const double angle = (map_.cut_graph.runs_forward[first] ? 1 : -1) * (*map_.rotation)[cut];
+      path.across = {angle, corners_[next(twin)] - std::polar(1.0, angle) * corners_[first]};
+    }
+    for (const Index h : traced.halfedges) path.cost += cut_cost(mesh_, geometry_, h);
+    add_outlines(traced.halfedges);
+    path.halfedges = std::move(traced.halfedges);
+    graph_.paths.push_back(std::move(path));
+  }
+
+  // Both sides leave out the same vertices, so that they meet.
+  void add_outlines(const Array<Index>& halfedges) {
+    Index begin = none;
+    for (const Index h : halfedges) {
+      if (begin == none) begin = h;
+      const Complex tail = corners_[begin], head = corners_[next(h)];
+      if (h != halfedges.back() && std::abs(head - tail) < resolution_) continue;
+      outline_of(h).push_back({tail, head});
+      outline_of(mesh_.twin[h]).push_back({corners_[mesh_.twin[h]], corners_[next(mesh_.twin[begin])]});
+      begin = none;
+    }
+  }
+
+  const HalfedgeMesh& mesh_;
+  const Geometry& geometry_;
+  const ComponentMap& map_;
+  const Eigen::VectorXcd corners_;
+  const double resolution_;
+  Array<char> is_cone_;   // (n)
+  Array<Index> node_of_;  // (n)
+  PieceGraph graph_;
+};
+
+}  // namespace
+
+PieceGraph build_piece_graph(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
+                             Array<char> network, double resolution) {
+  PieceMerger(mesh, geometry, map.cut_graph.is_cut, network).merge_small();
+  return Builder(mesh, geometry, map, resolution).build(std::move(network));
+}
+
+}  // namespace lsgp

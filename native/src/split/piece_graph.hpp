@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A layout divided into pieces that can be assembled along other cuts than its own.
+#pragma once
+
+#include <complex>
+
+#include "base/array.hpp"
+#include "pipeline/component_map.hpp"
+#include "split/cut_apart.hpp"
+
+namespace lsgp {
+
+// The pieces into which a network of paths divides a surface; the cuts are among the paths. All paths outside a
+// spanning tree of the pieces, without dead ends, are cuts for the same cones.
+struct PieceGraph {
+  // From node to node of the network.
+  struct Path {
+    Array<Index> halfedges;  // in the left piece
+    Index left, right;       // pieces
+    Motion across;           // of the left piece, to coincide with the right one along the path
+    double cost;             // of a cut along it
+    Index nodes[2];
+    bool is_cut;
+  };
+  struct Side {
+    Complex tail, head;
+  };
+
+  Array<Index> piece_of;       // (m) of every triangle
+  Array<Array<Side>> outline;  // (pieces) the layout on the left
+  Array<Path> paths;
+  Array<char> is_end;  // (nodes) whether cuts have to reach it: a cone or a boundary vertex
+
+  Index piece_count() const { return static_cast<Index>(outline.size()); }
+};
+
+// network: (3m) on both halfedges, with the map's cuts; paths around small pieces are removed.
+// resolution: sides of outlines inside the surface are merged up to about this length.
+PieceGraph build_piece_graph(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
+                             Array<char> network, double resolution);
+
+}  // namespace lsgp

@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "split/recut.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <utility>
+
+#include "base/checkpoint.hpp"
+#include "plane/coverage_raster.hpp"
+#include "split/candidate_cuts.hpp"
+#include "split/cut_apart.hpp"
+#include "split/piece_graph.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr double cells_of_layout = 32768;  // of the raster, in the layout's area
+// Weights of the cuts' relative cost in the score, one descent each. While cuts are cheap, pieces come apart that
+// remain entangled otherwise.
+constexpr double weights[] = {1.5, 0.3, 1.5};
+// What any overlap adds to the score, since it takes a further island however small it is; half of it at so small a
+// share of the layout.
+constexpr double any_overlap = 0.2, small_overlap = 1e-4;
+constexpr double largest_cost = 1.25;     // of the given cuts
+constexpr double least_gain = 1e-4;       // of the score
+constexpr double most_work = 1e7;         // outline sides visited
+constexpr double operations_a_side = 30;  // of an outline on the raster
+constexpr double operations_a_path = 20;  // of finding the open ones
+
+struct Circle {
+  Complex center;
+  double radius;
+};
+
+Circle circle_around(const Array<PieceGraph::Side>& outline) {
+  Circle out{0, 0};
+  for (const PieceGraph::Side& side : outline) out.center += side.tail / static_cast<double>(outline.size());
+  for (const PieceGraph::Side& side : outline) out.radius = std::max(out.radius, std::abs(side.tail - out.center));
+  return out;
+}
+
+// The pieces of a layout assembled along a spanning tree, and trees with less overlap.
+class Recutter {
+ public:
+  // area: of the layout.
+  Recutter(PieceGraph graph, double area);
+
+  // A layout and its quality.
+  struct State {
+    Array<char> in_tree;   // (paths) closed; one tree per island
+    Array<Motion> motion;  // (pieces)
+    double overlap = 0, cost = 0;
+  };
+
+  // Layouts other than the given one, the best first.
+  Array<State> search();
+
+  // (3m) whether a halfedge is cut, on both sides of an edge.
+  Array<char> cuts_of(const HalfedgeMesh& mesh, const State& state) const;
+  const Array<Index>& piece_of() const { return graph_.piece_of; }
+
+ private:
+  using Path = PieceGraph::Path;
+  enum class Side : char { elsewhere, moving, resting };
+
+  // One path of the tree opens and another closes.
+  struct Exchange {
+    Index closed = none;
+    Motion motion;
+    double overlap = 0, cost = 0;
+  };
+
+  double score(double overlap, double cost, double weight) const {
+    const double share = std::max(overlap, 0.0) / area_;
+    return std::sqrt(share) + any_overlap * share / (share + small_overlap) + weight * (cost / first_cost_ - 1);
+  }
+  Index across(Index path, Index piece) const {
+    return graph_.paths[path].left == piece ? graph_.paths[path].right : graph_.paths[path].left;
+  }
+  void span();
+  Array<char> open_paths(const Array<char>& in_tree) const;
+  double cost_of(const Array<char>& in_tree) const;
+  double measure_overlap() const;
+  void descend(double weight);
+  Exchange best_exchange(Index opened, double weight, Array<Index>& moving) const;
+  Array<Index> pieces_behind(Index opened, Index seed) const;
+  std::size_t count_sides(const Array<Index>& pieces) const;
+  template <typename Visit>
+  void for_each_side(const Array<Index>& pieces, const Motion& motion, Visit visit) const;
+  CoverageRaster raster_of(const Array<Index>& pieces) const;
+  double shared(const CoverageRaster& raster, const Array<Index>& pieces, const Motion& motion) const;
+
+  const PieceGraph graph_;
+  const double area_;
+  Array<Array<Index>> paths_of_;  // (pieces) that lead to other pieces
+  Array<Circle> circles_;         // around the pieces where they were at first
+  State now_;
+  Array<char> is_open_;  // (paths) in the current state
+  double first_cost_ = 0;
+  mutable double work_ = 0;  // so far, in outline sides
+};
+
+Recutter::Recutter(PieceGraph graph, double area)
+    : graph_(std::move(graph)), area_(area), paths_of_(graph_.piece_count()) {
+  for (Index p = 0; p < ssize(graph_.paths); ++p) {
+    const Path& path = graph_.paths[p];
+    if (path.left == path.right) continue;
+    for (const Index piece : {path.left, path.right}) paths_of_[piece].push_back(p);
+  }
+  for (const auto& outline : graph_.outline) circles_.push_back(circle_around(outline));
+  now_.motion.resize(graph_.piece_count());
+  span();
+  first_cost_ = cost_of(now_.in_tree);
+}
+
+// Connects the pieces of each island along paths that are not cut.
+void Recutter::span() {
+  now_.in_tree.assign(graph_.paths.size(), 0);
+  Array<char> is_reached(graph_.piece_count(), 0);
+  Array<Index> front;
+  for (Index seed = 0; seed < graph_.piece_count(); ++seed) {
+    if (is_reached[seed]) continue;
+    is_reached[seed] = 1;
+    front.assign(1, seed);
+    for (std::size_t i = 0; i < front.size(); ++i) {
+      for (const Index p : paths_of_[front[i]]) {
+        const Index other = across(p, front[i]);
+        if (graph_.paths[p].is_cut || is_reached[other]) continue;
+        is_reached[other] = now_.in_tree[p] = 1;
+        front.push_back(other);
+      }
+    }
+  }
+}
+
+// All paths outside the tree, except dead ends: at a node that needs no cut, a last open path is closed as well.
+Array<char> Recutter::open_paths(const Array<char>& in_tree) const {
+  Array<char> open(in_tree.size(), 0);
+  Array<Index> degree(graph_.is_end.size(), 0), sum(graph_.is_end.size(), 0);  // of the open paths at each node
+  const auto change = [&](Index p, Index by) {
+    open[p] = by > 0;
+    for (const Index node : graph_.paths[p].nodes) {
+      degree[node] += by;
+      sum[node] += by * p;
+    }
+  };
+  for (Index p = 0; p < ssize(open); ++p) {
+    if (!in_tree[p]) change(p, 1);
+  }
+  for (Index node = 0; node < ssize(degree); ++node) {
+    for (Index at = node; degree[at] == 1 && !graph_.is_end[at];) {
+      const Index last = sum[at];
+      change(last, -1);
+      at = graph_.paths[last].nodes[graph_.paths[last].nodes[0] == at];
+    }
+  }
+  checkpoint(operations_a_path * static_cast<double>(open.size()));
+  return open;
+}
+
+double Recutter::cost_of(const Array<char>& in_tree) const {
+  const Array<char> open = open_paths(in_tree);
+  double out = 0;
+  for (std::size_t p = 0; p < open.size(); ++p) out += open[p] ? graph_.paths[p].cost : 0;
+  return out;
+}
+
+// The pieces connected to a seed when a path of the tree is opened, the seed first; the whole island if it is `none`.
+Array<Index> Recutter::pieces_behind(Index opened, Index seed) const {
+  Array<char> is_reached(graph_.piece_count(), 0);
+  is_reached[seed] = 1;
+  Array<Index> out{seed};
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    for (const Index p : paths_of_[out[i]]) {
+      const Index other = across(p, out[i]);
+      if (!now_.in_tree[p] || p == opened || is_reached[other]) continue;
+      is_reached[other] = 1;
+      out.push_back(other);
+    }
+  }
+  return out;
+}
+
+std::size_t Recutter::count_sides(const Array<Index>& pieces) const {
+  std::size_t count = 0;
+  for (const Index piece : pieces) count += graph_.outline[piece].size();
+  return count;
+}
+
+// Calls visit(tail, head) for the sides of pieces in the current state, moved.
+template <typename Visit>
+void Recutter::for_each_side(const Array<Index>& pieces, const Motion& motion, Visit visit) const {
+  for (const Index piece : pieces) {
+    const Motion whole = motion * now_.motion[piece];
+    const Complex turn = std::polar(1.0, whole.angle);
+    for (const PieceGraph::Side& side : graph_.outline[piece]) {
+      visit(turn * side.tail + whole.shift, turn * side.head + whole.shift);
+    }
+  }
+  const double sides = static_cast<double>(count_sides(pieces));
+  work_ += sides;
+  checkpoint(operations_a_side * sides);
+}
+
+CoverageRaster Recutter::raster_of(const Array<Index>& pieces) const {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Box frame{infinity, -infinity, infinity, -infinity};
+  for (const Index piece : pieces) {
+    const Complex z = now_.motion[piece](circles_[piece].center);
+    const double radius = circles_[piece].radius;
+    frame = around(frame, {z.real() - radius, z.real() + radius, z.imag() - radius, z.imag() + radius});
+  }
+  CoverageRaster raster(frame, std::sqrt(area_ / cells_of_layout));
+  for_each_side(pieces, {}, [&](Complex tail, Complex head) { raster.add(tail, head); });
+  raster.sum_up();
+  return raster;
+}
+
+double Recutter::shared(const CoverageRaster& raster, const Array<Index>& pieces, const Motion& motion) const {
+  double out = 0;
+  for_each_side(pieces, motion, [&](Complex tail, Complex head) { out += raster.shared(tail, head); });
+  return out;
+}
+
+// The overlap of every island with itself.
+double Recutter::measure_overlap() const {
+  Array<char> is_measured(graph_.piece_count(), 0);
+  double out = 0;
+  for (Index seed = 0; seed < graph_.piece_count(); ++seed) {
+    if (is_measured[seed]) continue;
+    const Array<Index> island = pieces_behind(none, seed);
+    for (const Index piece : island) is_measured[piece] = 1;
+    out += raster_of(island).doubly_covered();
+  }
+  return out;
+}
+
+// The smaller side moves; overlaps within each side do not change.
+Recutter::Exchange Recutter::best_exchange(Index opened, double weight, Array<Index>& moving) const {
+  moving = pieces_behind(opened, graph_.paths[opened].left);
+  Array<Index> resting = pieces_behind(opened, graph_.paths[opened].right);
+  if (count_sides(moving) > count_sides(resting)) std::swap(moving, resting);
+  Array<Side> side(graph_.piece_count(), Side::elsewhere);
+  for (const Index piece : moving) side[piece] = Side::moving;
+  for (const Index piece : resting) side[piece] = Side::resting;
+  const CoverageRaster rest = raster_of(resting);
+  const double without = now_.overlap - shared(rest, moving, {});
+  Exchange best;
+  double least = score(now_.overlap, now_.cost, weight) - least_gain;
+  Array<char> in_tree = now_.in_tree;
+  in_tree[opened] = 0;
+  for (Index p = 0; p < ssize(graph_.paths); ++p) {
+    const Path& path = graph_.paths[p];
+    const bool moves_left = side[path.left] == Side::moving;
+    if (!is_open_[p] || side[moves_left ? path.right : path.left] != Side::resting) continue;
+    if (!moves_left && side[path.right] != Side::moving) continue;
+    const Motion to_meet = now_.motion[path.right] * path.across * now_.motion[path.left].inverse();
+    const Motion motion = moves_left ? to_meet : to_meet.inverse();
+    const double overlap = without + shared(rest, moving, motion);
+    if (!(score(overlap, 0, weight) < least)) continue;  // even if it cost nothing
+    in_tree[p] = 1;
+    const double cost = cost_of(in_tree);
+    in_tree[p] = 0;
+    if (cost > largest_cost * first_cost_ || !(score(overlap, cost, weight) < least)) continue;
+    least = score(overlap, cost, weight);
+    best = {p, motion, overlap, cost};
+  }
+  return best;
+}
+
+// Makes the best exchange for each path of the tree in turn, until none improves the score.
+void Recutter::descend(double weight) {
+  now_.overlap = measure_overlap();
+  now_.cost = cost_of(now_.in_tree);
+  is_open_ = open_paths(now_.in_tree);
+  Array<Index> moving;
+  const Index count = static_cast<Index>(graph_.paths.size());
+  for (Index p = 0, tried = 0; tried < count && work_ < most_work; p = (p + 1) % count, ++tried) {
+    if (!now_.in_tree[p]) continue;
+    const Exchange exchange = best_exchange(p, weight, moving);
+    if (exchange.closed == none) continue;
+    now_.in_tree[p] = 0;
+    now_.in_tree[exchange.closed] = 1;
+    for (const Index piece : moving) now_.motion[piece] = exchange.motion * now_.motion[piece];
+    now_.overlap = exchange.overlap;
+    now_.cost = exchange.cost;
+    is_open_ = open_paths(now_.in_tree);
+    tried = 0;
+  }
+}
+
+Array<Recutter::State> Recutter::search() {
+  const State first = now_;
+  Array<State> found;
+  for (const double weight : weights) {
+    descend(weight);
+    const auto is_same = [&](const State& state) { return state.in_tree == now_.in_tree; };
+    if (is_same(first) || std::any_of(found.begin(), found.end(), is_same)) continue;
+    found.push_back(now_);
+  }
+  const auto own_score = [&](const State& state) { return score(state.overlap, state.cost, weights[0]); };
+  std::stable_sort(found.begin(), found.end(),
+                   [&](const State& a, const State& b) { return own_score(a) < own_score(b); });
+  return found;
+}
+
+Array<char> Recutter::cuts_of(const HalfedgeMesh& mesh, const State& state) const {
+  Array<char> out(mesh.halfedge_count(), 0);
+  const Array<char> open = open_paths(state.in_tree);
+  for (std::size_t p = 0; p < open.size(); ++p) {
+    if (!open[p]) continue;
+    for (const Index h : graph_.paths[p].halfedges) out[h] = out[mesh.twin[h]] = 1;
+  }
+  return out;
+}
+
+}  // namespace
+
+Array<ComponentMap> recut(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map) {
+  const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
+  double area = 0;
+  for (Index f = 0; f < mesh.triangle_count(); ++f) area += doubled_area(corners, f) / 2;
+  if (!(area > 0)) return {};
+  const double resolution = std::sqrt(area / cells_of_layout) / 2;
+  Recutter recutter(
+      build_piece_graph(mesh, geometry, map, find_candidate_cuts(mesh, geometry, map.cut_graph), resolution), area);
+  Array<ComponentMap> out;
+  for (const Recutter::State& state : recutter.search()) {
+    out.push_back(map);
+    cut_apart(mesh, recutter.cuts_of(mesh, state), recutter.piece_of(), state.motion, out.back());
+    out.back().required_cuts.clear();
+    for (const Cut& cut : out.back().cut_graph.cuts) {
+      out.back().required_cuts.insert(out.back().required_cuts.end(), cut.halfedges.begin(), cut.halfedges.end());
+    }
+  }
+  return out;
+}
+
+}  // namespace lsgp
