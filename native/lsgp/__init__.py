@@ -74,6 +74,7 @@ from .indexed_uv import index_uv
 from .io.mesh_files import MeshFile, read_mesh_file, write_mesh_file
 from .islands import correct_aspect, fit_placement
 from .ledger import LedgerPart, build_ledger, hold_complete, part_surface
+from .mip_levels import pad_mip_levels
 from .packing import pack_islands, packer_name
 from .quads import QuadMesh, QuadQuality, QuadRemesh, extract_quads, quad_quality, remesh_to_quads
 from .texels import TexelDensity, TexelLayout, at_texel_density, texel_density, triangle_texel_density
@@ -136,6 +137,7 @@ __all__ = [
     "pack_islands",
     "packer_name",
     "pad_image",
+    "pad_mip_levels",
     "parameterize",
     "part_surface",
     "place_cones",

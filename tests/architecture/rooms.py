@@ -169,6 +169,7 @@ API = (
     "layout_search",
     "ledger",
     "map_comparison",
+    "mip_levels",
     "packing",
     "quads",
     "short_repr",

@@ -61,6 +61,19 @@ def test_normals_are_turned_on_request(lsgp, folder: Path) -> None:
     assert (turned[..., 0] == plain[..., 0]).all() and (turned[..., 1] != plain[..., 1]).any()
 
 
+def test_mip_levels_are_those_of_the_library_beside_the_output(lsgp, folder: Path) -> None:
+    done = lsgp("pad", "rgba16.png", "--uv", "mapped.obj", "--margin", 6, "--mips", 3, "-o", "out.png")
+    assert (done.code, done.err) == (0, "") and "mip levels 1 to 3" in done.out
+    file = library.read_mesh_file(folder / "mapped.obj", with_uv=True)
+    swap = [2, 1, 0, 3]
+    pixels = cv2.imread(str(folder / "rgba16.png"), cv2.IMREAD_UNCHANGED)[..., swap]
+    expected = library.pad_mip_levels(pixels, file.surface(), file.triangle_uv, [6, 3, 2, 2])
+    for name, level in zip(["out", "out-mip1", "out-mip2", "out-mip3"], expected, strict=True):
+        written = cv2.imread(str(folder / f"{name}.png"), cv2.IMREAD_UNCHANGED)
+        assert written.dtype == np.uint16 and (written[..., swap] == level).all()
+    assert not (folder / "out-mip4.png").exists()
+
+
 @pytest.mark.parametrize(
     ("arguments", "code", "told"),
     [
@@ -77,6 +90,9 @@ def test_normals_are_turned_on_request(lsgp, folder: Path) -> None:
         (("mapped.obj", "--uv", "mapped.obj", "--margin", 4, "-o", "out.png"), 2, ".png or .tif"),
         (("rgb8.png", "--uv", "mapped.obj", "--margin", 4, "-o", "rgb8.png"), 2, "is the image"),
         (("rgb8.png", "--uv", "mapped.obj", "--margin", 4, "-o", "no/out.png"), 2, "there is no folder"),
+        (("rgb8.png", "--uv", "mapped.obj", "--margin", 4, "--mips", 9, "-o", "out.png"), 3, "mip levels are 7"),
+        (("rgb8.png", "--uv", "mapped.obj", "--margin", 4, "--mips", -1, "-o", "out.png"), 2, "below 0"),
+        (("c-mip2.png", "--uv", "mapped.obj", "--margin", 4, "--mips", 2, "-o", "c.png"), 2, "is the image"),
         (("rgb8.png", "--uv", "mapped.obj", "-o", "out.png"), 2, "--margin"),
         (("rgb8.png", "--margin", 4, "-o", "out.png"), 2, "--uv"),
     ],
@@ -86,6 +102,7 @@ def test_refusals_write_nothing(lsgp, folder: Path, arguments: tuple, code: int,
     (folder / "empty.png").touch()
     if "tiled.obj" in arguments:
         lsgp("unwrap", "ball.obj", "-o", "tiled.obj", "--preset", "tile")
+    (folder / "c-mip2.png").write_bytes((folder / "rgb8.png").read_bytes())
     before = {path: path.read_bytes() for path in folder.iterdir()}
     done = lsgp("pad", *arguments)
     assert done.code == code and told in done.err

@@ -133,6 +133,13 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             **{"margin": 2, "normal_map": True},
         },
     ),
+    "pad_mip_levels": (
+        lsgp.pad_mip_levels,
+        {
+            **{"image": np.ones((8, 8, 3), np.uint8), "surface": WHOLE, "corner_uv": FREE_RESULT.corner_uv},
+            **{"margins": [2, 1], "normal_map": True},
+        },
+    ),
     "build_ledger": (
         lsgp.build_ledger,
         {name: CALL[name] for name in CALL if name != "progress"} | {"gets_cones": False},

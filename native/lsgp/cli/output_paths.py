@@ -11,6 +11,7 @@ from ..io.image_files import require_image_suffix
 from ..io.mesh_formats import BY_KEY, output_format
 from ..io.safe_files import is_same_file, is_standard_stream, require_separate, require_writable_kind
 from ..io.side_files import UsageError
+from ..run.pad_file import mip_paths
 from ..run.quads_file import require_quads_output
 
 
@@ -31,8 +32,9 @@ def require_usable_paths(args: argparse.Namespace) -> None:
     elif args.command == "pad":
         require_image_suffix(args.input, "the image")
         require_image_suffix(args.output, "the output")
-        if is_same_file(args.input, args.output):
-            raise UsageError(f"the output '{args.output}' is the image '{args.input}' itself; name another file")
+        for output in (args.output, *mip_paths(args.output, args.mips)):
+            if is_same_file(args.input, output):
+                raise UsageError(f"the output '{output}' is the image '{args.input}' itself; name another file")
     elif args.output is not None and args.output.suffix.lower()[1:] in BY_KEY:
         raise UsageError(f"the output is JSON; name it .json, not '{args.output}'")
     if args.report is not None:

@@ -8,10 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
-from ..gutters import pad_image
 from ..io.image_files import format_image, read_image
+from ..io.side_files import UsageError
 from ..io.whole_files import write_whole
+from ..mip_levels import pad_mip_levels
 from .unwrap_file import Run, read_file, uv_of
+
+# Bilinear lookups and the box of the next level read less than this beyond an island, in pixels.
+LEAST_MIP_MARGIN = 2.0
 
 
 def add_pad_options(pad: argparse.ArgumentParser) -> None:
@@ -30,18 +34,42 @@ def add_pad_options(pad: argparse.ArgumentParser) -> None:
         action="store_true",
         help="the image is a tangent-space normal map, green up: rotate its normals with the map",
     )
+    pad.add_argument(
+        "--mips",
+        metavar="N",
+        type=int,
+        default=0,
+        help="also write the mip levels 1 to N, their gutters filled as well: OUT-mip1.png, OUT-mip2.png, ...",
+    )
     pad.add_argument("-o", "--output", metavar="OUT", type=Path, required=True, help="PNG or TIFF, by its suffix")
 
 
 def pad_file(args: argparse.Namespace, run: Run) -> str:
     """Pad args.input into args.output; returns the line for people.  Raises OSError, LsgpError."""
+    if args.mips < 0:
+        raise UsageError(f"--mips {args.mips} is below 0; give how many mip levels to write")
     image = read_image(args.input)
     file = read_file(args.uv, run, args.format, with_uv=True)
     corner_uv = uv_of(file, "use")
+    margins = _margins(args.margin, args.mips)
     with run.stage("pad_image"):
-        padded = pad_image(image, file.surface(), corner_uv, args.margin, normal_map=args.normal_map)
-    write_whole(args.output, format_image(padded, args.output))
-    changed = padded != image
+        levels = pad_mip_levels(image, file.surface(), corner_uv, margins, normal_map=args.normal_map)
+    paths = [args.output, *mip_paths(args.output, args.mips)]
+    contents = [format_image(level, path) for level, path in zip(levels, paths, strict=True)]
+    for path, content in zip(paths, contents, strict=True):
+        write_whole(path, content)
+    changed = levels[0] != image
     texels = int(np.count_nonzero(changed.any(axis=2) if changed.ndim == 3 else changed))
     height, width = image.shape[:2]
-    return f"{args.output}: {width} x {height} texels, {texels} of them changed"
+    written = f", and mip levels 1 to {args.mips}" if args.mips else ""
+    return f"{args.output}: {width} x {height} texels, {texels} of them changed{written}"
+
+
+def mip_paths(output: Path, count: int) -> list[Path]:
+    """Where the mip levels 1 to count go."""
+    return [output.with_name(f"{output.stem}-mip{level}{output.suffix}") for level in range(1, count + 1)]
+
+
+def _margins(margin: float, mips: int) -> list[float]:
+    """Those of all levels: the same part of the texture, but no less than filters read."""
+    return [margin, *(min(margin, max(margin / 2**level, LEAST_MIP_MARGIN)) for level in range(1, mips + 1))]
