@@ -7,12 +7,12 @@ import bpy
 
 from ..core import findings, identifiers, native
 from ..core.cut_kinds import KINDS
+from ..core.preferences import preferences
 from ..core.text import counted
 from ..mesh import distortion, reports, texture
 from ..mesh.image_aspect import active_image
 from ..mesh.texel_settings import density_unit, texel_settings, texture_size
 from ..overlay.heat import SCALES
-from ..overlay.look import overlay_look
 from ..overlay.settings import settings
 from . import tables
 from .text import draw_table, draw_wrapped
@@ -168,7 +168,8 @@ class VIEW3D_PT_cone_unwrap_overlay(ConeUnwrapSubPanel, bpy.types.Panel):
             for kind, (label, _) in KINDS.items():
                 row = column.row()
                 row.label(text=f"{label}: {counted(len(report.edges_of(kind)), 'edge')}")
-                row.prop(overlay_look(context), f"{kind}_cut", text="")
+                if preferences() is not None:
+                    row.prop(preferences(), f"{kind}_cut", text="")
 
 
 class VIEW3D_PT_cone_unwrap_distortion(ConeUnwrapSubPanel, bpy.types.Panel):

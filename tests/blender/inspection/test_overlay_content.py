@@ -176,7 +176,7 @@ def test_labels_that_would_lie_on_others_are_left_out():
 
 
 def test_cuts_of_one_kind_have_one_color():
-    look, blank = addon.overlay.look.overlay_look(bpy.context), np.zeros((3, 2, 3), np.float32)
+    look, blank = addon.overlay.look.overlay_look(), np.zeros((3, 2, 3), np.float32)
     shown = content.Content(cut_lines=blank, cut_paths=np.array([0, 1, 2], np.int32), kinds=["seam", "added", "seam"])
     found = colors.of_cuts(shown, np.array([True, True, True]), look, "KIND")
     np.testing.assert_array_equal(found, np.array([look.seam_cut, look.added_cut, look.seam_cut], np.float32))
