@@ -10,6 +10,7 @@
 #include <initializer_list>
 
 #include "lsgp/lsgp.hpp"
+#include "mesh_text.hpp"
 
 namespace py = pybind11;
 
@@ -584,6 +585,7 @@ PYBIND11_MODULE(_lsgp, module) {
     }
   });
   using py::literals::operator""_a;
+  define_mesh_text(module);
   module.def("parameterize", &parameterize, "surface"_a, "cones"_a, "options"_a, "pins"_a, "progress"_a);
   py::class_<lsgp::Solver>(module, "Solver")
       .def(py::init([](const SurfaceArrays& surface) { return lsgp::Solver(to_surface(surface)); }), "surface"_a)

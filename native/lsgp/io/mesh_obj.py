@@ -3,15 +3,17 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _lsgp
 from ..errors import Elements, InputError
 from ..indexed_uv import index_corners
-from .mesh_text import Rows, content_lines, malformed, quoted
+from .mesh_text import Rows, malformed, quoted
 from .polygons import PolygonMesh, require_polygons
+
+FACES = (b"f", b"fo")  # now and formerly
+READ = (b"v", b"vt", *FACES)
 
 
 def read_obj(data: bytes, with_uv: bool) -> PolygonMesh:
@@ -24,11 +26,8 @@ def read_obj(data: bytes, with_uv: bool) -> PolygonMesh:
     vertices.require_tokens(3, "a vertex with {} coordinates instead of 3.")
     positions = vertices.floats((vertices.starts[:, None] + np.arange(3)).ravel()).reshape(-1, 3)
 
-    # Each corner is v, v/vt, v//vn or v/vt/vn.
-    heads = faces
-    if b"/" in data:
-        heads = Rows([token.partition(b"/")[0] for token in faces.tokens], faces.counts, faces.lines)
-    indices = heads.integers(np.arange(len(heads.tokens)))
+    heads = faces.parts(0)  # each corner is v, v/vt, v//vn or v/vt/vn
+    indices = heads.integers(heads.tokens())
     corners = _from_zero(indices, faces, vertices)
     require_polygons(len(positions), corners, faces.counts, lambda face: f" (line {faces.lines[face]})")
     corner_uv = _corner_uv(texture, faces) if with_uv else None
@@ -43,12 +42,14 @@ def format_obj(mesh: PolygonMesh, corner_uv: NDArray[np.float64]) -> bytes:
     vt. Numbers are the shortest text that reads back as the same double.
     """
     vt, index, mapped = index_polygon_corners(mesh, corner_uv)
-    text = [
-        "v %r %r %r\n" * len(mesh.positions) % tuple(mesh.positions.ravel().tolist()),
-        "vt %r %r\n" * len(vt) % tuple(vt.ravel().tolist()),
-        *_face_lines(mesh, mapped, index + 1),
-    ]
-    return "".join(text).encode("ascii")
+    vertices = mesh.corners.astype(np.int64) + 1
+    return b"".join(
+        [
+            _lsgp.format_rows(b"v", mesh.positions, b"\n"),
+            _lsgp.format_rows(b"vt", vt, b"\n"),
+            _lsgp.format_faces(mesh.sizes, mapped, vertices, index + 1),
+        ]
+    )
 
 
 def index_polygon_corners(
@@ -66,64 +67,29 @@ def index_polygon_corners(
     return vt, index, mapped
 
 
-def _face_lines(mesh: PolygonMesh, mapped: NDArray[np.bool_], vt: NDArray[np.int64]) -> list[str]:
-    """One line a polygon, in order; runs of polygons that look alike are formatted together."""
-    numbers = np.stack([mesh.corners.astype(np.int64) + 1, vt], axis=1).ravel().tolist()
-    kind = mesh.sizes * 2 + mapped
-    bounds = np.flatnonzero(np.diff(kind, prepend=-1, append=-1)).tolist()
-    starts = np.append(mesh.starts, len(mesh.corners)).tolist()
-    lines = []
-    for begin, end in pairwise(bounds):
-        corner, step = (" %d/%d", 1) if mapped[begin] else (" %d", 2)
-        line = "f" + corner * int(mesh.sizes[begin]) + "\n"
-        lines.append(line * (end - begin) % tuple(numbers[2 * starts[begin] : 2 * starts[end] : step]))
-    return lines
-
-
 def _statements(data: bytes) -> tuple[Rows, Rows, Rows, tuple[str, ...]]:
     """The v, vt and f statements without their keywords, and the keywords of all others."""
-    texts, numbers = content_lines(data)
-    if b"\\" in data:
-        texts, numbers = _joined(texts, numbers)
-    found: dict[bytes, tuple[list[bytes], list[int]]] = {b"v": ([], []), b"vt": ([], []), b"f": ([], [])}
-    found[b"fo"] = found[b"f"]  # the old name of the statement
-    others: set[bytes] = set()
-    for text, number in zip(texts, numbers, strict=True):
-        keyword, *rest = text.split(None, 1) or [b""]
-        if not keyword:
-            continue  # nothing but the mark of a continued line
-        if keyword in found:
-            lines = found[keyword]
-            lines[0].append(rest[0] if rest else b"")
-            lines[1].append(number)
-        elif not keyword[:1].isalpha():
-            raise malformed(f"{quoted(keyword)} does not begin a statement of an OBJ file.", number)
-        else:
-            others.add(keyword)
+    rows = Rows.split(data, continued=True)
+    rows = rows.select(rows.counts > 0)  # some are nothing but the mark of a continued line
+    keywords, kind = rows.keywords()
+    others = [keyword for keyword in keywords if keyword not in READ]
+    for keyword in others:
+        if not keyword[:1].isalpha():
+            line = int(rows.lines[np.argmax(kind == keywords.index(keyword))])
+            raise malformed(f"{quoted(keyword)} does not begin a statement of an OBJ file.", line)
+
+    def statements(*names: bytes) -> Rows:
+        chosen = np.isin(kind, [place for place, keyword in enumerate(keywords) if keyword in names])
+        return rows.select(chosen).without_first()
+
     extras = tuple(quoted(keyword)[1:-1] for keyword in sorted(others))
-    return Rows.split(*found[b"v"]), Rows.split(*found[b"vt"]), Rows.split(*found[b"f"]), extras
-
-
-def _joined(texts: list[bytes], numbers: list[int]) -> tuple[list[bytes], list[int]]:
-    """Lines that end in a backslash joined with the next; the joined line has the number of its first."""
-    joined: list[bytes] = []
-    first: list[int] = []
-    continued = False
-    for text, number in zip(texts, numbers, strict=True):
-        text = text.rstrip()
-        ends_open = text.endswith(b"\\")
-        text = text.removesuffix(b"\\")
-        if continued:
-            joined[-1] += b" " + text
-        elif text:
-            joined.append(text)
-            first.append(number)
-        continued = ends_open and (continued or bool(text))
-    return joined, first
+    return statements(b"v"), statements(b"vt"), statements(*FACES), extras
 
 
 def _from_zero(indices: NDArray[np.int64], faces: Rows, defined: Rows) -> NDArray[np.int64]:
     """Indices as files count them (from 1, or backwards from -1, the last one defined above the face) from 0."""
+    if (indices > 0).all():
+        return indices - 1
     above = np.searchsorted(defined.lines, faces.lines)
     return np.where(indices < 0, np.repeat(above, faces.counts) + indices, indices - 1)
 
@@ -136,10 +102,9 @@ def _corner_uv(texture: Rows, faces: Rows) -> NDArray[np.float64]:
     two = texture.counts > 1  # one coordinate alone is u
     uv[two, 1] = texture.floats(texture.starts[two] + 1)
 
-    parts = [token.split(b"/", 2) for token in faces.tokens]
-    names = Rows([part[1] if len(part) > 1 else b"" for part in parts], faces.counts, faces.lines)
-    present = np.flatnonzero(np.fromiter(map(len, names.tokens), np.int64, len(names.tokens)))
-    indices = np.zeros(len(names.tokens), np.int64)
+    names = faces.parts(1)
+    present = np.flatnonzero(names.begins < names.ends)
+    indices = np.zeros(len(names.begins), np.int64)
     indices[present] = names.integers(present)
     indices = _from_zero(indices, faces, texture)[present]
     outside = (indices < 0) | (indices >= len(uv))
@@ -151,6 +116,6 @@ def _corner_uv(texture: Rows, faces: Rows) -> NDArray[np.float64]:
             f"is face {wrong[0]} (line {faces.lines[wrong[0]]}). Export the mesh again.",
             Elements("faces", wrong.astype(np.int32)),
         )
-    corner_uv = np.full((len(names.tokens), 2), np.nan)
+    corner_uv = np.full((len(names.begins), 2), np.nan)
     corner_uv[present] = uv[indices]
     return corner_uv

@@ -3,7 +3,7 @@
 
 The text is taken apart into runs of lines that are treated alike, in a first pass, and put together in a second: only
 at the end of the file is it known which of the old coordinates are still needed. Runs of plain lines, which is nearly
-all of a file, are found and written by regular expressions; a statement with comments, continued lines or other
+all of a file, are found and written at once; a statement with comments, continued lines or other
 peculiarities goes token by token. Statements are told apart exactly as `mesh_obj.read_obj` does.
 """
 
@@ -16,48 +16,24 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from .mesh_obj import index_polygon_corners
+from .. import _lsgp
+from .mesh_obj import FACES, index_polygon_corners
 from .mesh_text import BYTE_ORDER_MARK
 from .polygons import PolygonMesh
 
 LINE_END = re.compile(rb"\r\n?|\n")
 TOKEN = re.compile(rb"\S+")
 
-# Lines matched at once: bounds the memory of a regular expression.
-RUN = rb"{1,4096}"
-# A statement with references to texture coordinates, and those coordinates.
-FACES, REFERRING, COORDINATES = (b"f", b"fo"), (b"l", b"surf"), b"vt"
-
-OTHER_LINES = re.compile(rb"(?:(?![ \t\v\f]|(?:fo?|vt)(?![^\s\\#])|(?:l|surf)\s[^\r\n]*/)[^\r\n\\]*(?:\r\n?|\n))" + RUN)
-COORDINATE_LINES = re.compile(rb"(?:vt[ \t][^\r\n\\#]*(?:\r\n?|\n))" + RUN)
-
-
-@dataclass(frozen=True)
-class _Form:
-    """How all corners of some faces are written. lines: a run of such faces. place: of the reference in a corner, with
-    what replaces it."""
-
-    lines: re.Pattern[bytes]
-    place: re.Pattern[bytes]
-    replacement: bytes
-
-
-def _form(rest: bytes, place: bytes, replacement: bytes) -> _Form:
-    lines = rb"(?:fo?(?:[ \t]+[-+]?\d+" + rest + rb")+[ \t]*(?:\r\n?|\n))" + RUN
-    return _Form(re.compile(lines), re.compile(place), replacement)
-
-
-FORMS = (
-    _form(rb"", rb"(?<=\d)(?![^ \t\r\n])", b"/%d"),
-    _form(rb"/[-+]?\d*", rb"/[^ \t\r\n]*", b"/%d"),
-    _form(rb"/[-+]?\d*/[-+]?\d*", rb"/[^/]*/", b"/%d/"),
-)
+# Lines taken at once: one face without coordinates makes a run of faces go face by face.
+RUN = 4096
+# Statements other than faces that refer to texture coordinates, and those coordinates.
+REFERRING, COORDINATES = (b"l", b"surf"), b"vt"
 
 
 @dataclass(frozen=True)
 class _Segment:
     """data[begin:end], whole lines. kind: "other"; "coordinates", a number of `count` statements vt; "faces", `count`
-    of them, from `first` on. form: of a run of plain faces. pieces: of a single statement, the stretches of data with
+    of them, from `first` on. is_plain: a run of plain faces. pieces: of a single statement, the stretches of data with
     its tokens, keyword first. above: how many vt stand above."""
 
     kind: str
@@ -66,7 +42,7 @@ class _Segment:
     count: int = 0
     first: int = 0
     above: int = 0
-    form: _Form | None = None
+    is_plain: bool = False
     pieces: list[tuple[int, int]] = field(default_factory=list)
 
 
@@ -128,8 +104,7 @@ class _Edit:
     def _new_coordinates(self, segment: _Segment) -> bytes:
         """The lines of the new coordinates, with the line ending of the place where they are put."""
         ending = LINE_END.search(self.data, segment.begin) or LINE_END.search(self.data)
-        line = b"vt %r %r" + (b"\n" if ending is None else ending[0])
-        return line * len(self.vt) % tuple(self.vt.ravel().tolist())
+        return _lsgp.format_rows(COORDINATES, self.vt, b"\n" if ending is None else ending[0])
 
     def _kept_coordinates(self, segment: _Segment) -> bytes:
         olds = range(segment.above, segment.above + segment.count)
@@ -142,14 +117,13 @@ class _Edit:
 
     def _faces(self, segment: _Segment) -> bytes:
         mapped = self.mapped[segment.first : segment.first + segment.count]
-        if segment.form is None:
+        if not segment.is_plain:
             if not mapped[0]:
                 return self._with_references(segment, self._kept_reference(segment))
             numbers = iter(self._numbers(segment).tolist())
             return self._with_references(segment, lambda parts: next(numbers))
         if mapped.all():
-            template = segment.form.place.sub(segment.form.replacement, self.data[segment.begin : segment.end])
-            return template % tuple(self._numbers(segment).tolist())
+            return _lsgp.replace_references(self.data[segment.begin : segment.end], self._numbers(segment))
         return b"".join(map(self._faces, _single_faces(self.data, segment)))
 
     def _numbers(self, segment: _Segment) -> NDArray[np.int64]:
@@ -207,7 +181,7 @@ def _old_coordinates(parts: list[bytes], above: int) -> int:
 
 def _single_faces(data: bytes, segment: _Segment) -> Iterator[_Segment]:
     """The faces of a run as statements of their own."""
-    if segment.form is None:
+    if not segment.is_plain:
         yield segment
         return
     at = segment.begin
@@ -247,14 +221,12 @@ def _segments(data: bytes) -> Iterator[_Segment]:
 
 def _run(data: bytes, at: int, faces: int, coordinates: int) -> _Segment | None:
     """Plain lines of one kind from here on; None where there is no such line."""
-    if found := OTHER_LINES.match(data, at):
-        return _Segment("other", at, found.end())
-    if found := COORDINATE_LINES.match(data, at):
-        return _Segment("coordinates", at, found.end(), len(found[0].splitlines()), above=coordinates)
-    for form in FORMS:
-        if found := form.lines.match(data, at):
-            return _Segment("faces", at, found.end(), len(found[0].splitlines()), faces, coordinates, form)
-    return None
+    kind, end, count = _lsgp.plain_lines(data, at, RUN)
+    if not count:
+        return None
+    if kind == "other":
+        return _Segment(kind, at, end)
+    return _Segment(kind, at, end, count, faces if kind == "faces" else 0, coordinates, is_plain=kind == "faces")
 
 
 def _statement(data: bytes, at: int, faces: int, coordinates: int) -> _Segment:

@@ -7,7 +7,7 @@ import re
 
 import numpy as np
 
-from .mesh_text import Rows, content_lines, malformed, quoted, ranges
+from .mesh_text import Rows, malformed, quoted, ranges
 from .polygons import PolygonMesh, require_polygons
 
 HEADER = re.compile(rb"(ST)?C?N?(4?)(n?)OFF$")
@@ -18,58 +18,61 @@ def read_off(data: bytes) -> PolygonMesh:
 
     Raises InputError: MALFORMED_FILE, INDEX_OUT_OF_RANGE, BAD_FACE.
     """
-    texts, lines = content_lines(data)
-    vertex_count, face_count, begin = _read_counts(texts, lines)
+    rows = Rows.split(data)
+    vertex_count, face_count, begin = _read_counts(rows)
     for what, first, count in (("vertices", begin, vertex_count), ("faces", begin + vertex_count, face_count)):
-        if len(texts) < first + count:
-            raise malformed(f"the file ends after {len(texts) - first} of {count} {what}.")
+        if len(rows.lines) < first + count:
+            raise malformed(f"the file ends after {len(rows.lines) - first} of {count} {what}.")
     middle, end = begin + vertex_count, begin + vertex_count + face_count
 
-    vertices = Rows.split(texts[begin:middle], lines[begin:middle])
+    vertices = rows.select(slice(begin, middle))
     vertices.require_tokens(3, "a vertex with {} coordinates instead of 3.")
     positions = vertices.floats((vertices.starts[:, None] + np.arange(3)).ravel()).reshape(-1, 3)
 
-    faces = Rows.split(texts[middle:end], lines[middle:end])
+    faces = rows.select(slice(middle, end))
     sizes = faces.integers(faces.starts)
     wrong = np.flatnonzero((sizes < 0) | (sizes >= faces.counts))
     if len(wrong):
         row = wrong[0]
         raise malformed(
-            f"a face of {sizes[row]} corners that names {faces.counts[row] - 1} vertices.", lines[middle + row]
+            f"a face of {sizes[row]} corners that names {faces.counts[row] - 1} vertices.", int(faces.lines[row])
         )
     corners = faces.integers(ranges(faces.starts + 1, sizes))
     require_polygons(vertex_count, corners, sizes, lambda face: f" (line {faces.lines[face]})")
-    extras = _extras(texts[0]) if vertex_count else ()
+    extras = _extras(rows.token(0)) if vertex_count else ()
     if (faces.counts > sizes + 1).any():
         extras += ("face colours",)
     return PolygonMesh(positions, corners.astype(np.int32), sizes, extras=extras)
 
 
-def _extras(first_line: bytes) -> tuple[str, ...]:
+def _extras(keyword: bytes) -> tuple[str, ...]:
     """What the header says that vertices have beside their place."""
-    header = HEADER.match(first_line.split(None, 1)[0])[0]
+    header = HEADER.match(keyword)[0]
     letters = {b"ST": "texture coordinates", b"C": "vertex colours", b"N": "normals"}
     return tuple(name for letter, name in letters.items() if letter in header)
 
 
-def _read_counts(texts: list[bytes], lines: list[int]) -> tuple[int, int, int]:
+def _read_counts(rows: Rows) -> tuple[int, int, int]:
     """The numbers of vertices and faces, and the first row after them."""
-    if not texts:
+    if not len(rows.lines):
         raise malformed("the file is empty.")
-    keyword, *rest = texts[0].split(None, 1)
+    keyword = rows.token(0)
     header = HEADER.match(keyword)
     if header is None:
-        raise malformed(f"{quoted(keyword)} is not the header of an OFF file.", lines[0])
+        raise malformed(f"{quoted(keyword)} is not the header of an OFF file.", int(rows.lines[0]))
     if header[2] or header[3]:
-        raise malformed("vertices with other than three dimensions cannot be unwrapped.", lines[0])
-    if rest and rest[0].startswith(b"BINARY"):
-        raise malformed("binary OFF is not read; use text.", lines[0])
-    row = 0 if rest else 1
-    if len(texts) == row:
+        raise malformed("vertices with other than three dimensions cannot be unwrapped.", int(rows.lines[0]))
+    has_more = rows.counts[0] > 1
+    if has_more and rows.token(1).startswith(b"BINARY"):
+        raise malformed("binary OFF is not read; use text.", int(rows.lines[0]))
+    row = 0 if has_more else 1
+    if len(rows.lines) == row:
         raise malformed("the file ends before its counts.")
-    counts = Rows.split([rest[0] if rest else texts[1]], [lines[row]])
+    counts = rows.select(slice(row, row + 1))
+    if has_more:
+        counts = counts.without_first()
     counts.require_tokens(2, "counts of vertices and faces are needed.")
-    vertex_count, face_count = counts.integers(np.arange(2)).tolist()
+    vertex_count, face_count = counts.integers(counts.tokens()[:2]).tolist()
     if vertex_count < 0 or face_count < 0:
-        raise malformed(f"{vertex_count} vertices and {face_count} faces are not valid counts.", lines[row])
+        raise malformed(f"{vertex_count} vertices and {face_count} faces are not valid counts.", int(rows.lines[row]))
     return vertex_count, face_count, row + 1

@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .mesh_text import ROW_END, Rows, malformed, quoted, ranges
+from .mesh_text import Rows, malformed, quoted, ranges
 from .polygons import PolygonMesh, require_polygons
 
 TYPES = {
@@ -135,9 +135,8 @@ class _TextTable:
     """The rows of a text file, one a line, from the first on."""
 
     def __init__(self, data: bytes, line: int) -> None:
-        texts = data.splitlines()
-        self.lines = [number for number, text in enumerate(texts, line) if text and not text.isspace()]
-        self.texts = [texts[number - line] for number in self.lines]
+        rows = Rows.split(data, comments=False)
+        self.rows = replace(rows, lines=rows.lines + (line - 1))
         self.next = 0
 
     def read_points(self, element: Element, wanted: list[int]) -> NDArray[np.float64]:
@@ -156,11 +155,11 @@ class _TextTable:
 
     def _take(self, element: Element) -> Rows:
         begin, end = self.next, self.next + element.count
-        if end > len(self.texts):
-            present = len(self.texts) - begin
+        if end > len(self.rows.lines):
+            present = len(self.rows.lines) - begin
             raise malformed(f"the file ends after {present} of {element.count} rows of element '{element.name}'.")
         self.next = end
-        return Rows.split([text.replace(ROW_END, b"?") for text in self.texts[begin:end]], self.lines[begin:end])
+        return self.rows.select(slice(begin, end))
 
     @staticmethod
     def _cells(
@@ -186,7 +185,7 @@ def _require_room(element: Element, rows: Rows, needed: NDArray[np.int64], end: 
     short = np.flatnonzero(needed > end)
     if len(short):
         raise malformed(
-            f"a row of '{element.name}' with {rows.counts[short[0]]} numbers is too short.", rows.lines[short[0]]
+            f"a row of '{element.name}' with {rows.counts[short[0]]} numbers is too short.", int(rows.lines[short[0]])
         )
 
 

@@ -4,15 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _lsgp
 from ..errors import InputError
 
-# Comments are taken off before lines become rows, so that no token is this one.
-ROW_END = b"#"
 # The byte order mark that some programs put before a text.
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
@@ -29,15 +28,6 @@ def quoted(token: bytes) -> str:
     return "'" + "".join(c if c.isprintable() else "?" for c in text) + "'"
 
 
-def content_lines(data: bytes) -> tuple[list[bytes], list[int]]:
-    """Lines with something in them, without comments, and their numbers, from 1.  Any line ending will do."""
-    lines = data.removeprefix(BYTE_ORDER_MARK).splitlines()
-    if ROW_END in data:
-        lines = [line.partition(ROW_END)[0] for line in lines]
-    numbers = [number for number, line in enumerate(lines, 1) if line and not line.isspace()]
-    return [lines[number - 1] for number in numbers], numbers
-
-
 def ranges(begins: NDArray[np.int64], counts: NDArray[np.int64]) -> NDArray[np.int64]:
     """The integers begin, begin + 1, ... of each range, one range after the other."""
     ends = np.cumsum(counts)
@@ -46,66 +36,76 @@ def ranges(begins: NDArray[np.int64], counts: NDArray[np.int64]) -> NDArray[np.i
 
 @dataclass(frozen=True)
 class Rows:
-    """Lines split into tokens; one flat list, for a list of lists costs more than all the rest of reading a file.
+    """Lines split into tokens. Those are places in the text: a list of tokens costs more than all the rest of reading.
 
-    tokens: all tokens, row after row. counts: (r,) int64, tokens of each row. lines: the line of each row, from 1.
+    data: the text. begins, ends: (t,) int64, where each token is in it.
+    starts, counts: (r,) int64, the first token of each row and how many it has. lines: (r,) int64, of each row, from 1.
     """
 
-    tokens: list[bytes]
+    data: bytes
+    begins: NDArray[np.int64]
+    ends: NDArray[np.int64]
+    starts: NDArray[np.int64]
     counts: NDArray[np.int64]
-    lines: list[int]
+    lines: NDArray[np.int64]
 
     @classmethod
-    def split(cls, texts: list[bytes], lines: list[int]) -> Rows:
-        tokens = (b" " + ROW_END + b" ").join([*texts, b""]).split()
-        is_end = np.fromiter(map(ROW_END.__eq__, tokens), bool, len(tokens))
-        counts = np.diff(np.flatnonzero(is_end), prepend=-1) - 1
-        width = int(counts[0]) + 1 if len(counts) else 1
-        if (counts == width - 1).all():
-            del tokens[width - 1 :: width]
-        else:
-            tokens = [token for token in tokens if token != ROW_END]
-        return cls(tokens, counts, lines)
+    def split(cls, data: bytes, *, comments: bool = True, continued: bool = False) -> Rows:
+        """The lines with something in them, with any line ending.
 
-    @property
-    def starts(self) -> NDArray[np.int64]:
-        """(r,) int64, where in `tokens` each row begins."""
-        return np.cumsum(self.counts) - self.counts
+        comments: what comes after a # is none of it. continued: lines that end in a backslash go on with the next.
+        """
+        text = data.removeprefix(BYTE_ORDER_MARK)
+        begins, ends, counts, lines = _lsgp.split_rows(text, comments, continued)
+        return cls(text, begins, ends, np.cumsum(counts) - counts, counts, lines)
+
+    def select(self, rows: NDArray[np.bool_] | slice) -> Rows:
+        """Some of the rows, of the same tokens."""
+        return replace(self, starts=self.starts[rows], counts=self.counts[rows], lines=self.lines[rows])
+
+    def without_first(self) -> Rows:
+        """The rows without their first tokens."""
+        return replace(self, starts=self.starts + 1, counts=self.counts - 1)
+
+    def parts(self, part: int) -> Rows:
+        """The rows with the first (0) or second (1) of the parts between slashes in the place of each token; empty
+        where a token has none."""
+        begins, ends = _lsgp.slash_parts(self.data, self.begins, self.ends, self.tokens(), part)
+        return Rows(self.data, begins, ends, np.cumsum(self.counts) - self.counts, self.counts, self.lines)
+
+    def tokens(self) -> NDArray[np.int64]:
+        """All tokens of the rows, in order, as indices into `begins`."""
+        return ranges(self.starts, self.counts)
+
+    def token(self, index: int) -> bytes:
+        return self.data[self.begins[index] : self.ends[index]]
+
+    def keywords(self) -> tuple[list[bytes], NDArray[np.int64]]:
+        """The different first tokens of the rows, which have some, in the order in which they first appear, and which
+        one each row has."""
+        return _lsgp.distinct_tokens(self.data, self.begins, self.ends, self.starts)
 
     def require_tokens(self, least: int, problem: str) -> None:
         """Refuse the first row with fewer tokens. problem: says what is wrong, with {} for how many there are."""
         short = np.flatnonzero(self.counts < least)
         if len(short):
-            raise malformed(problem.format(self.counts[short[0]]), self.lines[short[0]])
+            raise malformed(problem.format(self.counts[short[0]]), int(self.lines[short[0]]))
 
     def floats(self, picks: NDArray[np.int64]) -> NDArray[np.float64]:
-        """The numbers at given places of `tokens`, correctly rounded.  Raises InputError: MALFORMED_FILE."""
-        return self._numbers(picks, float, np.float64, "a number")
+        """The numbers that given tokens are, correctly rounded.  Raises InputError: MALFORMED_FILE."""
+        return self._numbers(_lsgp.parse_floats, picks, "a number")
 
     def integers(self, picks: NDArray[np.int64]) -> NDArray[np.int64]:
-        """The integers at given places of `tokens`.  Raises InputError: MALFORMED_FILE."""
-        return self._numbers(picks, int, np.int64, "an integer")
+        """The integers that given tokens are.  Raises InputError: MALFORMED_FILE."""
+        return self._numbers(_lsgp.parse_integers, picks, "an integer")
 
     def line_of(self, token: int) -> int:
-        """The line on which a token stands."""
-        return self.lines[int(np.searchsorted(np.cumsum(self.counts), token, side="right"))]
+        """The line on which a token of these rows stands."""
+        return int(self.lines[np.searchsorted(self.starts, token, side="right") - 1])
 
-    def _numbers(self, picks: NDArray[np.int64], parse: Callable, dtype: type, what: str) -> NDArray:
-        everything = len(picks) == len(self.tokens) and bool((np.diff(picks) == 1).all())
-        tokens = self.tokens if everything else list(map(self.tokens.__getitem__, picks.tolist()))
-        # Python alone takes 1_000 for a number.
-        if b"_" not in b" ".join(tokens):
-            try:
-                return np.fromiter(map(parse, tokens), dtype, len(tokens))
-            except (ValueError, OverflowError):
-                pass
-        bad = next(i for i, token in enumerate(tokens) if not _is_number(token, parse, dtype))
-        raise malformed(f"{quoted(tokens[bad])} is not {what}.", self.line_of(int(picks[bad])))
-
-
-def _is_number(token: bytes, parse: Callable, dtype: type) -> bool:
-    try:
-        np.array(parse(token), dtype)
-    except (ValueError, OverflowError):
-        return False
-    return b"_" not in token
+    def _numbers(self, parse: Callable, picks: NDArray[np.int64], what: str) -> NDArray:
+        numbers, bad = parse(self.data, self.begins, self.ends, picks)
+        if bad >= 0:
+            token = int(picks[bad])
+            raise malformed(f"{quoted(self.token(token))} is not {what}.", self.line_of(token))
+        return numbers

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _lsgp
 from ..equality import EqualByContent
 from ..errors import Elements, InputError
 from ..short_repr import ShortRepr
@@ -353,11 +354,7 @@ def _occupied(
 
 def _polygon_edges(mesh: PolygonMesh) -> NDArray[np.int32]:
     """Every polygon edge once, the smaller vertex first, in order."""
-    following = np.arange(1, len(mesh.corners) + 1)
-    following[mesh.starts + mesh.sizes - 1] = mesh.starts
-    n = len(mesh.positions)
-    keys = np.unique(_pair_keys(mesh.corners, mesh.corners[following], n))
-    return np.stack(np.divmod(keys, max(n, 1)), axis=1).astype(np.int32)
+    return _lsgp.polygon_edges(mesh.corners, mesh.sizes, len(mesh.positions))
 
 
 def _pair_keys(a: NDArray[np.int32], b: NDArray[np.int32], vertex_count: int) -> NDArray[np.int64]:

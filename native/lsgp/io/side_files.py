@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from .mesh_text import Rows, content_lines, malformed
+from .mesh_text import Rows, malformed
 
 
 class UsageError(Exception):
@@ -113,18 +113,19 @@ def load_cut_costs(path: Path) -> CutCostFile:
     data = read_regular(path)
     if data.lstrip()[:1] in (b"[", b"{"):
         data = _as_lines(_parsed(data, path), path)
-    rows = Rows.split(*content_lines(data))
+    rows = Rows.split(data)
     try:
         width = 3 if len(rows.counts) and rows.counts[0] == 3 else 1
         wrong = np.flatnonzero(rows.counts != width)
         if len(wrong):
             form = "Give two vertices and a cost" if width == 3 else "Give one number"
-            raise malformed(f"{form}, as on the line before.", rows.lines[wrong[0]])
-        every = np.arange(len(rows.tokens)).reshape(-1, width)
+            raise malformed(f"{form}, as on the line before.", int(rows.lines[wrong[0]]))
+        lines = rows.lines.tolist()
+        every = rows.tokens().reshape(-1, width)
         if width == 1:
-            return CutCostFile(rows.floats(every.ravel()), np.empty((0, 2), np.int64), np.empty(0), rows.lines)
+            return CutCostFile(rows.floats(every.ravel()), np.empty((0, 2), np.int64), np.empty(0), lines)
         pairs = rows.integers(every[:, :2].ravel()).reshape(-1, 2)
-        return CutCostFile(None, pairs, rows.floats(every[:, 2]), rows.lines)
+        return CutCostFile(None, pairs, rows.floats(every[:, 2]), lines)
     except InputError as error:
         raise InputError(error.code, f"'{path}' does not hold the costs of cuts. {error.message}") from error
 
@@ -149,9 +150,9 @@ def load_importance(path: Path) -> NDArray[np.float64]:
         if not _is_list_of(content, _is_number):
             raise _unlike(path, "[number, ...], one for each vertex")
         return np.array([_as_float(value) for value in content], np.float64)
-    rows = Rows.split(*content_lines(data))
+    rows = Rows.split(data)
     try:
-        return rows.floats(np.arange(len(rows.tokens)))
+        return rows.floats(rows.tokens())
     except InputError as error:
         raise InputError(error.code, f"'{path}' does not hold the importance of vertices. {error.message}") from error
 

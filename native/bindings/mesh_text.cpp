@@ -1,0 +1,471 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh_text.hpp"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace py = pybind11;
+
+namespace {
+
+using Places = py::array_t<std::int64_t, py::array::c_style>;
+using Vertices = py::array_t<std::int32_t, py::array::c_style>;
+using Numbers = py::array_t<double, py::array::c_style>;
+using Marks = py::array_t<bool, py::array::c_style>;
+
+std::string_view view_of(const py::bytes& data) { return static_cast<std::string_view>(data); }
+
+// The values without a copy.
+template <typename T>
+py::array_t<T> to_array(std::vector<T> values) {
+  auto owned = std::make_unique<std::vector<T>>(std::move(values));
+  const auto* all = owned.get();
+  const py::capsule owner(owned.release(), [](void* kept) { delete static_cast<std::vector<T>*>(kept); });
+  return py::array_t<T>(static_cast<py::ssize_t>(all->size()), all->data(), owner);
+}
+
+// As bytes.split() of Python.
+bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// Rows of tokens; see `split_rows`.
+class RowSplitter {
+ public:
+  RowSplitter(std::string_view text, bool comments, bool continued)
+      : text_(text), comments_(comments), continued_(continued) {}
+
+  py::tuple split() {
+    std::size_t at = 0;
+    for (std::int64_t line = 1; at < text_.size(); ++line) {
+      std::size_t end = at;
+      while (end < text_.size() && text_[end] != '\n' && text_[end] != '\r') ++end;
+      add_line(at, end, line);
+      at = end + 1;
+      if (end + 1 < text_.size() && text_[end] == '\r' && text_[end + 1] == '\n') ++at;
+    }
+    return py::make_tuple(to_array(std::move(begins_)), to_array(std::move(ends_)), to_array(std::move(counts_)),
+                          to_array(std::move(lines_)));
+  }
+
+ private:
+  void add_line(std::size_t begin, std::size_t end, std::int64_t line) {
+    if (comments_) end = std::min(end, text_.substr(0, end).find('#', begin));
+    while (end > begin && is_space(text_[end - 1])) --end;
+    if (begin == end) return;
+    const bool goes_on = continued_ && text_[end - 1] == '\\';
+    if (goes_on) --end;
+    if (!joins_ && begin == end) return;
+    if (!joins_) {
+      counts_.push_back(0);
+      lines_.push_back(line);
+    }
+    for (std::size_t at = begin; at < end;) {
+      if (is_space(text_[at])) {
+        ++at;
+        continue;
+      }
+      begins_.push_back(static_cast<std::int64_t>(at));
+      while (at < end && !is_space(text_[at])) ++at;
+      ends_.push_back(static_cast<std::int64_t>(at));
+      ++counts_.back();
+    }
+    joins_ = goes_on;
+  }
+
+  std::string_view text_;
+  bool comments_, continued_;
+  bool joins_ = false;  // the next line goes on with the last row
+  std::vector<std::int64_t> begins_, ends_, counts_, lines_;
+};
+
+// The tokens of every line that has any, as places in data, (t) each; the number of tokens of each such row, and its
+// line, from 1.  comments: a # ends what counts of a line.  continued: a line that ends in a backslash goes on with
+// the next one that has something; the row has the number of its first line.
+py::tuple split_rows(const py::bytes& data, bool comments, bool continued) {
+  return RowSplitter(view_of(data), comments, continued).split();
+}
+
+// Tokens of a text by their places.
+class Tokens {
+ public:
+  Tokens(const py::bytes& data, const Places& begins, const Places& ends)
+      : text_(view_of(data)), begins_(begins.unchecked<1>()), ends_(ends.unchecked<1>()) {}
+
+  std::string_view operator[](std::int64_t token) const {
+    if (token < 0 || token >= begins_.shape(0)) throw py::index_error("no such token");
+    const auto begin = static_cast<std::size_t>(begins_(token)), end = static_cast<std::size_t>(ends_(token));
+    return text_.substr(begin, end - begin);
+  }
+  std::int64_t place(std::int64_t token) const { return begins_(token); }
+
+ private:
+  std::string_view text_;
+  py::detail::unchecked_reference<std::int64_t, 1> begins_, ends_;
+};
+
+// Python's own conversion: also of infinity, of what over- or underflows, and where the standard library has none.
+bool parse_as_python(std::string_view token, double& out) {
+  if (token.find('\0') != std::string_view::npos) return false;
+  out = PyOS_string_to_double(std::string(token).c_str(), nullptr, nullptr);
+  if (out != -1.0 || !PyErr_Occurred()) return true;
+  PyErr_Clear();
+  return false;
+}
+
+// A decimal number with few digits, which one exactly rounded operation converts (Clinger 1990). Returns false where
+// the token is anything else.
+bool parse_short(std::string_view token, double& out) {
+  constexpr std::uint64_t exact_below = std::uint64_t{1} << 53;
+  constexpr double powers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                               1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+  std::size_t at = 0, digits = 0, decimals = 0;
+  const bool negative = !token.empty() && token[0] == '-';
+  if (negative) ++at;
+  std::uint64_t value = 0;
+  const auto read_digits = [&] {
+    const std::size_t first = at;
+    for (; at < token.size() && is_digit(token[at]); ++at)
+      value = 10 * value + static_cast<std::uint64_t>(token[at] - '0');
+    digits += at - first;
+    return at - first;
+  };
+  read_digits();
+  if (at < token.size() && token[at] == '.') {
+    ++at;
+    decimals = read_digits();
+  }
+  if (at != token.size() || digits == 0 || digits > 19 || value > exact_below) return false;
+  out = static_cast<double>(value) / powers[decimals];
+  if (negative) out = -out;
+  return true;
+}
+
+// As float(token) of Python, correctly rounded; false where that is no number.
+bool parse_number(std::string_view token, double& out) {
+  if (parse_short(token, out)) return true;
+#ifdef __cpp_lib_to_chars
+  const char* end = token.data() + token.size();
+  const std::size_t sign = !token.empty() && token[0] == '-';
+  if (token.size() > sign && (is_digit(token[sign]) || token[sign] == '.')) {
+    const auto result = std::from_chars(token.data(), end, out);
+    if (result.ec == std::errc() && result.ptr == end) return true;
+  }
+#endif
+  return parse_as_python(token, out);
+}
+
+// As int(token) of Python for what 64 bits hold, but without underscores.
+bool parse_number(std::string_view token, std::int64_t& out) {
+  if (!token.empty() && token[0] == '+') {
+    token.remove_prefix(1);
+    if (!token.empty() && token[0] == '-') return false;
+  }
+  const auto result = std::from_chars(token.data(), token.data() + token.size(), out);
+  return result.ec == std::errc() && result.ptr == token.data() + token.size();
+}
+
+// The numbers that the picked tokens are, and the index in picks of the first that is none, -1 for none such.
+template <typename Number>
+py::tuple parse_numbers(const py::bytes& data, const Places& begins, const Places& ends, const Places& picks) {
+  const Tokens tokens(data, begins, ends);
+  const auto pick = picks.unchecked<1>();
+  py::array_t<Number> out(pick.shape(0));
+  auto numbers = out.template mutable_unchecked<1>();
+  for (py::ssize_t i = 0; i < pick.shape(0); ++i) {
+    if (!parse_number(tokens[pick(i)], numbers(i))) return py::make_tuple(out, i);
+  }
+  return py::make_tuple(out, -1);
+}
+
+// Where the first or second of the parts between slashes of each picked token begins and ends; at most two slashes
+// separate. A token without slashes has its end as second part.
+py::tuple slash_parts(const py::bytes& data, const Places& begins, const Places& ends, const Places& picks, int part) {
+  const Tokens tokens(data, begins, ends);
+  const auto pick = picks.unchecked<1>();
+  Places part_begins(pick.shape(0)), part_ends(pick.shape(0));
+  auto begin = part_begins.mutable_unchecked<1>();
+  auto end = part_ends.mutable_unchecked<1>();
+  for (py::ssize_t i = 0; i < pick.shape(0); ++i) {
+    const std::string_view token = tokens[pick(i)];
+    const std::size_t head = std::min(token.find('/'), token.size());
+    const std::size_t first = part == 0 ? 0 : std::min(head + 1, token.size());
+    const std::size_t last = part == 0 ? head : std::min(token.find('/', first), token.size());
+    begin(i) = tokens.place(pick(i)) + static_cast<std::int64_t>(first);
+    end(i) = tokens.place(pick(i)) + static_cast<std::int64_t>(last);
+  }
+  return py::make_tuple(part_begins, part_ends);
+}
+
+// The different texts of the picked tokens, in the order in which they first appear, and which one each token is.
+py::tuple distinct_tokens(const py::bytes& data, const Places& begins, const Places& ends, const Places& picks) {
+  const Tokens tokens(data, begins, ends);
+  const auto pick = picks.unchecked<1>();
+  Places which(pick.shape(0));
+  auto out = which.mutable_unchecked<1>();
+  std::unordered_map<std::string_view, std::int64_t> known;
+  py::list texts;
+  std::string_view last;
+  std::int64_t last_index = -1;
+  for (py::ssize_t i = 0; i < pick.shape(0); ++i) {
+    const std::string_view token = tokens[pick(i)];
+    if (last_index < 0 || token != last) {  // statements of a kind stand together
+      const auto [entry, is_new] = known.emplace(token, static_cast<std::int64_t>(known.size()));
+      if (is_new) texts.append(py::bytes(token.data(), token.size()));
+      last = token;
+      last_index = entry->second;
+    }
+    out(i) = last_index;
+  }
+  return py::make_tuple(texts, which);
+}
+
+void append_integer(std::string& out, std::int64_t value) {
+  char buffer[24];
+  out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+}
+
+// The shortest text that reads back as the same number, laid out as repr() of Python does.
+void append_number(std::string& out, double value) {
+#ifdef __cpp_lib_to_chars
+  if (std::isfinite(value)) {
+    // [-]d[.ddd]e+dd
+    char buffer[40];
+    const char* end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::scientific).ptr;
+    const char* at = buffer;
+    if (*at == '-') out += *at++;
+    const char* mark = std::find(at, end, 'e');
+    int exponent = 0;
+    std::from_chars(mark[1] == '+' ? mark + 2 : mark + 1, end, exponent);
+    if (exponent < -4 || exponent >= 16) {
+      out.append(at, end);
+      return;
+    }
+    char digits[24];
+    int count = 0;
+    for (; at < mark; ++at) {
+      if (*at != '.') digits[count++] = *at;
+    }
+    const int whole = exponent + 1;  // digits before the point
+    if (whole <= 0) {
+      out.append("0.").append(static_cast<std::size_t>(-whole), '0').append(digits, digits + count);
+    } else if (whole >= count) {
+      out.append(digits, digits + count).append(static_cast<std::size_t>(whole - count), '0').append(".0");
+    } else {
+      out.append(digits, digits + whole).append(1, '.').append(digits + whole, digits + count);
+    }
+    return;
+  }
+#endif
+  const std::unique_ptr<char, decltype(&PyMem_Free)> text(
+      PyOS_double_to_string(value, 'r', 0, Py_DTSF_ADD_DOT_0, nullptr), &PyMem_Free);
+  if (!text) throw py::error_already_set();
+  out += text.get();
+}
+
+// A line for each row of numbers, (n, k): the keyword, the numbers, and the ending.
+py::bytes format_rows(const py::bytes& keyword, const Numbers& rows, const py::bytes& ending) {
+  constexpr std::size_t usual_width = 20;
+  const auto numbers = rows.unchecked<2>();
+  std::string out;
+  out.reserve(usual_width * static_cast<std::size_t>(rows.size()));
+  for (py::ssize_t i = 0; i < numbers.shape(0); ++i) {
+    out += view_of(keyword);
+    for (py::ssize_t k = 0; k < numbers.shape(1); ++k) {
+      out += ' ';
+      append_number(out, numbers(i, k));
+    }
+    out += view_of(ending);
+  }
+  return out;
+}
+
+// A line f for each polygon.  sizes: (f) corners of each.  vertices, coordinates: (c) numbers of each corner, from 1.
+// mapped: (f) whether to write the coordinates.
+py::bytes format_faces(const Places& sizes, const Marks& mapped, const Places& vertices, const Places& coordinates) {
+  constexpr std::size_t usual_width = 16;
+  const auto size = sizes.unchecked<1>(), vertex = vertices.unchecked<1>(), coordinate = coordinates.unchecked<1>();
+  const auto has_coordinates = mapped.unchecked<1>();
+  std::string out;
+  out.reserve(usual_width * static_cast<std::size_t>(vertices.size()));
+  py::ssize_t corner = 0;
+  for (py::ssize_t f = 0; f < size.shape(0); ++f) {
+    out += 'f';
+    for (const py::ssize_t end = corner + size(f); corner < end; ++corner) {
+      out += ' ';
+      append_integer(out, vertex(corner));
+      if (!has_coordinates(f)) continue;
+      out += '/';
+      append_integer(out, coordinate(corner));
+    }
+    out += '\n';
+  }
+  return out;
+}
+
+// What `edit_obj` of the package does with a line of an OBJ file whose statement is plain: in one line, without a
+// comment.
+enum class LineKind { peculiar, other, coordinates, faces };
+
+// Corners v, v/vt or v/vt/vn, at least one, each after blanks.
+bool are_plain_corners(std::string_view text) {
+  std::size_t at = 0;
+  const auto skip = [&](auto accepts) {
+    const std::size_t first = at;
+    while (at < text.size() && accepts(text[at])) ++at;
+    return at > first;
+  };
+  const auto skip_one = [&](auto accepts) {
+    const bool found = at < text.size() && accepts(text[at]);
+    at += found;
+    return found;
+  };
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+  const auto is_sign = [](char c) { return c == '-' || c == '+'; };
+  const auto is_slash = [](char c) { return c == '/'; };
+  int corners = 0;
+  while (skip(is_blank) && at < text.size()) {
+    skip_one(is_sign);
+    if (!skip(is_digit)) return false;
+    for (int slashes = 0; slashes < 2 && skip_one(is_slash); ++slashes) {
+      skip_one(is_sign);
+      skip(is_digit);
+    }
+    ++corners;
+  }
+  return at == text.size() && corners > 0;
+}
+
+LineKind kind_of(std::string_view line) {
+  if (line.find('\\') != std::string_view::npos || (!line.empty() && is_space(line[0]))) return LineKind::peculiar;
+  const auto end = std::find_if(line.begin(), line.end(), [](char c) { return is_space(c) || c == '#'; });
+  const std::string_view keyword = line.substr(0, static_cast<std::size_t>(end - line.begin()));
+  const std::string_view rest = line.substr(keyword.size());
+  if (keyword == "f" || keyword == "fo") return are_plain_corners(rest) ? LineKind::faces : LineKind::peculiar;
+  if (keyword == "vt") {
+    const bool is_plain = !rest.empty() && (rest[0] == ' ' || rest[0] == '\t') && rest.find('#') == rest.npos;
+    return is_plain ? LineKind::coordinates : LineKind::peculiar;
+  }
+  const bool refers = (keyword == "l" || keyword == "surf") && rest.find('/') != rest.npos;
+  return refers ? LineKind::peculiar : LineKind::other;
+}
+
+// The plain lines of one kind from a place on, at most so many: the kind, where they end, and how many they are.
+py::tuple plain_lines(const py::bytes& data, std::size_t at, std::int64_t most) {
+  constexpr const char* names[] = {"", "other", "coordinates", "faces"};
+  const std::string_view text = view_of(data);
+  LineKind kind = LineKind::peculiar;
+  std::int64_t count = 0;
+  while (count < most) {
+    std::size_t end = at;
+    while (end < text.size() && text[end] != '\n' && text[end] != '\r') ++end;
+    if (end >= text.size()) break;  // a line without an ending gets none
+    const LineKind next = kind_of(text.substr(at, end - at));
+    if (next == LineKind::peculiar || (count > 0 && next != kind)) break;
+    kind = next;
+    ++count;
+    at = end + 1;
+    if (text[end] == '\r' && at < text.size() && text[at] == '\n') ++at;
+  }
+  return py::make_tuple(names[static_cast<int>(kind)], at, count);
+}
+
+// Lines of faces, each a keyword and corners v, v/vt or v/vt/vn, without comments, with other numbers vt, one for each
+// corner; every other byte stays.
+py::bytes replace_references(const py::bytes& lines, const Places& numbers) {
+  constexpr std::size_t usual_width = 8;
+  const std::string_view text = view_of(lines);
+  const auto number = numbers.unchecked<1>();
+  std::string out;
+  out.reserve(text.size() + usual_width * static_cast<std::size_t>(numbers.size()));
+  py::ssize_t corner = 0;
+  bool is_keyword = true;
+  for (std::size_t at = 0; at < text.size();) {
+    if (is_space(text[at])) {
+      is_keyword |= text[at] == '\n' || text[at] == '\r';
+      out += text[at++];
+      continue;
+    }
+    std::size_t end = at;
+    while (end < text.size() && !is_space(text[end])) ++end;
+    const std::string_view token = text.substr(at, end - at);
+    at = end;
+    if (is_keyword) {
+      out += token;
+      is_keyword = false;
+      continue;
+    }
+    if (corner == number.shape(0)) throw py::value_error("more corners than numbers");
+    const std::size_t head = token.find('/');
+    out += token.substr(0, head);
+    out += '/';
+    append_integer(out, number(corner++));
+    const std::size_t tail = head == std::string_view::npos ? head : token.find('/', head + 1);
+    if (tail != std::string_view::npos) out += token.substr(tail);
+  }
+  return out;
+}
+
+// The edges of polygons, each once, the smaller vertex first, in order, (e, 2).  corners: (c) vertices below
+// vertex_count, polygon after polygon.  sizes: (f) corners of each.
+Vertices polygon_edges(const Vertices& corners, const Places& sizes, std::int32_t vertex_count) {
+  const auto vertex = corners.unchecked<1>();
+  const auto size = sizes.unchecked<1>();
+  const auto for_each_edge = [&](auto visit) {
+    py::ssize_t begin = 0;
+    for (py::ssize_t f = 0; f < size.shape(0); begin += size(f++)) {
+      std::int32_t before = size(f) > 0 ? vertex(begin + size(f) - 1) : 0;
+      for (py::ssize_t corner = begin; corner < begin + size(f); ++corner) {
+        visit(std::min(before, vertex(corner)), std::max(before, vertex(corner)));
+        before = vertex(corner);
+      }
+    }
+  };
+  // Counted into a bucket for each lower vertex; those have few edges each.
+  std::vector<std::size_t> ends(static_cast<std::size_t>(vertex_count) + 1, 0);
+  for_each_edge([&](std::int32_t low, std::int32_t) { ++ends[static_cast<std::size_t>(low) + 1]; });
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<std::int32_t> higher(ends.back());
+  for_each_edge([&](std::int32_t low, std::int32_t high) { higher[ends[static_cast<std::size_t>(low)]++] = high; });
+  std::vector<std::int32_t> edges;
+  edges.reserve(higher.size());
+  std::size_t begin = 0;
+  for (std::int32_t low = 0; low < vertex_count; ++low) {
+    const std::size_t end = ends[static_cast<std::size_t>(low)];
+    const auto first = higher.begin() + static_cast<std::ptrdiff_t>(begin),
+               last = higher.begin() + static_cast<std::ptrdiff_t>(end);
+    std::sort(first, last);
+    std::for_each(first, std::unique(first, last), [&](std::int32_t high) { edges.insert(edges.end(), {low, high}); });
+    begin = end;
+  }
+  return Vertices({static_cast<py::ssize_t>(edges.size() / 2), py::ssize_t{2}}, edges.data());
+}
+
+}  // namespace
+
+void define_mesh_text(py::module_& module) {
+  using py::literals::operator""_a;
+  module.def("split_rows", &split_rows, "data"_a, "comments"_a, "continued"_a);
+  module.def("parse_floats", &parse_numbers<double>, "data"_a, "begins"_a, "ends"_a, "picks"_a);
+  module.def("parse_integers", &parse_numbers<std::int64_t>, "data"_a, "begins"_a, "ends"_a, "picks"_a);
+  module.def("slash_parts", &slash_parts, "data"_a, "begins"_a, "ends"_a, "picks"_a, "part"_a);
+  module.def("distinct_tokens", &distinct_tokens, "data"_a, "begins"_a, "ends"_a, "picks"_a);
+  module.def("format_rows", &format_rows, "keyword"_a, "rows"_a, "ending"_a);
+  module.def("format_faces", &format_faces, "sizes"_a, "mapped"_a, "vertices"_a, "coordinates"_a);
+  module.def("plain_lines", &plain_lines, "data"_a, "at"_a, "most"_a);
+  module.def("replace_references", &replace_references, "lines"_a, "numbers"_a);
+  module.def("polygon_edges", &polygon_edges, "corners"_a, "sizes"_a, "vertex_count"_a);
+}
