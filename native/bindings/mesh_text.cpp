@@ -158,11 +158,10 @@ bool parse_short(std::string_view token, double& out) {
 bool parse_number(std::string_view token, double& out) {
   if (parse_short(token, out)) return true;
 #ifdef __cpp_lib_to_chars
-  const char* end = token.data() + token.size();
   const std::size_t sign = !token.empty() && token[0] == '-';
   if (token.size() > sign && (is_digit(token[sign]) || token[sign] == '.')) {
-    const auto result = std::from_chars(token.data(), end, out);
-    if (result.ec == std::errc() && result.ptr == end) return true;
+    const auto result = std::from_chars(token.data(), token.data() + token.size(), out);
+    if (result.ec == std::errc() && result.ptr == token.data() + token.size()) return true;
   }
 #endif
   return parse_as_python(token, out);

@@ -39,7 +39,7 @@ struct Forest {
   Index required_count = 0;  // the first regions, of loops and cones, have to be joined; seam networks may be
 };
 
-Forest grow_forest(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<Index>& interior_cones,
+Forest grow_forest(const HalfedgeMesh& mesh, const CutEdges& edges, const Array<Index>& interior_cones,
                    const Array<char>& uncut) {
   const Index n = mesh.vertex_count();
   Forest forest{Array<Reached>(n), Array<Index>(n, none), 0, 0};
@@ -66,7 +66,7 @@ Forest grow_forest(const HalfedgeMesh& mesh, const Geometry& geometry, const Arr
     if (forest.region[v] == none && !is_avoided[v]) add_source(v, forest.region_count++);
   }
   if (forest.region_count == 0) add_source(0, forest.region_count++);  // a closed surface with handles alone
-  grow_paths(mesh, geometry, {std::move(starts)}, [&](Index v) { return !is_avoided[v]; }, forest.reached);
+  grow_paths(edges, {std::move(starts)}, [&](Index v) { return !is_avoided[v]; }, forest.reached);
   for (Index v = 0; v < n; ++v) {
     const Index source = forest.reached[v].source;
     if (source != none) forest.region[v] = forest.region[source];
@@ -75,13 +75,16 @@ Forest grow_forest(const HalfedgeMesh& mesh, const Geometry& geometry, const Arr
 }
 
 // The minimum spanning tree of the regions, as far as cuttable edges connect them.
-Array<Index> span_regions(const HalfedgeMesh& mesh, const Geometry& geometry, const Forest& forest) {
-  const auto between_regions = [&](Index h) { return forest.region[mesh.origin(h)] != forest.region[mesh.target(h)]; };
+Array<Index> span_regions(const HalfedgeMesh& mesh, const CutEdges& edges, const Forest& forest) {
+  const auto between_regions = [&](Index v, const CutEdges::Edge& edge) {
+    return forest.region[v] != forest.region[edge.target];
+  };
+  Array<Bridge> bridges = find_bridges(mesh, edges, forest.reached, between_regions);
+  std::sort(bridges.begin(), bridges.end());
   UnionFind regions(forest.region_count);
   Array<Index> tree;
-  for (const Bridge& bridge : sorted_bridges(mesh, geometry, forest.reached, between_regions)) {
-    const Index h = bridge.halfedge;
-    if (regions.unite(forest.region[mesh.origin(h)], forest.region[mesh.target(h)])) tree.push_back(h);
+  for (const Bridge& bridge : bridges) {
+    if (regions.unite(forest.region[bridge.low], forest.region[bridge.high])) tree.push_back(bridge.halfedge);
   }
   return tree;
 }
@@ -98,7 +101,7 @@ Index count_joined(const HalfedgeMesh& mesh, const Forest& forest, const Array<I
 // The 2 genus edges that neither the spanning tree of the vertices nor one of the triangles uses. The tree of the
 // triangles takes the edges with the longest loops, so the shortest loops are left; diagonals, and edges that cuts
 // cannot reach, are always crossed.
-Array<Index> find_handle_edges(const HalfedgeMesh& mesh, const Geometry& geometry, const Forest& forest,
+Array<Index> find_handle_edges(const HalfedgeMesh& mesh, const CutEdges& edges, const Forest& forest,
                                const Array<Index>& spanning) {
   Array<char> in_tree(mesh.halfedge_count(), 0);
   const auto mark = [&](Index h) { in_tree[h] = in_tree[mesh.twin[h]] = 1; };
@@ -112,7 +115,9 @@ Array<Index> find_handle_edges(const HalfedgeMesh& mesh, const Geometry& geometr
     if (mesh.twin[h] != none && !(mesh.cuttable[h] && reached)) triangles.unite(h / 3, mesh.twin[h] / 3);
   }
   Array<Index> left_over;
-  auto candidates = sorted_bridges(mesh, geometry, forest.reached, [&](Index h) { return !in_tree[h]; });
+  const auto is_left = [&](Index, const CutEdges::Edge& edge) { return !in_tree[edge.halfedge]; };
+  Array<Bridge> candidates = find_bridges(mesh, edges, forest.reached, is_left);
+  std::sort(candidates.begin(), candidates.end());
   for (auto bridge = candidates.rbegin(); bridge != candidates.rend(); ++bridge) {
     if (!triangles.unite(bridge->halfedge / 3, mesh.twin[bridge->halfedge] / 3)) left_over.push_back(bridge->halfedge);
   }
@@ -185,13 +190,14 @@ CutGraph connect_cones(const HalfedgeMesh& mesh, const Geometry& geometry, const
                        const Array<char>& uncut) {
   const bool avoids = std::find(uncut.begin(), uncut.end(), 1) != uncut.end();
   Array<char> avoided = avoids ? uncut : Array<char>();
-  Forest forest = grow_forest(mesh, geometry, interior_cones, avoided);
-  Array<Index> tree = span_regions(mesh, geometry, forest);
+  const CutEdges edges(mesh, geometry);
+  Forest forest = grow_forest(mesh, edges, interior_cones, avoided);
+  Array<Index> tree = span_regions(mesh, edges, forest);
   if (avoids && count_joined(mesh, forest, tree) < forest.required_count) {
     // Cones or loops that only holes surround: cuts have to use the holes' borders after all.
     avoided.clear();
-    forest = grow_forest(mesh, geometry, interior_cones, avoided);
-    tree = span_regions(mesh, geometry, forest);
+    forest = grow_forest(mesh, edges, interior_cones, avoided);
+    tree = span_regions(mesh, edges, forest);
   }
   const Index joined = count_joined(mesh, forest, tree);
   if (joined < forest.required_count) {
@@ -202,10 +208,10 @@ CutGraph connect_cones(const HalfedgeMesh& mesh, const Geometry& geometry, const
   Array<char> is_cut(mesh.halfedge_count(), 0);
   for (const Index h : tree) mark_through(mesh, forest, h, is_cut);
   if (mesh.genus > 0) {
-    for (const Index h : find_handle_edges(mesh, geometry, forest, tree)) mark_through(mesh, forest, h, is_cut);
+    for (const Index h : find_handle_edges(mesh, edges, forest, tree)) mark_through(mesh, forest, h, is_cut);
   }
   const Array<char> is_cone = mark_vertices(mesh, interior_cones);
-  CutNetwork network(mesh, geometry, is_cone, avoided, prune(mesh, is_cone, std::move(is_cut)));
+  CutNetwork network({mesh, geometry, edges}, is_cone, avoided, prune(mesh, is_cone, std::move(is_cut)));
   exchange_key_paths(network);
   return trace_cuts(mesh, is_cone, prune(mesh, is_cone, std::move(network.is_cut)));
 }

@@ -11,14 +11,15 @@ Array<Index> count_cuts(const HalfedgeMesh& mesh, const Array<char>& is_cut) {
   return degree;
 }
 
-CutNetwork::CutNetwork(const HalfedgeMesh& surface, const Geometry& metric, const Array<char>& cones,
-                       const Array<char>& uncut, Array<char> cuts)
-    : mesh(surface),
-      geometry(metric),
+CutNetwork::CutNetwork(const CuttableSurface& surface, const Array<char>& cones, const Array<char>& uncut,
+                       Array<char> cuts)
+    : mesh(surface.mesh),
+      geometry(surface.geometry),
+      edges(surface.edges),
       is_cone(cones),
-      is_avoided(surface.vertex_count(), 0),
+      is_avoided(surface.mesh.vertex_count(), 0),
       is_cut(std::move(cuts)),
-      degree(count_cuts(surface, is_cut)) {
+      degree(count_cuts(surface.mesh, is_cut)) {
   for (std::size_t loop = 0; loop < uncut.size(); ++loop) {
     if (!uncut[loop]) continue;
     for (const Index v : mesh.boundary_loops[loop]) is_avoided[v] = 1;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/array.hpp"
-#include "cut/cut_cost.hpp"
+#include "cut/cut_edges.hpp"
 
 namespace lsgp {
 
@@ -12,17 +12,24 @@ using CutPath = Array<Index>;  // halfedges, one after the other
 // Cut edges at each vertex, (n).
 Array<Index> count_cuts(const HalfedgeMesh& mesh, const Array<char>& is_cut);
 
+// A surface with the edges that cuts may follow.
+struct CuttableSurface {
+  const HalfedgeMesh& mesh;
+  const Geometry& geometry;
+  const CutEdges& edges;
+};
+
 struct CutNetwork {
   const HalfedgeMesh& mesh;
   const Geometry& geometry;
+  const CutEdges& edges;
   const Array<char>& is_cone;  // (n) interior vertices that have to stay on the cuts
   Array<char> is_avoided;      // (n) boundary vertices that no cut may touch
   Array<char> is_cut;          // (3m) on both halfedges
   Array<Index> degree;         // (n) cut edges at each vertex
 
   // uncut: (loops) the boundaries to avoid, or empty.
-  CutNetwork(const HalfedgeMesh& surface, const Geometry& metric, const Array<char>& cones, const Array<char>& uncut,
-             Array<char> cuts);
+  CutNetwork(const CuttableSurface& surface, const Array<char>& cones, const Array<char>& uncut, Array<char> cuts);
 
   bool is_on_border(Index v) const { return mesh.loop_of_vertex[v] != none; }
   bool holds(Index v) const { return degree[v] > 0 || is_cone[v] || (is_on_border(v) && !is_avoided[v]); }

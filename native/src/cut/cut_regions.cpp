@@ -37,7 +37,7 @@ void CutRegions::grow(double below) {
     starts.emplace_back(0.0, v);
   }
   const auto admits = [&](Index v) { return !network_.is_avoided[v]; };
-  grow_paths(mesh, network_.geometry, {std::move(starts), half_of(below)}, admits, reached_);
+  grow_paths(network_.edges, {std::move(starts), half_of(below)}, admits, reached_);
   first_.assign(mesh.vertex_count() + 1, 0);
   for (const Reached& there : reached_) {
     if (there.source != none) ++first_[there.source + 1];
@@ -48,9 +48,10 @@ void CutRegions::grow(double below) {
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (reached_[v].source != none) members_[cursor[reached_[v].source]++] = v;
   }
-  bridges_ = sorted_bridges(mesh, network_.geometry, reached_, [&](Index h) {
-    return !was_cut_[h] && reached_[mesh.origin(h)].source != reached_[mesh.target(h)].source;
-  });
+  const auto separates = [&](Index v, const CutEdges::Edge& edge) {
+    return reached_[v].source != reached_[edge.target].source && !was_cut_[edge.halfedge];
+  };
+  bridges_ = cheapest_of_pairs(find_bridges(mesh, network_.edges, reached_, separates), mesh.vertex_count());
 }
 
 // Distributes the regions of the interior vertices of a closed path over the neighbouring ones, up to a cost.
@@ -68,46 +69,47 @@ void CutRegions::redo(const CutPath& closed, double below) {
   }
   PathStarts starts;
   for (const Index v : around_) {
-    mesh.for_each_outgoing(v, [&](Index out) {
-      const Index h = mesh.twin[out];
-      if (h == none || !may_cut(mesh, h) || redone_[mesh.origin(h)] == round_) return;
-      const Reached& there = reached_[mesh.origin(h)];
-      if (there.source == none || !network_.holds(there.source)) return;
-      const double through = there.distance + cut_cost(mesh, network_.geometry, h);
-      if (through < half_of(below) && through < again_[v].distance) again_[v] = {through, h, there.source};
-    });
+    for (const CutEdges::Edge& edge : network_.edges.from(v)) {
+      if (redone_[edge.target] == round_) continue;
+      const Reached& there = reached_[edge.target];
+      if (there.source == none || !network_.holds(there.source)) continue;
+      const double through = there.distance + edge.cost;
+      if (!(through < half_of(below) && through < again_[v].distance)) continue;
+      again_[v] = {through, mesh.twin[edge.halfedge], there.source};
+    }
     if (again_[v].source != none) starts.emplace_back(again_[v].distance, v);
   }
   const auto admits = [&](Index v) { return redone_[v] == round_; };
-  grow_paths(mesh, network_.geometry, {std::move(starts), half_of(below)}, admits, again_);
+  grow_paths(network_.edges, {std::move(starts), half_of(below)}, admits, again_);
 }
 
 CutPath CutRegions::find(const CutPath& closed, const Array<Index>& is_apart, Index mark, double below) {
   const HalfedgeMesh& mesh = network_.mesh;
   Index best = none;
-  const auto joins = [&](const Reached& a, const Reached& b) {
-    return a.source != none && b.source != none && (is_apart[a.source] == mark) != (is_apart[b.source] == mark) &&
-           network_.holds(a.source) && network_.holds(b.source);
+  const auto joins = [&](Index a, Index b) {
+    return a != none && b != none && (is_apart[a] == mark) != (is_apart[b] == mark) && network_.holds(a) &&
+           network_.holds(b);
   };
   if (below > below_) grow(std::numeric_limits<double>::infinity());
   redo(closed, below);
+  const auto is_redone = [&](Index source) { return redone_[source] == round_; };  // with its whole region
   for (const Bridge& bridge : bridges_) {
     if (!(bridge.cost < below)) break;
-    const Index a = mesh.origin(bridge.halfedge), b = mesh.target(bridge.halfedge);
-    if (redone_[a] == round_ || redone_[b] == round_ || !joins(reached_[a], reached_[b])) continue;
+    if (!joins(bridge.low, bridge.high) || is_redone(bridge.low) || is_redone(bridge.high)) continue;
     below = bridge.cost;
     best = bridge.halfedge;
+    break;
   }
   for (const Index v : around_) {
-    if (!(at(v).distance < half_of(below))) continue;
-    mesh.for_each_outgoing(v, [&](Index h) {
-      const Reached &a = at(v), &b = at(mesh.target(h));
-      if (!may_cut(mesh, h) || !joins(a, b)) return;
-      const double cost = a.distance + cut_cost(mesh, network_.geometry, h) + b.distance;
-      if (!(cost < below)) return;
+    const Reached& a = again_[v];
+    if (!(a.distance < half_of(below))) continue;
+    for (const CutEdges::Edge& edge : network_.edges.from(v)) {
+      const Reached& b = at(edge.target);
+      const double cost = a.distance + edge.cost + b.distance;
+      if (!(cost < below) || !joins(a.source, b.source)) continue;
       below = cost;
-      best = h;
-    });
+      best = edge.halfedge;
+    }
   }
   if (best == none) return {};
   // Cuts may have been opened across the path since the regions were built: a segment from part to part suffices.

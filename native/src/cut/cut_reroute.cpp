@@ -15,7 +15,7 @@ namespace {
 
 CutReroute::CutReroute(const HalfedgeMesh& mesh, const Geometry& geometry, MovedCut cut)
     : mesh_(mesh),
-      geometry_(geometry),
+      edges_(mesh, geometry),
       cut_(std::move(cut)),
       tail_(mesh.origin(cut_.path.front())),
       head_(mesh.target(cut_.path.back())),
@@ -32,7 +32,7 @@ CutReroute::CutReroute(const HalfedgeMesh& mesh, const Geometry& geometry, Moved
 Array<Reached> CutReroute::grow_from(Index end) const {
   Array<Reached> reached(mesh_.vertex_count());
   reached[end] = {0, none, end};
-  grow_paths(mesh_, geometry_, {{{0, end}}}, [&](Index v) { return !is_closed_to_[v]; }, reached);
+  grow_paths(edges_, {{{0, end}}}, [&](Index v) { return !is_closed_to_[v]; }, reached);
   return reached;
 }
 
@@ -50,7 +50,7 @@ Array<Index> CutReroute::way_around(Index v, const Array<Index>& avoided) const 
   is_closed[head_] = 0;
   Array<Reached> reached(mesh_.vertex_count());
   reached[v] = {0, none, v};
-  grow_paths(mesh_, geometry_, {{{0, v}}}, [&](Index w) { return !is_closed[w]; }, reached);
+  grow_paths(edges_, {{{0, v}}}, [&](Index w) { return !is_closed[w]; }, reached);
   Array<Index> way = way_back(reached, head_);
   std::reverse(way.begin(), way.end());
   for (Index& h : way) h = mesh_.twin[h];

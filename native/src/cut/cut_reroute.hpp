@@ -13,7 +13,7 @@ struct MovedCut {
   Array<char> is_node;   // (n) vertices that the cut must not be moved onto
 };
 
-// Refers to the mesh and its geometry.
+// Refers to the mesh.
 class CutReroute {
  public:
   // cut: its path is not empty.
@@ -38,10 +38,10 @@ class CutReroute {
   int rest(const Array<Index>& moved, const Array<int>& power) const;
 
   const HalfedgeMesh& mesh_;
-  const Geometry& geometry_;
+  const CutEdges edges_;
   MovedCut cut_;
   Index tail_, head_;
-  Array<char> is_closed_to_;            // (n) vertices that ways avoid, both ends included
+  Array<char> is_closed_to_;              // (n) vertices that ways avoid, both ends included
   Array<Reached> from_tail_, from_head_;  // (n)
 };
 

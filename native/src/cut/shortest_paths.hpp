@@ -7,12 +7,13 @@
 #include <functional>
 #include <limits>
 #include <queue>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "base/array.hpp"
 #include "base/checkpoint.hpp"
-#include "cut/cut_cost.hpp"
+#include "cut/cut_edges.hpp"
 
 namespace lsgp {
 
@@ -34,54 +35,57 @@ struct PathSearch {
 
 // Dijkstra's algorithm over the vertices that admits(v).  reached: (n) with the starts entered; receives the others.
 template <typename Admits>
-void grow_paths(const HalfedgeMesh& mesh, const Geometry& geometry, PathSearch search, Admits admits,
-                Array<Reached>& reached) {
+void grow_paths(const CutEdges& edges, PathSearch search, Admits admits, Array<Reached>& reached) {
   constexpr double operations_a_vertex = 100;
   std::priority_queue<PathStarts::value_type, PathStarts, std::greater<>> queue(std::greater<>(),
                                                                                 std::move(search.starts));
   while (!queue.empty()) {
     checkpoint(operations_a_vertex);
-    const double distance = queue.top().first;
-    const Index v = queue.top().second;
+    const auto [distance, v] = queue.top();
     queue.pop();
-    if (distance > reached[v].distance) continue;
-    mesh.for_each_outgoing(v, [&](Index h) {
-      const Index w = mesh.target(h);
-      if (!may_cut(mesh, h) || !admits(w)) return;
-      const double through = distance + cut_cost(mesh, geometry, h);
-      if (!(through < std::min(reached[w].distance, search.below))) return;
-      reached[w] = {through, h, reached[v].source};
-      queue.emplace(through, w);
-    });
+    const Reached from = reached[v];
+    if (distance > from.distance) continue;
+    for (const CutEdges::Edge& edge : edges.from(v)) {
+      const double through = distance + edge.cost;
+      if (!(through < std::min(reached[edge.target].distance, search.below)) || !admits(edge.target)) continue;
+      reached[edge.target] = {through, edge.halfedge, from.source};
+      queue.emplace(through, edge.target);
+    }
   }
 }
 
-// What it costs to go from the source of an edge's one end along the edge to that of the other.
-inline double cost_through(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<Reached>& reached, Index h) {
-  return reached[mesh.origin(h)].distance + cut_cost(mesh, geometry, h) + reached[mesh.target(h)].distance;
-}
-
-// An edge that closes a path from source to source; one halfedge each.
+// An edge that closes a path from source to source.
 struct Bridge {
-  double cost;
-  Index halfedge;
+  double cost;      // of that path
+  Index halfedge;   // the first one of the edge
+  Index low, high;  // the sources
   bool operator<(const Bridge& other) const {
     return cost != other.cost ? cost < other.cost : halfedge < other.halfedge;
   }
 };
 
-// Those that select(h), cheapest first.
+// Those between reached vertices v and targets of edges from them that select(v, edge), in no particular order.
 template <typename Select>
-Array<Bridge> sorted_bridges(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<Reached>& reached,
-                             Select select) {
+Array<Bridge> find_bridges(const HalfedgeMesh& mesh, const CutEdges& edges, const Array<Reached>& reached,
+                           Select select) {
   Array<Bridge> bridges;
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    if (mesh.twin[h] < h || !may_cut(mesh, h) || !select(h)) continue;
-    const double cost = cost_through(mesh, geometry, reached, h);
-    if (cost < std::numeric_limits<double>::infinity()) bridges.push_back({cost, h});
+  for (Index v = 0; v < edges.vertex_count(); ++v) {
+    const Reached& a = reached[v];
+    if (a.source == none) continue;
+    for (const CutEdges::Edge& edge : edges.from(v)) {
+      if (edge.target < v) continue;
+      const Reached& b = reached[edge.target];
+      if (b.source == none || !select(v, edge)) continue;
+      const Index h = std::min(edge.halfedge, mesh.twin[edge.halfedge]);
+      const auto& [first, second] = mesh.origin(h) == v ? std::tie(a, b) : std::tie(b, a);
+      bridges.push_back({first.distance + edge.cost + second.distance, h, std::min(a.source, b.source),
+                         std::max(a.source, b.source)});
+    }
   }
-  std::sort(bridges.begin(), bridges.end());
   return bridges;
 }
+
+// The cheapest of the bridges between each two sources, which are vertices; cheapest first.
+Array<Bridge> cheapest_of_pairs(const Array<Bridge>& bridges, Index vertex_count);
 
 }  // namespace lsgp

@@ -78,36 +78,37 @@ CutPath StripSearch::find(const CutPath& path, const Ends& ends, double below) {
 
 CutPath StripSearch::cross(const Side& from, const Side& to, const Array<Index>& starts, double below) {
   constexpr double operations_a_vertex = 100;
-  using Entry = std::pair<double, Index>;
   const HalfedgeMesh& mesh = network_.mesh;
+  using Entry = std::pair<double, Index>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   const Index search = ++searches_;
   const auto is_inside = [&](Index v) {
     return network_.degree[v] == 0 && !network_.is_on_border(v) && v != from.lone;
   };
   Index last = none;
-  const auto relax = [&](Index h, double before) {
-    if (!may_cut(mesh, h)) return;
-    const Index v = mesh.target(h);
-    const double through = before + cut_cost(mesh, network_.geometry, h);
+  const auto relax = [&](const CutEdges::Edge& edge, double before) {
+    const Index v = edge.target;
+    const double through = before + edge.cost;
     if (!(through < below) || network_.is_avoided[v]) return;
-    if (arrives(to, h)) {
+    if (arrives(to, edge.halfedge)) {
       below = through;
-      last = h;
+      last = edge.halfedge;
       return;
     }
     Reached& there = reached_[v];
     if (!is_inside(v) || (there.search == search && there.distance <= through)) return;
-    there = {through, h, search};
+    there = {through, edge.halfedge, search};
     queue.emplace(through, v);
   };
-  for (const Index h : starts) relax(h, 0);
+  for (const Index h : starts) {
+    if (may_cut(mesh, h)) relax({cut_cost(mesh, network_.geometry, h), h, mesh.target(h)}, 0);
+  }
   while (!queue.empty() && queue.top().first < below) {
     checkpoint(operations_a_vertex);
-    const double distance = queue.top().first;
-    const Index v = queue.top().second;
+    const auto [distance, v] = queue.top();
     queue.pop();
-    if (distance <= reached_[v].distance) mesh.for_each_outgoing(v, [&](Index h) { relax(h, distance); });
+    if (distance > reached_[v].distance) continue;
+    for (const CutEdges::Edge& edge : network_.edges.from(v)) relax(edge, distance);
   }
   CutPath path;
   for (Index h = last; h != none;) {

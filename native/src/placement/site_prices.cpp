@@ -55,7 +55,7 @@ Eigen::VectorXd vertex_prices(const HalfedgeMesh& mesh, const Geometry& geometry
   const PathStarts starts = largest_network(mesh, edges, cheap);
   Array<Reached> reached(mesh.vertex_count());
   for (const auto& [distance, v] : starts) reached[v] = {distance, none, v};
-  grow_paths(mesh, geometry, {starts}, [](Index) { return true; }, reached);
+  grow_paths(CutEdges(mesh, geometry), {starts}, [](Index) { return true; }, reached);
   double farthest = 0;
   for (const Reached& at : reached) {
     if (at.distance < unlimited) farthest = std::max(farthest, at.distance);

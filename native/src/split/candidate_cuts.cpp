@@ -72,16 +72,17 @@ Array<char> find_candidate_cuts(const HalfedgeMesh& mesh, const Geometry& geomet
   }
   // Boundaries that no cut reaches are left as they are.
   const auto admits = [&](Index v) { return mesh.loop_of_vertex[v] == none || stretches.of(v) != none; };
-  grow_paths(mesh, geometry, {std::move(starts)}, admits, reached);
+  const CutEdges edges(mesh, geometry);
+  grow_paths(edges, {std::move(starts)}, admits, reached);
   Array<char> out = cut_graph.is_cut;
   std::set<std::pair<Index, Index>> joined;
   const auto stretch_at = [&](Index v) { return stretches.of(reached[v].source); };
-  const auto joins = [&](Index h) {
-    const Index a = mesh.origin(h), b = mesh.target(h);
-    return !cut_graph.is_cut[h] && reached[a].source != none && reached[b].source != none &&
-           stretch_at(a) != stretch_at(b);
+  const auto joins = [&](Index v, const CutEdges::Edge& edge) {
+    return !cut_graph.is_cut[edge.halfedge] && stretch_at(v) != stretch_at(edge.target);
   };
-  for (const Bridge& bridge : sorted_bridges(mesh, geometry, reached, joins)) {
+  Array<Bridge> bridges = find_bridges(mesh, edges, reached, joins);
+  std::sort(bridges.begin(), bridges.end());
+  for (const Bridge& bridge : bridges) {
     const Index h = bridge.halfedge, ends[] = {mesh.origin(h), mesh.target(h)};
     if (!joined.insert(std::minmax(stretch_at(ends[0]), stretch_at(ends[1]))).second) continue;
     out[h] = out[mesh.twin[h]] = 1;

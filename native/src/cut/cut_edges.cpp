@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cut/cut_edges.hpp"
+
+namespace lsgp {
+
+CutEdges::CutEdges(const HalfedgeMesh& mesh, const Geometry& geometry) {
+  first_.reserve(mesh.vertex_count() + 1);
+  edges_.reserve(mesh.halfedge_count());
+  first_.push_back(0);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    mesh.for_each_outgoing(v, [&](Index h) {
+      if (may_cut(mesh, h)) edges_.push_back({cut_cost(mesh, geometry, h), h, mesh.target(h)});
+    });
+    first_.push_back(static_cast<Index>(edges_.size()));
+  }
+}
+
+}  // namespace lsgp

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "base/array.hpp"
+#include "cut/cut_cost.hpp"
+
+namespace lsgp {
+
+// The edges that cuts may follow with their costs, those of a vertex side by side: searches read nothing else of the
+// surface.
+class CutEdges {
+ public:
+  struct Edge {
+    double cost;
+    Index halfedge;  // leaves the vertex
+    Index target;
+  };
+  struct Range {
+    const Edge *first, *last;
+    const Edge* begin() const { return first; }
+    const Edge* end() const { return last; }
+  };
+
+  CutEdges(const HalfedgeMesh& mesh, const Geometry& geometry);
+
+  Index vertex_count() const { return static_cast<Index>(first_.size()) - 1; }
+  // Counter-clockwise from outgoing[v].
+  Range from(Index v) const { return {edges_.data() + first_[v], edges_.data() + first_[v + 1]}; }
+
+ private:
+  Array<Index> first_;  // (n + 1)
+  Array<Edge> edges_;
+};
+
+}  // namespace lsgp
