@@ -2,15 +2,18 @@
 """What automatic cones promise and what their maps keep, as a Markdown table.
 
     PYTHONPATH=tests python tools/benchmark/placement_quality.py [--zoo N] [--limit SECONDS] [FOLDER ...]
+    PYTHONPATH=tests python tools/benchmark/placement_quality.py --plates G [G ...]
 
 FOLDER holds OBJ or OFF files (default: ../shared/meshes and its folder hard). N ordinary members of the zoo follow, one
-of each family as far as there are so many. Every mesh is unwrapped in a process of its own, which is ended after
+of each family as far as there are so many. With --plates there are only bent plates with G tunnels each. Seconds are of
+CPU time. Every mesh is unwrapped in a process of its own, which is ended after
 SECONDS. Needs the lsgp wheel.
 """
 
 from __future__ import annotations
 
 import argparse
+import math
 import multiprocessing
 import time
 from collections.abc import Callable, Iterator
@@ -21,6 +24,7 @@ import lsgp
 import zoo
 from lsgp.io.mesh_files import parse_mesh
 from lsgp.io.polygons import triangulate
+from zoo.tunnels import smooth_tunnelled_plate
 
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "meshes"
 COLUMNS = ("mesh", "triangles", "cones", "predicted L2", "map L2", "defects", "maps", "place s", "told")
@@ -31,10 +35,15 @@ def main() -> None:
     parser.add_argument("folders", nargs="*", metavar="FOLDER", type=Path, default=[SHARED, SHARED / "hard"])
     parser.add_argument("--zoo", metavar="N", type=int, default=40, help="members of the zoo (default: 40)")
     parser.add_argument("--limit", metavar="SECONDS", type=float, default=120, help="for each mesh (default: 120)")
+    parser.add_argument("--plates", metavar="G", type=int, nargs="+", help="only plates with so many tunnels")
     arguments = parser.parse_args()
+    if arguments.plates:
+        meshes = of_plates(arguments.plates)
+    else:
+        meshes = [*of_folders(arguments.folders), *of_zoo(arguments.zoo)]
     print(f"| {' | '.join(COLUMNS)} |")
     print("|---|--:|--:|--:|--:|--:|--:|--:|---|")
-    for name, read in [*of_folders(arguments.folders), *of_zoo(arguments.zoo)]:
+    for name, read in meshes:
         print(f"| {name} | {' | '.join(within(arguments.limit, read))} |", flush=True)
 
 
@@ -42,6 +51,13 @@ def of_folders(folders: list[Path]) -> Iterator[tuple[str, Callable[[], lsgp.Sur
     for folder in folders:
         for path in sorted([*folder.glob("*.obj"), *folder.glob("*.off")]):
             yield path.stem, lambda path=path: read_surface(path)
+
+
+def of_plates(tunnels: list[int]) -> Iterator[tuple[str, Callable[[], lsgp.Surface]]]:
+    for count in tunnels:
+        across = max(n for n in range(1, math.isqrt(count) + 1) if count % n == 0)
+        plate = smooth_tunnelled_plate(across, count // across)
+        yield f"plate of genus {count}", lambda plate=plate: lsgp.Surface(plate.positions, plate.triangles)
 
 
 def of_zoo(count: int) -> Iterator[tuple[str, Callable[[], lsgp.Surface]]]:
@@ -82,13 +98,13 @@ def within(limit: float, read: Callable[[], lsgp.Surface]) -> list[str]:
 
 def tell(told: Connection, read: Callable[[], lsgp.Surface]) -> None:
     surface = read()
-    begin = time.perf_counter()
+    begin = time.process_time()
     try:
         placed = lsgp.place_cones(surface)
-        seconds = time.perf_counter() - begin
+        seconds = time.process_time() - begin
         result = lsgp.parameterize(surface, placed.cones, placed.cone_angles)
     except lsgp.LsgpError as error:
-        told.send([str(len(surface.triangles)), "", "", "", "", "", f"{time.perf_counter() - begin:.2f}", error.code])
+        told.send([str(len(surface.triangles)), "", "", "", "", "", f"{time.process_time() - begin:.2f}", error.code])
         return
     defects = len(result.flipped) + len(result.wrong_angle_sums)
     told.send(

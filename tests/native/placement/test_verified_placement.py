@@ -46,10 +46,21 @@ POLYHEDRA = {
 }
 
 
+def corner_angles(corners: np.ndarray) -> np.ndarray:
+    """(m, 3) degrees, of triangles in the plane or in space, (m, 3, d)."""
+    to_next, to_last = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
+    lengths = np.linalg.norm(to_next, axis=2) * np.linalg.norm(to_last, axis=2)
+    return np.degrees(np.arccos(np.clip((to_next * to_last).sum(axis=2) / lengths, -1, 1)))
+
+
+@pytest.mark.parametrize("subdivided", [False, True])
 @pytest.mark.parametrize("name", POLYHEDRA)
-def test_a_polyhedron_unfolds_as_it_is(name: str) -> None:
+def test_a_polyhedron_unfolds_as_it_is(name: str, subdivided: bool) -> None:
     mesh, corners = POLYHEDRA[name]
+    mesh = meshes.subdivide(mesh) if subdivided else mesh
     placed = place(mesh)
+    turned = corner_angles(unwrapped(mesh, placed).corner_uv) - corner_angles(mesh.positions[mesh.triangles])
+    assert np.abs(turned).max() <= 0.1
     assert len(placed.cones) == corners
     assert placed.mapped_l2 <= ISOMETRIC and placed.predicted_l2 <= ISOMETRIC
     assert_keeps_its_word(mesh, placed)
