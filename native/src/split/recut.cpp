@@ -20,7 +20,7 @@ namespace {
 constexpr double cells_of_layout = 32768;  // of the raster, in the layout's area
 // Weights of the cuts' relative cost in the score, one descent each. While cuts are cheap, pieces come apart that
 // remain entangled otherwise.
-constexpr double weights[] = {1.5, 0.3, 1.5};
+constexpr double weights[] = {1.5, 0.3, 0.7, 1.5};
 // What any overlap adds to the score, since it takes a further island however small it is; half of it at so small a
 // share of the layout.
 constexpr double any_overlap = 0.2, small_overlap = 1e-4;
