@@ -33,3 +33,15 @@ TEST_CASE("a dense matrix that is not positive definite has no factor") {
     CHECK_THROWS_AS(lsgp::DenseCholesky<double>{matrix}, const lsgp::Error&);
   }
 }
+
+TEST_CASE("a positive diagonal does not make a dense matrix positive definite") {
+  for (const int size : {2, 40, 130}) {
+    for (const int row : {1, size - 1}) {
+      CAPTURE(size);
+      CAPTURE(row);
+      Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(size, size);
+      matrix(row, row - 1) = matrix(row - 1, row) = 2;
+      CHECK_FALSE(lsgp::DenseCholesky<double>::factored(matrix).has_value());
+    }
+  }
+}

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Compiled once for every instruction set: LSGP_INSTRUCTIONS is the namespace of its code. Eigen is renamed likewise;
 // otherwise the linker might choose code compiled for another instruction set.
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <cstddef>
@@ -67,8 +68,21 @@ bool factor_narrow(Scalar* panel, int rows, int columns) {
 }
 
 template <typename Scalar>
-bool is_positive(const Block<Scalar>& square) {
-  return (square.diagonal().real().array() > 0).all();
+bool factor_square(Scalar* square, int size, std::ptrdiff_t stride) {
+  Block<Scalar> block(square, size, size, Eigen::OuterStride<>(stride));
+  for (int k = 0; k < size; ++k) {
+    const int below = size - k - 1;
+    const auto row = block.row(k).head(k);
+    auto column = block.col(k).tail(below);
+    double pivot = real_part(block(k, k));
+    if (k > 0) pivot -= row.squaredNorm();
+    if (!(pivot > 0)) return false;
+    const double root = std::sqrt(pivot);
+    block(k, k) = root;
+    if (k > 0 && below > 0) column.noalias() -= block.bottomLeftCorner(below, k) * row.adjoint();
+    column /= root;
+  }
+  return true;
 }
 
 template <typename Scalar>
@@ -76,23 +90,6 @@ void divide_rows(const Scalar* factor, int size, Scalar* block, int rows, std::p
   Block<Scalar> out(block, rows, size, Eigen::OuterStride<>(stride));
   const ConstBlock<Scalar> square(factor, size, size, Eigen::OuterStride<>(stride));
   square.template triangularView<Eigen::Lower>().adjoint().template solveInPlace<Eigen::OnTheRight>(out);
-}
-
-template <typename Scalar>
-bool factor_wide(Scalar* panel, int rows, int columns) {
-  Block<Scalar> square(panel, columns, columns, Eigen::OuterStride<>(rows));
-  // Called by Eigen::LLT, which also computes a norm.
-  Eigen::internal::llt_inplace<Scalar, Eigen::Lower>::blocked(square);
-  if (!is_positive(square)) return false;
-  divide_rows(panel, columns, panel + columns, rows - columns, rows);
-  return true;
-}
-
-template <typename Scalar>
-bool factor_square(Scalar* square, int size, std::ptrdiff_t stride) {
-  Block<Scalar> block(square, size, size, Eigen::OuterStride<>(stride));
-  Eigen::internal::llt_inplace<Scalar, Eigen::Lower>::unblocked(block);
-  return is_positive(block);
 }
 
 template <typename Scalar>
@@ -111,6 +108,23 @@ void subtract_square(const Scalar* left, int rows, int depth, std::ptrdiff_t str
   Block<Scalar> square(out, rows, rows, Eigen::OuterStride<>(out_stride));
   square.template selfadjointView<Eigen::Lower>().rankUpdate(
       ConstBlock<Scalar>(left, rows, depth, Eigen::OuterStride<>(stride)), Scalar(-1));
+}
+
+// Block by block; Eigen::LLT would also compute a norm.
+template <typename Scalar>
+bool factor_wide(Scalar* panel, int rows, int columns) {
+  constexpr int small = 32, least = 8, most = 128, step = 16;
+  const int width = columns < small ? columns : std::clamp(columns / 8 / step * step, least, most);
+  for (int k = 0; k < columns; k += width) {
+    const int size = std::min(width, columns - k), below = columns - k - size;
+    Scalar* square = panel + static_cast<std::ptrdiff_t>(k) * (rows + 1);
+    if (!factor_square(square, size, rows)) return false;
+    if (below == 0) break;
+    divide_rows(square, size, square + size, below, rows);
+    subtract_square(square + size, below, size, rows, square + static_cast<std::ptrdiff_t>(size) * (rows + 1), rows);
+  }
+  divide_rows(panel, columns, panel + columns, rows - columns, rows);
+  return true;
 }
 
 inline bool has_plain_update(int columns, int below) { return columns <= narrow_columns || below <= short_below; }
