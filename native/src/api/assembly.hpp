@@ -76,8 +76,8 @@ class Assembly {
   const Options& options_;
   ProgressMonitor& monitor_;
   Result& result_;
-  double surface_area_ = 0;   // of all components
-  Array<double> cone_angle_;  // by the caller's vertex, NaN where none was imposed
+  double surface_area_ = 0;                 // of all components
+  Array<double> cone_angle_;                // by the caller's vertex, NaN where none was imposed
   Array<Index> cut_edges_, required_cuts_;  // vertex pairs
   Defects defects_;
   AddedCuts added_cuts_;
