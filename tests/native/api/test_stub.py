@@ -42,13 +42,17 @@ def in_module() -> dict[str, Parameters]:
         if inspect.isclass(value):
             members = {member: method for member, method in vars(value).items() if _is_public_method(member, method)}
             found |= {f"{name}.{member}": _of_signature(method) for member, method in members.items()}
+            properties = [member for member, of in vars(value).items() if isinstance(of, property)]
+            found |= {f"{name}.{member}": [("self", None)] for member in properties}
         elif callable(value):
             found[name] = _of_signature(value)
     return found
 
 
 def _is_public_method(name: str, value: object) -> bool:
-    return callable(value) and (name == "__init__" or not name.startswith("_"))
+    if name == "__init__":  # without a constructor it is a slot of the base, which only raises
+        return not isinstance(value, type(object.__init__))
+    return callable(value) and not name.startswith("_")
 
 
 def _of_signature(function: object) -> Parameters:
