@@ -22,6 +22,10 @@ constexpr double least_lowered = 0.4, most_lowered = 0.9, lowered_when_invalid =
 // Additions, of one cone for so many, and what one may leave of the stretch above 1 to come before lower targets.
 constexpr int most_additions = 3, least_added = 2, added_share = 6;
 constexpr double worthwhile = 0.7;
+// More cones than the stages have, if nothing else helps: so many times as many each time, up to one for so many
+// vertices, as long as each time leaves no more than this of the stretch above 1.
+constexpr double more_cones = 1.25, still_worthwhile = 0.9;
+constexpr int vertices_a_cone = 4, most_enlargements = 6;
 constexpr double usual_l2 = 1.05;   // of a map that is not worth more than the stages
 constexpr double much_fewer = 0.8;  // cones, that prices are not worth
 constexpr double price_weights[] = {10, 1};
@@ -118,7 +122,26 @@ VerifiedChoice VerifiedPlacement::place_to_target() {
   add_where_stretched(best, 1);
   if (best.map.l2 <= target) return best;
   if (std::optional<VerifiedChoice> natural = placed_naturally(Corners::any)) return std::move(*natural);
+  take_many(best);
   return best;
+}
+
+// Beyond the stages, where the map misses the target with all of them.
+void VerifiedPlacement::take_many(VerifiedChoice& best) {
+  if (chooser_.options().lattice || !best.cones.is_possible()) return;
+  const int most = chooser_.task().mesh.vertex_count() / vertices_a_cone;
+  const int present = static_cast<int>(best.cones.vertices.size());
+  if (present > 2 * *std::rbegin(cone_stages)) return;
+  double count = std::max(present, *std::rbegin(cone_stages));
+  for (int i = 0; i < most_enlargements && count * more_cones <= most; ++i) {
+    count *= more_cones;
+    VerifiedChoice found = verified(chooser_.choose(static_cast<int>(count)));
+    if (!is_better(found.map, best.map)) return;
+    const bool goes_on = !best.map.is_valid() || found.map.l2 - 1 < still_worthwhile * (best.map.l2 - 1);
+    best = std::move(found);
+    if (best.map.l2 <= chooser_.options().target || !goes_on) return;
+    monitor_.tick();
+  }
 }
 
 // The requested number of cones, or as many as the target takes.  automatic: receives the growth that led to these.

@@ -22,8 +22,8 @@ struct VerifiedChoice {
 //
 // Without a number of cones the target applies to the map: if it is missed, corners of a polyhedron become cones, cones
 // are added where the map is stretched, or chosen for a lower target, continuing the previous choice, with as few as
-// suffice. A given number of cones is kept, but other choices are tried if the map is worse than predicted. If all of
-// these miss, the angles of least distortion are tried.
+// suffice; if that misses, too, more cones than the stages have. A given number of cones is kept, but other choices are
+// tried if the map is worse than predicted. If all of these miss, the angles of least distortion are tried.
 //
 // At most some ten maps are computed, most of them with local repairs only; one or two if the prediction is hopeless or
 // there are more cones, existing or requested, than are chosen one by one.
@@ -47,6 +47,7 @@ class VerifiedPlacement {
   void add_where_stretched(VerifiedChoice& best, double share);
   void lower_target(AutomaticCones& automatic, VerifiedChoice& best);
   void take_fewer(const AutomaticCones& automatic, double missed, double reached, VerifiedChoice& best);
+  void take_many(VerifiedChoice& best);
   bool is_small() const;
   bool has_many() const;  // cones there or asked for
   bool is_worth_trying(const ConeChoice& cones) const;

@@ -146,7 +146,7 @@ def test_a_number_of_cones_stays_and_its_map_is_measured(name: str, count: int) 
 
 
 @pytest.mark.parametrize(
-    "name", ["beam", "pyramid", "pipe", "joint", "spool", "anchor", "couplingdown", "pinion", "femur"]
+    "name", ["beam", "pyramid", "pipe", "joint", "spool", "anchor", "couplingdown", "pinion", "femur", "oblong"]
 )
 def test_meshes_whose_maps_were_stretched_more_than_predicted(name: str) -> None:
     mesh = hard_mesh(name)
