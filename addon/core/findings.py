@@ -44,6 +44,7 @@ INFORMATION = frozenset(
         "DUPLICATE_FACE",
         "FLAT_CONES",
         "GRID_REFINED",
+        "ISLANDS_STACKED",
         "ISOLATED_VERTICES",
         "JUNCTION_SHARE",
         "NON_MANIFOLD_EDGE",

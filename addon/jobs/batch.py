@@ -160,7 +160,7 @@ def _layouts(
             turned=not direction_choice(args).is_any,
             udim=1 if packing is None or packing.udim is None else packing.udim,
         )
-        layouts = final_layouts(solved, pack)
+        layouts = final_layouts(solved, replace(pack, stack=args.stack))
     texels = unwrap_options.texel_layout(args)
     if texels is None:
         return layouts, []

@@ -18,6 +18,7 @@ from ..mesh.uv_write import write_uv
 from . import cells, packing
 from .areas import size_on_the_surface, total_area
 from .densities import packed_at_density
+from .stacking import packed_in_stacks
 from .texels import map_density
 from .unwrapping import Unwrapped
 
@@ -36,7 +37,8 @@ class PackSettings:
     """How islands are placed: packed, those of all objects together, or not; by whole cells or not.
 
     margin_method, margin, turned, udim: as of `packing.pack`; udim not by cells. texels: the layout at a texel density,
-    with its own margin and tiles, per `unit` of length in Blender's own; None: the square is filled.
+    with its own margin and tiles, per `unit` of length in Blender's own; None: the square is filled. stack: whether
+    islands of one shape lie on each other, as of `lsgp.auto_unwrap`; not at a texel density and not by cells.
     """
 
     pack: bool
@@ -47,6 +49,7 @@ class PackSettings:
     udim: int = 1
     texels: lsgp.TexelLayout | None = None
     unit: float = 1.0
+    stack: str | None = None
 
 
 def packing_of_preset(preset: str, margin: float, *, by_cells: bool, turned: bool, udim: int = 1) -> PackSettings:
@@ -59,16 +62,30 @@ def packing_of_preset(preset: str, margin: float, *, by_cells: bool, turned: boo
 def final_layouts(solved: Sequence[Unwrapped], settings: PackSettings) -> list[NDArray[np.float64]]:
     """The coordinates of each map as they are to be written, (m, 3, 2) arrays.  Raises Refused; InputError at a texel
     density that the tiles do not hold."""
+    return stacked_layouts(solved, settings)[0]
+
+
+def stacked_layouts(solved: Sequence[Unwrapped], settings: PackSettings) -> tuple[list[NDArray[np.float64]], int]:
+    """As above, and how many islands lie on others."""
     if not settings.pack or not solved:
-        return [unwrapped.corner_uv for unwrapped in solved]
+        return [unwrapped.corner_uv for unwrapped in solved], 0
     if settings.by_cells:
-        return cells.pack(solved)
+        return cells.pack(solved), 0
     parts = _with_one_density(solved)
     if settings.texels is not None:
         alike = _whole(solved, [part.corner_uv for part in parts])
-        return packed_at_density(solved, alike, settings.texels, turned=settings.turned, unit=settings.unit)
-    packed = packing.pack(parts, settings.margin_method, settings.margin, turned=settings.turned, udim=settings.udim)
-    return _whole(solved, packed)
+        return packed_at_density(solved, alike, settings.texels, turned=settings.turned, unit=settings.unit), 0
+    packed, stacked = _packed(parts, settings)
+    return _whole(solved, packed), stacked
+
+
+def _packed(parts: Sequence[Islands], settings: PackSettings) -> tuple[list[NDArray[np.float64]], int]:
+    def pack(kept: Sequence[Islands]) -> list[NDArray[np.float64]]:
+        return packing.pack(kept, settings.margin_method, settings.margin, turned=settings.turned, udim=settings.udim)
+
+    if settings.stack is None:
+        return pack(parts), 0
+    return packed_in_stacks(parts, pack, mirrored=settings.stack == "mirrored")
 
 
 def _whole(solved: Sequence[Unwrapped], of_islands: Sequence[NDArray[np.float64]]) -> list[NDArray[np.float64]]:

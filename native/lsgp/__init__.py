@@ -77,6 +77,7 @@ from .ledger import LedgerPart, build_ledger, hold_complete, part_surface
 from .mip_levels import pad_mip_levels
 from .packing import pack_islands, packer_name
 from .quads import QuadMesh, QuadQuality, QuadRemesh, extract_quads, quad_quality, remesh_to_quads
+from .stacking import Stacks, find_stacks
 from .texels import TexelDensity, TexelLayout, at_texel_density, texel_density, triangle_texel_density
 from .triangles import TriangleDistortion, singular_values, triangle_distortion
 
@@ -112,6 +113,7 @@ __all__ = [
     "SeamlessReport",
     "Solver",
     "SolverError",
+    "Stacks",
     "Surface",
     "TexelDensity",
     "TexelLayout",
@@ -128,6 +130,7 @@ __all__ = [
     "cut_costs",
     "extract_quads",
     "find_cuts",
+    "find_stacks",
     "fit_placement",
     "hold_complete",
     "index_uv",

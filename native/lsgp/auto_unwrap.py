@@ -27,7 +27,7 @@ from .arguments import FloatArray, IndexArray
 from .errors import Cancelled, Finding, InputError, LsgpError
 from .ledger import LedgerPart, build_ledger, surface_of_triangles
 from .map_comparison import may_replace_map
-from .packing import Pack, Packing, laid_out
+from .packing import Pack, Packing, Stack, laid_out
 from .texels import TexelLayout, at_texel_density
 
 Preset = Literal["paint", "tile", "bake"]
@@ -83,6 +83,7 @@ def auto_unwrap(
     pack: Pack | None = None,
     margin: float | None = None,
     udim: int | None = None,
+    stack: Stack | None = None,
     texels: TexelLayout | None = None,
     progress: Progress | None = None,
 ) -> Result:
@@ -101,6 +102,8 @@ def auto_unwrap(
     margin: with "tight", around each island, as a fraction of the square's side; None: 4 / 1024, before the layout gets
         a texel density. udim: most UDIM tiles that a tight layout is spread over, as for `pack_islands`, and its
         `Options.square_share`; not with texels, which have their own.
+    stack: in tight layouts, islands of one shape lie on each other, as by `find_stacks`: "same", or "mirrored", which
+        includes reflected ones. `ISLANDS_STACKED` among the warnings says how many; they do not count as overlaps.
     texels: a layout at a texel density, as by `at_texel_density`; None: it fills the unit square. Not with pins.
     pins, progress, errors and the result as for `parameterize`; `Result.cones` includes the placed cones, its warnings
         those of the placement.
@@ -116,7 +119,7 @@ def auto_unwrap(
         arguments.require_type("texels", texels, TexelLayout)
         if pins is not None:
             raise InputError("WRONG_PARAMETER", "pins and texels both say how large islands are; pass one of them.")
-    packing = Packing(pack, margin, udim)
+    packing = Packing(pack, margin, udim, stack)
     if udim is not None:
         chosen = replace(chosen, square_share=float(udim))
     packs = _may_pack(packing, chosen, pins, texels)
@@ -125,7 +128,7 @@ def auto_unwrap(
     choices = possible_cones(surface, cones, angles, chosen, count, is_free, placing)
     _, result = best_map(surface, choices, chosen, pins, mapping)
     if packs:
-        return laid_out(surface, result, packing, texels, part_of(progress, PACKING, 1.0))[0]
+        return laid_out(surface, result, packing, texels, part_of(progress, PACKING, 1.0)).result
     return result if texels is None else at_texel_density(surface, result, texels)
 
 
@@ -141,6 +144,8 @@ def _may_pack(packing: Packing, options: Options, pins: Pins | None, texels: Tex
             arguments.refuse("pack", packing.pack, f"leave it out, since this layout is {why}")
         if is_so and packing.udim is not None:
             arguments.refuse("udim", packing.udim, f"leave it out, since this layout is {why}")
+        if is_so and packing.stack is not None:
+            arguments.refuse("stack", packing.stack, f"leave it out, since this layout is {why}")
     if texels is not None and packing.udim is not None:
         arguments.refuse("udim", packing.udim, "leave it out and pass that of texels, whose density says the size")
     return packing.is_tight and not any(fixed.values())

@@ -6,26 +6,37 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from importlib.metadata import version
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from . import arguments
 from .api import Progress, Result, Surface
 from .arguments import FloatArray
 from .chart_packer import Square, find_xatlas
-from .errors import InputError
+from .errors import Elements, Finding, InputError
 from .layout_search import best_layout, islands_of
+from .stacking import find_stacks
 from .texels import MOST_TILES, TexelLayout, at_texel_density, outside_findings
 from .udim_packing import spread_over_tiles
 
 Pack = Literal["tight", "shelves"]
+Stack = Literal["same", "mirrored"]
 SHELVES = "shelves"
 
 INSTALL = "pip install 'lsgp[pack]'"
 DEFAULT_MARGIN = 4 / 1024
 """Around each island, of the square's side."""
+
+
+@dataclass(frozen=True, slots=True)
+class LaidOut:
+    """A result with its islands laid out, who packed them, and (m,) bool, the triangles that lie on those of others."""
+
+    result: Result
+    packer: str
+    stacked: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,12 +46,14 @@ class Packing:
     pack: "tight": as by `pack_islands`; "shelves": side by side, as they come from `parameterize`; None: tight if that
         is installed and the margins leave room, otherwise on shelves. margin: of tight layouts, of the square's side;
         None: `DEFAULT_MARGIN` before the layout gets a texel density, which scales it too. udim: over how many UDIM
-        tiles a tight layout is spread, as by `pack_islands`.
+        tiles a tight layout is spread, as by `pack_islands`. stack: islands of one shape lie on each other, as by
+        `find_stacks`; "mirrored": reflected ones as well; None: none do.
     """
 
     pack: Pack | None = None
     margin: float | None = None
     udim: int | None = None
+    stack: Stack | None = None
 
     def __post_init__(self) -> None:
         """Raises InputError: WRONG_PARAMETER, PACKER_NOT_INSTALLED."""
@@ -54,7 +67,11 @@ class Packing:
             _tile_count(self.udim)
             if self.pack == SHELVES:
                 arguments.refuse("udim", self.udim, 'pass it with pack="tight", or leave it out')
-        if self.pack == "tight" or self.udim is not None:
+        if self.stack is not None:
+            arguments.require_choice("stack", self.stack, get_args(Stack))
+            if self.pack == SHELVES:
+                arguments.refuse("stack", self.stack, 'pass it with pack="tight", or leave it out')
+        if self.pack == "tight" or self.udim is not None or self.stack is not None:
             require_packer()
 
     @property
@@ -148,28 +165,49 @@ def _square(margin: float, fill: bool) -> Square:
 
 def laid_out(
     surface: Surface, result: Result, packing: Packing, texels: TexelLayout | None, progress: Progress | None = None
-) -> tuple[Result, str]:
-    """The result with its islands packed and at a texel density, as they are wanted, and who packed them.
+) -> LaidOut:
+    """The result with its islands packed and at a texel density, as they are wanted.
 
     result: of a map that is neither pinned nor seamless. Islands are not turned where a direction was asked for.
     texels: without UDIM tiles.  Raises InputError, Cancelled.
     """
+    none = np.zeros(len(result.island), bool)
     if not packing.is_tight:
-        return (result if texels is None else at_texel_density(surface, result, texels)), SHELVES
+        return LaidOut(result if texels is None else at_texel_density(surface, result, texels), SHELVES, none)
     name, turned = packer_name(), result.direction_error is None
     if texels is not None and packing.margin is not None:
         # What is asked for is to be left at this density.
         scaled = at_texel_density(surface, result, texels)
-        uv = pack_islands(scaled.corner_uv, result.island, packing.margin, fill=False, turned=turned, progress=progress)
-        return replace(scaled, corner_uv=uv, warnings=[*result.warnings, *outside_findings(uv, result.island)]), name
+        packed, stacked = _packed(scaled, packing.stack, packing.margin, fill=False, turned=turned, progress=progress)
+        outside = outside_findings(packed.corner_uv, result.island)
+        said = [finding for finding in packed.warnings if finding.code == "ISLANDS_STACKED"]
+        return LaidOut(replace(packed, warnings=[*result.warnings, *said, *outside]), name, stacked)
     margin = DEFAULT_MARGIN if packing.margin is None else packing.margin
     try:
-        uv = pack_islands(result.corner_uv, result.island, margin, turned=turned, udim=packing.udim, progress=progress)
+        packed, stacked = _packed(result, packing.stack, margin, turned=turned, udim=packing.udim, progress=progress)
     except InputError:
-        if packing.pack == "tight" or packing.udim is not None:
+        if packing.pack == "tight" or packing.udim is not None or packing.stack is not None:
             raise
-        name, uv = SHELVES, result.corner_uv
+        name, packed, stacked = SHELVES, result, none
         if progress is not None:
             progress(1.0)
-    packed = replace(result, corner_uv=uv)
-    return (packed if texels is None else at_texel_density(surface, packed, texels)), name
+    return LaidOut(packed if texels is None else at_texel_density(surface, packed, texels), name, stacked)
+
+
+def _packed(result: Result, stack: Stack | None, margin: float, **how: Any) -> tuple[Result, NDArray[np.bool_]]:
+    """The result packed, and the triangles, (m,) bool, that lie on others.  how: as for `pack_islands`."""
+    uv, island = result.corner_uv, result.island
+    if stack is None:
+        packed = pack_islands(uv, island, margin, **how)
+        return replace(result, corner_uv=packed), np.zeros(len(island), bool)
+    stacks = find_stacks(uv, island, mirrored=stack == "mirrored")
+    packed = stacks.stacked(pack_islands(uv, np.where(stacks.kept, island, -1).astype(np.int32), margin, **how))
+    warnings = list(result.warnings)
+    if stacks.count:
+        message = (
+            f"{stacks.count} of {int(island.max()) + 1} islands lie on others of their shape and share their texels."
+        )
+        warnings.append(
+            Finding("ISLANDS_STACKED", message, Elements("triangles", np.flatnonzero(~stacks.kept).astype(np.int32)))
+        )
+    return replace(result, corner_uv=packed, warnings=warnings), ~stacks.kept

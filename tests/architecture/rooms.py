@@ -173,6 +173,7 @@ API = (
     "packing",
     "quads",
     "short_repr",
+    "stacking",
     "texel_raster",
     "texels",
     "triangles",

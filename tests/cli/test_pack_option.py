@@ -169,6 +169,27 @@ def test_seamless_and_udim_layouts_are_left_alone(lsgp, parts: Path) -> None:
         assert done.code == 2 and told in done.err, options
 
 
+def test_stacks_lie_on_each_other_and_are_told(lsgp, parts: Path, packer) -> None:
+    kite = np.array([[0, 0, 0], [2, 0, 0], [1.5, 1, 0], [0.25, 2, 0]])
+    polygons = [kite, kite + np.array([8, 0, 0]), (kite * np.array([-1, 1, 1]))[[0, 3, 2, 1]] - np.array([8, 0, 0])]
+    faces = [list(range(4 * i, 4 * i + 4)) for i in range(3)]
+    (parts / "parts.obj").write_text(obj_text(np.concatenate(polygons), faces))
+    for stack, count in (("same", 1), ("mirrored", 2)):
+        report = lsgp(*BAKE, "--stack", stack).report()
+        (told,) = (warning for warning in report["warnings"] if warning["code"] == "ISLANDS_STACKED")
+        assert told["message"].startswith(f"{count} of 3 islands") and told["elements"]["indices"] == [1, 2][:count]
+        assert report["overlap_area"] == 0
+        _, uv, _ = layout(parts / "out.obj")
+        corners = {tuple(map(tuple, np.unique(uv[i : i + 2].reshape(-1, 2), axis=0))) for i in (0, 2, 4)}
+        assert len(corners) == 3 - count
+        # A stack is counted once.
+        area = abs(np.linalg.det(uv[:2, 1:] - uv[:2, :1])).sum() / 2
+        assert report["packing"]["coverage"] == pytest.approx((3 - count) * area, rel=1e-4)
+    for options in (("--pack", "shelves"), ("--overlaps", "split"), ("--preset", "tile")):
+        refused = lsgp(*UNWRAP, *options, "--stack", "same")
+        assert refused.code == 2 and "--stack is for" in refused.err
+
+
 def test_a_margin_as_wide_as_the_texture_is_wrong_usage(lsgp, parts: Path, packer) -> None:
     done = lsgp(*BAKE, "--pack", "tight", "--margin", 32, "--texture-size", 64)
     assert done.code == 2 and "no room" in done.err

@@ -59,7 +59,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         {
             **{"surface": WHOLE, "cones": BALL.cones, "angles": None, "preset": "paint", "options": None},
             **{"count": 4, "symmetric": True, "creases": True, "sharp": EDGES[:3], "pins": None},
-            **{"pack": "shelves", "margin": None, "udim": None},
+            **{"pack": "shelves", "margin": None, "udim": None, "stack": None},
             **{"texels": lsgp.TexelLayout(100.0, 1024), "progress": None},
         },
     ),
@@ -124,6 +124,10 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             **{"corner_uv": FREE_RESULT.corner_uv, "island": FREE_RESULT.island, "margin": 0.01, "fill": True},
             **{"turned": True, "udim": 1, "progress": None},
         },
+    ),
+    "find_stacks": (
+        lsgp.find_stacks,
+        {"corner_uv": FREE_RESULT.corner_uv, "island": FREE_RESULT.island, "mirrored": True},
     ),
     "packer_name": (lsgp.packer_name, {}),
     "pad_image": (

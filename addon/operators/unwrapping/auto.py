@@ -14,8 +14,9 @@ from ...core.choices import PRESETS, Choices, FirstPressProperties, enum_items
 from ...core.length_units import length_unit
 from ...core.preferences import chosen_threads, preferences
 from ...core.region import Region
+from ...core.text import counted
 from ...jobs.directions import DirectionChoice
-from ...jobs.maps import PackSettings, final_layouts, packing_of_preset, write_map
+from ...jobs.maps import PackSettings, packing_of_preset, stacked_layouts, write_map
 from ...jobs.placing import mark_placed
 from ...jobs.remembered import unwrap_all_once
 from ...jobs.summaries import unwrap_summary
@@ -37,6 +38,12 @@ if TYPE_CHECKING:
 SCALES: Choices = {
     "FILL": (None, "Fill Square", "Islands get as large as they can"),
     "DENSITY": (None, "Texel Density", "Islands get so many texels along a unit of length in the world"),
+}
+
+STACKS: Choices = {
+    "NONE": (None, "None", "Every island has texels of its own"),
+    "SAME": ("same", "Same", "Islands of one shape lie on each other and share their texels"),
+    "MIRRORED": ("mirrored", "Same or Mirrored", "Islands lie also on mirrored ones, as of the two halves of a body"),
 }
 
 # Values that were last taken from the preferences, by property.
@@ -76,6 +83,12 @@ class UV_OT_cone_auto_unwrap(
         soft_max=10,
     )
     scale: bpy.props.EnumProperty(name="Scale", description="How large islands are", items=enum_items(SCALES))
+    stack: bpy.props.EnumProperty(
+        name="Stack",
+        description="Which islands lie on each other, so that all get larger; what is painted or baked on one appears "
+        "on all. They do not count as overlapping. Not at a texel density",
+        items=enum_items(STACKS),
+    )
     use_subsurf_data: bpy.props.BoolProperty(
         name="Use Subdivision Surface",
         description="Map UVs taking vertex position after Subdivision Surface modifier has been applied",
@@ -141,6 +154,8 @@ class UV_OT_cone_auto_unwrap(
             if self.scale == "DENSITY":
                 self.draw_density(layout, context)
             layout.prop(self, "udim")
+            if self.scale == "FILL":
+                layout.prop(self, "stack")
         layout.prop(self, "direction")
         body = section(layout, "cone_auto_unwrap_cuts", "Cuts and Cones")
         if body is not None:
@@ -185,20 +200,25 @@ class UV_OT_cone_auto_unwrap(
         return unwrap_all_once(tasks, progress)
 
     def write(self, solved: Solved) -> list[str]:
-        layouts = final_layouts([unwrapped for _, _, unwrapped in solved], self._packing())
+        layouts, stacked = stacked_layouts([unwrapped for _, _, unwrapped in solved], self._packing())
         for (obj, task, unwrapped), corner_uv in zip(solved, layouts, strict=True):
             write_map(obj, unwrapped, corner_uv)
             if self.mark:
                 mark_placed(obj, self.vertex_group, task.cones, unwrapped.result)
-        return [unwrap_summary(unwrapped) for _, _, unwrapped in solved]
+        summaries = [unwrap_summary(unwrapped) for _, _, unwrapped in solved]
+        if stacked:
+            summaries[-1] += f"; {counted(stacked, 'island')} stacked on others"
+        return summaries
 
     def _packing(self) -> PackSettings:
         size = int(self.texture_size)
         by_cells, turned = self.preset == "TILE", not self._direction().is_any
         preset = PRESETS[self.preset][0]
         pack = packing_of_preset(preset, self.margin / size, by_cells=by_cells, turned=turned, udim=self.udim)
-        if self.scale == "FILL" or by_cells:
+        if by_cells:
             return pack
+        if self.scale == "FILL":
+            return replace(pack, stack=STACKS[self.stack][0])
         layout = native.lsgp.TexelLayout(self.density, size, self.udim, self.margin)
         return replace(pack, texels=layout, unit=length_unit(bpy.context.scene).size)
 

@@ -98,9 +98,10 @@ def unwrap_file(
     file, result = _map(args, options, run, mapping, given_format)
     if packing is not None:
         with run.stage("pack"):
-            result, packer = laid_out(run.surface, result, packing, layout, part_of(progress, PACKING, 1.0))
-        tiles = 1 if packing.udim is None else _tiles_in_use(result.corner_uv[result.solved])
-        run.packed = Packed(packer, uv_area(result.corner_uv[result.solved]) / tiles, tiles)
+            laid = laid_out(run.surface, result, packing, layout, part_of(progress, PACKING, 1.0))
+        result, seen = laid.result, laid.result.solved & ~laid.stacked
+        tiles = 1 if packing.udim is None else _tiles_in_use(result.corner_uv[seen])
+        run.packed = Packed(laid.packer, uv_area(result.corner_uv[seen]) / tiles, tiles)
     elif layout is not None:
         result = at_texel_density(run.surface, result, layout)
     if args.texel_density is not None:

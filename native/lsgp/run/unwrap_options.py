@@ -19,7 +19,7 @@ from ..arguments import FloatArray
 from ..auto_unwrap import Preset, preset_options
 from ..errors import InputError
 from ..io.side_files import CutCostFile, UsageError, load_cut_costs
-from ..packing import SHELVES, Pack, Packing
+from ..packing import SHELVES, Pack, Packing, Stack
 from ..texels import DEFAULT_MARGIN, MOST_TILES, TexelLayout
 
 DEFAULT_TEXTURE_SIZE = 1024
@@ -385,6 +385,12 @@ def _add_pack_option(unwrap: argparse.ArgumentParser) -> None:
         help="pack islands tightly, which requires pip install 'lsgp[pack]', or in rows (shelves) (default: tight with "
         "--preset paint and bake if that is installed, otherwise shelves)",
     )
+    unwrap.add_argument(
+        "--stack",
+        choices=get_args(Stack),
+        help="in tight layouts, lay islands of one shape on each other, so that they share their texels: same ones, or "
+        "mirrored ones as well (default: none)",
+    )
 
 
 def texture_size_option(text: str) -> int:
@@ -480,11 +486,15 @@ def packing_of(args: argparse.Namespace) -> Packing | None:
     Raises UsageError where options do not fit; InputError where the packer is not installed.
     """
     if _is_seamless(args):
-        for name in ("pack", "udim"):
+        for name in ("pack", "udim", "stack"):
             if getattr(args, name) is not None:
                 raise UsageError(f"--{name} is for layouts that are not seamless; leave it out")
         return None
+    if args.stack is not None and args.pack != "tight" and (args.pack or not (args.preset or args.udim)):
+        raise UsageError("--stack is for tight layouts; add --pack tight")
     if args.udim is not None and args.texel_density is not None:
+        if args.stack is not None:
+            raise UsageError("--stack is for islands that are not in rows; leave it out, or --texel-density or --udim")
         if args.pack is not None:
             raise UsageError("--pack is for islands that are not in rows; leave it out, or --texel-density or --udim")
         return None
@@ -499,7 +509,7 @@ def packing_of(args: argparse.Namespace) -> Packing | None:
         raise UsageError(
             f"--margin {margin * texture_size(args):g}: a texture of {texture_size(args)} texels has no room"
         )
-    return Packing(args.pack, margin, args.udim)
+    return Packing(args.pack, margin, args.udim, args.stack)
 
 
 def library_options(args: argparse.Namespace) -> Options:

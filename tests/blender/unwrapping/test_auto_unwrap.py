@@ -218,6 +218,65 @@ def test_tiles_are_as_many_as_asked_for(reports):
     assert "12 tiles across" in reports()
 
 
+@pytest.mark.parametrize(("stack", "islands"), [("NONE", 3), ("SAME", 2), ("MIRRORED", 1)])
+def test_islands_of_one_shape_lie_on_each_other(stack, islands, reports):
+    places = np.array([[0, 0, 0], [2, 0, 0], [1.5, 1, 0], [0.2, 2, 0]])
+    objects = [
+        add_flat("A", places),
+        add_flat("B", places + np.array([9, 0, 0])),
+        add_flat("C", places[[0, 3, 2, 1]] * np.array([-1, 1, 1])),
+    ]
+    for obj in objects:
+        obj.select_set(True)
+    reports()
+    unwrap(preset="BAKE", stack=stack)
+    told = reports()
+    corners = {tuple(sorted(map(tuple, UvMap(obj).uv.round(5).tolist()))) for obj in objects}
+    assert len(corners) == islands
+    assert (f"{3 - islands} islands stacked" if islands == 1 else "1 island stacked") in told or islands == 3
+    assert all(UvMap(obj).overlapping() == set() for obj in objects)
+
+
+def add_flat(name, places):
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(places.tolist(), [], [list(range(len(places)))])
+    obj = bpy.data.objects.new(name, mesh)
+    bpy.context.scene.collection.objects.link(obj)
+    bpy.context.view_layer.objects.active = obj
+    return obj
+
+
+def test_automatic_tiles_have_one_size_in_the_world():
+    small, large = add_sphere("Small"), add_ball("Large")
+    large.scale = 3, 3, 3
+    bpy.context.view_layer.update()
+    density = {}
+    for chosen in ([small], [large], [small, large]):
+        bpy.ops.object.select_all(action="DESELECT")
+        for obj in chosen:
+            obj.select_set(True)
+        bpy.context.view_layer.objects.active = chosen[0]
+        unwrap(preset="TILE")
+        assert all(UvMap(obj).tile_error() == 0 for obj in chosen)
+        for obj in chosen:
+            density.setdefault(obj, []).append(tiles_along_a_unit(obj))
+    alone = [of_object[0] for of_object in density.values()]
+    assert max(alone) > 1.3 * min(alone)
+    # Rounding to whole tiles changes the sizes by little.
+    together = [of_object[1] for of_object in density.values()]
+    assert together == pytest.approx([max(alone)] * 2, rel=0.1)
+
+
+def tiles_along_a_unit(obj):
+    uv_map, world = UvMap(obj), np.array(obj.matrix_world)[:3, :3]
+    loops = uv_map.triangles
+    u, v = (uv_map.uv[loops][:, k] - uv_map.uv[loops][:, 0] for k in (1, 2))
+    places = uv_map.positions[uv_map.vertex[loops]] @ world.T
+    sides = [places[:, k] - places[:, 0] for k in (1, 2)]
+    area = np.linalg.norm(np.cross(*sides), axis=1).sum()
+    return np.sqrt(np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]).sum() / area)
+
+
 def test_a_seam_is_an_open_border_where_that_is_asked_for():
     cube = add_cube()
     for edge in cube.data.edges:
