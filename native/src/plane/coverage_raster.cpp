@@ -39,7 +39,7 @@ void CoverageRaster::add(Complex tail, Complex head) {
     // It covers the cells left of it.
     Index* const change = &cells_left_[row * (columns_ + 1)];
     change[0] += direction;
-    change[static_cast<Index>(cells + 0.5)] -= direction;
+    change[static_cast<Index>(std::lround(cells))] -= direction;
   });
 }
 
