@@ -23,8 +23,9 @@ class EditHistory(Generic[T]):
     @property
     def undoes(self) -> str | None:
         """The step that `undo` reverts."""
-        self._drop_idle()
-        return self._done[-1][0] if self._done else None
+        # One that has begun stays, though nothing may have changed yet.
+        now = self._take()
+        return next((name for name, state in reversed(self._done) if state != now), None)
 
     @property
     def redoes(self) -> str | None:

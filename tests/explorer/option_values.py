@@ -32,6 +32,7 @@ OPTIONS: Values = {
     "seamless": ["none", "asked for"],
     "mode": ["conformal", "low-stretch"],
     "stretch": [1.0, 0.5, 0.0],
+    "straighten": [False, True],
     "repair": [True, False],
     "overlaps": ["keep", "split"],
     "compact": ["off", "sparing", "full"],

@@ -21,7 +21,7 @@ namespace lsgp {
 struct DegreesOfFreedom {
   Reduction displacement;
   Array<Index> triangles;
-  Array<char> is_real;  // (unknowns) those with real values only; empty: none
+  Array<char> is_real{};  // (unknowns) those with real values only; empty: none
 };
 
 // The marked vertices, (n); translations are fixed.  motion: (copies) as from motion_of_copies.

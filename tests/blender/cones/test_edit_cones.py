@@ -510,6 +510,18 @@ def test_steps_that_change_nothing_are_none():
     session.restore()
 
 
+def test_a_step_stays_while_it_is_shown_before_anything_changes():
+    session = begin(add_ball())
+    history = history_of(session)
+    first = session.cones.vertices[0]
+    history.begin("Remove Cone")
+    assert history.undoes is None
+    session.cones.remove(first)
+    assert history.undoes == "Remove Cone" and history.undo()
+    assert first in session.cones
+    session.restore()
+
+
 def test_undone_steps_give_the_parts_they_touched_back():
     cube = joined(add_cone_cube("Cube"), add_cone_cube("Other"))
     bpy.ops.uv.cone_unwrap()

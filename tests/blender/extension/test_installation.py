@@ -52,6 +52,9 @@ class RecordingLayout:
     def menu(self, name):
         self.drawn.append((name, self.Entry(), ""))
 
+    def operator_menu_enum(self, name, _property):
+        self.menu(name)
+
     def separator(self):
         pass
 
@@ -112,6 +115,8 @@ def test_everything_is_in_the_submenu_and_auto_unwrap_comes_first():
         ("mesh.cone_edit", None),
         ("mesh.cone_place", None),
         ("VIEW3D_MT_cone_angles", None),
+        ("mesh.cone_edit_cuts", None),
+        ("mesh.cone_steer_cuts", None),
         ("mesh.cone_select_cuts", None),
         ("mesh.cone_seams_from_cuts", None),
         ("mesh.cone_select_reported", None),

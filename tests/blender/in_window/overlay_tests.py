@@ -172,7 +172,7 @@ def test_drawing_again_builds_nothing_again_and_an_unwrap_does():
     yield from pixels()
     entry = cache.entry(cube)
     batches = dict(entry.drawn)
-    assert "cuts" in batches
+    assert any("cuts" in key for key in batches)
     bpy.ops.view3d.view_orbit(angle=0.5, type="ORBITLEFT")
     yield from pixels()
     assert cache.entry(cube) is entry
