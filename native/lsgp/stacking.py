@@ -11,7 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import arguments
 from .arguments import FloatArray
+from .equality import EqualByContent
 from .layout_search import Islands, islands_of
+from .short_repr import ShortRepr
 
 Indices = NDArray[np.int64]
 
@@ -19,8 +21,8 @@ Indices = NDArray[np.int64]
 TOLERANCE = 1e-4
 
 
-@dataclass(frozen=True, slots=True)
-class Stacks:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Stacks(EqualByContent, ShortRepr):
     """Which islands may lie on which.
 
     source: (m, 3), the corner, 3 * triangle + place, whose coordinates each takes; in islands that stay, its own.

@@ -75,6 +75,8 @@ def examples() -> list[object]:
         lsgp.measure_distortion(whole, result.corner_uv),
         lsgp.remesh_to_quads(whole, BALL.cones, target=200).mesh,
         lsgp.triangle_distortion(whole, result.corner_uv),
+        lsgp.find_stacks(result.corner_uv, result.island),
+        lsgp.MovedCut(np.array([0, 1], np.int32), np.array([2], np.int32), np.zeros((1, 3, 2))),
         part,
         lsgp.Elements("triangles", np.array([3, 4], np.int32)),
         lsgp.Finding("CODE", "message", lsgp.Elements("triangles", np.array([3, 4], np.int32))),
@@ -114,7 +116,7 @@ def test_what_holds_arrays_has_no_hash(value: object) -> None:
 def test_every_public_dataclass_is_among_them_or_holds_no_array() -> None:
     kinds = {kind for kind in vars(lsgp).values() if isinstance(kind, type) and is_dataclass(kind)}
     without = kinds - {type(value) for value in EXAMPLES}
-    numbers = {lsgp.Options, lsgp.Seamless, lsgp.Distortion, lsgp.SeamQuality, lsgp.RepairReport}
+    numbers = {lsgp.Options, lsgp.Seamless, lsgp.Distortion, lsgp.SeamQuality, lsgp.RepairReport, lsgp.Transition}
     texels = {lsgp.TexelDensity, lsgp.TexelLayout}
     quads = {lsgp.QuadQuality, lsgp.QuadRemesh}  # the latter has a mesh and a layout, which are compared
     assert without == numbers | texels | quads | {lsgp.MeshFile}

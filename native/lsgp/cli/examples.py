@@ -34,7 +34,6 @@ EXAMPLES = {
     "pad": (
         "lsgp pad baked.png --uv unwrapped.obj --margin 16 -o padded.png",
         "lsgp pad normals.png --uv unwrapped.obj --margin 16 --normal-map -o out.png",
-        "lsgp pad baked.tiff --uv unwrapped.glb --margin 32 -o padded.tiff",
         "lsgp pad baked.png --uv unwrapped.obj --margin 8 --mips 5 -o padded.png",
     ),
 }
