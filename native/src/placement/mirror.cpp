@@ -259,7 +259,7 @@ Array<Index> find_mirror_images(const HalfedgeMesh& mesh, const Geometry& geomet
                                 const std::optional<MirrorPlane>& plane) {
   const MirroredSurface surface(mesh, geometry);
   Array<MirrorPlane> planes = plane ? Array<MirrorPlane>{with_unit_normal(*plane)} : surface.likely_planes();
-  const Array<Index> exact = surface.exact_images(planes);
+  Array<Index> exact = surface.exact_images(planes);
   if (MirroredSurface::moves(exact) && !exact.empty()) return exact;
   if (!plane) {
     for (MirrorPlane& likely : planes) likely = surface.fitted(likely);

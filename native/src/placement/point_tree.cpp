@@ -10,7 +10,7 @@
 namespace lsgp {
 
 PointTree::PointTree(const Positions& points)
-    : points_(points), order_(points.rows()), axis_(points.rows(), static_cast<char>(0)) {
+    : points_(points), order_(points.rows()), axis_(points.rows(), static_cast<unsigned char>(0)) {
   std::iota(order_.begin(), order_.end(), 0);
   build(0, static_cast<Index>(order_.size()));
 }
@@ -34,7 +34,7 @@ void PointTree::build(Index begin, Index end) {
     return std::pair(points_(a, axis), a) < std::pair(points_(b, axis), b);
   };
   std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, by_axis);
-  axis_[middle] = static_cast<char>(axis);
+  axis_[middle] = static_cast<unsigned char>(axis);
   build(begin, middle);
   build(middle + 1, end);
 }

@@ -33,7 +33,7 @@ class PointTree {
 
   const Positions& points_;
   Array<Index> order_;
-  Array<char> axis_;  // by the middle of a range
+  Array<unsigned char> axis_;  // by the middle of a range
 };
 
 }  // namespace lsgp
