@@ -23,3 +23,8 @@ class Islands:
     island: NDArray[np.int32]
     pinned: NDArray[np.bool_]
     aspect: float
+
+    @property
+    def stays(self) -> NDArray[np.bool_]:
+        """(m,), the triangles of islands with a pinned corner."""
+        return np.isin(self.island, self.island[self.pinned.any(axis=1)])

@@ -9,7 +9,6 @@ or got in the first step.
 from __future__ import annotations
 
 import math
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -19,17 +18,17 @@ from numpy.typing import NDArray
 
 from ..core import native
 from ..core.errors import object_errors
-from ..mesh import changes, reports
+from ..mesh import reports
 from ..mesh.angles import require_attributes
 from ..mesh.reader import readable_mesh
 from ..mesh.region_read import Faces, Groups, build_region, require_editable
 from ..mesh.stored_mesh import FrozenMesh
 from ..mesh.subdivided import places_on_subdivision
-from ..mesh.uv_write import EditedUv
 from .angle_table import FollowedTable
 from .cuts import with_cut_costs
 from .edited_cones import EditedCones
 from .edited_layout import Layout, Placement
+from .map_session import MapSession
 from .maps import report_on
 from .texels import map_density
 from .unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap, unwrap_task
@@ -67,20 +66,19 @@ class _Scope:
     solver: lsgp.Solver
 
 
-class ConeSession:
-    """cones: the cones as they are edited. mesh: reads positions, faces and the current UVs."""
+class ConeSession(MapSession):
+    """cones: the cones as they are edited."""
 
     def __init__(self, obj: bpy.types.Object, settings: UnwrapSettings) -> None:
         """Raises Refused, LsgpError."""
         require_editable(obj)
         require_attributes(obj.data)
         with readable_mesh(obj) as copy:
-            self.mesh = FrozenMesh(copy)
+            mesh = FrozenMesh(copy)
             groups = Groups(settings.cone_group, settings.weight_group)
             places = places_on_subdivision(obj, copy) if settings.subdivided else None
-            region = build_region(obj, self.mesh, Faces.ALL, groups, places)
-        self._obj, self._group = obj, settings.cone_group
-        self._era, self._doubted = changes.era(), False
+            region = build_region(obj, mesh, Faces.ALL, groups, places)
+        self._group = settings.cone_group
         task = unwrap_task(region, settings)
         self._whole = replace(task, region=with_cut_costs(task.region, task.cuts))
         self._part_of = _parts(region.surface)
@@ -91,24 +89,7 @@ class ConeSession:
         # Where islands stay; those of a map that was not made from cones have no place yet.
         known = self._whole.pinned if self._earlier is None else np.ones_like(self._whole.pinned)
         self._places = np.where(known[:, :, None], region.corner_uv, np.nan)
-        self._uv = EditedUv(obj.data)
-
-    def doubt(self) -> None:
-        """Something else may have changed the mesh."""
-        self._doubted = True
-
-    def is_intact(self) -> bool:
-        """Whether the mesh can still be written to."""
-        if changes.era() != self._era:
-            return False
-        try:
-            if self._doubted:
-                self._uv.find_again(self.mesh.loop_vertices)
-                self._doubted = False
-            return self._uv.is_open
-        except ReferenceError:
-            # The mesh was removed.
-            return False
+        super().__init__(obj, mesh)
 
     def table(self) -> FollowedTable:
         """The table of the cones as they are edited."""
@@ -161,9 +142,7 @@ class ConeSession:
     def restore(self) -> None:
         """Leave the mesh as it was before the session."""
         self._shown, self._report = None, self._earlier
-        if changes.era() == self._era:
-            with suppress(ReferenceError):
-                self._uv.restore()
+        super().restore()
 
     def unwrap(self) -> Unwrapped:
         """Unwrap with all chosen options.

@@ -7,7 +7,6 @@ No map is computed: a piece of the layout moves rigidly from one side of a cut t
 from __future__ import annotations
 
 from collections import Counter
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -19,12 +18,12 @@ from numpy.typing import NDArray
 from ..core import cut_kinds, native
 from ..core.errors import Refused
 from ..core.identifiers import CONE_GROUP
-from ..mesh import changes, reports
+from ..mesh import reports
 from ..mesh.reader import readable_mesh
 from ..mesh.region_read import Faces, Groups, build_region, require_editable
 from ..mesh.stored_mesh import FrozenMesh
-from ..mesh.uv_write import EditedUv
 from .cuts import CutChoice, with_cut_costs
+from .map_session import MapSession
 
 if TYPE_CHECKING:
     import lsgp
@@ -67,9 +66,9 @@ class _Grip:
     triangles: NDArray[np.int32]
 
 
-class CutSession:
-    """mesh: reads positions, faces and the current UVs. paths: the cuts, each as vertices from node to node. active:
-    the number of the cut that is dragged or under the cursor; None for none. overlapping: faces, as last looked for.
+class CutSession(MapSession):
+    """paths: the cuts, each as vertices from node to node. active: the number of the cut that is dragged or under the
+    cursor; None for none. overlapping: faces, as last looked for.
     """
 
     def __init__(self, obj: bpy.types.Object, choice: CutChoice) -> None:
@@ -78,13 +77,12 @@ class CutSession:
         if obj.data.uv_layers.active is None:
             raise Refused("the mesh has no UV map; unwrap it first")
         with readable_mesh(obj) as copy:
-            self.mesh = FrozenMesh(copy)
-            region = build_region(obj, self.mesh, Faces.ALL, Groups(cones=CONE_GROUP))
-        self._obj, self._region = obj, with_cut_costs(region, choice)
-        self._era, self._doubted = changes.era(), False
+            mesh = FrozenMesh(copy)
+            region = build_region(obj, mesh, Faces.ALL, Groups(cones=CONE_GROUP))
+        self._region = with_cut_costs(region, choice)
         self._mover = native.lsgp.CutMover(self._region.surface)
         self._earlier = reports.find(obj.data)
-        self._uv = EditedUv(obj.data)
+        super().__init__(obj, mesh)
         self._start_uv, self._corner_uv = region.corner_uv, region.corner_uv.copy()
         # The triangles whose coordinates may differ from those at the start.
         self._touched = np.empty(0, np.int32)
@@ -112,25 +110,6 @@ class CutSession:
         found = on_cuts[np.abs(sums[on_cuts] - 2 * np.pi) > CONE]
         known = [] if self._earlier is None else self._earlier.cones
         return np.unique(np.concatenate([found, self._region.own_cones.cones, known]).astype(np.int32))
-
-    # Whether the mesh is as it was left
-
-    def doubt(self) -> None:
-        """Something else may have changed the mesh."""
-        self._doubted = True
-
-    def is_intact(self) -> bool:
-        """Whether the mesh can still be written to."""
-        if changes.era() != self._era:
-            return False
-        try:
-            if self._doubted:
-                self._uv.find_again(self.mesh.loop_vertices)
-                self._doubted = False
-            return self._uv.is_open
-        except ReferenceError:
-            # The mesh was removed.
-            return False
 
     # Dragging
 
@@ -259,12 +238,6 @@ class CutSession:
             kind if now == then else cut_kinds.MOVED
             for kind, now, then in zip(self._first_kinds, self.paths, self._begun_with.paths, strict=False)
         ]
-
-    def restore(self) -> None:
-        """Leave the mesh as it was before the session."""
-        if changes.era() == self._era:
-            with suppress(ReferenceError):
-                self._uv.restore()
 
     def store(self) -> None:
         """Store the report on the map where it was changed."""

@@ -108,8 +108,8 @@ def _with_one_density(solved: Sequence[Unwrapped]) -> list[Islands]:
     for unwrapped, size in zip(solved, sizes, strict=True):
         part = unwrapped.islands()
         scale = size / np.sqrt(total_area(part.corner_uv))
-        moved = ~np.isin(part.island, part.island[part.pinned.any(axis=1)])
-        parts.append(replace(part, corner_uv=np.where(moved[:, None, None], scale * part.corner_uv, part.corner_uv)))
+        stays = part.stays[:, None, None]
+        parts.append(replace(part, corner_uv=np.where(stays, part.corner_uv, scale * part.corner_uv)))
     return parts
 
 

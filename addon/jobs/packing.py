@@ -163,7 +163,7 @@ def _scale(parts: Sequence[Islands], packed: Sequence[NDArray[np.float64]]) -> f
     """By how much the packer scaled the islands; 1 where all of them are pinned."""
     before = after = 0.0
     for part, uv in zip(parts, packed, strict=True):
-        moved = ~np.isin(part.island, part.island[part.pinned.any(axis=1)])
+        moved = ~part.stays
         squeeze = native.lsgp.correct_aspect((1.0, 1.0), part.aspect)
         corners = [corner_uv[moved] / squeeze for corner_uv in (part.corner_uv, uv)]
         sides = [at - np.roll(at, 1, axis=1) for at in corners]

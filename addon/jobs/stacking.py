@@ -39,8 +39,7 @@ def packed_in_stacks(parts: Sequence[Islands], pack: Pack, *, mirrored: bool) ->
 
 def _unpinned(part: Islands, first: int) -> NDArray[np.int32]:
     """The islands numbered from `first`, -1 for those with pins."""
-    pinned = np.isin(part.island, part.island[part.pinned.any(axis=1)])
-    return np.where(pinned, -1, part.island + first)
+    return np.where(part.stays, -1, part.island + first)
 
 
 def _only(part: Islands, kept: NDArray[np.bool_]) -> Islands:

@@ -149,12 +149,13 @@ def unwrap_all(
     tasks, solve = _sharing_the_square(tasks), solve or unwrap
     if len(tasks) < 2 or not all(_has_automatic_tiles(task) for task in tasks):
         return solve_all(tasks, solve, progress)
-    outcomes = solve_all(tasks, solve, _half(progress, 0))
+    part_of = native.part("auto_unwrap").part_of
+    outcomes = solve_all(tasks, solve, part_of(progress, 0.0, 0.5))
     smallest = min((_tile_size(found) for found in outcomes if isinstance(found, Unwrapped)), default=0.0)
     larger = [
         i for i, found in enumerate(outcomes) if isinstance(found, Unwrapped) and _tile_size(found) > smallest > 0
     ]
-    redone = solve_all([_with_tile_size(tasks[i], smallest) for i in larger], solve, _half(progress, 1))
+    redone = solve_all([_with_tile_size(tasks[i], smallest) for i in larger], solve, part_of(progress, 0.5, 1.0))
     for i, found in zip(larger, redone, strict=True):
         outcomes[i] = found
     return outcomes
@@ -174,11 +175,6 @@ def _with_tile_size(task: UnwrapTask, size: float) -> UnwrapTask:
     """size: in the world."""
     seamless = replace(task.options.seamless, tile_size=size / task.region.object_scale)
     return replace(task, options=replace(task.options, seamless=seamless))
-
-
-def _half(progress: Progress | None, which: int) -> Progress | None:
-    """Of two stages that take about as long."""
-    return None if progress is None else lambda done: progress((which + done) / 2)
 
 
 def _sharing_the_square(tasks: Sequence[UnwrapTask]) -> list[UnwrapTask]:

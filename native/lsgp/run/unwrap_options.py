@@ -38,6 +38,26 @@ MOST_COST = 1e6
 AUTO, AUTO_COUNT = "auto", "auto:"
 
 
+# What presets do unless --no-NAME is given: the presets that do it, and what the option changes.
+_PRESET_SWITCHES = {
+    "creases": (
+        "paint or bake",
+        "do not cut hard surfaces at their creases, so that the texture continues across them; by default paint and "
+        "bake cut there where hardly any stretch remains",
+    ),
+    "straighten": (
+        "paint or bake",
+        "leave nearly straight boundaries and cuts of the layout as they are; by default paint and bake make them "
+        "exactly straight and align them with u and v where that costs hardly any stretch",
+    ),
+    "symmetric": (
+        "paint, tile or bake",
+        "place cones without regard to symmetry; by default they are alike on both sides of a mirror plane where that "
+        "costs little",
+    ),
+}
+
+
 def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
     unwrap.add_argument(
         "--preset",
@@ -79,9 +99,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
     )
     add_cut_options(unwrap)
     _add_direction_options(unwrap)
-    _add_crease_option(unwrap)
-    _add_straighten_option(unwrap)
-    _add_symmetry_option(unwrap)
+    _add_preset_switches(unwrap)
     unwrap.add_argument(
         "--border",
         choices=["free", "straight"],
@@ -119,34 +137,9 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
     _add_pack_option(unwrap)
 
 
-def _add_crease_option(unwrap: argparse.ArgumentParser) -> None:
-    unwrap.add_argument(
-        "--no-creases",
-        dest="creases",
-        action="store_false",
-        help="with --preset: do not cut hard surfaces at their creases, so that the texture continues across them; by "
-        "default paint and bake cut there where hardly any stretch remains",
-    )
-
-
-def _add_straighten_option(unwrap: argparse.ArgumentParser) -> None:
-    unwrap.add_argument(
-        "--no-straighten",
-        dest="straighten",
-        action="store_false",
-        help="with --preset: leave nearly straight boundaries and cuts of the layout as they are; by default paint and "
-        "bake make them exactly straight and align them with u and v where that costs hardly any stretch",
-    )
-
-
-def _add_symmetry_option(unwrap: argparse.ArgumentParser) -> None:
-    unwrap.add_argument(
-        "--no-symmetric",
-        dest="symmetric",
-        action="store_false",
-        help="with --preset: place cones without regard to symmetry; by default they are alike on both sides of a "
-        "mirror plane where that costs little",
-    )
+def _add_preset_switches(unwrap: argparse.ArgumentParser) -> None:
+    for name, (_, text) in _PRESET_SWITCHES.items():
+        unwrap.add_argument(f"--no-{name}", dest=name, action="store_false", help=f"with --preset: {text}")
 
 
 def _add_direction_options(unwrap: argparse.ArgumentParser) -> None:
@@ -519,12 +512,9 @@ def library_options(args: argparse.Namespace) -> Options:
     require_cut_options(args)
     if args.up is not None and not all(map(math.isfinite, args.up)):
         raise UsageError("--up takes finite numbers; give the model's up, as 0 1 0")
-    if args.preset is None and not args.creases:
-        raise UsageError("--no-creases is for presets; add --preset paint or bake")
-    if args.preset is None and not args.straighten:
-        raise UsageError("--no-straighten is for presets; add --preset paint or bake")
-    if args.preset is None and not args.symmetric:
-        raise UsageError("--no-symmetric is for presets; add --preset paint, tile or bake")
+    for name, (presets, _) in _PRESET_SWITCHES.items():
+        if args.preset is None and not getattr(args, name):
+            raise UsageError(f"--no-{name} is for presets; add --preset {presets}")
     texel_layout(args)
     packing_of(args)
     base = Options() if args.preset is None else preset_options(args.preset)

@@ -83,15 +83,15 @@ class Recutter {
   void span();
   Array<char> open_paths(const Array<char>& in_tree) const;
   double cost_of(const Array<char>& in_tree) const;
-  double measure_overlap() const;
+  double measure_overlap();
   void descend(double weight);
-  Exchange best_exchange(Index opened, double weight, Array<Index>& moving) const;
+  Exchange best_exchange(Index opened, double weight, Array<Index>& moving);
   Array<Index> pieces_behind(Index opened, Index seed) const;
   std::size_t count_sides(const Array<Index>& pieces) const;
   template <typename Visit>
-  void for_each_side(const Array<Index>& pieces, const Motion& motion, Visit visit) const;
-  CoverageRaster raster_of(const Array<Index>& pieces) const;
-  double shared(const CoverageRaster& raster, const Array<Index>& pieces, const Motion& motion) const;
+  void for_each_side(const Array<Index>& pieces, const Motion& motion, Visit visit);
+  CoverageRaster raster_of(const Array<Index>& pieces);
+  double shared(const CoverageRaster& raster, const Array<Index>& pieces, const Motion& motion);
 
   const PieceGraph graph_;
   const double area_;
@@ -100,7 +100,7 @@ class Recutter {
   State now_;
   Array<char> is_open_;  // (paths) in the current state
   double first_cost_ = 0;
-  mutable double work_ = 0;  // so far, in outline sides
+  double work_ = 0;  // so far, in outline sides
 };
 
 Recutter::Recutter(PieceGraph graph, double area)
@@ -168,7 +168,8 @@ double Recutter::cost_of(const Array<char>& in_tree) const {
   return out;
 }
 
-// The pieces connected to a seed when a path of the tree is opened, the seed first; the whole island if it is `none`.
+// The pieces connected to a seed, which is the first, when a path of the tree is opened; if that is `none`, the whole
+// island.
 Array<Index> Recutter::pieces_behind(Index opened, Index seed) const {
   Array<char> is_reached(graph_.piece_count(), 0);
   is_reached[seed] = 1;
@@ -192,7 +193,7 @@ std::size_t Recutter::count_sides(const Array<Index>& pieces) const {
 
 // Calls visit(tail, head) for the sides of pieces in the current state, moved.
 template <typename Visit>
-void Recutter::for_each_side(const Array<Index>& pieces, const Motion& motion, Visit visit) const {
+void Recutter::for_each_side(const Array<Index>& pieces, const Motion& motion, Visit visit) {
   for (const Index piece : pieces) {
     const Motion whole = motion * now_.motion[piece];
     const Complex turn = std::polar(1.0, whole.angle);
@@ -205,7 +206,7 @@ void Recutter::for_each_side(const Array<Index>& pieces, const Motion& motion, V
   checkpoint(operations_a_side * sides);
 }
 
-CoverageRaster Recutter::raster_of(const Array<Index>& pieces) const {
+CoverageRaster Recutter::raster_of(const Array<Index>& pieces) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Box frame{infinity, -infinity, infinity, -infinity};
   for (const Index piece : pieces) {
@@ -219,14 +220,14 @@ CoverageRaster Recutter::raster_of(const Array<Index>& pieces) const {
   return raster;
 }
 
-double Recutter::shared(const CoverageRaster& raster, const Array<Index>& pieces, const Motion& motion) const {
+double Recutter::shared(const CoverageRaster& raster, const Array<Index>& pieces, const Motion& motion) {
   double out = 0;
   for_each_side(pieces, motion, [&](Complex tail, Complex head) { out += raster.shared(tail, head); });
   return out;
 }
 
 // The overlap of every island with itself.
-double Recutter::measure_overlap() const {
+double Recutter::measure_overlap() {
   Array<char> is_measured(graph_.piece_count(), 0);
   double out = 0;
   for (Index seed = 0; seed < graph_.piece_count(); ++seed) {
@@ -239,7 +240,7 @@ double Recutter::measure_overlap() const {
 }
 
 // The smaller side moves; overlaps within each side do not change.
-Recutter::Exchange Recutter::best_exchange(Index opened, double weight, Array<Index>& moving) const {
+Recutter::Exchange Recutter::best_exchange(Index opened, double weight, Array<Index>& moving) {
   moving = pieces_behind(opened, graph_.paths[opened].left);
   Array<Index> resting = pieces_behind(opened, graph_.paths[opened].right);
   if (count_sides(moving) > count_sides(resting)) std::swap(moving, resting);

@@ -7,7 +7,7 @@ Run by run_in_window.py; no pytest.
 from itertools import pairwise
 
 import bpy
-from edit_tests import ball, in_front, uv_of
+from edit_tests import ball, in_front, require_one_step_of_undo, uv_of
 from installed import addon
 from mathutils import Quaternion, Vector
 from scenes import UvMap, add_ball, changed, edit, snapshot
@@ -69,13 +69,7 @@ def test_dragging_a_cut_moves_it_as_one_step_of_undo():
     assert {edge for path in reports.find(ball().data).paths for edge in map(frozenset, pairwise(path))} == {
         frozenset(edge) for edge in UvMap(ball()).split_edges()
     }
-    after = snapshot(ball())
-    bpy.ops.ed.undo()
-    yield 0.2
-    assert changed(before, snapshot(ball())) == set()
-    bpy.ops.ed.redo()
-    yield 0.2
-    assert changed(after, snapshot(ball())) == set()
+    yield from require_one_step_of_undo(before)
 
 
 def test_single_steps_of_cuts_are_undone_and_escape_leaves_no_trace():

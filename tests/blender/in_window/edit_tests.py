@@ -65,6 +65,17 @@ def angle_of(obj, vertex):
     return degrees
 
 
+def require_one_step_of_undo(before):
+    """What was done since a snapshot is undone and redone exactly."""
+    after = snapshot(ball())
+    bpy.ops.ed.undo()
+    yield 0.2
+    assert changed(before, snapshot(ball())) == set()
+    bpy.ops.ed.redo()
+    yield 0.2
+    assert changed(after, snapshot(ball())) == set()
+
+
 def test_dragging_a_cone_moves_it_and_the_map_follows_as_one_step_of_undo():
     yield from begin()
     before, cones = snapshot(ball()), marked(ball())
@@ -78,13 +89,7 @@ def test_dragging_a_cone_moves_it_and_the_map_follows_as_one_step_of_undo():
     yield from press("RET", place_of(ball(), end))
     yield from until(lambda: not editing())
     assert marked(ball()) == sorted({*cones} - {start} | {end})
-    after = snapshot(ball())
-    bpy.ops.ed.undo()
-    yield 0.2
-    assert changed(before, snapshot(ball())) == set()
-    bpy.ops.ed.redo()
-    yield 0.2
-    assert changed(after, snapshot(ball())) == set()
+    yield from require_one_step_of_undo(before)
 
 
 def test_clicks_add_and_remove_and_digits_give_angles():
