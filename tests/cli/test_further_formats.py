@@ -56,6 +56,44 @@ def test_a_ply_keeps_polygons_properties_and_what_refers_to_vertices(tmp_path: P
     assert (stored == file.triangulation.to_polygon_corners(uv, len(again.corners))).all()
 
 
+@pytest.mark.parametrize("order", ["<", ">"])
+def test_a_binary_ply_of_equal_polygons_keeps_numbers_around_its_lists(tmp_path: Path, order: str) -> None:
+    plyfile = pytest.importorskip("plyfile")
+    positions, faces = cube(2)
+    vertices = np.array([(*p, 0.5 * i) for i, p in enumerate(positions)], f"{order}f8,{order}f8,{order}f8,{order}f8")
+    rows = [(i % 7, 4, face, -i) for i, face in enumerate(faces)]
+    table = np.array(
+        rows, [("group", "u1"), ("count", f"{order}u2"), ("list", f"{order}i4", (4,)), ("tag", f"{order}i2")]
+    )
+    header = f"""ply
+format binary_{"little" if order == "<" else "big"}_endian 1.0
+comment kept
+element face {len(faces)}
+property uchar group
+property list ushort int vertex_index
+property short tag
+element vertex {len(positions)}
+property double x
+property double y
+property double z
+property double q
+end_header
+"""
+    (tmp_path / "in.ply").write_bytes(header.encode() + table.tobytes() + vertices.tobytes())
+    file = read_mesh_file(tmp_path / "in.ply")
+    uv = split_uv(file)
+    assert write_mesh_file(tmp_path / "out.ply", file, uv) == []
+    new = plyfile.PlyData.read(tmp_path / "out.ply")
+    assert [element.name for element in new] == ["face", "vertex"] and new.comments == ["kept"]
+    assert new["face"].ply_property("vertex_index").len_dtype == "u2"
+    assert (new["face"]["group"] == table["group"]).all() and (new["face"]["tag"] == table["tag"]).all()
+    corners = np.concatenate(list(new["face"]["vertex_index"]))
+    for axis, name in enumerate("xyz"):
+        assert (new["vertex"][name][corners] == file.mesh.positions[file.mesh.corners, axis]).all()
+    stored = np.stack([new["vertex"]["s"], new["vertex"]["t"]], axis=1)[corners]
+    assert (stored == file.triangulation.to_polygon_corners(uv, len(corners))).all()
+
+
 def test_faces_without_coordinates_are_at_the_origin_of_a_ply_or_keep_theirs(tmp_path: Path) -> None:
     plyfile = pytest.importorskip("plyfile")
     (tmp_path / "in.obj").write_text(obj_text(*cube(2)))
