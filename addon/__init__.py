@@ -5,7 +5,7 @@ The code is divided into rooms. A room imports only rooms named before it; tests
 
 core: arrays, names, errors and findings; nothing is read from meshes here.
 mesh: reading and writing Blender's meshes.
-jobs: computations on what was read: in the background, in batches, for the table of angles.
+jobs: computations on what was read, in rooms by what they are for.
 overlay: what is drawn over meshes.
 operators: Blender's operators, one per file, in rooms by topic.
 ui: menus, panels and preferences.

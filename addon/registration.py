@@ -3,7 +3,8 @@
 
 import bpy
 
-from .jobs import command, remembered
+from .jobs.batch import command
+from .jobs.layouts import remembered
 from .mesh import changes, distortion, reports, texel_settings, texture
 from .operators.angles.preview_stretch import MESH_OT_cone_preview
 from .operators.angles.select_row import MESH_OT_cone_select_one

@@ -19,8 +19,8 @@ from ..mesh.reader import reader
 
 if TYPE_CHECKING:
     from ..core.cone_angles import ConeAngles
-    from ..jobs.cone_session import ConeSession
-    from ..jobs.cut_session import CutSession
+    from ..jobs.sessions.cone_session import ConeSession
+    from ..jobs.sessions.cut_session import CutSession
     from ..mesh.mesh_reader import MeshReader
     from ..mesh.reports import Report
 

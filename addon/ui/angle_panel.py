@@ -10,7 +10,7 @@ import bpy
 from ..core import identifiers
 from ..core.cone_angles import Kind
 from ..core.text import degrees
-from ..jobs.angle_table import Row, TablePart, TableSettings, current_table, last_settings, verdict
+from ..jobs.angles.angle_table import Row, TablePart, TableSettings, current_table, last_settings, verdict
 from ..overlay import cache
 from ..overlay.content import Cone
 from .panels import ConeUnwrapSubPanel

@@ -219,7 +219,7 @@ TREES = (
         (
             Room("core", ("core/*",)),
             Room("mesh", ("mesh/*",), ("core",)),
-            Room("jobs", ("jobs/*",), ("core", "mesh")),
+            Room("jobs", ("jobs/*", "jobs/*/*"), ("core", "mesh")),
             Room("overlay", ("overlay/*",), ("core", "mesh", "jobs")),
             Room("operators", ("operators/*", "operators/*/*"), ("core", "mesh", "jobs", "overlay")),
             Room("ui", ("ui/*",), ("core", "mesh", "jobs", "overlay")),
@@ -229,6 +229,19 @@ TREES = (
                 ("__init__.py", "registration.py"),
                 ("core", "mesh", "jobs", "overlay", "operators", "ui"),
             ),
+        ),
+    ),
+    Tree(
+        "addon/jobs",
+        "*.py",
+        python_references,
+        (
+            Room("tasks", ("__init__.py", "tasks/*")),
+            Room("uv_maps", ("uv_maps/*",)),
+            Room("angles", ("angles/*",)),
+            Room("layouts", ("layouts/*",), ("tasks", "uv_maps")),
+            Room("sessions", ("sessions/*",), ("tasks", "uv_maps", "angles", "layouts")),
+            Room("batch", ("batch/*",), ("tasks", "layouts")),
         ),
     ),
     Tree(

@@ -101,7 +101,7 @@ def test_only_the_command_writes_files_and_only_where_it_is_told_to():
             is_of_a_path = isinstance(call.func, ast.Attribute) and name in FILE_WRITERS and name != "replace"
             if opens_to_write or is_of_a_path or name.startswith(("save_as_mainfile", "export_")):
                 writers.add(path)
-    assert writers <= {"addon/jobs/batch.py", "addon/jobs/batch_files.py"}
+    assert writers <= {"addon/jobs/batch/asset.py", "addon/jobs/batch/files.py"}
 
 
 def test_zip_is_small_and_holds_no_hidden_or_compiled_files(staged):

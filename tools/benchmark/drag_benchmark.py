@@ -87,10 +87,10 @@ def add_round_cube(cuts: int) -> tuple[bpy.types.Object, list[int]]:
 def watch_tool(watch: Stopwatch) -> None:
     """The parts of a step. `solve` is within `place`, `write UVs` within `overlay`."""
     lsgp = import_module("lsgp")
-    session = import_module(f"{demo_scene.ADDON}.jobs.cone_session")
+    session = import_module(f"{demo_scene.ADDON}.jobs.sessions.cone_session")
     write = import_module(f"{demo_scene.ADDON}.mesh.uv_write")
     tool = import_module(f"{demo_scene.ADDON}.operators.cones.edit")
-    watch.watch(import_module(f"{demo_scene.ADDON}.jobs.picking").Picker, "vertex_at", "pick")
+    watch.watch(import_module(f"{demo_scene.ADDON}.jobs.sessions.picking").Picker, "vertex_at", "pick")
     watch.watch(lsgp.Solver, "parameterize", "solve")
     watch.watch(session.Step, "solve", "place")
     watch.watch(write.EditedUv, "write", "write UVs")

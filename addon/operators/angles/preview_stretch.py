@@ -10,7 +10,7 @@ import bpy
 from ...core import identifiers, native
 from ...core.cone_angles import ConeAngles
 from ...core.region import Region
-from ...jobs.gains import gain_at_vertices
+from ...jobs.angles.gains import gain_at_vertices
 from ...mesh.attributes import require_type, write_floats
 from .base import AngleOperator
 

@@ -14,7 +14,7 @@ from ...core.cone_angles import ConeAngles, Kind
 from ...core.errors import Refused
 from ...core.region import Region
 from ...core.text import counted, degrees
-from ...jobs.prescribing import missing_curvature
+from ...jobs.angles.prescribing import missing_curvature
 from ...mesh.angles import write_angles
 from ...mesh.cones import mark_cones, marked_cones, selected_vertices
 from ..shared.polling import poll_edit_mesh

@@ -11,7 +11,7 @@ from ...core import identifiers, native
 from ...core.cone_angles import ConeAngles, Kind
 from ...core.region import Region
 from ...core.text import counted
-from ...jobs.prescribing import snapped
+from ...jobs.angles.prescribing import snapped
 from ...mesh.angles import write_angles
 from ..shared.properties import LATTICES, LatticeProperty
 from .base import AngleOperator

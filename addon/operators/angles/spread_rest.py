@@ -13,7 +13,7 @@ from ...core.cone_angles import ConeAngles, Kind
 from ...core.errors import Refused
 from ...core.region import Region
 from ...core.text import counted
-from ...jobs.prescribing import spread
+from ...jobs.angles.prescribing import spread
 from ...mesh.angles import write_angles
 from ...mesh.cones import selected_vertices
 from .base import AngleOperator

@@ -12,7 +12,7 @@ from ...core import identifiers
 from ...core.cone_angles import ConeAngles, Kind
 from ...core.errors import Refused
 from ...core.region import Region
-from ...jobs.gains import best_gain
+from ...jobs.angles.gains import best_gain
 from ...mesh.angles import write_angles
 from ...mesh.cones import mark_cones
 from ...mesh.selection import VERTEX_MODE, select_elements, set_select_mode

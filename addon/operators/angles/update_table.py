@@ -4,7 +4,7 @@
 import bpy
 
 from ...core import identifiers
-from ...jobs.angle_table import current_table, last_settings
+from ...jobs.angles.angle_table import current_table, last_settings
 from ..shared.polling import ComputingOperator
 
 

@@ -12,7 +12,7 @@ import bpy
 from ...core import findings, identifiers
 from ...core.errors import object_errors
 from ...core.text import counted, degrees
-from ...jobs.edited_objects import EditedObject, EditedObjects, Pick
+from ...jobs.sessions.edited_objects import EditedObject, EditedObjects, Pick
 from ...mesh.targets import target_objects
 from ...overlay import cache
 from ...overlay.content import session_content
@@ -23,7 +23,7 @@ from . import hints
 from .typed_number import TypedNumber
 
 if TYPE_CHECKING:
-    from ...jobs.cone_session import ConeSession
+    from ...jobs.sessions.cone_session import ConeSession
 
 WHEEL_STEP, FINE_STEP = math.radians(15.0), math.radians(1.0)
 WHEEL = {"WHEELUPMOUSE": 1, "WHEELDOWNMOUSE": -1}

@@ -12,8 +12,8 @@ from ...core import identifiers
 from ...core.choices import enum_items
 from ...core.preferences import chosen_threads
 from ...core.region import Region
-from ...jobs.placing import PlacementSettings, PlacementTask, place_all, write_placement
-from ...jobs.summaries import placement_summary
+from ...jobs.tasks.placing import PlacementSettings, PlacementTask, place_all, write_placement
+from ...jobs.tasks.summaries import placement_summary
 from ...mesh.angles import require_attributes
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
@@ -23,7 +23,7 @@ from ..shared.properties import LATTICES, SEAMS, ConeGroupProperty, CutsProperty
 if TYPE_CHECKING:
     import lsgp
 
-    from ...jobs.solving import Progress
+    from ...jobs.tasks.solving import Progress
 
 MIRRORS = {
     "FOUND": (None, "Found", "The plane in which each connected part is its own mirror image, if there is one"),

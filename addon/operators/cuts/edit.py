@@ -10,7 +10,7 @@ import bpy
 from ...core import findings, identifiers
 from ...core.errors import object_errors
 from ...core.text import counted
-from ...jobs.edited_cuts import CutObject, CutObjects, Pick
+from ...jobs.sessions.edited_cuts import CutObject, CutObjects, Pick
 from ...mesh.targets import target_objects
 from ...overlay import cache
 from ...overlay.content import cuts_content

@@ -8,7 +8,7 @@ import bpy
 from ...core import identifiers
 from ...core.errors import Refused
 from ...core.text import counted
-from ...jobs.gutters import Mapped, extended, mapped_faces
+from ...jobs.uv_maps.gutters import Mapped, extended, mapped_faces
 from ...mesh.image_aspect import active_image, faces_showing
 from ...mesh.image_pixels import read_pixels, require_paintable, write_pixels
 from ...mesh.region_read import Faces, Groups, read_region

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ...core import identifiers
 from ...core.errors import Refused
 from ...core.text import counted
-from ...jobs.measuring import measure_faces
+from ...jobs.uv_maps.measuring import measure_faces
 from ...mesh import distortion
 from ...mesh.region_read import Faces, Groups, read_region, require_editable
 from ...mesh.targets import target_objects

@@ -11,9 +11,9 @@ import bpy
 from ...core import identifiers, native
 from ...core.choices import Choices, enum_items
 from ...core.region import Region
-from ...jobs.directions import DirectionChoice
-from ...jobs.quads import QuadSettings, QuadTask, quad_task, remesh_all
-from ...jobs.summaries import quad_summary
+from ...jobs.tasks.directions import DirectionChoice
+from ...jobs.tasks.quads import QuadSettings, QuadTask, quad_task, remesh_all
+from ...jobs.tasks.summaries import quad_summary
 from ...mesh.quad_object import add_quad_object
 from ...mesh.region_read import Faces, Groups
 from ..shared.background import BackgroundOperator, Solved
@@ -24,7 +24,7 @@ from ..unwrapping.direction_choices import AXES
 if TYPE_CHECKING:
     import lsgp
 
-    from ...jobs.solving import Progress
+    from ...jobs.tasks.solving import Progress
 
 AMOUNTS: Choices = {
     "COUNT": (None, "Count", "About this many quads on each object"),

@@ -12,8 +12,8 @@ import bpy
 from ...core import findings
 from ...core.errors import Refused, object_errors
 from ...core.region import Region
-from ...jobs.computation import Computation
-from ...jobs.solving import Progress, Task
+from ...jobs.tasks.computation import Computation
+from ...jobs.tasks.solving import Progress, Task
 from ...mesh.region_read import Faces, Groups, read_region
 from ...mesh.targets import selects_by_uv, target, target_objects
 from .conclusion import conclude, for_each

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from ...core.screen import Screen
-from ...jobs.picked_objects import Sight
+from ...jobs.sessions.picked_objects import Sight
 from .views import View, view_at
 
 # Pixels, at a scale of 1.

@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 from mathutils import Vector
 
-from ...jobs.cuts import FRONT, CutChoice
+from ...jobs.tasks.cuts import FRONT, CutChoice
 
 
 def chosen_cuts(identifier: str) -> CutChoice:

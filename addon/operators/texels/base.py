@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 
 from ...core.errors import Refused
-from ...jobs.texels import Texels, measure_texels
+from ...jobs.uv_maps.texels import Texels, measure_texels
 from ...mesh.region_read import Faces, read_chosen, require_editable
 from ...mesh.targets import selects_by_uv
 from ...mesh.texel_settings import (

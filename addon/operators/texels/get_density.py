@@ -6,7 +6,7 @@ import numpy as np
 
 from ...core import identifiers
 from ...core.length_units import length_unit
-from ...jobs.texels import overall_density
+from ...jobs.uv_maps.texels import overall_density
 from ...mesh.targets import target_objects
 from ...mesh.texel_settings import shown_density, texel_settings
 from ..shared.conclusion import conclude, for_each

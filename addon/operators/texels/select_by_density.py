@@ -8,7 +8,7 @@ import numpy as np
 
 from ...core import identifiers
 from ...core.text import counted
-from ...jobs.texels import face_densities
+from ...jobs.uv_maps.texels import face_densities
 from ...mesh.region_read import Faces
 from ...mesh.selection import FACE_MODE, select_elements, set_select_mode
 from ...mesh.targets import target_objects

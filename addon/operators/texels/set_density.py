@@ -8,7 +8,7 @@ import bpy
 from ...core import identifiers
 from ...core.region import Region
 from ...core.text import counted
-from ...jobs.texels import Scaled, report_on_scaled, scale_islands
+from ...jobs.uv_maps.texels import Scaled, report_on_scaled, scale_islands
 from ...mesh import reports
 from ...mesh.reports import Report
 from ...mesh.targets import target_objects

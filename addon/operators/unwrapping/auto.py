@@ -15,12 +15,12 @@ from ...core.length_units import length_unit
 from ...core.preferences import chosen_threads, preferences
 from ...core.region import Region
 from ...core.text import counted
-from ...jobs.directions import DirectionChoice
-from ...jobs.maps import PackSettings, packing_of_preset, stacked_layouts, write_map
-from ...jobs.placing import mark_placed
-from ...jobs.remembered import unwrap_all_once
-from ...jobs.summaries import unwrap_summary
-from ...jobs.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_task
+from ...jobs.layouts.maps import PackSettings, packing_of_preset, stacked_layouts, write_map
+from ...jobs.layouts.remembered import unwrap_all_once
+from ...jobs.tasks.directions import DirectionChoice
+from ...jobs.tasks.placing import mark_placed
+from ...jobs.tasks.summaries import unwrap_summary
+from ...jobs.tasks.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_task
 from ...mesh.angles import require_attributes
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
@@ -33,7 +33,7 @@ from .sections import section
 if TYPE_CHECKING:
     import lsgp
 
-    from ...jobs.solving import Progress
+    from ...jobs.tasks.solving import Progress
 
 SCALES: Choices = {
     "FILL": (None, "Fill Square", "Islands get as large as they can"),

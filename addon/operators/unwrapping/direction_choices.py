@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ...jobs.directions import UP, DirectionChoice
+from ...jobs.tasks.directions import UP, DirectionChoice
 
 AXES = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": UP}
 

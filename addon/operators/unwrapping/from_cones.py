@@ -10,10 +10,10 @@ import bpy
 
 from ...core import identifiers
 from ...core.region import Region
-from ...jobs.maps import final_layouts, write_map
-from ...jobs.remembered import unwrap_all_once
-from ...jobs.summaries import unwrap_summary
-from ...jobs.unwrapping import Unwrapped, UnwrapTask, unwrap_task
+from ...jobs.layouts.maps import final_layouts, write_map
+from ...jobs.layouts.remembered import unwrap_all_once
+from ...jobs.tasks.summaries import unwrap_summary
+from ...jobs.tasks.unwrapping import Unwrapped, UnwrapTask, unwrap_task
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
 from ..shared.properties import BorderProperty, ConeGroupProperty, CutsProperty, SeamsProperty
@@ -23,7 +23,7 @@ from .seamless import SeamlessProperties
 from .sections import section
 
 if TYPE_CHECKING:
-    from ...jobs.solving import Progress
+    from ...jobs.tasks.solving import Progress
 
 
 class UV_OT_cone_unwrap(

@@ -6,8 +6,8 @@ import bpy
 from ...core import native
 from ...core.choices import Choices, DirectionProperty, enum_items
 from ...core.preferences import chosen_threads
-from ...jobs.maps import PackSettings
-from ...jobs.unwrapping import UnwrapSettings
+from ...jobs.layouts.maps import PackSettings
+from ...jobs.tasks.unwrapping import UnwrapSettings
 from ..shared.cut_choices import chosen_cuts
 from ..shared.properties import BORDERS, SEAMS
 from .direction_choices import chosen_direction

@@ -32,7 +32,7 @@ from scenes import (
 )
 
 angles = addon.mesh.angles
-angle_table, angle_panel = addon.jobs.angle_table, addon.ui.angle_panel
+angle_table, angle_panel = addon.jobs.angles.angle_table, addon.ui.angle_panel
 native = addon.core.native
 
 lsgp = native.lsgp

@@ -31,17 +31,21 @@ from scenes import (
     uv_key,
 )
 
-cone_session, unwrapping, content = addon.jobs.cone_session, addon.jobs.unwrapping, addon.overlay.content
-hints, finishing = addon.operators.cones.hints, addon.jobs.finishing
+cone_session, unwrapping, content = addon.jobs.sessions.cone_session, addon.jobs.tasks.unwrapping, addon.overlay.content
+hints, finishing = addon.operators.cones.hints, addon.jobs.sessions.finishing
 status_bar = addon.operators.shared.status_bar
-angle_table, picking, edited_objects = addon.jobs.angle_table, addon.jobs.picking, addon.jobs.edited_objects
-following, edit_history = addon.jobs.following, addon.jobs.edit_history
+angle_table, picking, edited_objects = (
+    addon.jobs.angles.angle_table,
+    addon.jobs.sessions.picking,
+    addon.jobs.sessions.edited_objects,
+)
+following, edit_history = addon.jobs.sessions.following, addon.jobs.sessions.edit_history
 changes = addon.mesh.changes
 reports, screens, typed_number = addon.mesh.reports, addon.core.screen, addon.operators.cones.typed_number
 lsgp = addon.core.native.lsgp
 
 SIZE = 400
-AS_THEY_ARE = addon.jobs.maps.PackSettings(False, False, "SCALED", 0.001)
+AS_THEY_ARE = addon.jobs.layouts.maps.PackSettings(False, False, "SCALED", 0.001)
 PACKED = replace(AS_THEY_ARE, pack=True)
 
 
@@ -49,7 +53,7 @@ def begin(obj, **options):
     """A session on an object, which is brought into edit mode."""
     if obj.mode != "EDIT":
         edit(obj, select="DESELECT")
-    cuts = addon.jobs.cuts.CutChoice()
+    cuts = addon.jobs.tasks.cuts.CutChoice()
     settings = unwrapping.UnwrapSettings(lsgp.Options(**options), "uv_cones", None, 0.0, True, False, True, cuts)
     return cone_session.ConeSession(obj, settings)
 
@@ -672,7 +676,7 @@ def alone(shown):
 def begin_together(*objects, **options):
     if objects[0].mode != "EDIT":
         edit(*objects, select="DESELECT")
-    cuts = addon.jobs.cuts.CutChoice()
+    cuts = addon.jobs.tasks.cuts.CutChoice()
     settings = unwrapping.UnwrapSettings(lsgp.Options(**options), "uv_cones", None, 0.0, True, False, True, cuts)
     return edited_objects.EditedObjects(objects, settings)
 

@@ -21,12 +21,12 @@ from scenes import (
     uv_key,
 )
 
-edited_cuts, cut_session = addon.jobs.edited_cuts, addon.jobs.cut_session
+edited_cuts, cut_session = addon.jobs.sessions.edited_cuts, addon.jobs.sessions.cut_session
 reports, screens, content = addon.mesh.reports, addon.core.screen, addon.overlay.content
-picked_objects, picking = addon.jobs.picked_objects, addon.jobs.picking
+picked_objects, picking = addon.jobs.sessions.picked_objects, addon.jobs.sessions.picking
 Refused, lsgp = addon.core.errors.Refused, addon.core.native.lsgp
 
-CHOICE = addon.jobs.cuts.CutChoice(front=None)
+CHOICE = addon.jobs.tasks.cuts.CutChoice(front=None)
 SIZE = 400
 
 

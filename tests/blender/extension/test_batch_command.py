@@ -11,7 +11,7 @@ import pytest
 from installed import addon
 from scenes import UvMap, add_ball, add_cone_cube, add_cube, add_sphere, covered_twice
 
-command = addon.jobs.command
+command = addon.jobs.batch.command
 
 
 FILES = ["broken.blend", "deep/ball.fbx", "empty.blend", "gone.glb", "sphere.glb", "two.blend"]

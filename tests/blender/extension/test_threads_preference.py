@@ -12,7 +12,7 @@ from installed import EXTENSION, addon
 from scenes import add_ball, add_cone_cube, edit, snapshot, uv_key
 
 lsgp = addon.core.native.lsgp
-cone_session, properties = addon.jobs.cone_session, addon.operators.unwrapping.properties
+cone_session, properties = addon.jobs.sessions.cone_session, addon.operators.unwrapping.properties
 
 
 @pytest.fixture
@@ -87,7 +87,7 @@ def test_the_map_is_the_same_for_any_number(preferences):
 
 # --- several objects ------------------------------------------------------------------------------------------------
 
-solving = addon.jobs.solving
+solving = addon.jobs.tasks.solving
 
 
 @dataclass(frozen=True)

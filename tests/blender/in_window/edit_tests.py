@@ -12,7 +12,7 @@ from mathutils import Quaternion, Vector
 from scenes import ANGLES, UvMap, add_ball, changed, edit, marked, plain_copy, snapshot, uv_key
 from windows import area, click, drag, event, move_to, place_of, press, region, running, take_picture, type_text, until
 
-angle_table = addon.jobs.angle_table
+angle_table = addon.jobs.angles.angle_table
 
 
 def editing():

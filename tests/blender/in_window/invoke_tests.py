@@ -19,7 +19,7 @@ from windows import STEP, press, region, running, until
 @contextmanager
 def slowed(seconds, verb="parameterize"):
     """The library takes so much longer, and tells its progress meanwhile; maps made before are forgotten."""
-    addon.jobs.remembered.forget()
+    addon.jobs.layouts.remembered.forget()
     lsgp = addon.core.native.lsgp
     work = getattr(lsgp, verb)
 
@@ -281,7 +281,7 @@ def test_placing_cones_for_long_is_one_step_of_undo():
 
 def test_the_table_of_angles_is_drawn_and_follows_undo():
     panel = bpy.types.VIEW3D_PT_cone_angles
-    tables = addon.jobs.angle_table
+    tables = addon.jobs.angles.angle_table
     draw, outcomes = panel.draw, []
 
     def watched(self, context):

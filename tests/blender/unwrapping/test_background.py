@@ -12,7 +12,7 @@ import pytest
 from installed import addon
 from scenes import UvMap, add_ball, add_cone_cube, add_sphere, changed, edit, snapshot
 
-computation, unwrapping = addon.jobs.computation, addon.jobs.unwrapping
+computation, unwrapping = addon.jobs.tasks.computation, addon.jobs.tasks.unwrapping
 region_read, targets = addon.mesh.region_read, addon.mesh.targets
 Refused = addon.core.errors.Refused
 
@@ -28,7 +28,7 @@ def task(obj, **options):
         use_pins=True,
         keep_placement=False,
         correct_aspect=True,
-        cuts=addon.jobs.cuts.CutChoice(),
+        cuts=addon.jobs.tasks.cuts.CutChoice(),
     )
     groups = region_read.Groups(settings.cone_group, settings.weight_group)
     return unwrapping.unwrap_task(region_read.read_region(obj, region_read.Faces.SELECTED, groups), settings)

@@ -7,7 +7,7 @@ import pytest
 from installed import addon
 from scenes import UvMap, add_cone_cube, add_cube, add_grid, add_texture, covered_twice, pin
 
-lsgp, packing, blender_packer = addon.core.native.lsgp, addon.jobs.packing, addon.jobs.blender_packer
+lsgp, packing, blender_packer = addon.core.native.lsgp, addon.jobs.layouts.packing, addon.jobs.layouts.blender_packer
 TEXELS = 512
 # There is no xatlas for some Pythons.
 HAS_XATLAS = lsgp.packer_name() is not None

@@ -8,7 +8,7 @@ import pytest
 from installed import addon
 from scenes import UvMap, add_ball, add_cone_cube, add_cube, edit, mark, mark_seams, pin, set_uv
 
-remembered, lsgp = addon.jobs.remembered, addon.core.native.lsgp
+remembered, lsgp = addon.jobs.layouts.remembered, addon.core.native.lsgp
 
 
 @pytest.fixture

@@ -23,7 +23,7 @@ from scenes import (
     uv_key,
 )
 
-lsgp, blender_packer = addon.core.native.lsgp, addon.jobs.blender_packer
+lsgp, blender_packer = addon.core.native.lsgp, addon.jobs.layouts.blender_packer
 
 
 def decorate(obj):

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Finished maps on their way to the mesh: final placement of the islands, report, writing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core import cut_kinds, native
+from ...core.islands import Islands
+from ...mesh import reports
+from ...mesh.uv_write import write_uv
+from ..tasks import cells
+from ..tasks.areas import size_on_the_surface, total_area
+from ..tasks.unwrapping import Unwrapped
+from ..uv_maps.texels import map_density
+from . import packing
+from .densities import packed_at_density
+from .stacking import packed_in_stacks
+
+if TYPE_CHECKING:
+    import lsgp
+
+TEXTURE_SIZE = 1024
+"""Side, in texels, of the texture for which errors of seams are reported."""
+
+FILLED = 0.6
+"""Part of the square that packed islands usually fill."""
+
+
+@dataclass(frozen=True, slots=True)
+class PackSettings:
+    """How islands are placed: packed, those of all objects together, or not; by whole cells or not.
+
+    margin_method, margin, turned, udim: as of `packing.pack`; udim not by cells. texels: the layout at a texel density,
+    with its own margin and tiles, per `unit` of length in Blender's own; None: the square is filled. stack: whether
+    islands of one shape lie on each other, as of `lsgp.auto_unwrap`; not at a texel density and not by cells.
+    """
+
+    pack: bool
+    by_cells: bool
+    margin_method: str
+    margin: float
+    turned: bool = True
+    udim: int = 1
+    texels: lsgp.TexelLayout | None = None
+    unit: float = 1.0
+    stack: str | None = None
+
+
+def packing_of_preset(preset: str, margin: float, *, by_cells: bool, turned: bool, udim: int = 1) -> PackSettings:
+    """How the islands of all objects are packed by a preset of `lsgp.auto_unwrap`.  The others as above."""
+    # Blender's packer takes several passes for exact margins, which are for textures that are computed to the texel.
+    exact = preset == "bake" or packing.is_tight()
+    return PackSettings(True, by_cells, packing.EXACT if exact else "ADD", margin, turned, udim)
+
+
+def final_layouts(solved: Sequence[Unwrapped], settings: PackSettings) -> list[NDArray[np.float64]]:
+    """The coordinates of each map as they are to be written, (m, 3, 2) arrays.  Raises Refused; InputError at a texel
+    density that the tiles do not hold."""
+    return stacked_layouts(solved, settings)[0]
+
+
+def stacked_layouts(solved: Sequence[Unwrapped], settings: PackSettings) -> tuple[list[NDArray[np.float64]], int]:
+    """As above, and how many islands lie on others."""
+    if not settings.pack or not solved:
+        return [unwrapped.corner_uv for unwrapped in solved], 0
+    if settings.by_cells:
+        return cells.pack(solved), 0
+    parts = _with_one_density(solved)
+    if settings.texels is not None:
+        alike = _whole(solved, [part.corner_uv for part in parts])
+        return packed_at_density(solved, alike, settings.texels, turned=settings.turned, unit=settings.unit), 0
+    packed, stacked = _packed(parts, settings)
+    return _whole(solved, packed), stacked
+
+
+def _packed(parts: Sequence[Islands], settings: PackSettings) -> tuple[list[NDArray[np.float64]], int]:
+    def pack(kept: Sequence[Islands]) -> list[NDArray[np.float64]]:
+        return packing.pack(kept, settings.margin_method, settings.margin, turned=settings.turned, udim=settings.udim)
+
+    if settings.stack is None:
+        return pack(parts), 0
+    return packed_in_stacks(parts, pack, mirrored=settings.stack == "mirrored")
+
+
+def _whole(solved: Sequence[Unwrapped], of_islands: Sequence[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
+    """The coordinates of each map, (m, 3, 2), with these of its solved triangles."""
+    layouts = [unwrapped.corner_uv.copy() for unwrapped in solved]
+    for unwrapped, layout, uv in zip(solved, layouts, of_islands, strict=True):
+        layout[unwrapped.result.solved] = uv
+    return layouts
+
+
+def _with_one_density(solved: Sequence[Unwrapped]) -> list[Islands]:
+    """The islands of each map, at one scale for all objects; those with pins keep theirs.
+
+    Together they have about the area that they will have, so that a margin that is added before the packer scales them
+    is about what was asked for.
+    """
+    sizes = np.array([size_on_the_surface(unwrapped.region, unwrapped.result.solved) for unwrapped in solved])
+    sizes *= np.sqrt(FILLED / (sizes**2).sum())
+    parts = []
+    for unwrapped, size in zip(solved, sizes, strict=True):
+        part = unwrapped.islands()
+        scale = size / np.sqrt(total_area(part.corner_uv))
+        stays = part.stays[:, None, None]
+        parts.append(replace(part, corner_uv=np.where(stays, part.corner_uv, scale * part.corner_uv)))
+    return parts
+
+
+def write_map(obj: bpy.types.Object, unwrapped: Unwrapped, corner_uv: NDArray[np.float64]) -> None:
+    """Write the coordinates, (m, 3, 2), and store the report on them."""
+    found = replace(report_on(unwrapped), texel_density=map_density(unwrapped.region, corner_uv))
+    report = reports.joined(reports.find(obj.data), found, unwrapped.region)
+    write_uv(obj, unwrapped.region, unwrapped.result.solved, corner_uv)
+    reports.store(obj.data, report)
+
+
+def report_on(unwrapped: Unwrapped) -> reports.Report:
+    """What is kept of a finished map."""
+    result, region = unwrapped.result, unwrapped.region
+    paths, kinds = _paths(unwrapped)
+    certificate = None
+    if result.seamless is not None:
+        certificate = native.lsgp.certificate.certificate(result.seamless, TEXTURE_SIZE)
+    return reports.Report(
+        paths=paths,
+        kinds=kinds,
+        cones=result.cones.tolist(),
+        cone_angles=result.cone_angles.tolist(),
+        flipped=np.unique(region.triangle_faces[result.flipped]).tolist(),
+        overlapping=np.unique(region.triangle_faces[result.overlapping]).tolist(),
+        faces=len(np.unique(region.triangle_faces[result.solved])),
+        islands=int(result.island.max()) + 1,
+        distortion=asdict(result.distortion),
+        seams=asdict(result.seams),
+        overlap_area=result.overlap_area,
+        certificate=certificate,
+    )
+
+
+def _paths(unwrapped: Unwrapped) -> tuple[list[list[int]], list[str]]:
+    """The cuts and borders as vertices, each of one kind, and their kinds."""
+    result = unwrapped.result
+    opened = np.concatenate([result.cut_edges, result.borders])
+    is_seam, is_required = (_among(opened, edges) for edges in (unwrapped.region.surface.seams, result.required_cuts))
+    kind = np.where(is_seam, cut_kinds.SEAM, np.where(is_required, cut_kinds.REQUIRED, cut_kinds.ADDED))
+    kinds_at: dict[int, set[str]] = {}
+    for pair, name in zip(opened.tolist(), kind.tolist(), strict=True):
+        for vertex in pair:
+            kinds_at.setdefault(vertex, set()).add(name)
+    changes = [vertex for vertex, names in kinds_at.items() if len(names) > 1]
+    paths = native.lsgp.split_into_paths(opened, np.union1d(result.cones, changes).astype(np.int32))
+    of_edge = dict(zip(map(tuple, np.sort(opened, axis=1).tolist()), kind.tolist(), strict=True))
+    return [path.tolist() for path in paths], [of_edge[tuple(sorted(path[:2].tolist()))] for path in paths]
+
+
+def _among(edges: NDArray[np.int32], others: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """(c,) which edges, (c, 2) vertex pairs, are among others."""
+    keys = [np.sort(pairs, axis=1).astype(np.int64) @ (1 << 32, 1) for pairs in (edges, others)]
+    return np.isin(*keys)

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Maps that were made a moment ago, by a digest of all they were made from.
+
+So a change of the margin in the redo panel takes packing alone, and so does a preset that is chosen again.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import bpy
+import numpy as np
+
+from ...core.digest import digest_of
+from ..tasks.unwrapping import Unwrapped, UnwrapTask, unwrap, unwrap_all
+from . import packing
+
+if TYPE_CHECKING:
+    from ..tasks.solving import Progress
+
+MOST_TRIANGLES = 300_000
+"""Of all maps that are kept; they take about a hundred megabytes."""
+
+_kept: OrderedDict[bytes, Unwrapped] = OrderedDict()
+
+
+def unwrap_all_once(tasks: Sequence[UnwrapTask], progress: Progress | None = None) -> list[Unwrapped | Exception]:
+    """As `unwrap_all`, but maps that are kept are not made again."""
+    return unwrap_all(tasks, progress, _unwrap_once)
+
+
+def _unwrap_once(task: UnwrapTask, progress: Progress | None) -> Unwrapped:
+    key = digest(task)
+    found = _kept.pop(key, None) or unwrap(task, progress)
+    _kept[key] = found
+    while sum(len(kept.region.surface.triangles) for kept in _kept.values()) > MOST_TRIANGLES:
+        _kept.popitem(last=False)
+    return replace(found, region=task.region)
+
+
+def digest(task: UnwrapTask) -> bytes:
+    """Of everything that decides what the map is.
+
+    The present UVs do where some are pinned or islands keep their places.
+    """
+    if not task.keep_placement and not task.pinned.any():
+        task = replace(task, region=replace(task.region, corner_uv=np.empty((0, 3, 2))))
+    return digest_of(task)
+
+
+@bpy.app.handlers.persistent
+def forget(*_: Any) -> None:
+    """Called by Blender when another file is opened."""
+    _kept.clear()
+    packing.forget()
+
+
+def register() -> None:
+    bpy.app.handlers.load_post.append(forget)
+
+
+def unregister() -> None:
+    bpy.app.handlers.load_post.remove(forget)
+    forget()

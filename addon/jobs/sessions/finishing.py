@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The end of sessions of Edit Cones: maps with all chosen options, placed together, and everything stored."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ...core.errors import object_errors
+from ..layouts.maps import PackSettings
+from ..tasks.unwrapping import Unwrapped
+from .cone_session import ConeSession
+from .edited_layout import packed_where_needed
+
+
+def finish(
+    changed: Sequence[ConeSession], others: Sequence[ConeSession], placing: PackSettings
+) -> list[Unwrapped | Exception]:
+    """The maps of the sessions whose cones were changed, or why there is none; their cones are stored in any case.
+
+    others: sessions on meshes whose islands may have to make room. placing: how islands are packed where an edited one
+    does not fit any more into its place.
+    """
+    outcomes = [_unwrapped(session) for session in changed]
+    done = [session for session, outcome in zip(changed, outcomes, strict=True) if not isinstance(outcome, Exception)]
+    placed = [*done, *others]
+    if done:
+        try:
+            layouts = packed_where_needed([session.placement() for session in placed], placing)
+            for session, layout in zip(placed, layouts, strict=True):
+                if layout is not None:
+                    session.place(layout)
+        except object_errors() as error:
+            for session in done:
+                session.restore()
+            outcomes = [outcome if isinstance(outcome, Exception) else error for outcome in outcomes]
+    for session in (*changed, *others):
+        session.store()
+    return outcomes
+
+
+def _unwrapped(session: ConeSession) -> Unwrapped | Exception:
+    try:
+        return session.unwrap()
+    except object_errors() as error:
+        return error

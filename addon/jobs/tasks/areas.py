@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Areas of regions in the world and of layouts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from ...core.region import Region
+
+
+def total_area(corners: NDArray[np.float64]) -> float:
+    """Of triangles, (m, 3, 2) or (m, 3, 3)."""
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    squared = (first**2).sum(axis=1) * (second**2).sum(axis=1) - (first * second).sum(axis=1) ** 2
+    return float(np.sqrt(np.maximum(squared, 0.0)).sum()) / 2
+
+
+def size_on_the_surface(region: Region, triangles: NDArray[np.bool_] | slice = slice(None)) -> float:
+    """Square root of the area of some triangles of a region, with the object's scale."""
+    surface = region.surface
+    corners = surface.positions[surface.triangles[triangles]]
+    return float(np.sqrt(total_area(corners))) * (region.object_scale or 1.0)

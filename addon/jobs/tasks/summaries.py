@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Results in one line, for Blender's reports."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from ...core.text import counted
+from .cells import inexact_cuts
+
+if TYPE_CHECKING:
+    import lsgp
+
+    from .unwrapping import Unwrapped
+
+
+NOTICEABLE = math.radians(1.0)
+"""From which on a miss of the texture's direction is told."""
+
+
+def unwrap_summary(unwrapped: Unwrapped) -> str:
+    """Islands, cones, stretch, overlaps, and how well the cuts of a seamless layout match."""
+    result = unwrapped.result
+    parts = [
+        f"{counted(int(result.island.max()) + 1, 'island')} through {counted(len(result.cones), 'cone')}",
+        f"stretch {result.distortion.l2_stretch:.3f} (1 is none)",
+    ]
+    if result.overlap_area > 0:
+        parts.append(f"{100 * result.overlap_area:.2g} % overlapping")
+    if result.direction_error is not None and result.direction_error > NOTICEABLE:
+        parts.append(f"texture up missed by {math.degrees(result.direction_error):.0f}° on average")
+    if result.seamless is not None:
+        parts.append(_seam_summary(unwrapped))
+    return ", ".join(parts)
+
+
+def placement_summary(placement: lsgp.Placement, new: int) -> str:
+    """new: how many of the cones were not marked before."""
+    count = counted(len(placement.cones), "cone")
+    return f"{count}, {new} of them new, stretch {placement.mapped_l2:.3f} (1 is none)"
+
+
+def quad_summary(mesh: lsgp.QuadMesh) -> str:
+    irregular = counted(len(mesh.irregular), "irregular vertex", "irregular vertices")
+    return f"{len(mesh.quads):,} quads, {irregular}"
+
+
+def _seam_summary(unwrapped: Unwrapped) -> str:
+    report = unwrapped.result.seamless
+    tiles = f"{report.tiles:.4g} tiles across"
+    count = len(report.cut_errors)
+    if not count:
+        return f"{tiles}, no cuts"
+    inexact = inexact_cuts(unwrapped)
+    if report.error == 0:
+        exact = "all exact"
+    elif not inexact:
+        exact = "all exact up to the rounding of UVs"
+    else:
+        exact = f"{inexact} of them off by up to {report.error:.2g} tiles"
+    return f"{tiles}, {counted(count, 'cut')}, {exact}"

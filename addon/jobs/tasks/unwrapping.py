@@ -1,0 +1,282 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From regions to finished maps: pins, the library's result, aspect and placement. Nothing is written.
+
+Runs in a thread of its own while Blender continues, so nothing here touches Blender's data.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core import native
+from ...core.errors import Refused
+from ...core.islands import Islands
+from . import cells
+from .areas import size_on_the_surface
+from .cuts import CutChoice, with_cut_costs
+from .directions import DirectionChoice, with_directions
+from .solving import solve_all
+
+if TYPE_CHECKING:
+    import lsgp
+
+    from ...core.cone_angles import ConeAngles
+    from ...core.region import Region
+    from .solving import Progress
+
+HIGH_DISTORTION = "HIGH_DISTORTION"
+# Stretch from which on a map is of little use.
+NEEDS_CONES = 1.5
+
+
+@dataclass(frozen=True, slots=True)
+class UnwrapSettings:
+    """What the artist chose.
+
+    cone_group: the vertex group of the cones. weight_group: that of the importance weights, None where all vertices
+    count alike. weight_factor: what a weight of 1 adds to an importance of 1. subdivided: whether regions are read with
+    the Subdivision Surface modifier. cuts: where cuts should run. direction: where the texture
+    should. The others as in the operator.
+    """
+
+    options: lsgp.Options
+    cone_group: str
+    weight_group: str | None
+    weight_factor: float
+    use_pins: bool
+    keep_placement: bool
+    correct_aspect: bool
+    cuts: CutChoice
+    direction: DirectionChoice = field(default_factory=DirectionChoice)
+    subdivided: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class UnwrapTask:
+    """Everything that the map of one region is computed from.
+
+    cones: those of the region with their angles. pinned: (m, 3) bool, the corners that keep their UVs. keep_placement:
+    whether islands stay where the old UVs of the region are. aspect: of the image that the coordinates are for; 1 where
+    they are not corrected for one. cuts: where they should run. completes: whether cones are placed where those of the
+    region do not suffice; count: how many on each connected part that gets some, None for as few as keep the stretch
+    low; symmetric: whether they are placed alike on both sides of a mirror plane, if that costs little. creases_of: the
+    preset of `lsgp.auto_unwrap` in whose way hard surfaces then end at creases; None: in no way.
+    """
+
+    region: Region
+    cones: ConeAngles
+    options: lsgp.Options
+    pinned: NDArray[np.bool_]
+    keep_placement: bool
+    aspect: float
+    cuts: CutChoice
+    completes: bool = False
+    count: int | None = None
+    symmetric: bool = False
+    creases_of: str | None = None
+
+    @property
+    def threads(self) -> int:
+        return self.options.threads
+
+    def with_threads(self, count: int) -> UnwrapTask:
+        return replace(self, options=replace(self.options, threads=count))
+
+
+@dataclass(frozen=True, slots=True)
+class Unwrapped:
+    """A finished map.
+
+    corner_uv: (m, 3, 2) float64 as to be written, NaN where not solved. pinned: (m, 3) bool, the corners that kept
+    their UVs. aspect: as in the task. step: side of the cells by which islands of a seamless layout may be moved; None
+    for other layouts.
+    """
+
+    region: Region
+    result: lsgp.Result
+    corner_uv: NDArray[np.float64]
+    pinned: NDArray[np.bool_]
+    aspect: float
+    step: float | None
+
+    @property
+    def warnings(self) -> list[lsgp.Finding]:
+        return self.result.warnings
+
+    def islands(self) -> Islands:
+        """The solved islands for the packer."""
+        solved = self.result.solved
+        region, island = self.region, self.result.island
+        return Islands(
+            region.surface.triangles[solved], self.corner_uv[solved], island[solved], self.pinned[solved], self.aspect
+        )
+
+
+def unwrap_task(region: Region, settings: UnwrapSettings) -> UnwrapTask:
+    """What the map of the region is computed from.  Raises Refused."""
+    options = _options_for(region, settings.options)
+    region = with_directions(region, settings.direction)
+    if region.weights is not None and settings.weight_factor:
+        weighted = replace(region.surface, importance=1.0 + settings.weight_factor * region.weights)
+        region = replace(region, surface=weighted)
+    return UnwrapTask(
+        region=region,
+        cones=region.own_cones,
+        options=options,
+        pinned=region.pinned if settings.use_pins else np.zeros_like(region.pinned),
+        keep_placement=settings.keep_placement,
+        aspect=region.image_aspect if settings.correct_aspect else 1.0,
+        cuts=settings.cuts,
+    )
+
+
+def unwrap_all(
+    tasks: Sequence[UnwrapTask],
+    progress: Progress | None = None,
+    solve: Callable[[UnwrapTask, Progress | None], Unwrapped] | None = None,
+) -> list[Unwrapped | Exception]:
+    """The maps of all tasks; an error in place of each that could not be computed.  Raises Cancelled.
+
+    Automatic tiles of seamless layouts have one size in the world, the smallest that a task requires.
+    solve: in place of `unwrap`.
+    """
+    tasks, solve = _sharing_the_square(tasks), solve or unwrap
+    if len(tasks) < 2 or not all(_has_automatic_tiles(task) for task in tasks):
+        return solve_all(tasks, solve, progress)
+    part_of = native.part("auto_unwrap").part_of
+    outcomes = solve_all(tasks, solve, part_of(progress, 0.0, 0.5))
+    smallest = min((_tile_size(found) for found in outcomes if isinstance(found, Unwrapped)), default=0.0)
+    larger = [
+        i for i, found in enumerate(outcomes) if isinstance(found, Unwrapped) and _tile_size(found) > smallest > 0
+    ]
+    redone = solve_all([_with_tile_size(tasks[i], smallest) for i in larger], solve, part_of(progress, 0.5, 1.0))
+    for i, found in zip(larger, redone, strict=True):
+        outcomes[i] = found
+    return outcomes
+
+
+def _has_automatic_tiles(task: UnwrapTask) -> bool:
+    seamless = task.options.seamless
+    return seamless is not None and seamless.tiles is None and seamless.tile_size is None
+
+
+def _tile_size(unwrapped: Unwrapped) -> float:
+    """In the world."""
+    return unwrapped.result.seamless.tile_size * unwrapped.region.object_scale
+
+
+def _with_tile_size(task: UnwrapTask, size: float) -> UnwrapTask:
+    """size: in the world."""
+    seamless = replace(task.options.seamless, tile_size=size / task.region.object_scale)
+    return replace(task, options=replace(task.options, seamless=seamless))
+
+
+def _sharing_the_square(tasks: Sequence[UnwrapTask]) -> list[UnwrapTask]:
+    """Each with its share of the square that all are to be packed into, by area in the world, where that matters."""
+    if all(task.options.compact == "off" for task in tasks):
+        return list(tasks)
+    areas = np.array([size_on_the_surface(task.region) ** 2 for task in tasks])
+    shares = areas / areas.sum() if (areas > 0).all() and np.isfinite(areas).all() else np.ones(len(tasks))
+    return [
+        replace(task, options=replace(task.options, square_share=float(share) * task.options.square_share))
+        for task, share in zip(tasks, shares, strict=True)
+    ]
+
+
+def unwrap(task: UnwrapTask, progress: Progress | None, solver: lsgp.Solver | None = None) -> Unwrapped:
+    """The map of one task.  Raises LsgpError.
+
+    solver: for the region's surface with its costs of cuts, to reuse what it has factorized.
+    """
+    lsgp = native.lsgp
+    if solver is None:
+        task = replace(task, region=with_cut_costs(task.region, task.cuts))
+    region, pinned = task.region, task.pinned
+    # The library works where both axes have the same unit of length.
+    squeeze = lsgp.correct_aspect((1.0, 1.0), task.aspect)
+    pins = _pins(region, pinned, region.corner_uv / squeeze)
+    imposed = task.cones.without_stale(region.surface, task.options)
+    if task.completes:
+        result = _completed(task, imposed, pins, progress)
+    else:
+        parameterize = partial(lsgp.parameterize, region.surface) if solver is None else solver.parameterize
+        result = parameterize(imposed.cones, imposed.angles, task.options, pins, progress)
+    result = replace(result, warnings=_with_one_stretch(result, task))
+    uv = result.corner_uv
+    step = None if result.seamless is None else cells.step(task.options.seamless)
+    if task.keep_placement and step is not None:
+        uv = cells.keep_places(region, result, step)
+    elif task.keep_placement:
+        old = region.corner_uv / squeeze
+        # Pins have already placed their islands.
+        old[np.isin(result.island, result.island[pinned.any(axis=1)])] = np.nan
+        uv = lsgp.fit_placement(uv, old, result.island)
+    uv = lsgp.correct_aspect(uv, task.aspect)
+    # Pinned UVs keep their exact bytes, which the way through double precision would round.
+    exact = pinned & result.solved[:, None]
+    uv[exact] = region.corner_uv[exact]
+    return Unwrapped(region, result, uv, exact, task.aspect, step)
+
+
+def _completed(task: UnwrapTask, cones: ConeAngles, pins: lsgp.Pins | None, progress: Progress | None) -> lsgp.Result:
+    """The map through these cones and those placed besides.  Raises LsgpError."""
+    return native.lsgp.auto_unwrap(
+        task.region.surface,
+        cones.cones,
+        cones.angles,
+        preset=task.creases_of or "paint",
+        options=task.options,
+        count=task.count,
+        symmetric=task.symmetric,
+        creases=task.creases_of is not None,
+        sharp=task.region.sharp,
+        pins=pins,
+        pack="shelves",  # the islands of all objects are packed together, afterwards
+        progress=progress,
+    )
+
+
+def _with_one_stretch(result: lsgp.Result, task: UnwrapTask) -> list[lsgp.Finding]:
+    """The warnings with the stretch that was measured, in place of the one that was expected, and what to do."""
+    others = [finding for finding in result.warnings if finding.code != HIGH_DISTORTION]
+    warned = len(others) < len(result.warnings)
+    stretch = result.distortion.l2_stretch
+    if not len(result.cones) and not stretch < NEEDS_CONES and not task.completes:
+        message = (
+            f"No cones are marked, and the map is stretched: {stretch:.3g}, 1 being none. "
+            "Use Auto Unwrap, which places what is missing, or mark cones."
+        )
+        return [*others, native.lsgp.Finding("NO_CONES_MARKED", message)]
+    if not warned or (task.options.mode == "low-stretch" and stretch < NEEDS_CONES):
+        return others
+    cause = "Some places are much larger in the map than others."
+    if not stretch < NEEDS_CONES:
+        cause = f"The map is stretched much: {stretch:.3g}, 1 being none."
+    remedy = "Choose Low Stretch, or add cones where the texture is small."
+    return [*others, native.lsgp.Finding(HIGH_DISTORTION, f"{cause} {remedy}")]
+
+
+def _options_for(region: Region, options: lsgp.Options) -> lsgp.Options:
+    """Tiles are measured on the object with its scale, of which the mesh knows nothing.  Raises Refused."""
+    seamless = options.seamless
+    if seamless is None or seamless.tile_size is None:
+        return options
+    if not region.object_scale:
+        raise Refused("the object is scaled to zero, where tiles have no size; scale it up or give a number of tiles")
+    return replace(options, seamless=replace(seamless, tile_size=seamless.tile_size / region.object_scale))
+
+
+def _pins(region: Region, pinned: NDArray[np.bool_], uv: NDArray[np.float64]) -> lsgp.Pins | None:
+    """Each pinned loop once; the triangles of a polygon share loops."""
+    corners = np.flatnonzero(pinned)
+    if not len(corners):
+        return None
+    _, first = np.unique(region.triangle_loops.ravel()[corners], return_index=True)
+    corners = corners[np.sort(first)]
+    return native.lsgp.Pins(corners.astype(np.int32), uv.reshape(-1, 2)[corners])
