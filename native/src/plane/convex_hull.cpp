@@ -10,6 +10,10 @@ namespace lsgp {
 
 namespace {
 
+// Differences of this share of a length, or of an area, are taken for rounding, which must not choose between turns of
+// a layout that are equally good.
+constexpr double rounding = 1e-9;
+
 double cross(Complex a, Complex b) { return std::imag(std::conj(a) * b); }
 
 // Removes the points inside the polygon of the extreme ones (Akl and Toussaint 1978), which leaves few of a layout.
@@ -32,6 +36,20 @@ Array<Complex> outer_points(const Eigen::VectorXcd& position) {
     if (!inside) outer.push_back(z);
   }
   return outer;
+}
+
+// A polygon that begins at the lowest of its leftmost points, whichever of them rounding has put furthest to the left.
+Array<Complex> from_lowest_on_the_left(const Array<Complex>& polygon) {
+  const Extent extent = extent_along(polygon, 1);
+  const double left = extent.low.real() + rounding * std::max(extent.width(), extent.height());
+  std::size_t first = 0;
+  for (std::size_t i = 1; i < polygon.size(); ++i) {
+    const bool is_lower = polygon[i].imag() < polygon[first].imag();
+    if (polygon[i].real() <= left && (polygon[first].real() > left || is_lower)) first = i;
+  }
+  Array<Complex> out(polygon);
+  std::rotate(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(first), out.end());
+  return out;
 }
 
 }  // namespace
@@ -62,7 +80,8 @@ double area_of_hull(const Array<Complex>& hull) {
   return doubled / 2;
 }
 
-Complex longer_side(const Array<Complex>& hull) {
+Complex longer_side(const Array<Complex>& polygon) {
+  const Array<Complex> hull = from_lowest_on_the_left(polygon);
   Complex best(1, 0);
   double smallest = std::numeric_limits<double>::infinity();
   const std::size_t count = hull.size();
@@ -80,13 +99,15 @@ Complex longer_side(const Array<Complex>& hull) {
     move_on(right, top, [](Complex z) { return z.imag(); });
     move_on(top, left, [](Complex z) { return -z.real(); });
     const double width = at(right).real() - std::min(0.0, at(left).real()), height = at(top).imag();
-    if (width * height < smallest * (1 - 1e-9)) {
+    if (width * height < smallest * (1 - rounding)) {
       smallest = width * height;
-      best = width >= height ? along : along * Complex(0, 1);
+      best = is_wide(width, height) ? along : along * Complex(0, 1);
     }
   }
   return best;
 }
+
+bool is_wide(double width, double height) { return width >= height * (1 - rounding); }
 
 Extent extent_along(const Array<Complex>& points, Complex along) {
   constexpr double infinity = std::numeric_limits<double>::infinity();

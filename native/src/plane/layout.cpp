@@ -19,6 +19,18 @@ struct Box {
   double width, height;
 };
 
+// Orders boxes by height, the highest first; those of one height but for rounding remain in the order of their numbers.
+Array<std::size_t> by_height(const Array<Box>& boxes) {
+  constexpr double steps = 0x1p30;
+  double highest = 0;
+  for (const Box& box : boxes) highest = std::max(highest, box.height);
+  const auto steps_high = [&](std::size_t i) { return std::round(boxes[i].height / highest * steps); };
+  Array<std::size_t> order(boxes.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return steps_high(a) > steps_high(b); });
+  return order;
+}
+
 // Puts boxes on shelves about as wide as all of them are high; returns the origin of each.
 struct Shelves {
   Array<Complex> place;
@@ -30,13 +42,10 @@ Shelves shelve(const Array<Box>& boxes, double gap) {
     total += box.width * box.height;
     widest = std::max(widest, box.width);
   }
-  Array<std::size_t> order(boxes.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return boxes[a].height > boxes[b].height; });
   const double shelf_width = std::max(widest, 1.05 * std::sqrt(total)) + gap;
   Shelves out{Array<Complex>(boxes.size()), 0};
   double x = 0, y = 0, shelf_height = 0, right = 0;
-  for (const std::size_t i : order) {
+  for (const std::size_t i : by_height(boxes)) {
     if (x > 0 && x + boxes[i].width > shelf_width) {
       y += shelf_height + gap;
       x = shelf_height = 0;
@@ -58,7 +67,7 @@ Complex longer_axis(const Array<Complex>& hull) {
   const Complex side = longer_side(hull);
   const Extent upright = extent_along(hull, 1);
   if (area(upright) > larger * area(extent_along(hull, side))) return side;
-  return upright.width() >= upright.height() ? Complex(1, 0) : Complex(0, 1);
+  return is_wide(upright.width(), upright.height()) ? Complex(1, 0) : Complex(0, 1);
 }
 
 }  // namespace

@@ -33,6 +33,17 @@ Array<Index> open_border(const HalfedgeMesh& mesh, const CutMesh& cut_mesh) {
   return border;
 }
 
+// An eigenvector multiplied by any complex number of modulus 1 is another, and rounding would choose among them: here
+// the position farthest from the origin is put on the positive u axis, the first of those that are equally far but for
+// rounding.
+Eigen::VectorXcd with_fixed_rotation(const Eigen::VectorXcd& position) {
+  constexpr double nearly = 1 - 1e-6;
+  const double farthest = position.cwiseAbs().maxCoeff();
+  Eigen::Index first = 0;
+  while (std::abs(position[first]) < nearly * farthest) ++first;
+  return position * std::polar(1.0, -std::arg(position[first]));
+}
+
 }  // namespace
 
 FrameTree::FrameTree(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph)
@@ -220,12 +231,13 @@ Eigen::VectorXcd unfold_spectral(const CutSurface& surface, const Reduction& red
   if (surface.factor != nullptr) {
     const SchurComplement condensation(surface.mesh, surface.cut_mesh, *surface.factor, reduction);
     const Eigen::MatrixXcd dirichlet = condensation.dirichlet_form();
-    return condensation.extend(smallest_eigenvector(condensation.conformal_form(dirichlet), dirichlet));
+    return with_fixed_rotation(
+        condensation.extend(smallest_eigenvector(condensation.conformal_form(dirichlet), dirichlet)));
   }
   const auto form = [&](Form kind) {
     return assemble_form(kind, surface.mesh, surface.geometry, surface.cut_mesh, reduction);
   };
-  return expand(reduction, smallest_eigenvector(form(Form::conformal), form(Form::dirichlet)));
+  return with_fixed_rotation(expand(reduction, smallest_eigenvector(form(Form::conformal), form(Form::dirichlet))));
 }
 
 Eigen::VectorXcd unfold_lscm(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh) {

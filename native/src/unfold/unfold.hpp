@@ -82,7 +82,8 @@ Eigen::VectorXcd unfold_aligned(const CutSurface& surface, const Reduction& redu
                                 const Array<Index>& edges, const Eigen::VectorXd& directions);
 
 // The map of least conformal energy at a given Dirichlet energy (Mullen et al. 2008, with a norm that transitions
-// leave invariant). Solved on the cut if the surface has a factor, sparse otherwise.
+// leave invariant). Solved on the cut if the surface has a factor, sparse otherwise. Rounding does not choose its
+// rotation: the position farthest from the origin is on the positive u axis.
 Eigen::VectorXcd unfold_spectral(const CutSurface& surface, const Reduction& reduction);
 
 // Least squares conformal map of the opened surface with two pinned copies, no transitions (Levy et al. 2002).

@@ -324,7 +324,14 @@ REVIEWED = {
         ("while (inner[at - 1] > row)", "entries of a column, its first one below", SHORT),
     ],
     "systems/stiffness.cpp": [("while (!queue.empty())", NEAREST, SHORT)],
-    "unfold/unfold.cpp": [("for (Index at = copy; border.empty() || at != copy; at = next_copy[at])", SIDES, SHORT)],
+    "unfold/unfold.cpp": [
+        ("for (Index at = copy; border.empty() || at != copy; at = next_copy[at])", SIDES, SHORT),
+        (
+            "while (std::abs(position[first]) < nearly * farthest)",
+            "ends at the farthest position, if not before",
+            SHORT,
+        ),
+    ],
 }
 
 
