@@ -44,7 +44,7 @@ void add_flips_as_stored(const HalfedgeMesh& mesh, const CornerPositions& corner
 
 }  // namespace
 
-Assembly::Assembly(const Surface& surface, const Array<Component>& components, const Options& options,
+Assembly::Assembly(const Surface& surface, const PerComponent<Component>& components, const Options& options,
                    ProgressMonitor& monitor, Result& result)
     : surface_(surface), components_(components), options_(options), monitor_(monitor), result_(result) {
   result.corner_uv = CornerUv::Constant(3 * surface.triangles.rows(), 2, std::numeric_limits<double>::quiet_NaN());
@@ -72,7 +72,7 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
       return;
     }
   }
-  const Array<char>& seam = component.mesh.seam;
+  const PerHalfedge<char>& seam = component.mesh.seam;
   const bool keeps_islands = options_.compact == Compactness::off || !map.pins.empty() ||
                              (options_.compact == Compactness::sparing && std::count(seam.begin(), seam.end(), 1) > 0);
   if (!keeps_islands) {
@@ -86,7 +86,7 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
   for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
     result_.log_scale[component.source_vertex[v]] = map.curvature.log_scale[v];
   }
-  Array<char> is_flat(component.mesh.vertex_count(), 0);
+  PerVertex<char> is_flat(component.mesh.vertex_count(), 0);
   for (const Index v : map.flat_cones) {
     is_flat[v] = 1;
     flat_cones_.push_back(component.source_vertex[v]);
@@ -210,16 +210,16 @@ void Assembly::measure_directions(const Solved& solved) {
   }
 }
 
-Array<char> Assembly::open_seams(const HalfedgeMesh& mesh) const {
+PerHalfedge<char> Assembly::open_seams(const HalfedgeMesh& mesh) const {
   // A seamless layout continues across seams that were not cut.
-  return result_.seamless ? Array<char>(mesh.halfedge_count(), 0) : mesh.seam;
+  return result_.seamless ? PerHalfedge<char>(mesh.halfedge_count(), 0) : mesh.seam;
 }
 
 void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
   const Component& component = *solved.component;
   const ComponentMap& map = solved.map;
   const HalfedgeMesh& mesh = component.mesh;
-  Array<char> open = open_seams(mesh);
+  PerHalfedge<char> open = open_seams(mesh);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) open[h] = open[h] || map.cut_graph.is_cut[h];
   solved.part_count = label_parts(mesh, open, solved.part);
   append_ends(component, open, cut_edges_);
@@ -237,13 +237,13 @@ void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
   if (solved.is_in_place) return;
   solved.scale = scale_to_surface(mesh, geometry, map);
   solved.first_island = ssize(islands_);
-  Array<UpwardTurn> upward(solved.part_count);
+  PerPart<UpwardTurn> upward(solved.part_count);
   if (!solved.directions->empty()) {
     const Eigen::VectorXcd position = at_corners(map.cut_mesh, map.position);
     for (Index f = 0; f < mesh.triangle_count(); ++f) upward[solved.part[f]].add(solved.directions->image(position, f));
   }
-  Array<Array<Index>> copies(solved.part_count);  // of every island
-  Array<Index> listed_in(map.cut_mesh.copy_count(), none);
+  PerPart<Array<Index>> copies(solved.part_count);  // of every island
+  PerCopy<Index> listed_in(map.cut_mesh.copy_count(), none);
   for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
     const Index copy = map.cut_mesh.copy_of_corner[corner], part = solved.part[corner / 3];
     if (listed_in[copy] == part) continue;
@@ -298,7 +298,8 @@ void Assembly::report_flat_cones() {
 
 // Overlapping triangles, over all islands.
 void Assembly::find_overlapping() {
-  Array<Index> twin(layout_.size()), triangle(layout_.size() / 3);
+  PerHalfedge<Index> twin(layout_.size());
+  Array<Index> triangle(layout_.size() / 3);
   double area = 0;
   for (const Solved& solved : solved_) {
     const HalfedgeMesh& mesh = solved.component->mesh;
@@ -315,8 +316,8 @@ void Assembly::find_overlapping() {
     }
   }
   double shared = 0;
-  const Array<Index> face = number_faces();
-  Array<char> is_flipped(surface_.triangles.rows(), 0);
+  const PerTriangle<Index> face = number_faces();
+  PerTriangle<char> is_flipped(surface_.triangles.rows(), 0);
   for (const Index f : result_.flipped) is_flipped[f] = 1;
   for (const Overlap& overlap : result_.flipped.empty() ? find_overlaps(layout_, twin) : find_overlaps(layout_)) {
     shared += overlap.area;
@@ -331,8 +332,8 @@ void Assembly::find_overlapping() {
 }
 
 // The face of every triangle of the layout: triangles that no cut may separate form one face.
-Array<Index> Assembly::number_faces() const {
-  Array<Index> out, face;
+PerTriangle<Index> Assembly::number_faces() const {
+  PerTriangle<Index> out, face;
   Index before = 0;
   for (const Solved& solved : solved_) {
     const Index count = label_parts(solved.component->mesh, solved.component->mesh.cuttable, face);

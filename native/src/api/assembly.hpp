@@ -16,8 +16,8 @@ namespace lsgp {
 class Assembly {
  public:
   // Everything is collected in `result`, which holds the findings so far.
-  Assembly(const Surface& surface, const Array<Component>& components, const Options& options, ProgressMonitor& monitor,
-           Result& result);
+  Assembly(const Surface& surface, const PerComponent<Component>& components, const Options& options,
+           ProgressMonitor& monitor, Result& result);
 
   // task: has to stay until the end.  A component whose map cannot be split is left out, with the findings about its
   // map.
@@ -35,10 +35,10 @@ class Assembly {
     const Component* component;
     const TextureDirections* directions;
     ComponentMap map;
-    Array<Index> part;  // (m) the island of every triangle, counted from the component's first
+    PerTriangle<Index> part;  // the island, counted from the component's first
     Index part_count = 1;
     double scale = 1;               // of the map to the texel density of all
-    Array<double> turn;             // (parts) by which each is turned in the layout, radians
+    PerPart<double> turn;           // by which each is turned in the layout, radians
     Eigen::Index first_island = 0;  // of those to be arranged
     bool is_in_place = false;       // its islands are not to be arranged
     Eigen::Index first_corner = 0;  // in the layout
@@ -54,8 +54,8 @@ class Assembly {
   void collect_checks(const Component& component, const ComponentMap& map);
   void measure_directions(const Solved& solved);
 
-  // Halfedges at which a component's layout may end besides its cuts, (3m).
-  Array<char> open_seams(const HalfedgeMesh& mesh) const;
+  // Halfedges at which a component's layout may end besides its cuts.
+  PerHalfedge<char> open_seams(const HalfedgeMesh& mesh) const;
 
   // A component is one island, or several if its cuts and seams enclose regions: these keep their size and are placed
   // individually, related across the seam by their motions. Seams that end in the interior are cut as well, and their
@@ -69,15 +69,15 @@ class Assembly {
   void report_flat_cones();
 
   void find_overlapping();
-  Array<Index> number_faces() const;
+  PerTriangle<Index> number_faces() const;
 
   const Surface& surface_;
-  const Array<Component>& components_;
+  const PerComponent<Component>& components_;
   const Options& options_;
   ProgressMonitor& monitor_;
   Result& result_;
   double surface_area_ = 0;                 // of all components
-  Array<double> cone_angle_;                // by the caller's vertex, NaN where none was imposed
+  PerVertex<double> cone_angle_;            // of the caller's, NaN where none was imposed
   Array<Index> cut_edges_, required_cuts_;  // vertex pairs
   Defects defects_;
   AddedCuts added_cuts_;

@@ -38,7 +38,7 @@ class PlacementWork {
   }
 
   double unit_scale() const { return work_.unit_scale; }
-  const Array<Component>& components() const { return work_.topology.components; }
+  const PerComponent<Component>& components() const { return work_.topology.components; }
   ProgressMonitor& monitor() { return monitor_; }
 
   // Calls visit(component, geometry, existing cones, allowed vertices, findings) for every component.
@@ -54,7 +54,7 @@ class PlacementWork {
       monitor_.advance(0);
       const Geometry geometry = require_geometry(component, findings_);
       // A vertex shared by components cannot have an angle on each.
-      Array<char> allowed;
+      PerVertex<char> allowed;
       for (const Index v : component.source_vertex) allowed.push_back(copies_[v] == 1);
       std::vector<Finding> found;
       visit(component, geometry, work_.tasks[i].cones, allowed, found);
@@ -70,7 +70,7 @@ class PlacementWork {
   StageSeconds seconds_;
   ProgressMonitor monitor_;
   Work work_;
-  Array<Index> copies_;  // (n) components' vertices that are one of the caller's
+  PerVertex<Index> copies_;  // components' vertices that are one of the caller's
 };
 
 // The given mirror plane in the components' unit.
@@ -123,15 +123,15 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
   const MoreCones more = options.count == 0 ? MoreCones::none : MoreCones::some;
   PlacementWork work({surface, existing, options.seams, more}, out.warnings, progress);
   out.log_scale = Eigen::VectorXd::Zero(surface.positions.rows());
-  Array<std::optional<double>> angle(surface.positions.rows());
+  PerVertex<std::optional<double>> angle(surface.positions.rows());
   Array<Index> placed, shared;
   double stretched_area = 0, stretched_in_maps = 0, total_area = 0;
   Shortfalls shortfalls(options);
   const std::optional<MirrorPlane> plane = mirror_plane(options, work.unit_scale());
   TwinPlacement twins(work.components(), options, plane);
   work.for_each([&](const Component& component, const Geometry& geometry, const ComponentCones& cones,
-                    const Array<char>& allowed, std::vector<Finding>& findings) {
-    Array<Index> mirrored;
+                    const PerVertex<char>& allowed, std::vector<Finding>& findings) {
+    PerVertex<Index> mirrored;
     if (options.symmetric) mirrored = find_mirror_images(component.mesh, geometry, plane);
     if (options.symmetric && mirrored.empty() && !twins.is_mirrored(component)) {
       shortfalls.add_asymmetric(component.source_triangle);
@@ -186,7 +186,7 @@ ConeGains cone_gains(const Surface& surface, const Cones& existing, SeamMode sea
   out.predicted_l2 = Eigen::VectorXd::Constant(surface.positions.rows(), std::numeric_limits<double>::quiet_NaN());
   double stretched_area = 0, total_area = 0, most = 0, most_without = 0;
   work.for_each([&](const Component& component, const Geometry& geometry, const ComponentCones& cones,
-                    const Array<char>& allowed, std::vector<Finding>&) {
+                    const PerVertex<char>& allowed, std::vector<Finding>&) {
     const ComponentGains gains = component_gains({component.mesh, geometry, cones, allowed, {}}, work.monitor());
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
       if (!std::isnan(gains.predicted_l2[v])) out.predicted_l2[component.source_vertex[v]] = gains.predicted_l2[v];

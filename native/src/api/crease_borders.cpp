@@ -56,7 +56,7 @@ VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& con
   const Cones given{cones, Array<std::optional<double>>(cones.size())};
   std::vector<Finding> findings;
   const Work work = prepare({surface, given, Options{}}, findings);
-  const Array<Component>& components = work.topology.components;
+  const PerComponent<Component>& components = work.topology.components;
   Array<Index> edges;
   for_each_component(components, findings, monitor, [&](std::size_t i) {
     const Component& component = components[i];
@@ -64,13 +64,13 @@ VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& con
     if (!component.orientable || is_marked(mesh, work.tasks[i])) return;
     const Geometry geometry = require_geometry(component, findings);
     const Eigen::VectorXd bend = bends(mesh);
-    Array<char> crease(mesh.halfedge_count(), 0);
+    PerHalfedge<char> crease(mesh.halfedge_count(), 0);
     for (Index h = 0; h < mesh.halfedge_count(); ++h) {
       if (!may_cut(mesh, h)) continue;
       const Index a = component.source_vertex[mesh.origin(h)], b = component.source_vertex[mesh.target(h)];
       crease[h] = bend[h] >= options.angle || (!sharp.empty() && sharp.count(std::minmax(a, b)) > 0);
     }
-    const Array<char> open = find_crease_borders(mesh, geometry, crease, bend, options.most_corners);
+    const PerHalfedge<char> open = find_crease_borders(mesh, geometry, crease, bend, options.most_corners);
     append_ends(component, open, edges);
   });
   monitor.advance(1);

@@ -44,7 +44,7 @@ Eigen::VectorXd crease_angles(const Surface& surface, const EdgeTable& edges) {
 
 // The factor of creases and sharp edges for each row of the surface's edges.
 Eigen::VectorXd crease_factors(const Surface& surface, const CutPreferences& preferences) {
-  const EdgeTable edges(surface, Array<char>(surface.triangles.rows(), 0));
+  const EdgeTable edges(surface, PerTriangle<char>(surface.triangles.rows(), 0));
   Eigen::VectorXd angle = Eigen::VectorXd::Zero(edges.count());
   if (preferences.creases) angle = crease_angles(surface, edges);
   const VertexPairs& sharp = preferences.sharp;

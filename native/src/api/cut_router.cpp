@@ -40,13 +40,13 @@ struct CutRouter::Kept {
 
   const Surface surface;
   const EdgeTable edges;
-  Array<Component> components;
-  Array<Geometry> geometry;  // (components)
-  Array<Place> place;        // (m)
+  PerComponent<Component> components;
+  PerComponent<Geometry> geometry;
+  PerTriangle<Place> place;
 };
 
 CutRouter::Kept::Kept(Surface given)
-    : surface(without_seams(std::move(given))), edges(surface, Array<char>(surface.triangles.rows(), 0)) {
+    : surface(without_seams(std::move(given))), edges(surface, PerTriangle<char>(surface.triangles.rows(), 0)) {
   std::vector<Finding> ignored;
   components = std::move(build_topology(surface, {}, ignored).components);
   place.resize(surface.triangles.rows());
@@ -141,7 +141,7 @@ GrabbedCut CutRouter::grab(const VertexPairs& cuts, const std::vector<Index>& pa
   auto [halfedges, owner] = kept_->along(path);
   const Component& component = kept_->components[owner];
   const HalfedgeMesh& mesh = component.mesh;
-  MovedCut cut{halfedges, Array<char>(mesh.halfedge_count(), 0), Array<char>(mesh.vertex_count(), 0)};
+  MovedCut cut{halfedges, PerHalfedge<char>(mesh.halfedge_count(), 0), PerVertex<char>(mesh.vertex_count(), 0)};
   for (Index row = 0; row < cuts.rows(); ++row) {
     const Index edge = kept_->edge_between(cuts(row, 0), cuts(row, 1));
     for (Index i = 0; i < kept_->edges.halfedge_count(edge); ++i) {
@@ -150,7 +150,7 @@ GrabbedCut CutRouter::grab(const VertexPairs& cuts, const std::vector<Index>& pa
     }
   }
   for (const Index h : halfedges) cut.is_other[h] = cut.is_other[mesh.twin[h]] = 0;
-  Array<char> is_node(kept_->surface.positions.rows(), 0);
+  PerVertex<char> is_node(kept_->surface.positions.rows(), 0);
   for (const Index v : nodes) {
     if (v < 0 || v >= ssize(is_node)) {
       throw Error(Code::index_out_of_range, concat("There is no vertex ", v, ". Pass vertices of this mesh as nodes."));

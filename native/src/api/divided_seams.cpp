@@ -9,12 +9,12 @@ namespace lsgp {
 
 namespace {
 
-Array<double> sizes_of_parts(const PlacedParts& parts, const CornerPositions& corners) {
-  Array<PositionBox> boxes(parts.turn.size());
+PerPart<double> sizes_of_parts(const PlacedParts& parts, const CornerPositions& corners) {
+  PerPart<PositionBox> boxes(parts.turn.size());
   for (Eigen::Index corner = 0; corner < corners.size(); ++corner) {
     boxes[parts.of_triangle[corner / 3]].add(corners[corner]);
   }
-  Array<double> out;
+  PerPart<double> out;
   for (const PositionBox& box : boxes) out.push_back(box.size());
   return out;
 }
@@ -23,7 +23,7 @@ Array<double> sizes_of_parts(const PlacedParts& parts, const CornerPositions& co
 
 void check_divided_seams(const HalfedgeMesh& mesh, const PlacedParts& parts, const CornerPositions& corners,
                          ComponentMap& map) {
-  const Array<double> size = sizes_of_parts(parts, corners);
+  const PerPart<double> size = sizes_of_parts(parts, corners);
   using Sides = std::pair<Index, Index>;
   const auto sides_of = [&](Index h) { return Sides{parts.of_triangle[h / 3], parts.of_triangle[mesh.twin[h] / 3]}; };
   const auto between = [&](const Sides& sides, std::optional<double> rotation) {

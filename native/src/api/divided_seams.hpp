@@ -8,8 +8,8 @@
 namespace lsgp {
 
 struct PlacedParts {
-  const Array<Index>& of_triangle;  // (m)
-  Array<double> turn;               // (parts) by which each was turned, radians
+  const PerTriangle<Index>& of_triangle;
+  PerPart<double> turn;  // by which each was turned, radians
 };
 
 // Measures positions u + iv at the component's corners, (3m), against the imposed transitions and the rotations of the

@@ -19,7 +19,7 @@ CutPaths find_cuts(const Surface& surface, const std::vector<Index>& cones, cons
   const Cones automatic{cones, Array<std::optional<double>>(cones.size())};
   std::vector<Finding> findings;
   const Work work = prepare({surface, automatic, options}, findings);
-  const Array<Component>& components = work.topology.components;
+  const PerComponent<Component>& components = work.topology.components;
   CutPaths out;
   Array<Index> edges;
   for_each_component(components, findings, monitor, [&](std::size_t i) {

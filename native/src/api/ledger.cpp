@@ -14,7 +14,7 @@ namespace {
 
 // place_of: of the caller's vertices in the list of cones.
 LedgerPart account(const Component& component, ComponentCones cones, const Options& options,
-                   const Array<Index>& place_of) {
+                   const PerVertex<Index>& place_of) {
   const HalfedgeMesh& mesh = component.mesh;
   LedgerPart out;
   out.triangles = component.source_triangle;
@@ -44,7 +44,7 @@ std::vector<LedgerPart> build_ledger(const Surface& surface, const Cones& cones,
                                      LedgerOf of) try {
   const Work work =
       prepare_topology({surface, cones, options}, of == LedgerOf::map ? MoreCones::none : MoreCones::some);
-  Array<Index> place_of(surface.positions.rows(), none);
+  PerVertex<Index> place_of(surface.positions.rows(), none);
   for (std::size_t i = 0; i < cones.vertices.size(); ++i) place_of[cones.vertices[i]] = static_cast<Index>(i);
   std::vector<LedgerPart> out;
   out.reserve(work.tasks.size());

@@ -117,8 +117,8 @@ Topology build_two_sided(Part& part, const CornerUv& uv, Array<Index>& cut_edges
 }
 
 // Edges at which the two sides have different coordinates.
-Array<char> find_open_edges(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position, double tolerance) {
-  Array<char> is_cut(mesh.halfedge_count(), 0);
+PerHalfedge<char> find_open_edges(const HalfedgeMesh& mesh, const Eigen::VectorXcd& position, double tolerance) {
+  PerHalfedge<char> is_cut(mesh.halfedge_count(), 0);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     const Index twin = mesh.twin[h];
     if (twin == none) continue;
@@ -148,7 +148,7 @@ Measurement measure_distortion(const Surface& surface, const CornerUv& corner_uv
   const CornerUv uv = unit_scale(corner_uv, part.triangles) * corner_uv;
   out.distortion = measure_triangles(surface, uv, part.triangles);
 
-  Array<char> given(surface.positions.rows(), 0);
+  PerVertex<char> given(surface.positions.rows(), 0);
   if (cones) {
     for (const Index v : *cones) given[v] = 1;
   }
@@ -165,11 +165,11 @@ Measurement measure_distortion(const Surface& surface, const CornerUv& corner_uv
     }
     const double size = std::max(position.real().maxCoeff() - position.real().minCoeff(),
                                  position.imag().maxCoeff() - position.imag().minCoeff());
-    const Array<char> is_cut = find_open_edges(mesh, position, same_position * size);
+    const PerHalfedge<char> is_cut = find_open_edges(mesh, position, same_position * size);
 
-    Array<Index> label;
+    PerTriangle<Index> label;
     const Index count = label_parts(mesh, is_cut, label);
-    Array<Index> positive(count, 0), total(count, 0);
+    PerPart<Index> positive(count, 0), total(count, 0);
     for (Index f = 0; f < mesh.triangle_count(); ++f) {
       positive[label[f]] += doubled_area(position, f) > 0;
       ++total[label[f]];
@@ -183,7 +183,7 @@ Measurement measure_distortion(const Surface& surface, const CornerUv& corner_uv
     island_count += count;
 
     const Eigen::VectorXd sums = angle_sums(mesh, position);
-    Array<char> is_node(mesh.vertex_count(), 0);
+    PerVertex<char> is_node(mesh.vertex_count(), 0);
     for (Index v = 0; v < mesh.vertex_count(); ++v) {
       is_node[v] = cones ? given[component.source_vertex[v]] : std::abs(std::abs(sums[v]) - 2 * M_PI) > cone_threshold;
     }

@@ -19,9 +19,9 @@ Prescription prescribe_curvature(const Surface& surface, const Cones& cones, con
   StageSeconds seconds;
   ProgressMonitor monitor(progress, seconds);
   const Work work = prepare({surface, cones, options}, out.warnings);
-  const Array<Component>& components = work.topology.components;
+  const PerComponent<Component>& components = work.topology.components;
   out.log_scale = Eigen::VectorXd::Zero(surface.positions.rows());
-  Array<double> angle(surface.positions.rows(), std::numeric_limits<double>::quiet_NaN());
+  PerVertex<double> angle(surface.positions.rows(), std::numeric_limits<double>::quiet_NaN());
   double stretched_area = 0, total_area = 0;
   for_each_component(components, out.warnings, monitor, [&](std::size_t i) {
     const Component& component = components[i];

@@ -54,8 +54,8 @@ class Pipeline {
 
   const bool keeps_systems_;
   Work work_;
-  Array<std::unique_ptr<Kept>> kept_;  // (components) systems refer to the geometry beside them
-  std::int64_t kept_of_ = 0;           // generation of the topology it was made from
+  PerComponent<std::unique_ptr<Kept>> kept_;  // systems refer to the geometry beside them
+  std::int64_t kept_of_ = 0;                  // generation of the topology it was made from
 };
 
 void Pipeline::prepare_work(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
@@ -105,13 +105,13 @@ Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& 
     const ProgressMonitor::Stage stage(monitor, "topology");
     prepare_work(surface, cones, options, pins, result.warnings);
   }
-  const Array<Component>& components = work_.topology.components;
+  const PerComponent<Component>& components = work_.topology.components;
   if (options.seamless) require_valid(*options.seamless, options, pins);
   constexpr double share_of_rounding = 0.5;
   const double share_of_maps = options.seamless ? 1 - share_of_rounding : 1;
   Index triangles_before = 0;
-  Array<std::optional<ComponentMap>> maps(components.size());
-  Array<std::vector<Finding>> found(components.size());  // about the maps
+  PerComponent<std::optional<ComponentMap>> maps(components.size());
+  PerComponent<std::vector<Finding>> found(components.size());  // about the maps
   for_each_component(components, result.warnings, [&](std::size_t i) {
     const Component& component = components[i];
     const ComponentTask& task = work_.tasks[i];
@@ -135,7 +135,7 @@ Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& 
     maps[i] = std::move(map);
     report_border_cones(component, task.border_cones, result.warnings);
   });
-  Array<ComponentTask> tasks = work_.tasks;  // seamless layouts merge cones
+  PerComponent<ComponentTask> tasks = work_.tasks;  // seamless layouts merge cones
   if (options.seamless) {
     const ProgressMonitor::Stage stage(monitor, "quantize");
     const ProgressMonitor::Part part(monitor, share_of_maps, 1);

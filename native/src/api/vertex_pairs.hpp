@@ -10,7 +10,7 @@ namespace lsgp {
 // The ends of edges, one after the other, as rows.
 VertexPairs to_vertex_pairs(const Array<Index>& ends);
 
-// Appends the ends of a component's marked edges between triangles.  is_marked: (3m) on both halfedges.
-void append_ends(const Component& component, const Array<char>& is_marked, Array<Index>& ends);
+// Appends the ends of a component's marked edges between triangles.  is_marked: on both halfedges.
+void append_ends(const Component& component, const PerHalfedge<char>& is_marked, Array<Index>& ends);
 
 }  // namespace lsgp

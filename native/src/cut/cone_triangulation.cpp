@@ -81,7 +81,7 @@ class Motions {
 // A triangulation that can be flipped; every triangle has a chart of its own.
 class IntrinsicTriangulation {
  public:
-  IntrinsicTriangulation(const CutSurface& surface, const Array<Complex>& turn, const Array<Index>& cones,
+  IntrinsicTriangulation(const CutSurface& surface, const PerCut<Complex>& turn, const Array<Index>& cones,
                          const Eigen::VectorXcd& position)
       : halfedges_(surface.mesh.halfedge_count()),
         outgoing_(surface.mesh.outgoing),
@@ -92,7 +92,7 @@ class IntrinsicTriangulation {
     const CutGraph& cut_graph = surface.cut_graph;
     const CutMesh& cut_mesh = surface.cut_mesh;
     for (const Index v : cones) is_cone_[v] = 1;
-    Array<Index> to_right, to_left;  // (cuts) motions
+    PerCut<Index> to_right, to_left;  // motions
     for (std::size_t cut = 0; cut < turn.size(); ++cut) {
       to_right.push_back(motions_.add({turn[cut], {{static_cast<Index>(cut), 1.0}}}));
       to_left.push_back(motions_.invert(to_right.back()));
@@ -316,17 +316,17 @@ class IntrinsicTriangulation {
   }
 
   Motions motions_;
-  Array<Halfedge> halfedges_;
-  Array<Index> outgoing_;    // (n)
-  Array<char> is_cone_;      // (n)
-  Array<int> touched_in_;    // (n) pass
-  Array<Index> suspects_;    // halfedges that may not be Delaunay
-  std::int64_t flips_left_;  // of those that only keep it Delaunay
+  PerHalfedge<Halfedge> halfedges_;
+  PerVertex<Index> outgoing_;
+  PerVertex<char> is_cone_;
+  PerVertex<int> touched_in_;  // pass
+  Array<Index> suspects_;      // halfedges that may not be Delaunay
+  std::int64_t flips_left_;    // of those that only keep it Delaunay
 };
 
 }  // namespace
 
-std::optional<ConeTriangulation> triangulate_cones(const CutSurface& surface, const Array<Complex>& turn,
+std::optional<ConeTriangulation> triangulate_cones(const CutSurface& surface, const PerCut<Complex>& turn,
                                                    const Array<Index>& cones, const Eigen::VectorXcd& position) {
   IntrinsicTriangulation triangulation(surface, turn, cones, position);
   if (!triangulation.remove_others()) return std::nullopt;

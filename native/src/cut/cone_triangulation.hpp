@@ -30,10 +30,10 @@ struct ConeTriangulation {
 };
 
 // Closed surfaces of any genus.  cones: at least one, and all vertices whose angle is not 2 pi; flat ones may be among
-// them.  turn: (cuts) e^{i rotation}.  position: (copies) u + iv, without flips, the angles around every other vertex
+// them.  turn: e^{i rotation}.  position: (copies) u + iv, without flips, the angles around every other vertex
 // adding up to 2 pi, both sides of every cut related by its transition.
 // None if a vertex cannot be removed, which happens for other positions.
-std::optional<ConeTriangulation> triangulate_cones(const CutSurface& surface, const Array<Complex>& turn,
+std::optional<ConeTriangulation> triangulate_cones(const CutSurface& surface, const PerCut<Complex>& turn,
                                                    const Array<Index>& cones, const Eigen::VectorXcd& position);
 
 }  // namespace lsgp

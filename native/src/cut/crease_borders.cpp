@@ -28,22 +28,22 @@ constexpr double operations_an_entry = 100;  // of a queue
 
 bool is_inside(const HalfedgeMesh& mesh, Index v) { return mesh.loop_of_vertex[v] == none; }
 
-// The patch of every triangle, (m), the smallest ones added to the neighbour they meet along the longest and flattest
+// The patch of every triangle, the smallest ones added to the neighbour they meet along the longest and flattest
 // border.
-Array<Index> find_patches(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& crease,
-                          const Eigen::VectorXd& bend) {
-  Array<Index> patch;
+PerTriangle<Index> find_patches(const HalfedgeMesh& mesh, const Geometry& geometry, const PerHalfedge<char>& crease,
+                                const Eigen::VectorXd& bend) {
+  PerTriangle<Index> patch;
   const Index count = label_parts(mesh, crease, patch);
-  Array<double> area(count, 0);
+  PerPart<double> area(count, 0);
   for (Index f = 0; f < mesh.triangle_count(); ++f) area[patch[f]] += geometry.area[f];
-  Array<std::map<Index, double>> shared(count);
+  PerPart<std::map<Index, double>> shared(count);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (mesh.twin[h] == none) continue;
     const Index here = patch[h / 3], there = patch[mesh.twin[h] / 3];
     if (here != there) shared[here][there] += geometry.length[h] * std::cos(bend[h] / 2);
   }
   UnionFind joined(count);
-  Array<Index> home(count);  // of the patch that a set has become
+  PerPart<Index> home(count);  // of the patch that a set has become
   for (Index p = 0; p < count; ++p) home[p] = p;
   using Entry = std::pair<double, Index>;
   std::priority_queue<Entry, Array<Entry>, std::greater<>> smallest;
@@ -82,7 +82,7 @@ struct SharedBorder {
 
 class Patches {
  public:
-  Patches(const HalfedgeMesh& mesh, const Geometry& geometry, Array<Index> patch)
+  Patches(const HalfedgeMesh& mesh, const Geometry& geometry, PerTriangle<Index> patch)
       : mesh_(mesh), geometry_(geometry), patch_(std::move(patch)), is_border_(mesh.halfedge_count(), 0) {
     degree_.assign(mesh.vertex_count(), 0);
     perimeter_.assign(mesh.triangle_count(), 0);
@@ -110,7 +110,7 @@ class Patches {
   }
 
   // Where patches end that are unfolded together, the longest shares of a perimeter first.
-  Array<char> unfold_together() const {
+  PerHalfedge<char> unfold_together() const {
     Array<SharedBorder> borders = trace();
     const auto share = [&](const SharedBorder& border) {
       return border.length / std::min(perimeter_[border.here], perimeter_[border.there]);
@@ -118,7 +118,7 @@ class Patches {
     std::stable_sort(borders.begin(), borders.end(),
                      [&](const SharedBorder& a, const SharedBorder& b) { return share(a) > share(b); });
     UnionFind islands(mesh_.triangle_count());
-    Array<char> out = is_border_;
+    PerHalfedge<char> out = is_border_;
     for (Index h = 0; h < mesh_.halfedge_count(); ++h) out[h] = out[h] && mesh_.twin[h] != none;
     for (const SharedBorder& border : borders) {
       if (border.closed || border.curvature > is_bent || share(border) < least_shared) continue;
@@ -158,7 +158,7 @@ class Patches {
   // Every shared border once.
   Array<SharedBorder> trace() const {
     Array<SharedBorder> out;
-    Array<char> done(mesh_.halfedge_count(), 0);
+    PerHalfedge<char> done(mesh_.halfedge_count(), 0);
     const auto add = [&](Index h) {
       if (done[h] || !is_border_[h] || mesh_.twin[h] == none) return;
       out.push_back(follow(h));
@@ -173,21 +173,21 @@ class Patches {
 
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
-  Array<Index> patch_;       // (m)
-  Array<char> is_border_;    // (3m) of patches, the mesh's own borders among them
-  Array<Index> degree_;      // (n) borders between patches at each vertex
-  Array<double> perimeter_;  // of patches
+  PerTriangle<Index> patch_;
+  PerHalfedge<char> is_border_;  // of patches, the mesh's own borders among them
+  PerVertex<Index> degree_;      // borders between patches at each vertex
+  Array<double> perimeter_;      // of patches
 };
 
 // The borders of the islands that open edges make.
 struct Loops {
-  Array<Index> island;     // (m)
-  Array<Index> at_corner;  // (3m) the loop through a corner, none inside
-  Array<double> turning;   // of each loop, radians: 2 pi around a disk, -2 pi around a hole in the plane
-  Array<Index> of;         // the island of each loop
+  PerTriangle<Index> island;
+  PerHalfedge<Index> at_corner;  // the loop through a corner, none inside
+  Array<double> turning;         // of each loop, radians: 2 pi around a disk, -2 pi around a hole in the plane
+  Array<Index> of;               // the island of each loop
 };
 
-Loops find_loops(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& open) {
+Loops find_loops(const HalfedgeMesh& mesh, const Geometry& geometry, const PerHalfedge<char>& open) {
   const auto ends = [&](Index h) { return open[h] || mesh.twin[h] == none; };
   Loops out;
   label_parts(mesh, open, out.island);
@@ -269,7 +269,7 @@ Array<Index> cheapest_path_across(const HalfedgeMesh& mesh, const Geometry& geom
   return {};
 }
 
-void open_tubes(const HalfedgeMesh& mesh, const Geometry& geometry, Array<char>& open) {
+void open_tubes(const HalfedgeMesh& mesh, const Geometry& geometry, PerHalfedge<char>& open) {
   bool found = true;
   while (found) {
     checkpoint(static_cast<double>(mesh.halfedge_count()));
@@ -292,11 +292,12 @@ void open_tubes(const HalfedgeMesh& mesh, const Geometry& geometry, Array<char>&
 
 }  // namespace
 
-Array<char> find_crease_borders(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& crease,
-                                const Eigen::VectorXd& bend, Index most_corners) {
+PerHalfedge<char> find_crease_borders(const HalfedgeMesh& mesh, const Geometry& geometry,
+                                      const PerHalfedge<char>& crease, const Eigen::VectorXd& bend,
+                                      Index most_corners) {
   const Patches patches(mesh, geometry, find_patches(mesh, geometry, crease, bend));
-  if (!patches.carry_curvature(most_corners)) return Array<char>(mesh.halfedge_count(), 0);
-  Array<char> open = patches.unfold_together();
+  if (!patches.carry_curvature(most_corners)) return PerHalfedge<char>(mesh.halfedge_count(), 0);
+  PerHalfedge<char> open = patches.unfold_together();
   open_tubes(mesh, geometry, open);
   return open;
 }

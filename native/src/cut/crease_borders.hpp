@@ -11,10 +11,10 @@
 
 namespace lsgp {
 
-// Marks the halfedges, (3m) and both of an edge, along which a component should end; none where most of its curvature
-// lies off its creases, or at no more than most_corners vertices.  crease: (3m) on both halfedges; bend: (3m) radians
+// Marks the halfedges, both of an edge, along which a component should end; none where most of its curvature
+// lies off its creases, or at no more than most_corners vertices.  crease: on both halfedges; bend: (3m) radians
 // between the normals at an edge.
-Array<char> find_crease_borders(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& crease,
-                                const Eigen::VectorXd& bend, Index most_corners);
+PerHalfedge<char> find_crease_borders(const HalfedgeMesh& mesh, const Geometry& geometry,
+                                      const PerHalfedge<char>& crease, const Eigen::VectorXd& bend, Index most_corners);
 
 }  // namespace lsgp

@@ -16,7 +16,7 @@ namespace {
 // One vertex of every connected network of seam edges that a cut may follow.
 Array<Index> find_seam_networks(const HalfedgeMesh& mesh) {
   UnionFind networks(mesh.vertex_count());
-  Array<char> on_seam(mesh.vertex_count(), 0);
+  PerVertex<char> on_seam(mesh.vertex_count(), 0);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (!mesh.seam[h] || !may_cut(mesh, h)) continue;
     networks.unite(mesh.origin(h), mesh.target(h));
@@ -33,17 +33,17 @@ Array<Index> find_seam_networks(const HalfedgeMesh& mesh) {
 // which a path costs nothing. That networks are joined like cones keeps the parts that seams close off in one piece
 // each; where a cut does not need a network, its branch ends in no cone and is pruned.
 struct Forest {
-  Array<Reached> reached;  // (n)
-  Array<Index> region;     // (n) of the source, none where no path leads
+  PerVertex<Reached> reached;
+  PerVertex<Index> region;  // of the source, none where no path leads
   Index region_count = 0;
   Index required_count = 0;  // the first regions, of loops and cones, have to be joined; seam networks may be
 };
 
 Forest grow_forest(const HalfedgeMesh& mesh, const CutEdges& edges, const Array<Index>& interior_cones,
-                   const Array<char>& uncut) {
+                   const PerLoop<char>& uncut) {
   const Index n = mesh.vertex_count();
-  Forest forest{Array<Reached>(n), Array<Index>(n, none), 0, 0};
-  Array<char> is_avoided(n, 0);
+  Forest forest{PerVertex<Reached>(n), PerVertex<Index>(n, none), 0, 0};
+  PerVertex<char> is_avoided(n, 0);
   PathStarts starts;
   const auto add_source = [&](Index v, Index region) {
     forest.reached[v] = {0, none, v};
@@ -103,7 +103,7 @@ Index count_joined(const HalfedgeMesh& mesh, const Forest& forest, const Array<I
 // cannot reach, are always crossed.
 Array<Index> find_handle_edges(const HalfedgeMesh& mesh, const CutEdges& edges, const Forest& forest,
                                const Array<Index>& spanning) {
-  Array<char> in_tree(mesh.halfedge_count(), 0);
+  PerHalfedge<char> in_tree(mesh.halfedge_count(), 0);
   const auto mark = [&](Index h) { in_tree[h] = in_tree[mesh.twin[h]] = 1; };
   for (const Reached& there : forest.reached) {
     if (there.by != none) mark(there.by);
@@ -129,7 +129,7 @@ Array<Index> find_handle_edges(const HalfedgeMesh& mesh, const CutEdges& edges, 
 }
 
 // Marks an edge and the forest's paths from both its ends to their sources.
-void mark_through(const HalfedgeMesh& mesh, const Forest& forest, Index bridge, Array<char>& is_cut) {
+void mark_through(const HalfedgeMesh& mesh, const Forest& forest, Index bridge, PerHalfedge<char>& is_cut) {
   is_cut[bridge] = is_cut[mesh.twin[bridge]] = 1;
   for (const Index end : {mesh.origin(bridge), mesh.target(bridge)}) {
     for (Index h = forest.reached[end].by; h != none && !is_cut[h]; h = forest.reached[mesh.origin(h)].by) {
@@ -139,8 +139,8 @@ void mark_through(const HalfedgeMesh& mesh, const Forest& forest, Index bridge, 
 }
 
 // Prunes dangling branches, which a seam network without cones can leave.
-Array<char> prune(const HalfedgeMesh& mesh, const Array<char>& is_cone, Array<char> is_cut) {
-  Array<Index> degree = count_cuts(mesh, is_cut);
+PerHalfedge<char> prune(const HalfedgeMesh& mesh, const PerVertex<char>& is_cone, PerHalfedge<char> is_cut) {
+  PerVertex<Index> degree = count_cuts(mesh, is_cut);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     for (Index at = v; degree[at] == 1 && !is_cone[at] && mesh.loop_of_vertex[at] == none;) {
       Index end = none;
@@ -156,16 +156,16 @@ Array<char> prune(const HalfedgeMesh& mesh, const Array<char>& is_cone, Array<ch
   return is_cut;
 }
 
-Array<char> mark_vertices(const HalfedgeMesh& mesh, const Array<Index>& vertices) {
-  Array<char> out(mesh.vertex_count(), 0);
+PerVertex<char> mark_vertices(const HalfedgeMesh& mesh, const Array<Index>& vertices) {
+  PerVertex<char> out(mesh.vertex_count(), 0);
   for (const Index v : vertices) out[v] = 1;
   return out;
 }
 
 }  // namespace
 
-Array<char> on_cuts(const HalfedgeMesh& mesh, const CutGraph& cut_graph) {
-  Array<char> out(mesh.vertex_count(), 0);
+PerVertex<char> on_cuts(const HalfedgeMesh& mesh, const CutGraph& cut_graph) {
+  PerVertex<char> out(mesh.vertex_count(), 0);
   for (const Cut& cut : cut_graph.cuts) {
     out[cut.head] = 1;
     for (const Index h : cut.halfedges) out[mesh.origin(h)] = 1;
@@ -173,7 +173,7 @@ Array<char> on_cuts(const HalfedgeMesh& mesh, const CutGraph& cut_graph) {
   return out;
 }
 
-Array<Index> find_cut_networks(const HalfedgeMesh& mesh) {
+PerVertex<Index> find_cut_networks(const HalfedgeMesh& mesh) {
   UnionFind networks(mesh.vertex_count());
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (may_cut(mesh, h)) networks.unite(mesh.origin(h), mesh.target(h));
@@ -181,15 +181,15 @@ Array<Index> find_cut_networks(const HalfedgeMesh& mesh) {
   for (const auto& loop : mesh.boundary_loops) {
     for (const Index v : loop) networks.unite(loop.front(), v);
   }
-  Array<Index> out(mesh.vertex_count());
+  PerVertex<Index> out(mesh.vertex_count());
   for (Index v = 0; v < mesh.vertex_count(); ++v) out[v] = networks.find(v);
   return out;
 }
 
 CutGraph connect_cones(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<Index>& interior_cones,
-                       const Array<char>& uncut) {
+                       const PerLoop<char>& uncut) {
   const bool avoids = std::find(uncut.begin(), uncut.end(), 1) != uncut.end();
-  Array<char> avoided = avoids ? uncut : Array<char>();
+  PerLoop<char> avoided = avoids ? uncut : PerLoop<char>();
   const CutEdges edges(mesh, geometry);
   Forest forest = grow_forest(mesh, edges, interior_cones, avoided);
   Array<Index> tree = span_regions(mesh, edges, forest);
@@ -205,24 +205,24 @@ CutGraph connect_cones(const HalfedgeMesh& mesh, const Geometry& geometry, const
                 concat("The edges a cut may follow join only ", joined, " of ", forest.required_count,
                        " cones and boundary loops. Allow more edges to be cut."));
   }
-  Array<char> is_cut(mesh.halfedge_count(), 0);
+  PerHalfedge<char> is_cut(mesh.halfedge_count(), 0);
   for (const Index h : tree) mark_through(mesh, forest, h, is_cut);
   if (mesh.genus > 0) {
     for (const Index h : find_handle_edges(mesh, edges, forest, tree)) mark_through(mesh, forest, h, is_cut);
   }
-  const Array<char> is_cone = mark_vertices(mesh, interior_cones);
+  const PerVertex<char> is_cone = mark_vertices(mesh, interior_cones);
   CutNetwork network({mesh, geometry, edges}, is_cone, avoided, prune(mesh, is_cone, std::move(is_cut)));
   exchange_key_paths(network);
   return trace_cuts(mesh, is_cone, prune(mesh, is_cone, std::move(network.is_cut)));
 }
 
 CutGraph keep_cones(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const Array<Index>& interior_cones) {
-  const Array<char> is_cone = mark_vertices(mesh, interior_cones);
+  const PerVertex<char> is_cone = mark_vertices(mesh, interior_cones);
   return trace_cuts(mesh, is_cone, prune(mesh, is_cone, cut_graph.is_cut));
 }
 
-CutGraph trace_cuts(const HalfedgeMesh& mesh, const Array<char>& is_node, Array<char> is_cut) {
-  const Array<Index> degree = count_cuts(mesh, is_cut);
+CutGraph trace_cuts(const HalfedgeMesh& mesh, const PerVertex<char>& is_node, PerHalfedge<char> is_cut) {
+  const PerVertex<Index> degree = count_cuts(mesh, is_cut);
   CutGraph graph;
   graph.is_cut = std::move(is_cut);
   graph.cut_of.assign(mesh.halfedge_count(), none);

@@ -25,7 +25,7 @@ CutMesh cut_open(const HalfedgeMesh& mesh, const CutGraph& cut_graph) {
   cut_mesh.copy_of_corner.assign(mesh.triangles.data(), mesh.triangles.data() + mesh.halfedge_count());
   cut_mesh.source.resize(mesh.vertex_count());
   std::iota(cut_mesh.source.begin(), cut_mesh.source.end(), 0);
-  const Array<char> on_cut = on_cuts(mesh, cut_graph);
+  const PerVertex<char> on_cut = on_cuts(mesh, cut_graph);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (!on_cut[v]) continue;
     const Index first = first_of_sectors(mesh, cut_graph, v);

@@ -11,9 +11,13 @@
 
 namespace lsgp {
 
+struct CopyKind;
+template <typename T>
+using PerCopy = ArrayPer<CopyKind, T>;  // copies of vertices
+
 struct CutMesh {
-  Array<Index> copy_of_corner;  // (3m) copies below n are the vertices themselves, further copies follow
-  Array<Index> source;          // (copies) the vertex of each
+  PerHalfedge<Index> copy_of_corner;  // copies below n are the vertices themselves, further copies follow
+  PerCopy<Index> source;              // the vertex of each
   Index copy_count() const { return static_cast<Index>(source.size()); }
 };
 

@@ -5,14 +5,14 @@
 
 namespace lsgp {
 
-Array<Index> count_cuts(const HalfedgeMesh& mesh, const Array<char>& is_cut) {
-  Array<Index> degree(mesh.vertex_count(), 0);
+PerVertex<Index> count_cuts(const HalfedgeMesh& mesh, const PerHalfedge<char>& is_cut) {
+  PerVertex<Index> degree(mesh.vertex_count(), 0);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) degree[mesh.origin(h)] += is_cut[h];
   return degree;
 }
 
-CutNetwork::CutNetwork(const CuttableSurface& surface, const Array<char>& cones, const Array<char>& uncut,
-                       Array<char> cuts)
+CutNetwork::CutNetwork(const CuttableSurface& surface, const PerVertex<char>& cones, const PerLoop<char>& uncut,
+                       PerHalfedge<char> cuts)
     : mesh(surface.mesh),
       geometry(surface.geometry),
       edges(surface.edges),

@@ -9,8 +9,8 @@ namespace lsgp {
 
 using CutPath = Array<Index>;  // halfedges, one after the other
 
-// Cut edges at each vertex, (n).
-Array<Index> count_cuts(const HalfedgeMesh& mesh, const Array<char>& is_cut);
+// Cut edges at each vertex.
+PerVertex<Index> count_cuts(const HalfedgeMesh& mesh, const PerHalfedge<char>& is_cut);
 
 // A surface with the edges that cuts may follow.
 struct CuttableSurface {
@@ -23,13 +23,14 @@ struct CutNetwork {
   const HalfedgeMesh& mesh;
   const Geometry& geometry;
   const CutEdges& edges;
-  const Array<char>& is_cone;  // (n) interior vertices that have to stay on the cuts
-  Array<char> is_avoided;      // (n) boundary vertices that no cut may touch
-  Array<char> is_cut;          // (3m) on both halfedges
-  Array<Index> degree;         // (n) cut edges at each vertex
+  const PerVertex<char>& is_cone;  // interior vertices that have to stay on the cuts
+  PerVertex<char> is_avoided;      // boundary vertices that no cut may touch
+  PerHalfedge<char> is_cut;        // on both halfedges
+  PerVertex<Index> degree;         // cut edges at each vertex
 
-  // uncut: (loops) the boundaries to avoid, or empty.
-  CutNetwork(const CuttableSurface& surface, const Array<char>& cones, const Array<char>& uncut, Array<char> cuts);
+  // uncut: the boundaries to avoid, or empty.
+  CutNetwork(const CuttableSurface& surface, const PerVertex<char>& cones, const PerLoop<char>& uncut,
+             PerHalfedge<char> cuts);
 
   bool is_on_border(Index v) const { return mesh.loop_of_vertex[v] != none; }
   bool holds(Index v) const { return degree[v] > 0 || is_cone[v] || (is_on_border(v) && !is_avoided[v]); }

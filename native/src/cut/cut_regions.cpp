@@ -83,7 +83,7 @@ void CutRegions::redo(const CutPath& closed, double below) {
   grow_paths(network_.edges, {std::move(starts), half_of(below)}, admits, again_);
 }
 
-CutPath CutRegions::find(const CutPath& closed, const Array<Index>& is_apart, Index mark, double below) {
+CutPath CutRegions::find(const CutPath& closed, const PerVertex<Index>& is_apart, Index mark, double below) {
   const HalfedgeMesh& mesh = network_.mesh;
   Index best = none;
   const auto joins = [&](Index a, Index b) {

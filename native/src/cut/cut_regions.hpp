@@ -16,8 +16,8 @@ class CutRegions {
 
   // The cheapest path between the two parts of the cuts after closing a path, with the regions of the path's vertices
   // distributed over the others; empty if none is below a cost.
-  // is_apart: (n) marks the vertices of one part by `mark`.
-  CutPath find(const CutPath& closed, const Array<Index>& is_apart, Index mark, double below);
+  // is_apart: marks the vertices of one part by `mark`.
+  CutPath find(const CutPath& closed, const PerVertex<Index>& is_apart, Index mark, double below);
 
  private:
   void grow(double below);
@@ -26,14 +26,14 @@ class CutRegions {
   CutPath path_through(Index bridge) const;
 
   const CutNetwork& network_;
-  const Array<char> was_cut_;     // (3m)
-  Array<Index> sources_;          // the vertices of the cuts
-  double below_ = 0;              // what the paths cost whose halves are all reached
-  Array<Reached> reached_;        // (n)
+  const PerHalfedge<char> was_cut_;
+  Array<Index> sources_;  // the vertices of the cuts
+  double below_ = 0;      // what the paths cost whose halves are all reached
+  PerVertex<Reached> reached_;
   Array<Index> first_, members_;  // the vertices of each region
   Array<Bridge> bridges_;         // cheapest first
-  Array<Reached> again_;          // (n) of the vertices whose region's cut was closed
-  Array<Index> redone_;           // (n) the last round that did so
+  PerVertex<Reached> again_;      // of the vertices whose region's cut was closed
+  PerVertex<Index> redone_;       // the last round that did so
   Array<Index> around_;           // these vertices
   Index round_ = 0;
 };

@@ -29,15 +29,15 @@ CutReroute::CutReroute(const HalfedgeMesh& mesh, const Geometry& geometry, Moved
   from_head_ = grow_from(head_);
 }
 
-Array<Reached> CutReroute::grow_from(Index end) const {
-  Array<Reached> reached(mesh_.vertex_count());
+PerVertex<Reached> CutReroute::grow_from(Index end) const {
+  PerVertex<Reached> reached(mesh_.vertex_count());
   reached[end] = {0, none, end};
   grow_paths(edges_, {{{0, end}}}, [&](Index v) { return !is_closed_to_[v]; }, reached);
   return reached;
 }
 
 // The halfedges from v back to where it was reached from.
-Array<Index> CutReroute::way_back(const Array<Reached>& reached, Index v) const {
+Array<Index> CutReroute::way_back(const PerVertex<Reached>& reached, Index v) const {
   Array<Index> way;
   for (Index h = reached[v].by; h != none; h = reached[mesh_.origin(h)].by) way.push_back(mesh_.twin[h]);
   return way;
@@ -45,10 +45,10 @@ Array<Index> CutReroute::way_back(const Array<Reached>& reached, Index v) const 
 
 // The cheapest way from v to the last end that avoids the vertices of a way from v to the first end.
 Array<Index> CutReroute::way_around(Index v, const Array<Index>& avoided) const {
-  Array<char> is_closed = is_closed_to_;
+  PerVertex<char> is_closed = is_closed_to_;
   for (const Index h : avoided) is_closed[mesh_.target(h)] = 1;
   is_closed[head_] = 0;
-  Array<Reached> reached(mesh_.vertex_count());
+  PerVertex<Reached> reached(mesh_.vertex_count());
   reached[v] = {0, none, v};
   grow_paths(edges_, {{{0, v}}}, [&](Index w) { return !is_closed[w]; }, reached);
   Array<Index> way = way_back(reached, head_);
@@ -62,7 +62,7 @@ Array<Index> CutReroute::way_through(Index v) const {
   const Array<Index> back = way_back(from_tail_, v);
   Array<Index> onward = way_back(from_head_, v);
   if (back.empty() || onward.empty()) refuse("Other cuts and boundaries are in the way. Move the cut elsewhere.");
-  Array<char> is_taken(mesh_.vertex_count(), 0);
+  PerVertex<char> is_taken(mesh_.vertex_count(), 0);
   for (const Index h : back) is_taken[mesh_.target(h)] = 1;
   if (std::any_of(onward.begin(), onward.end(), [&](Index h) { return is_taken[mesh_.target(h)]; })) {
     onward = way_around(v, back);
@@ -76,9 +76,9 @@ Array<Index> CutReroute::way_through(Index v) const {
   return way;
 }
 
-// By how much the power increases from each halfedge's triangle to the one beyond, (3m).
-Array<int> CutReroute::jumps(const Array<Index>& way) const {
-  Array<int> jump(mesh_.halfedge_count(), 0);
+// By how much the power increases from each halfedge's triangle to the one beyond.
+PerHalfedge<int> CutReroute::jumps(const Array<Index>& way) const {
+  PerHalfedge<int> jump(mesh_.halfedge_count(), 0);
   const auto add = [&](const Array<Index>& halfedges, int amount) {
     for (const Index h : halfedges) {
       jump[h] += amount;
@@ -91,10 +91,10 @@ Array<int> CutReroute::jumps(const Array<Index>& way) const {
   return jump;
 }
 
-Array<int> CutReroute::powers(const Array<Index>& way) const {
-  const Array<int> jump = jumps(way);
-  Array<int> power(mesh_.triangle_count(), 0);
-  Array<char> is_reached(mesh_.triangle_count(), 0);
+PerTriangle<int> CutReroute::powers(const Array<Index>& way) const {
+  const PerHalfedge<int> jump = jumps(way);
+  PerTriangle<int> power(mesh_.triangle_count(), 0);
+  PerTriangle<char> is_reached(mesh_.triangle_count(), 0);
   Array<Index> queue{cut_.path.front() / 3};
   is_reached[queue.front()] = 1;
   for (std::size_t i = 0; i < queue.size(); ++i) {
@@ -119,7 +119,7 @@ Array<int> CutReroute::powers(const Array<Index>& way) const {
 }
 
 // The power of what has to stay: of the triangles beside other cuts, or, without any, of most triangles.
-int CutReroute::rest(const Array<Index>& moved, const Array<int>& power) const {
+int CutReroute::rest(const Array<Index>& moved, const PerTriangle<int>& power) const {
   std::map<int, Index> counts, beside;
   for (const Index f : moved) {
     ++counts[power[f]];

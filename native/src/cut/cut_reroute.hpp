@@ -8,9 +8,9 @@ namespace lsgp {
 
 // The cuts of a component, one of which moves.
 struct MovedCut {
-  Array<Index> path;     // its halfedges from end to end; a closed one ends where it begins
-  Array<char> is_other;  // (3m) edges of all other cuts, on both halfedges
-  Array<char> is_node;   // (n) vertices that the cut must not be moved onto
+  Array<Index> path;           // its halfedges from end to end; a closed one ends where it begins
+  PerHalfedge<char> is_other;  // edges of all other cuts, on both halfedges
+  PerVertex<char> is_node;     // vertices that the cut must not be moved onto
 };
 
 // Refers to the mesh.
@@ -25,24 +25,24 @@ class CutReroute {
   // before the vertex, the second one gives way. Throws CUT_NOT_MOVABLE.
   Array<Index> way_through(Index v) const;
 
-  // How often the transition from the left to the right side of the cut applies to each triangle, (m), so that the
-  // layout is open along the way instead. 0 beside all other cuts and on the larger part; throws CUT_NOT_MOVABLE if
+  // How often the transition from the left to the right side of the cut applies to each triangle, so that the layout
+  // is open along the way instead. 0 beside all other cuts and on the larger part; throws CUT_NOT_MOVABLE if
   // that is impossible.
-  Array<int> powers(const Array<Index>& way) const;
+  PerTriangle<int> powers(const Array<Index>& way) const;
 
  private:
-  Array<Reached> grow_from(Index end) const;
-  Array<Index> way_back(const Array<Reached>& reached, Index v) const;
+  PerVertex<Reached> grow_from(Index end) const;
+  Array<Index> way_back(const PerVertex<Reached>& reached, Index v) const;
   Array<Index> way_around(Index v, const Array<Index>& avoided) const;
-  Array<int> jumps(const Array<Index>& way) const;
-  int rest(const Array<Index>& moved, const Array<int>& power) const;
+  PerHalfedge<int> jumps(const Array<Index>& way) const;
+  int rest(const Array<Index>& moved, const PerTriangle<int>& power) const;
 
   const HalfedgeMesh& mesh_;
   const CutEdges edges_;
   MovedCut cut_;
   Index tail_, head_;
-  Array<char> is_closed_to_;              // (n) vertices that ways avoid, both ends included
-  Array<Reached> from_tail_, from_head_;  // (n)
+  PerVertex<char> is_closed_to_;  // vertices that ways avoid, both ends included
+  PerVertex<Reached> from_tail_, from_head_;
 };
 
 }  // namespace lsgp

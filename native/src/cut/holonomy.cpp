@@ -6,7 +6,8 @@ namespace lsgp {
 NodeGraph build_node_graph(const HalfedgeMesh& mesh, const CutGraph& cut_graph,
                            const std::function<double(Index)>& root_rank) {
   NodeGraph nodes;
-  Array<Index> node_of_vertex(mesh.vertex_count(), none), node_of_loop(mesh.boundary_loops.size(), none);
+  PerVertex<Index> node_of_vertex(mesh.vertex_count(), none);
+  PerLoop<Index> node_of_loop(mesh.boundary_loops.size(), none);
   const auto node_at = [&](Index v) {
     const Index loop = mesh.loop_of_vertex[v];
     Index& node = loop == none ? node_of_vertex[v] : node_of_loop[loop];
@@ -26,7 +27,7 @@ NodeGraph build_node_graph(const HalfedgeMesh& mesh, const CutGraph& cut_graph,
   nodes.in_tree.assign(cut_graph.cuts.size(), 0);
   if (node_count == 0) return nodes;
 
-  Array<Array<Index>> cuts_at(node_count);
+  PerNode<Array<Index>> cuts_at(node_count);
   for (std::size_t p = 0; p < cut_graph.cuts.size(); ++p) {
     cuts_at[nodes.tail[p]].push_back(static_cast<Index>(p));
     cuts_at[nodes.head[p]].push_back(static_cast<Index>(p));
@@ -36,7 +37,7 @@ NodeGraph build_node_graph(const HalfedgeMesh& mesh, const CutGraph& cut_graph,
   for (Index i = 1; i < node_count; ++i) {
     if (rank(i) > rank(root)) root = i;
   }
-  Array<char> seen(node_count, 0);
+  PerNode<char> seen(node_count, 0);
   seen[root] = 1;
   nodes.order.assign(1, root);
   for (std::size_t i = 0; i < nodes.order.size(); ++i) {

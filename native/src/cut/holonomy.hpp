@@ -11,14 +11,18 @@
 
 namespace lsgp {
 
+struct NodeKind;
+template <typename T>
+using PerNode = ArrayPer<NodeKind, T>;
+
 // Cones, junctions and boundary loops as nodes joined by cuts, with a spanning tree rooted where the rest hangs off.
 struct NodeGraph {
-  Array<Index> vertex;      // (nodes) none for a boundary loop
-  Array<Index> loop;        // (nodes) none for a vertex
-  Array<Index> tail, head;  // (cuts) nodes
-  Array<Index> parent_cut;  // (nodes) the cut towards the root, none at the root
-  Array<Index> order;       // nodes from the root outwards
-  Array<char> in_tree;      // (cuts) the others close a loop about a handle
+  PerNode<Index> vertex;      // none for a boundary loop
+  PerNode<Index> loop;        // none for a vertex
+  PerCut<Index> tail, head;   // nodes
+  PerNode<Index> parent_cut;  // the cut towards the root, none at the root
+  Array<Index> order;         // nodes from the root outwards
+  PerCut<char> in_tree;       // the others close a loop about a handle
 };
 
 // root_rank(v): at most 1; the higher, the better a root a vertex makes. Boundary loops are taken before any vertex.

@@ -32,7 +32,7 @@ class Parting {
       }
     }
   }
-  const Array<Index>& mark_of() const { return mark_of_; }  // (n)
+  const PerVertex<Index>& mark_of() const { return mark_of_; }
 
  private:
   struct Front {
@@ -60,7 +60,7 @@ class Parting {
   }
 
   const CutNetwork& network_;
-  Array<Index> mark_of_;
+  PerVertex<Index> mark_of_;
   Index marks_ = 0;
 };
 
@@ -79,7 +79,7 @@ class KeyPathExchange {
   CutNetwork& network_;
   Parting parting_;
   StripSearch strips_;
-  Array<Index> traced_;  // (3m) the last round that saw the path of a halfedge
+  PerHalfedge<Index> traced_;  // the last round that saw the path of a halfedge
   Index rounds_ = 0;
 };
 

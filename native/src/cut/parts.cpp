@@ -8,17 +8,17 @@
 
 namespace lsgp {
 
-Array<PartTopology> measure_parts(const HalfedgeMesh& mesh, const Array<char>& open) {
+PerPart<PartTopology> measure_parts(const HalfedgeMesh& mesh, const PerHalfedge<char>& open) {
   const Index halfedge_count = mesh.halfedge_count();
-  Array<char> is_cut(halfedge_count), is_border(halfedge_count), is_counted, is_traced(halfedge_count, 0);
+  PerHalfedge<char> is_cut(halfedge_count), is_border(halfedge_count), is_traced(halfedge_count, 0);
   for (Index h = 0; h < halfedge_count; ++h) {
     is_cut[h] = open[h] && mesh.twin[h] != none;
     is_border[h] = open[h] || mesh.twin[h] == none;
   }
-  Array<Index> part;
-  Array<PartTopology> out(label_parts(mesh, open, part));
-  const CutMesh cut_mesh = cut_open(mesh, trace_cuts(mesh, Array<char>(mesh.vertex_count(), 0), std::move(is_cut)));
-  is_counted.assign(cut_mesh.copy_count(), 0);
+  PerTriangle<Index> part;
+  PerPart<PartTopology> out(label_parts(mesh, open, part));
+  const CutMesh cut_mesh = cut_open(mesh, trace_cuts(mesh, PerVertex<char>(mesh.vertex_count(), 0), std::move(is_cut)));
+  PerCopy<char> is_counted(cut_mesh.copy_count(), 0);
   for (Index h = 0; h < halfedge_count; ++h) {
     PartTopology& own = out[part[h / 3]];
     char& vertex_is_counted = is_counted[cut_mesh.copy_of_corner[h]];

@@ -14,7 +14,7 @@ struct PartTopology {
   bool is_planar() const { return borders > 0 && euler == 2 - borders; }  // a disk, with or without holes
 };
 
-// Those of label_parts, in its order.  open: (3m) on both halfedges.
-Array<PartTopology> measure_parts(const HalfedgeMesh& mesh, const Array<char>& open);
+// Those of label_parts.  open: on both halfedges.
+PerPart<PartTopology> measure_parts(const HalfedgeMesh& mesh, const PerHalfedge<char>& open);
 
 }  // namespace lsgp

@@ -33,9 +33,9 @@ struct PathSearch {
   double below = std::numeric_limits<double>::infinity();
 };
 
-// Dijkstra's algorithm over the vertices that admits(v).  reached: (n) with the starts entered; receives the others.
+// Dijkstra's algorithm over the vertices that admits(v).  reached: with the starts entered; receives the others.
 template <typename Admits>
-void grow_paths(const CutEdges& edges, PathSearch search, Admits admits, Array<Reached>& reached) {
+void grow_paths(const CutEdges& edges, PathSearch search, Admits admits, PerVertex<Reached>& reached) {
   constexpr double operations_a_vertex = 100;
   std::priority_queue<PathStarts::value_type, PathStarts, std::greater<>> queue(std::greater<>(),
                                                                                 std::move(search.starts));
@@ -66,7 +66,7 @@ struct Bridge {
 
 // Those between reached vertices v and targets of edges from them that select(v, edge), in no particular order.
 template <typename Select>
-Array<Bridge> find_bridges(const HalfedgeMesh& mesh, const CutEdges& edges, const Array<Reached>& reached,
+Array<Bridge> find_bridges(const HalfedgeMesh& mesh, const CutEdges& edges, const PerVertex<Reached>& reached,
                            Select select) {
   Array<Bridge> bridges;
   for (Index v = 0; v < edges.vertex_count(); ++v) {

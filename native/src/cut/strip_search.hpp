@@ -44,8 +44,8 @@ class StripSearch {
 
   const CutNetwork& network_;
   // From the first search on:
-  Array<Index> mark_;       // (3m) the last one given
-  Array<Reached> reached_;  // (n)
+  PerHalfedge<Index> mark_;  // the last one given
+  PerVertex<Reached> reached_;
   Index marks_ = 0, searches_ = 0;
 };
 

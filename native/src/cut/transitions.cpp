@@ -30,7 +30,7 @@ enum class Eliminate {
 class Elimination {
  public:
   Elimination(const CutSurface& surface, const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
-              Array<Complex> turn, Eliminate eliminate)
+              PerCut<Complex> turn, Eliminate eliminate)
       : mesh_(surface.mesh),
         cut_graph_(surface.cut_graph),
         cut_mesh_(surface.cut_mesh),
@@ -178,7 +178,7 @@ class Elimination {
   // The unknown that fixes the layout's position: any that changes when the layout is translated, except vertices off
   // cuts and boundaries, which are to be eliminated first.
   Index find_ground() const {
-    const Array<char> on_cut = on_cuts(mesh_, cut_graph_);
+    const PerVertex<char> on_cut = on_cuts(mesh_, cut_graph_);
     const auto shift = [&](Index id) {
       if (id >= n_) return std::abs(1.0 - turn_[id - n_]);
       return on_cut[id] || mesh_.loop_of_vertex[id] != none ? 1.0 : 0.0;
@@ -203,7 +203,7 @@ class Elimination {
 
   void express_all_copies(const Array<Index>& unknown, Reduction& reduction) const {
     std::map<Index, Expression> of_copy;  // those on cuts
-    const Array<char> on_cut = on_cuts(mesh_, cut_graph_);
+    const PerVertex<char> on_cut = on_cuts(mesh_, cut_graph_);
     for (Index v = 0; v < n_; ++v) {
       if (!on_cut[v]) continue;
       for (auto& [copy, expression] : express_copies(v)) {
@@ -275,7 +275,7 @@ class Elimination {
   const Index n_;
   std::map<Index, Expression> solved_;  // by id: vertices, then cuts
   Array<char> is_solved_;               // (ids)
-  Array<Complex> turn_;                 // (cuts) e^{i rotation}
+  PerCut<Complex> turn_;                // e^{i rotation}
   const Eliminate eliminate_;
 };
 
@@ -283,15 +283,15 @@ class Elimination {
 
 Reduction impose_transitions(const CutSurface& surface, const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
                              const Eigen::VectorXd& rotation) {
-  Array<Complex> turn(rotation.size());
+  PerCut<Complex> turn(rotation.size());
   for (Eigen::Index p = 0; p < rotation.size(); ++p) turn[p] = std::polar(1.0, rotation[p]);
   return Elimination(surface, nodes, node_curvature, std::move(turn), Eliminate::positions).reduce();
 }
 
 LatticeReduction impose_on_lattice(const CutSurface& surface, const NodeGraph& nodes,
-                                   const Eigen::VectorXd& node_curvature, const Array<int>& turns,
+                                   const Eigen::VectorXd& node_curvature, const PerCut<int>& turns,
                                    const LatticeConstraint& constraint) {
-  Array<Complex> turn;
+  PerCut<Complex> turn;
   for (const int t : turns) turn.push_back(constraint.lattice.unit(t));
   return Elimination(surface, nodes, node_curvature, std::move(turn), Eliminate::translations)
       .reduce_to_lattice(node_curvature, constraint);
@@ -310,7 +310,7 @@ Reduction leave_free(const CutMesh& cut_mesh, Index grounded) {
 Eigen::VectorXcd motion_of_copies(const HalfedgeMesh& mesh, const CutGraph& cut_graph, const CutMesh& cut_mesh,
                                   const Eigen::VectorXd& rotation) {
   Eigen::VectorXcd motion = Eigen::VectorXcd::Ones(cut_mesh.copy_count());
-  const Array<char> on_cut = on_cuts(mesh, cut_graph);
+  const PerVertex<char> on_cut = on_cuts(mesh, cut_graph);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (!on_cut[v]) continue;
     Complex turn = 1;

@@ -58,10 +58,10 @@ struct LatticeConstraint {
   const Array<Index>& relaxed;  // cones that may be anywhere; then the root and what lies between leave the lattice too
 };
 
-// turns: (cuts) rotations in multiples of 2 pi / q.  nodes: rooted at a boundary loop, or at a cone whose 1 - e^{i
+// turns: rotations in multiples of 2 pi / q.  nodes: rooted at a boundary loop, or at a cone whose 1 - e^{i
 // curvature} is as small as can be but not 0.  Throws SEAMLESS_IMPOSSIBLE.
 LatticeReduction impose_on_lattice(const CutSurface& surface, const NodeGraph& nodes,
-                                   const Eigen::VectorXd& node_curvature, const Array<int>& turns,
+                                   const Eigen::VectorXd& node_curvature, const PerCut<int>& turns,
                                    const LatticeConstraint& constraint);
 
 // Every copy an unknown of its own but `grounded`, which is held at zero: no transitions.

@@ -8,14 +8,14 @@ namespace lsgp {
 namespace {
 
 // A border vertex with one triangle whose neighbours have more; h is the border halfedge that leads to it.
-bool is_tooth(const HalfedgeMesh& mesh, const Array<char>& is_corner, Index h) {
+bool is_tooth(const HalfedgeMesh& mesh, const PerVertex<char>& is_corner, Index h) {
   const auto single = [&](Index v) { return mesh.rotate(mesh.outgoing[v]) == none; };
   const Index tip = mesh.target(h);
   return single(tip) && !is_corner[tip] && !single(mesh.origin(h)) && !single(mesh.origin(prev(h)));
 }
 
-Array<char> flags(const HalfedgeMesh& mesh, const Array<Index>& vertices) {
-  Array<char> out(mesh.vertex_count(), 0);
+PerVertex<char> flags(const HalfedgeMesh& mesh, const Array<Index>& vertices) {
+  PerVertex<char> out(mesh.vertex_count(), 0);
   for (const Index v : vertices) out[v] = 1;
   return out;
 }
@@ -23,16 +23,16 @@ Array<char> flags(const HalfedgeMesh& mesh, const Array<Index>& vertices) {
 }  // namespace
 
 BorderConditions free_border(const HalfedgeMesh& mesh, const Array<Index>& corners) {
-  const Array<char> is_corner = flags(mesh, corners);
-  BorderConditions out{Array<char>(mesh.vertex_count(), 0), Eigen::VectorXd::Zero(mesh.vertex_count()), false};
+  const PerVertex<char> is_corner = flags(mesh, corners);
+  BorderConditions out{PerVertex<char>(mesh.vertex_count(), 0), Eigen::VectorXd::Zero(mesh.vertex_count()), false};
   for (Index v = 0; v < mesh.vertex_count(); ++v) out.held[v] = mesh.loop_of_vertex[v] != none && !is_corner[v];
   out.balanced = std::find(out.held.begin(), out.held.end(), 1) == out.held.end();
   return out;
 }
 
 BorderConditions straight_border(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<Index>& corners) {
-  const Array<char> is_corner = flags(mesh, corners);
-  BorderConditions out{Array<char>(mesh.vertex_count(), 0), Eigen::VectorXd::Zero(mesh.vertex_count()), true};
+  const PerVertex<char> is_corner = flags(mesh, corners);
+  BorderConditions out{PerVertex<char>(mesh.vertex_count(), 0), Eigen::VectorXd::Zero(mesh.vertex_count()), true};
   for (const auto& loop : mesh.boundary_loops) {
     for (const Index v : loop) {
       const Index h = mesh.outgoing[v];
@@ -61,7 +61,7 @@ Array<Index> corner_edges(const HalfedgeMesh& mesh, const Array<Index>& corners)
 }
 
 Array<Index> straight_edges(const HalfedgeMesh& mesh, const Array<Index>& corners) {
-  const Array<char> is_corner = flags(mesh, corners);
+  const PerVertex<char> is_corner = flags(mesh, corners);
   Array<Index> edges;
   for (const auto& loop : mesh.boundary_loops) {
     for (const Index v : loop) {

@@ -11,7 +11,7 @@
 namespace lsgp {
 
 struct BorderConditions {
-  Array<char> held;           // (n) log scale 0 (Dirichlet); the angle is free
+  PerVertex<char> held;       // log scale 0 (Dirichlet); the angle is free
   Eigen::VectorXd curvature;  // (n) imposed where not held, beside that of cones
   // No vertex is held: the curvatures have to satisfy Gauss-Bonnet.
   bool balanced = false;

@@ -7,7 +7,7 @@
 
 namespace lsgp {
 
-EdgeTable::EdgeTable(const Surface& surface, const Array<char>& skip) {
+EdgeTable::EdgeTable(const Surface& surface, const PerTriangle<char>& skip) {
   const Triangles& triangles = surface.triangles;
   const auto for_each_halfedge = [&](auto visit) {
     for (Index f = 0; f < triangles.rows(); ++f) {

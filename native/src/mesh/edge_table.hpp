@@ -12,7 +12,7 @@ namespace lsgp {
 class EdgeTable {
  public:
   // Leaves out the triangles marked to skip; their halfedges have no edge.
-  EdgeTable(const Surface& surface, const Array<char>& skip);
+  EdgeTable(const Surface& surface, const PerTriangle<char>& skip);
 
   Index count() const { return static_cast<Index>(first_.size()) - 1; }
   Index edge_of(Index halfedge) const { return edge_of_halfedge_[halfedge]; }
@@ -32,7 +32,8 @@ class EdgeTable {
   Array<Index> bucket_;  // entries by their edge's lower vertex
   Array<Entry> entries_;
   Array<Index> first_;  // the first entry of each edge
-  Array<Index> edge_of_entry_, edge_of_halfedge_;
+  Array<Index> edge_of_entry_;
+  PerHalfedge<Index> edge_of_halfedge_;
 };
 
 }  // namespace lsgp

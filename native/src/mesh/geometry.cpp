@@ -95,7 +95,7 @@ Geometry build_geometry(const HalfedgeMesh& mesh) {
   geometry.angle.resize(halfedge_count);
   geometry.half_cotangent.resize(halfedge_count);
   geometry.area.resize(mesh.triangle_count());
-  Array<char> is_degenerate(mesh.triangle_count());
+  PerTriangle<char> is_degenerate(mesh.triangle_count());
   for_each_at_once(mesh.triangle_count(),
                    [&](Index f) { is_degenerate[f] = measure_from_positions(mesh, geometry, f); });
   for (Index f = 0; f < mesh.triangle_count(); ++f) {

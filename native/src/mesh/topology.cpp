@@ -13,8 +13,8 @@ namespace lsgp {
 
 namespace {
 
-Array<char> mark_edges(const EdgeTable& edges, const VertexPairs& pairs, Code code, const char* sentence) {
-  Array<char> marked(edges.count(), 0);
+PerEdge<char> mark_edges(const EdgeTable& edges, const VertexPairs& pairs, Code code, const char* sentence) {
+  PerEdge<char> marked(edges.count(), 0);
   Array<Index> missing;
   for (Index row = 0; row < pairs.rows(); ++row) {
     const Index a = pairs(row, 0), b = pairs(row, 1), edge = a == b ? none : edges.find(a, b);
@@ -31,9 +31,9 @@ Array<char> mark_edges(const EdgeTable& edges, const VertexPairs& pairs, Code co
 }
 
 // The cut cost factor of each edge, empty if none were given; 1 where no cut may run.
-Array<double> cut_factors(const EdgeTable& edges, const Surface& surface) {
+PerEdge<double> cut_factors(const EdgeTable& edges, const Surface& surface) {
   if (surface.cut_costs.size() == 0) return {};
-  Array<double> out(edges.count(), 1);
+  PerEdge<double> out(edges.count(), 1);
   for (Index row = 0; row < surface.edges->rows(); ++row) {
     out[edges.find((*surface.edges)(row, 0), (*surface.edges)(row, 1))] = surface.cut_costs[row];
   }
@@ -71,16 +71,16 @@ Array<std::pair<Index, Index>> find_duplicates(const Surface& surface, const Edg
 }
 
 struct Orientation {
-  Array<Index> component;  // (m) none for triangles left out
-  Array<char> reversed;    // (m)
-  Array<char> orientable;  // per component
+  PerTriangle<Index> component;  // none for triangles left out
+  PerTriangle<char> reversed;
+  PerComponent<char> orientable;
 };
 
 // The twin of every halfedge across which the surface continues: at edges of two triangles that are neither a border
-// nor an open seam; none at others, (3m).
-Array<Index> join_halfedges(const EdgeTable& edges, const Array<char>& border, const Array<char>& seam,
-                            const OpenSeams& open_seams, Index halfedge_count) {
-  Array<Index> twin(halfedge_count, none);
+// nor an open seam; none at others.
+PerHalfedge<Index> join_halfedges(const EdgeTable& edges, const PerEdge<char>& border, const PerEdge<char>& seam,
+                                  const OpenSeams& open_seams, Index halfedge_count) {
+  PerHalfedge<Index> twin(halfedge_count, none);
   for (Index edge = 0; edge < edges.count(); ++edge) {
     if (edges.halfedge_count(edge) != 2 || border[edge]) continue;
     const Index a = edges.halfedge(edge, 0), b = edges.halfedge(edge, 1);
@@ -93,10 +93,10 @@ Array<Index> join_halfedges(const EdgeTable& edges, const Array<char>& border, c
 
 // Labels components by breadth-first search over joined halfedges and orients every triangle like its component's
 // majority.
-Orientation orient(const Surface& surface, const Array<char>& skip, const Array<Index>& twin) {
+Orientation orient(const Surface& surface, const PerTriangle<char>& skip, const PerHalfedge<Index>& twin) {
   const Index triangle_count = static_cast<Index>(surface.triangles.rows());
   const Index* corner_vertex = surface.triangles.data();
-  Orientation out{Array<Index>(triangle_count, none), Array<char>(triangle_count, 0), {}};
+  Orientation out{PerTriangle<Index>(triangle_count, none), PerTriangle<char>(triangle_count, 0), {}};
   Array<Index> queue;
   for (Index seed = 0; seed < triangle_count; ++seed) {
     if (out.component[seed] != none || skip[seed]) continue;
@@ -145,7 +145,7 @@ void find_boundary_loops(HalfedgeMesh& mesh) {
 void number_vertices(const Surface& surface, Component& component) {
   HalfedgeMesh& mesh = component.mesh;
   const Index halfedge_count = mesh.halfedge_count();
-  Array<Index> vertex(halfedge_count, none);
+  PerHalfedge<Index> vertex(halfedge_count, none);
   for (Index corner = 0; corner < halfedge_count; ++corner) {
     if (vertex[corner] != none) continue;
     const Index v = static_cast<Index>(mesh.outgoing.size());
@@ -192,10 +192,10 @@ void report_crowded_edges(const Surface& surface, const EdgeTable& edges, std::v
        {ElementKind::edges, crowded}});
 }
 
-// (vertices) those at which fans are separate because the surface was opened there.
-Array<char> mark_opened(const Surface& surface, const EdgeTable& edges, const Array<Index>& twin,
-                        const Orientation& orientation) {
-  Array<char> open(surface.positions.rows(), 0);
+// The vertices at which fans are separate because the surface was opened there.
+PerVertex<char> mark_opened(const Surface& surface, const EdgeTable& edges, const PerHalfedge<Index>& twin,
+                            const Orientation& orientation) {
+  PerVertex<char> open(surface.positions.rows(), 0);
   for (Index edge = 0; edge < edges.count(); ++edge) {
     const Index h = edges.halfedge(edge, 0);
     if (twin[h] != none || edges.halfedge_count(edge) < 2) continue;
@@ -209,8 +209,10 @@ Array<char> mark_opened(const Surface& surface, const EdgeTable& edges, const Ar
 }
 
 // Vertices of several fans and of none.  opened: as from mark_opened.
-void report_fans(const Array<Component>& components, const Array<char>& opened, std::vector<Finding>& findings) {
-  Array<Index> fans(opened.size(), 0), split, isolated;
+void report_fans(const PerComponent<Component>& components, const PerVertex<char>& opened,
+                 std::vector<Finding>& findings) {
+  PerVertex<Index> fans(opened.size(), 0);
+  Array<Index> split, isolated;
   for (const Component& component : components) {
     for (const Index v : component.source_vertex) ++fans[v];
   }
@@ -249,7 +251,7 @@ void report_turned(const Orientation& orientation, std::vector<Finding>& finding
 
 }  // namespace
 
-Index label_parts(const HalfedgeMesh& mesh, const Array<char>& open, Array<Index>& part) {
+Index label_parts(const HalfedgeMesh& mesh, const PerHalfedge<char>& open, PerTriangle<Index>& part) {
   UnionFind parts(mesh.triangle_count());
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (!open[h] && h < mesh.twin[h]) parts.unite(h / 3, mesh.twin[h] / 3);
@@ -268,7 +270,7 @@ Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std
   constexpr double bytes_a_triangle = 250;
   require_memory(bytes_a_triangle * static_cast<double>(surface.triangles.rows()));
   Topology topology;
-  Array<char> skip(surface.triangles.rows(), 0);
+  PerTriangle<char> skip(surface.triangles.rows(), 0);
   EdgeTable edges(surface, skip);
   topology.duplicates = find_duplicates(surface, edges);
   if (!topology.duplicates.empty()) {
@@ -283,22 +285,22 @@ Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std
                                " with another one and got its coordinates. Delete duplicate faces to avoid this note."),
                         {ElementKind::triangles, doubled}});
   }
-  const Array<char> cuttable =
+  const PerEdge<char> cuttable =
       surface.edges ? mark_edges(edges, *surface.edges, Code::edge_not_in_mesh,
                                  "are not edges of a triangle. Pass edges of this mesh as cuttable edges.")
-                    : Array<char>(edges.count(), 1);
-  const Array<double> factor = cut_factors(edges, surface);
-  const Array<char> seam = mark_edges(edges, surface.seams, Code::seam_not_an_edge,
-                                      "are marked as seams but are not edges. Mark edges of this mesh.");
-  const Array<char> border = mark_edges(edges, surface.borders, Code::edge_not_in_mesh,
-                                        "are given as borders but are not edges. Pass edges of this mesh.");
-  const Array<Index> twin =
+                    : PerEdge<char>(edges.count(), 1);
+  const PerEdge<double> factor = cut_factors(edges, surface);
+  const PerEdge<char> seam = mark_edges(edges, surface.seams, Code::seam_not_an_edge,
+                                        "are marked as seams but are not edges. Mark edges of this mesh.");
+  const PerEdge<char> border = mark_edges(edges, surface.borders, Code::edge_not_in_mesh,
+                                          "are given as borders but are not edges. Pass edges of this mesh.");
+  const PerHalfedge<Index> twin =
       join_halfedges(edges, border, seam, open_seams, static_cast<Index>(3 * surface.triangles.rows()));
   const Orientation orientation = orient(surface, skip, twin);
 
-  Array<Component>& components = topology.components;
+  PerComponent<Component>& components = topology.components;
   components.resize(orientation.orientable.size());
-  Array<Index> local_triangle(surface.triangles.rows());
+  PerTriangle<Index> local_triangle(surface.triangles.rows());
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
     if (orientation.component[f] == none) continue;
     Component& component = components[orientation.component[f]];

@@ -12,6 +12,7 @@
 #include "base/array.hpp"
 #include "lsgp/errors.hpp"
 #include "lsgp/surface.hpp"
+#include "mesh/per_element.hpp"
 
 namespace lsgp {
 
@@ -22,15 +23,15 @@ inline Index prev(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }
 
 // A connected, oriented manifold surface in its own numbering.
 struct HalfedgeMesh {
-  Positions positions;                 // (n, 3)
-  Triangles triangles;                 // (m, 3)
-  Array<Index> twin;                   // (3m) none on the boundary
-  Array<Index> outgoing;               // (n) a halfedge leaving each vertex; on the boundary the one without a twin
-  Array<char> cuttable, seam;          // (3m) equal on both halfedges of an edge
-  Array<double> cut_factor;            // (3m) cost per length of a cut along the edge, or empty: 1
-  Array<Array<Index>> boundary_loops;  // vertices, surface on the left
-  Array<Index> loop_of_vertex;         // (n) none inside
-  int euler = 0;                       // V - E + F
+  Positions positions;                   // (n, 3)
+  Triangles triangles;                   // (m, 3)
+  PerHalfedge<Index> twin;               // none on the boundary
+  PerVertex<Index> outgoing;             // a halfedge leaving each vertex; on the boundary the one without a twin
+  PerHalfedge<char> cuttable, seam;      // equal on both halfedges of an edge
+  PerHalfedge<double> cut_factor;        // cost per length of a cut along the edge, or empty: 1
+  PerLoop<Array<Index>> boundary_loops;  // vertices, surface on the left
+  PerVertex<Index> loop_of_vertex;       // none inside
+  int euler = 0;                         // V - E + F
   int genus = 0;
 
   Index vertex_count() const { return static_cast<Index>(outgoing.size()); }
@@ -57,17 +58,16 @@ struct HalfedgeMesh {
   }
 };
 
-// Numbers the parts into which open edges, (3m) on both halfedges, divide the triangles; part: (m). Returns their
-// number.
-Index label_parts(const HalfedgeMesh& mesh, const Array<char>& open, Array<Index>& part);
+// Numbers the parts into which open edges, marked on both halfedges, divide the triangles. Returns their number.
+Index label_parts(const HalfedgeMesh& mesh, const PerHalfedge<char>& open, PerTriangle<Index>& part);
 
 // One component of the caller's surface.
 struct Component {
   HalfedgeMesh mesh;
-  Array<Index> source_vertex;    // (n) the caller's vertices
-  Array<Index> source_triangle;  // (m) the caller's triangles
-  Array<char> reversed;          // (m) corners 1 and 2 exchanged to orient the component
-  bool orientable = true;        // otherwise the mesh is empty except for its sources
+  PerVertex<Index> source_vertex;      // the caller's
+  PerTriangle<Index> source_triangle;  // the caller's
+  PerTriangle<char> reversed;          // corners 1 and 2 exchanged to orient the component
+  bool orientable = true;              // otherwise the mesh is empty except for its sources
 
   // The caller's corner 3 * triangle + corner of one of this component's.
   Index source_corner(Index corner) const {
@@ -77,13 +77,13 @@ struct Component {
 };
 
 struct Topology {
-  Array<Component> components;
+  PerComponent<Component> components;
   // Triangles with the same three vertices as an earlier one, and that one; in no component, they share its map.
   Array<std::pair<Index, Index>> duplicates;
 };
 
-// Which seams are boundaries: those of the marked triangles, (m); empty: none.
-using OpenSeams = Array<char>;
+// Which seams are boundaries: those of the marked triangles; empty: none.
+using OpenSeams = PerTriangle<char>;
 
 // Splits a surface into components joined along edges of exactly two triangles. Edges of more triangles are opened,
 // vertices whose triangles form several fans are split, triangles oriented against their component's majority are

@@ -36,7 +36,7 @@ bool all_given(const ComponentCones& cones) {
 }
 
 bool closes_holes(const ComponentMap& map) {
-  const Array<char>& closed = map.curvature.needs_no_cut;
+  const PerLoop<char>& closed = map.curvature.needs_no_cut;
   return std::find(closed.begin(), closed.end(), 1) != closed.end();
 }
 

@@ -17,11 +17,11 @@ namespace lsgp {
 namespace {
 
 // open: the components that are opened along their seams.
-Array<ComponentTask> hand_out(const Surface& surface, const Array<Component>& components, const OpenSeams& open,
-                              const Cones& cones, const Options& options) {
-  Array<Index> cone_at(surface.positions.rows(), none);
+PerComponent<ComponentTask> hand_out(const Surface& surface, const PerComponent<Component>& components,
+                                     const OpenSeams& open, const Cones& cones, const Options& options) {
+  PerVertex<Index> cone_at(surface.positions.rows(), none);
   for (std::size_t i = 0; i < cones.vertices.size(); ++i) cone_at[cones.vertices[i]] = static_cast<Index>(i);
-  Array<ComponentTask> tasks(components.size());
+  PerComponent<ComponentTask> tasks(components.size());
   for (std::size_t c = 0; c < components.size(); ++c) {
     const Component& component = components[c];
     ComponentCones& own = tasks[c].cones;
@@ -49,8 +49,8 @@ Array<ComponentTask> hand_out(const Surface& surface, const Array<Component>& co
   return tasks;
 }
 
-void hand_out_turning(const Array<Component>& components, const Options& options, Eigen::Index vertex_count,
-                      Array<ComponentTask>& tasks) {
+void hand_out_turning(const PerComponent<Component>& components, const Options& options, Eigen::Index vertex_count,
+                      PerComponent<ComponentTask>& tasks) {
   for (const auto& [vertex, turning] : options.loop_turning) {
     bool found = false;
     for (std::size_t c = 0; c < components.size(); ++c) {
@@ -75,7 +75,7 @@ void hand_out_turning(const Array<Component>& components, const Options& options
 
 void hand_out_pins(const Surface& surface, const Pins& pins, Work& work) {
   if (pins.corners.empty()) return;
-  Array<Index> pin_at(3 * surface.triangles.rows(), none);
+  PerHalfedge<Index> pin_at(3 * surface.triangles.rows(), none);
   for (std::size_t i = 0; i < pins.corners.size(); ++i) pin_at[pins.corners[i]] = static_cast<Index>(i);
   for (std::size_t c = 0; c < work.tasks.size(); ++c) {
     const Component& component = work.topology.components[c];
@@ -164,8 +164,8 @@ bool has_seam(const Surface& surface, const Component& component, const std::set
   });
 }
 
-Opened find_opened(const Surface& surface, const Array<Component>& components, const Array<ComponentTask>& tasks,
-                   const Options& options, MoreCones more) {
+Opened find_opened(const Surface& surface, const PerComponent<Component>& components,
+                   const PerComponent<ComponentTask>& tasks, const Options& options, MoreCones more) {
   Opened out;
   if (surface.seams.rows() == 0) return out;
   std::set<std::pair<Index, Index>> seams;
@@ -194,7 +194,7 @@ void divide(const Request& request, MoreCones more, std::vector<Finding>& findin
   }
   Opened opened;
   if (work.seams == SeamMode::follow && !work.unopened.empty()) {
-    const Array<ComponentTask> tasks = hand_out(surface, work.unopened, {}, cones, options);
+    const PerComponent<ComponentTask> tasks = hand_out(surface, work.unopened, {}, cones, options);
     opened = find_opened(surface, work.unopened, tasks, options, more);
   } else {
     split_along({});
@@ -221,7 +221,7 @@ void divide(const Request& request, MoreCones more, std::vector<Finding>& findin
 // A torus without cones is flat, and its texture continues across its seams, unless these divide it into planar pieces
 // some of which have holes: those need no cut of their own if the torus is opened.
 bool is_flat_along_seams(const HalfedgeMesh& torus) {
-  const Array<PartTopology> parts = measure_parts(torus, torus.seam);
+  const PerPart<PartTopology> parts = measure_parts(torus, torus.seam);
   const bool all_planar = std::all_of(parts.begin(), parts.end(), [](const auto& part) { return part.is_planar(); });
   const bool all_disks = std::all_of(parts.begin(), parts.end(), [](const auto& part) { return part.is_disk(); });
   return parts.size() == 1 || all_disks || !all_planar;
@@ -276,7 +276,7 @@ bool let_borders_run_along(const HalfedgeMesh& mesh, const Positions& directions
                            std::optional<double> curvature, ComponentCones& cones) {
   const auto is_given = [](const std::optional<double>& turning) { return turning.has_value(); };
   if (mesh.closed() || std::any_of(cones.loop_turning.begin(), cones.loop_turning.end(), is_given)) return false;
-  const Array<std::optional<double>> wanted = turning_beside(mesh, directions, symmetry);
+  const PerLoop<std::optional<double>> wanted = turning_beside(mesh, directions, symmetry);
   if (!std::all_of(wanted.begin(), wanted.end(), is_given)) return false;
   double missing = 2 * M_PI * mesh.euler - curvature.value_or(0);
   for (const auto& turning : wanted) missing -= *turning;
@@ -322,8 +322,8 @@ Geometry require_geometry(const Component& component, std::vector<Finding>& find
 }
 
 Elements in_source(const Component& component, Elements elements) {
-  const auto& source = elements.kind == ElementKind::triangles ? component.source_triangle : component.source_vertex;
-  for (Index& i : elements.indices) i = source[i];
+  const bool are_triangles = elements.kind == ElementKind::triangles;
+  for (Index& i : elements.indices) i = are_triangles ? component.source_triangle[i] : component.source_vertex[i];
   // Fans of one vertex are several of the component's.
   if (elements.kind == ElementKind::vertices) sort_unique(elements.indices);
   return elements;

@@ -27,8 +27,8 @@ struct ComponentTask {
 // A surface's components and the task of each.
 struct Work {
   Topology topology;
-  Array<ComponentTask> tasks;  // (components)
-  double unit_scale = 1;       // of the components' positions to the caller's
+  PerComponent<ComponentTask> tasks;
+  double unit_scale = 1;  // of the components' positions to the caller's
 
   // Incremented whenever the topology is rebuilt; derived data is valid while it is unchanged.
   std::int64_t generation = 0;
@@ -36,7 +36,7 @@ struct Work {
   // The input that the topology was built for, and the findings of building it.
   SeamMode seams = SeamMode::follow;
   OpenSeams open_seams;
-  Array<Component> unopened;  // before some of them were opened along seams, or empty
+  PerComponent<Component> unopened;  // before some of them were opened along seams, or empty
   std::vector<Finding> found;
 };
 
@@ -107,7 +107,7 @@ void report_skipped(const Array<Failure>& failures, std::vector<Finding>& findin
 // Runs solve(component index) for every component. Errors are reported as COMPONENT_SKIPPED, unless all components
 // fail: then the first error is rethrown in the caller's numbering.
 template <typename Solve>
-void for_each_component(const Array<Component>& components, std::vector<Finding>& findings, Solve solve) {
+void for_each_component(const PerComponent<Component>& components, std::vector<Finding>& findings, Solve solve) {
   Array<Failure> failures;
   for (std::size_t i = 0; i < components.size(); ++i) {
     try {
@@ -122,8 +122,8 @@ void for_each_component(const Array<Component>& components, std::vector<Finding>
 
 // The same, reporting progress as if all took equally long.
 template <typename Solve>
-void for_each_component(const Array<Component>& components, std::vector<Finding>& findings, ProgressMonitor& monitor,
-                        Solve solve) {
+void for_each_component(const PerComponent<Component>& components, std::vector<Finding>& findings,
+                        ProgressMonitor& monitor, Solve solve) {
   const double count = static_cast<double>(components.size());
   for_each_component(components, findings, [&](std::size_t i) {
     const double begin = static_cast<double>(i) / count, end = static_cast<double>(i + 1) / count;

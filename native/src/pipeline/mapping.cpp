@@ -46,11 +46,11 @@ UnfoldMethod usable_unfold(const HalfedgeMesh& mesh, const ComponentCones& cones
 void turn_cornerless_borders(const HalfedgeMesh& mesh, const Array<Index>& corners, const Eigen::VectorXcd& natural,
                              const Array<Index>& edges, Eigen::VectorXd& directions) {
   const std::size_t loop_count = mesh.boundary_loops.size();
-  Array<char> has_corner(loop_count, 0);
+  PerLoop<char> has_corner(loop_count, 0);
   for (const Index v : corners) {
     if (mesh.loop_of_vertex[v] != none) has_corner[mesh.loop_of_vertex[v]] = 1;
   }
-  Array<Complex> along(loop_count, 0.0);
+  PerLoop<Complex> along(loop_count, 0.0);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const Complex edge = natural[next(edges[i])] - natural[edges[i]];
     along[mesh.loop_of_vertex[mesh.origin(edges[i])]] +=
@@ -288,7 +288,7 @@ double Mapping::l2_of(const ComponentMap& map) const {
 }
 
 bool Mapping::overlaps(const ComponentMap& map) const {
-  Array<Index> twin = mesh_.twin;
+  PerHalfedge<Index> twin = mesh_.twin;
   for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
     if (is_open(mesh_, map.cut_mesh, h)) twin[h] = none;
   }
@@ -311,7 +311,7 @@ void Mapping::cut(ComponentMap& map) const {
     const bool flat = task_.cones.symmetry > 0 && map.curvature.at_vertex[v] == 0;
     (flat ? map.flat_cones : map.cones).push_back(v);
   }
-  const Array<char>& uncut = map.curvature.needs_no_cut;
+  const PerLoop<char>& uncut = map.curvature.needs_no_cut;
   if (std::find(uncut.begin(), uncut.end(), 1) != uncut.end()) {
     map.cut_graph = connect_cones(mesh_, geometry_, map.cones, uncut);
   } else if (map.flat_cones.empty()) {
@@ -344,7 +344,7 @@ void Mapping::repair(const ParallelTransportChoice& connections, const ParallelT
                      const Curvature& target, Effort effort, ComponentMap& map) {
   const ProgressMonitor::Stage stage(monitor_, "repair");
   const CutSurface surface = open(map);
-  const Array<char> fixed = fixed_vertices(map);
+  const PerVertex<char> fixed = fixed_vertices(map);
   const bool tangled = static_cast<double>(map.validity.flipped.size()) > tangled_share * mesh_.triangle_count();
   if (tangled && aligned_edges().empty() && map.pins.size() < 2) {
     ComponentMap relative = map;
@@ -372,15 +372,15 @@ void Mapping::polish(const ParallelTransport& connection, const Array<Index>& fl
   const ProgressMonitor::Stage stage(monitor_, "repair");
   const CutSurface surface = open(map);
   const Jacobians jacobians = measure_jacobians(mesh_, geometry_, map.cut_mesh, map.position);
-  const Array<char> around = mark_around(mesh_, flipped, near);
+  const PerVertex<char> around = mark_around(mesh_, flipped, near);
   Array<Index> where;
   for (Index f = 0; f < mesh_.triangle_count(); ++f) {
     if (!around[mesh_.triangles(f, 0)]) continue;
     const double a = std::abs(jacobians.f_z[f]), b = std::abs(jacobians.f_zbar[f]);
     if (a + b > sheared * (a - b)) where.push_back(f);
   }
-  Array<char> marked = mark_around(mesh_, where, rings);
-  const Array<char> fixed = fixed_vertices(map);
+  PerVertex<char> marked = mark_around(mesh_, where, rings);
+  const PerVertex<char> fixed = fixed_vertices(map);
   for (Index v = 0; v < mesh_.vertex_count(); ++v) {
     if (fixed[v] || (mesh_.loop_of_vertex[v] == none && map.curvature.at_vertex[v] != 0)) marked[v] = 0;
   }
@@ -391,7 +391,8 @@ void Mapping::polish(const ParallelTransport& connection, const Array<Index>& fl
   check(map);
 }
 
-void Mapping::twist_gradually(const ParallelTransportChoice& connections, const Array<char>& fixed, ComponentMap& map) {
+void Mapping::twist_gradually(const ParallelTransportChoice& connections, const PerVertex<char>& fixed,
+                              ComponentMap& map) {
   const CutSurface surface = open(map);
   const ParallelTransport natural = connections.at(0, map.curvature);
   ComponentMap moved = map;
@@ -440,8 +441,8 @@ Array<Index> Mapping::aligned_edges() const {
                                                     : corner_edges(mesh_, task_.cones.vertices);
 }
 
-Array<char> Mapping::fixed_vertices(const ComponentMap& map) const {
-  Array<char> fixed(mesh_.vertex_count(), 0);
+PerVertex<char> Mapping::fixed_vertices(const ComponentMap& map) const {
+  PerVertex<char> fixed(mesh_.vertex_count(), 0);
   for (const Pin& pin : map.pins) fixed[map.cut_mesh.source[pin.copy]] = 1;
   for (const Index h : aligned_edges()) fixed[mesh_.origin(h)] = fixed[mesh_.target(h)] = 1;
   return fixed;

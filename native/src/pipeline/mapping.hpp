@@ -55,7 +55,7 @@ class Mapping {
   void polish(const ParallelTransport& connection, const Array<Index>& flipped, ComponentMap& map);
   // Continues the map from the metric's own rotations about handles to the chosen ones; leaves the map unchanged on
   // failure.
-  void twist_gradually(const ParallelTransportChoice& connections, const Array<char>& fixed, ComponentMap& map);
+  void twist_gradually(const ParallelTransportChoice& connections, const PerVertex<char>& fixed, ComponentMap& map);
   void report_adjusted(const ComponentMap& map, const Continuation& end, std::vector<Finding>& findings) const;
   CutSurface open(const ComponentMap& map) const;
   // The connection that a valid map realises: the metric's if its rotations match, but rotations about handles may be
@@ -64,7 +64,7 @@ class Mapping {
   // Boundary edges with an imposed direction.
   Array<Index> aligned_edges() const;
   // Vertices that a repair must not move.
-  Array<char> fixed_vertices(const ComponentMap& map) const;
+  PerVertex<char> fixed_vertices(const ComponentMap& map) const;
   // Counts the steps of Newton's method, the number of which is not known in advance.
   StepHook counter();
   bool may_straighten(const ComponentMap& map) const;

@@ -7,6 +7,7 @@
 
 #include "base/text.hpp"
 #include "base/thread_team.hpp"
+#include "mesh/per_element.hpp"
 
 namespace lsgp {
 
@@ -34,15 +35,15 @@ void require_indices(const VertexPairs& pairs, Index vertex_count, const char* w
   }
 }
 
-Array<char> used_vertices(const Surface& surface) {
-  Array<char> used(surface.positions.rows(), 0);
+PerVertex<char> used_vertices(const Surface& surface) {
+  PerVertex<char> used(surface.positions.rows(), 0);
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
     for (int c = 0; c < 3; ++c) used[surface.triangles(f, c)] = 1;
   }
   return used;
 }
 
-void require_extent(const Positions& positions, const Array<char>& used) {
+void require_extent(const Positions& positions, const PerVertex<char>& used) {
   Eigen::RowVector3d low = Eigen::RowVector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (Index v = 0; v < positions.rows(); ++v) {
     if (!used[v]) continue;
@@ -196,7 +197,7 @@ void require_connectivity(const Surface& surface) {
 void require_valid(const Surface& surface) {
   require_connectivity(surface);
   const Index n = static_cast<Index>(surface.positions.rows());
-  const Array<char> used = used_vertices(surface);
+  const PerVertex<char> used = used_vertices(surface);
   Array<Index> bad;
   for (Index v = 0; v < n; ++v) {
     if (used[v] && !surface.positions.row(v).allFinite()) bad.push_back(v);
@@ -259,8 +260,8 @@ void require_vertices(const Surface& surface, const Cones& cones) {
 void require_valid(const Surface& surface, const Cones& cones) {
   require_vertices(surface, cones);
   const Index n = static_cast<Index>(surface.positions.rows());
-  const Array<char> used = used_vertices(surface);
-  Array<char> seen(n, 0);
+  const PerVertex<char> used = used_vertices(surface);
+  PerVertex<char> seen(n, 0);
   Array<Index> duplicate, loose, non_finite, impossible;
   for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
     const Index v = cones.vertices[i];

@@ -99,7 +99,7 @@ double ConeChooser::predicted_l2(const Set& set) const {
 
 ConeChoice ConeChooser::choose_more(const ConeChoice& present, const Eigen::VectorXd& wanted, int more) {
   const Array<Site>& all = kernel_.sites();
-  Array<char> is_cone(task_.mesh.vertex_count(), 0), near(task_.mesh.vertex_count(), 0);
+  PerVertex<char> is_cone(task_.mesh.vertex_count(), 0), near(task_.mesh.vertex_count(), 0);
   for (const Index v : present.vertices) is_cone[v] = 1;
   Array<int> sites, others;
   for (int i = 0; i < kernel_.site_count(); ++i) (is_cone[all[i].vertex] ? sites : others).push_back(i);

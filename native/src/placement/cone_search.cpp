@@ -27,7 +27,7 @@ Array<char> ConeSearch::open_sites(const Array<int>& used, int rings) const {
   const Array<Site>& sites = problem_.kernel.sites();
   Array<char> open(sites.size());
   for (; rings >= 0; --rings) {
-    Array<char> near(mesh_.vertex_count(), 0);
+    PerVertex<char> near(mesh_.vertex_count(), 0);
     for (const int site : used) {
       for (const Index v : {sites[site].vertex, sites[site].mirrored}) {
         if (v != none) mark_rings(mesh_, v, rings, near);

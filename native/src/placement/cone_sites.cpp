@@ -14,11 +14,11 @@ constexpr int rings_between_images = 2;    // cones side by side cancel each oth
 constexpr double sharp_defect = M_PI / 6;  // of an angle
 constexpr int most_around = 64;            // triangles: vertices around a hub of more are not near each other
 
-// Vertices that cuts can connect to all boundaries and existing cones, (n): those of the largest network if there are
+// Vertices that cuts can connect to all boundaries and existing cones: those of the largest network if there are
 // none, or if these are not connected.
-Array<char> find_reachable(const HalfedgeMesh& mesh, const ComponentCones& existing) {
-  const Array<Index> network = find_cut_networks(mesh);
-  Array<Index> size(mesh.vertex_count(), 0);
+PerVertex<char> find_reachable(const HalfedgeMesh& mesh, const ComponentCones& existing) {
+  const PerVertex<Index> network = find_cut_networks(mesh);
+  PerVertex<Index> size(mesh.vertex_count(), 0);
   for (const Index n : network) ++size[n];
   Array<Index> wanted;
   for (const auto& loop : mesh.boundary_loops) wanted.push_back(network[loop.front()]);
@@ -26,7 +26,7 @@ Array<char> find_reachable(const HalfedgeMesh& mesh, const ComponentCones& exist
   if (wanted.empty()) wanted = network;
   const Index most =
       *std::max_element(wanted.begin(), wanted.end(), [&](Index a, Index b) { return size[a] < size[b]; });
-  Array<char> out(mesh.vertex_count());
+  PerVertex<char> out(mesh.vertex_count());
   for (Index v = 0; v < mesh.vertex_count(); ++v) out[v] = network[v] == most && size[most] > 1;
   return out;
 }
@@ -50,9 +50,9 @@ bool side_by_side(const HalfedgeMesh& mesh, Index a, Index b) {
   return std::find(reached.begin(), reached.end(), b) != reached.end();
 }
 
-Array<Site> existing_sites(const HalfedgeMesh& mesh, const ComponentCones& existing, const Array<Index>& mirrored,
-                           Array<char>& taken) {
-  Array<Index> place(mesh.vertex_count(), none);
+Array<Site> existing_sites(const HalfedgeMesh& mesh, const ComponentCones& existing, const PerVertex<Index>& mirrored,
+                           PerVertex<char>& taken) {
+  PerVertex<Index> place(mesh.vertex_count(), none);
   for (std::size_t i = 0; i < existing.vertices.size(); ++i) place[existing.vertices[i]] = static_cast<Index>(i);
   Array<Site> sites;
   for (const Index v : existing.vertices) {
@@ -74,7 +74,7 @@ Array<Site> existing_sites(const HalfedgeMesh& mesh, const ComponentCones& exist
 
 }  // namespace
 
-void mark_rings(const HalfedgeMesh& mesh, Index vertex, int rings, Array<char>& marked) {
+void mark_rings(const HalfedgeMesh& mesh, Index vertex, int rings, PerVertex<char>& marked) {
   Array<Index> rim{vertex};
   marked[vertex] = 1;
   for (int ring = 0; ring < rings; ++ring) {
@@ -94,11 +94,11 @@ void mark_rings(const HalfedgeMesh& mesh, Index vertex, int rings, Array<char>& 
 ConeSites find_cone_sites(const PlacementTask& task, int most) {
   const HalfedgeMesh& mesh = task.mesh;
   const Eigen::VectorXd& angle_defect = task.geometry.angle_defect;
-  const Array<Index>& mirrored = task.mirrored;
-  Array<char> taken(mesh.vertex_count(), 0);
+  const PerVertex<Index>& mirrored = task.mirrored;
+  PerVertex<char> taken(mesh.vertex_count(), 0);
   ConeSites out{existing_sites(mesh, task.existing, mirrored, taken), 0};
   out.existing = static_cast<int>(out.sites.size());
-  const Array<char> reachable = find_reachable(mesh, task.existing);
+  const PerVertex<char> reachable = find_reachable(mesh, task.existing);
   out.reaches_all = std::find(reachable.begin(), reachable.end(), 0) == reachable.end();
   const auto usable = [&](Index v) {
     return !taken[v] && task.allowed[v] && mesh.loop_of_vertex[v] == none && reachable[v];
@@ -120,7 +120,7 @@ ConeSites find_cone_sites(const PlacementTask& task, int most) {
   Array<Site> spread = candidates;
   for (int rings = 1; static_cast<int>(spread.size()) > most; ++rings) {
     spread.clear();
-    Array<char> near(mesh.vertex_count(), 0);
+    PerVertex<char> near(mesh.vertex_count(), 0);
     for (const Site& site : candidates) {
       if (near[site.vertex]) continue;
       spread.push_back(site);

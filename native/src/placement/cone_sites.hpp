@@ -20,8 +20,8 @@ struct PlacementTask {
   const HalfedgeMesh& mesh;
   const Geometry& geometry;
   const ComponentCones& existing;
-  const Array<char>& allowed;    // (n) vertices that cones may be placed at
-  const Array<Index>& mirrored;  // (n) images in a mirror plane, or empty
+  const PerVertex<char>& allowed;    // vertices that cones may be placed at
+  const PerVertex<Index>& mirrored;  // images in a mirror plane, or empty
 };
 
 struct ConeSites {
@@ -35,6 +35,6 @@ struct ConeSites {
 ConeSites find_cone_sites(const PlacementTask& task, int most);
 
 // Marks a vertex and the rings around it, which end at a vertex of more than 64 triangles.
-void mark_rings(const HalfedgeMesh& mesh, Index vertex, int rings, Array<char>& marked);
+void mark_rings(const HalfedgeMesh& mesh, Index vertex, int rings, PerVertex<char>& marked);
 
 }  // namespace lsgp

@@ -23,7 +23,7 @@ std::optional<PlacedCones> place_beside_directions(const PlacementTask& task, co
                                                    const PlacementOptions& options, const PlacedCones& usual,
                                                    ProgressMonitor& monitor) {
   const int turns = symmetry(*options.lattice);
-  Array<char> allowed = runs_straight_around(task.mesh, directions, turns);
+  PerVertex<char> allowed = runs_straight_around(task.mesh, directions, turns);
   for (Index v = 0; v < task.mesh.vertex_count(); ++v) allowed[v] = task.allowed[v] && !allowed[v];
   ComponentCones existing = task.existing;
   const bool turned = let_borders_run_along(task.mesh, directions, turns, std::nullopt, existing);

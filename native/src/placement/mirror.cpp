@@ -75,13 +75,13 @@ class MirroredSurface {
 
   // The images in the plane in which most vertices have one, or empty; those in a plane in which the surface lies come
   // last.
-  Array<Index> exact_images(const Array<MirrorPlane>& planes) const {
-    Array<Index> best;
+  PerVertex<Index> exact_images(const Array<MirrorPlane>& planes) const {
+    PerVertex<Index> best;
     std::pair<bool, Index> most{false, needed(mesh_.vertex_count()) - 1};
     for (const MirrorPlane& plane : planes) {
       const auto is_matched = [&](Index v) { return near_image(plane, v) != none; };
       if (!is_likely(is_matched)) continue;
-      Array<Index> images = mutual_images(plane);
+      PerVertex<Index> images = mutual_images(plane);
       const Index matched = count_matched(images);
       const std::pair worth{moves(images), matched};
       if (matched < needed(mesh_.vertex_count()) || worth <= most) continue;
@@ -92,13 +92,13 @@ class MirroredSurface {
   }
 
   // The same for the plane in which the surface is nearest to its own image, and in which it does not lie.
-  Array<Index> near_images(const Array<MirrorPlane>& planes) const {
-    Array<Index> best;
+  PerVertex<Index> near_images(const Array<MirrorPlane>& planes) const {
+    PerVertex<Index> best;
     double least = std::numeric_limits<double>::infinity();
     for (const MirrorPlane& plane : planes) {
       const auto is_near = [&](Index v) { return gap(plane, v) <= near_tolerance * extent_; };
       if (!is_likely(is_near)) continue;
-      Array<Index> images = paired(plane);
+      PerVertex<Index> images = paired(plane);
       if (!moves(images)) continue;
       Index matched = 0;
       double sum = 0;
@@ -116,7 +116,7 @@ class MirroredSurface {
   }
 
   // False where the surface lies in the plane of these images.
-  static bool moves(const Array<Index>& images) {
+  static bool moves(const PerVertex<Index>& images) {
     Index moved = 0;
     for (std::size_t v = 0; v < images.size(); ++v) moved += images[v] != none && images[v] != static_cast<Index>(v);
     return moved >= least_moved * static_cast<double>(images.size());
@@ -146,7 +146,7 @@ class MirroredSurface {
 
  private:
   static Index needed(Index count) { return static_cast<Index>(std::ceil(least_matched * count)); }
-  static Index count_matched(const Array<Index>& images) {
+  static Index count_matched(const PerVertex<Index>& images) {
     return static_cast<Index>(images.size()) - static_cast<Index>(std::count(images.begin(), images.end(), none));
   }
 
@@ -165,13 +165,13 @@ class MirroredSurface {
     return found.point != none && found.distance < tolerance * edge_ ? found.point : none;
   }
 
-  Array<Index> mutual_images(const MirrorPlane& plane) const {
-    Array<Index> image(mesh_.vertex_count());
+  PerVertex<Index> mutual_images(const MirrorPlane& plane) const {
+    PerVertex<Index> image(mesh_.vertex_count());
     for (Index v = 0; v < mesh_.vertex_count(); ++v) {
       image[v] = near_image(plane, v);
       checkpoint(operations_a_search);
     }
-    Array<Index> mutual = image;
+    PerVertex<Index> mutual = image;
     for (Index v = 0; v < mesh_.vertex_count(); ++v) {
       if (image[v] == none || image[image[v]] != v || !are_alike(v, image[v])) mutual[v] = none;
     }
@@ -198,7 +198,7 @@ class MirroredSurface {
   }
 
   // Every vertex with that nearest to its image, the nearest pairs first.
-  Array<Index> paired(const MirrorPlane& plane) const {
+  PerVertex<Index> paired(const MirrorPlane& plane) const {
     Array<std::tuple<double, Index, Index>> pairs;
     for (Index v = 0; v < mesh_.vertex_count(); ++v) {
       const PointTree::Nearest found = tree_.nearest(reflected(plane, mesh_.positions.row(v)));
@@ -207,7 +207,7 @@ class MirroredSurface {
       checkpoint(operations_a_search);
     }
     std::sort(pairs.begin(), pairs.end());
-    Array<Index> image(mesh_.vertex_count(), none);
+    PerVertex<Index> image(mesh_.vertex_count(), none);
     for (const auto& [distance, v, other] : pairs) {
       if (image[v] != none || image[other] != none) continue;
       image[v] = other;
@@ -237,11 +237,11 @@ double mean_edge(const HalfedgeMesh& mesh) {
 }
 
 // The vertex of `other` at the image of each vertex of `mesh`; empty unless all have one.
-Array<Index> images_on(const HalfedgeMesh& other, const HalfedgeMesh& mesh, const MirrorPlane& plane) {
+PerVertex<Index> images_on(const HalfedgeMesh& other, const HalfedgeMesh& mesh, const MirrorPlane& plane) {
   const PointTree tree(other.positions);
   const double most = tolerance * mean_edge(mesh);
-  Array<Index> image(mesh.vertex_count());
-  Array<char> is_image(other.vertex_count(), 0);
+  PerVertex<Index> image(mesh.vertex_count());
+  PerVertex<char> is_image(other.vertex_count(), 0);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     const PointTree::Nearest found = tree.nearest(reflected(plane, mesh.positions.row(v)));
     if (found.point == none || !(found.distance < most) || is_image[found.point]) return {};
@@ -255,23 +255,23 @@ Array<Index> images_on(const HalfedgeMesh& other, const HalfedgeMesh& mesh, cons
 
 }  // namespace
 
-Array<Index> find_mirror_images(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                const std::optional<MirrorPlane>& plane) {
+PerVertex<Index> find_mirror_images(const HalfedgeMesh& mesh, const Geometry& geometry,
+                                    const std::optional<MirrorPlane>& plane) {
   const MirroredSurface surface(mesh, geometry);
   Array<MirrorPlane> planes = plane ? Array<MirrorPlane>{with_unit_normal(*plane)} : surface.likely_planes();
-  Array<Index> exact = surface.exact_images(planes);
+  PerVertex<Index> exact = surface.exact_images(planes);
   if (MirroredSurface::moves(exact) && !exact.empty()) return exact;
   if (!plane) {
     for (MirrorPlane& likely : planes) likely = surface.fitted(likely);
   }
-  Array<Index> near = surface.near_images(planes);
+  PerVertex<Index> near = surface.near_images(planes);
   return near.empty() ? exact : near;
 }
 
-Array<MirroredComponent> find_mirrored_components(const Array<Component>& components,
-                                                  const std::optional<MirrorPlane>& plane) {
+PerComponent<MirroredComponent> find_mirrored_components(const PerComponent<Component>& components,
+                                                         const std::optional<MirrorPlane>& plane) {
   const auto count = static_cast<Eigen::Index>(components.size());
-  Array<MirroredComponent> out(count);
+  PerComponent<MirroredComponent> out(count);
   Positions centers = Positions::Zero(count, 3);
   for (Eigen::Index i = 0; i < count; ++i) {
     if (components[i].orientable) centers.row(i) = components[i].mesh.positions.colwise().mean();

@@ -10,24 +10,24 @@
 
 namespace lsgp {
 
-// The vertex at the mirror image of each, (n), or none; empty if the surface is not symmetric. An image's image is the
+// The vertex at the mirror image of each, or none; empty if the surface is not symmetric. An image's image is the
 // vertex itself.
 // plane: if none, those through the centroid along the axes and the principal directions are tried, and fitted to the
 // surface where that helps. A plane in which the surface itself lies comes last.
 // Either nearly all vertices have an image within a tenth of an edge, or the mirrored surface is within 2 % of the
 // surface's extent of itself nearly everywhere: then vertices are paired with those near their images.
-Array<Index> find_mirror_images(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                const std::optional<MirrorPlane>& plane);
+PerVertex<Index> find_mirror_images(const HalfedgeMesh& mesh, const Geometry& geometry,
+                                    const std::optional<MirrorPlane>& plane);
 
 // Components that mirror each other, such as eyes.
 struct MirroredComponent {
-  Index of = -1;       // an earlier one, or none
-  Array<Index> image;  // (n of the earlier one) the vertex at the image of each of its vertices
+  Index of = -1;           // an earlier one, or none
+  PerVertex<Index> image;  // (n of the earlier one) the vertex at the image of each of its vertices
 };
 
 // For each component an earlier one that it mirrors, with an image within a tenth of an edge for every vertex, and that
 // mirrors no earlier one.  plane: if none, those of the axes through the origin and the centroid of all.
-Array<MirroredComponent> find_mirrored_components(const Array<Component>& components,
-                                                  const std::optional<MirrorPlane>& plane);
+PerComponent<MirroredComponent> find_mirrored_components(const PerComponent<Component>& components,
+                                                         const std::optional<MirrorPlane>& plane);
 
 }  // namespace lsgp

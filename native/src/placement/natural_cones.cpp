@@ -17,8 +17,8 @@ constexpr std::size_t most_natural = 32;          // cones
 constexpr std::size_t most_natural_on_fine = 64;  // where at most half of the vertices have one
 
 // Vertices where existing or other cones may be.
-Array<char> find_possible(const ConeChooser& chooser) {
-  Array<char> possible(chooser.task().mesh.vertex_count(), 0);
+PerVertex<char> find_possible(const ConeChooser& chooser) {
+  PerVertex<char> possible(chooser.task().mesh.vertex_count(), 0);
   for (const Site& site : chooser.sites()) {
     for (const Index v : {site.vertex, site.mirrored}) {
       if (v != none) possible[v] = 1;
@@ -30,9 +30,9 @@ Array<char> find_possible(const ConeChooser& chooser) {
 // The interior corners, existing cones first; none if other vertices are bent, or if there are many corners.
 std::optional<Array<Index>> find_corners(const ConeChooser& chooser, Corners kind) {
   const PlacementTask& task = chooser.task();
-  const Array<char> possible = find_possible(chooser);
+  const PerVertex<char> possible = find_possible(chooser);
   Array<Index> corners = task.existing.vertices;
-  Array<char> is_listed(task.mesh.vertex_count(), 0);
+  PerVertex<char> is_listed(task.mesh.vertex_count(), 0);
   for (const Index v : corners) is_listed[v] = 1;
   std::size_t inside = 0;
   for (Index v = 0; v < task.mesh.vertex_count(); ++v) {
@@ -54,7 +54,7 @@ double rounded_to(Lattice lattice, double curvature) {
 }
 
 // Mirror images whose defects differ by rounding get the same one.
-void make_symmetric(const Array<Index>& mirrored, const Array<Index>& corners, Eigen::VectorXd& curvature) {
+void make_symmetric(const PerVertex<Index>& mirrored, const Array<Index>& corners, Eigen::VectorXd& curvature) {
   if (mirrored.empty()) return;
   const Eigen::VectorXd before = curvature;
   for (std::size_t i = 0; i < corners.size(); ++i) {

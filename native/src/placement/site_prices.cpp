@@ -32,7 +32,7 @@ PathStarts largest_network(const HalfedgeMesh& mesh, const Array<Index>& edges, 
   for (const Index h : edges) {
     if (factor_of(mesh, h) <= cheap) networks.unite(mesh.origin(h), mesh.target(h));
   }
-  Array<Index> size(mesh.vertex_count(), 0);
+  PerVertex<Index> size(mesh.vertex_count(), 0);
   for (Index v = 0; v < mesh.vertex_count(); ++v) ++size[networks.find(v)];
   const Index largest = static_cast<Index>(std::max_element(size.begin(), size.end()) - size.begin());
   PathStarts out;
@@ -53,7 +53,7 @@ Eigen::VectorXd vertex_prices(const HalfedgeMesh& mesh, const Geometry& geometry
   const double cheap = factors[(factors.size() - 1) / cheap_share], dearest = factors.back();
   if (!(cheap < dearest)) return out;
   const PathStarts starts = largest_network(mesh, edges, cheap);
-  Array<Reached> reached(mesh.vertex_count());
+  PerVertex<Reached> reached(mesh.vertex_count());
   for (const auto& [distance, v] : starts) reached[v] = {distance, none, v};
   grow_paths(CutEdges(mesh, geometry), {starts}, [](Index) { return true; }, reached);
   double farthest = 0;

@@ -12,7 +12,7 @@ constexpr double as_good = 1.01;  // of the twin's L2 stretch
 
 }  // namespace
 
-TwinPlacement::TwinPlacement(const Array<Component>& components, const PlacementOptions& options,
+TwinPlacement::TwinPlacement(const PerComponent<Component>& components, const PlacementOptions& options,
                              const std::optional<MirrorPlane>& plane)
     : components_(components), options_(options), kept_(components.size()) {
   if (options.symmetric) {

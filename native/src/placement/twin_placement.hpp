@@ -15,7 +15,7 @@ namespace lsgp {
 class TwinPlacement {
  public:
   // All arguments have to outlive it. Without symmetry, no component has a twin.
-  TwinPlacement(const Array<Component>& components, const PlacementOptions& options,
+  TwinPlacement(const PerComponent<Component>& components, const PlacementOptions& options,
                 const std::optional<MirrorPlane>& plane);
 
   // The images of the cones of the component's twin; none if it has none, if either has cones already, or if their map
@@ -36,10 +36,10 @@ class TwinPlacement {
 
   std::ptrdiff_t number(const Component& component) const { return &component - components_.data(); }
 
-  const Array<Component>& components_;
+  const PerComponent<Component>& components_;
   const PlacementOptions& options_;
-  Array<MirroredComponent> twins_;
-  Array<std::optional<Kept>> kept_;
+  PerComponent<MirroredComponent> twins_;
+  PerComponent<std::optional<Kept>> kept_;
 };
 
 }  // namespace lsgp

@@ -14,12 +14,12 @@ bool is_before(Complex a, Complex b) { return a.real() != b.real() ? a.real() < 
 
 }  // namespace
 
-BoundaryPolygon::BoundaryPolygon(const Eigen::VectorXcd& position, const Array<Index>& twin) {
+BoundaryPolygon::BoundaryPolygon(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin) {
   const Index halfedge_count = static_cast<Index>(twin.size());
-  Array<char> is_left_out(halfedge_count / 3);
+  PerTriangle<char> is_left_out(halfedge_count / 3);
   for (Index f = 0; f < halfedge_count / 3; ++f) is_left_out[f] = !position.segment<3>(3 * f).allFinite();
   const auto ends_at = [&](Index h) { return twin[h] == none || is_left_out[twin[h] / 3]; };
-  Array<char> traced(halfedge_count, 0);
+  PerHalfedge<char> traced(halfedge_count, 0);
   for (Index first = 0; first < halfedge_count; ++first) {
     if (traced[first] || is_left_out[first / 3] || !ends_at(first)) continue;
     loops_.push_back(edge_count());

@@ -9,6 +9,7 @@
 
 #include "base/array.hpp"
 #include "lsgp/surface.hpp"
+#include "mesh/per_element.hpp"
 
 namespace lsgp {
 
@@ -26,7 +27,7 @@ inline int side(Complex a, Complex b, Complex c) {
 class BoundaryPolygon {
  public:
   // position, twin: as of has_overlap.
-  BoundaryPolygon(const Eigen::VectorXcd& position, const Array<Index>& twin);
+  BoundaryPolygon(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin);
 
   Index edge_count() const { return static_cast<Index>(tail_.size()); }
   Complex tail(Index edge) const { return tail_[edge]; }

@@ -151,14 +151,14 @@ Array<Overlap> find_overlaps(const Eigen::VectorXcd& position) {
   return Layout(position, [](const Box&) { return true; }).find_overlaps();
 }
 
-Array<Overlap> find_overlaps(const Eigen::VectorXcd& position, const Array<Index>& twin) {
+Array<Overlap> find_overlaps(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin) {
   const BoundaryPolygon outline(position, twin);
   if (!has_overlap(outline)) return {};
   const WindingRaster twice(outline, frame_of(position), static_cast<Index>(twin.size() / 3));
   return Layout(position, [&](const Box& box) { return twice.meets(box); }).find_overlaps();
 }
 
-bool has_overlap(const Eigen::VectorXcd& position, const Array<Index>& twin) {
+bool has_overlap(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin) {
   return has_overlap(BoundaryPolygon(position, twin));
 }
 

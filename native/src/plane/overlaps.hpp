@@ -6,6 +6,7 @@
 
 #include "base/array.hpp"
 #include "lsgp/surface.hpp"
+#include "mesh/per_element.hpp"
 
 namespace lsgp {
 
@@ -20,11 +21,11 @@ struct Overlap {
 Array<Overlap> find_overlaps(const Eigen::VectorXcd& position);
 
 // The same for a layout without flipped triangles, faster: only where the winding number of its boundary is 2 or more.
-// twin: (3m) the halfedge on the other side where the layout continues, none at its boundary.
-Array<Overlap> find_overlaps(const Eigen::VectorXcd& position, const Array<Index>& twin);
+// twin: the halfedge on the other side where the layout continues, none at its boundary.
+Array<Overlap> find_overlaps(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin);
 
 // Whether there is any such pair in a layout without flipped triangles. Inspects only its boundary: an immersed surface
 // with a boundary that neither crosses itself nor encloses another part of it does not overlap itself.
-bool has_overlap(const Eigen::VectorXcd& position, const Array<Index>& twin);
+bool has_overlap(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin);
 
 }  // namespace lsgp

@@ -24,12 +24,12 @@ Units to_units(double angle) { return static_cast<Units>(std::llround(angle / un
 // Angle left over when every corner has its smallest one.
 struct Transport {
   Units of_triangle;
-  Array<Units> of_vertex;  // (n) -1 where free
+  PerVertex<Units> of_vertex;  // -1 where free
 };
 
-Transport left_over(const HalfedgeMesh& mesh, const Eigen::VectorXd& angle, const Array<char>& is_free) {
+Transport left_over(const HalfedgeMesh& mesh, const Eigen::VectorXd& angle, const PerVertex<char>& is_free) {
   const Units corner = to_units(smallest_corner);
-  Transport out{to_units(M_PI) - 3 * corner, Array<Units>(mesh.vertex_count())};
+  Transport out{to_units(M_PI) - 3 * corner, PerVertex<Units>(mesh.vertex_count())};
   for (Index v = 0; v < mesh.vertex_count(); ++v) out.of_vertex[v] = is_free[v] ? -1 : to_units(angle[v]);
   for (Index c = 0; c < mesh.halfedge_count(); ++c) {
     Units& left = out.of_vertex[mesh.origin(c)];
@@ -112,7 +112,7 @@ Array<Index> cones_at(const Bottleneck& at, const Array<Index>& named) {
 
 }  // namespace
 
-void require_possible_angles(const HalfedgeMesh& mesh, const Eigen::VectorXd& angle, const Array<char>& is_free,
+void require_possible_angles(const HalfedgeMesh& mesh, const Eigen::VectorXd& angle, const PerVertex<char>& is_free,
                              const Array<Index>& named) {
   const Transport transport = left_over(mesh, angle, is_free);
   // Without free vertices both sums are the same, so what finds its place from one side fills the other.

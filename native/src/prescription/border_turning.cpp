@@ -16,7 +16,7 @@ namespace lsgp {
 
 namespace {
 
-using Turning = Array<std::optional<double>>;  // (loops) radians, where it is not left free
+using Turning = PerLoop<std::optional<double>>;  // radians, where it is not left free
 
 constexpr double mismatch = 1e-6;  // of Gauss-Bonnet, radians
 
@@ -120,8 +120,8 @@ class LoopScales {
 };
 
 // Boundaries whose scale can be shifted: those with a vertex that is not a corner.
-Array<char> shiftable_loops(const HalfedgeMesh& mesh, const BorderConditions& border) {
-  Array<char> out;
+PerLoop<char> shiftable_loops(const HalfedgeMesh& mesh, const BorderConditions& border) {
+  PerLoop<char> out;
   for (const auto& loop : mesh.boundary_loops) {
     out.push_back(std::any_of(loop.begin(), loop.end(), [&](Index v) { return border.held[v]; }));
   }
@@ -165,7 +165,7 @@ constexpr double largest_hole_shift = 0.1;
 constexpr double nearly_once = 0.5;  // radians off a full turn
 
 // Returns the boundaries' turning, wanted or of holes that also close, and changes the log scale accordingly.
-Turning close_near_holes(const LoopScales& loops, const Array<char>& shiftable, const Turning& wanted,
+Turning close_near_holes(const LoopScales& loops, const PerLoop<char>& shiftable, const Turning& wanted,
                          Eigen::VectorXd& log_scale) {
   const Eigen::VectorXd turning = loops.turning(log_scale);
   Turning closed = wanted;
@@ -198,7 +198,7 @@ bool is_planar(const HalfedgeMesh& mesh, const ComponentCones& cones) {
 }
 
 // The log scale with which all holes of a planar component close, or none if there is none.
-std::optional<Eigen::VectorXd> close_all_holes(const LoopScales& loops, const Array<char>& shiftable, Holes holes,
+std::optional<Eigen::VectorXd> close_all_holes(const LoopScales& loops, const PerLoop<char>& shiftable, Holes holes,
                                                const Eigen::VectorXd& log_scale) {
   constexpr double cheap = 1.1;      // times the L2 stretch without
   constexpr double worth = 1.5;      // times that with holes whose boundaries have a gap
@@ -236,7 +236,7 @@ void prescribe_turning(const LogScale& scale, const ComponentCones& cones, Curva
   const BorderConditions& border = scale.border();
   const std::size_t loop_count = mesh.boundary_loops.size();
   curvature.needs_no_cut.assign(loop_count, 0);
-  const Array<char> shiftable = shiftable_loops(mesh, border);
+  const PerLoop<char> shiftable = shiftable_loops(mesh, border);
   for (std::size_t i = 0; i < cones.loop_turning.size(); ++i) {
     if (!cones.loop_turning[i] || shiftable[i]) continue;
     throw Error(

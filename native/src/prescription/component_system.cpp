@@ -50,7 +50,7 @@ bool ComponentSystem::is_on_cut() {
 
 bool ComponentSystem::covers(const CutGraph& cut_graph) {
   if (!has_all_cuts()) return false;
-  const Array<char>&cut = cut_graph.is_cut, &cut_here = all_cuts().is_cut;
+  const PerHalfedge<char>&cut = cut_graph.is_cut, &cut_here = all_cuts().is_cut;
   return std::equal(cut.begin(), cut.end(), cut_here.begin(), [](char a, char b) { return a <= b; });
 }
 

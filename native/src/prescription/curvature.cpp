@@ -247,7 +247,7 @@ void require_possible(const HalfedgeMesh& mesh, const Geometry& geometry, const 
   if (cones.symmetry > 0) return;  // rounded angles are the tool's own choice
   const BorderConditions border = border_conditions(mesh, geometry, cones);
   Eigen::VectorXd angle(mesh.vertex_count());
-  Array<char> is_free = border.held;
+  PerVertex<char> is_free = border.held;
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     angle[v] = mesh.flat_angle(v) - border.curvature[v];
     is_free[v] |= border.curvature[v] != 0;  // teeth

@@ -111,7 +111,7 @@ struct ComponentCones {
   Array<Index> vertices;                // cones, and corners on a boundary
   Array<std::optional<double>> angles;  // radians, none: automatic
   BorderMode border = BorderMode::free;
-  Array<std::optional<double>> loop_turning;  // (loops) radians, none: free
+  PerLoop<std::optional<double>> loop_turning;  // radians, none: free
   Holes holes = Holes::where_cheap;
   AngleRange range = widest_angles;  // of automatic ones
   int symmetry = 0;                  // q: angles of cones and turning of boundaries are multiples of 2 pi / q; 0: any
@@ -120,11 +120,11 @@ struct ComponentCones {
 // The target of a component's map.
 struct Curvature {
   Eigen::VectorXd at_vertex;  // (n) imposed: of cones, 0 in the interior, the resulting one on a free boundary
-  Array<char> is_free;        // (n) boundary vertices with a free angle, at_vertex being approximate there
+  PerVertex<char> is_free;    // boundary vertices with a free angle, at_vertex being approximate there
   Eigen::VectorXd log_scale;  // (n) area-weighted mean 0
   double predicted_l2 = 1;
   // (loops) holes about which the metric turns exactly once: they need no cut.
-  Array<char> needs_no_cut;
+  PerLoop<char> needs_no_cut;
 };
 
 class ComponentSystem;

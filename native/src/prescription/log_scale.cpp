@@ -117,7 +117,7 @@ LogScale::LogScale(const HalfedgeMesh& mesh, const Geometry& geometry, const Bor
       border_(border),
       cones_(cones),
       weight_(geometry.vertex_area / geometry.total_area) {
-  Array<char> held = border.held;
+  PerVertex<char> held = border.held;
   if (border.balanced) held[ground(cones, factor)] = 1;
   require_matrix_memory(mesh.vertex_count(), static_cast<double>(cones.size()), GrowsWith::conditions);
   laplace_ = factor != nullptr ? laplace_on_cut(*factor, held) : sparse_laplace(mesh, geometry, held);

@@ -108,7 +108,7 @@ StraightSides straighten_sides(const HalfedgeMesh& mesh, const Geometry& geometr
     Index from = none, to = none;
     double share = 0;
   };
-  Array<Place> place(cut_mesh.copy_count());
+  PerCopy<Place> place(cut_mesh.copy_count());
   StraightSides out;
   for (const Cut& cut : cut_graph.cuts) {
     const Sisters tail = origin_sisters(mesh, cut_mesh, cut.halfedges.front());
@@ -124,7 +124,7 @@ StraightSides straighten_sides(const HalfedgeMesh& mesh, const Geometry& geometr
       place[here.right] = {tail.right, head.right, walked / length};
     }
   }
-  Array<Index> unknown(cut_mesh.copy_count(), none);
+  PerCopy<Index> unknown(cut_mesh.copy_count(), none);
   const Index origin = out.segments.front().from;
   for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
     if (place[copy].from == none && copy != origin) unknown[copy] = out.reduction.unknown_count++;
@@ -178,7 +178,7 @@ StraightenedLayout straighten(const CutSurface& surface) {
   const int left_over = boundary.count_crossings();
 
   layout.curvature = Eigen::VectorXd::Zero(mesh.vertex_count());
-  Array<char> read(mesh.vertex_count(), 0);
+  PerVertex<char> read(mesh.vertex_count(), 0);
   for (const Cut& cut : cut_graph.cuts) {
     for (const Index v : {cut.tail, cut.head}) {
       if (read[v]) continue;

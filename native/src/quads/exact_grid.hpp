@@ -12,10 +12,10 @@ namespace lsgp {
 
 // Every triangle has its own chart, in which its corners are counter-clockwise.
 struct ExactGrid {
-  int bits = 0;                  // a cell's side is 2^bits
-  Array<GridPoint> at;           // (3m) corners
-  Array<GridTransition> across;  // (3m) from a halfedge's triangle to its twin's
-  Array<int> quarter_turns;      // (n) the angle of each vertex
+  int bits = 0;                        // a cell's side is 2^bits
+  PerHalfedge<GridPoint> at;           // corners
+  PerHalfedge<GridTransition> across;  // from a halfedge's triangle to its twin's
+  PerVertex<int> quarter_turns;        // the angle of each vertex
 
   std::int64_t cell() const { return std::int64_t{1} << bits; }
   bool is_corner(GridPoint p) const { return (p.x & (cell() - 1)) == 0 && (p.y & (cell() - 1)) == 0; }

@@ -42,9 +42,9 @@ class GridVertices {
 
   const HalfedgeMesh& mesh_;
   const ExactGrid& grid_;
-  Array<GridVertex> all_;   // by triangle, from the lowest row up, from left to right
-  Array<Index> first_;      // (m + 1) of each triangle
-  Array<Index> at_vertex_;  // (n) none where a vertex is no corner of cells
+  Array<GridVertex> all_;       // by triangle, from the lowest row up, from left to right
+  Array<Index> first_;          // (m + 1) of each triangle
+  PerVertex<Index> at_vertex_;  // none where a vertex is no corner of cells
 };
 
 }  // namespace lsgp

@@ -32,9 +32,9 @@ Array<Index> first_rows(const DegreesOfFreedom& freedom) {
 }  // namespace
 
 DegreesOfFreedom free_vertices(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Eigen::VectorXcd& motion,
-                               const Array<char>& marked) {
+                               const PerVertex<char>& marked) {
   DegreesOfFreedom out;
-  Array<Index> unknown(mesh.vertex_count(), none);
+  PerVertex<Index> unknown(mesh.vertex_count(), none);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (marked[v]) unknown[v] = out.displacement.unknown_count++;
   }
@@ -52,7 +52,7 @@ DegreesOfFreedom free_vertices(const HalfedgeMesh& mesh, const CutMesh& cut_mesh
 }
 
 DegreesOfFreedom free_all(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Reduction& reduction,
-                          const Array<char>& fixed) {
+                          const PerVertex<char>& fixed) {
   Array<Index> row(reduction.unknown_count, 0);
   for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
     if (!fixed[cut_mesh.source[copy]]) continue;
@@ -74,8 +74,8 @@ DegreesOfFreedom free_all(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, con
   return out;
 }
 
-Array<char> mark_around(const HalfedgeMesh& mesh, const Array<Index>& triangles, int rings) {
-  Array<char> inside(mesh.vertex_count(), 0);
+PerVertex<char> mark_around(const HalfedgeMesh& mesh, const Array<Index>& triangles, int rings) {
+  PerVertex<char> inside(mesh.vertex_count(), 0);
   Array<Index> front;
   const auto reach = [&](Index v, Array<Index>& reached) {
     if (inside[v]) return;

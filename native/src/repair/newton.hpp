@@ -24,16 +24,16 @@ struct DegreesOfFreedom {
   Array<char> is_real{};  // (unknowns) those with real values only; empty: none
 };
 
-// The marked vertices, (n); translations are fixed.  motion: (copies) as from motion_of_copies.
+// The marked vertices; translations are fixed.  motion: (copies) as from motion_of_copies.
 DegreesOfFreedom free_vertices(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Eigen::VectorXcd& motion,
-                               const Array<char>& marked);
+                               const PerVertex<char>& marked);
 
-// All positions and translations except those that vertices marked as fixed, (n), depend on.
+// All positions and translations except those that vertices marked as fixed depend on.
 DegreesOfFreedom free_all(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Reduction& reduction,
-                          const Array<char>& fixed);
+                          const PerVertex<char>& fixed);
 
-// The vertices within some rings of triangles, those of the triangles themselves being the first ring; (n).
-Array<char> mark_around(const HalfedgeMesh& mesh, const Array<Index>& triangles, int rings);
+// The vertices within some rings of triangles, those of the triangles themselves being the first ring.
+PerVertex<char> mark_around(const HalfedgeMesh& mesh, const Array<Index>& triangles, int rings);
 
 // Called before every step of Newton's method; its exceptions propagate.
 using StepHook = std::function<void()>;
@@ -47,7 +47,7 @@ struct RestShapes {
 // A map and its fixed vertices.
 struct HeldMap {
   const Eigen::VectorXcd& position;  // (copies) u + iv
-  const Array<char>& fixed;          // (n) vertices that do not move
+  const PerVertex<char>& fixed;      // vertices that do not move
 };
 
 class NewtonMinimizer {

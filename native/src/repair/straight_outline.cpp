@@ -25,7 +25,7 @@ bool is_quarter_turn(double rotation) { return std::abs(std::remainder(rotation,
 // Halfedges around the opened surface, each outline starting at the lowest.
 Array<Array<Index>> outlines(const HalfedgeMesh& mesh, const CutMesh& cut_mesh) {
   Array<Array<Index>> out;
-  Array<char> is_listed(mesh.halfedge_count(), 0);
+  PerHalfedge<char> is_listed(mesh.halfedge_count(), 0);
   for (Index first = 0; first < mesh.halfedge_count(); ++first) {
     if (is_listed[first] || !is_open(mesh, cut_mesh, first)) continue;
     out.emplace_back();

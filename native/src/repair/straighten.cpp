@@ -35,7 +35,7 @@ void equalize(const CutMesh& cut_mesh, const DirectedEdges& edges, Eigen::Vector
       const Index h = edges.halfedges[i];
       lines.unite(cut_mesh.copy_of_corner[h], cut_mesh.copy_of_corner[next(h)]);
     }
-    Array<std::pair<double, int>> sum(cut_mesh.copy_count(), {0.0, 0});
+    PerCopy<std::pair<double, int>> sum(cut_mesh.copy_count(), {0.0, 0});
     const auto across = [&](Index copy) { return is_level ? position[copy].imag() : position[copy].real(); };
     for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
       auto& [coordinates, count] = sum[lines.find(copy)];

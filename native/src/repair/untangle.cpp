@@ -70,7 +70,7 @@ Eigen::VectorXcd untangle(const CutSurface& surface, const MapTarget& target, co
     best = std::move(tried);
   };
   const auto free_around = [&, &mesh = mesh, &cut_mesh = cut_mesh](int rings) {
-    Array<char> marked = mark_around(mesh, defective_triangles(mesh, left), rings);
+    PerVertex<char> marked = mark_around(mesh, defective_triangles(mesh, left), rings);
     for (Index v = 0; v < mesh.vertex_count(); ++v) {
       const bool is_cone = mesh.loop_of_vertex[v] == none && curvature.at_vertex[v] != 0;
       if (map.fixed[v] || is_cone) marked[v] = 0;

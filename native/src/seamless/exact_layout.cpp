@@ -45,7 +45,7 @@ void ExactLayout::snap() {
   for (Complex& translation : translations_) {
     translation = on_lattice(translation) ? lattice_.nearest(translation) : round_to(translation, fraction);
   }
-  const Array<char> on_cut = on_cuts(mesh_, map_.cut_graph);
+  const PerVertex<char> on_cut = on_cuts(mesh_, map_.cut_graph);
   for (Index v = 0; v < mesh_.vertex_count(); ++v) {
     if (!on_cut[v]) {
       if (!lattice_.square()) continue;

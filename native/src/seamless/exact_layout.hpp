@@ -40,8 +40,8 @@ class ExactLayout {
   const PointLattice& lattice_;
   const Complex shift_;  // of the lattice that cones are on
   Eigen::VectorXcd& position_;
-  Array<int> turns_;
-  Array<Complex> translations_;
+  PerCut<int> turns_;
+  PerCut<Complex> translations_;
 };
 
 }  // namespace lsgp

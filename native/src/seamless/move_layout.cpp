@@ -38,12 +38,12 @@ bool LayoutQuantizer::repair(double scale, const Eigen::VectorXcd& before, Eigen
   const ParallelTransport connection{
       measure_jacobians(mesh_, geometry_, cut_mesh_, before).f_z.array().arg(), rotation_, {}};
   position = untangle(surface(), {connection, target}, {Effort::local, DistortionEnergy::Kind::framed_foldover_free},
-                      before_step_, {position, Array<char>(mesh_.vertex_count(), 0)});
+                      before_step_, {position, PerVertex<char>(mesh_.vertex_count(), 0)});
   return check(position).defects() == 0;
 }
 
 // Newton steps on the symmetric Dirichlet energy over the marked vertices.
-void LayoutQuantizer::smooth(double scale, Array<char> marked, int steps, Eigen::VectorXcd& position) const {
+void LayoutQuantizer::smooth(double scale, PerVertex<char> marked, int steps, Eigen::VectorXcd& position) const {
   NewtonMinimizer(surface(), {rest_.array() + std::log(scale), Eigen::VectorXd::Zero(mesh_.triangle_count())},
                   free_vertices(mesh_, cut_mesh_, motion_of_copies_, without_cones(std::move(marked))), before_step_,
                   position)
@@ -123,14 +123,14 @@ void LayoutQuantizer::lower_stretch(double stretch, const Eigen::VectorXd& impor
   const Eigen::VectorXd rest = scale_at_rest(surface(), curvature_, stretch, layout.position);
   NewtonMinimizer relaxation(
       surface(), {rest, Eigen::VectorXd::Zero(mesh_.triangle_count())},
-      free_vertices(mesh_, cut_mesh_, motion_of_copies_, without_cones(Array<char>(mesh_.vertex_count(), 1))),
+      free_vertices(mesh_, cut_mesh_, motion_of_copies_, without_cones(PerVertex<char>(mesh_.vertex_count(), 1))),
       before_step_, layout.position);
   relaxation.weigh(importance_of_triangles(mesh_, geometry_, importance));
   relaxation.smooth(DistortionEnergy::Kind::symmetric_dirichlet, relaxing_steps, least_decrease);
   layout.energy = measure_energy(layout.position);
 }
 
-Array<char> LayoutQuantizer::without_cones(Array<char> marked) const {
+PerVertex<char> LayoutQuantizer::without_cones(PerVertex<char> marked) const {
   for (Index v = 0; v < mesh_.vertex_count(); ++v) {
     if (mesh_.loop_of_vertex[v] == none && curvature_.at_vertex[v] != 0) marked[v] = 0;
   }

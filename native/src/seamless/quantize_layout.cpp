@@ -32,8 +32,8 @@ constexpr std::size_t few_targets = 2;    // that are worth following, and all t
 constexpr double poor_energy = 1.5;  // 1 for an isometry
 constexpr int poor_steps = 20;
 
-Array<int> turns_of_cuts(const Eigen::VectorXd& rotation, int symmetry) {
-  Array<int> out;
+PerCut<int> turns_of_cuts(const Eigen::VectorXd& rotation, int symmetry) {
+  PerCut<int> out;
   for (const double r : rotation) out.push_back(turns_of(r, symmetry));
   return out;
 }
@@ -140,7 +140,7 @@ double LayoutQuantizer::measure_misalignment(const Eigen::VectorXcd& position) c
 Array<MovingTriangle> LayoutQuantizer::moving_triangles(const ComponentMap& map) {
   Array<MovingTriangle> out;
   if (!mesh_.closed() || map.cones.empty()) return out;
-  Array<Complex> turn;
+  PerCut<Complex> turn;
   for (const int t : turns_of_cuts(rotation_, lattice_.symmetry())) turn.push_back(lattice_.unit(t));
   const auto triangulation = triangulate_cones(surface(), turn, map.cones, start_);
   if (!triangulation) return out;
@@ -248,7 +248,7 @@ std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, const L
       if (!(in_steps ? follow(scale, change, out.position) : move(scale, effort, change, out.position))) continue;
       out.energy = measure_energy(out.position);
       if (!quick && out.energy > stretched_energy * energy_) {
-        smooth(scale, Array<char>(mesh_.vertex_count(), 1), smoothing_steps, out.position);
+        smooth(scale, PerVertex<char>(mesh_.vertex_count(), 1), smoothing_steps, out.position);
         out.energy = measure_energy(out.position);
       }
       if (!(out.energy <= effort.most_growth * energy_)) continue;

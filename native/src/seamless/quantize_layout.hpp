@@ -95,13 +95,13 @@ class LayoutQuantizer {
   // In move_layout.cpp.
   Validity check(const Eigen::VectorXcd& position) const;
   bool repair(double scale, const Eigen::VectorXcd& before, Eigen::VectorXcd& position) const;
-  void smooth(double scale, Array<char> marked, int steps, Eigen::VectorXcd& position) const;
+  void smooth(double scale, PerVertex<char> marked, int steps, Eigen::VectorXcd& position) const;
   Eigen::VectorXd triangle_energies(double scale, const Jacobians& jacobians) const;
   Array<Index> find_stretched(double scale, const Jacobians& jacobians) const;
   bool looks_easy(double scale, double most_energy, const Validity& validity, const Eigen::VectorXcd& position) const;
   bool move(double scale, const LayoutEffort& effort, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const;
   bool follow(double scale, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const;
-  Array<char> without_cones(Array<char> marked) const;
+  PerVertex<char> without_cones(PerVertex<char> marked) const;
 
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;

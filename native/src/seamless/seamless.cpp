@@ -55,8 +55,8 @@ void report_cones_given_up(const SeamlessReport& report, std::vector<Finding>& f
 
 // Regions enclosed by cuts are placed individually.
 DividedLayout divide(const HalfedgeMesh& mesh, ComponentMap& map) {
-  Array<Index> part_of_triangle;
-  DividedLayout out{&map.position, Array<Index>(map.cut_mesh.copy_count()), 0};
+  PerTriangle<Index> part_of_triangle;
+  DividedLayout out{&map.position, PerCopy<Index>(map.cut_mesh.copy_count()), 0};
   out.part_count = label_parts(mesh, map.cut_graph.is_cut, part_of_triangle);
   for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
     out.part[map.cut_mesh.copy_of_corner[corner]] = part_of_triangle[corner / 3];
@@ -73,7 +73,7 @@ void split_layouts(const GridSearch& search, Complex shift, const Grid& grid, Ar
     maps[i] = *parts[i].map;
     maps[i].position = grid.layouts[i].position.array() + shift;
     // Cones off the lattice have translations off it, across which no part may move.
-    const Array<char> nowhere(mesh.halfedge_count(), 0), everywhere(mesh.halfedge_count(), 1);
+    const PerHalfedge<char> nowhere(mesh.halfedge_count(), 0), everywhere(mesh.halfedge_count(), 1);
     split_map({mesh, parts[i].system->geometry(), nowhere}, search.relaxed(i).empty() ? mesh.seam : everywhere, monitor,
               maps[i]);
   });

@@ -24,7 +24,7 @@ class Stretches {
         if (of_[end] == none) of_[end] = count_++;
       }
     }
-    Array<char> is_reached(mesh.boundary_loops.size(), 0);
+    PerLoop<char> is_reached(mesh.boundary_loops.size(), 0);
     for (const Cut& cut : cut_graph.cuts) {
       start();
       for (const Index h : cut.halfedges) add(mesh.origin(h), h);
@@ -54,16 +54,16 @@ class Stretches {
 
   const Geometry& geometry_;
   const double longest_;
-  Array<Index> of_;  // (n) none elsewhere
+  PerVertex<Index> of_;  // none elsewhere
   Index count_ = 0;
   double length_ = 0;
 };
 
 }  // namespace
 
-Array<char> find_candidate_cuts(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph) {
+PerHalfedge<char> find_candidate_cuts(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph) {
   const Stretches stretches(mesh, geometry, cut_graph);
-  Array<Reached> reached(mesh.vertex_count());
+  PerVertex<Reached> reached(mesh.vertex_count());
   PathStarts starts;
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (stretches.of(v) == none) continue;
@@ -74,7 +74,7 @@ Array<char> find_candidate_cuts(const HalfedgeMesh& mesh, const Geometry& geomet
   const auto admits = [&](Index v) { return mesh.loop_of_vertex[v] == none || stretches.of(v) != none; };
   const CutEdges edges(mesh, geometry);
   grow_paths(edges, {std::move(starts)}, admits, reached);
-  Array<char> out = cut_graph.is_cut;
+  PerHalfedge<char> out = cut_graph.is_cut;
   std::set<std::pair<Index, Index>> joined;
   const auto stretch_at = [&](Index v) { return stretches.of(reached[v].source); };
   const auto joins = [&](Index v, const CutEdges::Edge& edge) {

@@ -52,8 +52,8 @@ class Compactor {
   }
 
   // Returns the part of every face.
-  Array<Index> divide_all() {
-    Array<Index> part(graph_.face_count(), 0);
+  PerFace<Index> divide_all() {
+    PerFace<Index> part(graph_.face_count(), 0);
     Array<Index> all(graph_.face_count());
     std::iota(all.begin(), all.end(), 0);
     Array<Array<Index>> pending = pieces_of(all, part);
@@ -103,9 +103,9 @@ class Compactor {
   const DivisionSearch search_;
   MinimumCutter cutter_;
   Array<Index> triangle_begin_, triangles_;  // of every face
-  Array<Complex> center_;                    // (faces)
-  Array<Index> place_;                       // (faces) index in the current island, none elsewhere
-  Array<char> is_near_cut_;                  // (faces) may change sides
+  PerFace<Complex> center_;
+  PerFace<Index> place_;       // index in the current island, none elsewhere
+  PerFace<char> is_near_cut_;  // may change sides
 };
 
 Array<Complex> Compactor::hull_of(const Array<Index>& faces) const {
@@ -275,13 +275,13 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& island) {
 
 void compact_islands(const OpenedSurface& surface, const SharedSquare& square, ComponentMap& map) {
   const HalfedgeMesh& mesh = surface.mesh;
-  Array<char> ends = surface.open, is_cut = map.cut_graph.is_cut;
+  PerHalfedge<char> ends = surface.open, is_cut = map.cut_graph.is_cut;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) ends[h] = ends[h] || is_cut[h];
   const OpenedSurface islands{mesh, surface.geometry, ends};
   const FaceGraph graph = build_face_graph(islands);
   const Eigen::VectorXcd position = square.scale * at_corners(map.cut_mesh, map.position);
   Compactor compactor(islands, graph, position, square);
-  Array<Index> part = compactor.divide_all();
+  PerFace<Index> part = compactor.divide_all();
   straighten_cuts(islands, graph, [&](Index face, Index) { return !compactor.is_near_cut(face); }, part);
   bool has_opened = false;
   for (const FaceGraph::Link& link : graph.links) {
@@ -290,8 +290,8 @@ void compact_islands(const OpenedSurface& surface, const SharedSquare& square, C
     has_opened = true;
   }
   if (!has_opened) return;
-  Array<Index> part_of_triangle;
-  const Array<Motion> motions(label_parts(mesh, ends, part_of_triangle));
+  PerTriangle<Index> part_of_triangle;
+  const PerPart<Motion> motions(label_parts(mesh, ends, part_of_triangle));
   cut_apart(mesh, std::move(is_cut), part_of_triangle, motions, map);
 }
 

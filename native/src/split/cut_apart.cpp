@@ -5,9 +5,9 @@
 
 namespace lsgp {
 
-void cut_apart(const HalfedgeMesh& mesh, Array<char> is_cut, const Array<Index>& part, const Array<Motion>& motion,
-               ComponentMap& map) {
-  Array<char> is_node(mesh.vertex_count(), 0);
+void cut_apart(const HalfedgeMesh& mesh, PerHalfedge<char> is_cut, const PerTriangle<Index>& part,
+               const PerPart<Motion>& motion, ComponentMap& map) {
+  PerVertex<char> is_node(mesh.vertex_count(), 0);
   for (const Index v : map.cones) is_node[v] = 1;
   CutGraph graph = trace_cuts(mesh, is_node, std::move(is_cut));
   if (map.rotation) {
@@ -22,7 +22,7 @@ void cut_apart(const HalfedgeMesh& mesh, Array<char> is_cut, const Array<Index>&
   }
   CutMesh cut_mesh = cut_open(mesh, graph);
   Eigen::VectorXcd position(cut_mesh.copy_count());
-  Array<Index> copy_after(map.cut_mesh.copy_count());
+  PerCopy<Index> copy_after(map.cut_mesh.copy_count());
   for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
     const Index before = map.cut_mesh.copy_of_corner[corner], after = cut_mesh.copy_of_corner[corner];
     position[after] = motion[part[corner / 3]](map.position[before]);

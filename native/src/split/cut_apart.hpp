@@ -20,8 +20,8 @@ struct Motion {
 };
 
 // Cuts the map at all marked edges, and only there, and moves its parts.
-// is_cut: (3m) on both halfedges.  part: (m) of every triangle.
-void cut_apart(const HalfedgeMesh& mesh, Array<char> is_cut, const Array<Index>& part, const Array<Motion>& motion,
-               ComponentMap& map);
+// is_cut: on both halfedges.
+void cut_apart(const HalfedgeMesh& mesh, PerHalfedge<char> is_cut, const PerTriangle<Index>& part,
+               const PerPart<Motion>& motion, ComponentMap& map);
 
 }  // namespace lsgp

@@ -23,8 +23,9 @@ double sharpness_factor(const HalfedgeMesh& mesh, Index h) {
 
 }  // namespace
 
-Array<double> relative_cut_factors(const HalfedgeMesh& mesh) {
-  Array<double> factor = mesh.cut_factor, of_edges;
+PerHalfedge<double> relative_cut_factors(const HalfedgeMesh& mesh) {
+  PerHalfedge<double> factor = mesh.cut_factor;
+  Array<double> of_edges;
   for (Index h = 0; h < ssize(factor); ++h) {
     if (mesh.twin[h] > h && mesh.cuttable[h]) of_edges.push_back(factor[h]);
   }
@@ -40,15 +41,15 @@ Array<double> relative_cut_factors(const HalfedgeMesh& mesh) {
 FaceGraph build_face_graph(const OpenedSurface& surface) {
   const HalfedgeMesh& mesh = surface.mesh;
   const Geometry& geometry = surface.geometry;
-  const Array<char>& open = surface.open;
+  const PerHalfedge<char>& open = surface.open;
   FaceGraph graph;
-  Array<char> is_side(mesh.halfedge_count());
+  PerHalfedge<char> is_side(mesh.halfedge_count());
   for (Index h = 0; h < mesh.halfedge_count(); ++h) is_side[h] = open[h] || mesh.cuttable[h];
   graph.area.assign(label_parts(mesh, is_side, graph.face_of), 0);
   for (Index f = 0; f < mesh.triangle_count(); ++f) graph.area[graph.face_of[f]] += geometry.area[f];
   graph.total_area = geometry.total_area;
   graph.unit = geometry.length.mean() / units_of_mean_edge;
-  const Array<double> factor = relative_cut_factors(mesh);
+  const PerHalfedge<double> factor = relative_cut_factors(mesh);
   graph.link_begin.assign(graph.face_count() + 1, 0);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     const Index twin = mesh.twin[h];

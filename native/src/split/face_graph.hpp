@@ -9,11 +9,15 @@
 
 namespace lsgp {
 
+struct FaceKind;
+template <typename T>
+using PerFace = ArrayPer<FaceKind, T>;  // of a FaceGraph
+
 // A surface and where its layout ends.
 struct OpenedSurface {
   const HalfedgeMesh& mesh;
   const Geometry& geometry;
-  const Array<char>& open;  // (3m) halfedges, on both sides of an edge
+  const PerHalfedge<char>& open;  // on both sides of an edge
 };
 
 struct FaceGraph {
@@ -25,8 +29,8 @@ struct FaceGraph {
     Units cost;      // its length times its factor as a cut; without factors less along sharp edges; least on seams
   };
 
-  Array<Index> face_of;  // (triangles) those that no cut may part are one face
-  Array<double> area;    // (faces)
+  PerTriangle<Index> face_of;  // triangles that no cut may part are one face
+  PerFace<double> area;
   double total_area = 0;
   double unit = 0;  // length of one unit of cost
   Array<Link> links;
@@ -44,8 +48,8 @@ struct FaceGraph {
   }
 };
 
-// What an edge's length counts as a cut, of the median edge's and within bounds, (3m); empty where all cost the same.
-Array<double> relative_cut_factors(const HalfedgeMesh& mesh);
+// What an edge's length counts as a cut, of the median edge's and within bounds; empty where all cost the same.
+PerHalfedge<double> relative_cut_factors(const HalfedgeMesh& mesh);
 
 FaceGraph build_face_graph(const OpenedSurface& surface);
 

@@ -20,7 +20,7 @@ constexpr double narrowest_joint = 0.25;       // of the square root of the smal
 
 class Joiner {
  public:
-  Joiner(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, const Array<char>& kept,
+  Joiner(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, const PerHalfedge<char>& kept,
          MapParts& parts);
 
   void join() {
@@ -50,24 +50,24 @@ class Joiner {
   bool overlaps(Index left, Index right, const Motion& motion, const Array<Index>& closed);
 
   const HalfedgeMesh& mesh_;
-  const Array<Index>& part_;
-  Array<char>& open_;
+  const PerTriangle<Index>& part_;
+  PerHalfedge<char>& open_;
   Eigen::VectorXcd corners_;
   double size_;
   Array<Border> borders_;
-  Array<Motion>& motion_;          // (parts)
-  Array<Index> group_;             // (parts) joined ones share one
-  Array<Array<Index>> triangles_;  // (groups)
-  Array<double> area_;             // (groups)
-  Array<Index> joins_;             // (groups) number of groups merged into each
+  PerPart<Motion>& motion_;
+  PerPart<Index> group_;             // joined ones share one
+  PerPart<Array<Index>> triangles_;  // of groups
+  PerPart<double> area_;             // of groups
+  PerPart<Index> joins_;             // number of groups merged into each
 
   // Scratch memory with these values between calls.
-  Array<char> is_closed_;  // (3m) 0
-  Array<Index> place_;     // (m) none
+  PerHalfedge<char> is_closed_;  // 0
+  PerTriangle<Index> place_;     // none
 };
 
-Joiner::Joiner(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, const Array<char>& kept,
-               MapParts& parts)
+Joiner::Joiner(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
+               const PerHalfedge<char>& kept, MapParts& parts)
     : mesh_(mesh),
       part_(parts.part),
       open_(parts.open),
@@ -75,7 +75,7 @@ Joiner::Joiner(const HalfedgeMesh& mesh, const Geometry& geometry, const Compone
       motion_(parts.motion),
       is_closed_(mesh.halfedge_count(), 0),
       place_(mesh.triangle_count(), none) {
-  const Array<Index>& part = parts.part;
+  const PerTriangle<Index>& part = parts.part;
   const Index part_count = 1 + *std::max_element(part.begin(), part.end());
   motion_.assign(part_count, {});
   group_.resize(part_count);
@@ -159,7 +159,7 @@ bool Joiner::overlaps(Index left, Index right, const Motion& motion, const Array
   for (std::size_t i = 0; i < triangles.size(); ++i) place_[triangles[i]] = static_cast<Index>(i);
   for (const Index h : closed) is_closed_[h] = 1;
   Eigen::VectorXcd position(3 * ssize(triangles));
-  Array<Index> twin(3 * triangles.size(), none);
+  PerHalfedge<Index> twin(3 * triangles.size(), none);
   Index part = none;
   Motion moved;
   Complex turn = 1;
@@ -185,8 +185,8 @@ bool Joiner::overlaps(Index left, Index right, const Motion& motion, const Array
 
 }  // namespace
 
-void merge_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, const Array<char>& kept,
-                   MapParts& parts) {
+void merge_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
+                   const PerHalfedge<char>& kept, MapParts& parts) {
   Joiner(mesh, geometry, map, kept, parts).join();
 }
 

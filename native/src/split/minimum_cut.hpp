@@ -47,7 +47,7 @@ class MinimumCutter {
 
   const FaceGraph& graph_;
   const CutCost rule_;
-  Array<Index> place_;  // (faces) in the scope, none elsewhere
+  PerFace<Index> place_;  // in the scope, none elsewhere
 };
 
 }  // namespace lsgp

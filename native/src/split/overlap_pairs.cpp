@@ -38,8 +38,8 @@ OverlapPairs collect_pairs(const FaceGraph& graph, const Array<Overlap>& overlap
   return out;
 }
 
-FaceParts number_parts(const FaceGraph& graph, const Array<Index>& number) {
-  FaceParts parts{Array<Index>(graph.face_count(), none), 0};
+FaceParts number_parts(const FaceGraph& graph, const PerFace<Index>& number) {
+  FaceParts parts{PerFace<Index>(graph.face_count(), none), 0};
   Array<Index> front;
   for (Index seed = 0; seed < graph.face_count(); ++seed) {
     if (parts.of_face[seed] != none) continue;

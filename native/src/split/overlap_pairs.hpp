@@ -29,11 +29,11 @@ struct OverlapPairs {
 OverlapPairs collect_pairs(const FaceGraph& graph, const Array<Overlap>& overlaps);
 
 struct FaceParts {
-  Array<Index> of_face;  // (faces) each part is connected
+  PerFace<Index> of_face;  // each part is connected
   Index count = 0;
 };
 
 // Connected faces of one number share a part.
-FaceParts number_parts(const FaceGraph& graph, const Array<Index>& number);
+FaceParts number_parts(const FaceGraph& graph, const PerFace<Index>& number);
 
 }  // namespace lsgp

@@ -22,7 +22,7 @@ OverlapSplitter::OverlapSplitter(const FaceGraph& graph, const OverlapPairs& pai
       pairs_(pairs),
       cutter_(cutter),
       before_cut_(before_cut),
-      parts_(number_parts(graph, Array<Index>(graph.face_count(), 0))),
+      parts_(number_parts(graph, PerFace<Index>(graph.face_count(), 0))),
       is_seen_(pairs.of.size(), 0),
       depth_(pairs.of.size(), none),
       side_(graph.face_count(), 0) {}

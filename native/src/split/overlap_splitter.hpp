@@ -75,7 +75,7 @@ class OverlapSplitter {
   // Scratch, as it is here between calls.
   Array<char> is_seen_;  // (entries) 0
   Array<Index> depth_;   // (entries) none
-  Array<char> side_;     // (faces) 0
+  PerFace<char> side_;   // 0
 };
 
 }  // namespace lsgp

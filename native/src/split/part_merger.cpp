@@ -28,13 +28,13 @@ PartMerger::PartLengths PartMerger::measure_borders() const {
 
 void PartMerger::merge_back() {
   PartLengths borders = measure_borders();
-  Array<std::set<Index>> conflicts(parts_.count);  // of every part
+  PerPart<std::set<Index>> conflicts(parts_.count);
   for (std::size_t i = 0; i < pairs_.of.size(); ++i) {
     const Index part = parts_.of_face[pairs_.of[i]], other = parts_.of_face[pairs_.partner[i]];
     conflicts[part].insert(other);
     borders.erase(std::minmax({part, other}));
   }
-  Array<Index> merged_into(parts_.count);
+  PerPart<Index> merged_into(parts_.count);
   std::iota(merged_into.begin(), merged_into.end(), 0);
   while (!borders.empty()) {
     checkpoint(operations_a_border * static_cast<double>(borders.size()));
@@ -66,8 +66,8 @@ void PartMerger::merge_back() {
   parts_ = number_parts(graph_, parts_.of_face);
 }
 
-Array<Array<Index>> PartMerger::faces_of_parts() const {
-  Array<Array<Index>> faces(parts_.count);
+PerPart<Array<Index>> PartMerger::faces_of_parts() const {
+  PerPart<Array<Index>> faces(parts_.count);
   for (Index face = 0; face < graph_.face_count(); ++face) faces[parts_.of_face[face]].push_back(face);
   return faces;
 }
@@ -77,7 +77,7 @@ void PartMerger::improve() {
   bool has_changed = true;
   for (int round = 0; has_changed && round < most_rounds; ++round) {
     has_changed = false;
-    const Array<Array<Index>> faces = faces_of_parts();
+    const PerPart<Array<Index>> faces = faces_of_parts();
     for (const auto& [pair, length] : measure_borders()) {
       const Array<Index>&first = faces[pair.first], &second = faces[pair.second];
       Array<Index> scope;

@@ -33,8 +33,8 @@ class PartMerger {
   // By two parts, the lower number first.
   using PartLengths = std::map<std::pair<Index, Index>, FaceGraph::Units>;
 
-  PartLengths measure_borders() const;         // of what was opened between any two parts
-  Array<Array<Index>> faces_of_parts() const;  // sorted
+  PartLengths measure_borders() const;           // of what was opened between any two parts
+  PerPart<Array<Index>> faces_of_parts() const;  // sorted
   // Optimises the cut between two neighbours, all others fixed. Returns whether there was a better one.
   // scope: the faces of both, sorted.
   bool improve(Index a, Index b, const Array<Index>& scope, FaceGraph::Units length);

@@ -19,7 +19,8 @@ constexpr double operations_a_border = 20;
 // Merges small pieces across paths that are not cut.
 class PieceMerger {
  public:
-  PieceMerger(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& is_cut, Array<char>& network)
+  PieceMerger(const HalfedgeMesh& mesh, const Geometry& geometry, const PerHalfedge<char>& is_cut,
+              PerHalfedge<char>& network)
       : mesh_(mesh),
         is_cut_(is_cut),
         network_(network),
@@ -72,11 +73,11 @@ class PieceMerger {
   }
 
   const HalfedgeMesh& mesh_;
-  const Array<char>& is_cut_;
-  Array<char>& network_;
+  const PerHalfedge<char>& is_cut_;
+  PerHalfedge<char>& network_;
   const double least_area_;
-  Array<Index> piece_;  // (m)
-  Array<double> area_;  // of the groups
+  PerTriangle<Index> piece_;
+  PerPart<double> area_;  // of the groups
   UnionFind groups_;
   std::map<std::pair<Index, Index>, double> borders_;  // length by pieces, the lower first
 };
@@ -94,7 +95,7 @@ class Builder {
     for (const Index v : map.cones) is_cone_[v] = 1;
   }
 
-  PieceGraph build(Array<char> network) {
+  PieceGraph build(PerHalfedge<char> network) {
     graph_.outline.resize(label_parts(mesh_, network, graph_.piece_of));
     for (Cut& path : trace_cuts(mesh_, is_cone_, std::move(network)).cuts) add(std::move(path));
     for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
@@ -151,15 +152,15 @@ class Builder {
   const ComponentMap& map_;
   const Eigen::VectorXcd corners_;
   const double resolution_;
-  Array<char> is_cone_;   // (n)
-  Array<Index> node_of_;  // (n)
+  PerVertex<char> is_cone_;
+  PerVertex<Index> node_of_;
   PieceGraph graph_;
 };
 
 }  // namespace
 
 PieceGraph build_piece_graph(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                             Array<char> network, double resolution) {
+                             PerHalfedge<char> network, double resolution) {
   PieceMerger(mesh, geometry, map.cut_graph.is_cut, network).merge_small();
   return Builder(mesh, geometry, map, resolution).build(std::move(network));
 }

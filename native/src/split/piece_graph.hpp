@@ -26,17 +26,17 @@ struct PieceGraph {
     Complex tail, head;
   };
 
-  Array<Index> piece_of;       // (m) of every triangle
-  Array<Array<Side>> outline;  // (pieces) the layout on the left
+  PerTriangle<Index> piece_of;
+  PerPart<Array<Side>> outline;  // of every piece, the layout on the left
   Array<Path> paths;
   Array<char> is_end;  // (nodes) whether cuts have to reach it: a cone or a boundary vertex
 
   Index piece_count() const { return static_cast<Index>(outline.size()); }
 };
 
-// network: (3m) on both halfedges, with the map's cuts; paths around small pieces are removed.
+// network: on both halfedges, with the map's cuts; paths around small pieces are removed.
 // resolution: sides of outlines inside the surface are merged up to about this length.
 PieceGraph build_piece_graph(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                             Array<char> network, double resolution);
+                             PerHalfedge<char> network, double resolution);
 
 }  // namespace lsgp

@@ -50,17 +50,17 @@ class Recutter {
 
   // A layout and its quality.
   struct State {
-    Array<char> in_tree;   // (paths) closed; one tree per island
-    Array<Motion> motion;  // (pieces)
+    Array<char> in_tree;     // (paths) closed; one tree per island
+    PerPart<Motion> motion;  // of pieces
     double overlap = 0, cost = 0;
   };
 
   // Layouts other than the given one, the best first.
   Array<State> search();
 
-  // (3m) whether a halfedge is cut, on both sides of an edge.
-  Array<char> cuts_of(const HalfedgeMesh& mesh, const State& state) const;
-  const Array<Index>& piece_of() const { return graph_.piece_of; }
+  // Whether a halfedge is cut, on both sides of an edge.
+  PerHalfedge<char> cuts_of(const HalfedgeMesh& mesh, const State& state) const;
+  const PerTriangle<Index>& piece_of() const { return graph_.piece_of; }
 
  private:
   using Path = PieceGraph::Path;
@@ -95,8 +95,8 @@ class Recutter {
 
   const PieceGraph graph_;
   const double area_;
-  Array<Array<Index>> paths_of_;  // (pieces) that lead to other pieces
-  Array<Circle> circles_;         // around the pieces where they were at first
+  PerPart<Array<Index>> paths_of_;  // that lead to other pieces
+  PerPart<Circle> circles_;         // around the pieces where they were at first
   State now_;
   Array<char> is_open_;  // (paths) in the current state
   double first_cost_ = 0;
@@ -119,7 +119,7 @@ Recutter::Recutter(PieceGraph graph, double area)
 // Connects the pieces of each island along paths that are not cut.
 void Recutter::span() {
   now_.in_tree.assign(graph_.paths.size(), 0);
-  Array<char> is_reached(graph_.piece_count(), 0);
+  PerPart<char> is_reached(graph_.piece_count(), 0);
   Array<Index> front;
   for (Index seed = 0; seed < graph_.piece_count(); ++seed) {
     if (is_reached[seed]) continue;
@@ -171,7 +171,7 @@ double Recutter::cost_of(const Array<char>& in_tree) const {
 // The pieces connected to a seed, which is the first, when a path of the tree is opened; if that is `none`, the whole
 // island.
 Array<Index> Recutter::pieces_behind(Index opened, Index seed) const {
-  Array<char> is_reached(graph_.piece_count(), 0);
+  PerPart<char> is_reached(graph_.piece_count(), 0);
   is_reached[seed] = 1;
   Array<Index> out{seed};
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -228,7 +228,7 @@ double Recutter::shared(const CoverageRaster& raster, const Array<Index>& pieces
 
 // The overlap of every island with itself.
 double Recutter::measure_overlap() {
-  Array<char> is_measured(graph_.piece_count(), 0);
+  PerPart<char> is_measured(graph_.piece_count(), 0);
   double out = 0;
   for (Index seed = 0; seed < graph_.piece_count(); ++seed) {
     if (is_measured[seed]) continue;
@@ -244,7 +244,7 @@ Recutter::Exchange Recutter::best_exchange(Index opened, double weight, Array<In
   moving = pieces_behind(opened, graph_.paths[opened].left);
   Array<Index> resting = pieces_behind(opened, graph_.paths[opened].right);
   if (count_sides(moving) > count_sides(resting)) std::swap(moving, resting);
-  Array<Side> side(graph_.piece_count(), Side::elsewhere);
+  PerPart<Side> side(graph_.piece_count(), Side::elsewhere);
   for (const Index piece : moving) side[piece] = Side::moving;
   for (const Index piece : resting) side[piece] = Side::resting;
   const CoverageRaster rest = raster_of(resting);
@@ -308,8 +308,8 @@ Array<Recutter::State> Recutter::search() {
   return found;
 }
 
-Array<char> Recutter::cuts_of(const HalfedgeMesh& mesh, const State& state) const {
-  Array<char> out(mesh.halfedge_count(), 0);
+PerHalfedge<char> Recutter::cuts_of(const HalfedgeMesh& mesh, const State& state) const {
+  PerHalfedge<char> out(mesh.halfedge_count(), 0);
   const Array<char> open = open_paths(state.in_tree);
   for (std::size_t p = 0; p < open.size(); ++p) {
     if (!open[p]) continue;

@@ -21,13 +21,14 @@ constexpr double cost_of_island = 0.5, cost_of_scrap = 2, cost_of_cut = 1;
 constexpr double scrap = 0.005;  // of the area
 
 // factor: as from relative_cut_factors.
-double cost(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<double>& factor, const Array<char>& ends) {
+double cost(const HalfedgeMesh& mesh, const Geometry& geometry, const PerHalfedge<double>& factor,
+            const PerHalfedge<char>& ends) {
   double length = 0;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (ends[h] && mesh.twin[h] > h) length += geometry.length[h] * (factor.empty() ? 1 : factor[h]);
   }
-  Array<Index> island;
-  Array<double> area(label_parts(mesh, ends, island), 0);
+  PerTriangle<Index> island;
+  PerPart<double> area(label_parts(mesh, ends, island), 0);
   for (Index f = 0; f < mesh.triangle_count(); ++f) area[island[f]] += geometry.area[f];
   const auto scraps =
       std::count_if(area.begin(), area.end(), [&](double own) { return own < scrap * geometry.total_area; });
@@ -42,7 +43,7 @@ struct Division {
 };
 
 Array<Overlap> find_own_overlaps(const HalfedgeMesh& mesh, const ComponentMap& map) {
-  Array<Index> twin = mesh.twin;
+  PerHalfedge<Index> twin = mesh.twin;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (map.cut_graph.is_cut[h]) twin[h] = none;
   }
@@ -56,8 +57,9 @@ Array<Overlap> find_own_overlaps(const HalfedgeMesh& mesh, const ComponentMap& m
 // The candidate divisions of a map that overlaps itself.
 class MapDivider {
  public:
-  // surface: where the map is open, cuts included.  kept: (3m).
-  MapDivider(const OpenedSurface& surface, const ComponentMap& map, const Array<char>& kept, ProgressMonitor& monitor)
+  // surface: where the map is open, cuts included.  kept: as for split_map.
+  MapDivider(const OpenedSurface& surface, const ComponentMap& map, const PerHalfedge<char>& kept,
+             ProgressMonitor& monitor)
       : surface_(surface),
         map_(map),
         kept_(kept),
@@ -82,15 +84,15 @@ class MapDivider {
  private:
   const OpenedSurface surface_;
   const ComponentMap& map_;
-  const Array<char>& kept_;
+  const PerHalfedge<char>& kept_;
   ProgressMonitor& monitor_;
   const Array<Overlap> overlaps_;
-  const Array<double> factor_;  // (3m) of edges as cuts
+  const PerHalfedge<double> factor_;  // of edges as cuts
 };
 
 // Where a map is open: where it was before, and along its cuts.
-Array<char> ends_of(const OpenedSurface& surface, const ComponentMap& map) {
-  Array<char> ends = surface.open;
+PerHalfedge<char> ends_of(const OpenedSurface& surface, const ComponentMap& map) {
+  PerHalfedge<char> ends = surface.open;
   for (std::size_t h = 0; h < ends.size(); ++h) ends[h] = ends[h] || map.cut_graph.is_cut[h];
   return ends;
 }
@@ -98,12 +100,12 @@ Array<char> ends_of(const OpenedSurface& surface, const ComponentMap& map) {
 // The cheapest division of maps that differ by their cuts.
 class WaySearch {
  public:
-  WaySearch(const OpenedSurface& surface, const Array<char>& kept, ProgressMonitor& monitor)
+  WaySearch(const OpenedSurface& surface, const PerHalfedge<char>& kept, ProgressMonitor& monitor)
       : surface_(surface), kept_(kept), monitor_(monitor) {}
 
   // least: dividing an overlapping layout is assumed to add at least this cost.
   void divide(const ComponentMap& way, std::initializer_list<CutCost> rules, double least) {
-    const Array<char> ends = ends_of(surface_, way);
+    const PerHalfedge<char> ends = ends_of(surface_, way);
     const MapDivider divider({surface_.mesh, surface_.geometry, ends}, way, kept_, monitor_);
     for (const CutCost rule : rules) {
       if (chosen_ && divider.cost_before() + (divider.is_whole() ? 0 : least) >= best_.cost) break;
@@ -119,14 +121,14 @@ class WaySearch {
 
  private:
   const OpenedSurface& surface_;
-  const Array<char>& kept_;
+  const PerHalfedge<char>& kept_;
   ProgressMonitor& monitor_;
   Division best_{};
   const ComponentMap* chosen_ = nullptr;  // none so far
 };
 
 // Marked seams, straight cuts and pinned islands stay as they are.
-bool may_recut(const Array<char>& kept, const ComponentMap& map) {
+bool may_recut(const PerHalfedge<char>& kept, const ComponentMap& map) {
   return map.rotation && !map.has_straight_cuts && map.pins.empty() && !map.cut_graph.cuts.empty() &&
          std::find(kept.begin(), kept.end(), 1) == kept.end();
 }
@@ -135,7 +137,7 @@ bool may_recut(const Array<char>& kept, const ComponentMap& map) {
 void apply(const OpenedSurface& surface, const MapParts& parts, ComponentMap& map) {
   const HalfedgeMesh& mesh = surface.mesh;
   const auto& [parts_open, part, motion] = parts;
-  Array<char> is_cut = map.cut_graph.is_cut;
+  PerHalfedge<char> is_cut = map.cut_graph.is_cut;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (mesh.twin[h] == none || !parts_open[h]) {
       is_cut[h] = 0;
@@ -150,7 +152,8 @@ void apply(const OpenedSurface& surface, const MapParts& parts, ComponentMap& ma
 
 }  // namespace
 
-bool split_map(const OpenedSurface& surface, const Array<char>& kept, ProgressMonitor& monitor, ComponentMap& map) {
+bool split_map(const OpenedSurface& surface, const PerHalfedge<char>& kept, ProgressMonitor& monitor,
+               ComponentMap& map) {
   const auto& [mesh, geometry, open] = surface;
   const ProgressMonitor::Stage stage(monitor, "split");
   if (find_own_overlaps(mesh, map).empty()) return false;

@@ -22,7 +22,7 @@ using Path = Array<Index>;  // halfedges
 
 class Straightener {
  public:
-  Straightener(const OpenedSurface& surface, const FaceGraph& graph, const IsHeld& is_held, Array<Index>& part)
+  Straightener(const OpenedSurface& surface, const FaceGraph& graph, const IsHeld& is_held, PerFace<Index>& part)
       : mesh_(surface.mesh),
         geometry_(surface.geometry),
         graph_(graph),
@@ -42,7 +42,7 @@ class Straightener {
 
   void straighten() {
     constexpr int most_rounds = 4;
-    Array<char> has_moved(graph_.face_count());  // by part
+    PerPart<char> has_moved(graph_.face_count());
     bool goes_on = true;
     for (int round = 0; goes_on && round < most_rounds; ++round) {
       goes_on = false;
@@ -84,20 +84,20 @@ class Straightener {
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
   const FaceGraph& graph_;
-  const Array<char>& open_;
+  const PerHalfedge<char>& open_;
   const IsHeld& is_held_;
-  Array<Index>& part_;
-  Array<double> length_;            // (3m) cost of an edge, 0 if it may not be cut
-  Array<char> on_path_, is_end_;    // (3m)
-  mutable Array<double> distance_;  // (3m)
-  mutable Array<Index> before_;     // (3m)
-  Array<char> in_band_;             // (faces)
+  PerFace<Index>& part_;
+  PerHalfedge<double> length_;  // cost of an edge, 0 if it may not be cut
+  PerHalfedge<char> on_path_, is_end_;
+  mutable PerHalfedge<double> distance_;
+  mutable PerHalfedge<Index> before_;
+  PerFace<char> in_band_;
 };
 
 // The cuts between any two parts, from boundary to boundary or between junctions; the lower part is on the left.
 Array<Path> Straightener::trace() const {
-  Array<Index> next_on(mesh_.halfedge_count(), none);
-  Array<char> has_before(mesh_.halfedge_count(), 0);
+  PerHalfedge<Index> next_on(mesh_.halfedge_count(), none);
+  PerHalfedge<char> has_before(mesh_.halfedge_count(), 0);
   const auto is_cut = [&](Index h) { return mesh_.twin[h] != none && !open_[h] && part(h) < part(mesh_.twin[h]); };
   for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
     if (!is_cut(h)) continue;
@@ -260,9 +260,10 @@ double Straightener::cost(const Path& path) const {
 // Divides the two parts along another path. Leaves them unchanged if that does not separate overlapping faces.
 bool Straightener::move(const Path& before, const Path& after) {
   const Index a = part(before.front()), b = part(mesh_.twin[before.front()]);
-  Array<char> is_open(mesh_.halfedge_count(), 0);
+  PerHalfedge<char> is_open(mesh_.halfedge_count(), 0);
   for (const Index h : after) is_open[h] = is_open[mesh_.twin[h]] = 1;
-  Array<Index> side(graph_.face_count(), none), front;
+  PerFace<Index> side(graph_.face_count(), none);
+  Array<Index> front;
   const auto flood = [&](Index seed, Index number) {
     side[seed] = number;
     front.assign(1, seed);
@@ -293,7 +294,8 @@ bool Straightener::move(const Path& before, const Path& after) {
 
 }  // namespace
 
-void straighten_cuts(const OpenedSurface& surface, const FaceGraph& graph, const IsHeld& is_held, Array<Index>& part) {
+void straighten_cuts(const OpenedSurface& surface, const FaceGraph& graph, const IsHeld& is_held,
+                     PerFace<Index>& part) {
   Straightener(surface, graph, is_held, part).straighten();
 }
 

@@ -14,7 +14,7 @@ using IsHeld = std::function<bool(Index face, Index other)>;
 
 // Replaces each cut between two parts by one nearby that turns less, if it is hardly longer; its ends may slide along
 // what bounds the parts.
-// part: (faces of the graph), connected.
-void straighten_cuts(const OpenedSurface& surface, const FaceGraph& graph, const IsHeld& is_held, Array<Index>& part);
+// part: connected.
+void straighten_cuts(const OpenedSurface& surface, const FaceGraph& graph, const IsHeld& is_held, PerFace<Index>& part);
 
 }  // namespace lsgp

@@ -25,7 +25,7 @@ bool CutFactor::is_chosen(Factorization asked, const HalfedgeMesh& mesh, const C
 CutFactor::CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
                      Eigen::VectorXd memory)
     : cut_graph_(cut_graph), cut_mesh_(cut_open(mesh, cut_graph_)) {
-  const Array<char> on_cut = on_cuts(mesh, cut_graph_);
+  const PerVertex<char> on_cut = on_cuts(mesh, cut_graph_);
   const Index copies = cut_mesh_.copy_count();
   row_of_copy_.resize(copies);
   Index row = 0;

@@ -49,7 +49,8 @@ class CutFactor {
  private:
   const CutGraph& cut_graph_;
   CutMesh cut_mesh_;
-  Array<Index> retained_, row_of_copy_;
+  Array<Index> retained_;
+  PerCopy<Index> row_of_copy_;
   std::optional<Cholesky<double>> factor_;
 };
 

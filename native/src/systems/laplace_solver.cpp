@@ -62,11 +62,11 @@ namespace {
 
 class SparseLaplace final : public LaplaceSolver {
  public:
-  SparseLaplace(Cholesky<double> factor, const Array<Index>& row_of_vertex)
+  SparseLaplace(Cholesky<double> factor, const PerVertex<Index>& row_of_vertex)
       : LaplaceSolver(static_cast<Index>(factor.size()), places(factor, row_of_vertex)), factor_(std::move(factor)) {}
 
  private:
-  static Array<Index> places(const Cholesky<double>& factor, Array<Index> rows) {
+  static PerVertex<Index> places(const Cholesky<double>& factor, PerVertex<Index> rows) {
     for (Index& row : rows) {
       if (row != none) row = factor.place(row);
     }
@@ -80,9 +80,9 @@ class SparseLaplace final : public LaplaceSolver {
 
 class LaplaceOnCut final : public LaplaceSolver {
  public:
-  LaplaceOnCut(const CutFactor& factor, const Array<char>& held)
+  LaplaceOnCut(const CutFactor& factor, const PerVertex<char>& held)
       : LaplaceSolver(factor.cut_mesh().copy_count(), rows_of_vertices(factor, held)), factor_(factor) {
-    Array<Index> place_of_vertex(held.size(), none);
+    PerVertex<Index> place_of_vertex(held.size(), none);
     for (const Index copy : factor.retained()) {
       const Index v = factor.cut_mesh().source[copy];
       if (!held[v] && place_of_vertex[v] == none) place_of_vertex[v] = glued_count_++;
@@ -93,8 +93,8 @@ class LaplaceOnCut final : public LaplaceSolver {
 
  private:
   // A right-hand side acts on the first copy of each vertex, since all of them are the same unknown.
-  static Array<Index> rows_of_vertices(const CutFactor& factor, const Array<char>& held) {
-    Array<Index> row(held.size(), none);
+  static PerVertex<Index> rows_of_vertices(const CutFactor& factor, const PerVertex<char>& held) {
+    PerVertex<Index> row(held.size(), none);
     for (Index copy = factor.cut_mesh().copy_count(); copy-- > 0;) {
       const Index v = factor.cut_mesh().source[copy];
       if (!held[v]) row[v] = factor.row_of_copy(copy);
@@ -142,12 +142,12 @@ class LaplaceOnCut final : public LaplaceSolver {
 }  // namespace
 
 std::unique_ptr<LaplaceSolver> sparse_laplace(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                              const Array<char>& held) {
+                                              const PerVertex<char>& held) {
   const Laplacian laplacian = assemble_laplacian(mesh, geometry, held);
   return std::make_unique<SparseLaplace>(Cholesky<double>(laplacian.lower), laplacian.row_of_vertex);
 }
 
-std::unique_ptr<LaplaceSolver> laplace_on_cut(const CutFactor& factor, const Array<char>& held) {
+std::unique_ptr<LaplaceSolver> laplace_on_cut(const CutFactor& factor, const PerVertex<char>& held) {
   return std::make_unique<LaplaceOnCut>(factor, held);
 }
 

@@ -25,7 +25,7 @@ class LaplaceSolver {
  protected:
   using Rows = Cholesky<double>::Rows;
 
-  LaplaceSolver(Index row_count, Array<Index> row_of_vertex)
+  LaplaceSolver(Index row_count, PerVertex<Index> row_of_vertex)
       : row_count_(row_count), row_of_vertex_(std::move(row_of_vertex)) {}
 
   // A solve in two halves, as of Cholesky.
@@ -41,13 +41,13 @@ class LaplaceSolver {
   }
 
   const Index row_count_;
-  const Array<Index> row_of_vertex_;  // (n) none where y is 0
+  const PerVertex<Index> row_of_vertex_;  // none where y is 0
 };
 
-// held: (n) where y is 0, at least at one vertex.
+// held: where y is 0, at least at one vertex.
 std::unique_ptr<LaplaceSolver> sparse_laplace(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                              const Array<char>& held);
+                                              const PerVertex<char>& held);
 // The same with an existing factor; held vertices lie on cuts or boundaries.
-std::unique_ptr<LaplaceSolver> laplace_on_cut(const CutFactor& factor, const Array<char>& held);
+std::unique_ptr<LaplaceSolver> laplace_on_cut(const CutFactor& factor, const PerVertex<char>& held);
 
 }  // namespace lsgp

@@ -15,7 +15,7 @@ namespace {
 template <typename Visit>
 void for_each_entry(Form form, const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
                     Visit visit) {
-  Array<double> diagonal(cut_mesh.copy_count(), 0.0);
+  PerCopy<double> diagonal(cut_mesh.copy_count(), 0.0);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     const Index from = cut_mesh.copy_of_corner[h], to = cut_mesh.copy_of_corner[next(h)], twin = mesh.twin[h];
     const double weight = geometry.half_cotangent[h];
@@ -121,7 +121,7 @@ Geometry with_weights(const Geometry& geometry, const Eigen::VectorXd& weight) {
   return out;
 }
 
-Laplacian assemble_laplacian(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& held) {
+Laplacian assemble_laplacian(const HalfedgeMesh& mesh, const Geometry& geometry, const PerVertex<char>& held) {
   Laplacian laplacian;
   laplacian.row_of_vertex.assign(mesh.vertex_count(), none);
   Index rows = 0;
@@ -134,7 +134,7 @@ Laplacian assemble_laplacian(const HalfedgeMesh& mesh, const Geometry& geometry,
 }
 
 Eigen::SparseMatrix<double> assemble_dirichlet(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                               const CutMesh& cut_mesh, const Array<Index>& row_of_copy) {
+                                               const CutMesh& cut_mesh, const PerCopy<Index>& row_of_copy) {
   return assemble_cotangents(mesh, geometry, cut_mesh.copy_count(),
                              [&](Index corner) { return row_of_copy[cut_mesh.copy_of_corner[corner]]; });
 }

@@ -24,16 +24,16 @@ Eigen::SparseMatrix<Complex> assemble_form(Form form, const HalfedgeMesh& mesh, 
 Geometry with_weights(const Geometry& geometry, const Eigen::VectorXd& weight);
 
 // The cotangent Laplacian of the surface itself, positive semidefinite, without the rows and columns of `held`
-// vertices; lower triangle.  row_of_vertex: (n) row numbers, none at held vertices.
+// vertices; lower triangle.  row_of_vertex: row numbers, none at held vertices.
 struct Laplacian {
   Eigen::SparseMatrix<double> lower;
-  Array<Index> row_of_vertex;
+  PerVertex<Index> row_of_vertex;
 };
-Laplacian assemble_laplacian(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<char>& held);
+Laplacian assemble_laplacian(const HalfedgeMesh& mesh, const Geometry& geometry, const PerVertex<char>& held);
 
 // The Dirichlet form of the copies by themselves, each in the row given; lower triangle.
 Eigen::SparseMatrix<double> assemble_dirichlet(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                               const CutMesh& cut_mesh, const Array<Index>& row_of_copy);
+                                               const CutMesh& cut_mesh, const PerCopy<Index>& row_of_copy);
 
 // L y at every vertex, (n).
 Eigen::VectorXd apply_laplacian(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& values);

@@ -59,7 +59,7 @@ Eigen::MatrixXcd SchurComplement::dirichlet_form() const {
 Eigen::MatrixXcd SchurComplement::conformal_form(Eigen::MatrixXcd dirichlet_form) const {
   Eigen::MatrixXcd out = std::move(dirichlet_form);
   const CutMesh& opened = factor_.cut_mesh();
-  Array<Index> retained_of_copy(opened.copy_count(), none);
+  PerCopy<Index> retained_of_copy(opened.copy_count(), none);
   for (Index i = 0; i < factor_.retained_count(); ++i) retained_of_copy[factor_.retained()[i]] = i;
   const auto add = [&](Index row, Index column, Complex value) {
     if (row >= column) out(row, column) += value;

@@ -47,10 +47,10 @@ class SchurComplement {
   const HalfedgeMesh& mesh_;
   const CutFactor& factor_;
   const Index copy_count_;
-  Array<Index> own_copy_;   // (the factor's copies) as copies of the cut mesh, with fewer cuts
-  Array<Index> number_of_;  // (unknowns of the reduction)
-  Array<Index> begin_;      // (retained + 1)
-  Array<Term> terms_;       // of retained copies, in condensed unknowns
+  PerCopy<Index> own_copy_;  // the factor's copies as those of the cut mesh, with fewer cuts
+  Array<Index> number_of_;   // (unknowns of the reduction)
+  Array<Index> begin_;       // (retained + 1)
+  Array<Term> terms_;        // of retained copies, in condensed unknowns
   Index unknown_count_ = 0;
 };
 

@@ -165,14 +165,14 @@ SeamQuality worse(const SeamQuality& a, const SeamQuality& b) {
 Eigen::VectorXd angle_sums(const HalfedgeMesh& mesh, const CornerPositions& position) {
   // Around a vertex where the layout continues, upright triangles make full turns: it suffices to count how often they
   // sweep over one direction. Elsewhere angles have to be measured.
-  Array<char> is_parted(mesh.vertex_count(), 0), is_measured(mesh.vertex_count(), 0);
+  PerVertex<char> is_parted(mesh.vertex_count(), 0), is_measured(mesh.vertex_count(), 0);
   for (const auto& loop : mesh.boundary_loops) {
     for (const Index v : loop) is_measured[v] = 1;
   }
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(mesh.vertex_count());
   const Eigen::VectorXcd at_vertex = position(mesh.outgoing);  // in one of its corners
   constexpr int parted = 1, sweeps = 8, turned = 64;           // bits; the first two for each corner
-  Array<char> seen(mesh.triangle_count());
+  PerTriangle<char> seen(mesh.triangle_count());
   for_each_at_once(mesh.triangle_count(), [&](Index f) {
     const Complex z[]{position[3 * f], position[3 * f + 1], position[3 * f + 2]};
     int bits = side(z[0], z[1], z[2]) > 0 ? 0 : turned;
@@ -213,7 +213,7 @@ Eigen::VectorXd angle_sums(const HalfedgeMesh& mesh, const CornerPositions& posi
 }
 
 Validity check_map(const HalfedgeMesh& mesh, const CornerPositions& position, const Eigen::VectorXd& curvature,
-                   const Array<char>& is_free) {
+                   const PerVertex<char>& is_free) {
   Validity out;
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
     if (!(doubled_area(position, f) > 0)) out.flipped.push_back(f);
@@ -221,8 +221,8 @@ Validity check_map(const HalfedgeMesh& mesh, const CornerPositions& position, co
   const Eigen::VectorXd sums = angle_sums(mesh, position);
   const auto excess = [&](Index v) { return sums[v] - (mesh.flat_angle(v) - curvature[v]); };
   // Along a free boundary single angles are free; only the total turning is known.
-  Array<double> excess_of_loop(mesh.boundary_loops.size(), 0.0), largest(excess_of_loop);
-  Array<Index> at_largest(excess_of_loop.size(), none);
+  PerLoop<double> excess_of_loop(mesh.boundary_loops.size(), 0.0), largest(excess_of_loop);
+  PerLoop<Index> at_largest(excess_of_loop.size(), none);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     const double error = std::abs(excess(v));
     if (is_free[v]) {

@@ -70,10 +70,10 @@ struct Validity {
 
   std::size_t defects() const { return flipped.size() + wrong_angle_sums.size(); }
 };
-// curvature: (n) imposed.  is_free: (n) border vertices that need not have it; their loop's sum has to be right to half
+// curvature: (n) imposed.  is_free: border vertices that need not have it; their loop's sum has to be right to half
 // a turn, or the vertex that is off most is named.
 Validity check_map(const HalfedgeMesh& mesh, const CornerPositions& position, const Eigen::VectorXd& curvature,
-                   const Array<char>& is_free);
+                   const PerVertex<char>& is_free);
 
 // Sum of the signed UV angles at every vertex, (n).
 Eigen::VectorXd angle_sums(const HalfedgeMesh& mesh, const CornerPositions& position);

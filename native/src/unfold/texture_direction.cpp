@@ -101,15 +101,15 @@ TextureDirections directions_in_triangles(const HalfedgeMesh& mesh, const Positi
   return out;
 }
 
-Array<std::optional<double>> turning_beside(const HalfedgeMesh& mesh, const Positions& vectors, int symmetry) {
-  Array<std::optional<double>> out;
+PerLoop<std::optional<double>> turning_beside(const HalfedgeMesh& mesh, const Positions& vectors, int symmetry) {
+  PerLoop<std::optional<double>> out;
   for (const Array<Index>& loop : mesh.boundary_loops) out.push_back(turning_beside(mesh, vectors, symmetry, loop));
   return out;
 }
 
-Array<char> runs_straight_around(const HalfedgeMesh& mesh, const Positions& vectors, int symmetry) {
+PerVertex<char> runs_straight_around(const HalfedgeMesh& mesh, const Positions& vectors, int symmetry) {
   constexpr double largest_bend = M_PI / 8;  // between two triangles
-  Array<std::optional<double>> angle(mesh.halfedge_count());
+  PerHalfedge<std::optional<double>> angle(mesh.halfedge_count());
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (lies_in_triangle(mesh, vectors, h / 3)) angle[h] = angle_from_direction(mesh, vectors, h);
   }
@@ -120,7 +120,7 @@ Array<char> runs_straight_around(const HalfedgeMesh& mesh, const Positions& vect
     return angle[twin] &&
            std::abs(std::remainder(*angle[twin] - *angle[h] - M_PI, 2 * M_PI / symmetry)) <= largest_bend;
   };
-  Array<char> out(mesh.vertex_count(), 1);
+  PerVertex<char> out(mesh.vertex_count(), 1);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (!is_parallel(h)) out[mesh.origin(h)] = out[mesh.target(h)] = 0;
   }

@@ -26,10 +26,10 @@ TextureDirections directions_in_triangles(const HalfedgeMesh& mesh, const Positi
 
 // The turning of boundaries in a layout in which directions, modulo rotations by 2 pi / symmetry, are parallel: (loops)
 // radians. None for a boundary without directions, or if they vary too much.
-Array<std::optional<double>> turning_beside(const HalfedgeMesh& mesh, const Positions& vectors, int symmetry);
+PerLoop<std::optional<double>> turning_beside(const HalfedgeMesh& mesh, const Positions& vectors, int symmetry);
 
-// (n) vertices around which the directions are nearly parallel, so that a cone there would bend the texture.
-Array<char> runs_straight_around(const HalfedgeMesh& mesh, const Positions& vectors, int symmetry);
+// The vertices around which the directions are nearly parallel, so that a cone there would bend the texture.
+PerVertex<char> runs_straight_around(const HalfedgeMesh& mesh, const Positions& vectors, int symmetry);
 
 // The rotation of a layout that aligns the images of directions with v.
 class UpwardTurn {

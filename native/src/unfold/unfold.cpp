@@ -21,7 +21,7 @@ double turn_across(const HalfedgeMesh& mesh, const Geometry& geometry, Index h) 
 
 // The copies along the open boundary that contains the lowest-numbered boundary copy.
 Array<Index> open_border(const HalfedgeMesh& mesh, const CutMesh& cut_mesh) {
-  Array<Index> next_copy(cut_mesh.copy_count(), none);
+  PerCopy<Index> next_copy(cut_mesh.copy_count(), none);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (is_open(mesh, cut_mesh, h)) next_copy[cut_mesh.copy_of_corner[h]] = cut_mesh.copy_of_corner[next(h)];
   }
@@ -51,7 +51,7 @@ FrameTree::FrameTree(const HalfedgeMesh& mesh, const Geometry& geometry, const C
   steps_.reserve(triangle_count_);
   Array<Index> across;  // (steps) the halfedge that each one crosses
   across.reserve(triangle_count_);
-  Array<char> reached(triangle_count_, 0);
+  PerTriangle<char> reached(triangle_count_, 0);
   const auto leave = [&](Index f) {
     for (Index h = 3 * f; h < 3 * f + 3; ++h) {
       const Index twin = mesh.twin[h];
