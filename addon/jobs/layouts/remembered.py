@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Maps that were made a moment ago, by a digest of all they were made from.
+"""Recent maps, by a digest of everything that they were computed from.
 
-So a change of the margin in the redo panel takes packing alone, and so does a preset that is chosen again.
+With them a change of the margin in the redo panel only packs again, and so does a preset that is chosen again.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
     from ..tasks.solving import Progress
 
 MOST_TRIANGLES = 300_000
-"""Of all maps that are kept; they take about a hundred megabytes."""
+"""Of all kept maps together, about a hundred megabytes."""
 
 _kept: OrderedDict[bytes, Unwrapped] = OrderedDict()
 
 
 def unwrap_all_once(tasks: Sequence[UnwrapTask], progress: Progress | None = None) -> list[Unwrapped | Exception]:
-    """As `unwrap_all`, but maps that are kept are not made again."""
+    """As `unwrap_all`, but kept maps are not computed again."""
     return unwrap_all(tasks, progress, _unwrap_once)
 
 
@@ -42,9 +42,9 @@ def _unwrap_once(task: UnwrapTask, progress: Progress | None) -> Unwrapped:
 
 
 def digest(task: UnwrapTask) -> bytes:
-    """Of everything that decides what the map is.
+    """Of everything that the map depends on.
 
-    The present UVs do where some are pinned or islands keep their places.
+    It depends on the present UVs if some are pinned or islands keep their places.
     """
     if not task.keep_placement and not task.pinned.any():
         task = replace(task, region=replace(task.region, corner_uv=np.empty((0, 3, 2))))

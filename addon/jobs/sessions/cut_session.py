@@ -140,7 +140,8 @@ class CutSession(MapSession):
         )
 
     def _grabbed(self, cuts: NDArray[np.int32], path: tuple[int, ...]) -> tuple[lsgp.GrabbedCut, NDArray[np.float64]]:
-        """As the plane is, or else as the image is: where islands were made for one that is not a square."""
+        """Grab in UV coordinates, or failing that in the image's proportions: islands may be for an image that is not
+        square."""
         square, image = np.ones(2), np.array([self._region.image_aspect, 1.0])
         try:
             return self._mover.grab(self._corner_uv, cuts, path, self._nodes), square
@@ -150,9 +151,9 @@ class CutSession(MapSession):
             return self._mover.grab(self._corner_uv * image, cuts, path, self._nodes), image
 
     def drag(self, vertex: int) -> bool:
-        """Let the cut that is held run by way of a vertex; returns whether that changed anything.
+        """Route the held cut through a vertex; returns whether that changed anything.
 
-        Raises Refused and LsgpError where it cannot; then it stays where it was last.
+        Raises Refused and LsgpError if that is impossible; then the cut stays where it was last.
         """
         grip = self._grip
         if vertex == grip.vertex:
@@ -182,7 +183,7 @@ class CutSession(MapSession):
         return self._region.cones
 
     def _overlapping(self) -> list[int]:
-        """The faces that lie on others, but for what rounding to single precision explains."""
+        """The faces that overlap others by more than rounding to single precision explains."""
         uv = self._corner_uv
         middle = uv.mean(axis=1, keepdims=True)
         (a, b), digit = np.moveaxis(uv[:, 1:] - uv[:, :1], 1, 0), ROUNDING * np.nanmax(np.abs(uv), initial=0.0)
@@ -256,7 +257,7 @@ def _is_inside(corner_uv: NDArray[np.float64]) -> bool:
 
 
 def _kinds_of(paths: tuple[tuple[int, ...], ...], report: reports.Report | None) -> list[str]:
-    """Of each path that of most of its edges in a report; empty where it does not know."""
+    """The kind of each path: that of most of its edges in a report; empty if the report does not know it."""
     if report is None or not report.kinds:
         return []
     known = {frozenset(edge): kind for kind in cut_kinds.KINDS for edge in report.edges_of(kind)}

@@ -97,7 +97,7 @@ class EditedObjects(PickedObjects[EditedObject]):
         return sum(len(edited.cones) for edited in self._all)
 
     def activate(self, edited: EditedObject) -> EditedObject | None:
-        """Begin to edit an object; returns the one that has an active cone no more.  Raises Refused, LsgpError."""
+        """Begin to edit an object; returns the one that no longer has an active cone.  Raises Refused, LsgpError."""
         edited.begin()
         before, self.active = self.active, edited
         if before is None or before is edited:
@@ -149,7 +149,7 @@ class EditedObjects(PickedObjects[EditedObject]):
             edited.follower.stop()
 
     def finish(self, placing: PackSettings) -> list[tuple[EditedObject, Unwrapped | Exception]]:
-        """Unwrap the objects whose cones were changed, and store these; the map of each, or why there is none.
+        """Unwrap the objects whose cones were changed, and store these; returns the map of each, or why there is none.
 
         placing: as of `finishing.finish`.
         """

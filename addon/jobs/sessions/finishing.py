@@ -15,10 +15,10 @@ from .edited_layout import packed_where_needed
 def finish(
     changed: Sequence[ConeSession], others: Sequence[ConeSession], placing: PackSettings
 ) -> list[Unwrapped | Exception]:
-    """The maps of the sessions whose cones were changed, or why there is none; their cones are stored in any case.
+    """The map of each session whose cones were changed, or why there is none; its cones are stored in any case.
 
     others: sessions on meshes whose islands may have to make room. placing: how islands are packed where an edited one
-    does not fit any more into its place.
+    no longer fits into its place.
     """
     outcomes = [_unwrapped(session) for session in changed]
     done = [session for session, outcome in zip(changed, outcomes, strict=True) if not isinstance(outcome, Exception)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Keeps the map of a session up to date: the newest state is solved in the background, one at a time."""
+"""Keeps the map of a session up to date: the newest state is solved in the background, one step at a time."""
 
 from __future__ import annotations
 

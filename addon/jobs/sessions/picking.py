@@ -53,7 +53,7 @@ class Picker:
         loops, used = mesh.layout_loops(selected=selected), np.zeros(len(mesh.uv), bool)
         used[loops] = True
         points = np.c_[mesh.uv, np.zeros(len(mesh.uv), np.float32)]
-        # Points of faces that are not shown are no vertex's.
+        # Points of hidden faces belong to no vertex.
         return cls(points, loops, np.where(used, mesh.loop_vertices, -1))
 
     def vertex_at(self, screen: Screen, x: float, y: float) -> Hit | None:
@@ -114,7 +114,7 @@ class Picker:
         return keys[order], ends[order]
 
     def hides(self, screen: Screen, place: NDArray[np.float32], size: float = 0.0) -> bool:
-        """Whether something of it is before a place, by more than a small part of a size."""
+        """Whether some of it is in front of a place, by more than a small fraction of a size."""
         pixel = screen.pixels(place)[0]
         origin, direction = screen.ray(pixel[0], pixel[1])
         hit, _, _, distance = self._tree.ray_cast(origin, direction)

@@ -22,7 +22,7 @@ FRONT = (0.0, -1.0, 0.0)
 @dataclass(frozen=True, slots=True)
 class CutChoice:
     """by_cost: whether cuts are to run where they are cheap rather than the shortest way. front: (3,) in the world, the
-    direction from the model to who looks at it, from whom cuts hide; None: from nobody."""
+    direction from the model to the viewer, from whom cuts are hidden; None: from nobody."""
 
     by_cost: bool = True
     front: tuple[float, float, float] | None = FRONT

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 class QuadSettings:
     """What the artist chose.
 
-    options: of the layout. target: how many quads; None where the size says it. size: the side of a quad in the world,
-    None likewise. direction: where rows of quads run.
+    options: of the layout. target: how many quads; None if the size determines it. size: the side of a quad in the
+    world, None likewise. direction: where rows of quads run.
     """
 
     options: lsgp.Options

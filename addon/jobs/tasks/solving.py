@@ -69,14 +69,14 @@ def _outcome(task: T, solve: Callable[[T, Progress | None], R], progress: Progre
         raise
     except (native.lsgp.LsgpError, MemoryError) as error:
         if progress is not None:
-            progress(1.0)  # nothing of it is left to do
+            progress(1.0)  # none of its work is left
         return error
 
 
 def _side_by_side(
     tasks: Sequence[T], solve: Callable[[T, Progress | None], R], progresses: Sequence[Progress], workers: int
 ) -> list[R | Exception]:
-    """Where one task ends all, the others stop at their next progress, and what it raised is raised."""
+    """If one task ends all, the others stop when they next report progress, and its exception is raised."""
     ended: list[BaseException] = []
 
     def solve_one(task: T, progress: Progress) -> R | Exception | None:

@@ -66,7 +66,7 @@ class UnwrapTask:
     they are not corrected for one. cuts: where they should run. completes: whether cones are placed where those of the
     region do not suffice; count: how many on each connected part that gets some, None for as few as keep the stretch
     low; symmetric: whether they are placed alike on both sides of a mirror plane, if that costs little. creases_of: the
-    preset of `lsgp.auto_unwrap` in whose way hard surfaces then end at creases; None: in no way.
+    preset of `lsgp.auto_unwrap` whose rule then bounds hard surfaces at creases; None: no creases.
     """
 
     region: Region
@@ -243,7 +243,7 @@ def _completed(task: UnwrapTask, cones: ConeAngles, pins: lsgp.Pins | None, prog
 
 
 def _with_one_stretch(result: lsgp.Result, task: UnwrapTask) -> list[lsgp.Finding]:
-    """The warnings with the stretch that was measured, in place of the one that was expected, and what to do."""
+    """The warnings with the measured stretch instead of the predicted one, and with a remedy."""
     others = [finding for finding in result.warnings if finding.code != HIGH_DISTORTION]
     warned = len(others) < len(result.warnings)
     stretch = result.distortion.l2_stretch
