@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One of Blender's unwraps on one surface, for `benchmark.py`; needs a Python with bpy.
+"""One of Blender's unwraps on one surface, for `benchmark.py` and `presets.py`; needs a Python with bpy.
 
-    python tools/benchmark/benchmark_in_blender.py SURFACE.npz ANGLE_BASED|CONFORMAL|MINIMUM_STRETCH [MAP.npz]
+    python tools/benchmark/benchmark_in_blender.py SURFACE.npz METHOD [MAP.npz]
 
-SURFACE.npz: positions (n, 3), triangles (m, 3), seams (s, 2). For every line "run" on the standard input it calls
-`uv.unwrap` once and writes "RESULT {"seconds": S}", the CPU seconds of all threads. MAP.npz receives corner_uv
-(m, 3, 2).
+SURFACE.npz: positions (n, 3), triangles (m, 3), seams (s, 2). METHOD: ANGLE_BASED, CONFORMAL, MINIMUM_STRETCH, or
+SMART_PROJECT, which takes no seams. For every line "run" on the standard input it unwraps once and writes
+"RESULT {"seconds": S}", the CPU seconds of all threads. MAP.npz receives corner_uv (m, 3, 2).
 """
 
 from __future__ import annotations
@@ -44,7 +44,10 @@ def add_mesh(positions: np.ndarray, triangles: np.ndarray, seams: np.ndarray) ->
 def unwrap(method: str) -> float:
     chosen = {"iterations": ITERATIONS} if method == "MINIMUM_STRETCH" else {}
     before = time.process_time()
-    bpy.ops.uv.unwrap(method=method, **chosen)
+    if method == "SMART_PROJECT":
+        bpy.ops.uv.smart_project()
+    else:
+        bpy.ops.uv.unwrap(method=method, **chosen)
     return time.process_time() - before
 
 
