@@ -487,7 +487,8 @@ class ConeGains(EqualByContent, ShortRepr):
         none may be placed. Values are capped at 1e100.
     present_l2: the L2 stretch of the whole surface with the given cones; infinite if a component needs a cone, as one
         that would be opened along its seams because it has none.
-    best: the vertex where a cone lowers that most; None if there is none.
+    best: the vertex where a cone lowers that most; None if there is none. If the surface has cut_costs, a vertex that
+        cuts reach more cheaply if a cone there lowers it at least half as much, to first order.
     """
 
     predicted_l2: FloatArray

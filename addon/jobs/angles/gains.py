@@ -3,31 +3,36 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core import native
+from ..tasks.cuts import with_cut_costs
 
 if TYPE_CHECKING:
     import lsgp
 
     from ...core.cone_angles import ConeAngles
+    from ...core.region import Region
+    from ..tasks.cuts import CutChoice
 
 
-def best_gain(surface: lsgp.Surface, cones: ConeAngles, options: lsgp.Options) -> lsgp.ConeGains:
+def best_gain(region: Region, cones: ConeAngles, options: lsgp.Options, cuts: CutChoice) -> lsgp.ConeGains:
     """The gains on the connected part with the best place for one more cone; of all parts if there is no such place.
 
-    Raises LsgpError.
+    cuts: where they should run; the best place is one that they reach cheaply.  Raises LsgpError.
     """
-    fixed = cones.fixed()
+    fixed, surface = cones.fixed(), with_cut_costs(region, cuts).surface
     gains = native.lsgp.cone_gains(surface, cones.cones, fixed, seams=options.seams)
     parts = native.lsgp.build_ledger(surface, cones.cones, fixed, options, gets_cones=True)
     if gains.best is None or len(parts) == 1:
         return gains
     part = next(part for part in parts if (surface.triangles[part.triangles] == gains.best).any())
-    return _part_gains(surface, cones, part, options)
+    # The part by itself has no costs of cuts.
+    return replace(_part_gains(surface, cones, part, options), best=gains.best)
 
 
 def gain_at_vertices(surface: lsgp.Surface, cones: ConeAngles, options: lsgp.Options) -> NDArray[np.float64]:

@@ -16,6 +16,8 @@ from ...jobs.angles.gains import best_gain
 from ...mesh.angles import write_angles
 from ...mesh.cones import mark_cones
 from ...mesh.selection import VERTEX_MODE, select_elements, set_select_mode
+from ..shared.cut_choices import chosen_cuts
+from ..shared.properties import CutsProperty
 from .base import AngleOperator
 
 if TYPE_CHECKING:
@@ -26,21 +28,24 @@ if TYPE_CHECKING:
 LEAST_GAIN = 1e-3
 
 
-class MESH_OT_cone_suggest(AngleOperator, bpy.types.Operator):
+class MESH_OT_cone_suggest(CutsProperty, AngleOperator, bpy.types.Operator):
     """Suggest the Next Cone."""
 
     bl_idname = identifiers.SUGGEST
     bl_label = "Suggest the Next Cone"
-    bl_description = "Mark the vertex where one more cone would lower the stretch most, and select it in edit mode"
+    bl_description = (
+        "Mark the vertex where one more cone would lower the stretch most, or nearly as much where cuts get to more "
+        "easily, and select it in edit mode"
+    )
     bl_options = {"REGISTER", "UNDO"}
-    shown = ("mark", "seams")
+    shown = ("mark", "cuts", "seams")
 
     mark: bpy.props.BoolProperty(
         name="Mark", description="Mark the vertex as a cone, instead of only selecting it", default=True
     )
 
     def change(self, obj: bpy.types.Object, region: Region, cones: ConeAngles) -> tuple[str, list[lsgp.Finding]]:
-        gains = best_gain(region.surface, cones, self.library_options())
+        gains = best_gain(region, cones, self.library_options(), chosen_cuts(self.cuts))
         if gains.best is None or gains.present_l2 - gains.predicted_l2[gains.best] < LEAST_GAIN:
             raise Refused("no further cone lowers the stretch by a thousandth; there is nothing to suggest")
         if self.mark:

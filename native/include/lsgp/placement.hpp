@@ -48,7 +48,9 @@ struct Placement {
 struct ConeGains {
   Eigen::VectorXd predicted_l2;  // (n) L2 stretch of the vertex's component with a cone there; NaN where none may be
   double present_l2 = 1;         // over the whole surface with the given cones; infinite if a component needs a cone
-  Index best = -1;               // the vertex that lowers the whole surface's most; -1: none does
+  // The vertex that lowers the whole surface's most; -1: none does. If the surface has cut_costs, cuts may reach another
+  // one more cheaply that lowers it at least half as much.
+  Index best = -1;
   std::vector<Finding> warnings;
 };
 

@@ -15,6 +15,8 @@ namespace lsgp {
 
 namespace {
 
+constexpr double cheap_share = 0.5;  // of the largest gain that a place has to have that cuts get to more cheaply
+
 // Refuses too few cones if cuts cannot reach further sites.
 void require_reachable(const ConeChooser& chooser, const ConeChoice& choice) {
   if (choice.is_possible() || chooser.reaches_all()) return;
@@ -93,6 +95,25 @@ std::optional<MissingCones> missing_cones(const ConeChooser& chooser, const Cone
   return MissingCones{placed, why};
 }
 
+// The open site that gains most by its price, of those that gain nearly as much as any.
+Index best_place(const ConeChooser& chooser, const Eigen::VectorXd& gains, const Array<char>& open) {
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  double largest = -unlimited, most = -unlimited;
+  for (Eigen::Index i = 0; i < gains.size(); ++i) {
+    if (open[static_cast<std::size_t>(i)]) largest = std::max(largest, gains[i]);
+  }
+  const double least = largest - (1 - cheap_share) * std::max(largest, 0.0);
+  const Eigen::VectorXd priced = gains - chooser.problem().price_among(chooser.existing_count() + 1);
+  Index best = none;
+  for (Eigen::Index i = 0; i < gains.size(); ++i) {
+    const auto site = static_cast<std::size_t>(i);
+    if (!open[site] || !(gains[i] >= least) || !(priced[i] > most)) continue;
+    most = priced[i];
+    best = chooser.sites()[site].vertex;
+  }
+  return best;
+}
+
 }  // namespace
 
 PlacedCones place_component(const PlacementTask& task, const PlacementOptions& options, std::vector<Finding>& findings,
@@ -136,14 +157,14 @@ ComponentGains component_gains(const PlacementTask& task, ProgressMonitor& monit
   PlacementEffort effort = effort_for(task.mesh.vertex_count());
   effort.sites = std::numeric_limits<int>::max();
   const PlacementOptions options;
-  const ConeChooser chooser(task, options, effort, monitor);
+  ConeChooser chooser(task, options, effort, monitor);
+  chooser.weigh_prices(price_weights[0]);
   const ConeSet set = chooser.existing(usual_reach);
   ComponentGains out;
   out.present_l2 = chooser.predicted_l2(set);
   out.predicted_l2 = Eigen::VectorXd::Constant(task.mesh.vertex_count(), std::numeric_limits<double>::quiet_NaN());
   const Eigen::VectorXd gains = set.gains();
   const Array<char> open = chooser.search().open_sites(set.sites());
-  double most = -unlimited;
   for (std::size_t s = 0; s < chooser.sites().size(); ++s) {
     const auto i = static_cast<Eigen::Index>(s);
     if (!open[s]) continue;
@@ -152,10 +173,8 @@ ComponentGains component_gains(const PlacementTask& task, ProgressMonitor& monit
     const double with_cone = out.present_l2 == unlimited ? std::exp(2 * (set.variance() - gains[i]))
                                                          : out.present_l2 * std::exp(-2 * gains[i]);
     out.predicted_l2[vertex] = std::clamp(with_cone, 1.0, largest_l2);
-    if (!(gains[i] > most)) continue;
-    most = gains[i];
-    out.best = vertex;
   }
+  out.best = best_place(chooser, gains, open);
   return out;
 }
 

@@ -28,7 +28,6 @@ constexpr double more_cones = 1.25, still_worthwhile = 0.9;
 constexpr int vertices_a_cone = 4, most_enlargements = 6;
 constexpr double usual_l2 = 1.05;   // of a map that is not worth more than the stages
 constexpr double much_fewer = 0.8;  // cones, that prices are not worth
-constexpr double price_weights[] = {10, 1};
 
 // Whether one choice is nearer to a usable map.
 bool is_better(const TriedMap& a, const TriedMap& b) {

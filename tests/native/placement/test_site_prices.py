@@ -100,3 +100,22 @@ def test_cones_leave_what_is_painted() -> None:
     paint = np.where(near, 1.0, 0.5)
     placed = lsgp.place_cones(replace(plain, cut_costs=lsgp.cut_costs(plain, None, creases=False, paint=paint)))
     assert placed.reached and near[alone.cones].any() and not near[placed.cones].any()
+
+
+@pytest.mark.parametrize("name", ["egg", "bumpy"])
+def test_one_more_cone_is_where_cuts_get_cheaply_and_it_gains_half_as_much_as_anywhere(name: str) -> None:
+    costly = hidden(MESHES[name], FRONTS[0])
+    cones = lsgp.place_cones(costly, count=6).cones
+    alone, priced = (lsgp.cone_gains(on, cones) for on in (replace(costly, cut_costs=None), costly))
+    assert priced.predicted_l2.tobytes() == alone.predicted_l2.tobytes()
+    assert towards(MESHES[name], FRONTS[0], priced.best) < towards(MESHES[name], FRONTS[0], alone.best)
+    # The L2 stretch is e^(2 variance) to leading order.
+    gain, most = (np.log(alone.present_l2 / alone.predicted_l2[best]) for best in (priced.best, alone.best))
+    assert 0.5 * most <= gain < most
+
+
+def test_one_more_cone_is_where_it_gains_most_if_costs_are_the_same_everywhere() -> None:
+    plain = without_costs(EGG)
+    cones = lsgp.place_cones(plain, count=6).cones
+    same = lsgp.cone_gains(replace(plain, cut_costs=np.full(len(plain.edges), 7.0)), cones)
+    assert same.best == lsgp.cone_gains(plain, cones).best == np.nanargmin(same.predicted_l2)
