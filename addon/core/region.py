@@ -38,6 +38,7 @@ class Region:
     weights: (n,) float64, importance weights; None without such a vertex group, or where they were not asked for.
     image_aspect: width over height of the image in the mesh's material; 1 where there is none.
     object_scale: by how much the object's transform scales lengths, on the average; 0 where it leaves none.
+    density_weight: how many times the texel density of other objects this one is to have.
     """
 
     surface: lsgp.Surface
@@ -55,6 +56,12 @@ class Region:
     weights: NDArray[np.float64] | None
     image_aspect: float
     object_scale: float
+    density_weight: float = 1.0
+
+    @property
+    def texel_scale(self) -> float:
+        """What lengths here are worth in texels, beside those of other objects: their length in the world, weighted."""
+        return self.object_scale * self.density_weight
 
     @property
     def is_whole(self) -> bool:

@@ -22,6 +22,7 @@ from .image_aspect import image_aspect
 from .reader import readable_mesh
 from .stored_mesh import StoredMesh
 from .subdivided import places_on_subdivision
+from .texel_settings import density_weight
 
 # Ratios of the sizes of an object's axes, which Blender has in single precision.
 FLAT = 1e-6
@@ -114,6 +115,7 @@ def build_region(
         weights=None if groups.weights is None else weights_in(obj, groups.weights, mesh),
         image_aspect=image_aspect(obj),
         object_scale=size,
+        density_weight=density_weight(obj),
     )
 
 

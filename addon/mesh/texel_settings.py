@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The texel density of a scene's assets and the size of their textures; saved with the file."""
+"""The texel density of a scene's assets, its weight on each object, and the size of textures; saved with the file."""
 
 from __future__ import annotations
 
@@ -10,6 +10,10 @@ from .image_aspect import active_image
 
 IMAGE_DESCRIPTION = "Take the size of the image in the material of the active face, if there is one"
 SIZE_DESCRIPTION = "Side of the texture in pixels, where it is not taken from an image"
+WEIGHT_DESCRIPTION = (
+    "How many times the texel density of other objects this one gets where several are unwrapped together or a density "
+    "is asked for: 2 for what is seen from near, 0.5 for what is seen from afar"
+)
 DENSITY_DESCRIPTION = "Pixels of the texture along a unit of length, which is that of the scene's unit settings"
 
 
@@ -34,6 +38,11 @@ def texel_settings(scene: bpy.types.Scene) -> ConeUnwrapTexels:
     return scene.cone_unwrap_texels
 
 
+def density_weight(obj: bpy.types.Object) -> float:
+    """How many times the density of other objects it is to have."""
+    return obj.cone_unwrap_density_weight
+
+
 def texture_size(obj: bpy.types.Object, *, use_image: bool, typed: int) -> tuple[int, int]:
     """Width and height in pixels: of the object's image, or as typed where it has none or it is not to be used."""
     image = active_image(obj) if use_image else None
@@ -54,8 +63,12 @@ def density_unit(scene: bpy.types.Scene) -> str:
 def register() -> None:
     bpy.utils.register_class(ConeUnwrapTexels)
     bpy.types.Scene.cone_unwrap_texels = bpy.props.PointerProperty(type=ConeUnwrapTexels)
+    bpy.types.Object.cone_unwrap_density_weight = bpy.props.FloatProperty(
+        name="Density Weight", description=WEIGHT_DESCRIPTION, default=1.0, min=0.01, max=100.0, soft_max=4.0, step=10
+    )
 
 
 def unregister() -> None:
+    del bpy.types.Object.cone_unwrap_density_weight
     del bpy.types.Scene.cone_unwrap_texels
     bpy.utils.unregister_class(ConeUnwrapTexels)

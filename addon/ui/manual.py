@@ -45,9 +45,10 @@ PAGES = {
 SETTINGS = {
     "ConeUnwrapOverlay": SEEING,
     "ConeUnwrapTexels": TEXELS,
+    "Object.cone_unwrap_density_weight": TEXELS,
     "ConeUnwrapPreferences": "how-to/installing",
 }
-"""Page by class of properties."""
+"""Page by class of properties, or by property."""
 
 
 def manual_map() -> tuple[str, tuple[tuple[str, str], ...]]:

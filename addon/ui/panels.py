@@ -211,6 +211,7 @@ class VIEW3D_PT_cone_unwrap_texels(ConeUnwrapSubPanel, bpy.types.Panel):
         row.operator(identifiers.TEXEL_GET, text="Get")
         row.operator(identifiers.TEXEL_SET, text="Set")
         row.operator(identifiers.TEXEL_SELECT, text="Select")
+        layout.prop(context.object, "cone_unwrap_density_weight")
 
 
 class VIEW3D_PT_cone_unwrap_texture(ConeUnwrapSubPanel, bpy.types.Panel):

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from math import cos, pi, sin
 
+import bmesh
 import bpy
 
 
@@ -69,23 +70,54 @@ def man() -> list[bpy.types.Object]:
 
 
 def kit() -> list[bpy.types.Object]:
-    """One object of twelve loose parts of four kinds and many sizes."""
-    for i in range(12):
-        place, size = (3 * cos(i * pi / 6), 3 * sin(i * pi / 6), 0.4 * (i % 5)), 0.1 + 0.05 * i
+    """One object of thirty loose parts of four kinds and many sizes."""
+    for i in range(30):
+        place, size = (3 * cos(i * pi / 15), 3 * sin(i * pi / 15), 0.4 * (i % 5)), 0.1 + 0.02 * i
         kind = i % 4
         if kind == 0:
             bpy.ops.mesh.primitive_cube_add(size=size, location=place)
         elif kind == 1:
-            bpy.ops.mesh.primitive_cylinder_add(vertices=12, radius=size / 2, depth=size, location=place)
+            bpy.ops.mesh.primitive_cylinder_add(vertices=8, radius=size / 2, depth=size, location=place)
         elif kind == 2:
-            bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, radius=size / 2, location=place)
+            bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=1, radius=size / 2, location=place)
         else:
             bpy.ops.mesh.primitive_torus_add(
-                major_segments=12, minor_segments=6, major_radius=size, minor_radius=size / 4, location=place
+                major_segments=8, minor_segments=4, major_radius=size, minor_radius=size / 4, location=place
             )
     bpy.ops.object.select_all(action="SELECT")
     bpy.ops.object.join()
     return [bpy.context.object]
+
+
+def mirrored() -> list[bpy.types.Object]:
+    """One half of a ball, with Mirror and then Subdivision Surface still on it, beside a smaller one without."""
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8, radius=0.3, location=(3, 0, 0))
+    small = bpy.context.object
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8)
+    half = bpy.context.object
+    bm = bmesh.new()
+    bm.from_mesh(half.data)
+    everything = [*bm.verts, *bm.edges, *bm.faces]
+    bmesh.ops.bisect_plane(bm, geom=everything, plane_co=(0, 0, 0), plane_no=(1, 0, 0), clear_inner=True)
+    bm.to_mesh(half.data)
+    bm.free()
+    half.modifiers.new("Mirror", "MIRROR")
+    half.modifiers.new("Subdivision", "SUBSURF").levels = 2
+    small.select_set(True)
+    return [half, small]
+
+
+def one_material() -> list[bpy.types.Object]:
+    """Three meshes with one material, two of them scaled in object mode."""
+    material, objects = bpy.data.materials.new("Shared"), []
+    for i, scale in enumerate([(1, 1, 1), (3, 3, 3), (0.4, 0.4, 0.4)]):
+        bpy.ops.mesh.primitive_torus_add(major_segments=10, minor_segments=5, location=(4 * i, 0, 0))
+        bpy.context.object.scale = scale
+        bpy.context.object.data.materials.append(material)
+        objects.append(bpy.context.object)
+    for obj in objects:
+        obj.select_set(True)
+    return objects
 
 
 def scaled_copies() -> list[bpy.types.Object]:
@@ -104,4 +136,4 @@ def scaled_copies() -> list[bpy.types.Object]:
     return [*objects, bpy.context.collection.objects["Cylinder"]]
 
 
-MODELS = (default_cube, suzanne, text, screw, man, kit, scaled_copies)
+MODELS = (default_cube, suzanne, text, screw, man, kit, mirrored, one_material, scaled_copies)

@@ -34,6 +34,8 @@ def packed_at_density(
 ) -> list[FloatArray]:
     """The coordinates of each map, (m, 3, 2), at the density, each island inside one tile with the margin around it.
 
+    The density is that of objects with the density weight 1; others get as many times as much as their weight says.
+
     They lie close together in one tile where they fit, and otherwise in rows in `layout.udim` tiles.
 
     layouts: of one scale. layout: with udim. turned: whether islands may be. unit, errors: as of `at_density`.
@@ -84,8 +86,8 @@ def _together(
     lsgp = native.lsgp
     if not all(unwrapped.region.object_scale for unwrapped in solved):
         raise Refused("an object is scaled to zero, where texels have no size; scale it up")
-    # One surface in the world, with triangles, islands and coordinates of all.
-    positions = [unwrapped.region.surface.positions * (unwrapped.region.object_scale / unit) for unwrapped in solved]
+    # One surface in the world, with triangles, islands and coordinates of all; more texels are those of longer edges.
+    positions = [unwrapped.region.surface.positions * (unwrapped.region.texel_scale / unit) for unwrapped in solved]
     triangles = [unwrapped.region.surface.triangles for unwrapped in solved]
     islands = [unwrapped.result.island for unwrapped in solved]
     first_vertex = _begins(map(len, positions))

@@ -16,7 +16,7 @@ from ...core.islands import Islands
 from ...mesh import reports
 from ...mesh.uv_write import write_uv
 from ..tasks import cells
-from ..tasks.areas import size_on_the_surface, total_area
+from ..tasks.areas import size_in_texels, total_area
 from ..tasks.unwrapping import Unwrapped
 from ..uv_maps.texels import map_density
 from . import packing
@@ -98,12 +98,12 @@ def _whole(solved: Sequence[Unwrapped], of_islands: Sequence[NDArray[np.float64]
 
 
 def _with_one_density(solved: Sequence[Unwrapped]) -> list[Islands]:
-    """The islands of each map, at one scale for all objects; those with pins keep theirs.
+    """The islands of each map, at one scale for all objects but for their density weights; those with pins keep theirs.
 
     Together they have about the area that they will have, so that a margin that is added before the packer scales them
     is about what was asked for.
     """
-    sizes = np.array([size_on_the_surface(unwrapped.region, unwrapped.result.solved) for unwrapped in solved])
+    sizes = np.array([size_in_texels(unwrapped.region, unwrapped.result.solved) for unwrapped in solved])
     sizes *= np.sqrt(FILLED / (sizes**2).sum())
     parts = []
     for unwrapped, size in zip(solved, sizes, strict=True):

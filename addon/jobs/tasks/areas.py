@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Areas of regions in the world and of layouts."""
+"""Areas of regions and of layouts."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ def total_area(corners: NDArray[np.float64]) -> float:
     return float(np.sqrt(np.maximum(squared, 0.0)).sum()) / 2
 
 
-def size_on_the_surface(region: Region, triangles: NDArray[np.bool_] | slice = slice(None)) -> float:
-    """Square root of the area of some triangles of a region, with the object's scale."""
+def size_in_texels(region: Region, triangles: NDArray[np.bool_] | slice = slice(None)) -> float:
+    """Square root of the area of some triangles of a region in the world, times its density weight."""
     surface = region.surface
     corners = surface.positions[surface.triangles[triangles]]
-    return float(np.sqrt(total_area(corners))) * (region.object_scale or 1.0)
+    return float(np.sqrt(total_area(corners))) * (region.texel_scale or region.density_weight)

@@ -18,7 +18,7 @@ from ...core import native
 from ...core.errors import Refused
 from ...core.islands import Islands
 from . import cells
-from .areas import size_on_the_surface
+from .areas import size_in_texels
 from .cuts import CutChoice, with_cut_costs
 from .directions import DirectionChoice, with_directions
 from .solving import solve_all
@@ -143,7 +143,8 @@ def unwrap_all(
 ) -> list[Unwrapped | Exception]:
     """The maps of all tasks; an error in place of each that could not be computed.  Raises Cancelled.
 
-    Automatic tiles of seamless layouts have one size in the world, the smallest that a task requires.
+    Automatic tiles of seamless layouts have one size in the world but for density weights, the smallest that a task
+    requires.
     solve: in place of `unwrap`.
     """
     tasks, solve = _sharing_the_square(tasks), solve or unwrap
@@ -167,21 +168,21 @@ def _has_automatic_tiles(task: UnwrapTask) -> bool:
 
 
 def _tile_size(unwrapped: Unwrapped) -> float:
-    """In the world."""
-    return unwrapped.result.seamless.tile_size * unwrapped.region.object_scale
+    """In the world, where the density weight is 1."""
+    return unwrapped.result.seamless.tile_size * unwrapped.region.texel_scale
 
 
 def _with_tile_size(task: UnwrapTask, size: float) -> UnwrapTask:
-    """size: in the world."""
-    seamless = replace(task.options.seamless, tile_size=size / task.region.object_scale)
+    """size: in the world, where the density weight is 1."""
+    seamless = replace(task.options.seamless, tile_size=size / task.region.texel_scale)
     return replace(task, options=replace(task.options, seamless=seamless))
 
 
 def _sharing_the_square(tasks: Sequence[UnwrapTask]) -> list[UnwrapTask]:
-    """Each with its share of the square that all are to be packed into, by area in the world, where that matters."""
+    """Each with its share of the square that all are to be packed into, by area in texels, where that matters."""
     if all(task.options.compact == "off" for task in tasks):
         return list(tasks)
-    areas = np.array([size_on_the_surface(task.region) ** 2 for task in tasks])
+    areas = np.array([size_in_texels(task.region) ** 2 for task in tasks])
     shares = areas / areas.sum() if (areas > 0).all() and np.isfinite(areas).all() else np.ones(len(tasks))
     return [
         replace(task, options=replace(task.options, square_share=float(share) * task.options.square_share))
@@ -263,13 +264,16 @@ def _with_one_stretch(result: lsgp.Result, task: UnwrapTask) -> list[lsgp.Findin
 
 
 def _options_for(region: Region, options: lsgp.Options) -> lsgp.Options:
-    """Tiles are measured on the object with its scale, of which the mesh knows nothing.  Raises Refused."""
+    """Tiles are measured on the object with its scale and density weight, of which the mesh knows nothing.
+
+    Raises Refused.
+    """
     seamless = options.seamless
     if seamless is None or seamless.tile_size is None:
         return options
     if not region.object_scale:
         raise Refused("the object is scaled to zero, where tiles have no size; scale it up or give a number of tiles")
-    return replace(options, seamless=replace(seamless, tile_size=seamless.tile_size / region.object_scale))
+    return replace(options, seamless=replace(seamless, tile_size=seamless.tile_size / region.texel_scale))
 
 
 def _pins(region: Region, pinned: NDArray[np.bool_], uv: NDArray[np.float64]) -> lsgp.Pins | None:

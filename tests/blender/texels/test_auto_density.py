@@ -84,3 +84,23 @@ def test_an_image_that_is_not_square_has_no_one_density():
     add_texture(ball, 64, 256)
     with pytest.raises(RuntimeError, match="the image is not square"):
         unwrap(density=10)
+
+
+@pytest.mark.parametrize("preset, options", [("PAINT", {}), ("BAKE", {"udim": 2}), ("BAKE", {"scale": "DENSITY"})])
+def test_an_object_has_as_many_times_the_density_of_others_as_its_weight_says(preset, options):
+    plain, fine, coarse = cubes(3)
+    fine.cone_unwrap_density_weight, coarse.cone_unwrap_density_weight = 2, 0.5
+    assert unwrap(preset=preset, **({"scale": "FILL", "density": 20, "udim": 4} | options)) == {"FINISHED"}
+    found = np.array([density(obj, 512) for obj in (plain, fine, coarse)])
+    assert found / found[0] == pytest.approx([1, 2, 0.5], rel=1e-4)
+    if options.get("scale") == "DENSITY":
+        assert found[0] == pytest.approx(20, rel=1e-4)
+
+
+@pytest.mark.parametrize("tiles", [{"tile_fit": "DENSITY", "density": 512}, {"tile_fit": "AUTO"}])
+def test_tiles_are_as_many_times_smaller_as_the_weight_of_an_object_says(tiles):
+    plain, fine = add_cone_cube("Plain"), add_cone_cube("Fine")
+    fine.cone_unwrap_density_weight = 2
+    assert bpy.ops.uv.cone_auto_unwrap(preset="TILE", texture_size="1024", **tiles) == {"FINISHED"}
+    assert density(fine, 1024) == pytest.approx(2 * density(plain, 1024), rel=1e-5)
+    assert UvMap(plain).tile_error() == UvMap(fine).tile_error() == 0
