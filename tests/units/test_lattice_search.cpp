@@ -32,8 +32,8 @@ std::vector<lsgp::Complex> points_near(const lsgp::PointLattice& lattice, lsgp::
 
 TEST_CASE("the nearest point of a lattice is the nearest") {
   Random random(1);
-  for (const int symmetry : {4, 6}) {
-    const lsgp::PointLattice lattice(symmetry);
+  for (const int rotation_order : {4, 6}) {
+    const lsgp::PointLattice lattice(rotation_order);
     for (int round = 0; round < 500; ++round) {
       const lsgp::Complex z(between(random, -9, 9), between(random, -9, 9));
       double least = INFINITY;
@@ -44,12 +44,12 @@ TEST_CASE("the nearest point of a lattice is the nearest") {
 }
 
 TEST_CASE("turns of a lattice map it onto itself") {
-  for (const int symmetry : {1, 2, 3, 4, 6}) {
-    const lsgp::PointLattice lattice(symmetry);
-    CHECK(std::abs(lattice.unit(1) - std::polar(1.0, 2 * M_PI / symmetry)) < 1e-15);
-    CHECK(lattice.unit(symmetry) == lsgp::Complex(1, 0));
-    CHECK(lattice.unit(-1) == lattice.unit(symmetry - 1));
-    if (symmetry < 3) continue;
+  for (const int rotation_order : {1, 2, 3, 4, 6}) {
+    const lsgp::PointLattice lattice(rotation_order);
+    CHECK(std::abs(lattice.unit(1) - std::polar(1.0, 2 * M_PI / rotation_order)) < 1e-15);
+    CHECK(lattice.unit(rotation_order) == lsgp::Complex(1, 0));
+    CHECK(lattice.unit(-1) == lattice.unit(rotation_order - 1));
+    if (rotation_order < 3) continue;
     const lsgp::Complex turned = lattice.unit(1) * lattice.point({3, -2});
     CHECK(std::abs(turned - lattice.nearest(turned)) < 1e-12);
   }
@@ -57,10 +57,10 @@ TEST_CASE("turns of a lattice map it onto itself") {
 
 TEST_CASE("a reduced basis spans the same lattice with vectors that are not longer") {
   Random random(2);
-  for (const int symmetry : {4, 6}) {
-    const lsgp::PointLattice lattice(symmetry);
+  for (const int rotation_order : {4, 6}) {
+    const lsgp::PointLattice lattice(rotation_order);
     for (const int size : {1, 2, 3, 6}) {
-      CAPTURE(symmetry);
+      CAPTURE(rotation_order);
       CAPTURE(size);
       const Eigen::MatrixXcd form = random_form(random, size);
       const Eigen::MatrixXcd basis = lsgp::reduce_basis(form, lattice);
@@ -78,8 +78,8 @@ TEST_CASE("a reduced basis spans the same lattice with vectors that are not long
 
 TEST_CASE("choices of lattice points come close to the best one") {
   Random random(3);
-  for (const int symmetry : {4, 6}) {
-    const lsgp::PointLattice lattice(symmetry);
+  for (const int rotation_order : {4, 6}) {
+    const lsgp::PointLattice lattice(rotation_order);
     for (int round = 0; round < 30; ++round) {
       const Eigen::MatrixXcd form = random_form(random, 2);
       const Eigen::VectorXcd wanted = 5 * random_matrix<lsgp::Complex>(random, 2, 1);

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "plane/boundary_polygon.hpp"
+#include "plane/predicates.hpp"
 #include "random_matrices.hpp"
 
 TEST_CASE("the side of a line is never told wrong, and told where rounding leaves no doubt") {

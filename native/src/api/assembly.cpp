@@ -15,7 +15,7 @@
 #include "seamless/exact_layout.hpp"
 #include "split/compact_islands.hpp"
 #include "split/split_map.hpp"
-#include "unfold/unfold.hpp"
+#include "unfold/jacobians.hpp"
 
 namespace lsgp {
 

@@ -49,8 +49,8 @@ class PlacementWork {
       const Component& component = components()[i];
       const double begin = static_cast<double>(triangles_before) / static_cast<double>(triangles_);
       triangles_before += component.mesh.triangle_count();
-      const ProgressMonitor::Part part(monitor_, begin,
-                                       static_cast<double>(triangles_before) / static_cast<double>(triangles_));
+      const ProgressMonitor::Interval interval(monitor_, begin,
+                                               static_cast<double>(triangles_before) / static_cast<double>(triangles_));
       monitor_.advance(0);
       const Geometry geometry = require_geometry(component, findings_);
       // A vertex shared by components cannot have an angle on each.

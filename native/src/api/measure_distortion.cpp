@@ -22,22 +22,22 @@ constexpr double same_position = 1e-6;
 // Without given cones, vertices whose angles miss a full turn by more than this count as cones.
 constexpr double cone_threshold = 1e-3;
 
-struct Part {
+struct MeasuredSurface {
   Surface surface;         // the measured triangles, the caller's vertices
   Array<Index> triangles;  // the caller's
 };
 
-Part finite_part(const Surface& surface, const CornerUv& corner_uv) {
-  Part part;
+MeasuredSurface finite_triangles(const Surface& surface, const CornerUv& corner_uv) {
+  MeasuredSurface measured;
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
-    if (corner_uv.middleRows<3>(3 * f).allFinite()) part.triangles.push_back(f);
+    if (corner_uv.middleRows<3>(3 * f).allFinite()) measured.triangles.push_back(f);
   }
-  part.surface.positions = surface.positions;
-  part.surface.triangles.resize(ssize(part.triangles), 3);
-  for (Eigen::Index i = 0; i < ssize(part.triangles); ++i)
-    part.surface.triangles.row(i) = surface.triangles.row(part.triangles[i]);
-  part.surface.seams.resize(0, 2);
-  return part;
+  measured.surface.positions = surface.positions;
+  measured.surface.triangles.resize(ssize(measured.triangles), 3);
+  for (Eigen::Index i = 0; i < ssize(measured.triangles); ++i)
+    measured.surface.triangles.row(i) = surface.triangles.row(measured.triangles[i]);
+  measured.surface.seams.resize(0, 2);
+  return measured;
 }
 
 // The power of two that brings the layout to about unit size, so that no area overflows.
@@ -53,13 +53,13 @@ struct EdgeSide {
   Complex at_low, at_high;
 };
 
-Array<EdgeSide> edge_sides(const Part& part, const CornerUv& uv, const Array<Index>& triangles) {
+Array<EdgeSide> edge_sides(const MeasuredSurface& measured, const CornerUv& uv, const Array<Index>& triangles) {
   Array<EdgeSide> out;
   for (const Index f : triangles) {
     for (Index c = 0; c < 3; ++c) {
-      const Index tail = part.surface.triangles(f, c), head = part.surface.triangles(f, (c + 1) % 3);
+      const Index tail = measured.surface.triangles(f, c), head = measured.surface.triangles(f, (c + 1) % 3);
       const auto at = [&](Index corner) {
-        const auto row = uv.row(3 * part.triangles[f] + corner);
+        const auto row = uv.row(3 * measured.triangles[f] + corner);
         return Complex(row[0], row[1]);
       };
       const Complex first = at(c), second = at((c + 1) % 3);
@@ -74,9 +74,10 @@ Array<EdgeSide> edge_sides(const Part& part, const CornerUv& uv, const Array<Ind
 
 // Vertex pairs of the edges between two of the triangles, all or those whose sides have different coordinates.
 enum class Between { all, different };
-Array<Index> edges_between(const Part& part, const CornerUv& uv, const Array<Index>& triangles, Between wanted) {
+Array<Index> edges_between(const MeasuredSurface& measured, const CornerUv& uv, const Array<Index>& triangles,
+                           Between wanted) {
   PositionBox box;
-  const Array<EdgeSide> sides = edge_sides(part, uv, triangles);
+  const Array<EdgeSide> sides = edge_sides(measured, uv, triangles);
   for (const EdgeSide& side : sides) box.add(side.at_low);
   const double tolerance = same_position * box.size();
   Array<Index> out;
@@ -95,23 +96,23 @@ Array<Index> edges_between(const Part& part, const CornerUv& uv, const Array<Ind
 
 // Non-orientable components are cut along the layout's seams; if an island is still non-orientable, along every edge.
 // cut_edges: gets the edges whose sides have different coordinates.
-Topology build_two_sided(Part& part, const CornerUv& uv, Array<Index>& cut_edges) {
+Topology build_two_sided(MeasuredSurface& measured, const CornerUv& uv, Array<Index>& cut_edges) {
   std::vector<Finding> ignored;
-  Topology topology = build_topology(part.surface, {}, ignored);
-  OpenSeams open(part.triangles.size(), 0);
+  Topology topology = build_topology(measured.surface, {}, ignored);
+  OpenSeams open(measured.triangles.size(), 0);
   Array<Index> seams;
   for (const Between wanted : {Between::different, Between::all}) {
     const std::size_t before = seams.size();
     for (const Component& component : topology.components) {
       if (component.orientable) continue;
       for (const Index f : component.source_triangle) open[f] = 1;
-      const Array<Index> edges = edges_between(part, uv, component.source_triangle, wanted);
+      const Array<Index> edges = edges_between(measured, uv, component.source_triangle, wanted);
       seams.insert(seams.end(), edges.begin(), edges.end());
     }
     if (seams.size() == before) continue;
     if (wanted == Between::different) cut_edges.insert(cut_edges.end(), seams.begin(), seams.end());
-    part.surface.seams = to_vertex_pairs(seams);
-    topology = build_topology(part.surface, open, ignored);
+    measured.surface.seams = to_vertex_pairs(seams);
+    topology = build_topology(measured.surface, open, ignored);
   }
   return topology;
 }
@@ -141,12 +142,12 @@ Measurement measure_distortion(const Surface& surface, const CornerUv& corner_uv
   }
   Measurement out;
   out.island.assign(static_cast<std::size_t>(surface.triangles.rows()), none);
-  Part part = finite_part(surface, corner_uv);
+  MeasuredSurface measured = finite_triangles(surface, corner_uv);
   out.cut_edges.resize(0, 2);
-  if (part.triangles.empty()) return out;
+  if (measured.triangles.empty()) return out;
   if (cones) require_valid(surface, {*cones, Array<std::optional<double>>(cones->size())});
-  const CornerUv uv = unit_scale(corner_uv, part.triangles) * corner_uv;
-  out.distortion = measure_triangles(surface, uv, part.triangles);
+  const CornerUv uv = unit_scale(corner_uv, measured.triangles) * corner_uv;
+  out.distortion = measure_triangles(surface, uv, measured.triangles);
 
   PerVertex<char> given(surface.positions.rows(), 0);
   if (cones) {
@@ -154,13 +155,13 @@ Measurement measure_distortion(const Surface& surface, const CornerUv& corner_uv
   }
   Array<Index> cut_edges;
   Index island_count = 0;
-  const Topology topology = build_two_sided(part, uv, cut_edges);
+  const Topology topology = build_two_sided(measured, uv, cut_edges);
   for (const Component& component : topology.components) {
     const HalfedgeMesh& mesh = component.mesh;
     monitor.tick();
     Eigen::VectorXcd position(mesh.halfedge_count());
     for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
-      const Index at = component.source_corner(corner), source = 3 * part.triangles[at / 3] + at % 3;
+      const Index at = component.source_corner(corner), source = 3 * measured.triangles[at / 3] + at % 3;
       position[corner] = {uv(source, 0), uv(source, 1)};
     }
     const double size = std::max(position.real().maxCoeff() - position.real().minCoeff(),
@@ -175,7 +176,7 @@ Measurement measure_distortion(const Surface& surface, const CornerUv& corner_uv
       ++total[label[f]];
     }
     for (Index f = 0; f < mesh.triangle_count(); ++f) {
-      const Index source = part.triangles[component.source_triangle[f]];
+      const Index source = measured.triangles[component.source_triangle[f]];
       const bool mirrored = 2 * positive[label[f]] < total[label[f]];
       element(out.island, source) = island_count + label[f];
       if (!((mirrored ? -1 : 1) * doubled_area(position, f) > 0)) out.flipped.push_back(source);
@@ -192,7 +193,7 @@ Measurement measure_distortion(const Surface& surface, const CornerUv& corner_uv
     append_ends(component, is_cut, cut_edges);
   }
   for (const auto& [f, original] : topology.duplicates)
-    element(out.island, part.triangles[f]) = element(out.island, part.triangles[original]);
+    element(out.island, measured.triangles[f]) = element(out.island, measured.triangles[original]);
   std::sort(out.flipped.begin(), out.flipped.end());
   out.cut_edges = to_vertex_pairs(cut_edges);
   monitor.advance(1);

@@ -12,8 +12,8 @@
 #include "base/progress_monitor.hpp"
 #include "base/thread_team.hpp"
 #include "lsgp/lsgp.hpp"
-#include "pipeline/component_map.hpp"
 #include "pipeline/components.hpp"
+#include "pipeline/mapping.hpp"
 #include "pipeline/wording.hpp"
 #include "prescription/component_system.hpp"
 #include "seamless/seamless.hpp"
@@ -120,7 +120,7 @@ Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& 
     };
     const double begin = share_up_to(triangles_before);
     triangles_before += component.mesh.triangle_count();
-    const ProgressMonitor::Part part(monitor, begin, share_up_to(triangles_before));
+    const ProgressMonitor::Interval interval(monitor, begin, share_up_to(triangles_before));
     monitor.advance(0);
     {
       const ProgressMonitor::Stage stage(monitor, "geometry");
@@ -138,18 +138,19 @@ Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& 
   PerComponent<ComponentTask> tasks = work_.tasks;  // seamless layouts merge cones
   if (options.seamless) {
     const ProgressMonitor::Stage stage(monitor, "quantize");
-    const ProgressMonitor::Part part(monitor, share_of_maps, 1);
+    const ProgressMonitor::Interval interval(monitor, share_of_maps, 1);
     monitor.advance(0);
-    Array<SeamlessPart> parts;
+    Array<SeamlessComponent> laid_out;
     for (std::size_t i = 0; i < components.size(); ++i) {
-      if (maps[i]) parts.push_back({&components[i], &tasks[i], &*maps[i], &*kept_[i]->system});
+      if (maps[i]) laid_out.push_back({&components[i], &tasks[i], &*maps[i], &*kept_[i]->system});
     }
-    result.seamless = make_seamless(options, work_.unit_scale, parts, result.warnings, monitor);
+    result.seamless = make_seamless(options, work_.unit_scale, laid_out, result.warnings, monitor);
     for (std::size_t i = 0; i < components.size(); ++i) {
       if (!maps[i]) continue;
       release(i);
-      const bool is_laid_out = std::any_of(parts.begin(), parts.end(),
-                                           [&](const SeamlessPart& part) { return part.component == &components[i]; });
+      const bool is_laid_out = std::any_of(laid_out.begin(), laid_out.end(), [&](const SeamlessComponent& component) {
+        return component.source == &components[i];
+      });
       if (!is_laid_out) maps[i].reset();
     }
   }

@@ -19,13 +19,13 @@ void ProgressMonitor::tick() {
   advance((std::max(told_, low_) + share * left - low_) / std::max(high_ - low_, 1e-300));
 }
 
-ProgressMonitor::Part::Part(ProgressMonitor& monitor, double begin, double end)
+ProgressMonitor::Interval::Interval(ProgressMonitor& monitor, double begin, double end)
     : monitor_(monitor), low_(monitor.low_), high_(monitor.high_) {
   monitor.low_ = low_ + begin * (high_ - low_);
   monitor.high_ = low_ + end * (high_ - low_);
 }
 
-ProgressMonitor::Part::~Part() {
+ProgressMonitor::Interval::~Interval() {
   monitor_.low_ = low_;
   monitor_.high_ = high_;
 }

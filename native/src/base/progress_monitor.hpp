@@ -17,23 +17,23 @@ class ProgressMonitor {
   ProgressMonitor(const ProgressMonitor&) = delete;
   ProgressMonitor& operator=(const ProgressMonitor&) = delete;
 
-  // done: of the innermost active part, 0 to 1. Throws CANCELLED.
+  // done: of the innermost active interval, 0 to 1. Throws CANCELLED.
   void advance(double done);
 
   // For loops of unknown length: advances by a fixed fraction of the remaining interval. Checkpoints call it, too.
   void tick();
 
   // Maps this scope's progress to the interval [begin, end] of the enclosing scope.
-  class Part {
+  class Interval {
    public:
-    Part(ProgressMonitor& monitor, double begin, double end);
-    ~Part();
-    Part(const Part&) = delete;
-    Part& operator=(const Part&) = delete;
+    Interval(ProgressMonitor& monitor, double begin, double end);
+    ~Interval();
+    Interval(const Interval&) = delete;
+    Interval& operator=(const Interval&) = delete;
 
    private:
     ProgressMonitor& monitor_;
-    const double low_, high_;  // interval of the enclosing part
+    const double low_, high_;  // interval of the enclosing one
   };
 
   // Adds the wall-clock time of its lifetime to a stage, excluding the time of nested stages.

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "base/checkpoint.hpp"
+#include "plane/predicates.hpp"
 
 namespace lsgp {
 
@@ -24,8 +25,6 @@ constexpr double no_gap = 1e-6;
 constexpr double cancelled = 1e-12;
 constexpr double operations_a_removal = 2000;  // of a vertex
 constexpr double operations_of_check = 100;    // of an edge, about
-
-double doubled_area(Complex a, Complex b, Complex c) { return std::imag(std::conj(b - a) * (c - a)); }
 
 double relative_area(Complex a, Complex b, Complex c) {
   return doubled_area(a, b, c) / std::max({std::norm(b - a), std::norm(c - b), std::norm(a - c)});

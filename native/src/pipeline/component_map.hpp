@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The map of one component: cut, prescribe, unfold, repair (the paper's section 3.2).
+// The map of one component with what it imposes, and its checks.
 #pragma once
 
 #include <Eigen/Core>
@@ -37,15 +37,6 @@ struct ComponentMap {
   Validity validity;
   RepairReport repair;
 };
-
-// findings are added to. Throws what the stages throw, in the component's own numbering.
-// system: of the task's cones.
-ComponentMap map_component(ComponentSystem& system, const ComponentTask& task, const Options& options,
-                           std::vector<Finding>& findings, ProgressMonitor& monitor);
-
-// The first map of `map_component`, with local repairs only: identical if it has no defects.
-ComponentMap attempt_component(ComponentSystem& system, const ComponentTask& task, const Options& options,
-                               std::vector<Finding>& findings, ProgressMonitor& monitor);
 
 // Measure positions u + iv at the component's corners, (3m), against what the map imposed.
 void check_seams(const HalfedgeMesh& mesh, const CornerPositions& corners, ComponentMap& map);

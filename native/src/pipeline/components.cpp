@@ -27,7 +27,7 @@ PerComponent<ComponentTask> hand_out(const Surface& surface, const PerComponent<
     ComponentCones& own = tasks[c].cones;
     own.border = options.border;
     if (!open.empty() && open[component.source_triangle.front()]) own.holes = Holes::all;
-    if (options.seamless) own.symmetry = symmetry(options.seamless->lattice);
+    if (options.seamless) own.rotation_order = rotation_order(options.seamless->lattice);
     own.loop_turning.resize(component.mesh.boundary_loops.size());
     Array<std::pair<Index, Index>> found;  // place in the caller's list, vertex
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
@@ -116,7 +116,7 @@ void hand_out_directions(const Positions& directions, const Options& options, Wo
     task.directions = directions_in_triangles(component.mesh, own);
     const std::optional<double> curvature = given_curvature(component.mesh, task.cones);
     if (options.seamless && curvature) {
-      let_borders_run_along(component.mesh, own, task.cones.symmetry, curvature, task.cones);
+      let_borders_run_along(component.mesh, own, task.cones.rotation_order, curvature, task.cones);
     }
   }
 }
@@ -272,15 +272,15 @@ Positions directions_on(const Component& component, const Positions& directions)
   return out;
 }
 
-bool let_borders_run_along(const HalfedgeMesh& mesh, const Positions& directions, int symmetry,
+bool let_borders_run_along(const HalfedgeMesh& mesh, const Positions& directions, int rotation_order,
                            std::optional<double> curvature, ComponentCones& cones) {
   const auto is_given = [](const std::optional<double>& turning) { return turning.has_value(); };
   if (mesh.closed() || std::any_of(cones.loop_turning.begin(), cones.loop_turning.end(), is_given)) return false;
-  const PerLoop<std::optional<double>> wanted = turning_beside(mesh, directions, symmetry);
+  const PerLoop<std::optional<double>> wanted = turning_beside(mesh, directions, rotation_order);
   if (!std::all_of(wanted.begin(), wanted.end(), is_given)) return false;
   double missing = 2 * M_PI * mesh.euler - curvature.value_or(0);
   for (const auto& turning : wanted) missing -= *turning;
-  if (curvature && std::abs(missing) > M_PI / symmetry) return false;
+  if (curvature && std::abs(missing) > M_PI / rotation_order) return false;
   cones.loop_turning = wanted;
   return true;
 }

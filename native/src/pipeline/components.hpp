@@ -75,7 +75,7 @@ Positions directions_on(const Component& component, const Positions& directions)
 // Prescribes the turning of a component's boundaries so that a seamless layout follows directions: a sleeve becomes a
 // strip. Only if nothing else is prescribed and all boundaries can, with this sum of the cones' curvatures (none:
 // free). Returns whether it does.
-bool let_borders_run_along(const HalfedgeMesh& mesh, const Positions& directions, int symmetry,
+bool let_borders_run_along(const HalfedgeMesh& mesh, const Positions& directions, int rotation_order,
                            std::optional<double> curvature, ComponentCones& cones);
 
 // Whether the component is opened along its followed seams because it has no cones.
@@ -128,7 +128,7 @@ void for_each_component(const PerComponent<Component>& components, std::vector<F
   for_each_component(components, findings, [&](std::size_t i) {
     const double begin = static_cast<double>(i) / count, end = static_cast<double>(i + 1) / count;
     monitor.advance(begin);
-    const ProgressMonitor::Part part(monitor, begin, end);
+    const ProgressMonitor::Interval interval(monitor, begin, end);
     solve(i);
   });
 }

@@ -3,105 +3,41 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <optional>
 
 #include "base/text.hpp"
-#include "mesh/border.hpp"
-#include "plane/overlaps.hpp"
+#include "pipeline/component_repair.hpp"
+#include "pipeline/component_unfold.hpp"
 #include "prescription/border_turning.hpp"
 #include "prescription/parallel_transport.hpp"
-#include "repair/low_stretch.hpp"
-#include "repair/straighten.hpp"
-#include "repair/untangle.hpp"
-#include "systems/quadratic_forms.hpp"
-#include "unfold/unfold.hpp"
+#include "unfold/lscm.hpp"
+#include "unfold/spectral.hpp"
 
 namespace lsgp {
 
 namespace {
 
-using Kind = DistortionEnergy::Kind;
+// Ranges of the automatic angles: wide ones distort least but may leave turns with neighbouring vertices; a map of
+// angles up to 2 pi that has no flips has the right angles too.
+constexpr AngleRange angle_ranges[]{widest_angles, {M_PI / 2, 2.5 * M_PI}, {M_PI / 2, 2 * M_PI, false}};
 
-constexpr double tangled_share = 0.002;  // of the triangles flipped, for which another fit is tried
-
-// A surface with boundary has infinitely many conformal maps, so the spectral step would return an arbitrary one; the
-// smallest eigenvector is only meaningful without cones (Mullen et al. 2008).
-UnfoldMethod usable_unfold(const HalfedgeMesh& mesh, const ComponentCones& cones, UnfoldMethod asked,
-                           std::vector<Finding>& findings) {
-  const bool plain_disk =
-      mesh.boundary_loops.size() == 1 && mesh.genus == 0 && cones.vertices.empty() && cones.border == BorderMode::free;
-  if (asked == UnfoldMethod::poisson || mesh.closed() || plain_disk) return asked;
-  findings.push_back(
-      {Code::spectral_needs_closed,
-       "The spectral unfolding is ill-posed on a surface with boundary and cones; the Poisson unfolding was "
-       "used instead.",
-       {}});
-  return UnfoldMethod::poisson;
+bool any_given(const ComponentCones& cones) {
+  return std::any_of(cones.angles.begin(), cones.angles.end(), [](const auto& angle) { return angle.has_value(); });
 }
 
-// A boundary without corners is one straight line along its own translation, but the discrete metric determines the
-// angle between two such boundaries only to the mesh's resolution. Its direction is therefore taken from the map
-// without straight boundaries, whose translations are consistent.
-// natural: (3m) that map.
-void turn_cornerless_borders(const HalfedgeMesh& mesh, const Array<Index>& corners, const Eigen::VectorXcd& natural,
-                             const Array<Index>& edges, Eigen::VectorXd& directions) {
-  const std::size_t loop_count = mesh.boundary_loops.size();
-  PerLoop<char> has_corner(loop_count, 0);
-  for (const Index v : corners) {
-    if (mesh.loop_of_vertex[v] != none) has_corner[mesh.loop_of_vertex[v]] = 1;
-  }
-  PerLoop<Complex> along(loop_count, 0.0);
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const Complex edge = natural[next(edges[i])] - natural[edges[i]];
-    along[mesh.loop_of_vertex[mesh.origin(edges[i])]] +=
-        std::polar(1.0, -directions[static_cast<Eigen::Index>(i)]) * edge;
-  }
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const Index loop = mesh.loop_of_vertex[mesh.origin(edges[i])];
-    if (!has_corner[loop]) directions[static_cast<Eigen::Index>(i)] += std::arg(along[loop]);
-  }
+bool all_given(const ComponentCones& cones) {
+  return std::all_of(cones.angles.begin(), cones.angles.end(), [](const auto& angle) { return angle.has_value(); });
 }
 
-Eigen::VectorXcd unfold_along_borders(const CutSurface& surface, const ComponentMap& map, const ComponentCones& cones,
-                                      const ParallelTransport& connection, const Array<Index>& edges) {
-  const HalfedgeMesh& mesh = surface.mesh;
-  const Geometry& geometry = surface.geometry;
-  const Eigen::VectorXd& log_scale = map.curvature.log_scale;
-  Eigen::VectorXd directions = metric_directions(mesh, geometry, log_scale, connection.frames, edges);
-  const Jacobians jacobians = prescribed_jacobians(mesh, log_scale, connection.frames);
-  if (cones.border == BorderMode::straight) {
-    const Eigen::VectorXcd natural = PoissonSystem(surface, connection.reduction).fit(jacobians);
-    turn_cornerless_borders(mesh, cones.vertices, at_corners(map.cut_mesh, natural), edges, directions);
-  }
-  return unfold_aligned(surface, connection.reduction, jacobians, edges, directions);
+bool closes_holes(const ComponentMap& map) {
+  const PerLoop<char>& closed = map.curvature.needs_no_cut;
+  return std::find(closed.begin(), closed.end(), 1) != closed.end();
 }
 
-// The fit to the prescribed Jacobians with every triangle's error relative to its scale: if scales differ much, large
-// triangles dominate the plain fit. One more factorization.
-Eigen::VectorXcd unfold_relatively(const CutSurface& surface, const Curvature& curvature,
-                                   const ParallelTransport& connection) {
-  Jacobians jacobians = prescribed_jacobians(surface.mesh, curvature.log_scale, connection.frames);
-  constexpr double widest_range = 1e8;  // of the weights, so that the form can be factored
-  Eigen::VectorXd weight = jacobians.f_z.cwiseAbs2().cwiseInverse();
-  weight = weight.cwiseMin(widest_range * weight.minCoeff());
-  const Geometry weighted = with_weights(surface.geometry, weight);
-  jacobians.f_z = jacobians.f_z.cwiseProduct(weight);
-  const CutSurface weighted_surface{surface.mesh, weighted, surface.cut_graph, surface.cut_mesh};
-  return PoissonSystem(weighted_surface, connection.reduction).fit(jacobians);
-}
-
-// The largest bend of sides that are straightened, radians; the smaller, the closer the map is to an isometry, whose
-// angles are those of the surface up to the precision of the file.
-double most_bend(double l2) {
-  constexpr double widest = 10 * M_PI / 180, beside_stretch = 30, rounding = 1e-3;
-  return std::min(widest, rounding + beside_stretch * std::sqrt(std::max(0.0, l2 - 1)));
-}
-
-// The L2 stretch that straight sides may cost: hardly any more if the map is isometric.
-double largest_l2_straight(double l2) {
-  constexpr double share = 0.1, least = 0.002, most_times = 20, rounding = 1e-6;
-  const double excess = std::max(0.0, l2 - 1);
-  return l2 + std::min(std::max(share * excess, least), most_times * excess) + rounding;
+bool repairs_maps(const Options& options) {
+  return options.repair && options.method == Method::lsgp && options.unfold == UnfoldMethod::poisson;
 }
 
 // Lengths in the layout may differ by no more than e^widest.
@@ -114,75 +50,209 @@ void require_range(const Curvature& curvature, double widest) {
                      "were given be chosen."));
 }
 
-}  // namespace
+struct FoundMap {
+  ComponentMap map;
+  std::vector<Finding> findings;
 
-bool repairs(const Options& options) {
-  return options.repair && options.method == Method::lsgp && options.unfold == UnfoldMethod::poisson;
+  std::size_t defects() const { return map.validity.defects(); }
+};
+
+class Mapping {
+ public:
+  // system: of the task's cones.
+  Mapping(ComponentSystem& system, const ComponentTask& task, const Options& options, ProgressMonitor& monitor)
+      : system_(system), task_(task), options_(options), monitor_(monitor), repairs_(repairs_maps(options)) {}
+
+  // What `map_component` and `attempt_component` return.
+  ComponentMap best(std::vector<Finding>& findings);
+  ComponentMap first(std::vector<Finding>& findings);
+
+ private:
+  // Tries angles and geometries, local repairs first; returns the map with the fewest defects.
+  FoundMap find_valid_map(const ComponentTask& task);
+  // The map with these cones, repaired as far as the effort goes.
+  FoundMap attempt(ComponentSystem& system, const ComponentTask& task, Effort effort);
+  void prescribe_angles(ComponentSystem& system, const ComponentTask& task, FoundMap& found);
+  void cut(ComponentSystem& system, const ComponentTask& task, ComponentMap& map);
+  void unfold_and_repair(ComponentSystem& system, const ComponentTask& task, Effort effort, FoundMap& found);
+
+  // Prescribed angles for which no valid map is found directly can often be reached by continuation from angles that
+  // have one.
+  void approach_angles(FoundMap& found);
+  // Straightens the nearly straight sides of the boundary of a valid map of low stretch and aligns them with the axes;
+  // leaves the map unchanged if that costs noticeable stretch.
+  void straighten(ComponentMap& map);
+  // The map of low stretch whose boundaries turn by multiples of a quarter turn, if they nearly do; none if they
+  // already do or if they are far from it.
+  std::optional<ComponentMap> with_quarter_turns(const ComponentMap& map);
+
+  ComponentRepair repair_on(ComponentSystem& system, const ComponentTask& task) {
+    return {system, task, options_, monitor_, report_};
+  }
+
+  ComponentSystem& system_;
+  const ComponentTask& task_;
+  const Options& options_;
+  ProgressMonitor& monitor_;
+  const bool repairs_;
+  std::optional<RepairReport> report_;  // the defects of the first attempt, and the steps of all attempts
+};
+
+ComponentMap Mapping::best(std::vector<Finding>& findings) {
+  FoundMap found = find_valid_map(task_);
+  if (found.defects() > 0 && repairs_ && closes_holes(found.map) && task_.cones.holes != Holes::as_they_are) {
+    ComponentTask opened = task_;
+    opened.cones.holes = Holes::as_they_are;
+    FoundMap other = find_valid_map(opened);
+    if (other.defects() < found.defects()) found = std::move(other);
+  }
+  if (found.defects() > 0 && repairs_ && (any_given(task_.cones) || task_.cones.rotation_order > 0))
+    approach_angles(found);
+  if (options_.mode == Mode::low_stretch && options_.stretch > 0 && found.defects() == 0) {
+    repair_on(system_, task_).relax(found.map);
+    straighten(found.map);
+  }
+  found.map.repair = report_.value_or(RepairReport{});
+  findings.insert(findings.end(), found.findings.begin(), found.findings.end());
+  return std::move(found.map);
 }
 
-ComponentMap Mapping::attempt(const ComponentCones& cones, Effort effort, std::vector<Finding>& findings) {
-  ComponentMap map;
-  {
-    const ProgressMonitor::Stage stage(monitor_, "prescribe");
-    const ProgressMonitor::Part part(monitor_, 0, 0.2);
-    monitor_.advance(0);
-    map.curvature = prescribe(system_, cones, options_.prescription, findings);
+ComponentMap Mapping::first(std::vector<Finding>& findings) {
+  FoundMap found = attempt(system_, task_, Effort::local);
+  found.map.repair = report_.value_or(RepairReport{});
+  findings.insert(findings.end(), found.findings.begin(), found.findings.end());
+  return std::move(found.map);
+}
+
+FoundMap Mapping::find_valid_map(const ComponentTask& task) {
+  constexpr double fat_margin = 0.2;
+  const bool is_free = repairs_ && task.cones.rotation_order == 0 &&
+                       (options_.prescription == PrescriptionRule::least_distortion ||
+                        (options_.prescription == PrescriptionRule::manual && !all_given(task.cones)));
+  const HalfedgeMesh& mesh = system_.mesh();
+  const Geometry& geometry = system_.geometry();
+  std::optional<FoundMap> best;
+  std::optional<Geometry> fat;
+  std::optional<ComponentSystem> fat_system;
+  for (const Effort effort : {Effort::local, Effort::global}) {
+    // Local repairs are first tried on the surface itself; hard cases are easier on fat triangles.
+    for (const bool is_fat : {effort == Effort::global, effort == Effort::local}) {
+      if (is_fat && !fat) {
+        fat = mollified(mesh, geometry, fat_margin);
+        fat_system.emplace(mesh, *fat, task.cones, options_.factorization);
+      }
+      for (std::size_t i = 0; i < (is_free ? std::size(angle_ranges) : 1); ++i) {
+        ComponentTask ranged = task;
+        if (is_free) ranged.cones.range = angle_ranges[i];
+        FoundMap found;
+        try {
+          found = attempt(is_fat ? *fat_system : system_, ranged, effort);
+        } catch (const Error& error) {
+          if (!best || error.code() != Code::solver_failed) throw;
+          continue;
+        }
+        if (!best || found.defects() < best->defects()) {
+          if (is_fat && found.defects() == 0) repair_on(system_, task).smooth(found.map);
+          best = std::move(found);
+        }
+        if (best->defects() == 0) return std::move(*best);
+        // A valid map would have been proof that its angles are possible.
+        if (effort == Effort::local && !is_fat && options_.prescription == PrescriptionRule::manual) {
+          require_possible(mesh, geometry, task.cones);
+        }
+        if (!repairs_) return std::move(*best);
+      }
+    }
   }
-  {
-    const ProgressMonitor::Stage stage(monitor_, "cut");
-    monitor_.advance(0.2);
-    cut(map);
+  return std::move(*best);
+}
+
+FoundMap Mapping::attempt(ComponentSystem& system, const ComponentTask& task, Effort effort) {
+  FoundMap found;
+  prescribe_angles(system, task, found);
+  cut(system, task, found.map);
+  unfold_and_repair(system, task, effort, found);
+  return found;
+}
+
+void Mapping::prescribe_angles(ComponentSystem& system, const ComponentTask& task, FoundMap& found) {
+  const ProgressMonitor::Stage stage(monitor_, "prescribe");
+  const ProgressMonitor::Interval interval(monitor_, 0, 0.2);
+  monitor_.advance(0);
+  found.map.curvature = prescribe(system, task.cones, options_.prescription, found.findings);
+}
+
+void Mapping::cut(ComponentSystem& system, const ComponentTask& task, ComponentMap& map) {
+  const ProgressMonitor::Stage stage(monitor_, "cut");
+  monitor_.advance(0.2);
+  const HalfedgeMesh& mesh = system.mesh();
+  for (const Index v : inside_only(mesh, task.cones.vertices)) {
+    const bool flat = task.cones.rotation_order > 0 && map.curvature.at_vertex[v] == 0;
+    (flat ? map.flat_cones : map.cones).push_back(v);
   }
+  if (closes_holes(map)) {
+    map.cut_graph = connect_cones(mesh, system.geometry(), map.cones, map.curvature.needs_no_cut);
+  } else if (map.flat_cones.empty()) {
+    map.cut_graph = system.all_cuts();
+  } else {
+    map.cut_graph = keep_cones(mesh, system.all_cuts(), map.cones);
+  }
+  for (const Cut& cut : map.cut_graph.cuts) {
+    map.required_cuts.insert(map.required_cuts.end(), cut.halfedges.begin(), cut.halfedges.end());
+  }
+  map.has_straight_cuts = options_.prescription == PrescriptionRule::straightness;
+  map.cut_mesh = cut_open(mesh, map.cut_graph);
+  map.pins = pins_of_copies(map.cut_mesh, task.pinned_corners);
+}
+
+void Mapping::unfold_and_repair(ComponentSystem& system, const ComponentTask& task, Effort effort, FoundMap& found) {
   const ProgressMonitor::Stage stage(monitor_, "unfold");
   monitor_.advance(0.3);
-  const CutSurface surface = open(map);
+  ComponentMap& map = found.map;
+  ComponentRepair repair = repair_on(system, task);
+  const CutSurface surface = system.open(map.cut_graph, map.cut_mesh);
   if (options_.method == Method::lscm) {
-    map.position = unfold_lscm(mesh_, geometry_, map.cut_mesh);
-    check(map);
-    return map;
+    map.position = unfold_lscm(system.mesh(), system.geometry(), map.cut_mesh);
+    return repair.check(map);
   }
-  const ParallelTransportChoice connections(surface, map.curvature, cones.symmetry);
+  const ParallelTransportChoice connections(surface, map.curvature, task.cones.rotation_order);
   const ParallelTransport connection = connections.at(1, map.curvature);
   map.rotation = connection.rotation;
-  const Array<Index> aligned = aligned_edges();
-  const bool spectral = usable_unfold(mesh_, cones, options_.unfold, findings) == UnfoldMethod::spectral;
-  if (!spectral) require_range(map.curvature, std::log(std::numeric_limits<double>::max()));
-  if (spectral) {
-    map.position = unfold_spectral(surface, connection.reduction);
-  } else if (!aligned.empty()) {
-    map.position = unfold_along_borders(surface, map, cones, connection, aligned);
-  } else {
-    map.position = PoissonSystem(surface, connection.reduction)
-                       .fit(prescribed_jacobians(mesh_, map.curvature.log_scale, connection.frames));
-  }
+  const bool is_spectral =
+      usable_unfold(system.mesh(), task.cones, options_.unfold, found.findings) == UnfoldMethod::spectral;
+  if (!is_spectral) require_range(map.curvature, std::log(std::numeric_limits<double>::max()));
+  map.position = is_spectral ? unfold_spectral(surface, connection.reduction)
+                             : unfold_poisson(surface, map, task.cones, connection);
   Curvature target = map.curvature;
   if (map.pins.size() > 1) {
-    PinnedMap pinned = move_onto_pins(surface, connection.reduction, map.pins, !aligned.empty(), map.position);
+    const bool is_aligned = !aligned_edges(system.mesh(), task.cones).empty();
+    PinnedMap pinned = move_onto_pins(surface, connection.reduction, map.pins, is_aligned, map.position);
     map.position = std::move(pinned.position);
     target.log_scale.array() += std::log(pinned.scale);
   }
-  check(map);
+  repair.check(map);
   // No repair helps if small triangles are below the rounding error of the large ones.
   if (map.validity.defects() > 0) require_range(map.curvature, -std::log(std::numeric_limits<double>::epsilon()));
-  if (!repair_) {
-    repair_ = {static_cast<Index>(map.validity.flipped.size()),
+  if (!report_) {
+    report_ = {static_cast<Index>(map.validity.flipped.size()),
                static_cast<Index>(map.validity.wrong_angle_sums.size()), 0};
   }
-  if (map.validity.defects() > 0 && repairs(options_) && !spectral) {
+  if (map.validity.defects() > 0 && repairs_ && !is_spectral) {
     const Array<Index> flipped = map.validity.flipped;
-    repair(connections, connection, target, effort, map);
-    if (map.validity.defects() == 0) polish(connection, flipped, map);
+    repair.repair(connections, connection, target, effort, map);
+    if (map.validity.defects() == 0) repair.polish(connection, flipped, map);
   }
-  return map;
 }
 
-void Mapping::approach_angles(ComponentMap& map, std::vector<Finding>& findings) {
-  if (!aligned_edges().empty() || map.pins.size() > 1 || map.cones.empty()) return;
+void Mapping::approach_angles(FoundMap& found) {
+  ComponentMap& map = found.map;
+  const HalfedgeMesh& mesh = system_.mesh();
+  if (!aligned_edges(mesh, task_.cones).empty() || map.pins.size() > 1 || map.cones.empty()) return;
   const ProgressMonitor::Stage stage(monitor_, "repair");
   ComponentTask automatic = task_;
   automatic.cones.vertices = map.cones;
   automatic.cones.angles.assign(map.cones.size(), std::nullopt);
-  automatic.cones.symmetry = 0;
+  automatic.cones.rotation_order = 0;
   for (std::size_t loop = 0; loop < map.curvature.needs_no_cut.size(); ++loop) {
     if (map.curvature.needs_no_cut[loop]) automatic.cones.loop_turning[loop] = once_around_a_hole;
   }
@@ -190,78 +260,32 @@ void Mapping::approach_angles(ComponentMap& map, std::vector<Finding>& findings)
   plain.prescription = PrescriptionRule::least_distortion;
   plain.mode = Mode::conformal;
   std::vector<Finding> unsaid;
-  ComponentSystem system(mesh_, geometry_, automatic.cones, options_.factorization);
-  const ComponentMap start = map_component(system, automatic, plain, unsaid, monitor_);
-  repair_->iterations += start.repair.iterations;
+  ComponentSystem system(mesh, system_.geometry(), automatic.cones, options_.factorization);
+  const ComponentMap start = Mapping(system, automatic, plain, monitor_).best(unsaid);
+  report_->iterations += start.repair.iterations;
   if (start.validity.defects() > 0 || start.cut_graph.is_cut != map.cut_graph.is_cut) return;
-  const CutSurface surface = open(map);
-  const ParallelTransportChoice connections(surface, map.curvature, task_.cones.symmetry);
-  Continuation end = follow(surface, path_between(start.curvature, connections, map.curvature), Effort::global,
-                            counter(), {start.position, fixed_vertices(map)});
-  if (end.reached < 1) {
-    if (task_.cones.symmetry > 0) return;
-    report_adjusted(map, end, findings);
-  }
-  map.curvature = std::move(end.at.curvature);
-  map.rotation = std::move(end.at.connection.rotation);
-  map.position = std::move(end.position);
-  check(map);
-}
-
-void Mapping::relax(ComponentMap& map) {
-  const ProgressMonitor::Stage stage(monitor_, "relax");
-  const CutSurface surface = open(map);
-  const ParallelTransport connection = connection_of(map);
-  map.position = lower_stretch(surface, {connection, map.curvature}, {options_.stretch, task_.importance}, counter(),
-                               {map.position, fixed_vertices(map)});
-  check(map);
-}
-
-bool Mapping::may_straighten(const ComponentMap& map) const {
-  return options_.straighten && task_.cones.symmetry == 0 && !mesh_.closed() && map.validity.defects() == 0 &&
-         map.rotation && map.pins.size() < 2 && aligned_edges().empty();
+  repair_on(system_, task_).continue_from(start, map, found.findings);
 }
 
 void Mapping::straighten(ComponentMap& map) {
-  if (!may_straighten(map)) return;
-  const double natural_l2 = l2_of(map);
+  ComponentRepair repair = repair_on(system_, task_);
+  if (!repair.may_straighten(map)) return;
+  const double natural_l2 = repair.l2_of(map);
   std::optional<ComponentMap> found;
-  if (const std::optional<ComponentMap> turned = with_quarter_turns(map)) found = straightened(*turned, natural_l2);
-  if (!found) found = straightened(map, natural_l2);
+  if (const std::optional<ComponentMap> turned = with_quarter_turns(map)) {
+    found = repair.straightened(*turned, natural_l2);
+  }
+  if (!found) found = repair.straightened(map, natural_l2);
   if (found) map = std::move(*found);
 }
 
-std::optional<ComponentMap> Mapping::straightened(const ComponentMap& map, double natural_l2) {
-  constexpr int attempts = 6;
-  const ProgressMonitor::Stage stage(monitor_, "relax");
-  const CutSurface surface = open(map);
-  StraightOutline outline = find_straight_sides(surface, *map.rotation, map.position, most_bend(natural_l2));
-  if (!outline.is_bent() && !outline.has_axes) return std::nullopt;
-  const ParallelTransport connection = connection_of(map);
-  const double most_l2 = largest_l2_straight(natural_l2);
-  for (int attempt = 0; attempt < attempts && !outline.sides.empty(); ++attempt) {
-    ComponentMap straight = map;
-    straight.is_along_axes = outline.has_axes;
-    try {
-      straight.position = lsgp::straighten(surface, {connection, map.curvature}, {options_.stretch, task_.importance},
-                                           counter(), {map.position, outline});
-      check(straight);
-      const bool is_good = straight.validity.defects() == 0 && l2_of(straight) <= most_l2;
-      if (is_good && (!overlaps(straight) || overlaps(map))) return straight;
-    } catch (const Error& error) {
-      if (error.code() != Code::solver_failed) throw;
-    }
-    release_bent_sides(outline);
-  }
-  return std::nullopt;
-}
-
 std::optional<ComponentMap> Mapping::with_quarter_turns(const ComponentMap& map) {
+  const HalfedgeMesh& mesh = system_.mesh();
   constexpr double nearly = 3 * M_PI / 180, exactly = 1e-9;
-  if (!map.cones.empty() || mesh_.genus > 0 || mesh_.boundary_loops.size() < 2) return std::nullopt;
-  Eigen::VectorXd turning = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(mesh_.boundary_loops.size()));
-  for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-    if (mesh_.loop_of_vertex[v] != none) turning[mesh_.loop_of_vertex[v]] += map.curvature.at_vertex[v];
+  if (!map.cones.empty() || mesh.genus > 0 || mesh.boundary_loops.size() < 2) return std::nullopt;
+  Eigen::VectorXd turning = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(mesh.boundary_loops.size()));
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (mesh.loop_of_vertex[v] != none) turning[mesh.loop_of_vertex[v]] += map.curvature.at_vertex[v];
   }
   ComponentTask rounded = task_;
   double most = 0;
@@ -275,181 +299,24 @@ std::optional<ComponentMap> Mapping::with_quarter_turns(const ComponentMap& map)
   plain.straighten = false;
   std::vector<Finding> unsaid;
   try {
-    ComponentMap out = map_component(system_, rounded, plain, unsaid, monitor_);
-    if (may_straighten(out)) return out;
+    ComponentMap out = Mapping(system_, rounded, plain, monitor_).best(unsaid);
+    if (repair_on(system_, task_).may_straighten(out)) return out;
   } catch (const Error& error) {
     if (error.code() != Code::loop_turning && error.code() != Code::solver_failed) throw;
   }
   return std::nullopt;
 }
 
-double Mapping::l2_of(const ComponentMap& map) const {
-  return l2_stretch(geometry_, measure_jacobians(mesh_, geometry_, map.cut_mesh, map.position));
+}  // namespace
+
+ComponentMap map_component(ComponentSystem& system, const ComponentTask& task, const Options& options,
+                           std::vector<Finding>& findings, ProgressMonitor& monitor) {
+  return Mapping(system, task, options, monitor).best(findings);
 }
 
-bool Mapping::overlaps(const ComponentMap& map) const {
-  PerHalfedge<Index> twin = mesh_.twin;
-  for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
-    if (is_open(mesh_, map.cut_mesh, h)) twin[h] = none;
-  }
-  return has_overlap(at_corners(map.cut_mesh, map.position), twin);
-}
-
-void Mapping::smooth(ComponentMap& map) {
-  constexpr int steps = 4;
-  const ProgressMonitor::Stage stage(monitor_, "repair");
-  const CutSurface surface = open(map);
-  const ParallelTransport connection = connection_of(map);
-  NewtonMinimizer(surface, {map.curvature.log_scale, connection.frames},
-                  free_all(mesh_, map.cut_mesh, connection.reduction, fixed_vertices(map)), counter(), map.position)
-      .smooth(Kind::conformal_barrier, steps);
-  check(map);
-}
-
-void Mapping::cut(ComponentMap& map) const {
-  for (const Index v : inside_only(mesh_, task_.cones.vertices)) {
-    const bool flat = task_.cones.symmetry > 0 && map.curvature.at_vertex[v] == 0;
-    (flat ? map.flat_cones : map.cones).push_back(v);
-  }
-  const PerLoop<char>& uncut = map.curvature.needs_no_cut;
-  if (std::find(uncut.begin(), uncut.end(), 1) != uncut.end()) {
-    map.cut_graph = connect_cones(mesh_, geometry_, map.cones, uncut);
-  } else if (map.flat_cones.empty()) {
-    map.cut_graph = system_.all_cuts();
-  } else {
-    map.cut_graph = keep_cones(mesh_, system_.all_cuts(), map.cones);
-  }
-  for (const Cut& cut : map.cut_graph.cuts) {
-    map.required_cuts.insert(map.required_cuts.end(), cut.halfedges.begin(), cut.halfedges.end());
-  }
-  map.has_straight_cuts = options_.prescription == PrescriptionRule::straightness;
-  map.cut_mesh = cut_open(mesh_, map.cut_graph);
-  map.pins = pins_of_copies(map.cut_mesh, task_.pinned_corners);
-}
-
-void Mapping::check(ComponentMap& map) {
-  const ProgressMonitor::Stage stage(monitor_, "check");
-  if (!map.position.allFinite()) {
-    throw Error(Code::solver_failed,
-                "The unfolding returned values that are not finite. Clean the mesh (merge by distance, "
-                "dissolve degenerate faces) and try again.");
-  }
-  const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
-  map.uv_area = 0;
-  for (Index f = 0; f < mesh_.triangle_count(); ++f) map.uv_area += doubled_area(corners, f) / 2;
-  check_triangles(mesh_, corners, map);
-}
-
-void Mapping::repair(const ParallelTransportChoice& connections, const ParallelTransport& connection,
-                     const Curvature& target, Effort effort, ComponentMap& map) {
-  const ProgressMonitor::Stage stage(monitor_, "repair");
-  const CutSurface surface = open(map);
-  const PerVertex<char> fixed = fixed_vertices(map);
-  const bool tangled = static_cast<double>(map.validity.flipped.size()) > tangled_share * mesh_.triangle_count();
-  if (tangled && aligned_edges().empty() && map.pins.size() < 2) {
-    ComponentMap relative = map;
-    relative.position = unfold_relatively(surface, map.curvature, connection);
-    check(relative);
-    if (relative.validity.defects() < map.validity.defects()) {
-      map = std::move(relative);
-      if (map.validity.defects() == 0) return smooth(map);
-    }
-  }
-  const auto repair_with = [&](Effort of_repair) {
-    const auto first = connections.is_twisted() ? Kind::framed_foldover_free : Kind::foldover_free;
-    map.position = untangle(surface, {connection, target}, {of_repair, first}, counter(), {map.position, fixed});
-    check(map);
-  };
-  repair_with(connections.is_twisted() ? Effort::local : effort);
-  if (map.validity.defects() == 0 || !connections.is_twisted()) return;
-  twist_gradually(connections, fixed, map);
-  if (map.validity.defects() > 0) repair_with(Effort::global);
-}
-
-void Mapping::polish(const ParallelTransport& connection, const Array<Index>& flipped, ComponentMap& map) {
-  constexpr double sheared = 1.5;  // ratio of the singular values
-  constexpr int near = 10, rings = 3, steps = 3;
-  const ProgressMonitor::Stage stage(monitor_, "repair");
-  const CutSurface surface = open(map);
-  const Jacobians jacobians = measure_jacobians(mesh_, geometry_, map.cut_mesh, map.position);
-  const PerVertex<char> around = mark_around(mesh_, flipped, near);
-  Array<Index> where;
-  for (Index f = 0; f < mesh_.triangle_count(); ++f) {
-    if (!around[mesh_.triangles(f, 0)]) continue;
-    const double a = std::abs(jacobians.f_z[f]), b = std::abs(jacobians.f_zbar[f]);
-    if (a + b > sheared * (a - b)) where.push_back(f);
-  }
-  PerVertex<char> marked = mark_around(mesh_, where, rings);
-  const PerVertex<char> fixed = fixed_vertices(map);
-  for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-    if (fixed[v] || (mesh_.loop_of_vertex[v] == none && map.curvature.at_vertex[v] != 0)) marked[v] = 0;
-  }
-  const Eigen::VectorXcd motion = motion_of_copies(mesh_, map.cut_graph, map.cut_mesh, connection.rotation);
-  NewtonMinimizer(surface, {map.curvature.log_scale, connection.frames},
-                  free_vertices(mesh_, map.cut_mesh, motion, marked), counter(), map.position)
-      .smooth(Kind::conformal_barrier, steps);
-  check(map);
-}
-
-void Mapping::twist_gradually(const ParallelTransportChoice& connections, const PerVertex<char>& fixed,
-                              ComponentMap& map) {
-  const CutSurface surface = open(map);
-  const ParallelTransport natural = connections.at(0, map.curvature);
-  ComponentMap moved = map;
-  moved.position = PoissonSystem(surface, natural.reduction)
-                       .fit(prescribed_jacobians(mesh_, map.curvature.log_scale, natural.frames));
-  moved.position = untangle(surface, {natural, map.curvature}, {Effort::local, Kind::framed_foldover_free}, counter(),
-                            {moved.position, fixed});
-  check(moved);
-  if (moved.validity.defects() > 0) return;
-  Continuation end = follow(surface, path_between(map.curvature, connections, map.curvature), Effort::local, counter(),
-                            {moved.position, fixed});
-  if (end.reached < 1) return;
-  map.position = std::move(end.position);
-  check(map);
-}
-
-void Mapping::report_adjusted(const ComponentMap& map, const Continuation& end, std::vector<Finding>& findings) const {
-  Eigen::Index most = 0;
-  const double off = (map.curvature.at_vertex - end.at.curvature.at_vertex).cwiseAbs().maxCoeff(&most);
-  findings.push_back(
-      {Code::angles_adjusted,
-       concat("No map without flips was found for the angles given; this one has angles ",
-              std::round(100 * end.reached), " % of the way to them from those of least distortion, up to ",
-              rounded(off * 180 / M_PI, 3),
-              " degrees off. Take angles nearer to the automatic ones, or subdivide the mesh at ", "the cones."),
-       {ElementKind::vertices, map.cones}});
-}
-
-ParallelTransport Mapping::connection_of(const ComponentMap& map) const {
-  constexpr double same_rotation = 1e-12;  // radians
-  const CutSurface surface = open(map);
-  ParallelTransport metric = ParallelTransportChoice(surface, map.curvature, task_.cones.symmetry).at(1, map.curvature);
-  const auto off = [](double a, double b) { return std::abs(std::remainder(a - b, 2 * M_PI)); };
-  for (Eigen::Index p = 0; p < map.rotation->size(); ++p) {
-    if (off(metric.rotation[p], (*map.rotation)[p]) > same_rotation) {
-      return connection_of_map(surface, map.curvature, *map.rotation, map.position);
-    }
-  }
-  return metric;
-}
-
-CutSurface Mapping::open(const ComponentMap& map) const { return system_.open(map.cut_graph, map.cut_mesh); }
-
-Array<Index> Mapping::aligned_edges() const {
-  return task_.cones.border == BorderMode::straight ? straight_edges(mesh_, task_.cones.vertices)
-                                                    : corner_edges(mesh_, task_.cones.vertices);
-}
-
-PerVertex<char> Mapping::fixed_vertices(const ComponentMap& map) const {
-  PerVertex<char> fixed(mesh_.vertex_count(), 0);
-  for (const Pin& pin : map.pins) fixed[map.cut_mesh.source[pin.copy]] = 1;
-  for (const Index h : aligned_edges()) fixed[mesh_.origin(h)] = fixed[mesh_.target(h)] = 1;
-  return fixed;
-}
-
-StepHook Mapping::counter() {
-  return [this] { monitor_.advance(1 - 0.5 * std::pow(0.98, ++repair_->iterations)); };
+ComponentMap attempt_component(ComponentSystem& system, const ComponentTask& task, const Options& options,
+                               std::vector<Finding>& findings, ProgressMonitor& monitor) {
+  return Mapping(system, task, options, monitor).first(findings);
 }
 
 }  // namespace lsgp

@@ -2,11 +2,8 @@
 #include "placement/batch_placement.hpp"
 
 #include <algorithm>
-#include <functional>
-#include <limits>
 #include <numeric>
 #include <optional>
-#include <queue>
 #include <utility>
 
 #include "base/checkpoint.hpp"
@@ -32,32 +29,6 @@ int rings_for(int cones, Index vertices) {
 }
 
 }  // namespace
-
-NearestDistance::NearestDistance(const HalfedgeMesh& mesh, const Geometry& geometry)
-    : mesh_(mesh),
-      geometry_(geometry),
-      far_(Eigen::VectorXd::Constant(mesh.vertex_count(), std::numeric_limits<double>::infinity())) {}
-
-void NearestDistance::add(Index vertex) {
-  using Reached = std::pair<double, Index>;
-  std::priority_queue<Reached, Array<Reached>, std::greater<Reached>> reached;
-  const auto reach = [&](Index v, double distance) {
-    if (!(distance < far_[v])) return;
-    far_[v] = distance;
-    reached.emplace(distance, v);
-  };
-  reach(vertex, 0);
-  while (!reached.empty()) {
-    const auto [distance, v] = reached.top();
-    reached.pop();
-    if (distance > far_[v]) continue;
-    mesh_.for_each_outgoing(v, [&, from = distance](Index h) {
-      reach(mesh_.target(h), from + geometry_.length[h]);
-      // The last edge around a boundary vertex has no outgoing halfedge.
-      if (mesh_.twin[prev(h)] == none) reach(mesh_.origin(prev(h)), from + geometry_.length[prev(h)]);
-    });
-  }
-}
 
 void BatchPlacement::add(const Array<int>& sites) {
   const Eigen::Index before = static_cast<Eigen::Index>(state_.sites.size());
@@ -92,7 +63,7 @@ NearestDistance BatchPlacement::distances() const {
   NearestDistance out(mesh_, geometry_);
   for (const int site : state_.sites) {
     for (const Index v : {problem_.kernel.sites()[site].vertex, problem_.kernel.sites()[site].mirrored}) {
-      if (v != none) out.add(v);
+      if (v != none) out.add({v});
     }
   }
   return out;
@@ -150,8 +121,8 @@ Array<int> BatchPlacement::choose(int cones, double spread, int rings) const {
     chosen.push_back(site);
     cones -= at.cones();
     if (cones == 0) break;
-    nearest.add(at.vertex);
-    if (at.mirrored != none) nearest.add(at.mirrored);
+    nearest.add({at.vertex});
+    if (at.mirrored != none) nearest.add({at.mirrored});
   }
   return chosen;
 }

@@ -6,23 +6,11 @@
 
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
+#include "mesh/nearest_distance.hpp"
 #include "placement/cone_search.hpp"
 #include "placement/cone_set.hpp"
 
 namespace lsgp {
-
-// Distances of all vertices, along edges, to the nearest of a set.
-class NearestDistance {
- public:
-  NearestDistance(const HalfedgeMesh& mesh, const Geometry& geometry);
-  void add(Index vertex);                              // visits only what is nearer to it than to those before
-  const Eigen::VectorXd& all() const { return far_; }  // (n) infinite where there is none
-
- private:
-  const HalfedgeMesh& mesh_;
-  const Geometry& geometry_;
-  Eigen::VectorXd far_;
-};
 
 // A cone for cone search needs the columns of H at all sites and a fit a cone. Here a batch of cones is chosen at
 // once, apart from each other, and one fit of all curvatures follows: two back-substitutions a cone, some 20 fits from

@@ -61,7 +61,7 @@ void require_right(const VerifiedChoice& choice, bool has_marked) {
 std::string told_of_automatic(const PlacementTask& task, PlacementOptions options, ProgressMonitor& monitor,
                               int& maps) {
   options.count.reset();
-  const ProgressMonitor::Part part(monitor, 1, 1);
+  const ProgressMonitor::Interval interval(monitor, 1, 1);
   ConeChooser chooser(task, options, effort_for(task.mesh.vertex_count()), monitor);
   VerifiedPlacement placement(chooser, monitor);
   const VerifiedChoice choice = placement.place();
@@ -119,7 +119,7 @@ Index best_place(const ConeChooser& chooser, const Eigen::VectorXd& gains, const
 PlacedCones place_component(const PlacementTask& task, const PlacementOptions& options, std::vector<Finding>& findings,
                             ProgressMonitor& monitor) {
   ConeChooser chooser(task, options, effort_for(task.mesh.vertex_count()), monitor);
-  const ProgressMonitor::Part part(monitor, 0.3, 1);
+  const ProgressMonitor::Interval interval(monitor, 0.3, 1);
   VerifiedPlacement placement(chooser, monitor);
   const VerifiedChoice choice = placement.place();
   PlacedCones out;

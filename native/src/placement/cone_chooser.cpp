@@ -65,7 +65,7 @@ Index ConeChooser::place_count() const {
 
 LogScaleVariance ConeChooser::make_kernel() {
   monitor_.advance(0.1);
-  const ProgressMonitor::Part part(monitor_, 0.1, 0.3);
+  const ProgressMonitor::Interval interval(monitor_, 0.1, 0.3);
   return LogScaleVariance(scale_, sites_.sites, effort_.probes, monitor_);
 }
 
@@ -227,7 +227,7 @@ ConeChoice ConeChooser::choose_harmonically(int count) {
 // dropped.
 template <typename Set>
 ConeChoice ConeChooser::rounded(const Set& set, Lattice lattice) {
-  const int q = symmetry(lattice);
+  const int q = rotation_order(lattice);
   if (!set.feasible()) return choice_of(set);
   Array<int> sites = set.sites();
   ConeChoice best = quantized(choice_of(set), q);
@@ -260,17 +260,17 @@ ConeChoice ConeChooser::rounded(const Set& set, Lattice lattice) {
   return out;
 }
 
-ConeChoice ConeChooser::quantized(ConeChoice choice, int symmetry) {
+ConeChoice ConeChooser::quantized(ConeChoice choice, int rotation_order) {
   use_cones(choice.vertices);
   const ComponentCones cones = with_given_angles(choice.vertices);
-  choice.curvature = quantize_curvature(task_.mesh, cones, scale_, choice.curvature, symmetry);
+  choice.curvature = quantize_curvature(task_.mesh, cones, scale_, choice.curvature, rotation_order);
   choice.predicted_l2 = scale_.predicted_l2(scale_.evaluate(choice.curvature));
   return choice;
 }
 
 ComponentCones ConeChooser::with_given_angles(const Array<Index>& vertices) const {
   ComponentCones out = task_.existing;
-  out.symmetry = options_.lattice ? symmetry(*options_.lattice) : 0;
+  out.rotation_order = options_.lattice ? rotation_order(*options_.lattice) : 0;
   out.vertices = vertices;
   out.angles.clear();
   const Eigen::VectorXd given = given_curvature();

@@ -34,7 +34,7 @@ constexpr int cone_stages[] = {4, 6, 8, 10, 12, 15, 19, 24, 30, 37, 46, 57};  //
 // Within which cones are chosen. Beyond the second, maps begin to miss their prediction; beyond the fourth, many do.
 constexpr double reaches[] = {usual_reach, wider_reach, 1.0, 1.15, 1.6};
 constexpr double price_weights[] = {10, 1};  // that are tried in turn
-constexpr int most_one_by_one = 60;  // cones that are chosen one by one, more of them in batches
+constexpr int most_one_by_one = 60;          // cones that are chosen one by one, more of them in batches
 
 class ConeChooser {
  public:
@@ -98,7 +98,7 @@ class ConeChooser {
   template <typename Set>
   ConeChoice rounded(const Set& set, Lattice lattice);
   ConeChoice choose_in_batches(int count);
-  ConeChoice quantized(ConeChoice choice, int symmetry);
+  ConeChoice quantized(ConeChoice choice, int rotation_order);
   void use_cones(const Array<Index>& vertices);
   Array<Index> vertices_of(const Array<int>& sites) const;
 

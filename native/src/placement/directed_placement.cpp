@@ -22,7 +22,7 @@ constexpr double least_gain = 0.05;   // radians
 std::optional<PlacedCones> place_beside_directions(const PlacementTask& task, const Positions& directions,
                                                    const PlacementOptions& options, const PlacedCones& usual,
                                                    ProgressMonitor& monitor) {
-  const int turns = symmetry(*options.lattice);
+  const int turns = rotation_order(*options.lattice);
   PerVertex<char> allowed = runs_straight_around(task.mesh, directions, turns);
   for (Index v = 0; v < task.mesh.vertex_count(); ++v) allowed[v] = task.allowed[v] && !allowed[v];
   ComponentCones existing = task.existing;

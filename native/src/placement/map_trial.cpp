@@ -3,8 +3,9 @@
 
 #include <numeric>
 
+#include "pipeline/mapping.hpp"
 #include "solvers/linear_algebra_counter.hpp"
-#include "unfold/unfold.hpp"
+#include "unfold/jacobians.hpp"
 
 namespace lsgp {
 

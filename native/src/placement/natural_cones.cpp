@@ -49,7 +49,7 @@ std::optional<Array<Index>> find_corners(const ConeChooser& chooser, Corners kin
 }
 
 double rounded_to(Lattice lattice, double curvature) {
-  const int q = symmetry(lattice);
+  const int q = rotation_order(lattice);
   return angle_of_turns(turns_of(curvature, q), q);
 }
 

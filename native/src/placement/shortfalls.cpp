@@ -45,12 +45,12 @@ void Shortfalls::add(double l2, const Array<Index>& cones, const Array<Index>& t
 }
 
 void Shortfalls::add_asymmetric(const Array<Index>& triangles) {
-  ++asymmetric_parts_;
+  ++asymmetric_components_;
   append(asymmetric_, triangles);
 }
 
 void Shortfalls::report(std::vector<Finding>& findings) const {
-  if (asymmetric_parts_ > 0) findings.push_back(told_of_asymmetry());
+  if (asymmetric_components_ > 0) findings.push_back(told_of_asymmetry());
   for (int i = 0; i < reasons; ++i) {
     if (missing_[i].parts > 0) findings.push_back(told(static_cast<MissingCones::Why>(i), missing_[i]));
   }
@@ -68,9 +68,9 @@ Finding Shortfalls::told(MissingCones::Why why, const Missing& missing) const {
 }
 
 Finding Shortfalls::told_of_asymmetry() const {
-  const bool is_one = asymmetric_parts_ == 1;
+  const bool is_one = asymmetric_components_ == 1;
   const std::string which = is_one ? "A component of the surface is not its own mirror image"
-                                   : concat(asymmetric_parts_, " components are not their own mirror images");
+                                   : concat(asymmetric_components_, " components are not their own mirror images");
   return {Code::not_symmetric,
           concat(which, " in ", options_.mirror ? "the given plane" : "any plane that was tried", "; ",
                  is_one ? "its" : "their",

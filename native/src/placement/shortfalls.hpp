@@ -47,7 +47,7 @@ class Shortfalls {
 
   const PlacementOptions& options_;
   Missing missing_[reasons];
-  int asymmetric_parts_ = 0;
+  int asymmetric_components_ = 0;
   Array<Index> asymmetric_;  // their triangles
   int parts_ = 0;            // that miss the target
   double worst_l2_ = 1;

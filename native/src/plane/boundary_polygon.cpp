@@ -5,6 +5,7 @@
 
 #include "mesh/topology.hpp"
 #include "plane/aabb_tree.hpp"
+#include "plane/predicates.hpp"
 
 namespace lsgp {
 

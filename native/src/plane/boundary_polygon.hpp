@@ -3,25 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cmath>
-#include <complex>
-#include <limits>
 
 #include "base/array.hpp"
 #include "lsgp/surface.hpp"
 #include "mesh/per_element.hpp"
 
 namespace lsgp {
-
-// The side of the line from a to b on which c lies: 1 left, -1 right, 0 if rounding leaves it undecided (Shewchuk
-// 1997).
-inline int side(Complex a, Complex b, Complex c) {
-  constexpr double last_digit = std::numeric_limits<double>::epsilon();
-  const Complex along = b - a, to = c - a;
-  const double left = along.real() * to.imag(), right = along.imag() * to.real();
-  const double bound = 2 * last_digit * (std::abs(left) + std::abs(right));
-  return left - right > bound ? 1 : left - right < -bound ? -1 : 0;
-}
 
 // The directed boundary edges of a layout, loop by loop, with the layout on their left.
 class BoundaryPolygon {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "plane/predicates.hpp"
+
 namespace lsgp {
 
 namespace {
@@ -13,8 +15,6 @@ namespace {
 // Differences of this share of a length, or of an area, are taken for rounding, which must not choose between turns of
 // a layout that are equally good.
 constexpr double rounding = 1e-9;
-
-double cross(Complex a, Complex b) { return std::imag(std::conj(a) * b); }
 
 // Removes the points inside the polygon of the extreme ones (Akl and Toussaint 1978), which leaves few of a layout.
 Array<Complex> outer_points(const Eigen::VectorXcd& position) {
@@ -76,7 +76,7 @@ Array<Complex> convex_hull(const Eigen::VectorXcd& position) {
 
 double area_of_hull(const Array<Complex>& hull) {
   double doubled = 0;
-  for (std::size_t i = 2; i < hull.size(); ++i) doubled += cross(hull[i - 1] - hull[0], hull[i] - hull[0]);
+  for (std::size_t i = 2; i < hull.size(); ++i) doubled += doubled_area(hull[0], hull[i - 1], hull[i]);
   return doubled / 2;
 }
 

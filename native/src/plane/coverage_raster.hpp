@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How often pieces of a layout cover the points of a raster, from their outlines.
+// How often pieces of a layout cover the points of a raster, from their boundary polygons.
 #pragma once
 
 #include <complex>
@@ -9,7 +9,7 @@
 
 namespace lsgp {
 
-// Directed edges of closed outlines, with the interior on the left.
+// Directed edges of closed boundary polygons, with the interior on the left.
 class CoverageRaster {
  public:
   // cell: side of a cell; larger if the frame would need too many.
@@ -22,7 +22,7 @@ class CoverageRaster {
   // The area covered by pairs of pieces, summed over the pairs.
   double doubly_covered() const;
 
-  // The contribution of an edge to the area that its outline shares with the pieces added, summed over the pairs.
+  // The contribution of an edge to the area that its polygon shares with the pieces added, summed over the pairs.
   double shared(Complex tail, Complex head) const;
 
  private:

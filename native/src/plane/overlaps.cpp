@@ -11,6 +11,7 @@
 #include "base/memory.hpp"
 #include "plane/aabb_tree.hpp"
 #include "plane/boundary_polygon.hpp"
+#include "plane/predicates.hpp"
 #include "plane/winding_raster.hpp"
 
 namespace lsgp {
@@ -21,8 +22,6 @@ constexpr double explained_share = 1e-9;   // of a triangle's area that rounding
 constexpr double operations_a_pair = 100;  // of triangles
 constexpr double last_digit = std::numeric_limits<double>::epsilon();
 constexpr double explained_digits = 64 * last_digit;  // of a coordinate
-
-double cross(Complex a, Complex b) { return a.real() * b.imag() - a.imag() * b.real(); }
 
 double length(Complex a) { return std::sqrt(std::norm(a)); }
 
@@ -66,7 +65,7 @@ double shared_area(const Corners& a, const Corners& b) {
     count = kept;
   }
   double doubled = 0;
-  for (std::size_t k = 1; k + 1 < count; ++k) doubled += cross(polygon[k] - polygon[0], polygon[k + 1] - polygon[0]);
+  for (std::size_t k = 1; k + 1 < count; ++k) doubled += doubled_area(polygon[0], polygon[k], polygon[k + 1]);
   return doubled / 2;
 }
 
@@ -84,7 +83,7 @@ class Layout {
   Layout(const Eigen::VectorXcd& position, MayOverlap may_overlap) {
     for (Index f = 0; f < static_cast<Index>(position.size() / 3); ++f) {
       Corners corners{position[3 * f], position[3 * f + 1], position[3 * f + 2]};
-      const double area = cross(corners[1] - corners[0], corners[2] - corners[0]) / 2;
+      const double area = doubled_area(corners[0], corners[1], corners[2]) / 2;
       const Box box = box_of(corners);
       if (!std::isfinite(area) || area == 0 || !may_overlap(box)) continue;
       if (area < 0) std::swap(corners[1], corners[2]);
@@ -143,7 +142,7 @@ Box frame_of(const Eigen::VectorXcd& position) {
   return frame;
 }
 
-bool has_overlap(const BoundaryPolygon& outline) { return outline.touches_itself() || outline.encloses_itself(); }
+bool has_overlap(const BoundaryPolygon& boundary) { return boundary.touches_itself() || boundary.encloses_itself(); }
 
 }  // namespace
 
@@ -152,9 +151,9 @@ Array<Overlap> find_overlaps(const Eigen::VectorXcd& position) {
 }
 
 Array<Overlap> find_overlaps(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin) {
-  const BoundaryPolygon outline(position, twin);
-  if (!has_overlap(outline)) return {};
-  const WindingRaster twice(outline, frame_of(position), static_cast<Index>(twin.size() / 3));
+  const BoundaryPolygon boundary(position, twin);
+  if (!has_overlap(boundary)) return {};
+  const WindingRaster twice(boundary, frame_of(position), static_cast<Index>(twin.size() / 3));
   return Layout(position, [&](const Box& box) { return twice.meets(box); }).find_overlaps();
 }
 

@@ -14,7 +14,7 @@ const double height = std::sqrt(0.75);  // of a triangle of side 1
 
 }  // namespace
 
-int symmetry(Lattice lattice) {
+int rotation_order(Lattice lattice) {
   switch (lattice) {
     case Lattice::square: return 4;
     case Lattice::stripe: return 2;
@@ -32,7 +32,7 @@ Complex PointLattice::unit(int turns) const {
   static const std::array<Complex, 12> units{Complex{1, 0},   {height, 0.5},  {0.5, height},  {0, 1},
                                              {-0.5, height},  {-height, 0.5}, {-1, 0},        {-height, -0.5},
                                              {-0.5, -height}, {0, -1},        {0.5, -height}, {height, -0.5}};
-  return element(units, (turns % symmetry_ + symmetry_) % symmetry_ * (12 / symmetry_));
+  return element(units, (turns % rotation_order_ + rotation_order_) % rotation_order_ * (12 / rotation_order_));
 }
 
 PointLattice::Coordinates PointLattice::nearest_coordinates(Complex z) const {

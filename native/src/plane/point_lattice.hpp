@@ -11,15 +11,15 @@
 namespace lsgp {
 
 // Rotations of a lattice's layouts are multiples of 2 pi / q.
-int symmetry(Lattice lattice);
+int rotation_order(Lattice lattice);
 
 class PointLattice {
  public:
   using Coordinates = std::array<std::int64_t, 2>;  // a, b
 
-  explicit PointLattice(int symmetry) : symmetry_(symmetry) {}
-  int symmetry() const { return symmetry_; }
-  bool square() const { return symmetry_ != 3 && symmetry_ != 6; }
+  explicit PointLattice(int rotation_order) : rotation_order_(rotation_order) {}
+  int rotation_order() const { return rotation_order_; }
+  bool square() const { return rotation_order_ != 3 && rotation_order_ != 6; }
   Complex generator() const;  // g: i, or e^{i pi / 3} on triangular lattices
   double cell_area() const { return generator().imag(); }
 
@@ -31,7 +31,7 @@ class PointLattice {
   Complex nearest(Complex z) const { return point(nearest_coordinates(z)); }
 
  private:
-  int symmetry_;
+  int rotation_order_;
 };
 
 }  // namespace lsgp

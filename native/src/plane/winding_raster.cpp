@@ -20,7 +20,7 @@ Index cell_of(double cells, Index count) { return static_cast<Index>(std::clamp(
 
 }  // namespace
 
-WindingRaster::WindingRaster(const BoundaryPolygon& outline, const Box& frame, Index triangle_count)
+WindingRaster::WindingRaster(const BoundaryPolygon& boundary, const Box& frame, Index triangle_count)
     : frame_(frame),
       rounding_(1e-12 * std::max({-frame.left, frame.right, -frame.bottom, frame.top})),
       columns_(cells_along(triangle_count, frame.right - frame.left, frame.top - frame.bottom)),
@@ -30,12 +30,12 @@ WindingRaster::WindingRaster(const BoundaryPolygon& outline, const Box& frame, I
       passage_(columns_ * rows_),
       winding_((columns_ + 1) * (rows_ + 1), 0),
       doubtful_(winding_.size(), 0) {
-  for (Index edge = 0; edge < outline.edge_count(); ++edge) {
-    const Complex tail = outline.tail(edge), head = outline.head(edge);
+  for (Index edge = 0; edge < boundary.edge_count(); ++edge) {
+    const Complex tail = boundary.tail(edge), head = boundary.head(edge);
     const auto [bottom, top] = std::minmax({tail.imag(), head.imag()});
     const Index last = row_of(top + rounding_);
     for (Index row = row_of(bottom - rounding_); row <= last; ++row) {
-      pass(outline, edge, row);
+      pass(boundary, edge, row);
       wind(tail, head, row);
     }
     wind(tail, head, last + 1);
@@ -65,8 +65,8 @@ Index WindingRaster::row_of(double y) const { return cell_of((y - frame_.bottom)
 double WindingRaster::bottom_of(Index row) const { return frame_.bottom + row / rows_per_unit_; }
 
 // Marks the cells of a row that an edge passes, or may pass within rounding.
-void WindingRaster::pass(const BoundaryPolygon& outline, Index edge, Index row) {
-  const Complex tail = outline.tail(edge), along = outline.head(edge) - tail;
+void WindingRaster::pass(const BoundaryPolygon& boundary, Index edge, Index row) {
+  const Complex tail = boundary.tail(edge), along = boundary.head(edge) - tail;
   double begin = 0, end = 1;  // of what lies in the row, as shares of the edge
   if (along.imag() != 0) {
     begin = std::clamp((bottom_of(row) - rounding_ - tail.imag()) / along.imag(), 0.0, 1.0);
@@ -77,8 +77,8 @@ void WindingRaster::pass(const BoundaryPolygon& outline, Index edge, Index row) 
   for (Index column = column_of(left - rounding_); column <= last; ++column) {
     Passage& passage = passage_[row * columns_ + column];
     if (passage.first == none) passage.first = edge;
-    const Complex first = outline.head(passage.first) - outline.tail(passage.first);
-    const bool is_next = passage.last == edge - 1 && outline.runs_on(edge);
+    const Complex first = boundary.head(passage.first) - boundary.tail(passage.first);
+    const bool is_next = passage.last == edge - 1 && boundary.runs_on(edge);
     passage.is_plain =
         passage.is_plain && (passage.first == edge || is_next) && std::real(along * std::conj(first)) > 0;
     passage.last = edge;

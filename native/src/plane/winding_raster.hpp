@@ -14,7 +14,7 @@ namespace lsgp {
 class WindingRaster {
  public:
   // frame: around the whole layout.
-  WindingRaster(const BoundaryPolygon& outline, const Box& frame, Index triangle_count);
+  WindingRaster(const BoundaryPolygon& boundary, const Box& frame, Index triangle_count);
 
   // Whether such a cell meets a box.
   bool meets(const Box& box) const;
@@ -26,7 +26,7 @@ class WindingRaster {
     bool is_plain = true;  // one run of edges, all within a right angle of the first
   };
 
-  void pass(const BoundaryPolygon& outline, Index edge, Index row);
+  void pass(const BoundaryPolygon& boundary, Index edge, Index row);
   void wind(Complex tail, Complex head, Index row);
   bool may_be_covered_twice(Index row, Index column) const;
 

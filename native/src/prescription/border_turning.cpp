@@ -128,10 +128,10 @@ PerLoop<char> shiftable_loops(const HalfedgeMesh& mesh, const BorderConditions& 
   return out;
 }
 
-// The turning of all boundaries rounded to multiples of 2 pi / symmetry with the same sum: boundaries without
+// The turning of all boundaries rounded to multiples of 2 pi / rotation_order with the same sum: boundaries without
 // prescribed turning, or all if it is prescribed for all, compensate, those with the largest rounding error first.
-void quantize_turning(const Eigen::VectorXd& turning, int symmetry, Turning& wanted) {
-  const double unit = 2 * M_PI / symmetry;
+void quantize_turning(const Eigen::VectorXd& turning, int rotation_order, Turning& wanted) {
+  const double unit = 2 * M_PI / rotation_order;
   Eigen::VectorXd exact = turning / unit;
   Array<Eigen::Index> adjustable;
   for (Eigen::Index i = 0; i < turning.size(); ++i) {
@@ -250,7 +250,7 @@ void prescribe_turning(const LogScale& scale, const ComponentCones& cones, Curva
   Turning wanted = cones.loop_turning;
   wanted.resize(loop_count);
   const bool is_free = std::none_of(wanted.begin(), wanted.end(), [](const auto& turning) { return turning; });
-  const bool rounds = cones.symmetry > 0;
+  const bool rounds = cones.rotation_order > 0;
   if (loop_count > 1 && is_free && is_planar(mesh, cones) && cones.holes != Holes::as_they_are &&
       (cones.holes == Holes::all || !rounds)) {
     if (auto closed = close_all_holes(loops, shiftable, cones.holes, curvature.log_scale)) {
@@ -259,7 +259,7 @@ void prescribe_turning(const LogScale& scale, const ComponentCones& cones, Curva
       return;
     }
   }
-  if (rounds) quantize_turning(loops.turning(curvature.log_scale), cones.symmetry, wanted);
+  if (rounds) quantize_turning(loops.turning(curvature.log_scale), cones.rotation_order, wanted);
   curvature.log_scale = loops.adjust(curvature.log_scale, wanted).first;
   const Turning reached = close_near_holes(loops, shiftable, wanted, curvature.log_scale);
   for (std::size_t i = 0; i < loop_count; ++i)

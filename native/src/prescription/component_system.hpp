@@ -8,7 +8,7 @@
 #include "lsgp/options.hpp"
 #include "prescription/curvature.hpp"
 #include "systems/cut_factor.hpp"
-#include "unfold/unfold.hpp"
+#include "unfold/frames.hpp"
 
 namespace lsgp {
 

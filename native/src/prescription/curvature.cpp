@@ -244,7 +244,7 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, con
 }
 
 void require_possible(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones) {
-  if (cones.symmetry > 0) return;  // rounded angles are the tool's own choice
+  if (cones.rotation_order > 0) return;  // rounded angles are the tool's own choice
   const BorderConditions border = border_conditions(mesh, geometry, cones);
   Eigen::VectorXd angle(mesh.vertex_count());
   PerVertex<char> is_free = border.held;
@@ -287,8 +287,8 @@ Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, Prescr
   } else {
     curvature = least_distortion(mesh, asked, scale);
   }
-  if (asked.symmetry > 0) {
-    curvature = quantize_curvature(mesh, asked, scale, curvature, asked.symmetry);
+  if (asked.rotation_order > 0) {
+    curvature = quantize_curvature(mesh, asked, scale, curvature, asked.rotation_order);
   } else if (border.balanced && curvature.size() > 0) {
     curvature.array() += (scale.required_sum() - curvature.sum()) / static_cast<double>(curvature.size());
   }

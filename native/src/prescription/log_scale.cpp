@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "prescription/log_scale.hpp"
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -8,7 +10,6 @@
 #include "base/checkpoint.hpp"
 #include "base/memory.hpp"
 #include "base/thread_team.hpp"
-#include "prescription/curvature.hpp"
 #include "solvers/box_qp.hpp"
 #include "solvers/dense_kernels.hpp"
 #include "systems/quadratic_forms.hpp"

@@ -5,7 +5,8 @@
 
 #include "base/checkpoint.hpp"
 #include "prescription/quantize_curvature.hpp"
-#include "unfold/unfold.hpp"
+#include "unfold/frames.hpp"
+#include "unfold/jacobians.hpp"
 
 namespace lsgp {
 
@@ -105,17 +106,18 @@ struct MetricConnection {
 
 }  // namespace
 
-ParallelTransportChoice::ParallelTransportChoice(const CutSurface& surface, const Curvature& curvature, int symmetry)
-    : surface_(surface), symmetry_(symmetry) {
+ParallelTransportChoice::ParallelTransportChoice(const CutSurface& surface, const Curvature& curvature,
+                                                 int rotation_order)
+    : surface_(surface), rotation_order_(rotation_order) {
   if (surface.mesh.genus == 0) return;
   const MetricConnection metric(surface, curvature);
   // The holonomy of a flat torus without cones is trivial.
   const bool flat =
       surface.mesh.closed() && metric.node_curvature.size() > 0 && metric.node_curvature.cwiseAbs().maxCoeff() == 0;
-  if (symmetry == 0 && !flat) return;
+  if (rotation_order == 0 && !flat) return;
   const Eigen::MatrixXd loops = loop_changes(metric.nodes);
   const HarmonicOneForm twist(surface.mesh, surface.geometry, surface.cut_graph);
-  change_ = loops * choose_turning(twist, metric.nodes, metric.natural, loops, 2 * M_PI / (flat ? 1 : symmetry));
+  change_ = loops * choose_turning(twist, metric.nodes, metric.natural, loops, 2 * M_PI / (flat ? 1 : rotation_order));
   twist_ = twist.spread(change_);
 }
 
@@ -127,8 +129,9 @@ ParallelTransport ParallelTransportChoice::at(double share, const Curvature& cur
     out.frames += share * twist_;
     out.rotation += share * change_;
   }
-  if (symmetry_ > 0 && share == 1) {
-    for (double& rotation : out.rotation) rotation = angle_of_turns(turns_of(rotation, symmetry_), symmetry_);
+  if (rotation_order_ > 0 && share == 1) {
+    for (double& rotation : out.rotation)
+      rotation = angle_of_turns(turns_of(rotation, rotation_order_), rotation_order_);
   }
   out.reduction = impose_transitions(surface_, metric.nodes, metric.node_curvature, out.rotation);
   return out;

@@ -21,7 +21,7 @@ struct ParallelTransport {
 // the metric's frames least.
 class ParallelTransportChoice {
  public:
-  ParallelTransportChoice(const CutSurface& surface, const Curvature& curvature, int symmetry);
+  ParallelTransportChoice(const CutSurface& surface, const Curvature& curvature, int rotation_order);
 
   // Whether rotations about handles differ from the metric's.
   bool is_twisted() const { return twist_.size() > 0; }
@@ -32,7 +32,7 @@ class ParallelTransportChoice {
 
  private:
   const CutSurface surface_;
-  const int symmetry_;
+  const int rotation_order_;
   Eigen::VectorXd twist_, change_;  // of frames and rotations, empty where none
 };
 

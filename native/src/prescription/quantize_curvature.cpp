@@ -22,9 +22,9 @@ constexpr double largest_share = 100 * M_PI / 180;  // of a triangle in the angl
 constexpr double exact_multiple = 1e-6;             // radians, between a given angle and the multiple it is taken for
 
 // Beyond these no map exists; a corner in a single triangle has none if the rotation is a half turn or more.
-TurnBounds widest_bounds(const HalfedgeMesh& mesh, const ComponentCones& cones, int symmetry) {
+TurnBounds widest_bounds(const HalfedgeMesh& mesh, const ComponentCones& cones, int rotation_order) {
   const Index k = static_cast<Index>(cones.vertices.size());
-  const double unit = 2 * M_PI / symmetry, slack = 1e-9;
+  const double unit = 2 * M_PI / rotation_order, slack = 1e-9;
   TurnBounds bounds{Eigen::VectorXi(k), Eigen::VectorXi(k)};
   for (Index i = 0; i < k; ++i) {
     const double flat = mesh.flat_angle(cones.vertices[i]);
@@ -35,10 +35,10 @@ TurnBounds widest_bounds(const HalfedgeMesh& mesh, const ComponentCones& cones, 
 }
 
 // Within the widest bounds, which are those of given angles if nothing else remains.
-TurnBounds usual_bounds(const HalfedgeMesh& mesh, const ComponentCones& cones, int symmetry, double largest_angle,
+TurnBounds usual_bounds(const HalfedgeMesh& mesh, const ComponentCones& cones, int rotation_order, double largest_angle,
                         const TurnBounds& widest) {
   const Index k = static_cast<Index>(cones.vertices.size());
-  const double unit = 2 * M_PI / symmetry, slack = 1e-9;
+  const double unit = 2 * M_PI / rotation_order, slack = 1e-9;
   TurnBounds bounds{Eigen::VectorXi(k), Eigen::VectorXi(k)};
   for (Index i = 0; i < k; ++i) {
     const double flat = mesh.flat_angle(cones.vertices[i]);
@@ -53,18 +53,18 @@ TurnBounds usual_bounds(const HalfedgeMesh& mesh, const ComponentCones& cones, i
 }
 
 // Given angles that are multiples of the lattice's rotation are kept.
-void keep_given(const HalfedgeMesh& mesh, const ComponentCones& cones, int symmetry, TurnBounds& bounds) {
+void keep_given(const HalfedgeMesh& mesh, const ComponentCones& cones, int rotation_order, TurnBounds& bounds) {
   for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
     if (!cones.angles[i]) continue;
     const double curvature = mesh.flat_angle(cones.vertices[i]) - *cones.angles[i];
-    const int turns = turns_of(curvature, symmetry);
-    if (std::abs(curvature - angle_of_turns(turns, symmetry)) > exact_multiple) continue;
+    const int turns = turns_of(curvature, rotation_order);
+    if (std::abs(curvature - angle_of_turns(turns, rotation_order)) > exact_multiple) continue;
     bounds.low[static_cast<Eigen::Index>(i)] = bounds.high[static_cast<Eigen::Index>(i)] = turns;
   }
 }
 
 // Throws if a cone has no admissible angle.
-void require_some_angle(const ComponentCones& cones, int symmetry, const TurnBounds& widest) {
+void require_some_angle(const ComponentCones& cones, int rotation_order, const TurnBounds& widest) {
   Array<Index> without;
   for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
     const Eigen::Index at = static_cast<Eigen::Index>(i);
@@ -74,16 +74,17 @@ void require_some_angle(const ComponentCones& cones, int symmetry, const TurnBou
   throw Error(
       Code::seamless_impossible,
       concat("The triangles around ", count(without.size(), "cone", "cones"),
-             " carry less than 180 degrees each, and no multiple of ", 360 / symmetry,
+             " carry less than 180 degrees each, and no multiple of ", 360 / rotation_order,
              " degrees is an angle for them. Subdivide the mesh there, unmark the cones, or choose a lattice of "
              "smaller turns."),
       {ElementKind::vertices, without});
 }
 
-[[noreturn]] void throw_out_of_reach(const ComponentCones& cones, int symmetry, int sum, const TurnBounds& widest) {
+[[noreturn]] void throw_out_of_reach(const ComponentCones& cones, int rotation_order, int sum,
+                                     const TurnBounds& widest) {
   const int reached = sum > widest.high.sum() ? widest.high.sum() : widest.low.sum();
   throw Error(Code::seamless_impossible,
-              concat("With angles that are multiples of ", 360 / symmetry, " degrees ",
+              concat("With angles that are multiples of ", 360 / rotation_order, " degrees ",
                      count(cones.vertices.size(), "cone takes", "cones take"), " up at ",
                      reached > 0 ? "most " : "least ", reached, " of these, but the surface requires ", sum,
                      ". Mark more cones, leave given angles automatic, or choose another lattice."),
@@ -92,33 +93,35 @@ void require_some_angle(const ComponentCones& cones, int symmetry, const TurnBou
 
 // The sum of the cones' turns that Gauss-Bonnet requires; none if the turning of a boundary is free.
 std::optional<int> required_turns(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale,
-                                  int symmetry) {
-  if (scale.balanced()) return turns_of(scale.required_sum(), symmetry);
+                                  int rotation_order) {
+  if (scale.balanced()) return turns_of(scale.required_sum(), rotation_order);
   double sum = 2 * M_PI * mesh.euler;
   for (std::size_t loop = 0; loop < mesh.boundary_loops.size(); ++loop) {
     if (loop >= cones.loop_turning.size() || !cones.loop_turning[loop]) return std::nullopt;
     sum -= *cones.loop_turning[loop];
   }
-  return turns_of(sum, symmetry);
+  return turns_of(sum, rotation_order);
 }
 
 }  // namespace
 
-int turns_of(double angle, int symmetry) { return static_cast<int>(std::lround(angle * symmetry / (2 * M_PI))); }
+int turns_of(double angle, int rotation_order) {
+  return static_cast<int>(std::lround(angle * rotation_order / (2 * M_PI)));
+}
 
 Eigen::VectorXd quantize_curvature(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale,
-                                   const Eigen::VectorXd& wanted, int symmetry) {
+                                   const Eigen::VectorXd& wanted, int rotation_order) {
   const Eigen::Index k = wanted.size();
   if (k == 0) return wanted;
-  TurnBounds widest = widest_bounds(mesh, cones, symmetry);
-  require_some_angle(cones, symmetry, widest);
-  keep_given(mesh, cones, symmetry, widest);
+  TurnBounds widest = widest_bounds(mesh, cones, rotation_order);
+  require_some_angle(cones, rotation_order, widest);
+  keep_given(mesh, cones, rotation_order, widest);
   const auto reaches = [](const TurnBounds& bounds, int sum) {
     return bounds.low.sum() <= sum && sum <= bounds.high.sum();
   };
-  std::optional<int> required = required_turns(mesh, cones, scale, symmetry);
+  std::optional<int> required = required_turns(mesh, cones, scale, rotation_order);
   if (required && !reaches(widest, *required)) {
-    if (scale.balanced()) throw_out_of_reach(cones, symmetry, *required, widest);
+    if (scale.balanced()) throw_out_of_reach(cones, rotation_order, *required, widest);
     required.reset();  // boundaries are free
   }
   const bool keeps_sum = required.has_value();
@@ -129,9 +132,9 @@ Eigen::VectorXd quantize_curvature(const HalfedgeMesh& mesh, const ComponentCone
   const auto search = [&](const TurnBounds& bounds) {
     Eigen::VectorXi turns(k);
     for (Eigen::Index i = 0; i < k; ++i) {
-      turns[i] = std::clamp(turns_of(wanted[i], symmetry), bounds.low[i], bounds.high[i]);
+      turns[i] = std::clamp(turns_of(wanted[i], rotation_order), bounds.low[i], bounds.high[i]);
     }
-    TurnExchange exchange(mesh, variance, bounds, symmetry, std::move(turns));
+    TurnExchange exchange(mesh, variance, bounds, rotation_order, std::move(turns));
     if (keeps_sum) exchange.reach(*required);
     exchange.leave_impossible(keeps_sum);
     exchange.search(keeps_sum);
@@ -141,15 +144,15 @@ Eigen::VectorXd quantize_curvature(const HalfedgeMesh& mesh, const ComponentCone
     best = std::move(exchange);
   };
   for (const double largest_angle : largest_angles) {
-    const TurnBounds bounds = usual_bounds(mesh, cones, symmetry, largest_angle, widest);
+    const TurnBounds bounds = usual_bounds(mesh, cones, rotation_order, largest_angle, widest);
     if (reachable(bounds)) search(bounds);
   }
   if (!best) search(widest);
   best->refine(scale, keeps_sum);
-  if (is_torus(mesh) && is_impossible_on_torus(best->turns(), symmetry)) {
+  if (is_torus(mesh) && is_impossible_on_torus(best->turns(), rotation_order)) {
     throw Error(Code::seamless_impossible,
-                concat("No torus has just one cone of ", 360 - 360 / symmetry, " and one of ", 360 + 360 / symmetry,
-                       " degrees. Mark another cone, or give both 360 degrees."),
+                concat("No torus has just one cone of ", 360 - 360 / rotation_order, " and one of ",
+                       360 + 360 / rotation_order, " degrees. Mark another cone, or give both 360 degrees."),
                 {ElementKind::vertices, cones.vertices});
   }
   return best->curvature();

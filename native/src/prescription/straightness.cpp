@@ -6,7 +6,8 @@
 
 #include "base/checkpoint.hpp"
 #include "base/text.hpp"
-#include "unfold/unfold.hpp"
+#include "plane/predicates.hpp"
+#include "unfold/spectral.hpp"
 
 namespace lsgp {
 
@@ -24,8 +25,6 @@ struct Segment {
 bool share_end(const Segment& a, const Segment& b) {
   return a.from == b.from || a.from == b.to || a.to == b.from || a.to == b.to;
 }
-
-double side_of(Complex a, Complex b, Complex p) { return std::imag(std::conj(b - a) * (p - a)); }
 
 // The straightened boundary as a polygon over the node copies' positions.
 class StraightBoundary {
@@ -76,7 +75,7 @@ class StraightBoundary {
   bool cross(const Segment& a, const Segment& b) const {
     if (share_end(a, b)) return false;
     const Complex p = positions_[a.from], q = positions_[a.to], r = positions_[b.from], s = positions_[b.to];
-    return side_of(p, q, r) * side_of(p, q, s) < 0 && side_of(r, s, p) * side_of(r, s, q) < 0;
+    return doubled_area(p, q, r) * doubled_area(p, q, s) < 0 && doubled_area(r, s, p) * doubled_area(r, s, q) < 0;
   }
 
   Array<int> crossings_by_segment() const {

@@ -16,22 +16,22 @@ bool is_torus(const HalfedgeMesh& mesh) { return mesh.closed() && mesh.genus == 
 
 // A torus whose only cones are one of +1 and one of -1 turns does not exist (Izmestiev, Kusner, Rote, Springborn,
 // Sullivan: There is no triangulation of the torus with vertex degrees 5, 6, ..., 6, 7, 2013, theorem 5).
-bool is_impossible_on_torus(const Eigen::VectorXi& turns, int symmetry) {
-  if (symmetry == 1) return false;
+bool is_impossible_on_torus(const Eigen::VectorXi& turns, int rotation_order) {
+  if (rotation_order == 1) return false;
   int cones = 0;
   bool coprime = true;
   for (const int t : turns) {
     if (t == 0) continue;
     ++cones;
-    coprime = coprime && std::gcd(std::abs(t), symmetry) == 1;
+    coprime = coprime && std::gcd(std::abs(t), rotation_order) == 1;
   }
   return cones == 2 && coprime;
 }
 
 TurnExchange::TurnExchange(const HalfedgeMesh& mesh, const LogScale::Variance& variance, TurnBounds bounds,
-                           int symmetry, Eigen::VectorXi turns)
-    : torus_(is_torus(mesh)), bounds_(std::move(bounds)), symmetry_(symmetry), turns_(std::move(turns)) {
-  const double unit = 2 * M_PI / symmetry;
+                           int rotation_order, Eigen::VectorXi turns)
+    : torus_(is_torus(mesh)), bounds_(std::move(bounds)), rotation_order_(rotation_order), turns_(std::move(turns)) {
+  const double unit = 2 * M_PI / rotation_order;
   hessian_ = unit * unit * variance.hessian;
   slope_ = unit * variance.gradient;
   const double steepest = slope_.cwiseAbs().maxCoeff(), most_curved = hessian_.diagonal().maxCoeff();
@@ -56,7 +56,7 @@ void TurnExchange::reach(int sum) {
 }
 
 void TurnExchange::leave_impossible(bool keep_sum) {
-  if (!torus_ || !is_impossible_on_torus(turns_, symmetry_)) return;
+  if (!torus_ || !is_impossible_on_torus(turns_, rotation_order_)) return;
   const Array<Swap> best = swaps(keep_sum, {}, 1);
   if (!best.empty()) apply(best.front());
 }
@@ -92,7 +92,7 @@ void TurnExchange::search(bool keep_sum) {
 }
 
 void TurnExchange::refine(const LogScale& scale, bool keep_sum) {
-  const double unit = 2 * M_PI / symmetry_;
+  const double unit = 2 * M_PI / rotation_order_;
   Eigen::VectorXd y = scale.evaluate_held(curvature());
   const auto moved = [&](Eigen::VectorXd at, const Swap& swap) {
     at += swap.step * unit * scale.effect(swap.first);
@@ -169,7 +169,7 @@ bool TurnExchange::leads_to_impossible(const Swap& swap) const {
   Eigen::VectorXi moved = turns_;
   moved[swap.first] += swap.step;
   if (swap.second != none) moved[swap.second] -= swap.step;
-  return is_impossible_on_torus(moved, symmetry_);
+  return is_impossible_on_torus(moved, rotation_order_);
 }
 
 Array<TurnExchange::Swap> TurnExchange::swaps(bool keep_sum, const Array<Index>& held, std::size_t count) const {

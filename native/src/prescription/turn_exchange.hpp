@@ -15,13 +15,13 @@ struct TurnBounds {
 };
 
 bool is_torus(const HalfedgeMesh& mesh);
-// Whether no torus has cones of so many turns of 2 pi / symmetry.
-bool is_impossible_on_torus(const Eigen::VectorXi& turns, int symmetry);
+// Whether no torus has cones of so many turns of 2 pi / rotation_order.
+bool is_impossible_on_torus(const Eigen::VectorXi& turns, int rotation_order);
 
 // The quadratic form var(turns) and its exchanges.
 class TurnExchange {
  public:
-  TurnExchange(const HalfedgeMesh& mesh, const LogScale::Variance& variance, TurnBounds bounds, int symmetry,
+  TurnExchange(const HalfedgeMesh& mesh, const LogScale::Variance& variance, TurnBounds bounds, int rotation_order,
                Eigen::VectorXi turns);
 
   bool allowed(Index i, int step) const;
@@ -45,7 +45,7 @@ class TurnExchange {
   void refine(const LogScale& scale, bool keep_sum);
 
   const Eigen::VectorXi& turns() const { return turns_; }
-  Eigen::VectorXd curvature() const { return turns_.cast<double>() * (2 * M_PI / symmetry_); }
+  Eigen::VectorXd curvature() const { return turns_.cast<double>() * (2 * M_PI / rotation_order_); }
 
  private:
   // Of the largest terms that the variance is a sum of: well above what rounding makes of them, so that no exchange
@@ -87,7 +87,7 @@ class TurnExchange {
 
   bool torus_;
   TurnBounds bounds_;
-  int symmetry_;
+  int rotation_order_;
   Eigen::VectorXi turns_;
   Eigen::MatrixXd hessian_;
   Eigen::VectorXd slope_;     // half the derivative at no turns

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "unfold/distortion.hpp"
-#include "unfold/unfold.hpp"
+#include "unfold/jacobians.hpp"
 
 namespace lsgp {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "unfold/distortion.hpp"
-#include "unfold/unfold.hpp"
+#include "unfold/jacobians.hpp"
 
 namespace lsgp {
 
@@ -32,9 +32,7 @@ Eigen::VectorXd importance_of_triangles(const HalfedgeMesh& mesh, const Geometry
   return (out / mean).cwiseMax(least_weight);
 }
 
-void relax_stretch(NewtonMinimizer& relaxation) {
-  relaxation.smooth(Kind::symmetric_dirichlet, most_steps, least_decrease);
-}
+void relax_stretch(NewtonMinimizer& newton) { newton.smooth(Kind::symmetric_dirichlet, most_steps, least_decrease); }
 
 Eigen::VectorXd scale_at_rest(const CutSurface& surface, const Curvature& curvature, double stretch,
                               const Eigen::VectorXcd& position) {
@@ -68,10 +66,10 @@ Eigen::VectorXcd lower_stretch(const CutSurface& surface, const MapTarget& targe
       best = std::move(fitted);
     }
   }
-  NewtonMinimizer relaxation(surface, {rest, connection.frames},
-                             free_all(mesh, cut_mesh, connection.reduction, map.fixed), before_step, best);
-  relaxation.weigh(importance_of_triangles(mesh, geometry, options.importance));
-  relax_stretch(relaxation);
+  NewtonMinimizer newton(surface, {rest, connection.frames}, free_all(mesh, cut_mesh, connection.reduction, map.fixed),
+                         before_step, best);
+  newton.weigh(importance_of_triangles(mesh, geometry, options.importance));
+  relax_stretch(newton);
   return best;
 }
 

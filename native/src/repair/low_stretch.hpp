@@ -22,7 +22,7 @@ Eigen::VectorXcd lower_stretch(const CutSurface& surface, const MapTarget& targe
                                const StepHook& before_step, const HeldMap& map);
 
 // Newton's method on the symmetric Dirichlet energy, from a map without flips, until further steps gain little.
-void relax_stretch(NewtonMinimizer& relaxation);
+void relax_stretch(NewtonMinimizer& newton);
 
 // The target log scale, (n), with the area of the current map.
 Eigen::VectorXd scale_at_rest(const CutSurface& surface, const Curvature& curvature, double stretch,

@@ -6,7 +6,8 @@
 
 #include "base/union_find.hpp"
 #include "repair/line_constraints.hpp"
-#include "unfold/unfold.hpp"
+#include "unfold/aligned.hpp"
+#include "unfold/jacobians.hpp"
 
 namespace lsgp {
 
@@ -16,9 +17,9 @@ using Kind = DistortionEnergy::Kind;
 
 constexpr int unfolding_steps = 15;
 
-DirectedEdges edges_of(const StraightOutline& outline) {
+DirectedEdges edges_of(const StraightSides& straight) {
   DirectedEdges out;
-  for (const StraightSide& side : outline.sides) {
+  for (const StraightSide& side : straight.sides) {
     out.halfedges.insert(out.halfedges.end(), side.halfedges.begin(), side.halfedges.end());
     out.directions.resize(out.halfedges.size(), side.direction);
   }
@@ -54,21 +55,21 @@ void equalize(const CutMesh& cut_mesh, const DirectedEdges& edges, Eigen::Vector
 }  // namespace
 
 Eigen::VectorXcd straighten(const CutSurface& surface, const MapTarget& target, const StretchOptions& options,
-                            const StepHook& before_step, const OutlinedMap& map) {
+                            const StepHook& before_step, const MapWithStraightSides& map) {
   const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
-  const DirectedEdges edges = edges_of(map.outline);
-  Eigen::VectorXcd position = map.outline.turn * map.position;
-  if (map.outline.is_bent()) {
+  const DirectedEdges edges = edges_of(map.straight);
+  Eigen::VectorXcd position = map.straight.turn * map.position;
+  if (map.straight.is_bent()) {
     const Eigen::VectorXd rest = scale_at_rest(surface, target.curvature, options.stretch, position);
     Eigen::VectorXd directions(edges.directions.size());
     for (Eigen::Index i = 0; i < directions.size(); ++i) directions[i] = std::arg(edges.directions[i]);
     before_step();
     position = unfold_aligned(surface, target.connection.reduction,
                               measure_jacobians(mesh, geometry, cut_mesh, position), edges.halfedges, directions);
-    NewtonMinimizer relaxation(surface, {rest, target.connection.frames},
-                               free_along(surface, target.connection.reduction, edges), before_step, position);
-    relaxation.weigh(importance_of_triangles(mesh, geometry, options.importance));
-    if (relaxation.unfold(Kind::foldover_free, unfolding_steps)) relax_stretch(relaxation);
+    NewtonMinimizer newton(surface, {rest, target.connection.frames},
+                           free_along(surface, target.connection.reduction, edges), before_step, position);
+    newton.weigh(importance_of_triangles(mesh, geometry, options.importance));
+    if (newton.unfold(Kind::foldover_free, unfolding_steps)) relax_stretch(newton);
   }
   equalize(cut_mesh, edges, position);
   return position;

@@ -7,7 +7,7 @@
 #include "cut/transitions.hpp"
 #include "repair/newton.hpp"
 #include "unfold/distortion.hpp"
-#include "unfold/unfold.hpp"
+#include "unfold/jacobians.hpp"
 
 namespace lsgp {
 
@@ -60,9 +60,9 @@ Eigen::VectorXcd untangle(const CutSurface& surface, const MapTarget& target, co
   const auto try_out = [&](DegreesOfFreedom freedom, Kind energy, const Steps& most) {
     if (left.defects() == 0 || freedom.displacement.unknown_count == 0) return;
     Eigen::VectorXcd tried = best;
-    NewtonMinimizer relaxation(surface, {curvature.log_scale, frames}, std::move(freedom), before_step, tried);
-    if (relaxation.unfold(energy, most.unfolding)) {
-      relaxation.smooth(Kind::conformal_barrier, most.smoothing, least_decrease);
+    NewtonMinimizer newton(surface, {curvature.log_scale, frames}, std::move(freedom), before_step, tried);
+    if (newton.unfold(energy, most.unfolding)) {
+      newton.smooth(Kind::conformal_barrier, most.smoothing, least_decrease);
     }
     Validity after = check(tried);
     if (after.defects() >= left.defects()) return;

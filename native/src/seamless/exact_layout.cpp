@@ -28,11 +28,11 @@ double stored_number(double x) {
 
 Complex as_stored(Complex z) { return {stored_number(z.real()), stored_number(z.imag())}; }
 
-ExactLayout::ExactLayout(const SeamlessPart& part, const PointLattice& lattice, Complex shift,
+ExactLayout::ExactLayout(const SeamlessComponent& component, const PointLattice& lattice, Complex shift,
                          Eigen::VectorXcd& position)
-    : mesh_(part.component->mesh), map_(*part.map), lattice_(lattice), shift_(shift), position_(position) {
+    : mesh_(component.source->mesh), map_(*component.map), lattice_(lattice), shift_(shift), position_(position) {
   for (std::size_t p = 0; p < map_.cut_graph.cuts.size(); ++p) {
-    const int q = lattice.symmetry();
+    const int q = lattice.rotation_order();
     turns_.push_back((turns_of((*map_.rotation)[static_cast<Eigen::Index>(p)], q) % q + q) % q);
     const Sisters sisters = origin_sisters(mesh_, map_.cut_mesh, map_.cut_graph.cuts[p].halfedges.front());
     translations_.push_back(position[sisters.right] - lattice.unit(turns_.back()) * position[sisters.left]);
@@ -76,7 +76,7 @@ Array<Index> ExactLayout::find_unreadable() const {
       const Complex left = as_stored(position_[head.left]) - as_stored(position_[tail.left]);
       const Complex right = as_stored(position_[head.right]) - as_stored(position_[tail.right]);
       const Complex off = right * std::conj(lattice_.unit(turns_[p]) * left);
-      if (std::abs(off) > 0 && std::abs(std::arg(off)) < M_PI / lattice_.symmetry()) continue;
+      if (std::abs(off) > 0 && std::abs(std::arg(off)) < M_PI / lattice_.rotation_order()) continue;
       out.push_back(mesh_.origin(h));
       out.push_back(mesh_.target(h));
     }

@@ -6,7 +6,7 @@
 
 #include "base/array.hpp"
 #include "plane/point_lattice.hpp"
-#include "seamless/seamless_part.hpp"
+#include "seamless/seamless_component.hpp"
 
 namespace lsgp {
 
@@ -16,7 +16,8 @@ Complex as_stored(Complex z);
 // Replaces points almost on the lattice by lattice points, and all others by numbers representable in float32.
 class ExactLayout {
  public:
-  ExactLayout(const SeamlessPart& part, const PointLattice& lattice, Complex shift, Eigen::VectorXcd& position);
+  ExactLayout(const SeamlessComponent& component, const PointLattice& lattice, Complex shift,
+              Eigen::VectorXcd& position);
 
   void snap();
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/text.hpp"
+#include "pipeline/mapping.hpp"
 
 namespace lsgp {
 
@@ -36,14 +37,15 @@ void report_growth(double growth, std::vector<Finding>& findings) {
 
 }  // namespace
 
-GridSearch::GridSearch(bool parity, const PointLattice& lattice, Array<SeamlessPart>& parts, ProgressMonitor& monitor)
+GridSearch::GridSearch(bool parity, const PointLattice& lattice, Array<SeamlessComponent>& components,
+                       ProgressMonitor& monitor)
     : parity_(parity),
       lattice_(lattice),
-      parts_(parts),
+      components_(components),
       monitor_(monitor),
-      quantizers_(parts.size()),
-      relaxed_(parts.size()) {
-  for_each_part(parts, [&](std::size_t i) { prepare(i); });
+      quantizers_(components.size()),
+      relaxed_(components.size()) {
+  for_each_seamless(components, [&](std::size_t i) { prepare(i); });
 }
 
 double GridSearch::extent() const {
@@ -52,19 +54,19 @@ double GridSearch::extent() const {
   return longest;
 }
 
-double GridSearch::energy(std::size_t part, const Eigen::VectorXcd& position) const {
-  return quantizers_[part]->measure_energy(position);
+double GridSearch::energy(std::size_t component, const Eigen::VectorXcd& position) const {
+  return quantizers_[component]->measure_energy(position);
 }
 
 double GridSearch::growth(const Grid& grid) const {
   double most = 1;
-  for (std::size_t i = 0; i < parts_.size(); ++i) most = std::max(most, grid.layouts[i].energy / energy(i));
+  for (std::size_t i = 0; i < components_.size(); ++i) most = std::max(most, grid.layouts[i].energy / energy(i));
   return most;
 }
 
 std::optional<Grid> GridSearch::lay_out(double tiles, const LayoutEffort& effort) {
   Grid grid{tiles, tiles / extent(), {}};
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
+  for (std::size_t i = 0; i < components_.size(); ++i) {
     auto layout = quantize(i, grid.density, effort);
     if (!layout) {
       failed_ = i;
@@ -105,8 +107,8 @@ std::optional<Grid> GridSearch::find_coarsest() {
 
 void GridSearch::give_up(const Error& error) {
   const double density = most_tiles / extent();
-  if (parts_.size() > 1) {
-    for_each_part(parts_, [&](std::size_t i) {
+  if (components_.size() > 1) {
+    for_each_seamless(components_, [&](std::size_t i) {
       if (!quantizers_[i]->quantize(density, {})) throw error;
     });
   }
@@ -114,8 +116,8 @@ void GridSearch::give_up(const Error& error) {
 }
 
 void GridSearch::lower_stretch(double stretch, Grid& grid) const {
-  for_each_part(parts_, [&](std::size_t i) {
-    quantizers_[i]->lower_stretch(stretch, parts_[i].task->importance, grid.layouts[i]);
+  for_each_seamless(components_, [&](std::size_t i) {
+    quantizers_[i]->lower_stretch(stretch, components_[i].task->importance, grid.layouts[i]);
   });
 }
 
@@ -130,7 +132,7 @@ bool GridSearch::merge_nearest(double tiles, const Options& options) {
 }
 
 void GridSearch::restore_relaxed() {
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
+  for (std::size_t i = 0; i < components_.size(); ++i) {
     if (relaxed_[i].empty()) continue;
     relaxed_[i].clear();
     prepare(i);
@@ -150,33 +152,33 @@ bool GridSearch::relax_near(double tiles) {
   return true;
 }
 
-std::optional<QuantizedLayout> GridSearch::quantize(std::size_t part, double density,
+std::optional<QuantizedLayout> GridSearch::quantize(std::size_t component, double density,
                                                     const LayoutEffort& effort) const {
   try {
-    return quantizers_[part]->quantize(density, effort);
+    return quantizers_[component]->quantize(density, effort);
   } catch (const Error& error) {
-    throw PartsFailed{{failure_of(*parts_[part].component, error)}};
+    throw ComponentsFailed{{failure_of(*components_[component].source, error)}};
   }
 }
 
-void GridSearch::prepare(std::size_t part) {
-  const SeamlessPart& of = parts_[part];
-  const LatticeDemands demands{lattice_, parity_, relaxed_[part], of.task->directions};
-  quantizers_[part] = std::make_unique<LayoutQuantizer>(*of.system, *of.map, demands, step_);
+void GridSearch::prepare(std::size_t component) {
+  const SeamlessComponent& of = components_[component];
+  const LatticeDemands demands{lattice_, parity_, relaxed_[component], of.task->directions};
+  quantizers_[component] = std::make_unique<LayoutQuantizer>(*of.system, *of.map, demands, step_);
 }
 
 bool GridSearch::merge(const ConePair& pair, const Options& options) {
-  SeamlessPart& part = parts_[failed_];
-  const HalfedgeMesh& mesh = part.component->mesh;
-  const Eigen::VectorXd& curvature = part.map->curvature.at_vertex;
+  SeamlessComponent& component = components_[failed_];
+  const HalfedgeMesh& mesh = component.source->mesh;
+  const Eigen::VectorXd& curvature = component.map->curvature.at_vertex;
   const double sum = curvature[pair.first] + curvature[pair.second];
-  const auto away = [&](Index v) { return std::abs(part.system->geometry().angle_defect[v] - sum); };
+  const auto away = [&](Index v) { return std::abs(component.system->geometry().angle_defect[v] - sum); };
   const auto [kept, given_up] =
       away(pair.first) <= away(pair.second) ? std::pair{pair.first, pair.second} : std::pair{pair.second, pair.first};
-  ComponentTask merged = *part.task;
+  ComponentTask merged = *component.task;
   merged.cones.vertices.clear();
   merged.cones.angles.clear();
-  for (const Index v : part.task->cones.vertices) {
+  for (const Index v : component.task->cones.vertices) {
     if (v == given_up) continue;
     merged.cones.vertices.push_back(v);
     merged.cones.angles.push_back(mesh.flat_angle(v) - (v == kept ? sum : curvature[v]));
@@ -185,18 +187,19 @@ bool GridSearch::merge(const ConePair& pair, const Options& options) {
   manual.prescription = PrescriptionRule::manual;
   try {
     std::vector<Finding> unsaid;
-    auto system = std::make_unique<ComponentSystem>(mesh, part.system->geometry(), merged.cones, options.factorization);
+    auto system =
+        std::make_unique<ComponentSystem>(mesh, component.system->geometry(), merged.cones, options.factorization);
     ComponentMap map = map_component(*system, merged, manual, unsaid, monitor_);
     if (map.validity.defects() > 0) return false;
-    *part.map = std::move(map);
-    part.system = system.get();
-    part.merged_system = std::move(system);
+    *component.map = std::move(map);
+    component.system = system.get();
+    component.merged_system = std::move(system);
   } catch (const Error& error) {
     if (error.code() == Code::cancelled || error.code() == Code::out_of_memory) throw;
     return false;  // this pair cannot be merged, another may
   }
-  *part.task = std::move(merged);
-  part.merged.push_back(part.component->source_vertex[given_up]);
+  *component.task = std::move(merged);
+  component.merged.push_back(component.source->source_vertex[given_up]);
   return true;
 }
 

@@ -10,7 +10,7 @@
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
 #include "seamless/quantize_layout.hpp"
-#include "seamless/seamless_part.hpp"
+#include "seamless/seamless_component.hpp"
 
 namespace lsgp {
 
@@ -24,13 +24,13 @@ struct Grid {
 // The layouts of all components on a sequence of grids. All arguments have to outlive it.
 class GridSearch {
  public:
-  GridSearch(bool parity, const PointLattice& lattice, Array<SeamlessPart>& parts, ProgressMonitor& monitor);
+  GridSearch(bool parity, const PointLattice& lattice, Array<SeamlessComponent>& components, ProgressMonitor& monitor);
 
   double extent() const;
-  double energy(std::size_t part) const { return quantizers_[part]->energy(); }
-  const Array<Index>& relaxed(std::size_t part) const { return relaxed_[part]; }
+  double energy(std::size_t component) const { return quantizers_[component]->energy(); }
+  const Array<Index>& relaxed(std::size_t component) const { return relaxed_[component]; }
 
-  double energy(std::size_t part, const Eigen::VectorXcd& position) const;
+  double energy(std::size_t component, const Eigen::VectorXcd& position) const;
 
   // The largest growth of a component's energy.
   double growth(const Grid& grid) const;
@@ -55,25 +55,25 @@ class GridSearch {
 
   void restore_relaxed();
 
-  // Relaxes one of every two cones so near in that part. Returns whether there are any.
+  // Relaxes one of every two cones so near in that component. Returns whether there are any.
   bool relax_near(double tiles);
 
  private:
   static constexpr double near = 2;  // cells
 
-  std::optional<QuantizedLayout> quantize(std::size_t part, double density, const LayoutEffort& effort) const;
+  std::optional<QuantizedLayout> quantize(std::size_t component, double density, const LayoutEffort& effort) const;
 
-  void prepare(std::size_t part);
+  void prepare(std::size_t component);
 
   // One of the cones takes up the curvature of both: the one whose own is nearer to that.
   bool merge(const ConePair& pair, const Options& options);
 
   const bool parity_;
   const PointLattice& lattice_;
-  Array<SeamlessPart>& parts_;
+  Array<SeamlessComponent>& components_;
   ProgressMonitor& monitor_;
   Array<std::unique_ptr<LayoutQuantizer>> quantizers_;
-  Array<Array<Index>> relaxed_;  // by part
+  Array<Array<Index>> relaxed_;  // by component
   std::size_t failed_ = 0;
   // The number of steps is not known in advance.
   int steps_ = 0;

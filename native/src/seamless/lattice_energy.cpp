@@ -17,9 +17,9 @@ namespace {
 
 Eigen::MatrixXcd hermitian_part(const Eigen::MatrixXcd& matrix) { return (matrix + matrix.adjoint()) / 2; }
 
-class SparseResponse final : public LatticeEnergy {
+class SparseLatticeEnergy final : public LatticeEnergy {
  public:
-  SparseResponse(const CutSurface& surface, const LatticeReduction& lattice) : lattice_(lattice) {
+  SparseLatticeEnergy(const CutSurface& surface, const LatticeReduction& lattice) : lattice_(lattice) {
     const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
     const auto form = assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, lattice.reduction);
     const Index unknowns = lattice.reduction.unknown_count, count = static_cast<Index>(lattice.integers.size());
@@ -82,47 +82,47 @@ class SparseResponse final : public LatticeEnergy {
 };
 
 // All integers are unknowns of copies on the cuts: positions of cones, or translations across cuts.
-class ResponseOnCut final : public LatticeEnergy {
+class LatticeEnergyOnCut final : public LatticeEnergy {
  public:
-  ResponseOnCut(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const CutFactor& factor,
-                const LatticeReduction& lattice)
-      : condensation_(mesh, cut_mesh, factor, lattice.reduction) {
-    Array<char> is_integer(condensation_.unknown_count(), 0);
+  LatticeEnergyOnCut(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const CutFactor& factor,
+                     const LatticeReduction& lattice)
+      : schur_complement_(mesh, cut_mesh, factor, lattice.reduction) {
+    Array<char> is_integer(schur_complement_.unknown_count(), 0);
     for (const Index unknown : lattice.integers) {
-      integers_.push_back(condensation_.number_of(unknown));
+      integers_.push_back(schur_complement_.number_of(unknown));
       is_integer[integers_.back()] = 1;
     }
-    for (Index i = 0; i < condensation_.unknown_count(); ++i) {
+    for (Index i = 0; i < schur_complement_.unknown_count(); ++i) {
       if (!is_integer[i]) free_.push_back(i);
     }
-    const Eigen::MatrixXcd form(condensation_.dirichlet_form().selfadjointView<Eigen::Lower>());
+    const Eigen::MatrixXcd form(schur_complement_.dirichlet_form().selfadjointView<Eigen::Lower>());
     const Eigen::MatrixXcd coupling = form(free_, integers_);
     following_ = -DenseCholesky<Complex>(form(free_, free_)).solve(coupling);
     schur_ = hermitian_part(form(integers_, integers_) + coupling.adjoint() * following_);
   }
 
   Eigen::VectorXcd displacement(const Eigen::VectorXcd& change) const override {
-    Eigen::VectorXcd unknowns(condensation_.unknown_count());
+    Eigen::VectorXcd unknowns(schur_complement_.unknown_count());
     unknowns(integers_) = change;
     unknowns(free_) = following_ * change;
-    return condensation_.extend(unknowns);
+    return schur_complement_.extend(unknowns);
   }
 
  private:
-  const SchurComplement condensation_;
+  const SchurComplement schur_complement_;
   Array<Index> integers_, free_;  // by their condensed numbers
   Eigen::MatrixXcd following_;    // (free, d) what the free unknowns do when the integers move
 };
 
 }  // namespace
 
-std::unique_ptr<LatticeEnergy> sparse_response(const CutSurface& surface, const LatticeReduction& lattice) {
-  return std::make_unique<SparseResponse>(surface, lattice);
+std::unique_ptr<LatticeEnergy> sparse_lattice_energy(const CutSurface& surface, const LatticeReduction& lattice) {
+  return std::make_unique<SparseLatticeEnergy>(surface, lattice);
 }
 
-std::unique_ptr<LatticeEnergy> response_on_cut(const HalfedgeMesh& mesh, const CutMesh& cut_mesh,
-                                               const CutFactor& factor, const LatticeReduction& lattice) {
-  return std::make_unique<ResponseOnCut>(mesh, cut_mesh, factor, lattice);
+std::unique_ptr<LatticeEnergy> lattice_energy_on_cut(const HalfedgeMesh& mesh, const CutMesh& cut_mesh,
+                                                     const CutFactor& factor, const LatticeReduction& lattice) {
+  return std::make_unique<LatticeEnergyOnCut>(mesh, cut_mesh, factor, lattice);
 }
 
 }  // namespace lsgp

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "cut/cut_mesh.hpp"
-#include "cut/transitions.hpp"
+#include "seamless/lattice_transitions.hpp"
 
 namespace lsgp {
 
@@ -22,11 +22,11 @@ class LatticeEnergy {
   Eigen::MatrixXcd schur_;
 };
 
-// One complex factorization and a back-substitution for every integer.  lattice has to outlive the response.
-std::unique_ptr<LatticeEnergy> sparse_response(const CutSurface& surface, const LatticeReduction& lattice);
+// One complex factorization and a back-substitution for every integer.  lattice has to outlive the energy.
+std::unique_ptr<LatticeEnergy> sparse_lattice_energy(const CutSurface& surface, const LatticeReduction& lattice);
 // With an existing factor whose cuts include those of the cut mesh: only dense problems. All but the cut mesh have to
-// outlive the response.
-std::unique_ptr<LatticeEnergy> response_on_cut(const HalfedgeMesh& mesh, const CutMesh& cut_mesh,
-                                               const CutFactor& factor, const LatticeReduction& lattice);
+// outlive the energy.
+std::unique_ptr<LatticeEnergy> lattice_energy_on_cut(const HalfedgeMesh& mesh, const CutMesh& cut_mesh,
+                                                     const CutFactor& factor, const LatticeReduction& lattice);
 
 }  // namespace lsgp

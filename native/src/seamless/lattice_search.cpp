@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/checkpoint.hpp"
+#include "plane/predicates.hpp"
 
 namespace lsgp {
 
@@ -26,10 +27,6 @@ constexpr std::array<double, 6> penalties{0.25, 1, 4, 16, 1e3, 1e6};
 Eigen::MatrixXcd upper_factor(Eigen::MatrixXcd form) {
   form.diagonal().array() += ridge * (1 + form.diagonal().real().maxCoeff());
   return form.llt().matrixU();
-}
-
-double doubled_area(const std::array<Complex, 3>& corners) {
-  return std::imag(std::conj(corners[1] - corners[0]) * (corners[2] - corners[0]));
 }
 
 }  // namespace
@@ -119,7 +116,7 @@ Array<std::array<Complex, 3>> LatticeSearch::corners_at(const Eigen::VectorXcd& 
 }
 
 double LatticeSearch::violation(const std::array<Complex, 3>& corners) const {
-  return std::max(0.0, 1 - doubled_area(corners) / lattice_.cell_area());
+  return std::max(0.0, 1 - doubled_area(corners[0], corners[1], corners[2]) / lattice_.cell_area());
 }
 
 void LatticeSearch::descend(const Eigen::VectorXcd& wanted, double penalty, Choice& choice) const {

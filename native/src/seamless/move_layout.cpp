@@ -9,7 +9,7 @@
 #include "repair/newton.hpp"
 #include "repair/untangle.hpp"
 #include "seamless/quantize_layout.hpp"
-#include "unfold/unfold.hpp"
+#include "unfold/jacobians.hpp"
 
 namespace lsgp {
 
@@ -92,7 +92,7 @@ bool LayoutQuantizer::looks_easy(double scale, double most_energy, const Validit
 bool LayoutQuantizer::move(double scale, const LayoutEffort& effort, const Eigen::VectorXcd& change,
                            Eigen::VectorXcd& position) const {
   const Eigen::VectorXcd before = position;
-  position += response_->displacement(change);
+  position += lattice_energy_->displacement(change);
   const Validity validity = check(position);
   if (effort.quick && !looks_easy(scale, effort.most_growth * energy_, validity, position)) return false;
   if (validity.defects() > 0 && !repair(scale, before, position)) return false;
@@ -121,12 +121,12 @@ bool LayoutQuantizer::follow(double scale, const Eigen::VectorXcd& change, Eigen
 
 void LayoutQuantizer::lower_stretch(double stretch, const Eigen::VectorXd& importance, QuantizedLayout& layout) const {
   const Eigen::VectorXd rest = scale_at_rest(surface(), curvature_, stretch, layout.position);
-  NewtonMinimizer relaxation(
+  NewtonMinimizer newton(
       surface(), {rest, Eigen::VectorXd::Zero(mesh_.triangle_count())},
       free_vertices(mesh_, cut_mesh_, motion_of_copies_, without_cones(PerVertex<char>(mesh_.vertex_count(), 1))),
       before_step_, layout.position);
-  relaxation.weigh(importance_of_triangles(mesh_, geometry_, importance));
-  relaxation.smooth(DistortionEnergy::Kind::symmetric_dirichlet, relaxing_steps, least_decrease);
+  newton.weigh(importance_of_triangles(mesh_, geometry_, importance));
+  newton.smooth(DistortionEnergy::Kind::symmetric_dirichlet, relaxing_steps, least_decrease);
   layout.energy = measure_energy(layout.position);
 }
 

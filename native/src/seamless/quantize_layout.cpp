@@ -15,13 +15,14 @@
 #include "prescription/quantize_curvature.hpp"
 #include "repair/newton.hpp"
 #include "systems/stiffness.hpp"
-#include "unfold/unfold.hpp"
+#include "unfold/jacobians.hpp"
 
 namespace lsgp {
 
 namespace {
 
-// Number of simultaneous matrices over the lattice's unknowns: the response, its restriction, reduced bases and moves.
+// Number of simultaneous matrices over the lattice's unknowns: the lattice energy, its restriction, reduced bases and
+// moves.
 constexpr double lattice_blocks = 8;
 // Choices of lattice points.
 constexpr int tried_angles = 16;          // of the layout, within one turn of the lattice
@@ -32,9 +33,9 @@ constexpr std::size_t few_targets = 2;    // that are worth following, and all t
 constexpr double poor_energy = 1.5;  // 1 for an isometry
 constexpr int poor_steps = 20;
 
-PerCut<int> turns_of_cuts(const Eigen::VectorXd& rotation, int symmetry) {
+PerCut<int> turns_of_cuts(const Eigen::VectorXd& rotation, int rotation_order) {
   PerCut<int> out;
-  for (const double r : rotation) out.push_back(turns_of(r, symmetry));
+  for (const double r : rotation) out.push_back(turns_of(r, rotation_order));
   return out;
 }
 
@@ -71,8 +72,9 @@ LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, const ComponentMap& ma
   const NodeGraph nodes = build_node_graph(mesh_, map.cut_graph, [&](Index v) {
     return !relaxed.empty() && v == relaxed.front() ? 1 : rank_of_root(map.curvature.at_vertex[v]);
   });
-  reduction_ = impose_on_lattice(surface(), nodes, curvature_of_nodes(mesh_, nodes, map.curvature.at_vertex),
-                                 turns_of_cuts(rotation_, lattice_.symmetry()), {lattice_, demands.parity, relaxed});
+  reduction_ =
+      impose_on_lattice(surface(), nodes, curvature_of_nodes(mesh_, nodes, map.curvature.at_vertex),
+                        turns_of_cuts(rotation_, lattice_.rotation_order()), {lattice_, demands.parity, relaxed});
   motion_of_copies_ = motion_of_copies(mesh_, map.cut_graph, map.cut_mesh, rotation_);
   set_start(map);
   integers_ = integers_of(start_);
@@ -80,12 +82,12 @@ LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, const ComponentMap& ma
   const double integers = static_cast<double>(integers_.size());
   require_memory(lattice_blocks * sizeof(Complex) * integers * integers, GrowsWith::conditions);
   if (const CutFactor* factor = system.stiff_factor(map.cones, map.cut_graph)) {
-    response_ = response_on_cut(mesh_, cut_mesh_, *factor, reduction_);
+    lattice_energy_ = lattice_energy_on_cut(mesh_, cut_mesh_, *factor, reduction_);
   } else {
     const Geometry stiffened = stiffen_around(mesh_, geometry_, map.cones);
-    response_ = sparse_response({mesh_, stiffened, cut_graph_, cut_mesh_}, reduction_);
+    lattice_energy_ = sparse_lattice_energy({mesh_, stiffened, cut_graph_, cut_mesh_}, reduction_);
   }
-  const Eigen::MatrixXcd restricted = reduction_.basis.adjoint() * response_->schur() * reduction_.basis;
+  const Eigen::MatrixXcd restricted = reduction_.basis.adjoint() * lattice_energy_->schur() * reduction_.basis;
   search_.emplace((restricted + restricted.adjoint()) / 2, moving_triangles(map), lattice_);
 }
 
@@ -122,7 +124,7 @@ void LayoutQuantizer::set_start(const ComponentMap& map) {
 }
 
 UpwardTurn LayoutQuantizer::find_upward_turn(const Eigen::VectorXcd& position) const {
-  return upward_turn(demands_.directions, at_corners(cut_mesh_, position), lattice_.symmetry());
+  return upward_turn(demands_.directions, at_corners(cut_mesh_, position), lattice_.rotation_order());
 }
 
 // Rotates by a rotation of the lattice, which preserves it.
@@ -133,7 +135,7 @@ void LayoutQuantizer::turn_upwards(Eigen::VectorXcd& position) const {
 // The mean angle between directions and v, modulo the lattice's rotations, radians; 0 without directions.
 double LayoutQuantizer::measure_misalignment(const Eigen::VectorXcd& position) const {
   if (!is_turned_) return 0;
-  return mean_angle_to_v(demands_.directions, at_corners(cut_mesh_, position), lattice_.symmetry());
+  return mean_angle_to_v(demands_.directions, at_corners(cut_mesh_, position), lattice_.rotation_order());
 }
 
 // Also lists the pairs of cones that share an edge of their triangulation.
@@ -141,7 +143,7 @@ Array<MovingTriangle> LayoutQuantizer::moving_triangles(const ComponentMap& map)
   Array<MovingTriangle> out;
   if (!mesh_.closed() || map.cones.empty()) return out;
   PerCut<Complex> turn;
-  for (const int t : turns_of_cuts(rotation_, lattice_.symmetry())) turn.push_back(lattice_.unit(t));
+  for (const int t : turns_of_cuts(rotation_, lattice_.rotation_order())) turn.push_back(lattice_.unit(t));
   const auto triangulation = triangulate_cones(surface(), turn, map.cones, start_);
   if (!triangulation) return out;
   const auto translation_at_start = [&](Index cut) {
@@ -199,14 +201,14 @@ Array<LayoutQuantizer::Target> LayoutQuantizer::find_targets(double density, int
   if (integers_.size() == 0) return {{density, integers_, 0}};
   Array<Target> out;
   const Eigen::VectorXcd wanted = reduction_.basis.partialPivLu().solve(integers_);
-  const Eigen::VectorXcd pull = response_->schur() * integers_;
+  const Eigen::VectorXcd pull = lattice_energy_->schur() * integers_;
   struct Candidate {
     Complex motion;
     LatticeSearch::Choice choice;
   };
   Array<Candidate> candidates;
   for (int i = 0; i < (is_turned_ ? 1 : tried_angles); ++i) {
-    const Complex motion = std::polar(density, 2 * M_PI / lattice_.symmetry() * i / tried_angles);
+    const Complex motion = std::polar(density, 2 * M_PI / lattice_.rotation_order() * i / tried_angles);
     candidates.push_back({motion, search_->nearest(motion * wanted)});
   }
   // The cheapest ones are used directly if they are valid; if few are, they are worth a search.

@@ -13,8 +13,9 @@
 #include "repair/newton.hpp"
 #include "seamless/lattice_energy.hpp"
 #include "seamless/lattice_search.hpp"
+#include "seamless/lattice_transitions.hpp"
+#include "systems/poisson_system.hpp"
 #include "unfold/texture_direction.hpp"
-#include "unfold/unfold.hpp"
 
 namespace lsgp {
 
@@ -120,8 +121,8 @@ class LayoutQuantizer {
   Eigen::VectorXcd motion_of_copies_;
   double extent_ = 0, energy_ = 1;
   LatticeReduction reduction_;
-  Eigen::VectorXcd integers_;                // (d) at the start
-  std::unique_ptr<LatticeEnergy> response_;  // of the Dirichlet form, stiffened around cones
+  Eigen::VectorXcd integers_;                      // (d) at the start
+  std::unique_ptr<LatticeEnergy> lattice_energy_;  // of the Dirichlet form, stiffened around cones
   Array<ConePair> cone_pairs_;
   std::optional<LatticeSearch> search_;
 };

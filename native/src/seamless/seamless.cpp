@@ -15,13 +15,13 @@ namespace lsgp {
 namespace {
 
 // Removes components and reports them; throws if none is left.
-void leave_out(const Array<Failure>& failures, Array<SeamlessPart>& parts, std::vector<Finding>& findings) {
-  const auto has_failed = [&](const SeamlessPart& part) {
+void leave_out(const Array<Failure>& failures, Array<SeamlessComponent>& components, std::vector<Finding>& findings) {
+  const auto has_failed = [&](const SeamlessComponent& component) {
     return std::any_of(failures.begin(), failures.end(),
-                       [&](const Failure& failure) { return failure.component == part.component; });
+                       [&](const Failure& failure) { return failure.component == component.source; });
   };
-  parts.erase(std::remove_if(parts.begin(), parts.end(), has_failed), parts.end());
-  if (parts.empty()) throw failures.front().error;
+  components.erase(std::remove_if(components.begin(), components.end(), has_failed), components.end());
+  if (components.empty()) throw failures.front().error;
   report_skipped(failures, findings);
 }
 
@@ -65,70 +65,72 @@ DividedLayout divide(const HalfedgeMesh& mesh, ComponentMap& map) {
 }
 
 // The layouts as maps in cells, split where they overlap. If a component cannot be split, all maps are left unchanged.
-void split_layouts(const GridSearch& search, Complex shift, const Grid& grid, Array<SeamlessPart>& parts,
+void split_layouts(const GridSearch& search, Complex shift, const Grid& grid, Array<SeamlessComponent>& components,
                    ProgressMonitor& monitor) {
-  Array<ComponentMap> maps(parts.size());
-  for_each_part(parts, [&](std::size_t i) {
-    const HalfedgeMesh& mesh = parts[i].component->mesh;
-    maps[i] = *parts[i].map;
+  Array<ComponentMap> maps(components.size());
+  for_each_seamless(components, [&](std::size_t i) {
+    const HalfedgeMesh& mesh = components[i].source->mesh;
+    maps[i] = *components[i].map;
     maps[i].position = grid.layouts[i].position.array() + shift;
     // Cones off the lattice have translations off it, across which no part may move.
     const PerHalfedge<char> nowhere(mesh.halfedge_count(), 0), everywhere(mesh.halfedge_count(), 1);
-    split_map({mesh, parts[i].system->geometry(), nowhere}, search.relaxed(i).empty() ? mesh.seam : everywhere, monitor,
-              maps[i]);
+    split_map({mesh, components[i].system->geometry(), nowhere}, search.relaxed(i).empty() ? mesh.seam : everywhere,
+              monitor, maps[i]);
   });
-  for (std::size_t i = 0; i < parts.size(); ++i) *parts[i].map = std::move(maps[i]);
+  for (std::size_t i = 0; i < components.size(); ++i) *components[i].map = std::move(maps[i]);
 }
 
-SeamlessReport lay_out(const Options& options, double unit_scale, Array<SeamlessPart>& parts,
+SeamlessReport lay_out(const Options& options, double unit_scale, Array<SeamlessComponent>& components,
                        std::vector<Finding>& findings, ProgressMonitor& monitor) {
   const Seamless& seamless = *options.seamless;
-  const PointLattice lattice(symmetry(seamless.lattice));
-  GridSearch search(seamless.parity, lattice, parts, monitor);
+  const PointLattice lattice(rotation_order(seamless.lattice));
+  GridSearch search(seamless.parity, lattice, components, monitor);
   Grid grid = find_grid(options, unit_scale, search, findings);
   if (options.mode == Mode::low_stretch && options.stretch > 0) search.lower_stretch(options.stretch, grid);
   // With parity cones are at the centres of cells: around a corner of cells an odd number of them may meet.
   const Complex shift = seamless.parity ? Complex(0.5, 0.5) : Complex(0, 0);
   if (options.overlaps == Overlaps::split) {
-    split_layouts(search, shift, grid, parts, monitor);
+    split_layouts(search, shift, grid, components, monitor);
   } else {
-    for (std::size_t i = 0; i < parts.size(); ++i) parts[i].map->position = grid.layouts[i].position.array() + shift;
+    for (std::size_t i = 0; i < components.size(); ++i)
+      components[i].map->position = grid.layouts[i].position.array() + shift;
   }
   Array<DividedLayout> layouts;
-  for (const SeamlessPart& part : parts) layouts.push_back(divide(part.component->mesh, *part.map));
+  for (const SeamlessComponent& component : components)
+    layouts.push_back(divide(component.source->mesh, *component.map));
   arrange_on_lattice(layouts, lattice, seamless.parity ? 2 : 1);
 
   SeamlessReport report;
-  report.symmetry = lattice.symmetry();
+  report.symmetry = lattice.rotation_order();
   report.tiles = grid.tiles;
   report.tile_size = 1 / (grid.density * unit_scale);
   report.cell = seamless.cell;
   double area = 0, before = 0, after = 0;
   Array<Failure> failures;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const SeamlessPart& part = parts[i];
-    ExactLayout exact(part, lattice, shift, part.map->position);
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    const SeamlessComponent& component = components[i];
+    ExactLayout exact(component, lattice, shift, component.map->position);
     if (search.relaxed(i).empty()) exact.snap();  // otherwise no binary fractions satisfy all transitions
     if (const auto refusal = refusal_of(exact)) {
-      failures.push_back(failure_of(*part.component, *refusal));
+      failures.push_back(failure_of(*component.source, *refusal));
       continue;
     }
-    report.merged_cones.insert(report.merged_cones.end(), part.merged.begin(), part.merged.end());
-    for (const Index v : search.relaxed(i)) report.relaxed_cones.push_back(part.component->source_vertex[v]);
-    for (const SeamlessCut& cut : exact.certify(*part.component)) {
+    report.merged_cones.insert(report.merged_cones.end(), component.merged.begin(), component.merged.end());
+    for (const Index v : search.relaxed(i)) report.relaxed_cones.push_back(component.source->source_vertex[v]);
+    for (const SeamlessCut& cut : exact.certify(*component.source)) {
       report.cuts.push_back(cut);
       report.error = std::max(report.error, cut.error);
     }
-    area += part.system->geometry().total_area;
-    before += part.system->geometry().total_area * search.energy(i);
+    area += component.system->geometry().total_area;
+    before += component.system->geometry().total_area * search.energy(i);
     // Triangles that collapsed in single precision, which are reported, have none.
-    const double stored_energy = search.energy(i, part.map->position);
-    after +=
-        part.system->geometry().total_area * (std::isfinite(stored_energy) ? stored_energy : grid.layouts[i].energy);
-    part.map->position *= seamless.cell;
+    const double stored_energy = search.energy(i, component.map->position);
+    after += component.system->geometry().total_area *
+             (std::isfinite(stored_energy) ? stored_energy : grid.layouts[i].energy);
+    component.map->position *= seamless.cell;
   }
   report_cones_given_up(report, findings);
-  if (!failures.empty()) leave_out(failures, parts, findings);
+  if (!failures.empty()) leave_out(failures, components, findings);
   report.energy_before = before / area;
   report.energy_after = after / area;
   return report;
@@ -188,16 +190,16 @@ void require_quantizable(const HalfedgeMesh& mesh, const ComponentMap& map) {
       {ElementKind::vertices, std::move(where)});
 }
 
-SeamlessReport make_seamless(const Options& options, double unit_scale, Array<SeamlessPart>& parts,
+SeamlessReport make_seamless(const Options& options, double unit_scale, Array<SeamlessComponent>& components,
                              std::vector<Finding>& findings, ProgressMonitor& monitor) {
   for (;;) {
     std::vector<Finding> found;
     try {
-      SeamlessReport report = lay_out(options, unit_scale, parts, found, monitor);
+      SeamlessReport report = lay_out(options, unit_scale, components, found, monitor);
       findings.insert(findings.end(), found.begin(), found.end());
       return report;
-    } catch (const PartsFailed& failed) {
-      leave_out(failed.failures, parts, findings);
+    } catch (const ComponentsFailed& failed) {
+      leave_out(failed.failures, components, findings);
     }
   }
 }

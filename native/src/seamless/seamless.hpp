@@ -9,7 +9,7 @@
 #include "lsgp/options.hpp"
 #include "lsgp/result.hpp"
 #include "pipeline/component_map.hpp"
-#include "seamless/seamless_part.hpp"
+#include "seamless/seamless_component.hpp"
 
 namespace lsgp {
 
@@ -23,9 +23,9 @@ void require_quantizable(const HalfedgeMesh& mesh, const ComponentMap& map);
 // binary fractions, so that transitions hold exactly in float32 (on triangular lattices, whose points are irrational,
 // to its last digit). Maps are recomputed if cones are merged.  unit_scale: from the components' positions to the
 // caller's. Components that have no layout on any grid, or one too small beside the others for single precision to
-// hold its cuts, are removed from `parts` and reported as COMPONENT_SKIPPED. If all components fail, the first error is
-// rethrown, in the caller's numbering: GRID_TOO_COARSE, SEAMLESS_IMPOSSIBLE.
-SeamlessReport make_seamless(const Options& options, double unit_scale, Array<SeamlessPart>& parts,
+// hold its cuts, are removed from `components` and reported as COMPONENT_SKIPPED. If all components fail, the first
+// error is rethrown, in the caller's numbering: GRID_TOO_COARSE, SEAMLESS_IMPOSSIBLE.
+SeamlessReport make_seamless(const Options& options, double unit_scale, Array<SeamlessComponent>& components,
                              std::vector<Finding>& findings, ProgressMonitor& monitor);
 
 }  // namespace lsgp

@@ -82,7 +82,7 @@ class Compactor {
   Array<Array<Index>> divide(const Array<Index>& island);
   IslandCells cells_of(const Array<Index>& island, Complex along);
   Array<Index> cut_along(const Array<Line>& lines, const Array<Index>& island, double band);
-  Array<Index> without_scraps(const Array<Index>& island, const Array<Index>& class_of);
+  Array<Index> without_slivers(const Array<Index>& island, const Array<Index>& class_of);
   double length_between(const Array<Index>& faces, const Array<Index>& class_of);
   // What an edge counts in the price of a division: dear edges, which a cut keeps clear of as far as it can, are no
   // reason to leave an island as it is.
@@ -213,7 +213,7 @@ Array<Index> Compactor::cut_along(const Array<Line>& lines, const Array<Index>& 
 }
 
 // Pieces too small to be islands join the neighbour with the longest common boundary.
-Array<Index> Compactor::without_scraps(const Array<Index>& island, const Array<Index>& class_of) {
+Array<Index> Compactor::without_slivers(const Array<Index>& island, const Array<Index>& class_of) {
   const Array<Array<Index>> pieces = pieces_of(island, class_of);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     for (const Index face : pieces[i]) place_[face] = static_cast<Index>(i);
@@ -262,7 +262,7 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& island) {
   const IslandDivision division = search_.find_division(cells_of(island, along), hull, along);
   if (division.lines.empty()) return {};
   const double band = extent_along(hull, along).width() / division_positions;
-  const Array<Index> class_of = without_scraps(island, cut_along(division.lines, island, band));
+  const Array<Index> class_of = without_slivers(island, cut_along(division.lines, island, band));
   Array<Array<Index>> pieces = pieces_of(island, class_of);
   double after = 0;
   for (const Array<Index>& piece : pieces) after += search_.demand(hull_of(piece));

@@ -82,13 +82,13 @@ double DivisionSearch::worth(const IslandCells& cells, const Array<Index>& class
     return 0;
   double after = 0;
   for (std::size_t piece = 0; piece < roots.size(); ++piece) {
-    Eigen::VectorXcd outline(points[piece]);
+    Eigen::VectorXcd corners(points[piece]);
     Eigen::Index next = 0;
     for (Index cell = 0; cell < cells.count(); ++cell) {
       if (number[cell] != static_cast<Index>(piece)) continue;
-      for (const Complex z : cells.hull[cell]) outline[next++] = z;
+      for (const Complex z : cells.hull[cell]) corners[next++] = z;
     }
-    after += demand(convex_hull(outline));
+    after += demand(convex_hull(corners));
   }
   return worth(demand_before - after, length, roots.size());
 }

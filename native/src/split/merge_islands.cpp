@@ -18,13 +18,13 @@ constexpr double same_place = 1e-9;            // of the layout's size
 constexpr double operations_a_triangle = 200;  // of the overlap test
 constexpr double narrowest_joint = 0.25;       // of the square root of the smaller part's area
 
-class Joiner {
+class IslandMerger {
  public:
-  Joiner(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, const PerHalfedge<char>& kept,
-         MapParts& parts);
+  IslandMerger(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
+               const PerHalfedge<char>& kept, MapParts& parts);
 
-  void join() {
-    while (join_next()) continue;  // each step joins two groups
+  void merge() {
+    while (merge_next()) continue;  // each step merges two groups
   }
 
  private:
@@ -34,15 +34,15 @@ class Joiner {
     Motion across;
     Array<Index> halfedges;
     double length = 0;
-    Array<Index> tried;  // its groups and their states when they could not be joined
+    Array<Index> tried;  // its groups and their states when they could not be merged
   };
 
-  bool join_next();
-  bool try_to_join(const Border& border);
-  // Two groups that could not be joined cannot be joined before one of them has grown.
+  bool merge_next();
+  bool try_to_merge(const Border& border);
+  // Two groups that could not be merged cannot be merged before one of them has grown.
   Array<Index> state_of(const Border& border) const {
     const Index left = group_[border.left], right = group_[border.right];
-    return {left, joins_[left], right, joins_[right]};
+    return {left, merges_[left], right, merges_[right]};
   }
   Motion to_meet(const Border& border) const {
     return motion_[border.right] * border.across * motion_[border.left].inverse();
@@ -56,18 +56,18 @@ class Joiner {
   double size_;
   Array<Border> borders_;
   PerPart<Motion>& motion_;
-  PerPart<Index> group_;             // joined ones share one
+  PerPart<Index> group_;             // merged ones share one
   PerPart<Array<Index>> triangles_;  // of groups
   PerPart<double> area_;             // of groups
-  PerPart<Index> joins_;             // number of groups merged into each
+  PerPart<Index> merges_;            // number of groups merged into each
 
   // Scratch memory with these values between calls.
   PerHalfedge<char> is_closed_;  // 0
   PerTriangle<Index> place_;     // none
 };
 
-Joiner::Joiner(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-               const PerHalfedge<char>& kept, MapParts& parts)
+IslandMerger::IslandMerger(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
+                           const PerHalfedge<char>& kept, MapParts& parts)
     : mesh_(mesh),
       part_(parts.part),
       open_(parts.open),
@@ -82,7 +82,7 @@ Joiner::Joiner(const HalfedgeMesh& mesh, const Geometry& geometry, const Compone
   std::iota(group_.begin(), group_.end(), 0);
   triangles_.resize(part_count);
   area_.assign(part_count, 0);
-  joins_.assign(part_count, 0);
+  merges_.assign(part_count, 0);
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
     triangles_[part[f]].push_back(f);
     area_[part[f]] += geometry.area[f];
@@ -112,18 +112,18 @@ Joiner::Joiner(const HalfedgeMesh& mesh, const Geometry& geometry, const Compone
                    [](const Border& a, const Border& b) { return a.length > b.length; });
 }
 
-bool Joiner::join_next() {
+bool IslandMerger::merge_next() {
   for (Border& border : borders_) {
     if (group_[border.left] == group_[border.right]) continue;
     Array<Index> state = state_of(border);
     if (border.tried == state) continue;
-    if (try_to_join(border)) return true;
+    if (try_to_merge(border)) return true;
     border.tried = std::move(state);
   }
   return false;
 }
 
-bool Joiner::try_to_join(const Border& border) {
+bool IslandMerger::try_to_merge(const Border& border) {
   const Index left = group_[border.left], right = group_[border.right];
   const Motion motion = to_meet(border);
   // Other edges that then coincide are closed as well.
@@ -148,12 +148,12 @@ bool Joiner::try_to_join(const Border& border) {
   triangles_[right].insert(triangles_[right].end(), triangles_[left].begin(), triangles_[left].end());
   triangles_[left].clear();
   area_[right] += area_[left];
-  ++joins_[right];
+  ++merges_[right];
   return true;
 }
 
 // closed: halfedges that are open now.
-bool Joiner::overlaps(Index left, Index right, const Motion& motion, const Array<Index>& closed) {
+bool IslandMerger::overlaps(Index left, Index right, const Motion& motion, const Array<Index>& closed) {
   Array<Index> triangles = triangles_[right];
   triangles.insert(triangles.end(), triangles_[left].begin(), triangles_[left].end());
   for (std::size_t i = 0; i < triangles.size(); ++i) place_[triangles[i]] = static_cast<Index>(i);
@@ -187,7 +187,7 @@ bool Joiner::overlaps(Index left, Index right, const Motion& motion, const Array
 
 void merge_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
                    const PerHalfedge<char>& kept, MapParts& parts) {
-  Joiner(mesh, geometry, map, kept, parts).join();
+  IslandMerger(mesh, geometry, map, kept, parts).merge();
 }
 
 }  // namespace lsgp

@@ -96,16 +96,16 @@ class Builder {
   }
 
   PieceGraph build(PerHalfedge<char> network) {
-    graph_.outline.resize(label_parts(mesh_, network, graph_.piece_of));
+    graph_.boundary.resize(label_parts(mesh_, network, graph_.piece_of));
     for (Cut& path : trace_cuts(mesh_, is_cone_, std::move(network)).cuts) add(std::move(path));
     for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
-      if (mesh_.twin[h] == none) outline_of(h).push_back({corners_[h], corners_[next(h)]});
+      if (mesh_.twin[h] == none) boundary_of(h).push_back({corners_[h], corners_[next(h)]});
     }
     return std::move(graph_);
   }
 
  private:
-  Array<PieceGraph::Side>& outline_of(Index h) { return graph_.outline[graph_.piece_of[h / 3]]; }
+  Array<PieceGraph::Side>& boundary_of(Index h) { return graph_.boundary[graph_.piece_of[h / 3]]; }
 
   Index node(Index v) {
     if (node_of_[v] == none) {
@@ -129,20 +129,20 @@ class Builder {
       path.across = {angle, corners_[next(twin)] - std::polar(1.0, angle) * corners_[first]};
     }
     for (const Index h : traced.halfedges) path.cost += cut_cost(mesh_, geometry_, h);
-    add_outlines(traced.halfedges);
+    add_boundaries(traced.halfedges);
     path.halfedges = std::move(traced.halfedges);
     graph_.paths.push_back(std::move(path));
   }
 
   // Both sides leave out the same vertices, so that they meet.
-  void add_outlines(const Array<Index>& halfedges) {
+  void add_boundaries(const Array<Index>& halfedges) {
     Index begin = none;
     for (const Index h : halfedges) {
       if (begin == none) begin = h;
       const Complex tail = corners_[begin], head = corners_[next(h)];
       if (h != halfedges.back() && std::abs(head - tail) < resolution_) continue;
-      outline_of(h).push_back({tail, head});
-      outline_of(mesh_.twin[h]).push_back({corners_[mesh_.twin[h]], corners_[next(mesh_.twin[begin])]});
+      boundary_of(h).push_back({tail, head});
+      boundary_of(mesh_.twin[h]).push_back({corners_[mesh_.twin[h]], corners_[next(mesh_.twin[begin])]});
       begin = none;
     }
   }

@@ -27,15 +27,15 @@ struct PieceGraph {
   };
 
   PerTriangle<Index> piece_of;
-  PerPart<Array<Side>> outline;  // of every piece, the layout on the left
+  PerPart<Array<Side>> boundary;  // of every piece, the layout on the left
   Array<Path> paths;
   Array<char> is_end;  // (nodes) whether cuts have to reach it: a cone or a boundary vertex
 
-  Index piece_count() const { return static_cast<Index>(outline.size()); }
+  Index piece_count() const { return static_cast<Index>(boundary.size()); }
 };
 
 // network: on both halfedges, with the map's cuts; paths around small pieces are removed.
-// resolution: sides of outlines inside the surface are merged up to about this length.
+// resolution: sides of boundaries inside the surface are merged up to about this length.
 PieceGraph build_piece_graph(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
                              PerHalfedge<char> network, double resolution);
 

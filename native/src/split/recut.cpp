@@ -26,8 +26,8 @@ constexpr double weights[] = {1.5, 0.3, 0.7, 1.5};
 constexpr double any_overlap = 0.2, small_overlap = 1e-4;
 constexpr double largest_cost = 1.25;     // of the given cuts
 constexpr double least_gain = 1e-4;       // of the score
-constexpr double most_work = 1e7;         // outline sides visited
-constexpr double operations_a_side = 30;  // of an outline on the raster
+constexpr double most_work = 1e7;         // sides of boundary polygons visited
+constexpr double operations_a_side = 30;  // of a boundary polygon on the raster
 constexpr double operations_a_path = 20;  // of finding the open ones
 
 struct Circle {
@@ -35,10 +35,10 @@ struct Circle {
   double radius;
 };
 
-Circle circle_around(const Array<PieceGraph::Side>& outline) {
+Circle circle_around(const Array<PieceGraph::Side>& boundary) {
   Circle out{0, 0};
-  for (const PieceGraph::Side& side : outline) out.center += side.tail / static_cast<double>(outline.size());
-  for (const PieceGraph::Side& side : outline) out.radius = std::max(out.radius, std::abs(side.tail - out.center));
+  for (const PieceGraph::Side& side : boundary) out.center += side.tail / static_cast<double>(boundary.size());
+  for (const PieceGraph::Side& side : boundary) out.radius = std::max(out.radius, std::abs(side.tail - out.center));
   return out;
 }
 
@@ -100,7 +100,7 @@ class Recutter {
   State now_;
   Array<char> is_open_;  // (paths) in the current state
   double first_cost_ = 0;
-  double work_ = 0;  // so far, in outline sides
+  double work_ = 0;  // so far, in sides of boundary polygons
 };
 
 Recutter::Recutter(PieceGraph graph, double area)
@@ -110,7 +110,7 @@ Recutter::Recutter(PieceGraph graph, double area)
     if (path.left == path.right) continue;
     for (const Index piece : {path.left, path.right}) paths_of_[piece].push_back(p);
   }
-  for (const auto& outline : graph_.outline) circles_.push_back(circle_around(outline));
+  for (const auto& boundary : graph_.boundary) circles_.push_back(circle_around(boundary));
   now_.motion.resize(graph_.piece_count());
   span();
   first_cost_ = cost_of(now_.in_tree);
@@ -187,7 +187,7 @@ Array<Index> Recutter::pieces_behind(Index opened, Index seed) const {
 
 std::size_t Recutter::count_sides(const Array<Index>& pieces) const {
   std::size_t count = 0;
-  for (const Index piece : pieces) count += graph_.outline[piece].size();
+  for (const Index piece : pieces) count += graph_.boundary[piece].size();
   return count;
 }
 
@@ -197,7 +197,7 @@ void Recutter::for_each_side(const Array<Index>& pieces, const Motion& motion, V
   for (const Index piece : pieces) {
     const Motion whole = motion * now_.motion[piece];
     const Complex turn = std::polar(1.0, whole.angle);
-    for (const PieceGraph::Side& side : graph_.outline[piece]) {
+    for (const PieceGraph::Side& side : graph_.boundary[piece]) {
       visit(turn * side.tail + whole.shift, turn * side.head + whole.shift);
     }
   }

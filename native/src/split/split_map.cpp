@@ -17,8 +17,8 @@ namespace lsgp {
 namespace {
 
 // Cost of every island, additional cost of a sliver, and cost of cuts as long as the square root of the surface's area.
-constexpr double cost_of_island = 0.5, cost_of_scrap = 2, cost_of_cut = 1;
-constexpr double scrap = 0.005;  // of the area
+constexpr double cost_of_island = 0.5, cost_of_sliver = 2, cost_of_cut = 1;
+constexpr double sliver = 0.005;  // of the area
 
 // factor: as from relative_cut_factors.
 double cost(const HalfedgeMesh& mesh, const Geometry& geometry, const PerHalfedge<double>& factor,
@@ -30,9 +30,9 @@ double cost(const HalfedgeMesh& mesh, const Geometry& geometry, const PerHalfedg
   PerTriangle<Index> island;
   PerPart<double> area(label_parts(mesh, ends, island), 0);
   for (Index f = 0; f < mesh.triangle_count(); ++f) area[island[f]] += geometry.area[f];
-  const auto scraps =
-      std::count_if(area.begin(), area.end(), [&](double own) { return own < scrap * geometry.total_area; });
-  return cost_of_island * static_cast<double>(area.size()) + cost_of_scrap * static_cast<double>(scraps) +
+  const auto slivers =
+      std::count_if(area.begin(), area.end(), [&](double own) { return own < sliver * geometry.total_area; });
+  return cost_of_island * static_cast<double>(area.size()) + cost_of_sliver * static_cast<double>(slivers) +
          cost_of_cut * length / std::sqrt(geometry.total_area);
 }
 

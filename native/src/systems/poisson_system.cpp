@@ -48,20 +48,20 @@ class PoissonSystem::OnCut final : public Solver {
  public:
   OnCut(const CutSurface& surface, const Reduction& reduction)
       : surface_(surface),
-        condensation_(surface.mesh, surface.cut_mesh, *surface.factor, reduction),
-        dense_(condensation_.dirichlet_form()) {}
+        schur_complement_(surface.mesh, surface.cut_mesh, *surface.factor, reduction),
+        dense_(schur_complement_.dirichlet_form()) {}
 
   Eigen::VectorXcd fit(const Jacobians& jacobians) const override {
     const CutFactor& factor = *surface_.factor;
     const CutSurface opened{surface_.mesh, surface_.geometry, factor.cut_graph(), factor.cut_mesh()};
-    CutFactor::Rows half_solved = condensation_.eliminate(pull_of(opened, jacobians));
-    const Eigen::VectorXcd unknowns = dense_.solve(condensation_.right_side(half_solved));
-    return condensation_.substitute(std::move(half_solved), unknowns);
+    CutFactor::Rows half_solved = schur_complement_.eliminate(pull_of(opened, jacobians));
+    const Eigen::VectorXcd unknowns = dense_.solve(schur_complement_.right_side(half_solved));
+    return schur_complement_.substitute(std::move(half_solved), unknowns);
   }
 
  private:
   const CutSurface surface_;
-  const SchurComplement condensation_;
+  const SchurComplement schur_complement_;
   const DenseCholesky<Complex> dense_;
 };
 

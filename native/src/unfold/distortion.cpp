@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "base/thread_team.hpp"
-#include "plane/boundary_polygon.hpp"
 
 namespace lsgp {
 

@@ -12,6 +12,7 @@
 #include "cut/cut_graph.hpp"
 #include "lsgp/result.hpp"
 #include "mesh/topology.hpp"
+#include "plane/predicates.hpp"
 
 namespace lsgp {
 
@@ -55,8 +56,7 @@ SeamQuality worse(const SeamQuality& a, const SeamQuality& b);
 
 // Twice the signed UV area of a triangle.
 inline double doubled_area(const CornerPositions& position, Index triangle) {
-  const Complex a = position[3 * triangle];
-  return std::imag(std::conj(position[3 * triangle + 1] - a) * (position[3 * triangle + 2] - a));
+  return doubled_area(position[3 * triangle], position[3 * triangle + 1], position[3 * triangle + 2]);
 }
 
 // A map is valid if no triangle is flipped and the angles around every vertex add up to the imposed sum, with negative

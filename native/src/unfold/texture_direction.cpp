@@ -45,10 +45,10 @@ double angle_sum(const HalfedgeMesh& mesh, Index v) {
   return out;
 }
 
-std::optional<double> turning_beside(const HalfedgeMesh& mesh, const Positions& vectors, int symmetry,
+std::optional<double> turning_beside(const HalfedgeMesh& mesh, const Positions& vectors, int rotation_order,
                                      const Array<Index>& loop) {
   constexpr double most_doubt = 0.25;  // of the largest that an angle between directions can be
-  const double period = 2 * M_PI / symmetry;
+  const double period = 2 * M_PI / rotation_order;
   double turning = 0, doubt = 0;
   std::optional<double> before = angle_from_direction(mesh, vectors, mesh.outgoing[loop.back()]);
   for (const Index v : loop) {
@@ -101,13 +101,14 @@ TextureDirections directions_in_triangles(const HalfedgeMesh& mesh, const Positi
   return out;
 }
 
-PerLoop<std::optional<double>> turning_beside(const HalfedgeMesh& mesh, const Positions& vectors, int symmetry) {
+PerLoop<std::optional<double>> turning_beside(const HalfedgeMesh& mesh, const Positions& vectors, int rotation_order) {
   PerLoop<std::optional<double>> out;
-  for (const Array<Index>& loop : mesh.boundary_loops) out.push_back(turning_beside(mesh, vectors, symmetry, loop));
+  for (const Array<Index>& loop : mesh.boundary_loops)
+    out.push_back(turning_beside(mesh, vectors, rotation_order, loop));
   return out;
 }
 
-PerVertex<char> runs_straight_around(const HalfedgeMesh& mesh, const Positions& vectors, int symmetry) {
+PerVertex<char> runs_straight_around(const HalfedgeMesh& mesh, const Positions& vectors, int rotation_order) {
   constexpr double largest_bend = M_PI / 8;  // between two triangles
   PerHalfedge<std::optional<double>> angle(mesh.halfedge_count());
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
@@ -118,7 +119,7 @@ PerVertex<char> runs_straight_around(const HalfedgeMesh& mesh, const Positions& 
     const Index twin = mesh.twin[h];
     if (twin == none) return true;
     return angle[twin] &&
-           std::abs(std::remainder(*angle[twin] - *angle[h] - M_PI, 2 * M_PI / symmetry)) <= largest_bend;
+           std::abs(std::remainder(*angle[twin] - *angle[h] - M_PI, 2 * M_PI / rotation_order)) <= largest_bend;
   };
   PerVertex<char> out(mesh.vertex_count(), 1);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
@@ -133,7 +134,7 @@ void UpwardTurn::add(Complex image) {
   const double angle = std::arg(image / upwards);
   once_ += std::polar(weight, angle);
   twice_ += std::polar(weight, 2 * angle);
-  by_symmetry_ += std::polar(weight, symmetry_ * angle);
+  by_rotation_ += std::polar(weight, rotation_order_ * angle);
   weight_ += weight;
 }
 
@@ -153,8 +154,8 @@ std::optional<Complex> UpwardTurn::turn() const {
 }
 
 std::optional<Complex> UpwardTurn::turn_to_lattice() const {
-  if (!remains(by_symmetry_)) return std::nullopt;
-  return std::polar(1.0, -std::arg(by_symmetry_) / symmetry_);
+  if (!remains(by_rotation_)) return std::nullopt;
+  return std::polar(1.0, -std::arg(by_rotation_) / rotation_order_);
 }
 
 int UpwardTurn::turns_on_lattice() const {
@@ -162,8 +163,8 @@ int UpwardTurn::turns_on_lattice() const {
   constexpr double share_of_once = 0.1;
   int best = 0;
   double most = -std::numeric_limits<double>::infinity();
-  for (int turns = 0; turns < symmetry_; ++turns) {
-    const double angle = 2 * M_PI * turns / symmetry_;
+  for (int turns = 0; turns < rotation_order_; ++turns) {
+    const double angle = 2 * M_PI * turns / rotation_order_;
     const double upright =
         std::real(twice_ * std::polar(1.0, 2 * angle) + share_of_once * once_ * std::polar(1.0, angle));
     if (!(upright > most + rounding * weight_)) continue;
@@ -173,29 +174,30 @@ int UpwardTurn::turns_on_lattice() const {
   return best;
 }
 
-UpwardTurn upward_turn(const TextureDirections& directions, const CornerPositions& position, int symmetry) {
-  UpwardTurn out(symmetry);
+UpwardTurn upward_turn(const TextureDirections& directions, const CornerPositions& position, int rotation_order) {
+  UpwardTurn out(rotation_order);
   for (Index f = 0; f < directions.weight.size(); ++f) out.add(directions.image(position, f));
   return out;
 }
 
-double angle_to_v(Complex image, int symmetry) {
-  return std::abs(std::remainder(std::arg(image / upwards), 2 * M_PI / symmetry));
+double angle_to_v(Complex image, int rotation_order) {
+  return std::abs(std::remainder(std::arg(image / upwards), 2 * M_PI / rotation_order));
 }
 
-double mean_angle_to_v(const TextureDirections& directions, const CornerPositions& position, int symmetry) {
+double mean_angle_to_v(const TextureDirections& directions, const CornerPositions& position, int rotation_order) {
   double sum = 0, weight = 0;
   for (Index f = 0; f < directions.weight.size(); ++f) {
     const Complex image = directions.image(position, f);
-    sum += std::abs(image) * angle_to_v(image, symmetry);
+    sum += std::abs(image) * angle_to_v(image, rotation_order);
     weight += std::abs(image);
   }
   return weight > 0 ? sum / weight : 0;
 }
 
-double misalignment_on_lattice(const TextureDirections& directions, const CornerPositions& position, int symmetry) {
-  const Complex turn = upward_turn(directions, position, symmetry).turn_to_lattice().value_or(1);
-  return mean_angle_to_v(directions, position * turn, symmetry);
+double misalignment_on_lattice(const TextureDirections& directions, const CornerPositions& position,
+                               int rotation_order) {
+  const Complex turn = upward_turn(directions, position, rotation_order).turn_to_lattice().value_or(1);
+  return mean_angle_to_v(directions, position * turn, rotation_order);
 }
 
 }  // namespace lsgp

@@ -24,41 +24,43 @@ struct TextureDirections {
 // vectors: (m, 3) in space, for the triangles of this mesh; the component in the triangle's plane counts.
 TextureDirections directions_in_triangles(const HalfedgeMesh& mesh, const Positions& vectors);
 
-// The turning of boundaries in a layout in which directions, modulo rotations by 2 pi / symmetry, are parallel: (loops)
-// radians. None for a boundary without directions, or if they vary too much.
-PerLoop<std::optional<double>> turning_beside(const HalfedgeMesh& mesh, const Positions& vectors, int symmetry);
+// The turning of boundaries in a layout in which directions, modulo rotations by 2 pi / rotation_order, are parallel:
+// (loops) radians. None for a boundary without directions, or if they vary too much.
+PerLoop<std::optional<double>> turning_beside(const HalfedgeMesh& mesh, const Positions& vectors, int rotation_order);
 
 // The vertices around which the directions are nearly parallel, so that a cone there would bend the texture.
-PerVertex<char> runs_straight_around(const HalfedgeMesh& mesh, const Positions& vectors, int symmetry);
+PerVertex<char> runs_straight_around(const HalfedgeMesh& mesh, const Positions& vectors, int rotation_order);
 
 // The rotation of a layout that aligns the images of directions with v.
 class UpwardTurn {
  public:
-  // symmetry: of the layout's lattice.
-  explicit UpwardTurn(int symmetry = 1) : symmetry_(symmetry) {}
+  // rotation_order: of the layout's lattice.
+  explicit UpwardTurn(int rotation_order = 1) : rotation_order_(rotation_order) {}
   void add(Complex image);
 
   // The least squares fit to v, or, if many images are opposite to others, to v or its opposite. None without images,
   // or if they cancel.
   std::optional<Complex> turn() const;
-  // The same modulo rotations by 2 pi / symmetry, and then the best of these, in multiples of that.
+  // The same modulo rotations by 2 pi / rotation_order, and then the best of these, in multiples of that.
   std::optional<Complex> turn_to_lattice() const;
   int turns_on_lattice() const;
 
  private:
   bool remains(Complex sum) const;
 
-  int symmetry_;
-  Complex once_ = 0, twice_ = 0, by_symmetry_ = 0;  // sums of e^{i k angle} over the angles from v, by weight
+  int rotation_order_;
+  Complex once_ = 0, twice_ = 0, by_rotation_ = 0;  // sums of e^{i k angle} over the angles from v, by weight
   double weight_ = 0;
 };
-UpwardTurn upward_turn(const TextureDirections& directions, const CornerPositions& position, int symmetry);
+UpwardTurn upward_turn(const TextureDirections& directions, const CornerPositions& position, int rotation_order);
 
-// The angle between an image and v, modulo rotations by 2 pi / symmetry, radians; the mean of all, if there are any.
-double angle_to_v(Complex image, int symmetry);
-double mean_angle_to_v(const TextureDirections& directions, const CornerPositions& position, int symmetry);
+// The angle between an image and v, modulo rotations by 2 pi / rotation_order, radians; the mean of all, if there are
+// any.
+double angle_to_v(Complex image, int rotation_order);
+double mean_angle_to_v(const TextureDirections& directions, const CornerPositions& position, int rotation_order);
 
 // The remaining mean when the layout is rotated accordingly.
-double misalignment_on_lattice(const TextureDirections& directions, const CornerPositions& position, int symmetry);
+double misalignment_on_lattice(const TextureDirections& directions, const CornerPositions& position,
+                               int rotation_order);
 
 }  // namespace lsgp

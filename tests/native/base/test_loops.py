@@ -126,10 +126,10 @@ REVIEWED = {
         ("while (h != none && h != corner)", AROUND_A_VERTEX, SHORT),
         ("while (h == none && mesh.twin[first] != none)", AROUND_A_VERTEX, SHORT),
     ],
+    "mesh/nearest_distance.cpp": [("while (!reached.empty())", NEAREST, SHORT)],
     "mesh/topology.hpp": [("while (h != none && h != outgoing[v])", AROUND_A_VERTEX, SHORT)],
     "placement/batch_placement.cpp": [
         ("while (rings > 0 && cones * vertices_within() > vertices)", "rings fall from 2", SHORT),
-        ("while (!reached.empty())", NEAREST, SHORT),
         ("while (cone_count() < cones)", "each round adds a cone, or ends it", OWN),
     ],
     "placement/cone_chooser.cpp": [
@@ -196,7 +196,7 @@ REVIEWED = {
         ("for (int visited = 0; !grid_.leads_into(corner, ray.direction); ++visited)", AROUND_A_VERTEX, SHORT),
     ],
     "repair/newton.cpp": [("for (double length = longest; length > 1e-8; length /= 2)", "27 halvings", SHORT)],
-    "repair/straight_outline.cpp": [
+    "repair/straight_sides.cpp": [
         ("for (Index h = first; !is_listed[h];)", SIDES, SHORT),
         ("while (!is_open(mesh, cut_mesh, h))", AROUND_A_VERTEX, SHORT),
         (
@@ -268,7 +268,7 @@ REVIEWED = {
         ),
     ],
     "split/compact_islands.cpp": [("while (!pending.empty())", "each division pays a price out of a sum", WITHIN)],
-    "split/merge_islands.cpp": [("while (join_next())", "each round makes two groups one", WITHIN)],
+    "split/merge_islands.cpp": [("while (merge_next())", "each round makes two groups one", WITHIN)],
     "split/minimum_cut.cpp": [
         ("while (!queue.empty())", NEAREST, SHORT),
         ("for (;;)", "each round holds more cells, or ends it", WITHIN),
@@ -323,9 +323,10 @@ REVIEWED = {
     "systems/quadratic_forms.cpp": [
         ("while (inner[at - 1] > row)", "entries of a column, its first one below", SHORT),
     ],
-    "systems/stiffness.cpp": [("while (!queue.empty())", NEAREST, SHORT)],
-    "unfold/unfold.cpp": [
+    "unfold/lscm.cpp": [
         ("for (Index at = copy; border.empty() || at != copy; at = next_copy[at])", SIDES, SHORT),
+    ],
+    "unfold/spectral.cpp": [
         (
             "while (std::abs(position[first]) < nearly * farthest)",
             "ends at the farthest position, if not before",

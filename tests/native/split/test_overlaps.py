@@ -407,7 +407,7 @@ def test_real_meshes_are_split_with_exact_transitions(name: str, seamless: bool)
         assert split.seamless.error == 0
     else:
         assert oracle.metric_gap(kept.corner_uv, split.corner_uv) <= 1e-9
-    # No island is a scrap.
+    # No island is a sliver.
     area = np.bincount(split.island, oracle.triangle_areas(mesh.positions, mesh.triangles))
     assert area.min() >= 0.005 * area.sum()
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Nearly straight sides of a map's outline and the directions that make them straight.
+// Nearly straight sides of a map's boundary and the directions that make them straight.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,16 +9,16 @@
 
 namespace lsgp {
 
-// A run of edges of the outline between corners, or between arcs.
+// A run of edges of the boundary between corners, or between arcs.
 struct StraightSide {
   Array<Index> halfedges;  // the surface on their left
   Complex direction;       // of all of them, a unit vector; exactly along an axis if it nearly is
   double bend;             // the deviation from that direction, radians
 };
 
-struct StraightOutline {
+struct StraightSides {
   Complex turn = 1;       // of the map: aligns the greatest length of sides with the axes; directions are after it
-  bool has_axes = false;  // a considerable part of the outline is along the axes
+  bool has_axes = false;  // a considerable part of the boundary is along the axes
   Array<StraightSide> sides;
 
   // Whether any side deviates from its direction by more than rounding.
@@ -26,12 +26,12 @@ struct StraightOutline {
 };
 
 // rotation: (cuts) of the map's transitions, radians. Cuts that do not turn by a multiple of a quarter have no straight
-// sides, since both could not be along the axes. No sides at all if they would be a small part of the outline, as on
+// sides, since both could not be along the axes. No sides at all if they would be a small part of the boundary, as on
 // scans. most_bend: of sides, radians.
-StraightOutline find_straight_sides(const CutSurface& surface, const Eigen::VectorXd& rotation,
-                                    const Eigen::VectorXcd& position, double most_bend);
+StraightSides find_straight_sides(const CutSurface& surface, const Eigen::VectorXd& rotation,
+                                  const Eigen::VectorXcd& position, double most_bend);
 
 // Removes the sides with the largest bends.
-void release_bent_sides(StraightOutline& outline);
+void release_bent_sides(StraightSides& straight);
 
 }  // namespace lsgp

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Unfolding into the plane (the paper's sections 4.2 and 6).
+// The frames of triangles in a flat metric (the paper's sections 4.2 and 6): integrated, read across cuts, rotated.
 #pragma once
 
 #include <Eigen/Core>
 #include <optional>
 
 #include "base/array.hpp"
-#include "cut/cut_mesh.hpp"
-#include "cut/transitions.hpp"
+#include "cut/cut_graph.hpp"
 #include "mesh/geometry.hpp"
 #include "solvers/cholesky.hpp"
-#include "systems/poisson_system.hpp"
 
 namespace lsgp {
 
@@ -64,30 +62,8 @@ class HarmonicOneForm {
   std::optional<Cholesky<double>> factor_;
 };
 
-// The Jacobians of the flat metric: e^{y + i phi}, and no shear.
-Jacobians prescribed_jacobians(const HalfedgeMesh& mesh, const Eigen::VectorXd& log_scale,
-                               const Eigen::VectorXd& frames);
-Jacobians measure_jacobians(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                            const Eigen::VectorXcd& position);
-
-// Each returns the positions u + iv of all copies.
-
 // The direction of boundary edges in the metric (halfedges with the surface on their left), radians.
 Eigen::VectorXd metric_directions(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& log_scale,
                                   const Eigen::VectorXd& frames, const Array<Index>& edges);
-
-// The fit to Jacobians (PoissonSystem::fit) with exactly aligned boundary edges: each of `edges` has the given
-// direction, radians. A real problem of twice the size.
-Eigen::VectorXcd unfold_aligned(const CutSurface& surface, const Reduction& reduction, const Jacobians& jacobians,
-                                const Array<Index>& edges, const Eigen::VectorXd& directions);
-
-// The map of least conformal energy at a given Dirichlet energy (Mullen et al. 2008, with a norm that transitions
-// leave invariant). Solved on the cut if the surface has a factor, sparse otherwise. Rounding does not choose its
-// rotation: the position farthest from the origin is on the positive u axis.
-Eigen::VectorXcd unfold_spectral(const CutSurface& surface, const Reduction& reduction);
-
-// Least squares conformal map of the opened surface with two pinned copies, no transitions (Levy et al. 2002).
-// The pins are the lowest-numbered copy on the open boundary and the one half the boundary's edges away.
-Eigen::VectorXcd unfold_lscm(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh);
 
 }  // namespace lsgp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "repair/straight_outline.hpp"
+#include "repair/straight_sides.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,18 +12,18 @@ namespace {
 constexpr double degree = M_PI / 180;
 constexpr double corner = 20 * degree;                  // the least turning at a corner
 constexpr double most_turned = 10 * degree;             // edges of a side
-constexpr double smooth_joint = 1 * degree;             // between edges of one line where an outline has arcs
+constexpr double smooth_joint = 1 * degree;             // between edges of one line where a boundary has arcs
 constexpr double most_bend_beside_arcs = 0.5 * degree;  // of such a line
-constexpr double least_side = 0.004;                    // of an outline: anything shorter is not a feature
+constexpr double least_side = 0.004;                    // of a boundary: anything shorter is not a feature
 constexpr double least_side_beside_arcs = 0.1;
-constexpr double telling = 0.25;         // share of the outlines from which straight sides and axes count
+constexpr double telling = 0.25;         // share of the boundaries from which straight sides and axes count
 constexpr double kept_bend = 0.7;        // of the largest: sides that bend more are released
 constexpr double exact_rotation = 1e-9;  // radians
 
 bool is_quarter_turn(double rotation) { return std::abs(std::remainder(rotation, M_PI / 2)) < exact_rotation; }
 
-// Halfedges around the opened surface, each outline starting at the lowest.
-Array<Array<Index>> outlines(const HalfedgeMesh& mesh, const CutMesh& cut_mesh) {
+// Halfedges around the opened surface, each loop starting at the lowest.
+Array<Array<Index>> open_boundaries(const HalfedgeMesh& mesh, const CutMesh& cut_mesh) {
   Array<Array<Index>> out;
   PerHalfedge<char> is_listed(mesh.halfedge_count(), 0);
   for (Index first = 0; first < mesh.halfedge_count(); ++first) {
@@ -41,14 +41,14 @@ Array<Array<Index>> outlines(const HalfedgeMesh& mesh, const CutMesh& cut_mesh) 
 
 Complex unit(Complex direction) { return direction / std::abs(direction); }
 
-// Part of an outline; the outline is closed, and a run may pass its end.
+// Part of a boundary loop; the loop is closed, and a run may pass its end.
 struct Run {
   std::size_t begin, count;
 };
 
-class Outline {
+class BoundaryLoop {
  public:
-  Outline(const Array<Index>& halfedges, const CutMesh& cut_mesh, const Eigen::VectorXcd& position)
+  BoundaryLoop(const Array<Index>& halfedges, const CutMesh& cut_mesh, const Eigen::VectorXcd& position)
       : halfedges_(halfedges) {
     for (const Index h : halfedges) {
       edge_.push_back(position[cut_mesh.copy_of_corner[next(h)]] - position[cut_mesh.copy_of_corner[h]]);
@@ -139,7 +139,7 @@ class Outline {
 double off_axis(Complex direction) { return std::remainder(std::arg(direction), M_PI / 2); }
 
 struct FoundSide {
-  const Outline* outline;
+  const BoundaryLoop* loop;
   Run run;
   Complex chord;
 };
@@ -182,27 +182,27 @@ Array<FoundSide>::iterator along_axes_of(Complex turn, double most_bend, Array<F
 
 }  // namespace
 
-bool StraightOutline::is_bent() const {
+bool StraightSides::is_bent() const {
   constexpr double rounding = 1e-9;
   return std::any_of(sides.begin(), sides.end(), [](const StraightSide& side) { return side.bend > rounding; });
 }
 
-StraightOutline find_straight_sides(const CutSurface& surface, const Eigen::VectorXd& rotation,
-                                    const Eigen::VectorXcd& position, double most_bend) {
+StraightSides find_straight_sides(const CutSurface& surface, const Eigen::VectorXd& rotation,
+                                  const Eigen::VectorXcd& position, double most_bend) {
   const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
   const auto may_be_straight = [&, &cut_graph = cut_graph](Index h) {
     return cut_graph.cut_of[h] == none || is_quarter_turn(rotation[cut_graph.cut_of[h]]);
   };
-  StraightOutline out;
-  const Array<Array<Index>> borders = outlines(mesh, cut_mesh);
-  Array<Outline> measured;
+  StraightSides out;
+  const Array<Array<Index>> borders = open_boundaries(mesh, cut_mesh);
+  Array<BoundaryLoop> measured;
   for (const Array<Index>& border : borders) measured.emplace_back(border, cut_mesh, position);
   Array<FoundSide> found;
   double length = 0, straight_length = 0, along_axes = 0;
-  for (const Outline& outline : measured) {
-    length += outline.length();
-    for (const Run& run : outline.straight_runs(most_bend)) {
-      found.push_back({&outline, run, outline.chord(run)});
+  for (const BoundaryLoop& loop : measured) {
+    length += loop.length();
+    for (const Run& run : loop.straight_runs(most_bend)) {
+      found.push_back({&loop, run, loop.chord(run)});
       straight_length += std::abs(found.back().chord);
     }
   }
@@ -218,9 +218,9 @@ StraightOutline find_straight_sides(const CutSurface& surface, const Eigen::Vect
       if (is_first) along_axes += std::abs(side->chord);
       const Complex axis = nearest_axis(side->chord * turn);
       const Complex direction = is_first ? axis : axis * std::conj(turn) * out.turn;
-      StraightSide straight{{}, direction, side->outline->bend(side->run, direction * std::conj(out.turn))};
+      StraightSide straight{{}, direction, side->loop->bend(side->run, direction * std::conj(out.turn))};
       for (std::size_t k = 0; k < side->run.count; ++k) {
-        const Index h = side->outline->halfedge(side->run.begin + k);
+        const Index h = side->loop->halfedge(side->run.begin + k);
         if (may_be_straight(h)) straight.halfedges.push_back(h);
       }
       if (!is_alone && !straight.halfedges.empty()) out.sides.push_back(std::move(straight));
@@ -231,11 +231,11 @@ StraightOutline find_straight_sides(const CutSurface& surface, const Eigen::Vect
   return out;
 }
 
-void release_bent_sides(StraightOutline& outline) {
+void release_bent_sides(StraightSides& straight) {
   double most = 0;
-  for (const StraightSide& side : outline.sides) most = std::max(most, side.bend);
+  for (const StraightSide& side : straight.sides) most = std::max(most, side.bend);
   const auto is_bent = [&](const StraightSide& side) { return side.bend > kept_bend * most; };
-  outline.sides.erase(std::remove_if(outline.sides.begin(), outline.sides.end(), is_bent), outline.sides.end());
+  straight.sides.erase(std::remove_if(straight.sides.begin(), straight.sides.end(), is_bent), straight.sides.end());
 }
 
 }  // namespace lsgp

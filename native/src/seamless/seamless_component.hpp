@@ -11,8 +11,8 @@
 namespace lsgp {
 
 // A component's map, with angles that are multiples of the lattice's rotation, and its origin.
-struct SeamlessPart {
-  const Component* component;
+struct SeamlessComponent {
+  const Component* source;
   ComponentTask* task;
   ComponentMap* map;
   ComponentSystem* system;  // of the map
@@ -22,19 +22,19 @@ struct SeamlessPart {
 };
 
 // Thrown if components fail, so that the others are laid out without them.
-struct PartsFailed {
+struct ComponentsFailed {
   Array<Failure> failures;
 };
 
-// Runs step(part) for all components. Throws PartsFailed.
+// Runs step(index) for all components. Throws ComponentsFailed.
 template <typename Step>
-void for_each_part(const Array<SeamlessPart>& parts, Step step) {
-  PartsFailed failed;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
+void for_each_seamless(const Array<SeamlessComponent>& components, Step step) {
+  ComponentsFailed failed;
+  for (std::size_t i = 0; i < components.size(); ++i) {
     try {
       step(i);
     } catch (const Error& error) {
-      failed.failures.push_back(failure_of(*parts[i].component, error));
+      failed.failures.push_back(failure_of(*components[i].source, error));
     }
   }
   if (!failed.failures.empty()) throw failed;

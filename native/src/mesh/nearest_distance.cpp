@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh/nearest_distance.hpp"
+
+#include <functional>
+#include <limits>
+#include <queue>
+#include <utility>
+
+namespace lsgp {
+
+NearestDistance::NearestDistance(const HalfedgeMesh& mesh, const Geometry& geometry)
+    : mesh_(mesh),
+      geometry_(geometry),
+      far_(Eigen::VectorXd::Constant(mesh.vertex_count(), std::numeric_limits<double>::infinity())) {}
+
+void NearestDistance::add(const Array<Index>& vertices) {
+  using Reached = std::pair<double, Index>;
+  std::priority_queue<Reached, Array<Reached>, std::greater<>> reached;
+  const auto reach = [&](Index v, double distance) {
+    if (!(distance < far_[v])) return;
+    far_[v] = distance;
+    reached.emplace(distance, v);
+  };
+  for (const Index v : vertices) reach(v, 0);
+  while (!reached.empty()) {
+    const auto [distance, v] = reached.top();
+    reached.pop();
+    if (distance > far_[v]) continue;
+    mesh_.for_each_outgoing(v, [&, from = distance](Index h) {
+      reach(mesh_.target(h), from + geometry_.length[h]);
+      // The last edge around a boundary vertex has no outgoing halfedge.
+      if (mesh_.twin[prev(h)] == none) reach(mesh_.origin(prev(h)), from + geometry_.length[prev(h)]);
+    });
+  }
+}
+
+}  // namespace lsgp

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/component_repair.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.hpp"
+#include "pipeline/component_unfold.hpp"
+#include "plane/overlaps.hpp"
+#include "repair/low_stretch.hpp"
+#include "repair/straighten.hpp"
+#include "repair/untangle.hpp"
+#include "unfold/jacobians.hpp"
+
+namespace lsgp {
+
+namespace {
+
+using Kind = DistortionEnergy::Kind;
+
+constexpr double tangled_share = 0.002;  // of the triangles flipped, for which another fit is tried
+
+// The largest bend of sides that are straightened, radians; the smaller, the closer the map is to an isometry, whose
+// angles are those of the surface up to the precision of the file.
+double most_bend(double l2) {
+  constexpr double widest = 10 * M_PI / 180, beside_stretch = 30, rounding = 1e-3;
+  return std::min(widest, rounding + beside_stretch * std::sqrt(std::max(0.0, l2 - 1)));
+}
+
+// The L2 stretch that straight sides may cost: hardly any more if the map is isometric.
+double largest_l2_straight(double l2) {
+  constexpr double share = 0.1, least = 0.002, most_times = 20, rounding = 1e-6;
+  const double excess = std::max(0.0, l2 - 1);
+  return l2 + std::min(std::max(share * excess, least), most_times * excess) + rounding;
+}
+
+}  // namespace
+
+void ComponentRepair::check(ComponentMap& map) {
+  const ProgressMonitor::Stage stage(monitor_, "check");
+  if (!map.position.allFinite()) {
+    throw Error(Code::solver_failed,
+                "The unfolding returned values that are not finite. Clean the mesh (merge by distance, "
+                "dissolve degenerate faces) and try again.");
+  }
+  const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
+  map.uv_area = 0;
+  for (Index f = 0; f < mesh_.triangle_count(); ++f) map.uv_area += doubled_area(corners, f) / 2;
+  check_triangles(mesh_, corners, map);
+}
+
+void ComponentRepair::repair(const ParallelTransportChoice& connections, const ParallelTransport& connection,
+                             const Curvature& target, Effort effort, ComponentMap& map) {
+  const ProgressMonitor::Stage stage(monitor_, "repair");
+  const CutSurface surface = open(map);
+  const PerVertex<char> fixed = fixed_vertices(map);
+  const bool tangled = static_cast<double>(map.validity.flipped.size()) > tangled_share * mesh_.triangle_count();
+  if (tangled && aligned_edges(mesh_, task_.cones).empty() && map.pins.size() < 2) {
+    ComponentMap relative = map;
+    relative.position = unfold_relatively(surface, map.curvature, connection);
+    check(relative);
+    if (relative.validity.defects() < map.validity.defects()) {
+      map = std::move(relative);
+      if (map.validity.defects() == 0) return smooth(map);
+    }
+  }
+  const auto repair_with = [&](Effort of_repair) {
+    const auto first = connections.is_twisted() ? Kind::framed_foldover_free : Kind::foldover_free;
+    map.position = untangle(surface, {connection, target}, {of_repair, first}, counter(), {map.position, fixed});
+    check(map);
+  };
+  repair_with(connections.is_twisted() ? Effort::local : effort);
+  if (map.validity.defects() == 0 || !connections.is_twisted()) return;
+  twist_gradually(connections, fixed, map);
+  if (map.validity.defects() > 0) repair_with(Effort::global);
+}
+
+void ComponentRepair::polish(const ParallelTransport& connection, const Array<Index>& flipped, ComponentMap& map) {
+  constexpr double sheared = 1.5;  // ratio of the singular values
+  constexpr int near = 10, rings = 3, steps = 3;
+  const ProgressMonitor::Stage stage(monitor_, "repair");
+  const CutSurface surface = open(map);
+  const Jacobians jacobians = measure_jacobians(mesh_, geometry_, map.cut_mesh, map.position);
+  const PerVertex<char> around = mark_around(mesh_, flipped, near);
+  Array<Index> where;
+  for (Index f = 0; f < mesh_.triangle_count(); ++f) {
+    if (!around[mesh_.triangles(f, 0)]) continue;
+    const double a = std::abs(jacobians.f_z[f]), b = std::abs(jacobians.f_zbar[f]);
+    if (a + b > sheared * (a - b)) where.push_back(f);
+  }
+  PerVertex<char> marked = mark_around(mesh_, where, rings);
+  const PerVertex<char> fixed = fixed_vertices(map);
+  for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+    if (fixed[v] || (mesh_.loop_of_vertex[v] == none && map.curvature.at_vertex[v] != 0)) marked[v] = 0;
+  }
+  const Eigen::VectorXcd motion = motion_of_copies(mesh_, map.cut_graph, map.cut_mesh, connection.rotation);
+  NewtonMinimizer(surface, {map.curvature.log_scale, connection.frames},
+                  free_vertices(mesh_, map.cut_mesh, motion, marked), counter(), map.position)
+      .smooth(Kind::conformal_barrier, steps);
+  check(map);
+}
+
+void ComponentRepair::twist_gradually(const ParallelTransportChoice& connections, const PerVertex<char>& fixed,
+                                      ComponentMap& map) {
+  const CutSurface surface = open(map);
+  const ParallelTransport natural = connections.at(0, map.curvature);
+  ComponentMap moved = map;
+  moved.position = PoissonSystem(surface, natural.reduction)
+                       .fit(prescribed_jacobians(mesh_, map.curvature.log_scale, natural.frames));
+  moved.position = untangle(surface, {natural, map.curvature}, {Effort::local, Kind::framed_foldover_free}, counter(),
+                            {moved.position, fixed});
+  check(moved);
+  if (moved.validity.defects() > 0) return;
+  Continuation end = follow(surface, path_between(map.curvature, connections, map.curvature), Effort::local, counter(),
+                            {moved.position, fixed});
+  if (end.reached < 1) return;
+  map.position = std::move(end.position);
+  check(map);
+}
+
+void ComponentRepair::smooth(ComponentMap& map) {
+  constexpr int steps = 4;
+  const ProgressMonitor::Stage stage(monitor_, "repair");
+  const CutSurface surface = open(map);
+  const ParallelTransport connection = connection_of(map);
+  NewtonMinimizer(surface, {map.curvature.log_scale, connection.frames},
+                  free_all(mesh_, map.cut_mesh, connection.reduction, fixed_vertices(map)), counter(), map.position)
+      .smooth(Kind::conformal_barrier, steps);
+  check(map);
+}
+
+void ComponentRepair::continue_from(const ComponentMap& start, ComponentMap& map, std::vector<Finding>& findings) {
+  const CutSurface surface = open(map);
+  const ParallelTransportChoice connections(surface, map.curvature, task_.cones.rotation_order);
+  Continuation end = follow(surface, path_between(start.curvature, connections, map.curvature), Effort::global,
+                            counter(), {start.position, fixed_vertices(map)});
+  if (end.reached < 1) {
+    if (task_.cones.rotation_order > 0) return;
+    report_adjusted(map, end, findings);
+  }
+  map.curvature = std::move(end.at.curvature);
+  map.rotation = std::move(end.at.connection.rotation);
+  map.position = std::move(end.position);
+  check(map);
+}
+
+void ComponentRepair::report_adjusted(const ComponentMap& map, const Continuation& end,
+                                      std::vector<Finding>& findings) const {
+  Eigen::Index most = 0;
+  const double off = (map.curvature.at_vertex - end.at.curvature.at_vertex).cwiseAbs().maxCoeff(&most);
+  findings.push_back(
+      {Code::angles_adjusted,
+       concat("No map without flips was found for the angles given; this one has angles ",
+              std::round(100 * end.reached), " % of the way to them from those of least distortion, up to ",
+              rounded(off * 180 / M_PI, 3),
+              " degrees off. Take angles nearer to the automatic ones, or subdivide the mesh at ", "the cones."),
+       {ElementKind::vertices, map.cones}});
+}
+
+void ComponentRepair::relax(ComponentMap& map) {
+  const ProgressMonitor::Stage stage(monitor_, "relax");
+  const CutSurface surface = open(map);
+  const ParallelTransport connection = connection_of(map);
+  map.position = lower_stretch(surface, {connection, map.curvature}, {options_.stretch, task_.importance}, counter(),
+                               {map.position, fixed_vertices(map)});
+  check(map);
+}
+
+bool ComponentRepair::may_straighten(const ComponentMap& map) const {
+  return options_.straighten && task_.cones.rotation_order == 0 && !mesh_.closed() && map.validity.defects() == 0 &&
+         map.rotation && map.pins.size() < 2 && aligned_edges(mesh_, task_.cones).empty();
+}
+
+std::optional<ComponentMap> ComponentRepair::straightened(const ComponentMap& map, double natural_l2) {
+  constexpr int attempts = 6;
+  const ProgressMonitor::Stage stage(monitor_, "relax");
+  const CutSurface surface = open(map);
+  StraightSides straight = find_straight_sides(surface, *map.rotation, map.position, most_bend(natural_l2));
+  if (!straight.is_bent() && !straight.has_axes) return std::nullopt;
+  const ParallelTransport connection = connection_of(map);
+  const double most_l2 = largest_l2_straight(natural_l2);
+  for (int attempt = 0; attempt < attempts && !straight.sides.empty(); ++attempt) {
+    ComponentMap tried = map;
+    tried.is_along_axes = straight.has_axes;
+    try {
+      tried.position = lsgp::straighten(surface, {connection, map.curvature}, {options_.stretch, task_.importance},
+                                        counter(), {map.position, straight});
+      check(tried);
+      const bool is_good = tried.validity.defects() == 0 && l2_of(tried) <= most_l2;
+      if (is_good && (!overlaps(tried) || overlaps(map))) return tried;
+    } catch (const Error& error) {
+      if (error.code() != Code::solver_failed) throw;
+    }
+    release_bent_sides(straight);
+  }
+  return std::nullopt;
+}
+
+double ComponentRepair::l2_of(const ComponentMap& map) const {
+  return l2_stretch(geometry_, measure_jacobians(mesh_, geometry_, map.cut_mesh, map.position));
+}
+
+bool ComponentRepair::overlaps(const ComponentMap& map) const {
+  PerHalfedge<Index> twin = mesh_.twin;
+  for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
+    if (is_open(mesh_, map.cut_mesh, h)) twin[h] = none;
+  }
+  return has_overlap(at_corners(map.cut_mesh, map.position), twin);
+}
+
+ParallelTransport ComponentRepair::connection_of(const ComponentMap& map) const {
+  constexpr double same_rotation = 1e-12;  // radians
+  const CutSurface surface = open(map);
+  ParallelTransport metric =
+      ParallelTransportChoice(surface, map.curvature, task_.cones.rotation_order).at(1, map.curvature);
+  const auto off = [](double a, double b) { return std::abs(std::remainder(a - b, 2 * M_PI)); };
+  for (Eigen::Index p = 0; p < map.rotation->size(); ++p) {
+    if (off(metric.rotation[p], (*map.rotation)[p]) > same_rotation) {
+      return connection_of_map(surface, map.curvature, *map.rotation, map.position);
+    }
+  }
+  return metric;
+}
+
+CutSurface ComponentRepair::open(const ComponentMap& map) const { return system_.open(map.cut_graph, map.cut_mesh); }
+
+PerVertex<char> ComponentRepair::fixed_vertices(const ComponentMap& map) const {
+  PerVertex<char> fixed(mesh_.vertex_count(), 0);
+  for (const Pin& pin : map.pins) fixed[map.cut_mesh.source[pin.copy]] = 1;
+  for (const Index h : aligned_edges(mesh_, task_.cones)) fixed[mesh_.origin(h)] = fixed[mesh_.target(h)] = 1;
+  return fixed;
+}
+
+StepHook ComponentRepair::counter() {
+  return [this] { monitor_.advance(1 - 0.5 * std::pow(0.98, ++report_->iterations)); };
+}
+
+}  // namespace lsgp
