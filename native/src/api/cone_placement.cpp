@@ -15,8 +15,8 @@
 #include "pipeline/wording.hpp"
 #include "placement/component_placement.hpp"
 #include "placement/directed_placement.hpp"
-#include "placement/mirror.hpp"
 #include "placement/twin_placement.hpp"
+#include "sites/mirror.hpp"
 #include "solvers/linear_algebra_counter.hpp"
 
 namespace lsgp {

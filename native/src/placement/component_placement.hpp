@@ -7,8 +7,8 @@
 
 #include "base/progress_monitor.hpp"
 #include "lsgp/placement.hpp"
-#include "placement/cone_chooser.hpp"
 #include "placement/shortfalls.hpp"
+#include "search/cone_chooser.hpp"
 
 namespace lsgp {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "placement/component_placement.hpp"
-#include "placement/mirror.hpp"
+#include "sites/mirror.hpp"
 
 namespace lsgp {
 

@@ -4,10 +4,10 @@
 
 #include <optional>
 
-#include "placement/cone_chooser.hpp"
-#include "placement/cone_growth.hpp"
 #include "placement/map_trial.hpp"
 #include "placement/natural_cones.hpp"
+#include "search/cone_chooser.hpp"
+#include "search/cone_growth.hpp"
 
 namespace lsgp {
 

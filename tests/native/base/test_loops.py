@@ -128,14 +128,14 @@ REVIEWED = {
     ],
     "mesh/nearest_distance.cpp": [("while (!reached.empty())", NEAREST, SHORT)],
     "mesh/topology.hpp": [("while (h != none && h != outgoing[v])", AROUND_A_VERTEX, SHORT)],
-    "placement/batch_placement.cpp": [
+    "search/batch_placement.cpp": [
         ("while (rings > 0 && cones * vertices_within() > vertices)", "rings fall from 2", SHORT),
         ("while (cone_count() < cones)", "each round adds a cone, or ends it", OWN),
     ],
-    "placement/cone_chooser.cpp": [
+    "search/cone_chooser.cpp": [
         ("while (set.cone_count() < count)", "each round adds a cone, or ends it", OWN),
     ],
-    "placement/cone_growth.cpp": [
+    "search/cone_growth.cpp": [
         (
             "while (best_.predicted_l2 > target && advance(target))",
             "each round adds cones, up to the stages or those that Gauss-Bonnet asks for, or ends it",
@@ -148,13 +148,13 @@ REVIEWED = {
             WITHIN,
         ),
     ],
-    "placement/cone_search.cpp": [
+    "search/cone_search.cpp": [
         ("while (set.cone_count() < cones)", "each round adds a cone, or ends it", OWN),
     ],
-    "placement/cone_set.cpp": [
+    "search/cone_set.cpp": [
         ("while (!reaches_sum() && out.used_reach <= widest_reach)", "the reach grows by a tenth up to 8", SHORT),
     ],
-    "placement/cone_sites.cpp": [
+    "sites/cone_sites.cpp": [
         (
             "for (int rings = 1; static_cast<int>(spread.size()) > most; ++rings)",
             "rings grow until they cover the component",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "placement/curvature_bounds.hpp"
+#include "sites/curvature_bounds.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 #include <Eigen/Core>
 
 #include "base/array.hpp"
-#include "placement/curvature_bounds.hpp"
-#include "placement/log_scale_variance.hpp"
+#include "sites/curvature_bounds.hpp"
+#include "sites/log_scale_variance.hpp"
 
 namespace lsgp {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "placement/cone_chooser.hpp"
+#include "search/cone_chooser.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <optional>
 
-#include "placement/relocation.hpp"
-#include "placement/site_prices.hpp"
 #include "plane/point_lattice.hpp"
 #include "prescription/quantize_curvature.hpp"
+#include "search/relocation.hpp"
+#include "sites/site_prices.hpp"
 
 namespace lsgp {
 

@@ -8,8 +8,8 @@
 
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
-#include "placement/cone_sites.hpp"
 #include "prescription/curvature.hpp"
+#include "sites/cone_sites.hpp"
 
 namespace lsgp {
 

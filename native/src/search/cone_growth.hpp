@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "placement/cone_chooser.hpp"
+#include "search/cone_chooser.hpp"
 
 namespace lsgp {
 

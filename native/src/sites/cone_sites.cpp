@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "placement/cone_sites.hpp"
+#include "sites/cone_sites.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "base/array.hpp"
-#include "placement/log_scale_variance.hpp"
+#include "sites/log_scale_variance.hpp"
 
 namespace lsgp {
 

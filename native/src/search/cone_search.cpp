@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "placement/cone_search.hpp"
+#include "search/cone_search.hpp"
 
 #include <algorithm>
 #include <cmath>

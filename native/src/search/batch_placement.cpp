@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "placement/batch_placement.hpp"
+#include "search/batch_placement.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "placement/site_prices.hpp"
+#include "sites/site_prices.hpp"
 
 #include <algorithm>
 #include <cmath>

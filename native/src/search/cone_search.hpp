@@ -6,7 +6,7 @@
 
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
-#include "placement/cone_set.hpp"
+#include "search/cone_set.hpp"
 
 namespace lsgp {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/array.hpp"
-#include "placement/cone_search.hpp"
+#include "search/cone_search.hpp"
 
 namespace lsgp {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "placement/mirror.hpp"
+#include "sites/mirror.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "base/checkpoint.hpp"
-#include "placement/point_tree.hpp"
+#include "sites/point_tree.hpp"
 
 namespace lsgp {
 

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "base/array.hpp"
-#include "placement/cone_sites.hpp"
+#include "sites/cone_sites.hpp"
 
 namespace lsgp {
 

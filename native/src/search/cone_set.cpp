@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "placement/cone_set.hpp"
+#include "search/cone_set.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -7,9 +7,9 @@
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
 #include "lsgp/placement.hpp"
-#include "placement/batch_placement.hpp"
-#include "placement/cone_search.hpp"
 #include "prescription/curvature.hpp"
+#include "search/batch_placement.hpp"
+#include "search/cone_search.hpp"
 
 namespace lsgp {
 

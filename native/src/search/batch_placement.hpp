@@ -7,8 +7,8 @@
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
 #include "mesh/nearest_distance.hpp"
-#include "placement/cone_search.hpp"
-#include "placement/cone_set.hpp"
+#include "search/cone_search.hpp"
+#include "search/cone_set.hpp"
 
 namespace lsgp {
 

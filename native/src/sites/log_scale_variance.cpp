@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "placement/log_scale_variance.hpp"
+#include "sites/log_scale_variance.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
