@@ -238,7 +238,7 @@ TREES = (
         (
             Room("tasks", ("__init__.py", "tasks/*")),
             Room("uv_maps", ("uv_maps/*",)),
-            Room("angles", ("angles/*",)),
+            Room("angles", ("angles/*",), ("tasks",)),
             Room("layouts", ("layouts/*",), ("tasks", "uv_maps")),
             Room("sessions", ("sessions/*",), ("tasks", "uv_maps", "angles", "layouts")),
             Room("batch", ("batch/*",), ("tasks", "layouts")),
