@@ -106,7 +106,8 @@ ComponentMap map_component(ComponentSystem& system, const ComponentTask& task, c
                            std::vector<Finding>& findings, ProgressMonitor& monitor) {
   std::optional<RepairReport> repair;
   auto [map, found] = find_valid_map(system, task, options, monitor, repair);
-  if (map.validity.defects() > 0 && repairs(options) && closes_holes(map) && task.cones.holes != Holes::as_they_are) {
+  const bool chooses_holes = task.cones.holes == Holes::where_cheap || task.cones.holes == Holes::all;
+  if (map.validity.defects() > 0 && repairs(options) && closes_holes(map) && chooses_holes) {
     ComponentTask opened = task;
     opened.cones.holes = Holes::as_they_are;
     FoundMap other = find_valid_map(system, opened, options, monitor, repair);

@@ -76,20 +76,6 @@ Eigen::VectorXcd unfold_along_borders(const CutSurface& surface, const Component
   return unfold_aligned(surface, connection.reduction, jacobians, edges, directions);
 }
 
-// The fit to the prescribed Jacobians with every triangle's error relative to its scale: if scales differ much, large
-// triangles dominate the plain fit. One more factorization.
-Eigen::VectorXcd unfold_relatively(const CutSurface& surface, const Curvature& curvature,
-                                   const ParallelTransport& connection) {
-  Jacobians jacobians = prescribed_jacobians(surface.mesh, curvature.log_scale, connection.frames);
-  constexpr double widest_range = 1e8;  // of the weights, so that the form can be factored
-  Eigen::VectorXd weight = jacobians.f_z.cwiseAbs2().cwiseInverse();
-  weight = weight.cwiseMin(widest_range * weight.minCoeff());
-  const Geometry weighted = with_weights(surface.geometry, weight);
-  jacobians.f_z = jacobians.f_z.cwiseProduct(weight);
-  const CutSurface weighted_surface{surface.mesh, weighted, surface.cut_graph, surface.cut_mesh};
-  return PoissonSystem(weighted_surface, connection.reduction).fit(jacobians);
-}
-
 // The largest bend of sides that are straightened, radians; the smaller, the closer the map is to an isometry, whose
 // angles are those of the surface up to the precision of the file.
 double most_bend(double l2) {
@@ -102,6 +88,15 @@ double largest_l2_straight(double l2) {
   constexpr double share = 0.1, least = 0.002, most_times = 20, rounding = 1e-6;
   const double excess = std::max(0.0, l2 - 1);
   return l2 + std::min(std::max(share * excess, least), most_times * excess) + rounding;
+}
+
+// The metric of the surface itself with the angles of another one.
+Curvature metric_of(ComponentSystem& system, ComponentCones cones, const Curvature& other) {
+  for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
+    cones.angles[i] = system.mesh().flat_angle(cones.vertices[i]) - other.at_vertex[cones.vertices[i]];
+  }
+  std::vector<Finding> unsaid;
+  return prescribe(system, cones, PrescriptionRule::manual, unsaid);
 }
 
 // Lengths in the layout may differ by no more than e^widest.
@@ -177,12 +172,16 @@ ComponentMap Mapping::attempt(const ComponentCones& cones, Effort effort, std::v
 }
 
 void Mapping::approach_angles(ComponentMap& map, std::vector<Finding>& findings) {
-  if (!aligned_edges().empty() || map.pins.size() > 1 || map.cones.empty()) return;
+  if (task_.cones.border == BorderMode::straight || map.pins.size() > 1 || map.cones.empty()) return;
   const ProgressMonitor::Stage stage(monitor_, "repair");
   ComponentTask automatic = task_;
   automatic.cones.vertices = map.cones;
-  automatic.cones.angles.assign(map.cones.size(), std::nullopt);
+  for (const Index v : task_.cones.vertices) {
+    if (mesh_.loop_of_vertex[v] != none) automatic.cones.vertices.push_back(v);
+  }
+  automatic.cones.angles.assign(automatic.cones.vertices.size(), std::nullopt);
   automatic.cones.symmetry = 0;
+  automatic.cones.holes = Holes::as_given;
   for (std::size_t loop = 0; loop < map.curvature.needs_no_cut.size(); ++loop) {
     if (map.curvature.needs_no_cut[loop]) automatic.cones.loop_turning[loop] = once_around_a_hole;
   }
@@ -191,20 +190,28 @@ void Mapping::approach_angles(ComponentMap& map, std::vector<Finding>& findings)
   plain.mode = Mode::conformal;
   std::vector<Finding> unsaid;
   ComponentSystem system(mesh_, geometry_, automatic.cones, options_.factorization);
-  const ComponentMap start = map_component(system, automatic, plain, unsaid, monitor_);
+  ComponentMap start = map_component(system, automatic, plain, unsaid, monitor_);
   repair_->iterations += start.repair.iterations;
-  if (start.validity.defects() > 0 || start.cut_graph.is_cut != map.cut_graph.is_cut) return;
-  const CutSurface surface = open(map);
-  const ParallelTransportChoice connections(surface, map.curvature, task_.cones.symmetry);
-  Continuation end = follow(surface, path_between(start.curvature, connections, map.curvature), Effort::global,
-                            counter(), {start.position, fixed_vertices(map)});
-  if (end.reached < 1) {
+  if (start.validity.defects() > 0 || start.curvature.needs_no_cut != map.curvature.needs_no_cut) return;
+  // Either map may be of fatter triangles, whose metric and cuts are others.
+  const Curvature begin = metric_of(system, automatic.cones, start.curvature);
+  const Curvature end = task_.cones.symmetry > 0 ? map.curvature : metric_of(system, automatic.cones, map.curvature);
+  const CutSurface surface = system.open(start.cut_graph, start.cut_mesh);
+  const ParallelTransportChoice connections(surface, end, task_.cones.symmetry);
+  Path path = path_between(begin, connections, end);
+  path.aligned = aligned_edges();
+  Continuation found = follow(surface, path, Effort::global, counter(), {start.position, fixed_vertices(map)});
+  if (found.reached < 1) {
     if (task_.cones.symmetry > 0) return;
-    report_adjusted(map, end, findings);
+    report_adjusted(map, found, findings);
   }
-  map.curvature = std::move(end.at.curvature);
-  map.rotation = std::move(end.at.connection.rotation);
-  map.position = std::move(end.position);
+  map.cut_graph = std::move(start.cut_graph);
+  map.cut_mesh = std::move(start.cut_mesh);
+  map.required_cuts = std::move(start.required_cuts);
+  map.pins = std::move(start.pins);
+  map.curvature = std::move(found.at.curvature);
+  map.rotation = std::move(found.at.connection.rotation);
+  map.position = std::move(found.position);
   check(map);
 }
 
@@ -348,7 +355,8 @@ void Mapping::repair(const ParallelTransportChoice& connections, const ParallelT
   const bool tangled = static_cast<double>(map.validity.flipped.size()) > tangled_share * mesh_.triangle_count();
   if (tangled && aligned_edges().empty() && map.pins.size() < 2) {
     ComponentMap relative = map;
-    relative.position = unfold_relatively(surface, map.curvature, connection);
+    const RelativeFit fit(surface, prescribed_jacobians(mesh_, map.curvature.log_scale, connection.frames));
+    relative.position = PoissonSystem(fit.surface(), connection.reduction).fit(fit.jacobians());
     check(relative);
     if (relative.validity.defects() < map.validity.defects()) {
       map = std::move(relative);
@@ -410,15 +418,17 @@ void Mapping::twist_gradually(const ParallelTransportChoice& connections, const 
 }
 
 void Mapping::report_adjusted(const ComponentMap& map, const Continuation& end, std::vector<Finding>& findings) const {
-  Eigen::Index most = 0;
-  const double off = (map.curvature.at_vertex - end.at.curvature.at_vertex).cwiseAbs().maxCoeff(&most);
+  double off = 0;
+  for (const Index v : task_.cones.vertices) {
+    off = std::max(off, std::abs(map.curvature.at_vertex[v] - end.at.curvature.at_vertex[v]));
+  }
   findings.push_back(
       {Code::angles_adjusted,
        concat("No map without flips was found for the angles given; this one has angles ",
               std::round(100 * end.reached), " % of the way to them from those of least distortion, up to ",
               rounded(off * 180 / M_PI, 3),
               " degrees off. Take angles nearer to the automatic ones, or subdivide the mesh at ", "the cones."),
-       {ElementKind::vertices, map.cones}});
+       {ElementKind::vertices, task_.cones.vertices}});
 }
 
 ParallelTransport Mapping::connection_of(const ComponentMap& map) const {

@@ -104,6 +104,7 @@ enum class Holes {
   where_cheap,  // those that cost hardly any stretch
   all,          // all, as far as a map can be computed
   as_they_are,  // those about which the metric turns nearly once
+  as_given,     // those whose turning is prescribed
 };
 
 // The requirements on one component's metric, in its own vertex numbers.

@@ -2,6 +2,7 @@
 #include "unfold/unfold.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "base/thread_team.hpp"
 #include "solvers/eigenproblem.hpp"
@@ -153,6 +154,16 @@ Jacobians prescribed_jacobians(const HalfedgeMesh& mesh, const Eigen::VectorXd& 
     out.f_z[f] = std::polar(scale, frames[f]);
   });
   return out;
+}
+
+RelativeFit::RelativeFit(const CutSurface& surface, Jacobians jacobians)
+    : surface_(surface), jacobians_(std::move(jacobians)) {
+  constexpr double widest_range = 1e8;  // of the weights, so that the form can be factored
+  Eigen::VectorXd weight = jacobians_.f_z.cwiseAbs2().cwiseInverse();
+  weight = weight.cwiseMin(widest_range * weight.minCoeff());
+  weighted_ = with_weights(surface.geometry, weight);
+  jacobians_.f_z = jacobians_.f_z.cwiseProduct(weight);
+  jacobians_.f_zbar = jacobians_.f_zbar.cwiseProduct(weight);
 }
 
 Jacobians measure_jacobians(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,

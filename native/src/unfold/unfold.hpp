@@ -70,6 +70,21 @@ Jacobians prescribed_jacobians(const HalfedgeMesh& mesh, const Eigen::VectorXd& 
 Jacobians measure_jacobians(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
                             const Eigen::VectorXcd& position);
 
+// What to fit for every triangle's error to count relative to the scale of its target: if scales differ much, large
+// triangles dominate the plain fit.
+class RelativeFit {
+ public:
+  RelativeFit(const CutSurface& surface, Jacobians jacobians);
+
+  CutSurface surface() const { return {surface_.mesh, weighted_, surface_.cut_graph, surface_.cut_mesh}; }
+  const Jacobians& jacobians() const { return jacobians_; }
+
+ private:
+  const CutSurface surface_;
+  Jacobians jacobians_;
+  Geometry weighted_;
+};
+
 // Each returns the positions u + iv of all copies.
 
 // The direction of boundary edges in the metric (halfedges with the surface on their left), radians.
