@@ -7,11 +7,10 @@
 
 #include "base/text.hpp"
 #include "mesh/border.hpp"
-#include "plane/overlaps.hpp"
+#include "pipeline/straightening.hpp"
 #include "prescription/border_turning.hpp"
 #include "prescription/parallel_transport.hpp"
 #include "repair/low_stretch.hpp"
-#include "repair/straighten.hpp"
 #include "repair/untangle.hpp"
 #include "systems/quadratic_forms.hpp"
 #include "unfold/unfold.hpp"
@@ -74,20 +73,6 @@ Eigen::VectorXcd unfold_along_borders(const CutSurface& surface, const Component
     turn_cornerless_borders(mesh, cones.vertices, at_corners(map.cut_mesh, natural), edges, directions);
   }
   return unfold_aligned(surface, connection.reduction, jacobians, edges, directions);
-}
-
-// The largest bend of sides that are straightened, radians; the smaller, the closer the map is to an isometry, whose
-// angles are those of the surface up to the precision of the file.
-double most_bend(double l2) {
-  constexpr double widest = 10 * M_PI / 180, beside_stretch = 30, rounding = 1e-3;
-  return std::min(widest, rounding + beside_stretch * std::sqrt(std::max(0.0, l2 - 1)));
-}
-
-// The L2 stretch that straight sides may cost: hardly any more if the map is isometric.
-double largest_l2_straight(double l2) {
-  constexpr double share = 0.1, least = 0.002, most_times = 20, rounding = 1e-6;
-  const double excess = std::max(0.0, l2 - 1);
-  return l2 + std::min(std::max(share * excess, least), most_times * excess) + rounding;
 }
 
 // The metric of the surface itself with the angles of another one.
@@ -231,36 +216,23 @@ bool Mapping::may_straighten(const ComponentMap& map) const {
 
 void Mapping::straighten(ComponentMap& map) {
   if (!may_straighten(map)) return;
-  const double natural_l2 = l2_of(map);
+  map.natural_l2 = l2_stretch(geometry_, measure_jacobians(mesh_, geometry_, map.cut_mesh, map.position));
   std::optional<ComponentMap> found;
-  if (const std::optional<ComponentMap> turned = with_quarter_turns(map)) found = straightened(*turned, natural_l2);
-  if (!found) found = straightened(map, natural_l2);
+  if (std::optional<ComponentMap> turned = with_quarter_turns(map)) {
+    turned->natural_l2 = map.natural_l2;
+    found = straightened(*turned);
+  }
+  if (!found) found = straightened(map);
   if (found) map = std::move(*found);
 }
 
-std::optional<ComponentMap> Mapping::straightened(const ComponentMap& map, double natural_l2) {
-  constexpr int attempts = 6;
+std::optional<ComponentMap> Mapping::straightened(const ComponentMap& map) {
   const ProgressMonitor::Stage stage(monitor_, "relax");
   const CutSurface surface = open(map);
-  StraightOutline outline = find_straight_sides(surface, *map.rotation, map.position, most_bend(natural_l2));
-  if (!outline.is_bent() && !outline.has_axes) return std::nullopt;
-  const ParallelTransport connection = connection_of(map);
-  const double most_l2 = largest_l2_straight(natural_l2);
-  for (int attempt = 0; attempt < attempts && !outline.sides.empty(); ++attempt) {
-    ComponentMap straight = map;
-    straight.is_along_axes = outline.has_axes;
-    try {
-      straight.position = lsgp::straighten(surface, {connection, map.curvature}, {options_.stretch, task_.importance},
-                                           counter(), {map.position, outline});
-      check(straight);
-      const bool is_good = straight.validity.defects() == 0 && l2_of(straight) <= most_l2;
-      if (is_good && (!overlaps(straight) || overlaps(map))) return straight;
-    } catch (const Error& error) {
-      if (error.code() != Code::solver_failed) throw;
-    }
-    release_bent_sides(outline);
-  }
-  return std::nullopt;
+  std::optional<StraightOutline> outline = sides_to_straighten(surface, map, false);
+  if (!outline) return std::nullopt;
+  return with_straight_sides({surface, connection_of(map), {options_.stretch, task_.importance}, counter()}, map,
+                             std::move(*outline));
 }
 
 std::optional<ComponentMap> Mapping::with_quarter_turns(const ComponentMap& map) {
@@ -288,18 +260,6 @@ std::optional<ComponentMap> Mapping::with_quarter_turns(const ComponentMap& map)
     if (error.code() != Code::loop_turning && error.code() != Code::solver_failed) throw;
   }
   return std::nullopt;
-}
-
-double Mapping::l2_of(const ComponentMap& map) const {
-  return l2_stretch(geometry_, measure_jacobians(mesh_, geometry_, map.cut_mesh, map.position));
-}
-
-bool Mapping::overlaps(const ComponentMap& map) const {
-  PerHalfedge<Index> twin = mesh_.twin;
-  for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
-    if (is_open(mesh_, map.cut_mesh, h)) twin[h] = none;
-  }
-  return has_overlap(at_corners(map.cut_mesh, map.position), twin);
 }
 
 void Mapping::smooth(ComponentMap& map) {
@@ -336,15 +296,7 @@ void Mapping::cut(ComponentMap& map) const {
 
 void Mapping::check(ComponentMap& map) {
   const ProgressMonitor::Stage stage(monitor_, "check");
-  if (!map.position.allFinite()) {
-    throw Error(Code::solver_failed,
-                "The unfolding returned values that are not finite. Clean the mesh (merge by distance, "
-                "dissolve degenerate faces) and try again.");
-  }
-  const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
-  map.uv_area = 0;
-  for (Index f = 0; f < mesh_.triangle_count(); ++f) map.uv_area += doubled_area(corners, f) / 2;
-  check_triangles(mesh_, corners, map);
+  check_positions(mesh_, map);
 }
 
 void Mapping::repair(const ParallelTransportChoice& connections, const ParallelTransport& connection,

@@ -69,13 +69,10 @@ class Mapping {
   StepHook counter();
   bool may_straighten(const ComponentMap& map) const;
   // None if no attempt stays within its bounds or if there is nothing to straighten.
-  std::optional<ComponentMap> straightened(const ComponentMap& map, double natural_l2);
+  std::optional<ComponentMap> straightened(const ComponentMap& map);
   // The map of low stretch whose boundaries turn by multiples of a quarter turn, if they nearly do; none if they
   // already do or if they are far from it.
   std::optional<ComponentMap> with_quarter_turns(const ComponentMap& map);
-  double l2_of(const ComponentMap& map) const;
-  // Whether the layout overlaps itself, judged by its outline.
-  bool overlaps(const ComponentMap& map) const;
 
   ComponentSystem& system_;
   const HalfedgeMesh& mesh_;

@@ -10,6 +10,7 @@
 #include "solvers/sparse_assembly.hpp"
 #include "systems/quadratic_forms.hpp"
 #include "systems/schur_complement.hpp"
+#include "unfold/distortion.hpp"
 
 namespace lsgp {
 
@@ -178,6 +179,15 @@ Jacobians measure_jacobians(const HalfedgeMesh& mesh, const Geometry& geometry, 
     }
   });
   return out;
+}
+
+double l2_stretch(const Geometry& geometry, const Jacobians& jacobians) {
+  L2Stretch stretch;
+  for (Eigen::Index f = 0; f < jacobians.f_z.size(); ++f) {
+    const double p = std::norm(jacobians.f_z[f]), q = std::norm(jacobians.f_zbar[f]);
+    stretch.add(geometry.area[f], geometry.area[f] * (p - q), (p + q) / ((p - q) * (p - q)));
+  }
+  return stretch.value();
 }
 
 Eigen::VectorXd metric_directions(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& log_scale,

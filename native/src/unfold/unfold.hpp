@@ -85,6 +85,9 @@ class RelativeFit {
   Geometry weighted_;
 };
 
+// The L2 stretch of a map without flips.
+double l2_stretch(const Geometry& geometry, const Jacobians& jacobians);
+
 // Each returns the positions u + iv of all copies.
 
 // The direction of boundary edges in the metric (halfedges with the surface on their left), radians.
