@@ -280,7 +280,7 @@ void Mapping::cut(ComponentMap& map) const {
   }
   const PerLoop<char>& uncut = map.curvature.needs_no_cut;
   if (std::find(uncut.begin(), uncut.end(), 1) != uncut.end()) {
-    map.cut_graph = connect_cones(mesh_, geometry_, map.cones, uncut);
+    map.cut_graph = system_.connect(map.cones, uncut);
   } else if (map.flat_cones.empty()) {
     map.cut_graph = system_.all_cuts();
   } else {

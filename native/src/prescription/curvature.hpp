@@ -13,6 +13,7 @@
 #include "lsgp/options.hpp"
 #include "mesh/border.hpp"
 #include "mesh/geometry.hpp"
+#include "mesh/mirror.hpp"
 #include "mesh/topology.hpp"
 #include "systems/laplace_solver.hpp"
 
@@ -116,6 +117,7 @@ struct ComponentCones {
   Holes holes = Holes::where_cheap;
   AngleRange range = widest_angles;  // of automatic ones
   int symmetry = 0;                  // q: angles of cones and turning of boundaries are multiples of 2 pi / q; 0: any
+  Mirroring mirroring;               // cuts are symmetric in it if it is not empty
 };
 
 // The target of a component's map.
