@@ -251,6 +251,7 @@ lsgp::Options to_options(const py::dict& values) {
   options.overlaps = choose<Overlaps>(text("overlaps"), {{"keep", Overlaps::keep}, {"split", Overlaps::split}});
   options.compact = choose<Compactness>(
       text("compact"), {{"off", Compactness::off}, {"sparing", Compactness::sparing}, {"full", Compactness::full}});
+  options.mirrored_cuts = values["mirrored_cuts"].cast<bool>();
   options.square_share = values["square_share"].cast<double>();
   options.factorization = choose<Factorization>(
       text("factorization"),

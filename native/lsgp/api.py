@@ -205,6 +205,8 @@ class Options:
         with arms: "off"; "sparing", only where a short cut fills much of the square, and in no component with marked
         seams; "full", wherever the filled area outweighs the cost of the cut and the additional island. Transitions
         stay exact. Components with pins keep their islands.
+    mirrored_cuts: cuts are alike on both sides of a component's mirror plane, which is detected, if its cones are and
+        that costs at most half as much again. Those that split overlaps, and those of compact, may differ.
     square_share: with compact, the area available to these islands, 1 being a whole square: less if other surfaces are
         packed beside them, so that they are cut less; the number of UDIM tiles, up to 100, so that all are filled.
     factorization: how linear systems are solved; maps differ only by rounding. "cut" factors once and leaves dense
@@ -230,6 +232,7 @@ class Options:
     repair: bool = True
     overlaps: Overlaps = "keep"
     compact: Compactness = "off"
+    mirrored_cuts: bool = False
     square_share: float = 1.0
     factorization: Factorization = "automatic"
     threads: int = 0
@@ -243,6 +246,7 @@ class Options:
             arguments.refuse("seamless", self.seamless, "pass a Seamless, or None")
         _set(self, "stretch", arguments.number("stretch", self.stretch, "pass a number from 0 to 1"))
         _set(self, "straighten", arguments.flag("straighten", self.straighten))
+        _set(self, "mirrored_cuts", arguments.flag("mirrored_cuts", self.mirrored_cuts))
         _set(self, "repair", arguments.flag("repair", self.repair))
         share = arguments.number("square_share", self.square_share, "pass a number above 0, up to 100")
         _set(self, "square_share", share)

@@ -94,8 +94,9 @@ def auto_unwrap(
     options: instead of `preset_options(preset)`. count: cones on each component that gets some, as for `place_cones`;
         None: the fewest that bring the L2 stretch to 1.05.
     symmetric: whether cones are placed alike on both sides of a mirror plane, and on parts that mirror each other, as
-        by `place_cones`, if that costs little: at most 1 % of L2 stretch, one island for ten, a quarter of the edges
-        cut, and some 3 % of the filled part of the square. Only without cones and `count`.
+        by `place_cones`, and cuts run alike on both sides, as with `Options.mirrored_cuts`, if that costs little: at
+        most 1 % of L2 stretch, one island for ten, a quarter of the edges cut, and some 3 % of the filled part of the
+        square. Only without cones and `count`.
     creases: whether hard surfaces may be cut at their creases, as in `with_crease_borders`, which takes `sharp`.
     pack: "tight": as by `pack_islands`; "shelves": in rows; None: tight if `packer_name` returns a packer. Layouts that
         are seamless, pinned or in UDIM tiles at a texel density are never packed.
@@ -177,13 +178,18 @@ class CompletedCones:
 
     cones: (k,) int32, given ones first. angles: one each for `parameterize`, None = automatic. placement: on the
     components that needed or were tried for cones; None if there are none. by_target: whether the number was determined
-    by a target stretch.
+    by a target stretch. is_symmetric: whether they mirror each other, so that cuts may as well.
     """
 
     cones: IndexArray
     angles: list[float | None]
     placement: Placement | None
     by_target: bool = True
+    is_symmetric: bool = False
+
+    def options_of_map(self, options: Options) -> Options:
+        """Those of a map through these cones."""
+        return replace(options, mirrored_cuts=options.mirrored_cuts or self.is_symmetric)
 
     def told(self, result: Result, options: Options) -> Result:
         """The result of a map through these cones with the applicable warnings of their placement."""
@@ -260,9 +266,12 @@ def possible_cones(
         alike = replace(alike, placement=replace(alike.placement, warnings=others))
         if sum(len(finding.elements.indices) for finding in odd) == len(surface.triangles):
             return [alike]
+        alike = replace(alike, is_symmetric=True)
     usual = complete_cones(surface, cones, angles, options, count, part_of(progress, TRYING, 1.0))
-    is_same = alike is None or set(alike.cones.tolist()) == set(usual.cones.tolist())
-    return [usual] if is_same else [usual, alike]
+    if alike is None:
+        return [usual]
+    is_same = set(alike.cones.tolist()) == set(usual.cones.tolist())
+    return [replace(usual, is_symmetric=True)] if is_same else [usual, alike]
 
 
 def best_map(
@@ -278,10 +287,10 @@ def best_map(
     """
     usual, *others = choices
     most = 1.0 if not others else TRYING
-    best = usual, parameterize(surface, usual.cones, usual.angles, options, pins, part_of(progress, 0.0, most))
+    best = usual, _map_through(surface, usual, options, pins, part_of(progress, 0.0, most))
     for alike in others:
         try:
-            result = parameterize(surface, alike.cones, alike.angles, options, pins, part_of(progress, most, 1.0))
+            result = _map_through(surface, alike, options, pins, part_of(progress, most, 1.0))
         except Cancelled:
             raise
         except LsgpError:
@@ -289,6 +298,13 @@ def best_map(
         if may_replace_map(result, best[1]):
             best = alike, result
     return best[0], best[0].told(best[1], options)
+
+
+def _map_through(
+    surface: Surface, completed: CompletedCones, options: Options, pins: Pins | None, progress: Progress | None
+) -> Result:
+    chosen = completed.options_of_map(options)
+    return parameterize(surface, completed.cones, completed.angles, chosen, pins, progress)
 
 
 def joined_warnings(of_placement: Sequence[Finding], of_map: Sequence[Finding]) -> list[Finding]:

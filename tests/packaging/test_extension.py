@@ -129,7 +129,7 @@ def test_a_wheel_for_a_platform_without_blender_is_refused(wheel, bpy_python, tm
 def test_released_wheels_are_those_the_zips_are_made_of():
     builds = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["cibuildwheel"]["build"]
     workflow = (ROOT / ".github" / "workflows" / "wheels.yml").read_text()
-    assert {f"{tag}-*" for tag in stage_extension.OFFICIAL} == set(builds)
+    assert {f"{tag}-*" for tag in stage_extension.OFFICIAL} < set(builds)
     assert f"for python in {' '.join(stage_extension.OFFICIAL)};" in workflow
 
 

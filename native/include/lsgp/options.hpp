@@ -113,6 +113,9 @@ struct Options {
   bool repair = true;  // of flipped triangles and angles off by a turn
   Overlaps overlaps = Overlaps::keep;
   Compactness compact = Compactness::off;
+  // Cuts are alike on both sides of a component's mirror plane, which is detected, if its cones are and that costs
+  // little.
+  bool mirrored_cuts = false;
   double square_share = 1;  // with compact: number of squares for these islands, above 0: part of one, or UDIM tiles
   Factorization factorization = Factorization::automatic;
   // Number of threads for large factorizations, up to 1024; the result does not depend on it. 0: the value of the

@@ -11,7 +11,9 @@
 #include "api/vertex_pairs.hpp"
 #include "base/text.hpp"
 #include "base/thread_team.hpp"
+#include "pipeline/straightening.hpp"
 #include "plane/overlaps.hpp"
+#include "repair/straight_sides.hpp"
 #include "seamless/exact_layout.hpp"
 #include "split/compact_islands.hpp"
 #include "split/split_map.hpp"
@@ -79,6 +81,11 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
     const SharedSquare square{surface_area_ / options_.square_share, scale_to_surface(component.mesh, geometry, map),
                               options_.compact};
     compact_islands({component.mesh, geometry, open_seams(component.mesh)}, square, map);
+  }
+  if (map.natural_l2 > 0) {
+    const ProgressMonitor::Stage stage(monitor_, "relax");
+    straighten_islands(
+        component.mesh, geometry, {options_.stretch, task.importance}, [this] { monitor_.advance(0); }, map);
   }
   defects_.pinned = defects_.pinned || map.pins.size() > 1;
   move_findings(component, findings, result_.warnings);
@@ -250,6 +257,8 @@ void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
     listed_in[copy] = part;
     copies[part].push_back(copy);
   }
+  Array<std::optional<Complex>> axes;
+  if (map.natural_l2 > 0) axes = turns_to_axes(mesh, map.cut_mesh, map.position, solved.part);
   for (Index part = 0; part < solved.part_count; ++part) {
     const Array<Index>& own = copies[part];
     Island island{Eigen::VectorXcd(own.size()), upward[part].turn(), std::nullopt, static_cast<Index>(solved_.size())};
@@ -259,7 +268,7 @@ void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
         island.pin = {static_cast<Eigen::Index>(k), map.pins.front().position};
       }
     }
-    island.has_axes = map.is_along_axes;
+    if (!axes.empty()) island.axes = axes[part];
     islands_.push_back(std::move(island));
   }
 }

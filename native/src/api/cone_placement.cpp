@@ -10,13 +10,13 @@
 #include "base/text.hpp"
 #include "base/thread_team.hpp"
 #include "lsgp/lsgp.hpp"
+#include "mesh/mirror.hpp"
 #include "pipeline/components.hpp"
 #include "pipeline/validation.hpp"
 #include "pipeline/wording.hpp"
 #include "placement/component_placement.hpp"
 #include "placement/directed_placement.hpp"
 #include "placement/twin_placement.hpp"
-#include "sites/mirror.hpp"
 #include "solvers/linear_algebra_counter.hpp"
 
 namespace lsgp {
@@ -132,7 +132,7 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
   work.for_each([&](const Component& component, const Geometry& geometry, const ComponentCones& cones,
                     const PerVertex<char>& allowed, std::vector<Finding>& findings) {
     PerVertex<Index> mirrored;
-    if (options.symmetric) mirrored = find_mirror_images(component.mesh, geometry, plane);
+    if (options.symmetric) mirrored = find_mirror_images(component.mesh, geometry, plane).image;
     if (options.symmetric && mirrored.empty() && !twins.is_mirrored(component)) {
       shortfalls.add_asymmetric(component.source_triangle);
     }

@@ -24,7 +24,7 @@ namespace lsgp {
 namespace {
 
 bool same_cones(const ComponentCones& a, const ComponentCones& b) {
-  return a.vertices == b.vertices && a.border == b.border;
+  return a.vertices == b.vertices && a.border == b.border && a.mirroring.image == b.mirroring.image;
 }
 
 class Pipeline {
@@ -38,8 +38,9 @@ class Pipeline {
   // Cached data of one component.
   struct Kept {
     Geometry geometry;
-    std::vector<Finding> found;  // while it was built
-    ComponentCones cones;        // of the system
+    std::optional<Mirroring> mirroring;  // where it was asked for
+    std::vector<Finding> found;          // while it was built
+    ComponentCones cones;                // of the system
     Factorization factorization = Factorization::automatic;
     std::optional<ComponentSystem> system;
   };
@@ -47,6 +48,7 @@ class Pipeline {
   void prepare_work(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
                     std::vector<Finding>& findings);
   const Geometry& geometry_of(std::size_t i, std::vector<Finding>& findings);
+  const Mirroring& mirroring_of(std::size_t i);
   ComponentSystem& system_of(std::size_t i, const Options& options);
   void release(std::size_t i) {
     if (!keeps_systems_) kept_[i]->system->release();
@@ -80,6 +82,14 @@ const Geometry& Pipeline::geometry_of(std::size_t i, std::vector<Finding>& findi
   }
   findings.insert(findings.end(), kept_[i]->found.begin(), kept_[i]->found.end());
   return kept_[i]->geometry;
+}
+
+const Mirroring& Pipeline::mirroring_of(std::size_t i) {
+  Kept& kept = *kept_[i];
+  if (!kept.mirroring) {
+    kept.mirroring = find_mirror_images(work_.topology.components[i].mesh, kept.geometry, std::nullopt);
+  }
+  return *kept.mirroring;
 }
 
 ComponentSystem& Pipeline::system_of(std::size_t i, const Options& options) {
@@ -125,6 +135,7 @@ Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& 
     {
       const ProgressMonitor::Stage stage(monitor, "geometry");
       geometry_of(i, result.warnings);
+      if (options.mirrored_cuts) work_.tasks[i].cones.mirroring = mirroring_of(i);
     }
     ComponentMap map = map_component(system_of(i, options), task, options, found[i], monitor);
     release(i);

@@ -15,4 +15,16 @@ void check_triangles(const HalfedgeMesh& mesh, const CornerPositions& corners, C
   map.validity.inexact_angles.clear();
 }
 
+void check_positions(const HalfedgeMesh& mesh, ComponentMap& map) {
+  if (!map.position.allFinite()) {
+    throw Error(Code::solver_failed,
+                "The unfolding returned values that are not finite. Clean the mesh (merge by distance, "
+                "dissolve degenerate faces) and try again.");
+  }
+  const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
+  map.uv_area = 0;
+  for (Index f = 0; f < mesh.triangle_count(); ++f) map.uv_area += doubled_area(corners, f) / 2;
+  check_triangles(mesh, corners, map);
+}
+
 }  // namespace lsgp

@@ -30,8 +30,8 @@ struct ComponentMap {
   std::optional<Eigen::VectorXd> rotation;  // (cuts) imposed, radians; none without transitions
   Eigen::VectorXcd position;                // (copies) u + iv
   Array<Pin> pins;
-  bool is_along_axes = false;  // most straight sides of `position` are along u and v
-  double uv_area = 0;          // signed
+  double natural_l2 = 0;  // before sides were straightened; 0 if none may be
+  double uv_area = 0;     // signed
   SeamQuality seams;
   Array<Index> inexact_seams;  // halfedges
   Validity validity;
@@ -41,5 +41,8 @@ struct ComponentMap {
 // Measure positions u + iv at the component's corners, (3m), against what the map imposed.
 void check_seams(const HalfedgeMesh& mesh, const CornerPositions& corners, ComponentMap& map);
 void check_triangles(const HalfedgeMesh& mesh, const CornerPositions& corners, ComponentMap& map);
+
+// Measures the map's own positions in this way, and their area. Throws SOLVER_FAILED if some are not finite.
+void check_positions(const HalfedgeMesh& mesh, ComponentMap& map);
 
 }  // namespace lsgp

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/text.hpp"
 #include "pipeline/component_unfold.hpp"
-#include "plane/overlaps.hpp"
+#include "pipeline/straightening.hpp"
 #include "repair/low_stretch.hpp"
-#include "repair/straighten.hpp"
 #include "repair/untangle.hpp"
 #include "unfold/jacobians.hpp"
 
@@ -20,33 +20,11 @@ using Kind = DistortionEnergy::Kind;
 
 constexpr double tangled_share = 0.002;  // of the triangles flipped, for which another fit is tried
 
-// The largest bend of sides that are straightened, radians; the smaller, the closer the map is to an isometry, whose
-// angles are those of the surface up to the precision of the file.
-double most_bend(double l2) {
-  constexpr double widest = 10 * M_PI / 180, beside_stretch = 30, rounding = 1e-3;
-  return std::min(widest, rounding + beside_stretch * std::sqrt(std::max(0.0, l2 - 1)));
-}
-
-// The L2 stretch that straight sides may cost: hardly any more if the map is isometric.
-double largest_l2_straight(double l2) {
-  constexpr double share = 0.1, least = 0.002, most_times = 20, rounding = 1e-6;
-  const double excess = std::max(0.0, l2 - 1);
-  return l2 + std::min(std::max(share * excess, least), most_times * excess) + rounding;
-}
-
 }  // namespace
 
 void ComponentRepair::check(ComponentMap& map) {
   const ProgressMonitor::Stage stage(monitor_, "check");
-  if (!map.position.allFinite()) {
-    throw Error(Code::solver_failed,
-                "The unfolding returned values that are not finite. Clean the mesh (merge by distance, "
-                "dissolve degenerate faces) and try again.");
-  }
-  const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
-  map.uv_area = 0;
-  for (Index f = 0; f < mesh_.triangle_count(); ++f) map.uv_area += doubled_area(corners, f) / 2;
-  check_triangles(mesh_, corners, map);
+  check_positions(mesh_, map);
 }
 
 void ComponentRepair::repair(const ParallelTransportChoice& connections, const ParallelTransport& connection,
@@ -129,32 +107,40 @@ void ComponentRepair::smooth(ComponentMap& map) {
   check(map);
 }
 
-void ComponentRepair::continue_from(const ComponentMap& start, ComponentMap& map, std::vector<Finding>& findings) {
-  const CutSurface surface = open(map);
-  const ParallelTransportChoice connections(surface, map.curvature, task_.cones.rotation_order);
-  Continuation end = follow(surface, path_between(start.curvature, connections, map.curvature), Effort::global,
-                            counter(), {start.position, fixed_vertices(map)});
-  if (end.reached < 1) {
+void ComponentRepair::continue_from(ComponentMap start, const MetricChange& metric, ComponentMap& map,
+                                    std::vector<Finding>& findings) {
+  const CutSurface surface = open(start);
+  const ParallelTransportChoice connections(surface, metric.end, task_.cones.rotation_order);
+  Path path = path_between(metric.begin, connections, metric.end);
+  path.aligned = aligned_edges(mesh_, task_.cones);
+  Continuation found = follow(surface, path, Effort::global, counter(), {start.position, fixed_vertices(map)});
+  if (found.reached < 1) {
     if (task_.cones.rotation_order > 0) return;
-    report_adjusted(map, end, findings);
+    report_adjusted(map, found, findings);
   }
-  map.curvature = std::move(end.at.curvature);
-  map.rotation = std::move(end.at.connection.rotation);
-  map.position = std::move(end.position);
+  map.cut_graph = std::move(start.cut_graph);
+  map.cut_mesh = std::move(start.cut_mesh);
+  map.required_cuts = std::move(start.required_cuts);
+  map.pins = std::move(start.pins);
+  map.curvature = std::move(found.at.curvature);
+  map.rotation = std::move(found.at.connection.rotation);
+  map.position = std::move(found.position);
   check(map);
 }
 
 void ComponentRepair::report_adjusted(const ComponentMap& map, const Continuation& end,
                                       std::vector<Finding>& findings) const {
-  Eigen::Index most = 0;
-  const double off = (map.curvature.at_vertex - end.at.curvature.at_vertex).cwiseAbs().maxCoeff(&most);
+  double off = 0;
+  for (const Index v : task_.cones.vertices) {
+    off = std::max(off, std::abs(map.curvature.at_vertex[v] - end.at.curvature.at_vertex[v]));
+  }
   findings.push_back(
       {Code::angles_adjusted,
        concat("No map without flips was found for the angles given; this one has angles ",
               std::round(100 * end.reached), " % of the way to them from those of least distortion, up to ",
               rounded(off * 180 / M_PI, 3),
               " degrees off. Take angles nearer to the automatic ones, or subdivide the mesh at ", "the cones."),
-       {ElementKind::vertices, map.cones}});
+       {ElementKind::vertices, task_.cones.vertices}});
 }
 
 void ComponentRepair::relax(ComponentMap& map) {
@@ -171,41 +157,13 @@ bool ComponentRepair::may_straighten(const ComponentMap& map) const {
          map.rotation && map.pins.size() < 2 && aligned_edges(mesh_, task_.cones).empty();
 }
 
-std::optional<ComponentMap> ComponentRepair::straightened(const ComponentMap& map, double natural_l2) {
-  constexpr int attempts = 6;
+std::optional<ComponentMap> ComponentRepair::straightened(const ComponentMap& map) {
   const ProgressMonitor::Stage stage(monitor_, "relax");
   const CutSurface surface = open(map);
-  StraightSides straight = find_straight_sides(surface, *map.rotation, map.position, most_bend(natural_l2));
-  if (!straight.is_bent() && !straight.has_axes) return std::nullopt;
-  const ParallelTransport connection = connection_of(map);
-  const double most_l2 = largest_l2_straight(natural_l2);
-  for (int attempt = 0; attempt < attempts && !straight.sides.empty(); ++attempt) {
-    ComponentMap tried = map;
-    tried.is_along_axes = straight.has_axes;
-    try {
-      tried.position = lsgp::straighten(surface, {connection, map.curvature}, {options_.stretch, task_.importance},
-                                        counter(), {map.position, straight});
-      check(tried);
-      const bool is_good = tried.validity.defects() == 0 && l2_of(tried) <= most_l2;
-      if (is_good && (!overlaps(tried) || overlaps(map))) return tried;
-    } catch (const Error& error) {
-      if (error.code() != Code::solver_failed) throw;
-    }
-    release_bent_sides(straight);
-  }
-  return std::nullopt;
-}
-
-double ComponentRepair::l2_of(const ComponentMap& map) const {
-  return l2_stretch(geometry_, measure_jacobians(mesh_, geometry_, map.cut_mesh, map.position));
-}
-
-bool ComponentRepair::overlaps(const ComponentMap& map) const {
-  PerHalfedge<Index> twin = mesh_.twin;
-  for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
-    if (is_open(mesh_, map.cut_mesh, h)) twin[h] = none;
-  }
-  return has_overlap(at_corners(map.cut_mesh, map.position), twin);
+  std::optional<StraightSides> sides = sides_to_straighten(surface, map, false);
+  if (!sides) return std::nullopt;
+  return with_straight_sides({surface, connection_of(map), {options_.stretch, task_.importance}, counter()}, map,
+                             std::move(*sides));
 }
 
 ParallelTransport ComponentRepair::connection_of(const ComponentMap& map) const {

@@ -11,6 +11,11 @@
 
 namespace lsgp {
 
+// The metrics of two angles at the same cones.
+struct MetricChange {
+  const Curvature &begin, &end;
+};
+
 class ComponentRepair {
  public:
   // report: gets the steps of Newton's method; it has to exist where there are any.
@@ -38,9 +43,10 @@ class ComponentRepair {
   // Smooths the map with the conformal barrier energy after a fit with other weights or another metric.
   void smooth(ComponentMap& map);
 
-  // Replaces the map by one continued from a valid map with the same cuts and other angles, towards its own angles. If
-  // they cannot be reached, takes the nearest angles reached and reports that; rounded angles are never changed.
-  void continue_from(const ComponentMap& start, ComponentMap& map, std::vector<Finding>& findings);
+  // Replaces the map by one continued from a valid map with the same holes closed, towards its own angles, with the
+  // cuts of that map. If they cannot be reached, takes the nearest angles reached and reports that; rounded angles are
+  // never changed.  metric: of the surface itself; either map may be of fatter triangles.
+  void continue_from(ComponentMap start, const MetricChange& metric, ComponentMap& map, std::vector<Finding>& findings);
 
   // Lowers the stretch of a valid map.
   void relax(ComponentMap& map);
@@ -49,10 +55,8 @@ class ComponentRepair {
   bool may_straighten(const ComponentMap& map) const;
 
   // The map with the nearly straight sides of its boundary straight and along the axes; none if no attempt stays within
-  // its bounds or if there is nothing to straighten.  natural_l2: the L2 stretch that its own is compared to.
-  std::optional<ComponentMap> straightened(const ComponentMap& map, double natural_l2);
-
-  double l2_of(const ComponentMap& map) const;
+  // its bounds or if there is nothing to straighten.
+  std::optional<ComponentMap> straightened(const ComponentMap& map);
 
  private:
   // Continues the map from the metric's own rotations about handles to the chosen ones; leaves the map unchanged on
@@ -67,8 +71,6 @@ class ComponentRepair {
   PerVertex<char> fixed_vertices(const ComponentMap& map) const;
   // Counts the steps of Newton's method, the number of which is not known in advance.
   StepHook counter();
-  // Whether the layout overlaps itself, judged by its boundary.
-  bool overlaps(const ComponentMap& map) const;
 
   ComponentSystem& system_;
   const HalfedgeMesh& mesh_;

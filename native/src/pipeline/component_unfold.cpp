@@ -5,7 +5,6 @@
 
 #include "mesh/border.hpp"
 #include "systems/poisson_system.hpp"
-#include "systems/quadratic_forms.hpp"
 #include "unfold/aligned.hpp"
 #include "unfold/frames.hpp"
 #include "unfold/jacobians.hpp"
@@ -83,14 +82,8 @@ Eigen::VectorXcd unfold_poisson(const CutSurface& surface, const ComponentMap& m
 
 Eigen::VectorXcd unfold_relatively(const CutSurface& surface, const Curvature& curvature,
                                    const ParallelTransport& connection) {
-  Jacobians jacobians = prescribed_jacobians(surface.mesh, curvature.log_scale, connection.frames);
-  constexpr double widest_range = 1e8;  // of the weights, so that the form can be factored
-  Eigen::VectorXd weight = jacobians.f_z.cwiseAbs2().cwiseInverse();
-  weight = weight.cwiseMin(widest_range * weight.minCoeff());
-  const Geometry weighted = with_weights(surface.geometry, weight);
-  jacobians.f_z = jacobians.f_z.cwiseProduct(weight);
-  const CutSurface weighted_surface{surface.mesh, weighted, surface.cut_graph, surface.cut_mesh};
-  return PoissonSystem(weighted_surface, connection.reduction).fit(jacobians);
+  const RelativeFit fit(surface, prescribed_jacobians(surface.mesh, curvature.log_scale, connection.frames));
+  return PoissonSystem(fit.surface(), connection.reduction).fit(fit.jacobians());
 }
 
 }  // namespace lsgp

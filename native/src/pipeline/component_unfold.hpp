@@ -24,8 +24,7 @@ Array<Index> aligned_edges(const HalfedgeMesh& mesh, const ComponentCones& cones
 Eigen::VectorXcd unfold_poisson(const CutSurface& surface, const ComponentMap& map, const ComponentCones& cones,
                                 const ParallelTransport& connection);
 
-// The fit to the prescribed Jacobians with every triangle's error relative to its scale: if scales differ much, large
-// triangles dominate the plain fit. One more factorization.
+// The fit to the prescribed Jacobians with every triangle's error relative to its scale. One more factorization.
 Eigen::VectorXcd unfold_relatively(const CutSurface& surface, const Curvature& curvature,
                                    const ParallelTransport& connection);
 

@@ -6,12 +6,14 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "base/text.hpp"
 #include "pipeline/component_repair.hpp"
 #include "pipeline/component_unfold.hpp"
 #include "prescription/border_turning.hpp"
 #include "prescription/parallel_transport.hpp"
+#include "unfold/jacobians.hpp"
 #include "unfold/lscm.hpp"
 #include "unfold/spectral.hpp"
 
@@ -48,6 +50,15 @@ void require_range(const Curvature& curvature, double widest) {
               concat("With these cones and angles lengths in the layout would differ by a factor of ", factor(range),
                      ", more than numbers can hold. Add cones where the texture becomes too small, or let angles that "
                      "were given be chosen."));
+}
+
+// The metric of the surface itself with the angles of another one.
+Curvature metric_of(ComponentSystem& system, ComponentCones cones, const Curvature& other) {
+  for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
+    cones.angles[i] = system.mesh().flat_angle(cones.vertices[i]) - other.at_vertex[cones.vertices[i]];
+  }
+  std::vector<Finding> unsaid;
+  return prescribe(system, cones, PrescriptionRule::manual, unsaid);
 }
 
 struct FoundMap {
@@ -100,7 +111,8 @@ class Mapping {
 
 ComponentMap Mapping::best(std::vector<Finding>& findings) {
   FoundMap found = find_valid_map(task_);
-  if (found.defects() > 0 && repairs_ && closes_holes(found.map) && task_.cones.holes != Holes::as_they_are) {
+  const bool chooses_holes = task_.cones.holes == Holes::where_cheap || task_.cones.holes == Holes::all;
+  if (found.defects() > 0 && repairs_ && closes_holes(found.map) && chooses_holes) {
     ComponentTask opened = task_;
     opened.cones.holes = Holes::as_they_are;
     FoundMap other = find_valid_map(opened);
@@ -191,7 +203,7 @@ void Mapping::cut(ComponentSystem& system, const ComponentTask& task, ComponentM
     (flat ? map.flat_cones : map.cones).push_back(v);
   }
   if (closes_holes(map)) {
-    map.cut_graph = connect_cones(mesh, system.geometry(), map.cones, map.curvature.needs_no_cut);
+    map.cut_graph = system.connect(map.cones, map.curvature.needs_no_cut);
   } else if (map.flat_cones.empty()) {
     map.cut_graph = system.all_cuts();
   } else {
@@ -247,12 +259,16 @@ void Mapping::unfold_and_repair(ComponentSystem& system, const ComponentTask& ta
 void Mapping::approach_angles(FoundMap& found) {
   ComponentMap& map = found.map;
   const HalfedgeMesh& mesh = system_.mesh();
-  if (!aligned_edges(mesh, task_.cones).empty() || map.pins.size() > 1 || map.cones.empty()) return;
+  if (task_.cones.border == BorderMode::straight || map.pins.size() > 1 || map.cones.empty()) return;
   const ProgressMonitor::Stage stage(monitor_, "repair");
   ComponentTask automatic = task_;
   automatic.cones.vertices = map.cones;
-  automatic.cones.angles.assign(map.cones.size(), std::nullopt);
+  for (const Index v : task_.cones.vertices) {
+    if (mesh.loop_of_vertex[v] != none) automatic.cones.vertices.push_back(v);
+  }
+  automatic.cones.angles.assign(automatic.cones.vertices.size(), std::nullopt);
   automatic.cones.rotation_order = 0;
+  automatic.cones.holes = Holes::as_given;
   for (std::size_t loop = 0; loop < map.curvature.needs_no_cut.size(); ++loop) {
     if (map.curvature.needs_no_cut[loop]) automatic.cones.loop_turning[loop] = once_around_a_hole;
   }
@@ -261,21 +277,27 @@ void Mapping::approach_angles(FoundMap& found) {
   plain.mode = Mode::conformal;
   std::vector<Finding> unsaid;
   ComponentSystem system(mesh, system_.geometry(), automatic.cones, options_.factorization);
-  const ComponentMap start = Mapping(system, automatic, plain, monitor_).best(unsaid);
+  ComponentMap start = Mapping(system, automatic, plain, monitor_).best(unsaid);
   report_->iterations += start.repair.iterations;
-  if (start.validity.defects() > 0 || start.cut_graph.is_cut != map.cut_graph.is_cut) return;
-  repair_on(system_, task_).continue_from(start, map, found.findings);
+  if (start.validity.defects() > 0 || start.curvature.needs_no_cut != map.curvature.needs_no_cut) return;
+  // Either map may be of fatter triangles, whose metric and cuts are others.
+  const Curvature begin = metric_of(system, automatic.cones, start.curvature);
+  const Curvature end =
+      task_.cones.rotation_order > 0 ? map.curvature : metric_of(system, automatic.cones, map.curvature);
+  repair_on(system, task_).continue_from(std::move(start), {begin, end}, map, found.findings);
 }
 
 void Mapping::straighten(ComponentMap& map) {
   ComponentRepair repair = repair_on(system_, task_);
   if (!repair.may_straighten(map)) return;
-  const double natural_l2 = repair.l2_of(map);
+  map.natural_l2 =
+      l2_stretch(system_.geometry(), measure_jacobians(system_.mesh(), system_.geometry(), map.cut_mesh, map.position));
   std::optional<ComponentMap> found;
-  if (const std::optional<ComponentMap> turned = with_quarter_turns(map)) {
-    found = repair.straightened(*turned, natural_l2);
+  if (std::optional<ComponentMap> turned = with_quarter_turns(map)) {
+    turned->natural_l2 = map.natural_l2;
+    found = repair.straightened(*turned);
   }
-  if (!found) found = repair.straightened(map, natural_l2);
+  if (!found) found = repair.straightened(map);
   if (found) map = std::move(*found);
 }
 

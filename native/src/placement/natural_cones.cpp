@@ -35,13 +35,16 @@ std::optional<Array<Index>> find_corners(const ConeChooser& chooser, Corners kin
   PerVertex<char> is_listed(task.mesh.vertex_count(), 0);
   for (const Index v : corners) is_listed[v] = 1;
   std::size_t inside = 0;
+  const std::size_t most = kind == Corners::all
+                               ? static_cast<std::size_t>(task.mesh.vertex_count() / least_vertices_a_cone)
+                               : most_natural_on_fine;
   for (Index v = 0; v < task.mesh.vertex_count(); ++v) {
     if (task.mesh.loop_of_vertex[v] != none) continue;
     ++inside;
     const double defect = std::abs(task.geometry.angle_defect[v]);
     if (defect < angle_of_flat || is_listed[v]) continue;
     const bool is_bend = kind == Corners::sharp && defect < angle_of_corner;
-    if (is_bend || !possible[v] || corners.size() == most_natural_on_fine) return std::nullopt;
+    if (is_bend || !possible[v] || corners.size() >= most) return std::nullopt;
     corners.push_back(v);
   }
   if (kind == Corners::sharp && corners.size() > most_natural && 2 * corners.size() > inside) return std::nullopt;

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "mesh/mirror.hpp"
 #include "placement/component_placement.hpp"
-#include "sites/mirror.hpp"
 
 namespace lsgp {
 

@@ -22,10 +22,10 @@ constexpr double least_lowered = 0.4, most_lowered = 0.9, lowered_when_invalid =
 // Additions, of one cone for so many, and what one may leave of the stretch above 1 to come before lower targets.
 constexpr int most_additions = 3, least_added = 2, added_share = 6;
 constexpr double worthwhile = 0.7;
-// More cones than the stages have, if nothing else helps: so many times as many each time, up to one for so many
-// vertices, as long as each time leaves no more than this of the stretch above 1.
+// More cones than the stages have, if nothing else helps: so many times as many each time, as long as each time leaves
+// no more than this of the stretch above 1.
 constexpr double more_cones = 1.25, still_worthwhile = 0.9;
-constexpr int vertices_a_cone = 4, most_enlargements = 6;
+constexpr int most_enlargements = 6;
 constexpr double usual_l2 = 1.05;   // of a map that is not worth more than the stages
 constexpr double much_fewer = 0.8;  // cones, that prices are not worth
 
@@ -122,22 +122,34 @@ VerifiedChoice VerifiedPlacement::place_to_target() {
   if (best.map.l2 <= target) return best;
   if (std::optional<VerifiedChoice> natural = placed_naturally(Corners::any)) return std::move(*natural);
   take_many(best);
+  if (best.map.l2 <= target) return best;
+  if (std::optional<VerifiedChoice> natural = placed_naturally(Corners::all)) return std::move(*natural);
+  if (!best.map.is_valid() && !chooser_.options().lattice) {
+    // Far from the target harmonic angles are better than those of the variance, which underrates large scales.
+    VerifiedChoice harmonic = verified(chooser_.choose_harmonically(*std::rbegin(cone_stages)));
+    if (is_better(harmonic.map, best.map)) best = std::move(harmonic);
+  }
   return best;
 }
 
 // Beyond the stages, where the map misses the target with all of them.
 void VerifiedPlacement::take_many(VerifiedChoice& best) {
   if (chooser_.options().lattice || !best.cones.is_possible()) return;
-  const int most = chooser_.task().mesh.vertex_count() / vertices_a_cone;
+  const int most = chooser_.task().mesh.vertex_count() / least_vertices_a_cone;
   const int present = static_cast<int>(best.cones.vertices.size());
   if (present > 2 * *std::rbegin(cone_stages)) return;
   double count = std::max(present, *std::rbegin(cone_stages));
+  double predicted = best.cones.predicted_l2;
   for (int i = 0; i < most_enlargements && count * more_cones <= most; ++i) {
     count *= more_cones;
     VerifiedChoice found = verified(chooser_.choose(static_cast<int>(count)));
-    if (!is_better(found.map, best.map)) return;
-    const bool goes_on = !best.map.is_valid() || found.map.l2 - 1 < still_worthwhile * (best.map.l2 - 1);
-    best = std::move(found);
+    const bool is_gain = is_better(found.map, best.map);
+    const auto lowers = [](double before, double after) { return after - 1 < still_worthwhile * (before - 1); };
+    // If the map has defects, only the prediction tells whether more cones help.
+    const bool goes_on = best.map.is_valid() ? is_gain && lowers(best.map.l2, found.map.l2)
+                                             : is_gain || lowers(predicted, found.cones.predicted_l2);
+    predicted = found.cones.predicted_l2;
+    if (is_gain) best = std::move(found);
     if (best.map.l2 <= chooser_.options().target || !goes_on) return;
     monitor_.tick();
   }

@@ -59,15 +59,16 @@ Shelves shelve(const Array<Box>& boxes, double gap) {
   return out;
 }
 
-// The axis along the longer side of the upright box around a convex polygon if that box is hardly larger than the
-// smallest box; otherwise the longer side of the smallest box.
-Complex longer_axis(const Array<Complex>& hull) {
-  constexpr double larger = 1.05;
+// The rotation that lays the longer side of the box around a convex polygon along u: of the box along the preferred
+// axes if that is hardly larger than the smallest box, otherwise of the smallest.
+Complex turn_of(const Array<Complex>& hull, std::optional<Complex> axes) {
+  constexpr double larger = 1.2;
   const auto area = [](const Extent& extent) { return extent.width() * extent.height(); };
   const Complex side = longer_side(hull);
-  const Extent upright = extent_along(hull, 1);
-  if (area(upright) > larger * area(extent_along(hull, side))) return side;
-  return is_wide(upright.width(), upright.height()) ? Complex(1, 0) : Complex(0, 1);
+  if (!axes) return std::conj(side);
+  const Extent aligned = extent_along(hull, std::conj(*axes));
+  if (area(aligned) > larger * area(extent_along(hull, side))) return std::conj(side);
+  return is_wide(aligned.width(), aligned.height()) ? *axes : *axes * Complex(0, -1);
 }
 
 }  // namespace
@@ -80,7 +81,7 @@ Array<Similarity> arrange(const Array<Island>& islands) {
   double total = 0;
   for (std::size_t i = 0; i < islands.size(); ++i) {
     const Array<Complex> hull = convex_hull(islands[i].position);
-    out[i].turn = islands[i].turn.value_or(std::conj(islands[i].has_axes ? longer_axis(hull) : longer_side(hull)));
+    out[i].turn = islands[i].turn.value_or(turn_of(hull, islands[i].axes));
     const Extent extent = extent_along(hull, std::conj(out[i].turn));
     out[i].shift = -extent.low;
     boxes.push_back({extent.width(), extent.height()});

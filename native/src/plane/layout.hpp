@@ -18,7 +18,7 @@ struct Island {
   // The required position of a pinned point; determines only the island's position, not its size or rotation.
   std::optional<std::pair<Eigen::Index, Complex>> pin{};
   Index component = 0;
-  bool has_axes = false;  // most of its straight sides are along u and v: prefers turns by quarters
+  std::optional<Complex> axes{};  // the rotation, up to quarters, that aligns its sides with u and v: preferred
 };
 
 // The motion of an island as a whole.

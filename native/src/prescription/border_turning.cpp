@@ -251,8 +251,8 @@ void prescribe_turning(const LogScale& scale, const ComponentCones& cones, Curva
   wanted.resize(loop_count);
   const bool is_free = std::none_of(wanted.begin(), wanted.end(), [](const auto& turning) { return turning; });
   const bool rounds = cones.rotation_order > 0;
-  if (loop_count > 1 && is_free && is_planar(mesh, cones) && cones.holes != Holes::as_they_are &&
-      (cones.holes == Holes::all || !rounds)) {
+  const bool may_close_all = cones.holes == Holes::all || (cones.holes == Holes::where_cheap && !rounds);
+  if (loop_count > 1 && is_free && is_planar(mesh, cones) && may_close_all) {
     if (auto closed = close_all_holes(loops, shiftable, cones.holes, curvature.log_scale)) {
       curvature.log_scale = std::move(*closed);
       curvature.needs_no_cut.assign(loop_count, 1);
@@ -261,7 +261,8 @@ void prescribe_turning(const LogScale& scale, const ComponentCones& cones, Curva
   }
   if (rounds) quantize_turning(loops.turning(curvature.log_scale), cones.rotation_order, wanted);
   curvature.log_scale = loops.adjust(curvature.log_scale, wanted).first;
-  const Turning reached = close_near_holes(loops, shiftable, wanted, curvature.log_scale);
+  const Turning reached =
+      cones.holes == Holes::as_given ? wanted : close_near_holes(loops, shiftable, wanted, curvature.log_scale);
   for (std::size_t i = 0; i < loop_count; ++i)
     curvature.needs_no_cut[i] = reached[i] && *reached[i] == once_around_a_hole;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "cut/mirrored_cuts.hpp"
 #include "systems/stiffness.hpp"
 
 namespace lsgp {
@@ -21,6 +22,7 @@ ComponentSystem::ComponentSystem(const HalfedgeMesh& mesh, const Geometry& geome
     : mesh_(mesh),
       geometry_(geometry),
       cones_(cones.vertices),
+      mirroring_(cones.mirroring),
       factorization_(factorization),
       border_(border_conditions(mesh, geometry, cones)),
       memory_(std::move(memory)) {}
@@ -28,8 +30,12 @@ ComponentSystem::ComponentSystem(const HalfedgeMesh& mesh, const Geometry& geome
 Eigen::VectorXd ComponentSystem::take_memory() { return factor_ ? factor_->take_memory() : std::move(memory_); }
 
 const CutGraph& ComponentSystem::all_cuts() {
-  if (!all_cuts_) all_cuts_ = connect_cones(mesh_, geometry_, inside_only(mesh_, cones_), {});
+  if (!all_cuts_) all_cuts_ = connect(inside_only(mesh_, cones_), {});
   return *all_cuts_;
+}
+
+CutGraph ComponentSystem::connect(const Array<Index>& interior_cones, const PerLoop<char>& uncut) const {
+  return connect_symmetrically({mesh_, geometry_, interior_cones, uncut}, mirroring_);
 }
 
 bool ComponentSystem::has_all_cuts() {

@@ -25,6 +25,8 @@ class ComponentSystem {
 
   // Cuts through all interior cones and to all boundaries.
   const CutGraph& all_cuts();
+  // Cuts to these interior cones, and to the boundary loops that `uncut` does not mark.
+  CutGraph connect(const Array<Index>& interior_cones, const PerLoop<char>& uncut) const;
   // The factor shared by prescription and unfolding, or null if separate solves are cheaper.
   const CutFactor* factor();
   // The surface opened along these cuts, with the reusable data: all of it if the cuts are among `all_cuts`.
@@ -51,6 +53,7 @@ class ComponentSystem {
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
   const Array<Index> cones_;
+  const Mirroring mirroring_;
   const Factorization factorization_;
   const BorderConditions border_;
   Eigen::VectorXd memory_;  // for the factor, until there is one

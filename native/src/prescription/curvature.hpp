@@ -12,6 +12,7 @@
 #include "lsgp/options.hpp"
 #include "mesh/border.hpp"
 #include "mesh/geometry.hpp"
+#include "mesh/mirror.hpp"
 #include "mesh/topology.hpp"
 #include "prescription/log_scale.hpp"
 
@@ -35,6 +36,7 @@ enum class Holes {
   where_cheap,  // those that cost hardly any stretch
   all,          // all, as far as a map can be computed
   as_they_are,  // those about which the metric turns nearly once
+  as_given,     // those whose turning is prescribed
 };
 
 // The requirements on one component's metric, in its own vertex numbers.
@@ -46,6 +48,7 @@ struct ComponentCones {
   Holes holes = Holes::where_cheap;
   AngleRange range = widest_angles;  // of automatic ones
   int rotation_order = 0;            // q: angles of cones and turning of boundaries are multiples of 2 pi / q; 0: any
+  Mirroring mirroring;               // cuts are symmetric in it if it is not empty
 };
 
 // The target of a component's map.

@@ -16,7 +16,10 @@ struct Waypoint {
   Curvature curvature;
   ParallelTransport connection;
 };
-using Path = std::function<Waypoint(double share)>;  // 0 at its beginning, 1 at its end
+struct Path {
+  std::function<Waypoint(double share)> at;  // 0 at its beginning, 1 at its end
+  Array<Index> aligned{};                    // boundary edges with the direction that they have in the metric
+};
 
 struct Continuation {
   double reached;             // share of the path up to which there is a valid map
@@ -25,8 +28,8 @@ struct Continuation {
 };
 
 // Continues a map along a path in steps over which it stays valid: its Jacobians, scaled and rotated like the metric
-// from one point to the next, are fitted again under the next transitions, and flips are repaired. Steps grow on
-// success and shrink on failure.
+// from one point to the next, are fitted again under the next transitions, every triangle's relative to its scale, and
+// flips are repaired. Steps grow on success and shrink on failure.
 // map: valid at the beginning of the path; repairs do not move its fixed vertices.
 Continuation follow(const CutSurface& surface, const Path& path, Effort effort, const StepHook& before_step,
                     const HeldMap& map);

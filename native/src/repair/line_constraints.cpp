@@ -82,19 +82,27 @@ Complex factor_of(Index variable, Complex of_unknown) {
 DegreesOfFreedom free_along(const CutSurface& surface, const Reduction& reduction, const DirectedEdges& edges) {
   const CutMesh& cut_mesh = surface.cut_mesh;
   Elimination elimination(2 * reduction.unknown_count);
+  // Adds the imaginary part of a multiple of a position.
+  const auto add = [&](Index copy, Complex factor, Sum& sum) {
+    reduction.for_each_term(copy, [&](const Term& term) {
+      for (const Index variable : {2 * term.unknown, 2 * term.unknown + 1}) {
+        sum[variable] += factor_of(variable, factor * term.coefficient).imag();
+      }
+    });
+  };
+  for (const Index copy : edges.held) {
+    for (const Complex factor : {Complex(1), Complex(0, 1)}) {
+      Sum coordinate;
+      add(copy, factor, coordinate);
+      elimination.add(coordinate);
+    }
+  }
   for (Index i = 0; i < ssize(edges.halfedges); ++i) {
     const Index h = edges.halfedges[i];
     Sum across;  // the component of the edge across its direction
-    const auto add = [&](Index corner, Complex factor) {
-      reduction.for_each_term(cut_mesh.copy_of_corner[corner], [&](const Term& term) {
-        for (const Index variable : {2 * term.unknown, 2 * term.unknown + 1}) {
-          across[variable] += factor_of(variable, factor * term.coefficient).imag();
-        }
-      });
-    };
     const Complex back = std::conj(edges.directions[i]);
-    add(next(h), back);
-    add(h, -back);
+    add(cut_mesh.copy_of_corner[next(h)], back, across);
+    add(cut_mesh.copy_of_corner[h], -back, across);
     elimination.add(across);
   }
 

@@ -15,6 +15,7 @@ namespace lsgp {
 struct DirectedEdges {
   Array<Index> halfedges;
   Array<Complex> directions;
+  Array<Index> held{};  // copies that stay at 0
 };
 
 // Positions and translations under the condition that the edges keep their directions. Redundant equations are left

@@ -19,7 +19,8 @@ constexpr double barrier_share = 0.9;  // of the step at which the first triangl
 
 constexpr std::ptrdiff_t shapes_at_once = 32768;  // whose derivatives are kept until they are added up
 
-// First row of every unknown in the real system: two rows for a complex unknown, one for a real one.
+}  // namespace
+
 Array<Index> first_rows(const DegreesOfFreedom& freedom) {
   Array<Index> out(freedom.displacement.unknown_count + 1, 0);
   for (Index k = 0; k < freedom.displacement.unknown_count; ++k) {
@@ -28,8 +29,6 @@ Array<Index> first_rows(const DegreesOfFreedom& freedom) {
   }
   return out;
 }
-
-}  // namespace
 
 DegreesOfFreedom free_vertices(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Eigen::VectorXcd& motion,
                                const PerVertex<char>& marked) {

@@ -24,6 +24,9 @@ struct DegreesOfFreedom {
   Array<char> is_real{};  // (unknowns) those with real values only; empty: none
 };
 
+// First row of every unknown in the real system, (unknowns + 1): two rows for a complex unknown, one for a real one.
+Array<Index> first_rows(const DegreesOfFreedom& freedom);
+
 // The marked vertices; translations are fixed.  motion: (copies) as from motion_of_copies.
 DegreesOfFreedom free_vertices(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const Eigen::VectorXcd& motion,
                                const PerVertex<char>& marked);

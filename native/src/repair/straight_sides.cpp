@@ -17,8 +17,8 @@ constexpr double most_bend_beside_arcs = 0.5 * degree;  // of such a line
 constexpr double least_side = 0.004;                    // of a boundary: anything shorter is not a feature
 constexpr double least_side_beside_arcs = 0.1;
 constexpr double telling = 0.25;         // share of the boundaries from which straight sides and axes count
-constexpr double kept_bend = 0.7;        // of the largest: sides that bend more are released
 constexpr double exact_rotation = 1e-9;  // radians
+constexpr double sharp = 40 * degree;    // between the normals at a crease
 
 bool is_quarter_turn(double rotation) { return std::abs(std::remainder(rotation, M_PI / 2)) < exact_rotation; }
 
@@ -39,17 +39,79 @@ Array<Array<Index>> open_boundaries(const HalfedgeMesh& mesh, const CutMesh& cut
   return out;
 }
 
+// Halfedges along the sharp edges inside the opened surface, one of each edge, from junction to junction; the first
+// `open` of them are not closed.
+struct Creases {
+  Array<Array<Index>> lines;
+  std::size_t open;
+};
+
+class CreaseTracer {
+ public:
+  CreaseTracer(const HalfedgeMesh& mesh, const CutMesh& cut_mesh)
+      : mesh_(mesh), cut_mesh_(cut_mesh), is_left_(mesh.halfedge_count(), 0) {
+    for (Index h = 0; h < mesh.halfedge_count(); ++h) is_left_[h] = !is_open(mesh, cut_mesh, h) && is_sharp(h);
+  }
+
+  Creases trace() {
+    const PerHalfedge<char> is_crease = is_left_;
+    Creases out{};
+    for (const bool is_closed : {false, true}) {
+      for (Index first = 0; first < mesh_.halfedge_count(); ++first) {
+        if (is_left_[first] && (is_closed || following(is_crease, mesh_.twin[first]) == none)) {
+          out.lines.push_back(trace(is_crease, first));
+        }
+      }
+      if (!is_closed) out.open = out.lines.size();
+    }
+    return out;
+  }
+
+ private:
+  bool is_sharp(Index h) const {
+    const auto normal = [&](Index f) { return area_normal(mesh_.positions, mesh_.triangles, f); };
+    return angle_between(normal(h / 3), normal(mesh_.twin[h] / 3)) > sharp;
+  }
+
+  Array<Index> trace(const PerHalfedge<char>& is_crease, Index first) {
+    Array<Index> line;
+    for (Index h = first; h != none && is_left_[h]; h = following(is_crease, h)) {
+      is_left_[h] = is_left_[mesh_.twin[h]] = 0;
+      line.push_back(h);
+    }
+    return line;
+  }
+
+  // The only other crease at the target of h, in the same copy; none if there is none or more.
+  Index following(const PerHalfedge<char>& is_crease, Index h) const {
+    Index found = none;
+    int count = 0;
+    mesh_.for_each_outgoing(mesh_.target(h), [&](Index g) {
+      if (!is_crease[g] || g == mesh_.twin[h]) return;
+      found = g;
+      ++count;
+    });
+    const auto copy = [&](Index corner) { return cut_mesh_.copy_of_corner[corner]; };
+    return count == 1 && copy(found) == copy(next(h)) ? found : none;
+  }
+
+  const HalfedgeMesh& mesh_;
+  const CutMesh& cut_mesh_;
+  PerHalfedge<char> is_left_;  // creases that are not traced
+};
+
 Complex unit(Complex direction) { return direction / std::abs(direction); }
 
-// Part of a boundary loop; the loop is closed, and a run may pass its end.
+// Part of a polyline; if that is closed, a run may pass its end.
 struct Run {
   std::size_t begin, count;
 };
 
-class BoundaryLoop {
+// A boundary loop, which is closed, or a line of creases inside.
+class Polyline {
  public:
-  BoundaryLoop(const Array<Index>& halfedges, const CutMesh& cut_mesh, const Eigen::VectorXcd& position)
-      : halfedges_(halfedges) {
+  Polyline(const Array<Index>& halfedges, bool is_closed, const CutMesh& cut_mesh, const Eigen::VectorXcd& position)
+      : halfedges_(halfedges), is_closed_(is_closed) {
     for (const Index h : halfedges) {
       edge_.push_back(position[cut_mesh.copy_of_corner[next(h)]] - position[cut_mesh.copy_of_corner[h]]);
       length_ += std::abs(edge_.back());
@@ -92,20 +154,21 @@ class BoundaryLoop {
     return std::abs(std::arg(end)) + 4 * sag / std::norm(end);
   }
 
-  // Runs that bend by less than most_bend: from corner to corner, or lines between arcs.
-  Array<Run> straight_runs(double most_bend) const {
+  // Runs that bend by less than most_bend: from corner to corner, or lines between arcs.  whole_length: of what they
+  // are to be a considerable part of.
+  Array<Run> straight_runs(double most_bend, double whole_length) const {
     Array<Run> out;
     const Run whole{0, edge_.size()};
     const auto is_side = [&](const Run& run, double most, double least) {
       const Complex along = chord(run);
-      return std::abs(along) > least * length_ && runs_on(run) && bend(run, unit(along)) < most;
+      return std::abs(along) > least * whole_length && runs_on(run) && bend(run, unit(along)) < most;
     };
-    for (const Run& side : runs(whole, true, corner)) {
+    for (const Run& side : runs(whole, is_closed_, corner)) {
       if (is_side(side, most_bend, least_side)) {
         out.push_back(side);
         continue;
       }
-      const bool is_closed = side.count == whole.count && std::abs(turning(side.begin)) < corner;
+      const bool is_closed = is_closed_ && side.count == whole.count && std::abs(turning(side.begin)) < corner;
       for (const Run& line : runs(side, is_closed, smooth_joint)) {
         if (is_side(line, most_bend_beside_arcs, least_side_beside_arcs)) out.push_back(line);
       }
@@ -131,6 +194,7 @@ class BoundaryLoop {
   double turning(std::size_t i) const { return std::arg(edge(i) * std::conj(edge(i + edge_.size() - 1))); }
 
   const Array<Index>& halfedges_;
+  const bool is_closed_;
   Array<Complex> edge_;
   double length_ = 0;
 };
@@ -139,16 +203,17 @@ class BoundaryLoop {
 double off_axis(Complex direction) { return std::remainder(std::arg(direction), M_PI / 2); }
 
 struct FoundSide {
-  const BoundaryLoop* loop;
+  const Polyline* line;
   Run run;
   Complex chord;
+  bool is_border;
 };
 
-// The rotation that aligns the greatest length of sides with the axes: by the mean direction of the sides within a
-// window of 2 most_bend, modulo quarter turns.
-Complex turn_to_axes(const Array<FoundSide>& sides, double most_bend) {
+// The rotation that aligns the greatest length of chords with the axes: by the mean direction of those within a window
+// of 2 most_bend, modulo quarter turns.
+Complex turn_to_axes(const Array<Complex>& chords, double most_bend) {
   Array<std::pair<double, double>> directions;  // angle to the axis, and length; repeated a quarter turn on
-  for (const FoundSide& side : sides) directions.emplace_back(off_axis(side.chord), std::abs(side.chord));
+  for (const Complex chord : chords) directions.emplace_back(off_axis(chord), std::abs(chord));
   std::sort(directions.begin(), directions.end());
   const std::size_t count = directions.size();
   for (std::size_t i = 0; i < count; ++i) directions.emplace_back(directions[i].first + M_PI / 2, directions[i].second);
@@ -166,6 +231,12 @@ Complex turn_to_axes(const Array<FoundSide>& sides, double most_bend) {
     sum -= directions[first].second * directions[first].first;
   }
   return std::polar(1.0, -best);
+}
+
+Array<Complex> chords_of(const Array<FoundSide>& sides) {
+  Array<Complex> out;
+  for (const FoundSide& side : sides) out.push_back(side.chord);
+  return out;
 }
 
 Complex nearest_axis(Complex direction) {
@@ -188,39 +259,54 @@ bool StraightSides::is_bent() const {
 }
 
 StraightSides find_straight_sides(const CutSurface& surface, const Eigen::VectorXd& rotation,
-                                  const Eigen::VectorXcd& position, double most_bend) {
+                                  const Eigen::VectorXcd& position, const SideLimits& limits) {
   const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
+  const auto [most_bend, with_creases] = limits;
   const auto may_be_straight = [&, &cut_graph = cut_graph](Index h) {
     return cut_graph.cut_of[h] == none || is_quarter_turn(rotation[cut_graph.cut_of[h]]);
   };
   StraightSides out;
   const Array<Array<Index>> borders = open_boundaries(mesh, cut_mesh);
-  Array<BoundaryLoop> measured;
-  for (const Array<Index>& border : borders) measured.emplace_back(border, cut_mesh, position);
+  Array<Polyline> loops;
+  for (const Array<Index>& border : borders) loops.emplace_back(border, true, cut_mesh, position);
   Array<FoundSide> found;
   double length = 0, straight_length = 0, along_axes = 0;
-  for (const BoundaryLoop& loop : measured) {
+  for (const Polyline& loop : loops) {
     length += loop.length();
-    for (const Run& run : loop.straight_runs(most_bend)) {
-      found.push_back({&loop, run, loop.chord(run)});
-      straight_length += std::abs(found.back().chord);
+    for (const Run& run : loop.straight_runs(most_bend, loop.length())) {
+      found.push_back({&loop, run, loop.chord(run), true});
     }
   }
+  for (const FoundSide& side : found) straight_length += std::abs(side.chord);
   if (straight_length < telling * length) return out;
-  out.turn = turn_to_axes(found, most_bend);
+  const Creases creases = with_creases ? CreaseTracer(mesh, cut_mesh).trace() : Creases{};
+  Array<Polyline> inside;
+  for (std::size_t i = 0; i < creases.lines.size(); ++i) {
+    inside.emplace_back(creases.lines[i], i >= creases.open, cut_mesh, position);
+  }
+  for (const Polyline& crease : inside) {
+    for (const Run& run : crease.straight_runs(most_bend, length)) {
+      found.push_back({&crease, run, crease.chord(run), false});
+    }
+  }
+  out.turn = turn_to_axes(chords_of(found), most_bend);
   // First the sides along the axes of the layout, then those along other axes, at right angles to each other.
-  for (Complex turn = out.turn; !found.empty(); turn = turn_to_axes(found, most_bend)) {
+  for (Complex turn = out.turn; !found.empty(); turn = turn_to_axes(chords_of(found), most_bend)) {
     const bool is_first = turn == out.turn;
     const auto along = along_axes_of(turn, most_bend, found);
     if (along == found.end()) break;
     const bool is_alone = std::next(along) == found.end() && along->run.count == 1;  // already straight
     for (auto side = along; side != found.end(); ++side) {
-      if (is_first) along_axes += std::abs(side->chord);
+      if (is_first && side->is_border) along_axes += std::abs(side->chord);
       const Complex axis = nearest_axis(side->chord * turn);
       const Complex direction = is_first ? axis : axis * std::conj(turn) * out.turn;
-      StraightSide straight{{}, direction, side->loop->bend(side->run, direction * std::conj(out.turn))};
+      StraightSide straight{{},
+                            direction,
+                            side->line->bend(side->run, direction * std::conj(out.turn)),
+                            std::abs(side->chord),
+                            !side->is_border};
       for (std::size_t k = 0; k < side->run.count; ++k) {
-        const Index h = side->loop->halfedge(side->run.begin + k);
+        const Index h = side->line->halfedge(side->run.begin + k);
         if (may_be_straight(h)) straight.halfedges.push_back(h);
       }
       if (!is_alone && !straight.halfedges.empty()) out.sides.push_back(std::move(straight));
@@ -231,11 +317,36 @@ StraightSides find_straight_sides(const CutSurface& surface, const Eigen::Vector
   return out;
 }
 
-void release_bent_sides(StraightSides& straight) {
-  double most = 0;
-  for (const StraightSide& side : straight.sides) most = std::max(most, side.bend);
-  const auto is_bent = [&](const StraightSide& side) { return side.bend > kept_bend * most; };
-  straight.sides.erase(std::remove_if(straight.sides.begin(), straight.sides.end(), is_bent), straight.sides.end());
+Array<std::optional<Complex>> turns_to_axes(const HalfedgeMesh& mesh, const CutMesh& cut_mesh,
+                                            const Eigen::VectorXcd& position, const PerTriangle<Index>& part) {
+  constexpr double exactly = 1e-9;  // radians
+  Array<Array<Complex>> boundaries;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (!is_open(mesh, cut_mesh, h)) continue;
+    if (part[h / 3] >= ssize(boundaries)) boundaries.resize(part[h / 3] + 1);
+    boundaries[part[h / 3]].push_back(position[cut_mesh.copy_of_corner[next(h)]] -
+                                      position[cut_mesh.copy_of_corner[h]]);
+  }
+  Array<std::optional<Complex>> out(*std::max_element(part.begin(), part.end()) + 1);
+  for (Index island = 0; island < ssize(boundaries); ++island) {
+    const Complex turn = turn_to_axes(boundaries[island], exactly);
+    double length = 0, along = 0;
+    for (const Complex edge : boundaries[island]) {
+      length += std::abs(edge);
+      if (std::abs(off_axis(edge * turn)) < exactly) along += std::abs(edge);
+    }
+    if (along > telling * length) out[island] = std::abs(std::arg(turn)) < exactly ? 1.0 : turn;
+  }
+  return out;
+}
+
+std::ptrdiff_t sort_by_cost(StraightSides& straight) {
+  const auto cost = [](const StraightSide& side) { return side.bend * side.bend * side.length; };
+  std::stable_sort(straight.sides.begin(), straight.sides.end(), [&](const StraightSide& a, const StraightSide& b) {
+    return std::pair(a.is_inside, cost(a)) < std::pair(b.is_inside, cost(b));
+  });
+  return std::count_if(straight.sides.begin(), straight.sides.end(),
+                       [](const StraightSide& side) { return !side.is_inside; });
 }
 
 }  // namespace lsgp

@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Nearly straight sides of a map's boundary and the directions that make them straight.
+// Nearly straight sides of a map's boundary, nearly straight creases inside, and the directions that make them
+// straight.
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "base/array.hpp"
 #include "cut/cut_mesh.hpp"
 
 namespace lsgp {
 
-// A run of edges of the boundary between corners, or between arcs.
+// A run of edges of the boundary, or of a crease inside, between corners or between arcs.
 struct StraightSide {
-  Array<Index> halfedges;  // the surface on their left
+  Array<Index> halfedges;  // of the boundary: the surface on their left
   Complex direction;       // of all of them, a unit vector; exactly along an axis if it nearly is
   double bend;             // the deviation from that direction, radians
+  double length;
+  bool is_inside;  // of a crease
 };
 
 struct StraightSides {
@@ -27,11 +31,21 @@ struct StraightSides {
 
 // rotation: (cuts) of the map's transitions, radians. Cuts that do not turn by a multiple of a quarter have no straight
 // sides, since both could not be along the axes. No sides at all if they would be a small part of the boundary, as on
-// scans. most_bend: of sides, radians.
+// scans.
+struct SideLimits {
+  double most_bend;   // radians
+  bool with_creases;  // inside
+};
 StraightSides find_straight_sides(const CutSurface& surface, const Eigen::VectorXd& rotation,
-                                  const Eigen::VectorXcd& position, double most_bend);
+                                  const Eigen::VectorXcd& position, const SideLimits& limits);
 
-// Removes the sides with the largest bends.
-void release_bent_sides(StraightSides& straight);
+// For every island the rotation, up to quarters, that aligns the greatest length of its straight sides with the axes,
+// if that is a considerable part of its boundary.  part: the islands.
+Array<std::optional<Complex>> turns_to_axes(const HalfedgeMesh& mesh, const CutMesh& cut_mesh,
+                                            const Eigen::VectorXcd& position, const PerTriangle<Index>& part);
+
+// Orders the sides by what they cost relative to their length, creases inside last. Returns the number of the others. A
+// side that is turned or bowed by an angle costs the square of the angle times the square of its length.
+std::ptrdiff_t sort_by_cost(StraightSides& straight);
 
 }  // namespace lsgp

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "repair/straighten.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 #include "base/union_find.hpp"
 #include "repair/line_constraints.hpp"
-#include "unfold/aligned.hpp"
+#include "solvers/cholesky.hpp"
+#include "systems/quadratic_forms.hpp"
 #include "unfold/jacobians.hpp"
 
 namespace lsgp {
@@ -16,6 +21,41 @@ namespace {
 using Kind = DistortionEnergy::Kind;
 
 constexpr int unfolding_steps = 15;
+constexpr double no_coefficient = 1e-9;  // others are around 1
+
+// Whether the translation of a cut is the unknown that is left out of the reduction, and so 0.
+bool is_without_translation(const CutSurface& surface, const ParallelTransport& connection, std::size_t cut) {
+  const auto [left, right] = origin_sisters(surface.mesh, surface.cut_mesh, surface.cut_graph.cuts[cut].halfedges[0]);
+  const Complex turn = std::polar(1.0, connection.rotation[static_cast<Eigen::Index>(cut)]);
+  std::map<Index, Complex> translation;
+  connection.reduction.for_each_term(right, [&](const Term& term) { translation[term.unknown] += term.coefficient; });
+  connection.reduction.for_each_term(left,
+                                     [&](const Term& term) { translation[term.unknown] -= turn * term.coefficient; });
+  return std::all_of(translation.begin(), translation.end(),
+                     [](const auto& term) { return std::abs(term.second) < no_coefficient; });
+}
+
+// A copy of every island but one whose place the unknown that is left out of the reduction determines: that of the copy
+// which is held at 0, or else one of those related by the translation which is 0.
+Array<Index> held_islands(const CutSurface& surface, const MapTarget& target) {
+  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
+  const Reduction& reduction = target.connection.reduction;
+  PerTriangle<Index> part;
+  Array<Index> first(label_parts(mesh, cut_graph.is_cut, part), none);
+  if (first.size() < 2) return {};
+  Index placed = none;  // the island whose place follows from the others'
+  for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
+    const Index copy = cut_mesh.copy_of_corner[corner];
+    if (first[part[corner / 3]] == none) first[part[corner / 3]] = copy;
+    if (reduction.begin[copy] == reduction.begin[copy + 1]) placed = part[corner / 3];
+  }
+  for (std::size_t p = 0; p < cut_graph.cuts.size() && placed == none; ++p) {
+    const Index h = cut_graph.cuts[p].halfedges.front();
+    if (is_without_translation(surface, target.connection, p)) placed = part[h / 3];
+  }
+  first.erase(first.begin() + std::max(placed, 0));
+  return first;
+}
 
 DirectedEdges edges_of(const StraightSides& straight) {
   DirectedEdges out;
@@ -23,6 +63,67 @@ DirectedEdges edges_of(const StraightSides& straight) {
     out.halfedges.insert(out.halfedges.end(), side.halfedges.begin(), side.halfedges.end());
     out.directions.resize(out.halfedges.size(), side.direction);
   }
+  return out;
+}
+
+using RealMatrix = Eigen::SparseMatrix<double>;
+using Entries = std::vector<Eigen::Triplet<double>>;
+
+RealMatrix matrix_of(const Entries& entries, Index rows, Index columns) {
+  RealMatrix out(rows, columns);
+  out.setFromTriplets(entries.begin(), entries.end());
+  return out;
+}
+
+// The coordinates of all copies, 2 c being u of copy c and 2 c + 1 its v, from the degrees of freedom.
+RealMatrix coordinates_from(const DegreesOfFreedom& freedom) {
+  const Array<Index> rows = first_rows(freedom);
+  const Index copies = freedom.displacement.copy_count();
+  Entries entries;
+  for (Index copy = 0; copy < copies; ++copy) {
+    freedom.displacement.for_each_term(copy, [&](const Term& term) {
+      Complex factor = term.coefficient;
+      for (Index row = rows[term.unknown]; row < rows[term.unknown + 1]; ++row, factor *= Complex(0, 1)) {
+        entries.emplace_back(2 * copy, row, factor.real());
+        entries.emplace_back(2 * copy + 1, row, factor.imag());
+      }
+    });
+  }
+  return matrix_of(entries, 2 * copies, rows.back());
+}
+
+// The Dirichlet form of these coordinates, all of it.
+RealMatrix form_of_coordinates(const CutSurface& surface) {
+  const Index copies = surface.cut_mesh.copy_count();
+  PerCopy<Index> row_of_copy(copies);
+  std::iota(row_of_copy.begin(), row_of_copy.end(), 0);
+  const RealMatrix form = assemble_dirichlet(surface.mesh, surface.geometry, surface.cut_mesh, row_of_copy);
+  Entries entries;
+  for (int column = 0; column < copies; ++column) {
+    for (RealMatrix::InnerIterator it(form, column); it; ++it) {
+      const int row = static_cast<int>(it.row());
+      for (const int axis : {0, 1}) {
+        entries.emplace_back(2 * row + axis, 2 * column + axis, it.value());
+        if (row != column) entries.emplace_back(2 * column + axis, 2 * row + axis, it.value());
+      }
+    }
+  }
+  return matrix_of(entries, 2 * copies, 2 * copies);
+}
+
+// The least squares fit to Jacobians among positions that are sums of the degrees of freedom.
+Eigen::VectorXcd fit_along(const CutSurface& surface, const DegreesOfFreedom& freedom, const Jacobians& jacobians) {
+  const RealMatrix coordinates = coordinates_from(freedom);
+  const RealMatrix form = coordinates.transpose() * form_of_coordinates(surface) * coordinates;
+  const Eigen::VectorXcd pull = pull_of(surface, jacobians);
+  Eigen::VectorXd right(2 * pull.size());
+  for (Eigen::Index copy = 0; copy < pull.size(); ++copy) {
+    right.segment<2>(2 * copy) << pull[copy].real(), pull[copy].imag();
+  }
+  right = (coordinates.transpose() * right).eval();
+  const Eigen::VectorXd fitted = coordinates * Cholesky<double>(form.triangularView<Eigen::Lower>()).solve(right);
+  Eigen::VectorXcd out(pull.size());
+  for (Eigen::Index copy = 0; copy < out.size(); ++copy) out[copy] = {fitted[2 * copy], fitted[2 * copy + 1]};
   return out;
 }
 
@@ -57,32 +158,20 @@ void equalize(const CutMesh& cut_mesh, const DirectedEdges& edges, Eigen::Vector
 Eigen::VectorXcd straighten(const CutSurface& surface, const MapTarget& target, const StretchOptions& options,
                             const StepHook& before_step, const MapWithStraightSides& map) {
   const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
-  const DirectedEdges edges = edges_of(map.straight);
+  DirectedEdges edges = edges_of(map.straight);
   Eigen::VectorXcd position = map.straight.turn * map.position;
   if (map.straight.is_bent()) {
+    edges.held = held_islands(surface, target);
     const Eigen::VectorXd rest = scale_at_rest(surface, target.curvature, options.stretch, position);
-    Eigen::VectorXd directions(edges.directions.size());
-    for (Eigen::Index i = 0; i < directions.size(); ++i) directions[i] = std::arg(edges.directions[i]);
     before_step();
-    position = unfold_aligned(surface, target.connection.reduction,
-                              measure_jacobians(mesh, geometry, cut_mesh, position), edges.halfedges, directions);
-    NewtonMinimizer newton(surface, {rest, target.connection.frames},
-                           free_along(surface, target.connection.reduction, edges), before_step, position);
+    DegreesOfFreedom freedom = free_along(surface, target.connection.reduction, edges);
+    position = fit_along(surface, freedom, measure_jacobians(mesh, geometry, cut_mesh, position));
+    NewtonMinimizer newton(surface, {rest, target.connection.frames}, std::move(freedom), before_step, position);
     newton.weigh(importance_of_triangles(mesh, geometry, options.importance));
     if (newton.unfold(Kind::foldover_free, unfolding_steps)) relax_stretch(newton);
   }
   equalize(cut_mesh, edges, position);
   return position;
-}
-
-double l2_stretch(const Geometry& geometry, const Jacobians& jacobians) {
-  double stretch = 0, area = 0;
-  for (Eigen::Index f = 0; f < jacobians.f_z.size(); ++f) {
-    const double p = std::norm(jacobians.f_z[f]), q = std::norm(jacobians.f_zbar[f]);
-    stretch += geometry.area[f] * (p + q) / ((p - q) * (p - q));
-    area += geometry.area[f] * (p - q);
-  }
-  return std::sqrt(stretch * area) / geometry.total_area;
 }
 
 }  // namespace lsgp

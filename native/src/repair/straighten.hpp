@@ -16,14 +16,11 @@ struct MapWithStraightSides {
   const StraightSides& straight;
 };
 
-// The map of least stretch, as from `lower_stretch`, whose boundary has these sides, with all transitions unchanged. It
-// starts from the fit to the Jacobians of the current map under real linear equations. The coordinate across a side
-// along an axis is the same to the last bit on all of it. Triangles may be flipped if sides contradict each other.
-// Throws SOLVER_FAILED.
+// The map of least stretch, as from `lower_stretch`, whose boundary has these sides, with all transitions unchanged but
+// the translations between islands. It starts from the fit to the Jacobians of the current map among the maps with
+// these sides. The coordinate across a side along an axis is the same to the last bit on all of it. Triangles may be
+// flipped if sides contradict each other. Throws SOLVER_FAILED.
 Eigen::VectorXcd straighten(const CutSurface& surface, const MapTarget& target, const StretchOptions& options,
                             const StepHook& before_step, const MapWithStraightSides& map);
-
-// The L2 stretch of a map without flips (Sander et al. 2001), 1 where it is isometric up to scale.
-double l2_stretch(const Geometry& geometry, const Jacobians& jacobians);
 
 }  // namespace lsgp

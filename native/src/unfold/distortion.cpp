@@ -70,7 +70,8 @@ Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, 
   Distortion out;
   Array<double> ratios;  // of the areas on the surface to those in the plane
   ratios.reserve(triangles.size());
-  double area = 0, uv_area = 0, stretch = 0;
+  L2Stretch stretch;
+  double area = 0, uv_area = 0;
   Array<Measured> measured(triangles.size());
   for_each_at_once(ssize(triangles),
                    [&](std::ptrdiff_t i) { measured[i] = measure(surface, corner_uv, triangles[i]); });
@@ -80,7 +81,7 @@ Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, 
     uv_area += one.uv_doubled / 2;
     out.quasi_conformal += one.ratio;
     out.quasi_conformal_area_weighted += one.ratio * one.doubled / 2;
-    stretch += (1 / one.largest_square + one.ratio * one.shrinkage) * one.doubled / 4;
+    stretch.add(one.doubled / 2, one.uv_doubled / 2, (1 / one.largest_square + one.ratio * one.shrinkage) / 2);
     ratios.push_back(one.shrinkage);
   }
   if (ratios.empty()) return out;
@@ -95,7 +96,7 @@ Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, 
   }
   out.area_p10 = percentile(ratios, 0.1);
   out.area_p90 = percentile(ratios, 0.9);
-  out.l2_stretch = std::sqrt(stretch / area * (uv_area / area));
+  out.l2_stretch = stretch.value();
   return out;
 }
 

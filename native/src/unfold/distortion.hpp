@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <complex>
 #include <limits>
 #include <optional>
@@ -21,6 +22,22 @@ using CornerPositions = Eigen::Ref<const Eigen::VectorXcd>;  // (3m) u + iv
 // triangles: those to measure; triangles without 3D area are skipped.  corner_uv: (3m, 2).
 Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, const Array<Index>& triangles);
 
+// The L2 stretch of a map (Sander et al. 2001), up to scale: 1 for an isometry.
+class L2Stretch {
+ public:
+  // Of a triangle: its areas, and the mean square of the stretch from the plane to the surface over all directions,
+  // half the sum of the inverse squares of the map's singular values.
+  void add(double area, double uv_area, double mean_square) {
+    stretch_ += mean_square * area;
+    area_ += area;
+    uv_area_ += uv_area;
+  }
+  double value() const { return std::sqrt(stretch_ / area_ * (uv_area_ / area_)); }
+
+ private:
+  double stretch_ = 0, area_ = 0, uv_area_ = 0;
+};
+
 // The smallest upright box around positions.
 class PositionBox {
  public:
@@ -28,6 +45,7 @@ class PositionBox {
     low_ = {std::min(low_.real(), z.real()), std::min(low_.imag(), z.imag())};
     high_ = {std::max(high_.real(), z.real()), std::max(high_.imag(), z.imag())};
   }
+  Complex low() const { return low_; }
   double size() const { return std::max(std::abs(high_ - low_), std::numeric_limits<double>::min()); }  // its diagonal
 
  private:

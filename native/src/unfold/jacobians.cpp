@@ -2,8 +2,11 @@
 #include "unfold/jacobians.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "base/thread_team.hpp"
+#include "systems/quadratic_forms.hpp"
+#include "unfold/distortion.hpp"
 
 namespace lsgp {
 
@@ -18,6 +21,16 @@ Jacobians prescribed_jacobians(const HalfedgeMesh& mesh, const Eigen::VectorXd& 
   return out;
 }
 
+RelativeFit::RelativeFit(const CutSurface& surface, Jacobians jacobians)
+    : surface_(surface), jacobians_(std::move(jacobians)) {
+  constexpr double widest_range = 1e8;  // of the weights, so that the form can be factored
+  Eigen::VectorXd weight = jacobians_.f_z.cwiseAbs2().cwiseInverse();
+  weight = weight.cwiseMin(widest_range * weight.minCoeff());
+  weighted_ = with_weights(surface.geometry, weight);
+  jacobians_.f_z = jacobians_.f_z.cwiseProduct(weight);
+  jacobians_.f_zbar = jacobians_.f_zbar.cwiseProduct(weight);
+}
+
 Jacobians measure_jacobians(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
                             const Eigen::VectorXcd& position) {
   Jacobians out{Eigen::VectorXcd::Zero(mesh.triangle_count()), Eigen::VectorXcd::Zero(mesh.triangle_count())};
@@ -30,6 +43,15 @@ Jacobians measure_jacobians(const HalfedgeMesh& mesh, const Geometry& geometry, 
     }
   });
   return out;
+}
+
+double l2_stretch(const Geometry& geometry, const Jacobians& jacobians) {
+  L2Stretch stretch;
+  for (Eigen::Index f = 0; f < jacobians.f_z.size(); ++f) {
+    const double p = std::norm(jacobians.f_z[f]), q = std::norm(jacobians.f_zbar[f]);
+    stretch.add(geometry.area[f], geometry.area[f] * (p - q), (p + q) / ((p - q) * (p - q)));
+  }
+  return stretch.value();
 }
 
 }  // namespace lsgp

@@ -199,8 +199,9 @@ REVIEWED = {
     "repair/straight_sides.cpp": [
         ("for (Index h = first; !is_listed[h];)", SIDES, SHORT),
         ("while (!is_open(mesh, cut_mesh, h))", AROUND_A_VERTEX, SHORT),
+        ("for (Index h = first; h != none && is_left_[h]; h = following(is_crease, h))", ONCE_EACH, SHORT),
         (
-            "for (Complex turn = out.turn; !found.empty(); turn = turn_to_axes(found, most_bend))",
+            "for (Complex turn = out.turn; !found.empty(); turn = turn_to_axes(chords_of(found), most_bend))",
             "takes sides away each time, all within an angle of 0.06 degrees at least",
             SHORT,
         ),

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import lsgp
 import meshes
 import numpy as np
@@ -136,3 +138,48 @@ def test_costs_move_the_cuts_and_leave_the_map(name: str, mode: str) -> None:
         assert after.distortion.l2_stretch == pytest.approx(before.distortion.l2_stretch, rel=1e-9)
         assert oracle.metric_gap(before.corner_uv, after.corner_uv) <= 1e-7
     assert moved
+
+
+def cut_choices(of: lsgp.Surface) -> dict[str, np.ndarray]:
+    """The costs of the choices that the interfaces offer, and a user's own."""
+    painted = np.random.default_rng(4).uniform(size=len(of.positions))
+    return {
+        "hidden": lsgp.cut_costs(of, (0, 0, 1)),
+        "hidden from elsewhere": lsgp.cut_costs(of, (1, -2, 0)),
+        "shortest": np.ones(len(of.edges)),
+        "sharp": lsgp.cut_costs(of),
+        "own": lsgp.cut_costs(of, creases=False, paint=painted),
+    }
+
+
+def rigid_gap(triangles: np.ndarray, one: lsgp.Result, other: lsgp.Result) -> float:
+    """Largest distance, in parts of the layout's extent, between two maps cut open along the cuts of both, after the
+    best rigid motion of each piece and one common scale."""
+    both = np.concatenate([one.cut_edges, other.cut_edges])
+    piece = oracle.face_components(oracle.cut_open(triangles, both).corner)
+    first, second = (
+        oracle.as_complex(result.corner_uv) / np.sqrt(np.abs(oracle.signed_areas(result.corner_uv)).sum())
+        for result in (one, other)
+    )
+    gaps = []
+    for i in np.unique(piece):
+        a, b = first[piece == i].ravel(), second[piece == i].ravel()
+        a, b = a - a.mean(), b - b.mean()
+        turn = b.conj() @ a
+        gaps.append(np.abs(a - turn / abs(turn) * b).max())
+    return float(max(gaps) / np.abs(first.ravel() - first.mean()).max())
+
+
+@pytest.mark.parametrize("name", MAPPED)
+def test_every_choice_of_cuts_gives_the_same_coordinates_up_to_a_motion(name: str) -> None:
+    """To nine digits: pieces between the cuts move rigidly, and nothing else changes."""
+    mesh = MAPPED[name]
+    of = with_edges(mesh)
+    cones = lsgp.parameterize(of, mesh.cones)
+    plain = lsgp.Options(repair=False)
+    maps = [
+        lsgp.parameterize(replace(of, cut_costs=costs), cones.cones, cones.cone_angles, plain)
+        for costs in cut_choices(of).values()
+    ]
+    assert len({frozenset(pairs(one.cut_edges)) for one in maps}) >= 2
+    assert max(rigid_gap(mesh.triangles, maps[0], other) for other in maps[1:]) <= 1e-9

@@ -218,3 +218,25 @@ def test_half_as_many_cones_would_not_reach_the_target(name: str) -> None:
     placed = place(mesh)
     assert placed.reached
     assert not place(mesh, count=len(placed.cones) // 2).mapped_l2 <= TARGET
+
+
+# --- more than an artist would mark ---------------------------------------------------------------------------------
+
+
+def test_a_large_gear_gets_a_cone_at_each_of_its_corners() -> None:
+    """320 corners, which fewer cones do not make up for."""
+    mesh = closed.gear(40, 0.1, 10)
+    placed = place(mesh)
+    assert placed.reached and placed.mapped_l2 <= ISOMETRIC and len(placed.cones) == 320
+    assert_keeps_its_word(mesh, placed)
+
+
+def test_cones_are_added_as_long_as_the_prediction_falls() -> None:
+    """The prediction of 57 cones is half as far from none as that of 30."""
+    placed = place(closed.spiked_sphere(3, 12, 10))
+    assert len(placed.cones) == 57 and placed.mapped_l2 < 1.2
+
+
+def test_spikes_get_a_map_although_none_of_the_usual_cones_have_one() -> None:
+    mesh = closed.spiked_sphere(4, 12, 5)
+    assert_keeps_its_word(mesh, place(mesh))

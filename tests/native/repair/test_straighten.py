@@ -167,3 +167,39 @@ def test_presets_lay_parts_of_machines_along_u_and_v(pack: str) -> None:
     assert at_the_rims(result.corner_uv).all() and not at_the_rims(natural.corner_uv).any()
     uv_area = np.abs(oracle.signed_areas(on_side)).sum()
     assert uv_area == pytest.approx(np.prod(high - low))  # the whole of its box
+
+
+def folded_sheet(cells: int = 12) -> Mesh:
+    """Two halves of a sheet that meet at a sharp ridge, one of them domed."""
+    middle = cells / 2
+    return meshes.grid(
+        cells,
+        cells + 2,
+        lambda x, y: (
+            0.6 * np.abs(x - middle)
+            + np.where(x > middle, np.sin(np.pi * (x - middle) / middle) * np.sin(np.pi * y / (cells + 2)), 0)
+        ),
+    )
+
+
+def test_creases_inside_become_straight_as_well() -> None:
+    mesh = folded_sheet()
+    middle = mesh.positions[:, 0].max() / 2
+    bends = []
+    for on in (True, False):
+        result = unwrapped(mesh, on)
+        on_ridge = result.corner_uv[mesh.positions[mesh.triangles][..., 0] == middle]
+        bends.append(np.ptp(on_ridge, axis=0).min())
+        assert len(result.flipped) == 0
+    assert bends[0] < 1e-14
+    assert bends[1] > 1e-4
+
+
+def test_cuts_that_make_islands_compact_are_straight_too() -> None:
+    mesh = barrel(48, 8, 0.1)
+    options = replace(LOW_STRETCH, straighten=True, compact="full", overlaps="split")
+    result = lsgp.parameterize(surface(mesh), (), options=options)
+    assert len(np.unique(result.island)) > 1
+    assert share_along_axes(mesh, result) == 1
+    assert_angles_met(mesh, result)
+    assert_exact_transitions(mesh, result)

@@ -10,14 +10,24 @@
 
 namespace lsgp {
 
-// The vertex at the mirror image of each, or none; empty if the surface is not symmetric. An image's image is the
-// vertex itself.
+// A point's mirror image.  plane: with a unit normal.
+Eigen::RowVector3d reflected(const MirrorPlane& plane, const Eigen::RowVector3d& at);
+
+// How a surface mirrors itself.
+struct Mirroring {
+  MirrorPlane plane;       // with a unit normal
+  PerVertex<Index> image;  // the vertex at the mirror image of each, or none; empty if the surface is not symmetric
+
+  bool empty() const { return image.empty(); }
+};
+
+// An image's image is the vertex itself.
 // plane: if none, those through the centroid along the axes and the principal directions are tried, and fitted to the
 // surface where that helps. A plane in which the surface itself lies comes last.
 // Either nearly all vertices have an image within a tenth of an edge, or the mirrored surface is within 2 % of the
 // surface's extent of itself nearly everywhere: then vertices are paired with those near their images.
-PerVertex<Index> find_mirror_images(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                    const std::optional<MirrorPlane>& plane);
+Mirroring find_mirror_images(const HalfedgeMesh& mesh, const Geometry& geometry,
+                             const std::optional<MirrorPlane>& plane);
 
 // Components that mirror each other, such as eyes.
 struct MirroredComponent {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sites/point_tree.hpp"
+#include "mesh/point_tree.hpp"
 
 #include <algorithm>
 #include <cmath>

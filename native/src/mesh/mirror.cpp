@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sites/mirror.hpp"
+#include "mesh/mirror.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "base/checkpoint.hpp"
-#include "sites/point_tree.hpp"
+#include "mesh/point_tree.hpp"
 
 namespace lsgp {
 
@@ -25,11 +25,6 @@ constexpr double least_moved = 0.1;      // of the vertices, whose images are ot
 constexpr Index most_samples = 500;      // that judge a plane before all vertices do
 constexpr int most_fits = 20;            // of a plane
 constexpr double operations_a_search = 500;
-
-Eigen::RowVector3d reflected(const MirrorPlane& plane, const Eigen::RowVector3d& at) {
-  const Eigen::RowVector3d normal = plane.normal.transpose();
-  return at - 2 * (at - plane.point.transpose()).dot(normal) * normal;
-}
 
 // The distance of a point from a triangle.
 double distance_to(const Eigen::RowVector3d& at, const Eigen::Matrix3d& corners) {
@@ -75,8 +70,8 @@ class MirroredSurface {
 
   // The images in the plane in which most vertices have one, or empty; those in a plane in which the surface lies come
   // last.
-  PerVertex<Index> exact_images(const Array<MirrorPlane>& planes) const {
-    PerVertex<Index> best;
+  Mirroring exact_images(const Array<MirrorPlane>& planes) const {
+    Mirroring best;
     std::pair<bool, Index> most{false, needed(mesh_.vertex_count()) - 1};
     for (const MirrorPlane& plane : planes) {
       const auto is_matched = [&](Index v) { return near_image(plane, v) != none; };
@@ -86,14 +81,14 @@ class MirroredSurface {
       const std::pair worth{moves(images), matched};
       if (matched < needed(mesh_.vertex_count()) || worth <= most) continue;
       most = worth;
-      best = std::move(images);
+      best = {plane, std::move(images)};
     }
     return best;
   }
 
   // The same for the plane in which the surface is nearest to its own image, and in which it does not lie.
-  PerVertex<Index> near_images(const Array<MirrorPlane>& planes) const {
-    PerVertex<Index> best;
+  Mirroring near_images(const Array<MirrorPlane>& planes) const {
+    Mirroring best;
     double least = std::numeric_limits<double>::infinity();
     for (const MirrorPlane& plane : planes) {
       const auto is_near = [&](Index v) { return gap(plane, v) <= near_tolerance * extent_; };
@@ -110,7 +105,7 @@ class MirroredSurface {
       }
       if (matched < needed(mesh_.vertex_count()) || !(sum < least)) continue;
       least = sum;
-      best = std::move(images);
+      best = {plane, std::move(images)};
     }
     return best;
   }
@@ -255,16 +250,21 @@ PerVertex<Index> images_on(const HalfedgeMesh& other, const HalfedgeMesh& mesh, 
 
 }  // namespace
 
-PerVertex<Index> find_mirror_images(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                    const std::optional<MirrorPlane>& plane) {
+Eigen::RowVector3d reflected(const MirrorPlane& plane, const Eigen::RowVector3d& at) {
+  const Eigen::RowVector3d normal = plane.normal.transpose();
+  return at - 2 * (at - plane.point.transpose()).dot(normal) * normal;
+}
+
+Mirroring find_mirror_images(const HalfedgeMesh& mesh, const Geometry& geometry,
+                             const std::optional<MirrorPlane>& plane) {
   const MirroredSurface surface(mesh, geometry);
   Array<MirrorPlane> planes = plane ? Array<MirrorPlane>{with_unit_normal(*plane)} : surface.likely_planes();
-  PerVertex<Index> exact = surface.exact_images(planes);
-  if (MirroredSurface::moves(exact) && !exact.empty()) return exact;
+  Mirroring exact = surface.exact_images(planes);
+  if (MirroredSurface::moves(exact.image) && !exact.empty()) return exact;
   if (!plane) {
     for (MirrorPlane& likely : planes) likely = surface.fitted(likely);
   }
-  PerVertex<Index> near = surface.near_images(planes);
+  Mirroring near = surface.near_images(planes);
   return near.empty() ? exact : near;
 }
 

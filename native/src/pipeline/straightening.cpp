@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/straightening.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "cut/holonomy.hpp"
+#include "plane/overlaps.hpp"
+#include "repair/straighten.hpp"
+#include "unfold/jacobians.hpp"
+
+namespace lsgp {
+
+namespace {
+
+// The largest bend of sides that are straightened, radians; the smaller, the closer the map is to an isometry, whose
+// angles are those of the surface up to the precision of the file.
+double most_bend(double l2) {
+  constexpr double widest = 10 * M_PI / 180, beside_stretch = 30, rounding = 1e-3;
+  return std::min(widest, rounding + beside_stretch * std::sqrt(std::max(0.0, l2 - 1)));
+}
+
+// The L2 stretch that straight sides may cost: hardly any more if the map is isometric.
+double largest_l2_straight(double l2) {
+  constexpr double share = 0.1, least = 0.002, most_times = 20, rounding = 1e-6;
+  const double excess = std::max(0.0, l2 - 1);
+  return l2 + std::min(std::max(share * excess, least), most_times * excess) + rounding;
+}
+
+double l2_of(const CutSurface& surface, const ComponentMap& map) {
+  return l2_stretch(surface.geometry,
+                    measure_jacobians(surface.mesh, surface.geometry, surface.cut_mesh, map.position));
+}
+
+// Whether an island of the layout overlaps itself, judged by its boundary.
+bool overlaps(const CutSurface& surface, const ComponentMap& map) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  PerHalfedge<Index> twin = mesh.twin;
+  PerTriangle<Index> part;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (is_open(mesh, surface.cut_mesh, h)) twin[h] = none;
+  }
+  // Islands side by side.
+  Array<PositionBox> boxes(label_parts(mesh, surface.cut_graph.is_cut, part));
+  Eigen::VectorXcd corners = at_corners(surface.cut_mesh, map.position);
+  for (Eigen::Index c = 0; c < corners.size(); ++c) boxes[part[c / 3]].add(corners[c]);
+  Complex at = 0;
+  Array<Complex> shift;
+  for (const PositionBox& box : boxes) {
+    shift.push_back(at - box.low());
+    at += 2 * box.size();
+  }
+  for (Eigen::Index c = 0; c < corners.size() && boxes.size() > 1; ++c) corners[c] += shift[part[c / 3]];
+  return has_overlap(corners, twin);
+}
+
+// Whether all cuts are connected, boundaries included, so that each can be related to the others.
+bool is_one_network(const CutSurface& surface) {
+  const NodeGraph nodes = build_node_graph(surface.mesh, surface.cut_graph, [](Index) { return 0.0; });
+  return nodes.order.size() == nodes.vertex.size();
+}
+
+// Straightens all sides at once, or else as many as possible: halves that fail are divided again.
+class SideSearch {
+ public:
+  SideSearch(const StraighteningTask& task, const ComponentMap& map, StraightSides straight)
+      : task_(task),
+        map_(map),
+        border_(sort_by_cost(straight)),
+        sides_(std::move(straight.sides)),
+        straight_(std::move(straight)),
+        most_l2_(largest_l2_straight(map.natural_l2)),
+        may_overlap_(overlaps(task.surface, map)) {
+    straight_.sides.clear();
+  }
+
+  std::optional<ComponentMap> search() {
+    const std::ptrdiff_t all = ssize(sides_);
+    if (!tries(0, all)) {
+      const bool has_border = add(0, border_, border_ == all);
+      add(border_, all, has_border);
+    }
+    return std::move(best_);
+  }
+
+ private:
+  // Adds sides to those that are straight, as far as that succeeds.  is_known_to_fail: with all of them.  Returns
+  // whether it did with all of them.
+  bool add(std::ptrdiff_t begin, std::ptrdiff_t end, bool is_known_to_fail) {
+    if (begin == end || left_ == 0) return false;
+    if (!is_known_to_fail && tries(begin, end)) return true;
+    const std::ptrdiff_t count = end - begin, smallest = std::max<std::ptrdiff_t>(1, ssize(sides_) / 16);
+    if (count <= smallest) return false;
+    const bool has_first = add(begin, begin + count / 2, false);
+    add(begin + count / 2, end, has_first);
+    return false;
+  }
+
+  bool tries(std::ptrdiff_t begin, std::ptrdiff_t end) {
+    --left_;
+    StraightSides more = straight_;
+    more.sides.insert(more.sides.end(), sides_.begin() + begin, sides_.begin() + end);
+    ComponentMap tried = map_;
+    const auto& [surface, connection, options, before_step] = task_;
+    try {
+      tried.position = straighten(surface, {connection, map_.curvature}, options, before_step, {map_.position, more});
+      check_positions(surface.mesh, tried);
+    } catch (const Error& error) {
+      if (error.code() != Code::solver_failed) throw;
+      return false;
+    }
+    if (tried.validity.defects() > 0 || l2_of(surface, tried) > most_l2_) return false;
+    if (!may_overlap_ && overlaps(surface, tried)) return false;
+    straight_ = std::move(more);
+    best_ = std::move(tried);
+    return true;
+  }
+
+  const StraighteningTask& task_;
+  const ComponentMap& map_;
+  const std::ptrdiff_t border_;      // the number of sides on it
+  const Array<StraightSide> sides_;  // the cheapest first
+  StraightSides straight_;           // with the sides that are straight
+  const double most_l2_;
+  const bool may_overlap_;
+  int left_ = 10;  // attempts
+  std::optional<ComponentMap> best_;
+};
+
+}  // namespace
+
+std::optional<StraightSides> sides_to_straighten(const CutSurface& surface, const ComponentMap& map,
+                                                 bool with_creases) {
+  StraightSides straight =
+      find_straight_sides(surface, *map.rotation, map.position, {most_bend(map.natural_l2), with_creases});
+  if (straight.sides.empty() || (!straight.is_bent() && !straight.has_axes)) return std::nullopt;
+  return straight;
+}
+
+std::optional<ComponentMap> with_straight_sides(const StraighteningTask& task, const ComponentMap& map,
+                                                StraightSides straight) {
+  return SideSearch(task, map, std::move(straight)).search();
+}
+
+void straighten_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const StretchOptions& options,
+                        const StepHook& before_step, ComponentMap& map) {
+  const CutSurface surface{mesh, geometry, map.cut_graph, map.cut_mesh};
+  if (map.natural_l2 == 0 || !is_one_network(surface)) return;
+  std::optional<StraightSides> sides = sides_to_straighten(surface, map, true);
+  if (!sides) return;
+  const ParallelTransport connection = connection_of_map(surface, map.curvature, *map.rotation, map.position);
+  std::optional<ComponentMap> straight =
+      with_straight_sides({surface, connection, options, before_step}, map, std::move(*sides));
+  if (straight) map = std::move(*straight);
+}
+
+}  // namespace lsgp

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The search for straight sides that hardly cost any stretch.
+#pragma once
+
+#include <optional>
+
+#include "pipeline/component_map.hpp"
+#include "prescription/parallel_transport.hpp"
+#include "repair/low_stretch.hpp"
+#include "repair/straight_sides.hpp"
+
+namespace lsgp {
+
+// The nearly straight sides of a map and, if asked for, its creases inside; none if there is nothing to do.
+std::optional<StraightSides> sides_to_straighten(const CutSurface& surface, const ComponentMap& map, bool with_creases);
+
+// A map of low stretch that is to be changed.
+struct StraighteningTask {
+  const CutSurface& surface;
+  const ParallelTransport& connection;  // that the map realises
+  StretchOptions options;
+  StepHook before_step;
+};
+
+// The map with as many of these sides straight as its natural stretch, `ComponentMap::natural_l2`, allows without flips
+// or overlaps of an island with itself, those of the boundary before creases inside; none if it allows no side.
+std::optional<ComponentMap> with_straight_sides(const StraighteningTask& task, const ComponentMap& map,
+                                                StraightSides straight);
+
+// The same, with creases, for a map that was cut into islands, which may have been moved. Islands may be shifted.
+// Leaves the map unchanged if no side can be made straight.
+void straighten_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const StretchOptions& options,
+                        const StepHook& before_step, ComponentMap& map);
+
+}  // namespace lsgp

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cuts that are alike on both sides of a mirror plane."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import lsgp
+import meshes
+import numpy as np
+import oracle
+import pytest
+from map_checks import pairs, surface
+
+MIRRORED = lsgp.Options(mirrored_cuts=True)
+EXACT = {"horned": meshes.two_horned(), "ball": meshes.icosphere(3), "box": meshes.cube(6, (2, 1, 1))}
+
+
+def image_of(positions: np.ndarray, middle: float = 0.0) -> np.ndarray:
+    """The vertex nearest to each vertex's mirror image in x = middle."""
+    opposite = positions * [-1, 1, 1] + [2 * middle, 0, 0]
+    return np.linalg.norm(opposite[:, None] - positions, axis=2).argmin(axis=1)
+
+
+def mirrored_cones(mesh: meshes.Mesh, image: np.ndarray, seed: int, on_plane: int) -> np.ndarray:
+    """Two to five pairs of random cones, and some on the plane."""
+    rng = np.random.default_rng(seed)
+    vertices = rng.permutation(len(mesh.positions))
+    beside = vertices[image[vertices] != vertices][: rng.integers(2, 6)]
+    return np.unique([*beside, *image[beside], *vertices[image[vertices] == vertices][:on_plane]]).astype(np.int32)
+
+
+def lengths(mesh: meshes.Mesh, edges: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(np.diff(mesh.positions[edges], axis=1), axis=2).ravel()
+
+
+def mirrored_share(mesh: meshes.Mesh, edges: np.ndarray, middle: float = 0.0) -> float:
+    """Of the cuts' length, in tenths of edges: what is within an edge of the mirror image of a cut, or in the plane."""
+    edge = lengths(mesh, meshes.edges_of(mesh.triangles)).mean()
+    steps = (np.arange(10) + 0.5)[:, None, None] / 10
+    ends = mesh.positions[edges]
+    points = (ends[:, 0] + steps * (ends[:, 1] - ends[:, 0])).reshape(-1, 3)
+    images = points * [-1, 1, 1] + [2 * middle, 0, 0]
+    near = np.linalg.norm(images[:, None] - points, axis=2).min(axis=1) <= edge
+    near |= np.abs(points[:, 0] - middle) <= edge / 2
+    weight = np.tile(lengths(mesh, edges), 10)
+    return float(weight @ near / weight.sum())
+
+
+def assert_mirrored(mesh: meshes.Mesh, image: np.ndarray, edges: np.ndarray, middle: float = 0.0) -> None:
+    """Edges beyond those beside the plane have the image of each, the others are within an edge of one."""
+    assert mirrored_share(mesh, edges, middle) >= 1 - 1e-9
+    away = np.abs(mesh.positions[:, 0] - middle) > lengths(mesh, meshes.edges_of(mesh.triangles)).max()
+    far = edges[away[edges].any(axis=1)]
+    assert pairs(image[far]) == pairs(far)
+
+
+@pytest.mark.parametrize("on_plane", [0, 2])
+@pytest.mark.parametrize("name", EXACT)
+def test_every_cut_has_its_image(name: str, on_plane: int) -> None:
+    mesh = EXACT[name]
+    middle = (mesh.positions[:, 0].min() + mesh.positions[:, 0].max()) / 2
+    image = image_of(mesh.positions, middle)
+    of = surface(mesh)
+    for seed in range(4):
+        cones = mirrored_cones(mesh, image, seed, on_plane)
+        usual = lsgp.parameterize(of, cones)
+        mirrored = lsgp.parameterize(of, cones, options=MIRRORED)
+        assert_mirrored(mesh, image, mirrored.cut_edges, middle)
+        assert lengths(mesh, mirrored.cut_edges).sum() <= 1.5 * lengths(mesh, usual.cut_edges).sum()
+        opened = oracle.cut_open(mesh.triangles, mirrored.cut_edges)
+        assert oracle.euler_of(opened.corner) == 1 and len(np.unique(oracle.face_components(opened.corner))) == 1
+        assert set(cones.tolist()) <= set(mirrored.cut_edges.ravel().tolist())
+        assert oracle.metric_gap(mirrored.corner_uv, usual.corner_uv) <= 1e-7
+
+
+def with_holes(mesh: meshes.Mesh, places: list[list[float]]) -> meshes.Mesh:
+    middle = mesh.positions[mesh.triangles].mean(axis=1)
+    kept = (np.linalg.norm(middle[:, None] - np.array(places), axis=2) > 0.25).all(axis=1)
+    return meshes.compact(mesh._replace(triangles=mesh.triangles[kept]))
+
+
+HOLES = {
+    "in the plane": [[0, -1, 0]],
+    "a pair": [[0.6, 0, 0.8], [-0.6, 0, 0.8]],
+    "both": [[0, -1, 0], [0, 0, -1], [0.8, -0.3, 0.5], [-0.8, -0.3, 0.5]],
+}
+
+
+@pytest.mark.parametrize("name", HOLES)
+def test_cuts_to_holes_have_images_too(name: str) -> None:
+    """A hole in the plane joins both sides; those beside it come in pairs like cones."""
+    mesh = with_holes(meshes.two_horned(), HOLES[name])
+    image = image_of(mesh.positions)
+    rims = np.concatenate(oracle.boundary_loops(mesh.triangles))
+    for seed in range(4):
+        cones = np.setdiff1d(mirrored_cones(mesh, image, seed, seed % 3), rims)
+        edges = lsgp.parameterize(surface(mesh), cones, options=MIRRORED).cut_edges
+        assert_mirrored(mesh, image, edges)
+        assert oracle.euler_of(oracle.cut_open(mesh.triangles, edges).corner) == 1
+
+
+def test_handles_are_opened_on_both_sides_alike() -> None:
+    mesh = meshes.subdivide(meshes.double_torus())
+    middle = (mesh.positions[:, 0].min() + mesh.positions[:, 0].max()) / 2
+    image = image_of(mesh.positions, middle)
+    for seed in range(3):
+        cones = mirrored_cones(mesh, image, seed, seed % 3)
+        edges = lsgp.parameterize(surface(mesh), cones, options=MIRRORED).cut_edges
+        assert mirrored_share(mesh, edges, middle) >= 0.98
+        assert oracle.euler_of(oracle.cut_open(mesh.triangles, edges).corner) == 1
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.4])
+def test_cuts_mirror_each_other_on_triangles_that_do_not(turn: float) -> None:
+    mesh = meshes.two_horned(3, turn)
+    of = surface(mesh)
+    placed = lsgp.place_cones(of, symmetric=True)
+    usual = lsgp.parameterize(of, placed.cones, placed.cone_angles)
+    mirrored = lsgp.parameterize(of, placed.cones, placed.cone_angles, MIRRORED)
+    assert mirrored_share(mesh, mirrored.cut_edges) >= 0.98
+    assert mirrored_share(mesh, usual.cut_edges) < 0.95
+
+
+def test_costs_of_one_side_keep_cuts_away_on_both() -> None:
+    mesh = meshes.two_horned()
+    image = image_of(mesh.positions)
+    edges = meshes.edges_of(mesh.triangles)
+    cones = mirrored_cones(mesh, image, 3, 0)
+    before = lsgp.parameterize(surface(mesh, edges=edges), cones, options=MIRRORED).cut_edges
+    away = np.abs(mesh.positions[:, 0]) > 0.3
+    hot = before[away[before].all(axis=1) & ~np.isin(before, cones).any(axis=1)][0]
+    one_side = mesh.positions[:, 0] * mesh.positions[hot[0], 0] > 0
+    costs = np.where((np.isin(edges, hot).any(axis=1)) & one_side[edges].all(axis=1), 10.0, 1.0)
+    after = lsgp.parameterize(surface(mesh, edges=edges, cut_costs=costs), cones, options=MIRRORED).cut_edges
+    assert_mirrored(mesh, image, after)
+    assert np.isin(before, hot).any() and not np.isin(after, np.concatenate([hot, image[hot]])).any()
+
+
+def test_cones_that_do_not_mirror_each_other_have_the_usual_cuts() -> None:
+    mesh = meshes.two_horned()
+    image = image_of(mesh.positions)
+    cones = mirrored_cones(mesh, image, 1, 0)
+    odd = np.append(cones, np.flatnonzero((image != np.arange(len(image))) & ~np.isin(np.arange(len(image)), cones))[0])
+    usual = lsgp.parameterize(surface(mesh), odd)
+    assert np.array_equal(usual.corner_uv, lsgp.parameterize(surface(mesh), odd, options=MIRRORED).corner_uv)
+
+
+def test_auto_unwrap_mirrors_cuts_with_the_cones() -> None:
+    mesh = meshes.two_horned()
+    image = image_of(mesh.positions)
+    options = replace(lsgp.preset_options("paint"), overlaps="keep", compact="off")
+    result = lsgp.auto_unwrap(surface(mesh), options=options, pack="shelves")
+    assert set(image[result.cones].tolist()) == set(result.cones.tolist()) and len(result.cones) > 2
+    assert_mirrored(mesh, image, result.cut_edges)
