@@ -48,8 +48,8 @@ struct Placement {
 struct ConeGains {
   Eigen::VectorXd predicted_l2;  // (n) L2 stretch of the vertex's component with a cone there; NaN where none may be
   double present_l2 = 1;         // over the whole surface with the given cones; infinite if a component needs a cone
-  // The vertex that lowers the whole surface's most; -1: none does. If the surface has cut_costs, cuts may reach another
-  // one more cheaply that lowers it at least half as much.
+  // The vertex that lowers the whole surface's most; -1: none does. If the surface has cut_costs, cuts may reach
+  // another one more cheaply that lowers it at least half as much.
   Index best = -1;
   std::vector<Finding> warnings;
 };

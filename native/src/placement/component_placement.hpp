@@ -31,8 +31,8 @@ PlacedCones place_component(const PlacementTask& task, const PlacementOptions& o
 struct ComponentGains {
   double present_l2 = 1;         // infinite where it needs a cone
   Eigen::VectorXd predicted_l2;  // (n) with a cone there, NaN where none may be
-  // The vertex that gains most, also where stretches are too large to be told apart; where cuts have costs, of those that
-  // gain at least half as much the one that gains most by its price.
+  // The vertex that gains most, also where stretches are too large to be told apart; where cuts have costs, of those
+  // that gain at least half as much the one that gains most by its price.
   Index best = none;
 };
 ComponentGains component_gains(const PlacementTask& task, ProgressMonitor& monitor);
