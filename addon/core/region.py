@@ -39,6 +39,7 @@ class Region:
     image_aspect: width over height of the image in the mesh's material; 1 where there is none.
     object_scale: by how much the object's transform scales lengths, on the average; 0 where it leaves none.
     density_weight: how many times the texel density of other objects this one is to have.
+    is_rounded: whether the Subdivision Surface modifier makes something round of it, and its edges are no creases.
     """
 
     surface: lsgp.Surface
@@ -57,6 +58,7 @@ class Region:
     image_aspect: float
     object_scale: float
     density_weight: float = 1.0
+    is_rounded: bool = False
 
     @property
     def texel_scale(self) -> float:

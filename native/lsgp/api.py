@@ -617,7 +617,8 @@ def crease_borders(
 
     The regions between creases are patches. Patches are unfolded together across shared boundary segments that are
     straight and not short, and a tube is opened from end to end: a cylinder becomes a rectangle and two disks.
-    Components with cones or marked seams, and those with more than a fifth of their curvature off the creases, have no
+    Narrow bevels that turn the surface by `angle` are creases along their middle. Components with cones or marked
+    seams, and those with more than a fifth of their curvature off the creases, or 2 % off creases and bevels, have no
     such edges.
     angle: least angle between the normals at a crease, radians.
     sharp: (s, 2) int32, edges that are creases whatever their angle.

@@ -36,6 +36,7 @@ OPTIONS: Values = {
     "repair": [True, False],
     "overlaps": ["keep", "split"],
     "compact": ["off", "sparing", "full"],
+    "mirrored_cuts": [False, True],
     "square_share": [1.0, 0.1, 4.0],
     "factorization": ["automatic", "cut", "sparse"],
     "threads": [0, 1, 3],

@@ -66,7 +66,8 @@ class UnwrapTask:
     they are not corrected for one. cuts: where they should run. completes: whether cones are placed where those of the
     region do not suffice; count: how many on each connected part that gets some, None for as few as keep the stretch
     low; symmetric: whether they are placed alike on both sides of a mirror plane, if that costs little. creases_of: the
-    preset of `lsgp.auto_unwrap` whose rule then bounds hard surfaces at creases; None: no creases.
+    preset of `lsgp.auto_unwrap` whose rule then bounds hard surfaces at creases; None: no creases. Regions that are
+    rounded have none.
     """
 
     region: Region
@@ -235,7 +236,7 @@ def _completed(task: UnwrapTask, cones: ConeAngles, pins: lsgp.Pins | None, prog
         options=task.options,
         count=task.count,
         symmetric=task.symmetric,
-        creases=task.creases_of is not None,
+        creases=task.creases_of is not None and not task.region.is_rounded,
         sharp=task.region.sharp,
         pins=pins,
         pack="shelves",  # the islands of all objects are packed together, afterwards

@@ -6,12 +6,14 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <queue>
 #include <tuple>
 #include <utility>
 
 #include "base/checkpoint.hpp"
 #include "base/union_find.hpp"
+#include "cut/bevels.hpp"
 #include "cut/cut_cost.hpp"
 
 namespace lsgp {
@@ -20,6 +22,7 @@ namespace {
 
 constexpr double least_patch = 0.0002;       // of the area: smaller ones are no islands
 constexpr double least_on_creases = 0.8;     // of the curvature
+constexpr double least_on_bevels = 0.98;     // and creases: what is round everywhere has as much on what is narrow
 constexpr double is_curved = 0.06;           // radians at a vertex
 constexpr double is_bent = 0.25;             // radians along a border that two patches share
 constexpr double least_shared = 0.08;        // of the smaller patch's perimeter, to be unfolded with it
@@ -94,19 +97,19 @@ class Patches {
     }
   }
 
-  // Whether most of the curvature lies where patches meet, at more vertices than most_corners.
-  bool carry_curvature(Index most_corners) const {
+  // Whether so much of the curvature lies where patches meet or at these vertices, and at more than most_corners.
+  bool carry_curvature(double least_share, const PerVertex<char>& there, Index most_corners) const {
     constexpr double least = 0.1;  // radians: below, there is nothing to take out
     double all = 0, own = 0, squares = 0;
     for (Index v = 0; v < mesh_.vertex_count(); ++v) {
       if (!is_inside(mesh_, v)) continue;
       const double curvature = std::abs(geometry_.angle_defect[v]);
       all += curvature;
-      if (degree_[v] > 0) own += curvature;
+      if (degree_[v] > 0 || there[v]) own += curvature;
       squares += curvature * curvature;
     }
     const double corners = all * all / squares;  // were all alike
-    return all > least && own >= least_on_creases * all && std::round(corners) > most_corners;
+    return all > least && own >= least_share * all && std::round(corners) > most_corners;
   }
 
   // Where patches end that are unfolded together, the longest shares of a perimeter first.
@@ -294,10 +297,21 @@ void open_tubes(const HalfedgeMesh& mesh, const Geometry& geometry, PerHalfedge<
 
 PerHalfedge<char> find_crease_borders(const HalfedgeMesh& mesh, const Geometry& geometry,
                                       const PerHalfedge<char>& crease, const Eigen::VectorXd& bend,
-                                      Index most_corners) {
-  const Patches patches(mesh, geometry, find_patches(mesh, geometry, crease, bend));
-  if (!patches.carry_curvature(most_corners)) return PerHalfedge<char>(mesh.halfedge_count(), 0);
-  PerHalfedge<char> open = patches.unfold_together();
+                                      const CreaseOptions& options) {
+  std::optional<Patches> patches;
+  patches.emplace(mesh, geometry, find_patches(mesh, geometry, crease, bend));
+  const PerVertex<char> nowhere(mesh.vertex_count(), 0);
+  if (!patches->carry_curvature(least_on_creases, nowhere, options.most_corners)) {
+    Bevels bevels = find_bevels(mesh, geometry, bend, options.angle);
+    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+      bevels.crease[h] = crease[h] || (bevels.crease[h] && may_cut(mesh, h));
+    }
+    patches.emplace(mesh, geometry, find_patches(mesh, geometry, bevels.crease, bend));
+    if (!patches->carry_curvature(least_on_bevels, bevels.is_rounded, options.most_corners)) {
+      return PerHalfedge<char>(mesh.halfedge_count(), 0);
+    }
+  }
+  PerHalfedge<char> open = patches->unfold_together();
   open_tubes(mesh, geometry, open);
   return open;
 }

@@ -22,6 +22,13 @@ namespace {
 // As a fraction of the area of all islands: smaller islands are not cut.
 constexpr double least_island = 0.02;
 constexpr int cells_across = 40;
+constexpr double rounding = 1e-9;  // of what divisions are worth
+
+// The same lines, seen from their other sides.
+Array<Line> reversed(Array<Line> lines) {
+  for (Line& line : lines) line = {-line.normal, -line.offset};
+  return lines;
+}
 
 class Compactor {
  public:
@@ -262,13 +269,22 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& island) {
   const IslandDivision division = search_.find_division(cells_of(island, along), hull, along);
   if (division.lines.empty()) return {};
   const double band = extent_along(hull, along).width() / division_positions;
-  const Array<Index> class_of = without_slivers(island, cut_along(division.lines, island, band));
-  Array<Array<Index>> pieces = pieces_of(island, class_of);
-  double after = 0;
-  for (const Array<Index>& piece : pieces) after += search_.demand(hull_of(piece));
-  // The cells only gave an estimate of the gain.
-  const bool is_worth_it = search_.worth(before - after, length_between(island, class_of), pieces.size()) > 0;
-  return is_worth_it ? pieces : Array<Array<Index>>{};
+  Array<Array<Index>> best;
+  double most_worth = 0;
+  // Of cuts that are equally short, one hugs one end of the band, and one the other.
+  for (const Array<Line>& lines : {division.lines, reversed(division.lines)}) {
+    const Array<Index> class_of = without_slivers(island, cut_along(lines, island, band));
+    Array<Array<Index>> pieces = pieces_of(island, class_of);
+    double after = 0;
+    for (const Array<Index>& piece : pieces) after += search_.demand(hull_of(piece));
+    // The cells only gave an estimate of the gain.
+    const double worth = search_.worth(before - after, length_between(island, class_of), pieces.size());
+    if (worth > most_worth * (1 + rounding)) {
+      most_worth = worth;
+      best = std::move(pieces);
+    }
+  }
+  return best;
 }
 
 }  // namespace

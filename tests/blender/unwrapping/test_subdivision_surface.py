@@ -93,3 +93,13 @@ def test_without_the_modifier_nothing_differs():
     without = UvMap(cube).uv
     assert bpy.ops.uv.cone_auto_unwrap() == {"FINISHED"}
     assert np.array_equal(UvMap(cube).uv, without)
+
+
+@pytest.mark.parametrize(("kind", "is_round"), [("CATMULL_CLARK", True), ("SIMPLE", False)])
+def test_edges_of_a_cage_that_is_made_round_are_no_creases(kind, is_round, reports):
+    cube = add_cube("Cage")
+    modifier = cube.modifiers.new("Subdivision", "SUBSURF")
+    modifier.levels, modifier.subdivision_type = 2, kind
+    reports()
+    assert bpy.ops.uv.cone_auto_unwrap(preset="BAKE") == {"FINISHED"}
+    assert ("through 0 cones" in reports()) != is_round

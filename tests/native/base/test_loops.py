@@ -65,6 +65,7 @@ REVIEWED = {
         ),
         ("while (true)", "edges of the cut, each once, to an end or back to the start", SHORT),
     ],
+    "cut/bevels.cpp": [("while (!queue.empty())", "three entries for each triangle", OWN)],
     "cut/crease_borders.cpp": [
         (
             "while (!smallest.empty() && smallest.top().first < least_patch * geometry.total_area)",

@@ -173,3 +173,50 @@ def test_borders_that_are_no_edges(borders: list, code: str) -> None:
     with pytest.raises(lsgp.InputError) as refused:
         lsgp.parameterize(lsgp.Surface(cube.positions, cube.triangles, borders=borders), cube.cones)
     assert refused.value.code == code
+
+
+def rounded_box(size: tuple[float, float, float], radius: float) -> Mesh:
+    """A box with edges and corners rounded by four strips; no edge bends by as much as a crease."""
+    band = radius * (1 - np.tan(np.radians([0, 22.5, 45])))
+    lines = [np.concatenate([-half + band[::-1], half - band]) for half in np.array(size) / 2]
+    points, triangles = [], []
+    for axis in range(3):
+        u, v = lines[axis - 2], lines[axis - 1]
+        for side in (-1, 1):
+            first = len(points)
+            for a in u:
+                for b in v:
+                    point = np.empty(3)
+                    point[[axis, axis - 2, axis - 1]] = side * size[axis] / 2, a, b
+                    core = np.clip(point, radius - np.array(size) / 2, np.array(size) / 2 - radius)
+                    away = point - core
+                    points.append(core + radius * away / np.linalg.norm(away))
+            for i in range(len(u) - 1):
+                for j in range(len(v) - 1):
+                    a, b, c, d = (first + k * len(v) + m for k, m in ((i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)))
+                    triangles += [[a, b, c], [a, c, d]] if side > 0 else [[a, c, b], [a, d, c]]
+    places, vertex = np.unique(np.round(points, 12), axis=0, return_inverse=True)
+    return meshes.make(places, vertex.ravel()[np.array(triangles)])
+
+
+@pytest.mark.parametrize("size", [(1.0, 1.5, 2.0), (0.5, 3.0, 1.0)])
+def test_rounded_edges_are_cut_along_their_middle(size: tuple[float, float, float]) -> None:
+    mesh, radius = rounded_box(size, 0.05), 0.05
+    borders = lsgp.crease_borders(surface(mesh))
+    assert len(borders) and angle_between_normals(mesh, borders).max() < 0.7
+    # In the middle the surface is equally far from two faces.
+    to_face = np.sort(np.abs(np.array(size) / 2 - np.abs(mesh.positions[np.unique(borders)])), axis=1)
+    assert to_face[:, 0] == pytest.approx(to_face[:, 1], abs=1e-9)
+    assert (to_face[:, 0] <= radius * (1 - np.sqrt(1 / 3)) + 1e-9).all()
+    for preset in ("bake", "paint"):
+        result = lsgp.auto_unwrap(surface(mesh), preset=preset)
+        assert len(result.cones) == 0 and result.island.max() < 6
+        assert len(result.overlapping) == 0 == len(result.flipped) and result.distortion.l2_stretch < 1.005
+
+
+def test_what_is_round_itself_has_no_bevels() -> None:
+    ball = meshes.icosphere(4)
+    noise = np.random.default_rng(1).standard_normal((len(ball.positions), 1))
+    scan = meshes.make(ball.positions * (1 + 0.03 * noise), ball.triangles)
+    for mesh in (rounded_box((1.0, 1.5, 2.0), 0.45), meshes.icosphere(2), meshes.bumpy_sphere(3), scan):
+        assert len(lsgp.crease_borders(surface(mesh))) == 0

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cut/bevels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <queue>
+#include <tuple>
+
+#include "base/checkpoint.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr double is_flat = 0.05;             // radians between triangles of one face
+constexpr double least_bend = 0.1;           // radians between faces of a bevel
+constexpr double largest_radius = 0.05;      // of a bevel, in square roots of the component's area
+constexpr double most_area = 0.4;            // of the component
+constexpr double unit_of_turns = 1e-6;       // radians: whole numbers of them tie where rounding would decide
+constexpr double operations_an_entry = 100;  // of a queue
+
+// Halfedges of edges that this is true of.
+template <typename Is>
+PerHalfedge<char> marked(const HalfedgeMesh& mesh, Is is) {
+  PerHalfedge<char> out(mesh.halfedge_count(), 0);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) out[h] = mesh.twin[h] != none && is(h);
+  return out;
+}
+
+// Triangles of flat faces that are narrow for how much the surface turns at an edge of theirs.
+PerTriangle<char> find_rounded(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& bend) {
+  PerTriangle<Index> face;
+  const Index count = label_parts(mesh, marked(mesh, [&](Index h) { return bend[h] >= is_flat; }), face);
+  PerPart<double> area(count, 0), perimeter(count, 0);
+  for (Index f = 0; f < mesh.triangle_count(); ++f) area[face[f]] += geometry.area[f];
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    const bool ends = mesh.twin[h] == none || face[mesh.twin[h] / 3] != face[h / 3];
+    if (ends) perimeter[face[h / 3]] += geometry.length[h];
+  }
+  const double reach = largest_radius * std::sqrt(geometry.total_area);
+  PerPart<char> is_narrow(count, 0);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (mesh.twin[h] == none || bend[h] < least_bend) continue;
+    const Index f = face[h / 3];
+    // The end of a long face is not narrow, nor is a wide one of small triangles.
+    const double width = std::max(2 * geometry.area[h / 3] / geometry.length[h], 2 * area[f] / perimeter[f]);
+    if (width < reach * bend[h]) is_narrow[f] = 1;
+  }
+  PerTriangle<char> out(mesh.triangle_count(), 0);
+  for (Index f = 0; f < mesh.triangle_count(); ++f) out[f] = is_narrow[face[f]];
+  return out;
+}
+
+// The face beside a bevel to which a triangle is nearest, and by how much the surface turns on the way.
+struct Side {
+  Index face = none;
+  std::int64_t turn = 0;
+};
+
+// Faces beside bevels end at creases, where the surface bends by `angle`.
+PerTriangle<Side> find_sides(const HalfedgeMesh& mesh, const PerTriangle<char>& is_rounded, const Eigen::VectorXd& bend,
+                             double angle) {
+  PerTriangle<Index> face;
+  label_parts(
+      mesh,
+      marked(mesh, [&](Index h) { return bend[h] >= angle || is_rounded[h / 3] || is_rounded[mesh.twin[h] / 3]; }),
+      face);
+  PerTriangle<Side> out(mesh.triangle_count());
+  using Entry = std::tuple<std::int64_t, Index, Index>;  // turn, face, triangle
+  std::priority_queue<Entry, Array<Entry>, std::greater<>> queue;
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    if (!is_rounded[f]) queue.emplace(0, face[f], f);
+  }
+  while (!queue.empty()) {
+    checkpoint(operations_an_entry);
+    const auto [turn, side, f] = queue.top();
+    queue.pop();
+    if (out[f].face != none) continue;
+    out[f] = {side, turn};
+    for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+      const Index there = mesh.twin[h] == none ? none : mesh.twin[h] / 3;
+      if (there == none || !is_rounded[there] || out[there].face != none) continue;
+      queue.emplace(turn + std::llround(bend[h] / unit_of_turns), side, there);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Bevels find_bevels(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& bend, double angle) {
+  const PerTriangle<char> is_rounded = find_rounded(mesh, geometry, bend);
+  const Bevels none_found{PerHalfedge<char>(mesh.halfedge_count(), 0), PerVertex<char>(mesh.vertex_count(), 0)};
+  Bevels out = none_found;
+  double area = 0;
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    if (!is_rounded[f]) continue;
+    area += geometry.area[f];
+    for (Index h = 3 * f; h < 3 * f + 3; ++h) out.is_rounded[mesh.origin(h)] = 1;
+  }
+  if (area == 0 || area > most_area * geometry.total_area) return none_found;
+  const PerTriangle<Side> side = find_sides(mesh, is_rounded, bend, angle);
+  out.crease = marked(mesh, [&](Index h) {
+    const Side &here = side[h / 3], &there = side[mesh.twin[h] / 3];
+    if (here.face == none || there.face == none || here.face == there.face) return false;
+    const double turn = bend[h] + unit_of_turns * static_cast<double>(here.turn + there.turn);
+    return turn >= angle && (is_rounded[h / 3] || is_rounded[mesh.twin[h] / 3]);
+  });
+  return out;
+}
+
+}  // namespace lsgp
