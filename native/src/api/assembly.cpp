@@ -25,9 +25,10 @@ namespace {
 
 // The factor that gives a map the surface's texel density. Scales by total unsigned UV area; where triangles are nearly
 // degenerate, by Dirichlet energy, which bounds the size of a collapsed map.
-double scale_to_surface(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map) {
+double scale_to_surface(const MetricMesh& surface, const ComponentMap& map) {
+  const Geometry& geometry = surface.geometry;
   constexpr double least_share = 0.1;  // of the Dirichlet energy, which is the area of a conformal map
-  const Jacobians jacobians = measure_jacobians(mesh, geometry, map.cut_mesh, map.position);
+  const Jacobians jacobians = measure_jacobians(surface, map.cut_mesh, map.position);
   const Eigen::ArrayXd grown = jacobians.f_z.array().abs2(), mirrored = jacobians.f_zbar.array().abs2();
   const double area = (geometry.area.array() * (grown - mirrored).abs()).sum();
   const double energy = (geometry.area.array() * (grown + mirrored)).sum();
@@ -68,7 +69,7 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
   // A seamless layout was split before its parts were put onto the lattice; pinned ones keep their position.
   if (options_.overlaps == Overlaps::split && !result_.seamless && map.pins.size() < 2) {
     try {
-      split_map({component.mesh, geometry, open_seams(component.mesh)}, component.mesh.seam, monitor_, map);
+      split_map({{component.mesh, geometry}, open_seams(component.mesh)}, component.mesh.seam, monitor_, map);
     } catch (const Error& error) {
       failures_.push_back(failure_of(component, error));
       return;
@@ -78,14 +79,14 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
   const bool keeps_islands = options_.compact == Compactness::off || !map.pins.empty() ||
                              (options_.compact == Compactness::sparing && std::count(seam.begin(), seam.end(), 1) > 0);
   if (!keeps_islands) {
-    const SharedSquare square{surface_area_ / options_.square_share, scale_to_surface(component.mesh, geometry, map),
+    const SharedSquare square{surface_area_ / options_.square_share, scale_to_surface({component.mesh, geometry}, map),
                               options_.compact};
-    compact_islands({component.mesh, geometry, open_seams(component.mesh)}, square, map);
+    compact_islands({{component.mesh, geometry}, open_seams(component.mesh)}, square, map);
   }
   if (map.natural_l2 > 0) {
     const ProgressMonitor::Stage stage(monitor_, "relax");
     straighten_islands(
-        component.mesh, geometry, {options_.stretch, task.importance}, [this] { monitor_.advance(0); }, map);
+        {component.mesh, geometry}, {options_.stretch, task.importance}, [this] { monitor_.advance(0); }, map);
   }
   defects_.pinned = defects_.pinned || map.pins.size() > 1;
   move_findings(component, findings, result_.warnings);
@@ -242,7 +243,7 @@ void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
   island_count_ += solved.part_count;
   solved.is_in_place = map.pins.size() > 1 || result_.seamless;
   if (solved.is_in_place) return;
-  solved.scale = scale_to_surface(mesh, geometry, map);
+  solved.scale = scale_to_surface({mesh, geometry}, map);
   solved.first_island = ssize(islands_);
   PerPart<UpwardTurn> upward(solved.part_count);
   if (!solved.directions->empty()) {

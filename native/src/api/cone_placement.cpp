@@ -132,11 +132,11 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
   work.for_each([&](const Component& component, const Geometry& geometry, const ComponentCones& cones,
                     const PerVertex<char>& allowed, std::vector<Finding>& findings) {
     PerVertex<Index> mirrored;
-    if (options.symmetric) mirrored = find_mirror_images(component.mesh, geometry, plane).image;
+    if (options.symmetric) mirrored = find_mirror_images({component.mesh, geometry}, plane).image;
     if (options.symmetric && mirrored.empty() && !twins.is_mirrored(component)) {
       shortfalls.add_asymmetric(component.source_triangle);
     }
-    const PlacementTask task{component.mesh, geometry, cones, allowed, mirrored};
+    const PlacementTask task{{component.mesh, geometry}, cones, allowed, mirrored};
     PlacedCones found = place_on(component, task, {surface, options, twins, work.monitor()}, findings);
     if (is_opened(component, found, options)) describe_opened(component, options, work.monitor(), found);
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
@@ -187,7 +187,7 @@ ConeGains cone_gains(const Surface& surface, const Cones& existing, SeamMode sea
   double stretched_area = 0, total_area = 0, most = 0, most_without = 0;
   work.for_each([&](const Component& component, const Geometry& geometry, const ComponentCones& cones,
                     const PerVertex<char>& allowed, std::vector<Finding>&) {
-    const ComponentGains gains = component_gains({component.mesh, geometry, cones, allowed, {}}, work.monitor());
+    const ComponentGains gains = component_gains({{component.mesh, geometry}, cones, allowed, {}}, work.monitor());
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
       if (!std::isnan(gains.predicted_l2[v])) out.predicted_l2[component.source_vertex[v]] = gains.predicted_l2[v];
     }

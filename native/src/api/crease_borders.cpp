@@ -70,7 +70,7 @@ VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& con
       const Index a = component.source_vertex[mesh.origin(h)], b = component.source_vertex[mesh.target(h)];
       crease[h] = bend[h] >= options.angle || (!sharp.empty() && sharp.count(std::minmax(a, b)) > 0);
     }
-    const PerHalfedge<char> open = find_crease_borders(mesh, geometry, crease, bend, options);
+    const PerHalfedge<char> open = find_crease_borders({mesh, geometry}, crease, bend, options);
     append_ends(component, open, edges);
   });
   monitor.advance(1);

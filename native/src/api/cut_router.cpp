@@ -101,7 +101,7 @@ struct GrabbedCut::Kept {
   Kept(std::shared_ptr<const CutRouter::Kept> router, Index component, MovedCut cut)
       : router(std::move(router)),
         component(this->router->components[component]),
-        reroute(this->component.mesh, this->router->geometry[component], std::move(cut)) {
+        reroute({this->component.mesh, this->router->geometry[component]}, std::move(cut)) {
     for (const Index h : reroute.path()) {
       const auto pairs = sides(h);
       left.insert(left.end(), {pairs[0], pairs[2]});

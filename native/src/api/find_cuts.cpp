@@ -26,7 +26,7 @@ CutPaths find_cuts(const Surface& surface, const std::vector<Index>& cones, cons
     const Component& component = components[i];
     const Geometry geometry = require_geometry(component, findings);
     const Array<Index> inside = inside_only(component.mesh, work.tasks[i].cones.vertices);
-    for (const Cut& cut : connect_cones(component.mesh, geometry, inside, {}).cuts) {
+    for (const Cut& cut : connect_cones({component.mesh, geometry}, inside, {}).cuts) {
       Array<Index> path{component.source_vertex[cut.tail]};
       for (const Index h : cut.halfedges) path.push_back(component.source_vertex[component.mesh.target(h)]);
       for (std::size_t k = 0; k + 1 < path.size(); ++k) edges.insert(edges.end(), {path[k], path[k + 1]});

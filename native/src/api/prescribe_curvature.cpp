@@ -28,9 +28,9 @@ Prescription prescribe_curvature(const Surface& surface, const Cones& cones, con
     const ComponentTask& task = work.tasks[i];
     const Geometry geometry = require_geometry(component, out.warnings);
     std::vector<Finding> findings;
-    ComponentSystem system(component.mesh, geometry, task.cones, options.factorization);
+    ComponentSystem system({component.mesh, geometry}, task.cones, options.factorization);
     const Curvature curvature = prescribe(system, task.cones, options.prescription, findings);
-    if (options.prescription == PrescriptionRule::manual) require_possible(component.mesh, geometry, task.cones);
+    if (options.prescription == PrescriptionRule::manual) require_possible({component.mesh, geometry}, task.cones);
     report_border_cones(component, task.border_cones, out.warnings);
     move_findings(component, findings, out.warnings);
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {

@@ -87,7 +87,7 @@ const Geometry& Pipeline::geometry_of(std::size_t i, std::vector<Finding>& findi
 const Mirroring& Pipeline::mirroring_of(std::size_t i) {
   Kept& kept = *kept_[i];
   if (!kept.mirroring) {
-    kept.mirroring = find_mirror_images(work_.topology.components[i].mesh, kept.geometry, std::nullopt);
+    kept.mirroring = find_mirror_images({work_.topology.components[i].mesh, kept.geometry}, std::nullopt);
   }
   return *kept.mirroring;
 }
@@ -97,7 +97,7 @@ ComponentSystem& Pipeline::system_of(std::size_t i, const Options& options) {
   const ComponentCones& cones = work_.tasks[i].cones;
   if (!kept.system || !same_cones(kept.cones, cones) || kept.factorization != options.factorization) {
     Eigen::VectorXd memory = kept.system ? kept.system->take_memory() : Eigen::VectorXd();
-    kept.system.emplace(work_.topology.components[i].mesh, kept.geometry, cones, options.factorization,
+    kept.system.emplace(MetricMesh{work_.topology.components[i].mesh, kept.geometry}, cones, options.factorization,
                         std::move(memory));
     kept.cones = cones;
     kept.factorization = options.factorization;

@@ -30,7 +30,9 @@ PerHalfedge<char> marked(const HalfedgeMesh& mesh, Is is) {
 }
 
 // Triangles of flat faces that are narrow for how much the surface turns at an edge of theirs.
-PerTriangle<char> find_rounded(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& bend) {
+PerTriangle<char> find_rounded(const MetricMesh& surface, const Eigen::VectorXd& bend) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   PerTriangle<Index> face;
   const Index count = label_parts(mesh, marked(mesh, [&](Index h) { return bend[h] >= is_flat; }), face);
   PerPart<double> area(count, 0), perimeter(count, 0);
@@ -90,8 +92,10 @@ PerTriangle<Side> find_sides(const HalfedgeMesh& mesh, const PerTriangle<char>& 
 
 }  // namespace
 
-Bevels find_bevels(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& bend, double angle) {
-  const PerTriangle<char> is_rounded = find_rounded(mesh, geometry, bend);
+Bevels find_bevels(const MetricMesh& surface, const Eigen::VectorXd& bend, double angle) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
+  const PerTriangle<char> is_rounded = find_rounded(surface, bend);
   const Bevels none_found{PerHalfedge<char>(mesh.halfedge_count(), 0), PerVertex<char>(mesh.vertex_count(), 0)};
   Bevels out = none_found;
   double area = 0;

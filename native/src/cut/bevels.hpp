@@ -14,6 +14,6 @@ struct Bevels {
 
 // bend: (3m) radians between the normals at an edge. angle: least turn from one side of a bevel to the other, radians.
 // There are none on a component of which they would be a large part.
-Bevels find_bevels(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& bend, double angle);
+Bevels find_bevels(const MetricMesh& surface, const Eigen::VectorXd& bend, double angle);
 
 }  // namespace lsgp

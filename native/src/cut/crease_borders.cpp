@@ -33,8 +33,10 @@ bool is_inside(const HalfedgeMesh& mesh, Index v) { return mesh.loop_of_vertex[v
 
 // The patch of every triangle, the smallest ones added to the neighbour they meet along the longest and flattest
 // border.
-PerTriangle<Index> find_patches(const HalfedgeMesh& mesh, const Geometry& geometry, const PerHalfedge<char>& crease,
+PerTriangle<Index> find_patches(const MetricMesh& surface, const PerHalfedge<char>& crease,
                                 const Eigen::VectorXd& bend) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   PerTriangle<Index> patch;
   const Index count = label_parts(mesh, crease, patch);
   PerPart<double> area(count, 0);
@@ -85,8 +87,13 @@ struct SharedBorder {
 
 class Patches {
  public:
-  Patches(const HalfedgeMesh& mesh, const Geometry& geometry, PerTriangle<Index> patch)
-      : mesh_(mesh), geometry_(geometry), patch_(std::move(patch)), is_border_(mesh.halfedge_count(), 0) {
+  Patches(const MetricMesh& surface, PerTriangle<Index> patch)
+      : mesh_(surface.mesh),
+        geometry_(surface.geometry),
+        patch_(std::move(patch)),
+        is_border_(surface.mesh.halfedge_count(), 0) {
+    const HalfedgeMesh& mesh = surface.mesh;
+    const Geometry& geometry = surface.geometry;
     degree_.assign(mesh.vertex_count(), 0);
     perimeter_.assign(mesh.triangle_count(), 0);
     for (Index h = 0; h < mesh.halfedge_count(); ++h) {
@@ -190,7 +197,9 @@ struct Loops {
   Array<Index> of;               // the island of each loop
 };
 
-Loops find_loops(const HalfedgeMesh& mesh, const Geometry& geometry, const PerHalfedge<char>& open) {
+Loops find_loops(const MetricMesh& surface, const PerHalfedge<char>& open) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   const auto ends = [&](Index h) { return open[h] || mesh.twin[h] == none; };
   Loops out;
   label_parts(mesh, open, out.island);
@@ -233,15 +242,16 @@ Array<Index> find_tubes(const Loops& loops) {
 }
 
 // The cheapest path from a loop to another one of its island, halfedges; empty where no cut can run.
-Array<Index> cheapest_path_across(const HalfedgeMesh& mesh, const Geometry& geometry, const Loops& loops, Index loop,
+Array<Index> cheapest_path_across(const MetricMesh& surface, const Loops& loops, Index loop,
                                   const Array<Index>& corners) {
+  const HalfedgeMesh& mesh = surface.mesh;
   std::map<Index, double> distance;                // of vertices inside
   std::map<Index, Index> from;                     // the halfedge by which
   using Entry = std::tuple<double, Index, Index>;  // distance, vertex, and the halfedge where it is on another loop
   std::priority_queue<Entry, Array<Entry>, std::greater<>> queue;
   const auto step = [&](double before, Index h) {
     if (!may_cut(mesh, h)) return;
-    const double after = before + cut_cost(mesh, geometry, h);
+    const double after = before + cut_cost(surface, h);
     const Index v = mesh.target(h), met = loops.at_corner[next(h)];
     if (met == loop) return;
     if (met != none) {
@@ -272,12 +282,13 @@ Array<Index> cheapest_path_across(const HalfedgeMesh& mesh, const Geometry& geom
   return {};
 }
 
-void open_tubes(const HalfedgeMesh& mesh, const Geometry& geometry, PerHalfedge<char>& open) {
+void open_tubes(const MetricMesh& surface, PerHalfedge<char>& open) {
+  const HalfedgeMesh& mesh = surface.mesh;
   bool found = true;
   while (found) {
     checkpoint(static_cast<double>(mesh.halfedge_count()));
     found = false;
-    const Loops loops = find_loops(mesh, geometry, open);
+    const Loops loops = find_loops(surface, open);
     const Array<Index> tubes = find_tubes(loops);
     Array<Array<Index>> corners(loops.of.size());
     for (Index h = 0; h < mesh.halfedge_count(); ++h) {
@@ -285,7 +296,7 @@ void open_tubes(const HalfedgeMesh& mesh, const Geometry& geometry, PerHalfedge<
       if (loops.at_corner[h] != none && !ends) corners[loops.at_corner[h]].push_back(h);
     }
     for (const Index tube : tubes) {
-      for (const Index h : cheapest_path_across(mesh, geometry, loops, tube, corners[tube])) {
+      for (const Index h : cheapest_path_across(surface, loops, tube, corners[tube])) {
         open[h] = open[mesh.twin[h]] = 1;
         found = true;
       }
@@ -295,24 +306,24 @@ void open_tubes(const HalfedgeMesh& mesh, const Geometry& geometry, PerHalfedge<
 
 }  // namespace
 
-PerHalfedge<char> find_crease_borders(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                      const PerHalfedge<char>& crease, const Eigen::VectorXd& bend,
-                                      const CreaseOptions& options) {
+PerHalfedge<char> find_crease_borders(const MetricMesh& surface, const PerHalfedge<char>& crease,
+                                      const Eigen::VectorXd& bend, const CreaseOptions& options) {
+  const HalfedgeMesh& mesh = surface.mesh;
   std::optional<Patches> patches;
-  patches.emplace(mesh, geometry, find_patches(mesh, geometry, crease, bend));
+  patches.emplace(surface, find_patches(surface, crease, bend));
   const PerVertex<char> nowhere(mesh.vertex_count(), 0);
   if (!patches->carry_curvature(least_on_creases, nowhere, options.most_corners)) {
-    Bevels bevels = find_bevels(mesh, geometry, bend, options.angle);
+    Bevels bevels = find_bevels(surface, bend, options.angle);
     for (Index h = 0; h < mesh.halfedge_count(); ++h) {
       bevels.crease[h] = crease[h] || (bevels.crease[h] && may_cut(mesh, h));
     }
-    patches.emplace(mesh, geometry, find_patches(mesh, geometry, bevels.crease, bend));
+    patches.emplace(surface, find_patches(surface, bevels.crease, bend));
     if (!patches->carry_curvature(least_on_bevels, bevels.is_rounded, options.most_corners)) {
       return PerHalfedge<char>(mesh.halfedge_count(), 0);
     }
   }
   PerHalfedge<char> open = patches->unfold_together();
-  open_tubes(mesh, geometry, open);
+  open_tubes(surface, open);
   return open;
 }
 

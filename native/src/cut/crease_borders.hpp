@@ -15,8 +15,7 @@ namespace lsgp {
 // Marks the halfedges, both of an edge, along which a component should end; none where most of its curvature
 // lies off its creases and bevels, or at no more vertices than the options say.  crease: on both halfedges; bend:
 // (3m) radians between the normals at an edge.
-PerHalfedge<char> find_crease_borders(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                      const PerHalfedge<char>& crease, const Eigen::VectorXd& bend,
-                                      const CreaseOptions& options);
+PerHalfedge<char> find_crease_borders(const MetricMesh& surface, const PerHalfedge<char>& crease,
+                                      const Eigen::VectorXd& bend, const CreaseOptions& options);
 
 }  // namespace lsgp

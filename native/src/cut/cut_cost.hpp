@@ -11,7 +11,9 @@ namespace lsgp {
 inline bool may_cut(const HalfedgeMesh& mesh, Index h) { return mesh.twin[h] != none && mesh.cuttable[h]; }
 
 // The length of an edge times its factor. Seams cost nothing, since they are opened anyway.
-inline double cut_cost(const HalfedgeMesh& mesh, const Geometry& geometry, Index h) {
+inline double cut_cost(const MetricMesh& surface, Index h) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   if (mesh.seam[h]) return 0;
   return mesh.cut_factor.empty() ? geometry.length[h] : mesh.cut_factor[h] * geometry.length[h];
 }

@@ -3,13 +3,14 @@
 
 namespace lsgp {
 
-CutEdges::CutEdges(const HalfedgeMesh& mesh, const Geometry& geometry) {
+CutEdges::CutEdges(const MetricMesh& surface) {
+  const HalfedgeMesh& mesh = surface.mesh;
   first_.reserve(mesh.vertex_count() + 1);
   edges_.reserve(mesh.halfedge_count());
   first_.push_back(0);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     mesh.for_each_outgoing(v, [&](Index h) {
-      if (may_cut(mesh, h)) edges_.push_back({cut_cost(mesh, geometry, h), h, mesh.target(h)});
+      if (may_cut(mesh, h)) edges_.push_back({cut_cost(surface, h), h, mesh.target(h)});
     });
     first_.push_back(static_cast<Index>(edges_.size()));
   }

@@ -21,7 +21,7 @@ class CutEdges {
     const Edge* end() const { return last; }
   };
 
-  CutEdges(const HalfedgeMesh& mesh, const Geometry& geometry);
+  explicit CutEdges(const MetricMesh& surface);
 
   Index vertex_count() const { return static_cast<Index>(first_.size()) - 1; }
   // Counter-clockwise from outgoing[v].

@@ -186,11 +186,11 @@ PerVertex<Index> find_cut_networks(const HalfedgeMesh& mesh) {
   return out;
 }
 
-CutGraph connect_cones(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<Index>& interior_cones,
-                       const PerLoop<char>& uncut) {
+CutGraph connect_cones(const MetricMesh& surface, const Array<Index>& interior_cones, const PerLoop<char>& uncut) {
+  const HalfedgeMesh& mesh = surface.mesh;
   const bool avoids = std::find(uncut.begin(), uncut.end(), 1) != uncut.end();
   PerLoop<char> avoided = avoids ? uncut : PerLoop<char>();
-  const CutEdges edges(mesh, geometry);
+  const CutEdges edges(surface);
   Forest forest = grow_forest(mesh, edges, interior_cones, avoided);
   Array<Index> tree = span_regions(mesh, edges, forest);
   if (avoids && count_joined(mesh, forest, tree) < forest.required_count) {
@@ -211,7 +211,7 @@ CutGraph connect_cones(const HalfedgeMesh& mesh, const Geometry& geometry, const
     for (const Index h : find_handle_edges(mesh, edges, forest, tree)) mark_through(mesh, forest, h, is_cut);
   }
   const PerVertex<char> is_cone = mark_vertices(mesh, interior_cones);
-  CutNetwork network({mesh, geometry, edges}, is_cone, avoided, prune(mesh, is_cone, std::move(is_cut)));
+  CutNetwork network({surface, edges}, is_cone, avoided, prune(mesh, is_cone, std::move(is_cut)));
   exchange_key_paths(network);
   return trace_cuts(mesh, is_cone, prune(mesh, is_cone, std::move(network.is_cut)));
 }

@@ -31,8 +31,7 @@ struct CutGraph {
 // (tree-cotree, Erickson and Whittlesey 2005). Seam edges cost nothing, and seam networks are joined like cones.
 // interior_cones: vertices not on a boundary.  uncut: boundary loops that no cut has to reach, or empty; cuts
 // keep clear of them. Throws CUTS_BLOCKED with the component's own vertex numbers.
-CutGraph connect_cones(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<Index>& interior_cones,
-                       const PerLoop<char>& uncut);
+CutGraph connect_cones(const MetricMesh& surface, const Array<Index>& interior_cones, const PerLoop<char>& uncut);
 
 // Vertices that cuts can join have the same number: the least of them. Borders are joined by themselves.
 PerVertex<Index> find_cut_networks(const HalfedgeMesh& mesh);

@@ -25,9 +25,7 @@ class CutFactor;
 class FrameTree;
 
 // A surface and its cuts. Data computed for a cut graph that contains these cuts can be reused.
-struct CutSurface {
-  const HalfedgeMesh& mesh;
-  const Geometry& geometry;
+struct CutSurface : MetricMesh {
   const CutGraph& cut_graph;
   const CutMesh& cut_mesh;
   const CutFactor* factor = nullptr;  // of this geometry, or null

@@ -13,9 +13,7 @@ PerVertex<Index> count_cuts(const HalfedgeMesh& mesh, const PerHalfedge<char>& i
 
 CutNetwork::CutNetwork(const CuttableSurface& surface, const PerVertex<char>& cones, const PerLoop<char>& uncut,
                        PerHalfedge<char> cuts)
-    : mesh(surface.mesh),
-      geometry(surface.geometry),
-      edges(surface.edges),
+    : CuttableSurface(surface),
       is_cone(cones),
       is_avoided(surface.mesh.vertex_count(), 0),
       is_cut(std::move(cuts)),
@@ -28,7 +26,7 @@ CutNetwork::CutNetwork(const CuttableSurface& surface, const PerVertex<char>& co
 
 double CutNetwork::cost(const CutPath& path) const {
   double out = 0;
-  for (const Index h : path) out += cut_cost(mesh, geometry, h);
+  for (const Index h : path) out += cut_cost(*this, h);
   return out;
 }
 

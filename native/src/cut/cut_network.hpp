@@ -13,16 +13,11 @@ using CutPath = Array<Index>;  // halfedges, one after the other
 PerVertex<Index> count_cuts(const HalfedgeMesh& mesh, const PerHalfedge<char>& is_cut);
 
 // A surface with the edges that cuts may follow.
-struct CuttableSurface {
-  const HalfedgeMesh& mesh;
-  const Geometry& geometry;
+struct CuttableSurface : MetricMesh {
   const CutEdges& edges;
 };
 
-struct CutNetwork {
-  const HalfedgeMesh& mesh;
-  const Geometry& geometry;
-  const CutEdges& edges;
+struct CutNetwork : CuttableSurface {
   const PerVertex<char>& is_cone;  // interior vertices that have to stay on the cuts
   PerVertex<char> is_avoided;      // boundary vertices that no cut may touch
   PerHalfedge<char> is_cut;        // on both halfedges

@@ -13,13 +13,14 @@ namespace {
 
 }  // namespace
 
-CutReroute::CutReroute(const HalfedgeMesh& mesh, const Geometry& geometry, MovedCut cut)
-    : mesh_(mesh),
-      edges_(mesh, geometry),
+CutReroute::CutReroute(const MetricMesh& surface, MovedCut cut)
+    : mesh_(surface.mesh),
+      edges_(surface),
       cut_(std::move(cut)),
-      tail_(mesh.origin(cut_.path.front())),
-      head_(mesh.target(cut_.path.back())),
+      tail_(surface.mesh.origin(cut_.path.front())),
+      head_(surface.mesh.target(cut_.path.back())),
       is_closed_to_(cut_.is_node) {
+  const HalfedgeMesh& mesh = surface.mesh;
   for (Index v = 0; v < mesh.vertex_count(); ++v) is_closed_to_[v] |= mesh.loop_of_vertex[v] != none;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (cut_.is_other[h]) is_closed_to_[mesh.origin(h)] = 1;

@@ -17,7 +17,7 @@ struct MovedCut {
 class CutReroute {
  public:
   // cut: its path is not empty.
-  CutReroute(const HalfedgeMesh& mesh, const Geometry& geometry, MovedCut cut);
+  CutReroute(const MetricMesh& surface, MovedCut cut);
 
   const Array<Index>& path() const { return cut_.path; }
 

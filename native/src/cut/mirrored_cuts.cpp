@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/borrowed.hpp"
 #include "base/checkpoint.hpp"
 #include "cut/shortest_paths.hpp"
 #include "mesh/point_tree.hpp"
@@ -36,20 +37,20 @@ Index find_halfedge(const HalfedgeMesh& mesh, Index from, Index to) {
 double cost_of(const CutTask& task, const CutGraph& cuts) {
   double out = 0;
   for (const Cut& cut : cuts.cuts) {
-    for (const Index h : cut.halfedges) out += cut_cost(task.mesh, task.geometry, h);
+    for (const Index h : cut.halfedges) out += cut_cost(task, h);
   }
   return out;
 }
 
 class MirroredCuts {
  public:
-  MirroredCuts(const CutTask& task, const Mirroring& mirroring);
+  MirroredCuts(const CutTask& task, Borrowed<const Mirroring> mirroring);
 
   // Whether cones come in pairs, each with one on either side, or lie in the plane.
   bool has_mirrored_cones() const;
 
   // Cuts of one side and the trunk; none if the trunk cannot be connected.
-  CutGraph free_half() const { return connect_cones(half_, task_.geometry, own_cones_, beyond_); }
+  CutGraph free_half() const { return connect_cones({half_, task_.geometry}, own_cones_, beyond_); }
   std::optional<CutGraph> half_with_trunk(const CutGraph& free_half) const;
 
   // All cuts, along a half and its image.
@@ -76,7 +77,7 @@ class MirroredCuts {
   CutGraph along(const CutGraph& half) const;
   void attract_beside(const CutGraph& half, HalfedgeMesh& steered) const;
 
-  const CutTask& task_;
+  const CutTask task_;
   const Mirroring& mirroring_;
   PerVertex<Side> side_;
   Array<Index> own_cones_;  // not beyond the plane
@@ -85,7 +86,7 @@ class MirroredCuts {
   HalfedgeMesh half_;       // with edges of this side and the plane as the only cuttable ones, priced with their images
 };
 
-MirroredCuts::MirroredCuts(const CutTask& task, const Mirroring& mirroring)
+MirroredCuts::MirroredCuts(const CutTask& task, Borrowed<const Mirroring> mirroring)
     : task_(task), mirroring_(mirroring), half_(task.mesh) {
   find_sides();
   classify_loops();
@@ -169,7 +170,7 @@ Index MirroredCuts::nearest_in_plane(const CutGraph& cuts) const {
     reached[v] = {0, none, v};
     starts.emplace_back(0.0, v);
   }
-  const CutEdges edges(half_, task_.geometry);
+  const CutEdges edges({half_, task_.geometry});
   grow_paths(edges, {std::move(starts)}, [&](Index v) { return half_.loop_of_vertex[v] == none; }, reached);
   Index best = none;
   for (Index v = 0; v < half_.vertex_count(); ++v) {
@@ -185,7 +186,7 @@ CutGraph MirroredCuts::trunk_through(const Array<Index>& contacts) const {
   for (Index h = 0; h < plane.halfedge_count(); ++h) plane.cuttable[h] = plane.cuttable[h] && is_in_plane(h);
   PerLoop<char> uncut(crosses_.size());
   for (std::size_t i = 0; i < uncut.size(); ++i) uncut[i] = !crosses_[i];
-  return connect_cones(plane, task_.geometry, contacts, uncut);
+  return connect_cones({plane, task_.geometry}, contacts, uncut);
 }
 
 // Places in the plane, each a choice of what the trunk has to join: cones with all vertices at which cuts of this side
@@ -230,7 +231,7 @@ CutGraph MirroredCuts::half_through(const Array<Index>& contacts) const {
   Array<Index> cones = own_cones_;
   if (!contacts.empty()) cones.push_back(contacts.front());
   sort_unique(cones);
-  return connect_cones(mesh, task_.geometry, cones, beyond_);
+  return connect_cones({mesh, task_.geometry}, cones, beyond_);
 }
 
 std::optional<CutGraph> MirroredCuts::half_with_trunk(const CutGraph& free_half) const {
@@ -239,7 +240,7 @@ std::optional<CutGraph> MirroredCuts::half_with_trunk(const CutGraph& free_half)
   for (const Array<Index>& contacts : possible_contacts(free_half)) {
     try {
       CutGraph half = half_through(contacts);
-      const double cost = cost_of({half_, task_.geometry, own_cones_, beyond_}, half);
+      const double cost = cost_of({{half_, task_.geometry}, own_cones_, beyond_}, half);
       if (best && !(cost < least)) continue;
       best = std::move(half);
       least = cost;
@@ -308,7 +309,7 @@ CutGraph MirroredCuts::along(const CutGraph& half) const {
   for (Index h = 0; h < steered.halfedge_count(); ++h) {
     if (designed[h]) steered.cut_factor[h] = of_designed * factor(h);
   }
-  return connect_cones(steered, task_.geometry, task_.interior_cones, task_.uncut);
+  return connect_cones({steered, task_.geometry}, task_.interior_cones, task_.uncut);
 }
 
 // Loops around handles are found for all of the surface, and then those of one side for both.
@@ -320,7 +321,7 @@ CutGraph MirroredCuts::complete(const CutGraph& half) const {
 }  // namespace
 
 CutGraph connect_symmetrically(const CutTask& task, const Mirroring& mirroring) {
-  CutGraph usual = connect_cones(task.mesh, task.geometry, task.interior_cones, task.uncut);
+  CutGraph usual = connect_cones(task, task.interior_cones, task.uncut);
   if (mirroring.empty() || usual.cuts.empty()) return usual;
   const double most = dearest * cost_of(task, usual);
   try {

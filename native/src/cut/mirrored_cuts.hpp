@@ -9,9 +9,7 @@
 namespace lsgp {
 
 // What cuts have to join; as for connect_cones.
-struct CutTask {
-  const HalfedgeMesh& mesh;
-  const Geometry& geometry;
+struct CutTask : MetricMesh {
   const Array<Index>& interior_cones;
   const PerLoop<char>& uncut;
 };

@@ -101,7 +101,7 @@ CutPath StripSearch::cross(const Side& from, const Side& to, const Array<Index>&
     queue.emplace(through, v);
   };
   for (const Index h : starts) {
-    if (may_cut(mesh, h)) relax({cut_cost(mesh, network_.geometry, h), h, mesh.target(h)}, 0);
+    if (may_cut(mesh, h)) relax({cut_cost(network_, h), h, mesh.target(h)}, 0);
   }
   while (!queue.empty() && queue.top().first < below) {
     checkpoint(operations_a_vertex);

@@ -30,7 +30,9 @@ BorderConditions free_border(const HalfedgeMesh& mesh, const Array<Index>& corne
   return out;
 }
 
-BorderConditions straight_border(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<Index>& corners) {
+BorderConditions straight_border(const MetricMesh& surface, const Array<Index>& corners) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   const PerVertex<char> is_corner = flags(mesh, corners);
   BorderConditions out{PerVertex<char>(mesh.vertex_count(), 0), Eigen::VectorXd::Zero(mesh.vertex_count()), true};
   for (const auto& loop : mesh.boundary_loops) {

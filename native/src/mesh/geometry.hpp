@@ -21,6 +21,12 @@ struct Geometry {
   Array<Index> degenerate;  // triangles without a usable area; lengths are mollified when there are any
 };
 
+// A surface with its intrinsic geometry, or another one. Refers to both.
+struct MetricMesh {
+  const HalfedgeMesh& mesh;
+  const Geometry& geometry;
+};
+
 // Degenerate triangles get area: the smallest constant that gives every triangle inequality a margin is added to all
 // lengths (Sharp and Crane 2020, section 4.5).
 Geometry build_geometry(const HalfedgeMesh& mesh);
@@ -55,7 +61,9 @@ inline double edge_direction(const Geometry& geometry, Index h) {
 }
 
 // The cotangent weight of an edge (half the sum of the cotangents opposite), on either of its halfedges.
-inline double cotangent_weight(const HalfedgeMesh& mesh, const Geometry& geometry, Index h) {
+inline double cotangent_weight(const MetricMesh& surface, Index h) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   return geometry.half_cotangent[h] + (mesh.twin[h] == none ? 0.0 : geometry.half_cotangent[mesh.twin[h]]);
 }
 

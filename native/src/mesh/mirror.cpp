@@ -46,8 +46,12 @@ double distance_to(const Eigen::RowVector3d& at, const Eigen::Matrix3d& corners)
 // A surface that is compared with its mirror images.
 class MirroredSurface {
  public:
-  MirroredSurface(const HalfedgeMesh& mesh, const Geometry& geometry)
-      : mesh_(mesh), geometry_(geometry), tree_(mesh.positions), edge_(geometry.length.mean()) {
+  explicit MirroredSurface(const MetricMesh& surface)
+      : mesh_(surface.mesh),
+        geometry_(surface.geometry),
+        tree_(surface.mesh.positions),
+        edge_(surface.geometry.length.mean()) {
+    const HalfedgeMesh& mesh = surface.mesh;
     const Eigen::RowVector3d low = mesh.positions.colwise().minCoeff(), high = mesh.positions.colwise().maxCoeff();
     extent_ = (high - low).norm();
     const Index n = mesh.vertex_count(), count = std::min(n, most_samples);
@@ -255,16 +259,15 @@ Eigen::RowVector3d reflected(const MirrorPlane& plane, const Eigen::RowVector3d&
   return at - 2 * (at - plane.point.transpose()).dot(normal) * normal;
 }
 
-Mirroring find_mirror_images(const HalfedgeMesh& mesh, const Geometry& geometry,
-                             const std::optional<MirrorPlane>& plane) {
-  const MirroredSurface surface(mesh, geometry);
-  Array<MirrorPlane> planes = plane ? Array<MirrorPlane>{with_unit_normal(*plane)} : surface.likely_planes();
-  Mirroring exact = surface.exact_images(planes);
+Mirroring find_mirror_images(const MetricMesh& surface, const std::optional<MirrorPlane>& plane) {
+  const MirroredSurface mirrored(surface);
+  Array<MirrorPlane> planes = plane ? Array<MirrorPlane>{with_unit_normal(*plane)} : mirrored.likely_planes();
+  Mirroring exact = mirrored.exact_images(planes);
   if (MirroredSurface::moves(exact.image) && !exact.empty()) return exact;
   if (!plane) {
-    for (MirrorPlane& likely : planes) likely = surface.fitted(likely);
+    for (MirrorPlane& likely : planes) likely = mirrored.fitted(likely);
   }
-  Mirroring near = surface.near_images(planes);
+  Mirroring near = mirrored.near_images(planes);
   return near.empty() ? exact : near;
 }
 

@@ -26,8 +26,7 @@ struct Mirroring {
 // surface where that helps. A plane in which the surface itself lies comes last.
 // Either nearly all vertices have an image within a tenth of an edge, or the mirrored surface is within 2 % of the
 // surface's extent of itself nearly everywhere: then vertices are paired with those near their images.
-Mirroring find_mirror_images(const HalfedgeMesh& mesh, const Geometry& geometry,
-                             const std::optional<MirrorPlane>& plane);
+Mirroring find_mirror_images(const MetricMesh& surface, const std::optional<MirrorPlane>& plane);
 
 // Components that mirror each other, such as eyes.
 struct MirroredComponent {

@@ -8,10 +8,10 @@
 
 namespace lsgp {
 
-NearestDistance::NearestDistance(const HalfedgeMesh& mesh, const Geometry& geometry)
-    : mesh_(mesh),
-      geometry_(geometry),
-      far_(Eigen::VectorXd::Constant(mesh.vertex_count(), std::numeric_limits<double>::infinity())) {}
+NearestDistance::NearestDistance(const MetricMesh& surface)
+    : mesh_(surface.mesh),
+      geometry_(surface.geometry),
+      far_(Eigen::VectorXd::Constant(surface.mesh.vertex_count(), std::numeric_limits<double>::infinity())) {}
 
 void NearestDistance::add(const Array<Index>& vertices) {
   using Reached = std::pair<double, Index>;

@@ -12,8 +12,7 @@ namespace lsgp {
 
 class NearestDistance {
  public:
-  // Both arguments have to outlive it.
-  NearestDistance(const HalfedgeMesh& mesh, const Geometry& geometry);
+  explicit NearestDistance(const MetricMesh& surface);
   void add(const Array<Index>& vertices);              // visits only what is nearer to them than to those before
   const Eigen::VectorXd& all() const { return far_; }  // (n) infinite where there is none
 

@@ -9,8 +9,8 @@
 
 namespace lsgp {
 
-PointTree::PointTree(const Positions& points)
-    : points_(points), order_(points.rows()), axis_(points.rows(), static_cast<unsigned char>(0)) {
+PointTree::PointTree(Borrowed<const Positions> points)
+    : points_(points), order_(points_.rows()), axis_(points_.rows(), static_cast<unsigned char>(0)) {
   std::iota(order_.begin(), order_.end(), 0);
   build(0, static_cast<Index>(order_.size()));
 }

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "base/array.hpp"
+#include "base/borrowed.hpp"
 #include "lsgp/surface.hpp"
 
 namespace lsgp {
@@ -12,8 +13,8 @@ namespace lsgp {
 // A k-d tree over points, halved by count.
 class PointTree {
  public:
-  // points: (n, 3), finite; they have to outlive it.
-  explicit PointTree(const Positions& points);
+  // points: (n, 3), finite.
+  explicit PointTree(Borrowed<const Positions> points);
 
   // The nearest point, of several the one with the least index, and its distance; -1 where there is none or `at` is not
   // finite.

@@ -58,7 +58,7 @@ void ComponentRepair::polish(const ParallelTransport& connection, const Array<In
   constexpr int near = 10, rings = 3, steps = 3;
   const ProgressMonitor::Stage stage(monitor_, "repair");
   const CutSurface surface = open(map);
-  const Jacobians jacobians = measure_jacobians(mesh_, geometry_, map.cut_mesh, map.position);
+  const Jacobians jacobians = measure_jacobians(system_.surface(), map.cut_mesh, map.position);
   const PerVertex<char> around = mark_around(mesh_, flipped, near);
   Array<Index> where;
   for (Index f = 0; f < mesh_.triangle_count(); ++f) {

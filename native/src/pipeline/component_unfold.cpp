@@ -39,9 +39,8 @@ void turn_cornerless_borders(const HalfedgeMesh& mesh, const Array<Index>& corne
 Eigen::VectorXcd unfold_along_borders(const CutSurface& surface, const ComponentMap& map, const ComponentCones& cones,
                                       const ParallelTransport& connection, const Array<Index>& edges) {
   const HalfedgeMesh& mesh = surface.mesh;
-  const Geometry& geometry = surface.geometry;
   const Eigen::VectorXd& log_scale = map.curvature.log_scale;
-  Eigen::VectorXd directions = metric_directions(mesh, geometry, log_scale, connection.frames, edges);
+  Eigen::VectorXd directions = metric_directions(surface, log_scale, connection.frames, edges);
   const Jacobians jacobians = prescribed_jacobians(mesh, log_scale, connection.frames);
   if (cones.border == BorderMode::straight) {
     const Eigen::VectorXcd natural = PoissonSystem(surface, connection.reduction).fit(jacobians);

@@ -151,7 +151,7 @@ FoundMap Mapping::find_valid_map(const ComponentTask& task) {
     for (const bool is_fat : {effort == Effort::global, effort == Effort::local}) {
       if (is_fat && !fat) {
         fat = mollified(mesh, geometry, fat_margin);
-        fat_system.emplace(mesh, *fat, task.cones, options_.factorization);
+        fat_system.emplace(MetricMesh{mesh, *fat}, task.cones, options_.factorization);
       }
       for (std::size_t i = 0; i < (is_free ? std::size(angle_ranges) : 1); ++i) {
         ComponentTask ranged = task;
@@ -170,7 +170,7 @@ FoundMap Mapping::find_valid_map(const ComponentTask& task) {
         if (best->defects() == 0) return std::move(*best);
         // A valid map would have been proof that its angles are possible.
         if (effort == Effort::local && !is_fat && options_.prescription == PrescriptionRule::manual) {
-          require_possible(mesh, geometry, task.cones);
+          require_possible(system_.surface(), task.cones);
         }
         if (!repairs_) return std::move(*best);
       }
@@ -224,7 +224,7 @@ void Mapping::unfold_and_repair(ComponentSystem& system, const ComponentTask& ta
   ComponentRepair repair = repair_on(system, task);
   const CutSurface surface = system.open(map.cut_graph, map.cut_mesh);
   if (options_.method == Method::lscm) {
-    map.position = unfold_lscm(system.mesh(), system.geometry(), map.cut_mesh);
+    map.position = unfold_lscm(system.surface(), map.cut_mesh);
     return repair.check(map);
   }
   const ParallelTransportChoice connections(surface, map.curvature, task.cones.rotation_order);
@@ -276,7 +276,7 @@ void Mapping::approach_angles(FoundMap& found) {
   plain.prescription = PrescriptionRule::least_distortion;
   plain.mode = Mode::conformal;
   std::vector<Finding> unsaid;
-  ComponentSystem system(mesh, system_.geometry(), automatic.cones, options_.factorization);
+  ComponentSystem system(system_.surface(), automatic.cones, options_.factorization);
   ComponentMap start = Mapping(system, automatic, plain, monitor_).best(unsaid);
   report_->iterations += start.repair.iterations;
   if (start.validity.defects() > 0 || start.curvature.needs_no_cut != map.curvature.needs_no_cut) return;
@@ -290,8 +290,7 @@ void Mapping::approach_angles(FoundMap& found) {
 void Mapping::straighten(ComponentMap& map) {
   ComponentRepair repair = repair_on(system_, task_);
   if (!repair.may_straighten(map)) return;
-  map.natural_l2 =
-      l2_stretch(system_.geometry(), measure_jacobians(system_.mesh(), system_.geometry(), map.cut_mesh, map.position));
+  map.natural_l2 = l2_stretch(system_.geometry(), measure_jacobians(system_.surface(), map.cut_mesh, map.position));
   std::optional<ComponentMap> found;
   if (std::optional<ComponentMap> turned = with_quarter_turns(map)) {
     turned->natural_l2 = map.natural_l2;

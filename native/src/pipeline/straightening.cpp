@@ -29,8 +29,7 @@ double largest_l2_straight(double l2) {
 }
 
 double l2_of(const CutSurface& surface, const ComponentMap& map) {
-  return l2_stretch(surface.geometry,
-                    measure_jacobians(surface.mesh, surface.geometry, surface.cut_mesh, map.position));
+  return l2_stretch(surface.geometry, measure_jacobians(surface, surface.cut_mesh, map.position));
 }
 
 // Whether an island of the layout overlaps itself, judged by its boundary.
@@ -143,15 +142,15 @@ std::optional<ComponentMap> with_straight_sides(const StraighteningTask& task, c
   return SideSearch(task, map, std::move(straight)).search();
 }
 
-void straighten_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const StretchOptions& options,
-                        const StepHook& before_step, ComponentMap& map) {
-  const CutSurface surface{mesh, geometry, map.cut_graph, map.cut_mesh};
-  if (map.natural_l2 == 0 || !is_one_network(surface)) return;
-  std::optional<StraightSides> sides = sides_to_straighten(surface, map, true);
+void straighten_islands(const MetricMesh& surface, const StretchOptions& options, const StepHook& before_step,
+                        ComponentMap& map) {
+  const CutSurface opened{surface, map.cut_graph, map.cut_mesh};
+  if (map.natural_l2 == 0 || !is_one_network(opened)) return;
+  std::optional<StraightSides> sides = sides_to_straighten(opened, map, true);
   if (!sides) return;
-  const ParallelTransport connection = connection_of_map(surface, map.curvature, *map.rotation, map.position);
+  const ParallelTransport connection = connection_of_map(opened, map.curvature, *map.rotation, map.position);
   std::optional<ComponentMap> straight =
-      with_straight_sides({surface, connection, options, before_step}, map, std::move(*sides));
+      with_straight_sides({opened, connection, options, before_step}, map, std::move(*sides));
   if (straight) map = std::move(*straight);
 }
 

@@ -29,7 +29,7 @@ std::optional<ComponentMap> with_straight_sides(const StraighteningTask& task, c
 
 // The same, with creases, for a map that was cut into islands, which may have been moved. Islands may be shifted.
 // Leaves the map unchanged if no side can be made straight.
-void straighten_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const StretchOptions& options,
-                        const StepHook& before_step, ComponentMap& map);
+void straighten_islands(const MetricMesh& surface, const StretchOptions& options, const StepHook& before_step,
+                        ComponentMap& map);
 
 }  // namespace lsgp

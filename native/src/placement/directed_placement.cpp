@@ -29,7 +29,7 @@ std::optional<PlacedCones> place_beside_directions(const PlacementTask& task, co
   const bool turned = let_borders_run_along(task.mesh, directions, turns, std::nullopt, existing);
   if (!turned && allowed == task.allowed) return std::nullopt;
   const TextureDirections wanted = directions_in_triangles(task.mesh, directions);
-  MapTrial trial(task.mesh, task.geometry, monitor);
+  MapTrial trial(task, monitor);
   const auto misalignment = [&](const PlacedCones& placed) {
     const auto corners = trial.corners_of_map(placed.cones);
     return corners ? misalignment_on_lattice(wanted, *corners, turns) : std::numeric_limits<double>::infinity();
@@ -39,8 +39,7 @@ std::optional<PlacedCones> place_beside_directions(const PlacementTask& task, co
   generous.target = std::max(options.target, most_stretch);
   try {
     std::vector<Finding> unsaid;
-    PlacedCones found =
-        place_component({task.mesh, task.geometry, existing, allowed, task.mirrored}, generous, unsaid, monitor);
+    PlacedCones found = place_component({task, existing, allowed, task.mirrored}, generous, unsaid, monitor);
     if (!found.reached) return std::nullopt;
     const double missed = misalignment(found);
     if (!(missed <= most_missed && missed < misalignment(usual) - least_gain)) return std::nullopt;

@@ -30,8 +30,10 @@ double measured_l2(const HalfedgeMesh& mesh, const Eigen::VectorXcd& corners) {
 }
 
 // The squared L2 stretch of each triangle minus 1, weighted by area and distributed to its corners.
-Eigen::VectorXd stretch_at_vertices(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map) {
-  const Jacobians jacobians = measure_jacobians(mesh, geometry, map.cut_mesh, map.position);
+Eigen::VectorXd stretch_at_vertices(const MetricMesh& surface, const ComponentMap& map) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
+  const Jacobians jacobians = measure_jacobians(surface, map.cut_mesh, map.position);
   const Eigen::ArrayXd square = jacobians.f_z.array().abs2(), sheared = jacobians.f_zbar.array().abs2();
   const double grown = (geometry.area.array() * (square - sheared)).sum() / geometry.total_area;
   Eigen::VectorXd out = Eigen::VectorXd::Zero(mesh.vertex_count());
@@ -54,7 +56,7 @@ std::optional<ComponentMap> MapTrial::map(const ComponentCones& cones, Repairs r
   std::vector<Finding> unsaid;
   ++made_;
   try {
-    ComponentSystem system(mesh_, geometry_, cones, options.factorization);
+    ComponentSystem system({mesh_, geometry_}, cones, options.factorization);
     return repairs == Repairs::easy ? attempt_component(system, task, options, unsaid, monitor_)
                                     : map_component(system, task, options, unsaid, monitor_);
   } catch (const Error& error) {
@@ -91,7 +93,7 @@ TriedMap MapTrial::measured(ComponentMap map, const ComponentCones& cones) const
   }
   if (out.flipped > 0 || out.is_off()) return out;
   out.l2 = measured_l2(mesh_, corners);
-  out.stretch = stretch_at_vertices(mesh_, geometry_, map);
+  out.stretch = stretch_at_vertices({mesh_, geometry_}, map);
   return out;
 }
 

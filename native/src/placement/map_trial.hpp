@@ -31,8 +31,8 @@ struct TriedMap {
 // Computes maps of one component as unwrapping with default options does. Their linear algebra is not counted.
 class MapTrial {
  public:
-  MapTrial(const HalfedgeMesh& mesh, const Geometry& geometry, ProgressMonitor& monitor)
-      : mesh_(mesh), geometry_(geometry), monitor_(monitor) {}
+  MapTrial(const MetricMesh& surface, ProgressMonitor& monitor)
+      : mesh_(surface.mesh), geometry_(surface.geometry), monitor_(monitor) {}
 
   enum class Repairs { easy, all };
   // cones: with the angles that are to be imposed, others are chosen for least distortion.

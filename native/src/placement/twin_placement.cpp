@@ -12,13 +12,13 @@ constexpr double as_good = 1.01;  // of the twin's L2 stretch
 
 }  // namespace
 
-TwinPlacement::TwinPlacement(const PerComponent<Component>& components, const PlacementOptions& options,
+TwinPlacement::TwinPlacement(Borrowed<const PerComponent<Component>> components, PlacementOptions options,
                              const std::optional<MirrorPlane>& plane)
-    : components_(components), options_(options), kept_(components.size()) {
-  if (options.symmetric) {
-    twins_ = find_mirrored_components(components, plane);
+    : components_(components), options_(std::move(options)), kept_(components_.size()) {
+  if (options_.symmetric) {
+    twins_ = find_mirrored_components(components_, plane);
   } else {
-    twins_.resize(components.size());
+    twins_.resize(components_.size());
   }
 }
 
@@ -43,7 +43,7 @@ std::optional<PlacedCones> TwinPlacement::place(const Component& component, cons
   options.count = static_cast<int>(cones.vertices.size());
   std::vector<Finding> unsaid;
   try {
-    PlacedCones placed = place_component({task.mesh, task.geometry, cones, task.allowed, {}}, options, unsaid, monitor);
+    PlacedCones placed = place_component({task, cones, task.allowed, {}}, options, unsaid, monitor);
     if (!(placed.mapped_l2 <= std::max(options.target, as_good * kept.l2))) return std::nullopt;
     return placed;
   } catch (const Error& error) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/borrowed.hpp"
 #include "mesh/mirror.hpp"
 #include "placement/component_placement.hpp"
 
@@ -14,8 +15,8 @@ namespace lsgp {
 // if their map is as good.
 class TwinPlacement {
  public:
-  // All arguments have to outlive it. Without symmetry, no component has a twin.
-  TwinPlacement(const PerComponent<Component>& components, const PlacementOptions& options,
+  // Without symmetry, no component has a twin.
+  TwinPlacement(Borrowed<const PerComponent<Component>> components, PlacementOptions options,
                 const std::optional<MirrorPlane>& plane);
 
   // The images of the cones of the component's twin; none if it has none, if either has cones already, or if their map
@@ -37,7 +38,7 @@ class TwinPlacement {
   std::ptrdiff_t number(const Component& component) const { return &component - components_.data(); }
 
   const PerComponent<Component>& components_;
-  const PlacementOptions& options_;
+  const PlacementOptions options_;
   PerComponent<MirroredComponent> twins_;
   PerComponent<std::optional<Kept>> kept_;
 };

@@ -40,7 +40,7 @@ bool is_as_predicted(const VerifiedChoice& choice) { return choice.map.l2 <= as_
 }  // namespace
 
 VerifiedPlacement::VerifiedPlacement(ConeChooser& chooser, ProgressMonitor& monitor)
-    : chooser_(chooser), monitor_(monitor), trial_(chooser.task().mesh, chooser.task().geometry, monitor) {}
+    : chooser_(chooser), monitor_(monitor), trial_(chooser.task(), monitor) {}
 
 VerifiedChoice VerifiedPlacement::place() {
   VerifiedChoice out = place_as_asked();

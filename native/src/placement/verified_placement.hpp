@@ -29,7 +29,6 @@ struct VerifiedChoice {
 // there are more cones, existing or requested, than are chosen one by one.
 class VerifiedPlacement {
  public:
-  // All arguments have to outlive it.
   VerifiedPlacement(ConeChooser& chooser, ProgressMonitor& monitor);
 
   VerifiedChoice place();

@@ -29,7 +29,7 @@ class LoopScales {
   const LogScale& scale() const { return scale_; }
 
   Eigen::VectorXd turning(const Eigen::VectorXd& log_scale) const {
-    return turning_of(geometry_.angle_defect + apply_laplacian(mesh_, geometry_, log_scale));
+    return turning_of(geometry_.angle_defect + apply_laplacian({mesh_, geometry_}, log_scale));
   }
 
   // The log scale changed so that loop i turns by wanted[i] where given, and the shifts that took, (loops).
@@ -71,11 +71,11 @@ class LoopScales {
     for (std::size_t j = 0; j < loops.size(); ++j) {
       for (const Index v : mesh_.boundary_loops[loops[j]]) out[v] = shift[static_cast<Eigen::Index>(j)];
     }
-    return extend_from_borders(mesh_, geometry_, scale_, out);
+    return extend_from_borders({mesh_, geometry_}, scale_, out);
   }
 
   Eigen::VectorXd change_of_turning(const Array<Index>& loops, const Eigen::VectorXd& shift) const {
-    return turning_of(apply_laplacian(mesh_, geometry_, caused_by(loops, shift)))(loops);
+    return turning_of(apply_laplacian({mesh_, geometry_}, caused_by(loops, shift)))(loops);
   }
 
   Eigen::VectorXd solve_dense(const Array<Index>& loops, const Eigen::VectorXd& missing) const {
@@ -222,7 +222,7 @@ std::optional<Eigen::VectorXd> close_all_holes(const LoopScales& loops, const Pe
   if (!is_taken(closed)) return std::nullopt;
   // The map absorbs the small gap where the metric turns nearly once.
   if (shifts.cwiseAbs().maxCoeff() > largest_hole_shift && ssize(inner) <= most_closed) {
-    const auto exact = close_translations(scale.mesh(), scale.geometry(), scale, inner, closed);
+    const auto exact = close_translations(scale.surface(), scale, inner, closed);
     const bool pays = exact && is_taken(*exact) && scale.predicted_l2(*exact) <= worth * scale.predicted_l2(closed);
     if (pays) return exact;
   }

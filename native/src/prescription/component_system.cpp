@@ -17,25 +17,24 @@ Array<Index> inside_only(const HalfedgeMesh& mesh, const Array<Index>& vertices)
   return out;
 }
 
-ComponentSystem::ComponentSystem(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
-                                 Factorization factorization, Eigen::VectorXd memory)
-    : mesh_(mesh),
-      geometry_(geometry),
+ComponentSystem::ComponentSystem(const MetricMesh& surface, const ComponentCones& cones, Factorization factorization,
+                                 Eigen::VectorXd memory)
+    : surface_(surface),
       cones_(cones.vertices),
       mirroring_(cones.mirroring),
       factorization_(factorization),
-      border_(border_conditions(mesh, geometry, cones)),
+      border_(border_conditions(surface, cones)),
       memory_(std::move(memory)) {}
 
 Eigen::VectorXd ComponentSystem::take_memory() { return factor_ ? factor_->take_memory() : std::move(memory_); }
 
 const CutGraph& ComponentSystem::all_cuts() {
-  if (!all_cuts_) all_cuts_ = connect(inside_only(mesh_, cones_), {});
+  if (!all_cuts_) all_cuts_ = connect(inside_only(surface_.mesh, cones_), {});
   return *all_cuts_;
 }
 
 CutGraph ComponentSystem::connect(const Array<Index>& interior_cones, const PerLoop<char>& uncut) const {
-  return connect_symmetrically({mesh_, geometry_, interior_cones, uncut}, mirroring_);
+  return connect_symmetrically({surface_, interior_cones, uncut}, mirroring_);
 }
 
 bool ComponentSystem::has_all_cuts() {
@@ -50,7 +49,7 @@ bool ComponentSystem::has_all_cuts() {
 }
 
 bool ComponentSystem::is_on_cut() {
-  if (!is_on_cut_) is_on_cut_ = has_all_cuts() && CutFactor::is_chosen(factorization_, mesh_, all_cuts());
+  if (!is_on_cut_) is_on_cut_ = has_all_cuts() && CutFactor::is_chosen(factorization_, surface_.mesh, all_cuts());
   return *is_on_cut_;
 }
 
@@ -62,14 +61,14 @@ bool ComponentSystem::covers(const CutGraph& cut_graph) {
 
 const CutFactor* ComponentSystem::factor() {
   if (!is_on_cut()) return nullptr;
-  if (!factor_) factor_.emplace(mesh_, geometry_, all_cuts(), std::move(memory_));
+  if (!factor_) factor_.emplace(surface_, all_cuts(), std::move(memory_));
   return &*factor_;
 }
 
 CutSurface ComponentSystem::open(const CutGraph& cut_graph, const CutMesh& cut_mesh) {
-  CutSurface out{mesh_, geometry_, cut_graph, cut_mesh};
+  CutSurface out{surface_, cut_graph, cut_mesh};
   if (!covers(cut_graph)) return out;
-  if (!frame_tree_) frame_tree_.emplace(mesh_, geometry_, all_cuts());
+  if (!frame_tree_) frame_tree_.emplace(surface_, all_cuts());
   out.factor = factor();
   out.frame_tree = &*frame_tree_;
   return out;
@@ -79,7 +78,7 @@ const CutFactor* ComponentSystem::stiff_factor(const Array<Index>& cones, const 
   if (!is_on_cut() || !covers(cut_graph)) return nullptr;
   if (!stiff_factor_ || stiff_factor_->cones != cones) {
     stiff_factor_.reset();
-    stiff_factor_.emplace(StiffFactor{cones, CutFactor(mesh_, stiffen_around(mesh_, geometry_, cones), all_cuts())});
+    stiff_factor_.emplace(StiffFactor{cones, CutFactor({surface_.mesh, stiffen_around(surface_, cones)}, all_cuts())});
   }
   return &stiff_factor_->factor;
 }
@@ -92,7 +91,7 @@ void ComponentSystem::release() {
 }
 
 const LogScale& ComponentSystem::log_scale() {
-  if (!log_scale_) log_scale_.emplace(mesh_, geometry_, border_, cones_, factor());
+  if (!log_scale_) log_scale_.emplace(surface_, border_, cones_, factor());
   return *log_scale_;
 }
 

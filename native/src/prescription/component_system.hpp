@@ -15,12 +15,13 @@ namespace lsgp {
 class ComponentSystem {
  public:
   // cones: their angles have no effect here.  memory: reused from a system that is no longer needed.
-  ComponentSystem(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones,
-                  Factorization factorization, Eigen::VectorXd memory = {});
+  ComponentSystem(const MetricMesh& surface, const ComponentCones& cones, Factorization factorization,
+                  Eigen::VectorXd memory = {});
   Eigen::VectorXd take_memory();
 
-  const HalfedgeMesh& mesh() const { return mesh_; }
-  const Geometry& geometry() const { return geometry_; }
+  const MetricMesh& surface() const { return surface_; }
+  const HalfedgeMesh& mesh() const { return surface_.mesh; }
+  const Geometry& geometry() const { return surface_.geometry; }
   const BorderConditions& border() const { return border_; }
 
   // Cuts through all interior cones and to all boundaries.
@@ -50,8 +51,7 @@ class ComponentSystem {
   bool covers(const CutGraph& cut_graph);
   bool is_on_cut();
 
-  const HalfedgeMesh& mesh_;
-  const Geometry& geometry_;
+  const MetricMesh surface_;
   const Array<Index> cones_;
   const Mirroring mirroring_;
   const Factorization factorization_;

@@ -189,8 +189,9 @@ int valence(const HalfedgeMesh& mesh, Index vertex) {
   return triangles;
 }
 
-BorderConditions border_conditions(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones) {
-  return cones.border == BorderMode::straight && !mesh.closed() ? straight_border(mesh, geometry, cones.vertices)
+BorderConditions border_conditions(const MetricMesh& surface, const ComponentCones& cones) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  return cones.border == BorderMode::straight && !mesh.closed() ? straight_border(surface, cones.vertices)
                                                                 : free_border(mesh, cones.vertices);
 }
 
@@ -243,9 +244,10 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, con
       {ElementKind::vertices, cones.vertices});
 }
 
-void require_possible(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones) {
+void require_possible(const MetricMesh& surface, const ComponentCones& cones) {
+  const HalfedgeMesh& mesh = surface.mesh;
   if (cones.rotation_order > 0) return;  // rounded angles are the tool's own choice
-  const BorderConditions border = border_conditions(mesh, geometry, cones);
+  const BorderConditions border = border_conditions(surface, cones);
   Eigen::VectorXd angle(mesh.vertex_count());
   PerVertex<char> is_free = border.held;
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
@@ -307,7 +309,7 @@ Curvature impose(const LogScale& scale, const ComponentCones& asked, const Eigen
   out.at_vertex = border.curvature;
   for (Eigen::Index i = 0; i < curvature.size(); ++i) out.at_vertex[asked.vertices[i]] += curvature[i];
   // Where the scale is held, the curvature follows from it: kappa = K + L y.
-  const Eigen::VectorXd free = geometry.angle_defect + apply_laplacian(mesh, geometry, out.log_scale);
+  const Eigen::VectorXd free = geometry.angle_defect + apply_laplacian({mesh, geometry}, out.log_scale);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (border.held[v]) out.at_vertex[v] = free[v];
   }

@@ -63,7 +63,7 @@ struct Curvature {
 
 class ComponentSystem;
 
-BorderConditions border_conditions(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones);
+BorderConditions border_conditions(const MetricMesh& surface, const ComponentCones& cones);
 
 // cones: those of the system. Throws TOO_FEW_CONES, CONE_ANGLE_RANGE, GAUSS_BONNET, LOOP_TURNING with the component's
 // own vertex numbers.
@@ -82,7 +82,7 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, con
 std::pair<double, double> room_of_automatic(const HalfedgeMesh& mesh, const ComponentCones& cones);
 
 // Throws ANGLES_IMPOSSIBLE for given angles that no map has, whatever the automatic ones are.
-void require_possible(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentCones& cones);
+void require_possible(const MetricMesh& surface, const ComponentCones& cones);
 
 // The number of triangles around a vertex.
 int valence(const HalfedgeMesh& mesh, Index vertex);

@@ -79,16 +79,17 @@ std::optional<Eigen::VectorXd> close_borders(const Array<HoleBorder>& borders, E
 
 }  // namespace
 
-Eigen::VectorXd extend_from_borders(const HalfedgeMesh& mesh, const Geometry& geometry, const LogScale& scale,
+Eigen::VectorXd extend_from_borders(const MetricMesh& surface, const LogScale& scale,
                                     const Eigen::VectorXd& on_borders) {
-  return on_borders - scale.solve(apply_laplacian(mesh, geometry, on_borders));
+  return on_borders - scale.solve(apply_laplacian(surface, on_borders));
 }
 
-std::optional<Eigen::VectorXd> close_translations(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                                  const LogScale& scale, const Array<Index>& holes,
-                                                  const Eigen::VectorXd& log_scale) {
+std::optional<Eigen::VectorXd> close_translations(const MetricMesh& surface, const LogScale& scale,
+                                                  const Array<Index>& holes, const Eigen::VectorXd& log_scale) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   const Eigen::Index unknown_count = HoleBorder::closings * static_cast<Eigen::Index>(holes.size());
-  const Eigen::VectorXd curvature = geometry.angle_defect + apply_laplacian(mesh, geometry, log_scale);
+  const Eigen::VectorXd curvature = geometry.angle_defect + apply_laplacian(surface, log_scale);
   Array<HoleBorder> borders;
   Array<Array<double>> direction;  // at the vertices of every border
   for (const Index hole : holes) {
@@ -120,8 +121,8 @@ std::optional<Eigen::VectorXd> close_translations(const HalfedgeMesh& mesh, cons
     Eigen::VectorXd change = Eigen::VectorXd::Zero(mesh.vertex_count());
     on_border_of(static_cast<std::size_t>(k / HoleBorder::closings), Eigen::Vector3d::Unit(k % HoleBorder::closings),
                  change);
-    change = extend_from_borders(mesh, geometry, scale, change);
-    const Eigen::VectorXd bend = apply_laplacian(mesh, geometry, change);
+    change = extend_from_borders(surface, scale, change);
+    const Eigen::VectorXd bend = apply_laplacian(surface, change);
     for (std::size_t j = 0; j < holes.size(); ++j) {
       borders[j].dy.col(k) = change(mesh.boundary_loops[holes[j]]);
       borders[j].dkappa.col(k) = bend(mesh.boundary_loops[holes[j]]);
@@ -134,7 +135,7 @@ std::optional<Eigen::VectorXd> close_translations(const HalfedgeMesh& mesh, cons
     on_border_of(j, unknowns->segment<HoleBorder::closings>(HoleBorder::closings * static_cast<Eigen::Index>(j)),
                  change);
   }
-  return log_scale + extend_from_borders(mesh, geometry, scale, change);
+  return log_scale + extend_from_borders(surface, scale, change);
 }
 
 }  // namespace lsgp

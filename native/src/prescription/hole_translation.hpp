@@ -10,14 +10,13 @@
 namespace lsgp {
 
 // A change of the log scale, (n), that has these values along held borders: harmonic between them.
-Eigen::VectorXd extend_from_borders(const HalfedgeMesh& mesh, const Geometry& geometry, const LogScale& scale,
+Eigen::VectorXd extend_from_borders(const MetricMesh& surface, const LogScale& scale,
                                     const Eigen::VectorXd& on_borders);
 
 // The log scale changed along the borders of holes, loops about which it turns by -2 pi already, so that going round
 // each leads back to where it began: by a constant and by what stretches the border along two directions. Newton's
 // method; none where it does not converge.
-std::optional<Eigen::VectorXd> close_translations(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                                  const LogScale& scale, const Array<Index>& holes,
-                                                  const Eigen::VectorXd& log_scale);
+std::optional<Eigen::VectorXd> close_translations(const MetricMesh& surface, const LogScale& scale,
+                                                  const Array<Index>& holes, const Eigen::VectorXd& log_scale);
 
 }  // namespace lsgp

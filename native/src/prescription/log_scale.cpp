@@ -111,17 +111,18 @@ Index ground(const Array<Index>& cones, const CutFactor* factor) {
 
 }  // namespace
 
-LogScale::LogScale(const HalfedgeMesh& mesh, const Geometry& geometry, const BorderConditions& border,
-                   const Array<Index>& cones, const CutFactor* factor)
-    : mesh_(mesh),
-      geometry_(geometry),
+LogScale::LogScale(const MetricMesh& surface, const BorderConditions& border, const Array<Index>& cones,
+                   const CutFactor* factor)
+    : surface_(surface),
       border_(border),
       cones_(cones),
-      weight_(geometry.vertex_area / geometry.total_area) {
+      weight_(surface.geometry.vertex_area / surface.geometry.total_area) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   PerVertex<char> held = border.held;
   if (border.balanced) held[ground(cones, factor)] = 1;
   require_matrix_memory(mesh.vertex_count(), static_cast<double>(cones.size()), GrowsWith::conditions);
-  laplace_ = factor != nullptr ? laplace_on_cut(*factor, held) : sparse_laplace(mesh, geometry, held);
+  laplace_ = factor != nullptr ? laplace_on_cut(*factor, held) : sparse_laplace(surface, held);
   LaplaceSolver::Response response = laplace_->solve(border.curvature - geometry.angle_defect, cones);
   without_cones_ = std::move(response.to_right_side);
   green_ = std::move(response.to_impulses);
@@ -134,8 +135,10 @@ Eigen::MatrixXd LogScale::solve_columns(const Eigen::MatrixXd& right_sides) cons
 }
 
 void LogScale::add_cones(const Array<Index>& vertices) {
-  require_matrix_memory(mesh_.vertex_count(), 3.0 * static_cast<double>(vertices.size()), GrowsWith::conditions);
-  Eigen::MatrixXd impulses = Eigen::MatrixXd::Zero(mesh_.vertex_count(), static_cast<Eigen::Index>(vertices.size()));
+  require_matrix_memory(surface_.mesh.vertex_count(), 3.0 * static_cast<double>(vertices.size()),
+                        GrowsWith::conditions);
+  Eigen::MatrixXd impulses =
+      Eigen::MatrixXd::Zero(surface_.mesh.vertex_count(), static_cast<Eigen::Index>(vertices.size()));
   for (std::size_t i = 0; i < vertices.size(); ++i) impulses(vertices[i], static_cast<Eigen::Index>(i)) = 1;
   const Eigen::MatrixXd added = laplace_->solve(impulses);
   green_.conservativeResize(Eigen::NoChange, green_.cols() + added.cols());
@@ -145,7 +148,7 @@ void LogScale::add_cones(const Array<Index>& vertices) {
 
 void LogScale::remove_cones() {
   cones_.clear();
-  green_.resize(mesh_.vertex_count(), 0);
+  green_.resize(surface_.mesh.vertex_count(), 0);
 }
 
 Eigen::VectorXd LogScale::evaluate(const Eigen::VectorXd& cone_curvature) const {
@@ -159,7 +162,7 @@ Eigen::VectorXd LogScale::evaluate_held(const Eigen::VectorXd& cone_curvature) c
 }
 
 Eigen::VectorXd LogScale::evaluate_held(const Array<Index>& vertices, const Eigen::VectorXd& curvature) const {
-  Eigen::VectorXd right_side = Eigen::VectorXd::Zero(mesh_.vertex_count());
+  Eigen::VectorXd right_side = Eigen::VectorXd::Zero(surface_.mesh.vertex_count());
   for (std::size_t i = 0; i < vertices.size(); ++i) right_side[vertices[i]] += curvature[static_cast<Eigen::Index>(i)];
   return without_cones_ + solve(right_side);
 }
@@ -227,12 +230,12 @@ double LogScale::predicted_l2(const Eigen::VectorXd& log_scale) const {
   const double middle = (log_scale.maxCoeff() + log_scale.minCoeff()) / 2;  // cancels
   const Eigen::VectorXd factor = (log_scale.array() - middle).min(most).max(-most).exp();
   double growth = 0, shrinkage = 0;
-  for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
-    const double scale = factor[mesh_.origin(h)] * factor[mesh_.target(h)];
-    growth += geometry_.area[h / 3] * scale;
-    shrinkage += geometry_.area[h / 3] / scale;
+  for (Index h = 0; h < surface_.mesh.halfedge_count(); ++h) {
+    const double scale = factor[surface_.mesh.origin(h)] * factor[surface_.mesh.target(h)];
+    growth += surface_.geometry.area[h / 3] * scale;
+    shrinkage += surface_.geometry.area[h / 3] / scale;
   }
-  return std::min(std::sqrt(growth) * std::sqrt(shrinkage) / (3 * geometry_.total_area), largest_l2);
+  return std::min(std::sqrt(growth) * std::sqrt(shrinkage) / (3 * surface_.geometry.total_area), largest_l2);
 }
 
 double LogScale::lumped_l2(const Eigen::VectorXd& log_scale) const {

@@ -23,11 +23,12 @@ constexpr double largest_l2 = 1e100;
 class LogScale {
  public:
   // cones: interior, distinct.  factor: if given, an existing one with the cones on its cuts.
-  LogScale(const HalfedgeMesh& mesh, const Geometry& geometry, const BorderConditions& border,
-           const Array<Index>& cones = {}, const CutFactor* factor = nullptr);
+  LogScale(const MetricMesh& surface, const BorderConditions& border, const Array<Index>& cones = {},
+           const CutFactor* factor = nullptr);
 
-  const HalfedgeMesh& mesh() const { return mesh_; }
-  const Geometry& geometry() const { return geometry_; }
+  const MetricMesh& surface() const { return surface_; }
+  const HalfedgeMesh& mesh() const { return surface_.mesh; }
+  const Geometry& geometry() const { return surface_.geometry; }
   const BorderConditions& border() const { return border_; }
 
   void add_cones(const Array<Index>& vertices);  // distinct, not held
@@ -36,7 +37,7 @@ class LogScale {
   const Array<Index>& cones() const { return cones_; }
   bool balanced() const { return border_.balanced; }
   // The required sum of the cone curvatures when balanced.
-  double required_sum() const { return 2 * M_PI * mesh_.euler - border_.curvature.sum(); }
+  double required_sum() const { return 2 * M_PI * surface_.mesh.euler - border_.curvature.sum(); }
 
   // y at every vertex (n), shifted to area-weighted mean 0.
   Eigen::VectorXd evaluate(const Eigen::VectorXd& cone_curvature) const;
@@ -72,8 +73,7 @@ class LogScale {
   Variance variance() const;
 
  private:
-  const HalfedgeMesh& mesh_;
-  const Geometry& geometry_;
+  const MetricMesh surface_;
   BorderConditions border_;
   Array<Index> cones_;
   std::unique_ptr<LaplaceSolver> laplace_;

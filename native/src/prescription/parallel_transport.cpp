@@ -81,7 +81,7 @@ Eigen::VectorXd choose_turning(const HarmonicOneForm& twist, const NodeGraph& no
 
 Eigen::VectorXd integrate(const CutSurface& surface, const Eigen::VectorXd& log_scale) {
   if (surface.frame_tree != nullptr) return surface.frame_tree->integrate(log_scale);
-  return FrameTree(surface.mesh, surface.geometry, surface.cut_graph).integrate(log_scale);
+  return FrameTree(surface, surface.cut_graph).integrate(log_scale);
 }
 
 // The better a root, the farther its curvature is from whole turns.
@@ -101,7 +101,7 @@ struct MetricConnection {
       : nodes(nodes_of_cuts(surface, curvature)),
         node_curvature(curvature_of_nodes(surface.mesh, nodes, curvature.at_vertex)),
         frames(integrate(surface, curvature.log_scale)),
-        natural(read_rotations(surface.mesh, surface.geometry, surface.cut_graph, curvature.log_scale, frames)) {}
+        natural(read_rotations(surface, surface.cut_graph, curvature.log_scale, frames)) {}
 };
 
 }  // namespace
@@ -116,7 +116,7 @@ ParallelTransportChoice::ParallelTransportChoice(const CutSurface& surface, cons
       surface.mesh.closed() && metric.node_curvature.size() > 0 && metric.node_curvature.cwiseAbs().maxCoeff() == 0;
   if (rotation_order == 0 && !flat) return;
   const Eigen::MatrixXd loops = loop_changes(metric.nodes);
-  const HarmonicOneForm twist(surface.mesh, surface.geometry, surface.cut_graph);
+  const HarmonicOneForm twist(surface, surface.cut_graph);
   change_ = loops * choose_turning(twist, metric.nodes, metric.natural, loops, 2 * M_PI / (flat ? 1 : rotation_order));
   twist_ = twist.spread(change_);
 }
@@ -141,7 +141,7 @@ ParallelTransport connection_of_map(const CutSurface& surface, const Curvature& 
                                     const Eigen::VectorXd& rotation, const Eigen::VectorXcd& position) {
   const NodeGraph nodes = nodes_of_cuts(surface, curvature);
   const Eigen::VectorXd node_curvature = curvature_of_nodes(surface.mesh, nodes, curvature.at_vertex);
-  return {measure_jacobians(surface.mesh, surface.geometry, surface.cut_mesh, position).f_z.array().arg(), rotation,
+  return {measure_jacobians(surface, surface.cut_mesh, position).f_z.array().arg(), rotation,
           impose_transitions(surface, nodes, node_curvature, rotation)};
 }
 

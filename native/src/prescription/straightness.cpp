@@ -101,8 +101,9 @@ struct StraightSides {
   Array<Segment> segments;  // left and right side of every cut
 };
 
-StraightSides straighten_sides(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
-                               const CutMesh& cut_mesh) {
+StraightSides straighten_sides(const MetricMesh& surface, const CutGraph& cut_graph, const CutMesh& cut_mesh) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   struct Place {
     Index from = none, to = none;
     double share = 0;
@@ -149,7 +150,9 @@ StraightSides straighten_sides(const HalfedgeMesh& mesh, const Geometry& geometr
 
 // The angle of a node's sector between the two straight cuts that bound it, in (0, 2 pi].
 double read_angle(const CutSurface& surface, const Eigen::VectorXcd& position, const Sector& sector, Index closed_by) {
-  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
+  const HalfedgeMesh& mesh = surface.mesh;
+  const CutGraph& cut_graph = surface.cut_graph;
+  const CutMesh& cut_mesh = surface.cut_mesh;
   const auto far_end = [&, &mesh = mesh, &cut_graph = cut_graph, &cut_mesh = cut_mesh](Index h, bool on_left) {
     const Cut& cut = cut_graph.cuts[cut_graph.cut_of[h]];
     const bool forward = cut_graph.runs_forward[h];
@@ -166,8 +169,10 @@ double read_angle(const CutSurface& surface, const Eigen::VectorXcd& position, c
 }  // namespace
 
 StraightenedLayout straighten(const CutSurface& surface) {
-  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
-  StraightSides sides = straighten_sides(mesh, geometry, cut_graph, cut_mesh);
+  const HalfedgeMesh& mesh = surface.mesh;
+  const CutGraph& cut_graph = surface.cut_graph;
+  const CutMesh& cut_mesh = surface.cut_mesh;
+  StraightSides sides = straighten_sides(surface, cut_graph, cut_mesh);
   StraightBoundary boundary(std::move(sides.segments), unfold_spectral(surface, sides.reduction));
 
   StraightenedLayout layout;

@@ -25,7 +25,7 @@ constexpr int barrier_steps = 2;  // so that shear does not pile up on the way
 // The Jacobians of a map, transformed like the metric and its frames.
 Jacobians carry_over(const CutSurface& surface, const Waypoint& from, const Waypoint& to,
                      const Eigen::VectorXcd& position) {
-  Jacobians out = measure_jacobians(surface.mesh, surface.geometry, surface.cut_mesh, position);
+  Jacobians out = measure_jacobians(surface, surface.cut_mesh, position);
   const Eigen::VectorXd grown = to.curvature.log_scale - from.curvature.log_scale;
   const Eigen::VectorXd turned = to.connection.frames - from.connection.frames;
   for (Index f = 0; f < surface.mesh.triangle_count(); ++f) {
@@ -44,7 +44,7 @@ std::optional<Eigen::VectorXcd> fit_at(const CutSurface& surface, const Waypoint
   const RelativeFit fit(surface, jacobians);
   if (aligned.empty()) return PoissonSystem(fit.surface(), next.connection.reduction).fit(fit.jacobians());
   const Eigen::VectorXd directions =
-      metric_directions(surface.mesh, surface.geometry, next.curvature.log_scale, next.connection.frames, aligned);
+      metric_directions(surface, next.curvature.log_scale, next.connection.frames, aligned);
   return unfold_aligned(fit.surface(), next.connection.reduction, fit.jacobians(), aligned, directions);
 } catch (const Error& error) {
   if (error.code() != Code::solver_failed) throw;

@@ -19,8 +19,9 @@ constexpr double least_weight = 1e-3;    // of the mean, so that no vertex is wi
 
 }  // namespace
 
-Eigen::VectorXd importance_of_triangles(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                        const Eigen::VectorXd& importance) {
+Eigen::VectorXd importance_of_triangles(const MetricMesh& surface, const Eigen::VectorXd& importance) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   Eigen::VectorXd out = Eigen::VectorXd::Ones(mesh.triangle_count());
   if (importance.size() == 0) return out;
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
@@ -36,9 +37,10 @@ void relax_stretch(NewtonMinimizer& newton) { newton.smooth(Kind::symmetric_diri
 
 Eigen::VectorXd scale_at_rest(const CutSurface& surface, const Curvature& curvature, double stretch,
                               const Eigen::VectorXcd& position) {
-  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   const Eigen::VectorXd rest = (1 - stretch) * curvature.log_scale;
-  const Jacobians jacobians = measure_jacobians(mesh, geometry, cut_mesh, position);
+  const Jacobians jacobians = measure_jacobians(surface, surface.cut_mesh, position);
   double area = 0, rest_area = 0;
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
     double mean = 0;
@@ -51,7 +53,8 @@ Eigen::VectorXd scale_at_rest(const CutSurface& surface, const Curvature& curvat
 
 Eigen::VectorXcd lower_stretch(const CutSurface& surface, const MapTarget& target, const StretchOptions& options,
                                const StepHook& before_step, const HeldMap& map) {
-  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
+  const HalfedgeMesh& mesh = surface.mesh;
+  const CutMesh& cut_mesh = surface.cut_mesh;
   const ParallelTransport& connection = target.connection;
   const Curvature& curvature = target.curvature;
   const Eigen::VectorXd rest = scale_at_rest(surface, curvature, options.stretch, map.position);
@@ -68,7 +71,7 @@ Eigen::VectorXcd lower_stretch(const CutSurface& surface, const MapTarget& targe
   }
   NewtonMinimizer newton(surface, {rest, connection.frames}, free_all(mesh, cut_mesh, connection.reduction, map.fixed),
                          before_step, best);
-  newton.weigh(importance_of_triangles(mesh, geometry, options.importance));
+  newton.weigh(importance_of_triangles(surface, options.importance));
   relax_stretch(newton);
   return best;
 }

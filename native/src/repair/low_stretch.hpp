@@ -30,7 +30,6 @@ Eigen::VectorXd scale_at_rest(const CutSurface& surface, const Curvature& curvat
 
 // The weight of every triangle, (m), from those of its vertices, (n) or empty: their mean, relative to the whole
 // surface's.
-Eigen::VectorXd importance_of_triangles(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                        const Eigen::VectorXd& importance);
+Eigen::VectorXd importance_of_triangles(const MetricMesh& surface, const Eigen::VectorXd& importance);
 
 }  // namespace lsgp

@@ -104,7 +104,8 @@ NewtonMinimizer::NewtonMinimizer(const CutSurface& surface, const RestShapes& re
       before_step_(std::move(before_step)),
       position_(position),
       hessian_(first_row_.back()) {
-  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   const Eigen::VectorXd& log_scale = rest.log_scale;
   shapes_.reserve(freedom.triangles.size());
   for (const Index f : freedom.triangles) {
@@ -120,7 +121,7 @@ NewtonMinimizer::NewtonMinimizer(const CutSurface& surface, const RestShapes& re
       const Complex edge = edge_vector(geometry, next(3 * f + c)) / (4 * geometry.area[f] * scale);
       shape.g[c] = std::polar(1.0, -rest.frames[f]) * Complex(0, -1) * std::conj(edge);
       shape.h[c] = Complex(0, 1) * edge;
-      shape.copy[c] = cut_mesh.copy_of_corner[3 * f + c];
+      shape.copy[c] = surface.cut_mesh.copy_of_corner[3 * f + c];
       displacement_.for_each_term(shape.copy[c], [&](const Term& term) {
         add_slope(shape.begin, {term.unknown, shape.g[c] * term.coefficient, shape.h[c] * term.coefficient});
       });

@@ -260,7 +260,9 @@ bool StraightSides::is_bent() const {
 
 StraightSides find_straight_sides(const CutSurface& surface, const Eigen::VectorXd& rotation,
                                   const Eigen::VectorXcd& position, const SideLimits& limits) {
-  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
+  const HalfedgeMesh& mesh = surface.mesh;
+  const CutGraph& cut_graph = surface.cut_graph;
+  const CutMesh& cut_mesh = surface.cut_mesh;
   const auto [most_bend, with_creases] = limits;
   const auto may_be_straight = [&, &cut_graph = cut_graph](Index h) {
     return cut_graph.cut_of[h] == none || is_quarter_turn(rotation[cut_graph.cut_of[h]]);

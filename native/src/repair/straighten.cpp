@@ -38,7 +38,9 @@ bool is_without_translation(const CutSurface& surface, const ParallelTransport& 
 // A copy of every island but one whose place the unknown that is left out of the reduction determines: that of the copy
 // which is held at 0, or else one of those related by the translation which is 0.
 Array<Index> held_islands(const CutSurface& surface, const MapTarget& target) {
-  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
+  const HalfedgeMesh& mesh = surface.mesh;
+  const CutGraph& cut_graph = surface.cut_graph;
+  const CutMesh& cut_mesh = surface.cut_mesh;
   const Reduction& reduction = target.connection.reduction;
   PerTriangle<Index> part;
   Array<Index> first(label_parts(mesh, cut_graph.is_cut, part), none);
@@ -97,7 +99,7 @@ RealMatrix form_of_coordinates(const CutSurface& surface) {
   const Index copies = surface.cut_mesh.copy_count();
   PerCopy<Index> row_of_copy(copies);
   std::iota(row_of_copy.begin(), row_of_copy.end(), 0);
-  const RealMatrix form = assemble_dirichlet(surface.mesh, surface.geometry, surface.cut_mesh, row_of_copy);
+  const RealMatrix form = assemble_dirichlet(surface, surface.cut_mesh, row_of_copy);
   Entries entries;
   for (int column = 0; column < copies; ++column) {
     for (RealMatrix::InnerIterator it(form, column); it; ++it) {
@@ -157,7 +159,7 @@ void equalize(const CutMesh& cut_mesh, const DirectedEdges& edges, Eigen::Vector
 
 Eigen::VectorXcd straighten(const CutSurface& surface, const MapTarget& target, const StretchOptions& options,
                             const StepHook& before_step, const MapWithStraightSides& map) {
-  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
+  const CutMesh& cut_mesh = surface.cut_mesh;
   DirectedEdges edges = edges_of(map.straight);
   Eigen::VectorXcd position = map.straight.turn * map.position;
   if (map.straight.is_bent()) {
@@ -165,9 +167,9 @@ Eigen::VectorXcd straighten(const CutSurface& surface, const MapTarget& target, 
     const Eigen::VectorXd rest = scale_at_rest(surface, target.curvature, options.stretch, position);
     before_step();
     DegreesOfFreedom freedom = free_along(surface, target.connection.reduction, edges);
-    position = fit_along(surface, freedom, measure_jacobians(mesh, geometry, cut_mesh, position));
+    position = fit_along(surface, freedom, measure_jacobians(surface, cut_mesh, position));
     NewtonMinimizer newton(surface, {rest, target.connection.frames}, std::move(freedom), before_step, position);
-    newton.weigh(importance_of_triangles(mesh, geometry, options.importance));
+    newton.weigh(importance_of_triangles(surface, options.importance));
     if (newton.unfold(Kind::foldover_free, unfolding_steps)) relax_stretch(newton);
   }
   equalize(cut_mesh, edges, position);

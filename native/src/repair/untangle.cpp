@@ -25,9 +25,11 @@ constexpr Steps local_steps{30, 3}, global_steps{25, 10};
 constexpr double least_decrease = 1e-3;  // of the energy in a step of smoothing
 
 // The rotation of a whole map against frames.
-double turn_against(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                    const Eigen::VectorXd& frames, const Eigen::VectorXcd& position) {
-  const Jacobians jacobians = measure_jacobians(mesh, geometry, cut_mesh, position);
+double turn_against(const MetricMesh& surface, const CutMesh& cut_mesh, const Eigen::VectorXd& frames,
+                    const Eigen::VectorXcd& position) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
+  const Jacobians jacobians = measure_jacobians(surface, cut_mesh, position);
   Complex along = 0;
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
     along += geometry.area[f] * jacobians.f_z[f] * std::polar(1.0, -frames[f]);
@@ -46,17 +48,18 @@ Array<Index> defective_triangles(const HalfedgeMesh& mesh, const Validity& valid
 
 Eigen::VectorXcd untangle(const CutSurface& surface, const MapTarget& target, const UntangleOptions& options,
                           const StepHook& before_step, const HeldMap& map) {
-  const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
+  const HalfedgeMesh& mesh = surface.mesh;
+  const CutMesh& cut_mesh = surface.cut_mesh;
   const ParallelTransport& connection = target.connection;
   const Curvature& curvature = target.curvature;
-  const Eigen::VectorXcd motion = motion_of_copies(mesh, cut_graph, cut_mesh, connection.rotation);
+  const Eigen::VectorXcd motion = motion_of_copies(mesh, surface.cut_graph, cut_mesh, connection.rotation);
   const auto check = [&, &mesh = mesh, &cut_mesh = cut_mesh](const Eigen::VectorXcd& tried) {
     return check_map(mesh, at_corners(cut_mesh, tried), curvature.at_vertex, curvature.is_free);
   };
   Eigen::VectorXcd best = map.position;
   Validity left = check(best);
   const Eigen::VectorXd frames =
-      connection.frames.array() + turn_against(mesh, geometry, cut_mesh, connection.frames, map.position);
+      connection.frames.array() + turn_against(surface, cut_mesh, connection.frames, map.position);
   const auto try_out = [&](DegreesOfFreedom freedom, Kind energy, const Steps& most) {
     if (left.defects() == 0 || freedom.displacement.unknown_count == 0) return;
     Eigen::VectorXcd tried = best;

@@ -37,7 +37,7 @@ void report_growth(double growth, std::vector<Finding>& findings) {
 
 }  // namespace
 
-GridSearch::GridSearch(bool parity, const PointLattice& lattice, Array<SeamlessComponent>& components,
+GridSearch::GridSearch(bool parity, PointLattice lattice, Array<SeamlessComponent>& components,
                        ProgressMonitor& monitor)
     : parity_(parity),
       lattice_(lattice),
@@ -187,8 +187,8 @@ bool GridSearch::merge(const ConePair& pair, const Options& options) {
   manual.prescription = PrescriptionRule::manual;
   try {
     std::vector<Finding> unsaid;
-    auto system =
-        std::make_unique<ComponentSystem>(mesh, component.system->geometry(), merged.cones, options.factorization);
+    auto system = std::make_unique<ComponentSystem>(MetricMesh{mesh, component.system->geometry()}, merged.cones,
+                                                    options.factorization);
     ComponentMap map = map_component(*system, merged, manual, unsaid, monitor_);
     if (map.validity.defects() > 0) return false;
     *component.map = std::move(map);

@@ -21,10 +21,10 @@ struct Grid {
   Array<QuantizedLayout> layouts;
 };
 
-// The layouts of all components on a sequence of grids. All arguments have to outlive it.
+// The layouts of all components on a sequence of grids.
 class GridSearch {
  public:
-  GridSearch(bool parity, const PointLattice& lattice, Array<SeamlessComponent>& components, ProgressMonitor& monitor);
+  GridSearch(bool parity, PointLattice lattice, Array<SeamlessComponent>& components, ProgressMonitor& monitor);
 
   double extent() const;
   double energy(std::size_t component) const { return quantizers_[component]->energy(); }
@@ -69,7 +69,7 @@ class GridSearch {
   bool merge(const ConePair& pair, const Options& options);
 
   const bool parity_;
-  const PointLattice& lattice_;
+  const PointLattice lattice_;
   Array<SeamlessComponent>& components_;
   ProgressMonitor& monitor_;
   Array<std::unique_ptr<LayoutQuantizer>> quantizers_;

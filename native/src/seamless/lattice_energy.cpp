@@ -20,8 +20,7 @@ Eigen::MatrixXcd hermitian_part(const Eigen::MatrixXcd& matrix) { return (matrix
 class SparseLatticeEnergy final : public LatticeEnergy {
  public:
   SparseLatticeEnergy(const CutSurface& surface, const LatticeReduction& lattice) : lattice_(lattice) {
-    const auto& [mesh, geometry, cut_graph, cut_mesh, factor, frame_tree] = surface;
-    const auto form = assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, lattice.reduction);
+    const auto form = assemble_form(Form::dirichlet, surface, surface.cut_mesh, lattice.reduction);
     const Index unknowns = lattice.reduction.unknown_count, count = static_cast<Index>(lattice.integers.size());
     Array<Index> column_of_unknown(unknowns, none);
     for (Index k = 0; k < count; ++k) column_of_unknown[lattice.integers[k]] = k;
@@ -116,12 +115,14 @@ class LatticeEnergyOnCut final : public LatticeEnergy {
 
 }  // namespace
 
-std::unique_ptr<LatticeEnergy> sparse_lattice_energy(const CutSurface& surface, const LatticeReduction& lattice) {
+std::unique_ptr<LatticeEnergy> sparse_lattice_energy(const CutSurface& surface,
+                                                     Borrowed<const LatticeReduction> lattice) {
   return std::make_unique<SparseLatticeEnergy>(surface, lattice);
 }
 
-std::unique_ptr<LatticeEnergy> lattice_energy_on_cut(const HalfedgeMesh& mesh, const CutMesh& cut_mesh,
-                                                     const CutFactor& factor, const LatticeReduction& lattice) {
+std::unique_ptr<LatticeEnergy> lattice_energy_on_cut(Borrowed<const HalfedgeMesh> mesh, const CutMesh& cut_mesh,
+                                                     Borrowed<const CutFactor> factor,
+                                                     const LatticeReduction& lattice) {
   return std::make_unique<LatticeEnergyOnCut>(mesh, cut_mesh, factor, lattice);
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <memory>
 
+#include "base/borrowed.hpp"
 #include "cut/cut_mesh.hpp"
 #include "seamless/lattice_transitions.hpp"
 
@@ -22,11 +23,11 @@ class LatticeEnergy {
   Eigen::MatrixXcd schur_;
 };
 
-// One complex factorization and a back-substitution for every integer.  lattice has to outlive the energy.
-std::unique_ptr<LatticeEnergy> sparse_lattice_energy(const CutSurface& surface, const LatticeReduction& lattice);
-// With an existing factor whose cuts include those of the cut mesh: only dense problems. All but the cut mesh have to
-// outlive the energy.
-std::unique_ptr<LatticeEnergy> lattice_energy_on_cut(const HalfedgeMesh& mesh, const CutMesh& cut_mesh,
-                                                     const CutFactor& factor, const LatticeReduction& lattice);
+// One complex factorization and a back-substitution for every integer.
+std::unique_ptr<LatticeEnergy> sparse_lattice_energy(const CutSurface& surface,
+                                                     Borrowed<const LatticeReduction> lattice);
+// With an existing factor whose cuts include those of the cut mesh: only dense problems.
+std::unique_ptr<LatticeEnergy> lattice_energy_on_cut(Borrowed<const HalfedgeMesh> mesh, const CutMesh& cut_mesh,
+                                                     Borrowed<const CutFactor> factor, const LatticeReduction& lattice);
 
 }  // namespace lsgp

@@ -36,7 +36,7 @@ bool LayoutQuantizer::repair(double scale, const Eigen::VectorXcd& before, Eigen
   Curvature target = curvature_;
   target.log_scale = rest_.array() + std::log(scale);
   const ParallelTransport connection{
-      measure_jacobians(mesh_, geometry_, cut_mesh_, before).f_z.array().arg(), rotation_, {}};
+      measure_jacobians({mesh_, geometry_}, cut_mesh_, before).f_z.array().arg(), rotation_, {}};
   position = untangle(surface(), {connection, target}, {Effort::local, DistortionEnergy::Kind::framed_foldover_free},
                       before_step_, {position, PerVertex<char>(mesh_.vertex_count(), 0)});
   return check(position).defects() == 0;
@@ -78,7 +78,7 @@ Array<Index> LayoutQuantizer::find_stretched(double scale, const Jacobians& jaco
 bool LayoutQuantizer::looks_easy(double scale, double most_energy, const Validity& validity,
                                  const Eigen::VectorXcd& position) const {
   if (static_cast<double>(validity.flipped.size()) > 1 + easy_share * mesh_.triangle_count()) return false;
-  Jacobians jacobians = measure_jacobians(mesh_, geometry_, cut_mesh_, position);
+  Jacobians jacobians = measure_jacobians({mesh_, geometry_}, cut_mesh_, position);
   const Array<Index> stretched = find_stretched(scale, jacobians);
   if (static_cast<double>(stretched.size()) > mendable_share * mesh_.triangle_count()) return false;
   for (const Index f : stretched) {
@@ -96,7 +96,7 @@ bool LayoutQuantizer::move(double scale, const LayoutEffort& effort, const Eigen
   const Validity validity = check(position);
   if (effort.quick && !looks_easy(scale, effort.most_growth * energy_, validity, position)) return false;
   if (validity.defects() > 0 && !repair(scale, before, position)) return false;
-  const Array<Index> stretched = find_stretched(scale, measure_jacobians(mesh_, geometry_, cut_mesh_, position));
+  const Array<Index> stretched = find_stretched(scale, measure_jacobians({mesh_, geometry_}, cut_mesh_, position));
   if (!stretched.empty()) smooth(scale, mark_around(mesh_, stretched, smoothed_rings), smoothing_steps, position);
   return true;
 }
@@ -125,7 +125,7 @@ void LayoutQuantizer::lower_stretch(double stretch, const Eigen::VectorXd& impor
       surface(), {rest, Eigen::VectorXd::Zero(mesh_.triangle_count())},
       free_vertices(mesh_, cut_mesh_, motion_of_copies_, without_cones(PerVertex<char>(mesh_.vertex_count(), 1))),
       before_step_, layout.position);
-  newton.weigh(importance_of_triangles(mesh_, geometry_, importance));
+  newton.weigh(importance_of_triangles({mesh_, geometry_}, importance));
   newton.smooth(DistortionEnergy::Kind::symmetric_dirichlet, relaxing_steps, least_decrease);
   layout.energy = measure_energy(layout.position);
 }

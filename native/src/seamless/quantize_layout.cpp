@@ -57,35 +57,35 @@ double symmetric_dirichlet_energy(const Geometry& geometry, const Jacobians& jac
   return std::sqrt(grown * shrunk) / geometry.area.sum();
 }
 
-LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, const ComponentMap& map, const LatticeDemands& demands,
-                                 StepHook before_step)
+LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, Borrowed<const ComponentMap> map,
+                                 const LatticeDemands& demands, StepHook before_step)
     : mesh_(system.mesh()),
       geometry_(system.geometry()),
-      cut_graph_(map.cut_graph),
-      cut_mesh_(map.cut_mesh),
-      curvature_(map.curvature),
+      cut_graph_(map.get().cut_graph),
+      cut_mesh_(map.get().cut_mesh),
+      curvature_(map.get().curvature),
       demands_(demands),
       before_step_(std::move(before_step)),
-      rotation_(*map.rotation) {
+      rotation_(*map.get().rotation) {
   const Array<Index>& relaxed = demands.relaxed;
   // With relaxed cones the root leaves the lattice, too: preferably one of a pair that is too close.
-  const NodeGraph nodes = build_node_graph(mesh_, map.cut_graph, [&](Index v) {
-    return !relaxed.empty() && v == relaxed.front() ? 1 : rank_of_root(map.curvature.at_vertex[v]);
+  const NodeGraph nodes = build_node_graph(mesh_, cut_graph_, [&](Index v) {
+    return !relaxed.empty() && v == relaxed.front() ? 1 : rank_of_root(curvature_.at_vertex[v]);
   });
   reduction_ =
-      impose_on_lattice(surface(), nodes, curvature_of_nodes(mesh_, nodes, map.curvature.at_vertex),
+      impose_on_lattice(surface(), nodes, curvature_of_nodes(mesh_, nodes, curvature_.at_vertex),
                         turns_of_cuts(rotation_, lattice_.rotation_order()), {lattice_, demands.parity, relaxed});
-  motion_of_copies_ = motion_of_copies(mesh_, map.cut_graph, map.cut_mesh, rotation_);
+  motion_of_copies_ = motion_of_copies(mesh_, cut_graph_, cut_mesh_, rotation_);
   set_start(map);
   integers_ = integers_of(start_);
 
   const double integers = static_cast<double>(integers_.size());
   require_memory(lattice_blocks * sizeof(Complex) * integers * integers, GrowsWith::conditions);
-  if (const CutFactor* factor = system.stiff_factor(map.cones, map.cut_graph)) {
+  if (const CutFactor* factor = system.stiff_factor(map.get().cones, cut_graph_)) {
     lattice_energy_ = lattice_energy_on_cut(mesh_, cut_mesh_, *factor, reduction_);
   } else {
-    const Geometry stiffened = stiffen_around(mesh_, geometry_, map.cones);
-    lattice_energy_ = sparse_lattice_energy({mesh_, stiffened, cut_graph_, cut_mesh_}, reduction_);
+    const Geometry stiffened = stiffen_around({mesh_, geometry_}, map.get().cones);
+    lattice_energy_ = sparse_lattice_energy({{mesh_, stiffened}, cut_graph_, cut_mesh_}, reduction_);
   }
   const Eigen::MatrixXcd restricted = reduction_.basis.adjoint() * lattice_energy_->schur() * reduction_.basis;
   search_.emplace((restricted + restricted.adjoint()) / 2, moving_triangles(map), lattice_);
@@ -106,7 +106,7 @@ void LayoutQuantizer::set_start(const ComponentMap& map) {
         .smooth(DistortionEnergy::Kind::symmetric_dirichlet, poor_steps, least_decrease);
   }
   misalignment_ = measure_misalignment(start_);
-  const Jacobians jacobians = measure_jacobians(mesh_, geometry_, cut_mesh_, start_);
+  const Jacobians jacobians = measure_jacobians({mesh_, geometry_}, cut_mesh_, start_);
   energy_ = symmetric_dirichlet_energy(geometry_, jacobians);
   extent_ = std::max(start_.real().maxCoeff() - start_.real().minCoeff(),
                      start_.imag().maxCoeff() - start_.imag().minCoeff());
@@ -232,7 +232,7 @@ Array<LayoutQuantizer::Target> LayoutQuantizer::find_targets(double density, int
 }
 
 double LayoutQuantizer::measure_energy(const Eigen::VectorXcd& position) const {
-  return symmetric_dirichlet_energy(geometry_, measure_jacobians(mesh_, geometry_, cut_mesh_, position));
+  return symmetric_dirichlet_energy(geometry_, measure_jacobians({mesh_, geometry_}, cut_mesh_, position));
 }
 
 std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, const LayoutEffort& effort) const {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/array.hpp"
+#include "base/borrowed.hpp"
 #include "pipeline/component_map.hpp"
 #include "plane/point_lattice.hpp"
 #include "repair/newton.hpp"
@@ -49,10 +50,10 @@ struct LatticeDemands {
 // The layouts of one map on grids of any size. What does not depend on the size is computed once.
 class LayoutQuantizer {
  public:
-  // system: of the map's cones, and others that are flat. All have to outlive it.
+  // system: of the map's cones, and others that are flat.
   // map: without flips and with the right angles, its rotations multiples of the lattice's turn.
   // Throws SEAMLESS_IMPOSSIBLE.
-  LayoutQuantizer(ComponentSystem& system, const ComponentMap& map, const LatticeDemands& demands,
+  LayoutQuantizer(ComponentSystem& system, Borrowed<const ComponentMap> map, const LatticeDemands& demands,
                   StepHook before_step);
 
   // The layout's longer side, where it has the surface's area.
@@ -84,7 +85,7 @@ class LayoutQuantizer {
     double cost;
   };
 
-  CutSurface surface() const { return {mesh_, geometry_, cut_graph_, cut_mesh_}; }
+  CutSurface surface() const { return {{mesh_, geometry_}, cut_graph_, cut_mesh_}; }
   void set_start(const ComponentMap& map);
   Array<MovingTriangle> moving_triangles(const ComponentMap& map);
   UpwardTurn find_upward_turn(const Eigen::VectorXcd& position) const;

@@ -60,7 +60,7 @@ void BatchPlacement::remove(const Array<int>& places) {
 }
 
 NearestDistance BatchPlacement::distances() const {
-  NearestDistance out(mesh_, geometry_);
+  NearestDistance out({mesh_, geometry_});
   for (const int site : state_.sites) {
     for (const Index v : {problem_.kernel.sites()[site].vertex, problem_.kernel.sites()[site].mirrored}) {
       if (v != none) out.add({v});

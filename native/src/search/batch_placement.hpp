@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "base/array.hpp"
+#include "base/borrowed.hpp"
 #include "base/progress_monitor.hpp"
 #include "mesh/nearest_distance.hpp"
 #include "search/cone_search.hpp"
@@ -17,14 +18,15 @@ namespace lsgp {
 // 60 cones to 1,000, and memory for their own block of H.
 class BatchPlacement {
  public:
-  // search: for single cones of the same problem. All arguments have to outlive it.
-  BatchPlacement(const Geometry& geometry, const ConeSearch& search, double reach, ProgressMonitor& monitor)
-      : mesh_(search.mesh()),
+  // search: for single cones of the same problem.
+  BatchPlacement(Borrowed<const Geometry> geometry, Borrowed<const ConeSearch> search, double reach,
+                 ProgressMonitor& monitor)
+      : mesh_(search.get().mesh()),
         geometry_(geometry),
-        problem_(search.problem()),
+        problem_(search.get().problem()),
         search_(search),
         reach_(reach),
-        kept_(search.kept()),
+        kept_(search.get().kept()),
         monitor_(monitor) {}
 
   void add(const Array<int>& sites);  // two back-substitutions each, and a fit

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "plane/point_lattice.hpp"
 #include "prescription/quantize_curvature.hpp"
@@ -30,20 +31,20 @@ PlacementEffort effort_for(Index vertices) {
   return vertices > large ? PlacementEffort{12000, 24, 1} : PlacementEffort{12000, 48, 2};
 }
 
-ConeChooser::ConeChooser(const PlacementTask& task, const PlacementOptions& options, const PlacementEffort& effort,
+ConeChooser::ConeChooser(const PlacementTask& task, PlacementOptions options, const PlacementEffort& effort,
                          ProgressMonitor& monitor)
     : task_(task),
-      options_(options),
+      options_(std::move(options)),
       effort_(effort),
       monitor_(monitor),
       border_(free_border(task.mesh, task.existing.vertices)),
-      scale_(task.mesh, task.geometry, border_),
+      scale_(task, border_),
       sites_(find_cone_sites(task, effort.sites)),
       kernel_(make_kernel()),
-      limits_(task.mesh, task.geometry, kernel_.sites(), given_curvature()),
-      prices_(site_prices(task.mesh, task.geometry, kernel_.sites())),
+      limits_(task, kernel_.sites(), given_curvature()),
+      prices_(site_prices(task, kernel_.sites())),
       problem_{kernel_, limits_, scale_.balanced(), scale_.required_sum(), {}},
-      search_(task.mesh, problem_, sites_.existing, options.prefer_sharp, monitor) {
+      search_(task.mesh, problem_, sites_.existing, options_.prefer_sharp, monitor) {
   weigh_prices(0);
 }
 

@@ -39,8 +39,7 @@ constexpr int most_one_by_one = 60;          // cones that are chosen one by one
 
 class ConeChooser {
  public:
-  // All arguments have to outlive it.
-  ConeChooser(const PlacementTask& task, const PlacementOptions& options, const PlacementEffort& effort,
+  ConeChooser(const PlacementTask& task, PlacementOptions options, const PlacementEffort& effort,
               ProgressMonitor& monitor);
   ConeChooser(const ConeChooser&) = delete;
   ConeChooser& operator=(const ConeChooser&) = delete;
@@ -103,8 +102,8 @@ class ConeChooser {
   void use_cones(const Array<Index>& vertices);
   Array<Index> vertices_of(const Array<int>& sites) const;
 
-  const PlacementTask& task_;
-  const PlacementOptions& options_;
+  const PlacementTask task_;
+  const PlacementOptions options_;
   const PlacementEffort effort_;
   ProgressMonitor& monitor_;
   BorderConditions border_;

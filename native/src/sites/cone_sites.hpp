@@ -16,9 +16,7 @@ struct Site {
 };
 
 // The surface and the vertices where cones may be placed.
-struct PlacementTask {
-  const HalfedgeMesh& mesh;
-  const Geometry& geometry;
+struct PlacementTask : MetricMesh {
   const ComponentCones& existing;
   const PerVertex<char>& allowed;    // vertices that cones may be placed at
   const PerVertex<Index>& mirrored;  // images in a mirror plane, or empty

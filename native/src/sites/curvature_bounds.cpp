@@ -14,14 +14,15 @@ constexpr double smallest_angle = 0.35 * 2 * M_PI;
 
 }  // namespace
 
-CurvatureBounds::CurvatureBounds(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<Site>& sites,
-                                 const Eigen::VectorXd& given)
+CurvatureBounds::CurvatureBounds(const MetricMesh& surface, const Array<Site>& sites, const Eigen::VectorXd& given)
     : defect_(sites.size()),
       least_defect_(sites.size()),
       flat_(sites.size()),
       triangles_(sites.size()),
       given_(sites.size()),
       cones_(sites.size()) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   for (std::size_t s = 0; s < sites.size(); ++s) {
     const Eigen::Index i = static_cast<Eigen::Index>(s);
     const Index v = sites[s].vertex, mirrored = sites[s].mirrored == none ? v : sites[s].mirrored;

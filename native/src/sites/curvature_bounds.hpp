@@ -12,8 +12,7 @@ namespace lsgp {
 class CurvatureBounds {
  public:
   // given: (n) curvature of cones whose angle is prescribed, NaN elsewhere.
-  CurvatureBounds(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<Site>& sites,
-                  const Eigen::VectorXd& given);
+  CurvatureBounds(const MetricMesh& surface, const Array<Site>& sites, const Eigen::VectorXd& given);
 
   // Bounds of a site's curvature, both of its cones together.  reach: how far a cone's curvature may be from the angle
   // defect that its vertex has anyway, in units of pi. From 1 up the bounds of its angle widen as well.

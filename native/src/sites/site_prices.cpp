@@ -43,7 +43,8 @@ PathStarts largest_network(const HalfedgeMesh& mesh, const Array<Index>& edges, 
 }
 
 // 0 to 1, (n).
-Eigen::VectorXd vertex_prices(const HalfedgeMesh& mesh, const Geometry& geometry) {
+Eigen::VectorXd vertex_prices(const MetricMesh& surface) {
+  const HalfedgeMesh& mesh = surface.mesh;
   Eigen::VectorXd out = Eigen::VectorXd::Zero(mesh.vertex_count());
   const Array<Index> edges = cut_edges(mesh);
   if (edges.empty()) return out;
@@ -55,7 +56,7 @@ Eigen::VectorXd vertex_prices(const HalfedgeMesh& mesh, const Geometry& geometry
   const PathStarts starts = largest_network(mesh, edges, cheap);
   PerVertex<Reached> reached(mesh.vertex_count());
   for (const auto& [distance, v] : starts) reached[v] = {distance, none, v};
-  grow_paths(CutEdges(mesh, geometry), {starts}, [](Index) { return true; }, reached);
+  grow_paths(CutEdges(surface), {starts}, [](Index) { return true; }, reached);
   double farthest = 0;
   for (const Reached& at : reached) {
     if (at.distance < unlimited) farthest = std::max(farthest, at.distance);
@@ -69,10 +70,11 @@ Eigen::VectorXd vertex_prices(const HalfedgeMesh& mesh, const Geometry& geometry
 
 }  // namespace
 
-Eigen::VectorXd site_prices(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<Site>& sites) {
+Eigen::VectorXd site_prices(const MetricMesh& surface, const Array<Site>& sites) {
+  const HalfedgeMesh& mesh = surface.mesh;
   Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(sites.size()));
   if (mesh.cut_factor.empty()) return out;
-  const Eigen::VectorXd at = vertex_prices(mesh, geometry);
+  const Eigen::VectorXd at = vertex_prices(surface);
   for (Eigen::Index i = 0; i < out.size(); ++i) {
     const Site& site = sites[static_cast<std::size_t>(i)];
     out[i] = at[site.vertex] + (site.mirrored == none ? 0 : at[site.mirrored]);

@@ -11,6 +11,6 @@ namespace lsgp {
 
 // From 0 at sites that cuts get to cheaply to 1 at those hardest to get to, (sites), of both cones of a site together;
 // the less, the less the costs of cuts differ, and 0 where cuts have none.
-Eigen::VectorXd site_prices(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<Site>& sites);
+Eigen::VectorXd site_prices(const MetricMesh& surface, const Array<Site>& sites);
 
 }  // namespace lsgp

@@ -17,8 +17,11 @@ constexpr double stretch_length = 0.15;  // of the square root of the surface's 
 // Numbers the stretches of the cuts and of the boundaries that these reach.
 class Stretches {
  public:
-  Stretches(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph)
-      : geometry_(geometry), longest_(stretch_length * std::sqrt(geometry.total_area)), of_(mesh.vertex_count(), none) {
+  Stretches(const MetricMesh& surface, const CutGraph& cut_graph)
+      : geometry_(surface.geometry),
+        longest_(stretch_length * std::sqrt(surface.geometry.total_area)),
+        of_(surface.mesh.vertex_count(), none) {
+    const HalfedgeMesh& mesh = surface.mesh;
     for (const Cut& cut : cut_graph.cuts) {
       for (const Index end : {cut.tail, cut.head}) {
         if (of_[end] == none) of_[end] = count_++;
@@ -61,8 +64,9 @@ class Stretches {
 
 }  // namespace
 
-PerHalfedge<char> find_candidate_cuts(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph) {
-  const Stretches stretches(mesh, geometry, cut_graph);
+PerHalfedge<char> find_candidate_cuts(const MetricMesh& surface, const CutGraph& cut_graph) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Stretches stretches(surface, cut_graph);
   PerVertex<Reached> reached(mesh.vertex_count());
   PathStarts starts;
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
@@ -72,7 +76,7 @@ PerHalfedge<char> find_candidate_cuts(const HalfedgeMesh& mesh, const Geometry& 
   }
   // Boundaries that no cut reaches are left as they are.
   const auto admits = [&](Index v) { return mesh.loop_of_vertex[v] == none || stretches.of(v) != none; };
-  const CutEdges edges(mesh, geometry);
+  const CutEdges edges(surface);
   grow_paths(edges, {std::move(starts)}, admits, reached);
   PerHalfedge<char> out = cut_graph.is_cut;
   std::set<std::pair<Index, Index>> joined;

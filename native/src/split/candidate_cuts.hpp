@@ -10,6 +10,6 @@ namespace lsgp {
 
 // The cuts and paths between them: for every two stretches of the cuts, and of the boundaries that these reach, whose
 // regions meet, the cheapest path through the two regions (Mehlhorn 1988). On both halfedges.
-PerHalfedge<char> find_candidate_cuts(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph);
+PerHalfedge<char> find_candidate_cuts(const MetricMesh& surface, const CutGraph& cut_graph);
 
 }  // namespace lsgp

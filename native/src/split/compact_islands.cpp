@@ -293,7 +293,7 @@ void compact_islands(const OpenedSurface& surface, const SharedSquare& square, C
   const HalfedgeMesh& mesh = surface.mesh;
   PerHalfedge<char> ends = surface.open, is_cut = map.cut_graph.is_cut;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) ends[h] = ends[h] || is_cut[h];
-  const OpenedSurface islands{mesh, surface.geometry, ends};
+  const OpenedSurface islands{surface, ends};
   const FaceGraph graph = build_face_graph(islands);
   const Eigen::VectorXcd position = square.scale * at_corners(map.cut_mesh, map.position);
   Compactor compactor(islands, graph, position, square);

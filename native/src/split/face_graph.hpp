@@ -14,9 +14,7 @@ template <typename T>
 using PerFace = ArrayPer<FaceKind, T>;  // of a FaceGraph
 
 // A surface and where its layout ends.
-struct OpenedSurface {
-  const HalfedgeMesh& mesh;
-  const Geometry& geometry;
+struct OpenedSurface : MetricMesh {
   const PerHalfedge<char>& open;  // on both sides of an edge
 };
 

@@ -20,8 +20,7 @@ constexpr double narrowest_joint = 0.25;       // of the square root of the smal
 
 class IslandMerger {
  public:
-  IslandMerger(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-               const PerHalfedge<char>& kept, MapParts& parts);
+  IslandMerger(const MetricMesh& surface, const ComponentMap& map, const PerHalfedge<char>& kept, MapParts& parts);
 
   void merge() {
     while (merge_next()) continue;  // each step merges two groups
@@ -66,15 +65,17 @@ class IslandMerger {
   PerTriangle<Index> place_;     // none
 };
 
-IslandMerger::IslandMerger(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                           const PerHalfedge<char>& kept, MapParts& parts)
-    : mesh_(mesh),
+IslandMerger::IslandMerger(const MetricMesh& surface, const ComponentMap& map, const PerHalfedge<char>& kept,
+                           MapParts& parts)
+    : mesh_(surface.mesh),
       part_(parts.part),
       open_(parts.open),
       corners_(at_corners(map.cut_mesh, map.position)),
       motion_(parts.motion),
-      is_closed_(mesh.halfedge_count(), 0),
-      place_(mesh.triangle_count(), none) {
+      is_closed_(surface.mesh.halfedge_count(), 0),
+      place_(surface.mesh.triangle_count(), none) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   const PerTriangle<Index>& part = parts.part;
   const Index part_count = 1 + *std::max_element(part.begin(), part.end());
   motion_.assign(part_count, {});
@@ -185,9 +186,8 @@ bool IslandMerger::overlaps(Index left, Index right, const Motion& motion, const
 
 }  // namespace
 
-void merge_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                   const PerHalfedge<char>& kept, MapParts& parts) {
-  IslandMerger(mesh, geometry, map, kept, parts).merge();
+void merge_islands(const MetricMesh& surface, const ComponentMap& map, const PerHalfedge<char>& kept, MapParts& parts) {
+  IslandMerger(surface, map, kept, parts).merge();
 }
 
 }  // namespace lsgp

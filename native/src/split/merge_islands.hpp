@@ -19,7 +19,6 @@ struct MapParts {
 // shared cut is only a few edges long are not merged.
 // map: its cuts and transitions.  kept: edges that stay open.  parts: closed halfedges are cleared from `open`,
 // and `motion` gets the motion of each part.
-void merge_islands(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                   const PerHalfedge<char>& kept, MapParts& parts);
+void merge_islands(const MetricMesh& surface, const ComponentMap& map, const PerHalfedge<char>& kept, MapParts& parts);
 
 }  // namespace lsgp

@@ -16,16 +16,16 @@ constexpr double operations_an_entry = 500;
 
 }  // namespace
 
-OverlapSplitter::OverlapSplitter(const FaceGraph& graph, const OverlapPairs& pairs, MinimumCutter& cutter,
-                                 const std::function<void()>& before_cut)
+OverlapSplitter::OverlapSplitter(Borrowed<const FaceGraph> graph, Borrowed<const OverlapPairs> pairs,
+                                 MinimumCutter& cutter, Borrowed<const std::function<void()>> before_cut)
     : graph_(graph),
       pairs_(pairs),
       cutter_(cutter),
       before_cut_(before_cut),
-      parts_(number_parts(graph, PerFace<Index>(graph.face_count(), 0))),
-      is_seen_(pairs.of.size(), 0),
-      depth_(pairs.of.size(), none),
-      side_(graph.face_count(), 0) {}
+      parts_(number_parts(graph_, PerFace<Index>(graph_.face_count(), 0))),
+      is_seen_(pairs_.of.size(), 0),
+      depth_(pairs_.of.size(), none),
+      side_(graph_.face_count(), 0) {}
 
 Array<OverlapSplitter::Part> OverlapSplitter::list_parts() const {
   Array<Part> parts(parts_.count);

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "base/array.hpp"
+#include "base/borrowed.hpp"
 #include "split/minimum_cut.hpp"
 #include "split/overlap_pairs.hpp"
 
@@ -12,9 +13,9 @@ namespace lsgp {
 
 class OverlapSplitter {
  public:
-  // before_cut: called before every cut; what it throws ends the work. What is given has to outlive it.
-  OverlapSplitter(const FaceGraph& graph, const OverlapPairs& pairs, MinimumCutter& cutter,
-                  const std::function<void()>& before_cut);
+  // before_cut: called before every cut; what it throws ends the work.
+  OverlapSplitter(Borrowed<const FaceGraph> graph, Borrowed<const OverlapPairs> pairs, MinimumCutter& cutter,
+                  Borrowed<const std::function<void()>> before_cut);
 
   FaceParts split();
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/array.hpp"
+#include "base/borrowed.hpp"
 #include "split/minimum_cut.hpp"
 #include "split/overlap_pairs.hpp"
 
@@ -15,9 +16,9 @@ namespace lsgp {
 class PartMerger {
  public:
   // parts: no two faces of a part overlap, which is preserved.  before_cut: called before every cut; its exceptions
-  // propagate. All arguments have to outlive it.
-  PartMerger(const FaceGraph& graph, const OverlapPairs& pairs, MinimumCutter& cutter,
-             const std::function<void()>& before_cut, FaceParts& parts)
+  // propagate.
+  PartMerger(Borrowed<const FaceGraph> graph, Borrowed<const OverlapPairs> pairs, MinimumCutter& cutter,
+             Borrowed<const std::function<void()>> before_cut, FaceParts& parts)
       : graph_(graph), pairs_(pairs), cutter_(cutter), before_cut_(before_cut), parts_(parts) {}
 
   // Closes cuts between two parts that do not overlap, the longest first.

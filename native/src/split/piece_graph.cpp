@@ -19,14 +19,15 @@ constexpr double operations_a_border = 20;
 // Merges small pieces across paths that are not cut.
 class PieceMerger {
  public:
-  PieceMerger(const HalfedgeMesh& mesh, const Geometry& geometry, const PerHalfedge<char>& is_cut,
-              PerHalfedge<char>& network)
-      : mesh_(mesh),
+  PieceMerger(const MetricMesh& surface, const PerHalfedge<char>& is_cut, PerHalfedge<char>& network)
+      : mesh_(surface.mesh),
         is_cut_(is_cut),
         network_(network),
-        least_area_(least_piece * geometry.total_area),
-        area_(label_parts(mesh, network, piece_), 0),
+        least_area_(least_piece * surface.geometry.total_area),
+        area_(label_parts(surface.mesh, network, piece_), 0),
         groups_(static_cast<Index>(area_.size())) {
+    const HalfedgeMesh& mesh = surface.mesh;
+    const Geometry& geometry = surface.geometry;
     for (Index f = 0; f < mesh.triangle_count(); ++f) area_[piece_[f]] += geometry.area[f];
     for (Index h = 0; h < mesh.halfedge_count(); ++h) {
       if (!is_candidate(h) || mesh.twin[h] < h) continue;
@@ -84,14 +85,14 @@ class PieceMerger {
 
 class Builder {
  public:
-  Builder(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map, double resolution)
-      : mesh_(mesh),
-        geometry_(geometry),
+  Builder(const MetricMesh& surface, const ComponentMap& map, double resolution)
+      : mesh_(surface.mesh),
+        geometry_(surface.geometry),
         map_(map),
         corners_(at_corners(map.cut_mesh, map.position)),
         resolution_(resolution),
-        is_cone_(mesh.vertex_count(), 0),
-        node_of_(mesh.vertex_count(), none) {
+        is_cone_(surface.mesh.vertex_count(), 0),
+        node_of_(surface.mesh.vertex_count(), none) {
     for (const Index v : map.cones) is_cone_[v] = 1;
   }
 
@@ -128,7 +129,7 @@ class Builder {
       const double angle = (map_.cut_graph.runs_forward[first] ? 1 : -1) * (*map_.rotation)[cut];
       path.across = {angle, corners_[next(twin)] - std::polar(1.0, angle) * corners_[first]};
     }
-    for (const Index h : traced.halfedges) path.cost += cut_cost(mesh_, geometry_, h);
+    for (const Index h : traced.halfedges) path.cost += cut_cost({mesh_, geometry_}, h);
     add_boundaries(traced.halfedges);
     path.halfedges = std::move(traced.halfedges);
     graph_.paths.push_back(std::move(path));
@@ -159,10 +160,10 @@ class Builder {
 
 }  // namespace
 
-PieceGraph build_piece_graph(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                             PerHalfedge<char> network, double resolution) {
-  PieceMerger(mesh, geometry, map.cut_graph.is_cut, network).merge_small();
-  return Builder(mesh, geometry, map, resolution).build(std::move(network));
+PieceGraph build_piece_graph(const MetricMesh& surface, const ComponentMap& map, PerHalfedge<char> network,
+                             double resolution) {
+  PieceMerger(surface, map.cut_graph.is_cut, network).merge_small();
+  return Builder(surface, map, resolution).build(std::move(network));
 }
 
 }  // namespace lsgp

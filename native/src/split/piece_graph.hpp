@@ -36,7 +36,7 @@ struct PieceGraph {
 
 // network: on both halfedges, with the map's cuts; paths around small pieces are removed.
 // resolution: sides of boundaries inside the surface are merged up to about this length.
-PieceGraph build_piece_graph(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map,
-                             PerHalfedge<char> network, double resolution);
+PieceGraph build_piece_graph(const MetricMesh& surface, const ComponentMap& map, PerHalfedge<char> network,
+                             double resolution);
 
 }  // namespace lsgp

@@ -12,6 +12,6 @@ namespace lsgp {
 // raster from the boundaries of the pieces. Returns maps with less overlap whose cuts cost at most 1.25 times as much,
 // in several compromises, the most promising first; empty if there are none. map: without marked seams, with
 // transitions. All its cuts may be closed.
-Array<ComponentMap> recut(const HalfedgeMesh& mesh, const Geometry& geometry, const ComponentMap& map);
+Array<ComponentMap> recut(const MetricMesh& surface, const ComponentMap& map);
 
 }  // namespace lsgp

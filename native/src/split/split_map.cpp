@@ -21,8 +21,9 @@ constexpr double cost_of_island = 0.5, cost_of_sliver = 2, cost_of_cut = 1;
 constexpr double sliver = 0.005;  // of the area
 
 // factor: as from relative_cut_factors.
-double cost(const HalfedgeMesh& mesh, const Geometry& geometry, const PerHalfedge<double>& factor,
-            const PerHalfedge<char>& ends) {
+double cost(const MetricMesh& surface, const PerHalfedge<double>& factor, const PerHalfedge<char>& ends) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   double length = 0;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (ends[h] && mesh.twin[h] > h) length += geometry.length[h] * (factor.empty() ? 1 : factor[h]);
@@ -68,16 +69,16 @@ class MapDivider {
         factor_(relative_cut_factors(surface.mesh)) {}
 
   bool is_whole() const { return overlaps_.empty(); }
-  double cost_before() const { return cost(surface_.mesh, surface_.geometry, factor_, surface_.open); }
+  double cost_before() const { return cost(surface_, factor_, surface_.open); }
 
   Division divide(CutCost rule) const {
-    const auto& [mesh, geometry, open] = surface_;
-    MapParts parts{open, {}, {}};
+    const HalfedgeMesh& mesh = surface_.mesh;
+    MapParts parts{surface_.open, {}, {}};
     const Array<Index> opened = split_overlaps(surface_, overlaps_, rule, [&] { monitor_.advance(0); });
     for (const Index h : opened) parts.open[h] = parts.open[mesh.twin[h]] = 1;
     parts.motion.resize(label_parts(mesh, parts.open, parts.part));
-    if (map_.rotation) merge_islands(mesh, geometry, map_, kept_, parts);
-    const double total = cost(mesh, geometry, factor_, parts.open);
+    if (map_.rotation) merge_islands(surface_, map_, kept_, parts);
+    const double total = cost(surface_, factor_, parts.open);
     return {std::move(parts), total};
   }
 
@@ -106,7 +107,7 @@ class WaySearch {
   // least: dividing an overlapping layout is assumed to add at least this cost.
   void divide(const ComponentMap& way, std::initializer_list<CutCost> rules, double least) {
     const PerHalfedge<char> ends = ends_of(surface_, way);
-    const MapDivider divider({surface_.mesh, surface_.geometry, ends}, way, kept_, monitor_);
+    const MapDivider divider({surface_, ends}, way, kept_, monitor_);
     for (const CutCost rule : rules) {
       if (chosen_ && divider.cost_before() + (divider.is_whole() ? 0 : least) >= best_.cost) break;
       Division other = divider.divide(rule);
@@ -154,12 +155,11 @@ void apply(const OpenedSurface& surface, const MapParts& parts, ComponentMap& ma
 
 bool split_map(const OpenedSurface& surface, const PerHalfedge<char>& kept, ProgressMonitor& monitor,
                ComponentMap& map) {
-  const auto& [mesh, geometry, open] = surface;
   const ProgressMonitor::Stage stage(monitor, "split");
-  if (find_own_overlaps(mesh, map).empty()) return false;
+  if (find_own_overlaps(surface.mesh, map).empty()) return false;
   // The fastest rule selects among the recut maps. The map's own cuts compete with every rule, so that recutting never
   // costs more.
-  const Array<ComponentMap> ways = may_recut(kept, map) ? recut(mesh, geometry, map) : Array<ComponentMap>{};
+  const Array<ComponentMap> ways = may_recut(kept, map) ? recut(surface, map) : Array<ComponentMap>{};
   WaySearch search(surface, kept, monitor);
   for (const ComponentMap& way : ways) search.divide(way, {CutCost::shortest}, cost_of_island);
   if (search.chosen()) search.divide(*search.chosen(), {CutCost::no_slivers, CutCost::no_small_parts}, 0);

@@ -75,7 +75,7 @@ class Straightener {
   void mark_band(const Path& path, Array<Index>& band);
   Index border_after(Index h) const;
   Array<Index> slide(Index border) const;
-  Path find_path(const Array<Index>& starts) const;
+  Path find_path(const Array<Index>& starts);
   double cost(const Path& path) const;
   bool move(const Path& before, const Path& after);
   template <typename Visit>
@@ -89,8 +89,8 @@ class Straightener {
   PerFace<Index>& part_;
   PerHalfedge<double> length_;  // cost of an edge, 0 if it may not be cut
   PerHalfedge<char> on_path_, is_end_;
-  mutable PerHalfedge<double> distance_;
-  mutable PerHalfedge<Index> before_;
+  PerHalfedge<double> distance_;
+  PerHalfedge<Index> before_;
   PerFace<char> in_band_;
 };
 
@@ -206,7 +206,7 @@ bool Straightener::straighten(const Path& path) {
   return moves;
 }
 
-Path Straightener::find_path(const Array<Index>& starts) const {
+Path Straightener::find_path(const Array<Index>& starts) {
   using Entry = std::pair<double, Index>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   Array<Index> reached;

@@ -22,9 +22,9 @@ bool CutFactor::is_chosen(Factorization asked, const HalfedgeMesh& mesh, const C
   return copies <= worth_while * std::sqrt(static_cast<double>(mesh.vertex_count()));
 }
 
-CutFactor::CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
-                     Eigen::VectorXd memory)
-    : cut_graph_(cut_graph), cut_mesh_(cut_open(mesh, cut_graph_)) {
+CutFactor::CutFactor(const MetricMesh& surface, Borrowed<const CutGraph> cut_graph, Eigen::VectorXd memory)
+    : cut_graph_(cut_graph), cut_mesh_(cut_open(surface.mesh, cut_graph_)) {
+  const HalfedgeMesh& mesh = surface.mesh;
   const PerVertex<char> on_cut = on_cuts(mesh, cut_graph_);
   const Index copies = cut_mesh_.copy_count();
   row_of_copy_.resize(copies);
@@ -37,7 +37,7 @@ CutFactor::CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, const C
       row_of_copy_[copy] = row++;
   }
   for (const Index copy : retained_) row_of_copy_[copy] = row++;
-  factor_.emplace(assemble_dirichlet(mesh, geometry, cut_mesh_, row_of_copy_), retained_count(), std::move(memory));
+  factor_.emplace(assemble_dirichlet(surface, cut_mesh_, row_of_copy_), retained_count(), std::move(memory));
   for (Index& own : row_of_copy_) own = factor_->place(own);
 }
 

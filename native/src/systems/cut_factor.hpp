@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "base/array.hpp"
+#include "base/borrowed.hpp"
 #include "cut/cut_mesh.hpp"
 #include "lsgp/options.hpp"
 #include "mesh/geometry.hpp"
@@ -21,8 +22,8 @@ namespace lsgp {
 
 class CutFactor {
  public:
-  // cut_graph: has to outlive it.  memory: reused from a factor that is no longer needed.
-  CutFactor(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph, Eigen::VectorXd memory = {});
+  // memory: reused from a factor that is no longer needed.
+  CutFactor(const MetricMesh& surface, Borrowed<const CutGraph> cut_graph, Eigen::VectorXd memory = {});
   Eigen::VectorXd take_memory() { return factor_->take_memory(); }
 
   // Whether to solve systems with such a factor: as requested, otherwise if cuts and boundaries are short enough for

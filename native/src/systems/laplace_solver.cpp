@@ -141,9 +141,8 @@ class LaplaceOnCut final : public LaplaceSolver {
 
 }  // namespace
 
-std::unique_ptr<LaplaceSolver> sparse_laplace(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                              const PerVertex<char>& held) {
-  const Laplacian laplacian = assemble_laplacian(mesh, geometry, held);
+std::unique_ptr<LaplaceSolver> sparse_laplace(const MetricMesh& surface, const PerVertex<char>& held) {
+  const Laplacian laplacian = assemble_laplacian(surface, held);
   return std::make_unique<SparseLaplace>(Cholesky<double>(laplacian.lower), laplacian.row_of_vertex);
 }
 

@@ -45,8 +45,7 @@ class LaplaceSolver {
 };
 
 // held: where y is 0, at least at one vertex.
-std::unique_ptr<LaplaceSolver> sparse_laplace(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                              const PerVertex<char>& held);
+std::unique_ptr<LaplaceSolver> sparse_laplace(const MetricMesh& surface, const PerVertex<char>& held);
 // The same with an existing factor; held vertices lie on cuts or boundaries.
 std::unique_ptr<LaplaceSolver> laplace_on_cut(const CutFactor& factor, const PerVertex<char>& held);
 

@@ -32,7 +32,7 @@ class PoissonSystem::Sparse final : public Solver {
   Sparse(const CutSurface& surface, const Reduction& reduction)
       : surface_(surface),
         reduction_(reduction),
-        factor_(assemble_form(Form::dirichlet, surface.mesh, surface.geometry, surface.cut_mesh, reduction)) {}
+        factor_(assemble_form(Form::dirichlet, surface, surface.cut_mesh, reduction)) {}
 
   Eigen::VectorXcd fit(const Jacobians& jacobians) const override {
     return expand(reduction_, factor_.solve(gather(reduction_, pull_of(surface_, jacobians))));
@@ -53,7 +53,7 @@ class PoissonSystem::OnCut final : public Solver {
 
   Eigen::VectorXcd fit(const Jacobians& jacobians) const override {
     const CutFactor& factor = *surface_.factor;
-    const CutSurface opened{surface_.mesh, surface_.geometry, factor.cut_graph(), factor.cut_mesh()};
+    const CutSurface opened{surface_, factor.cut_graph(), factor.cut_mesh()};
     CutFactor::Rows half_solved = schur_complement_.eliminate(pull_of(opened, jacobians));
     const Eigen::VectorXcd unknowns = dense_.solve(schur_complement_.right_side(half_solved));
     return schur_complement_.substitute(std::move(half_solved), unknowns);

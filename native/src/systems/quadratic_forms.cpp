@@ -13,8 +13,9 @@ namespace {
 // Calls visit(from, to, value) for one halfedge of every edge of the cut mesh, value the entry (from, to) of the form,
 // and visit(copy, copy, value) for the diagonal.
 template <typename Visit>
-void for_each_entry(Form form, const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                    Visit visit) {
+void for_each_entry(Form form, const MetricMesh& surface, const CutMesh& cut_mesh, Visit visit) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   PerCopy<double> diagonal(cut_mesh.copy_count(), 0.0);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     const Index from = cut_mesh.copy_of_corner[h], to = cut_mesh.copy_of_corner[next(h)], twin = mesh.twin[h];
@@ -34,8 +35,9 @@ void for_each_entry(Form form, const HalfedgeMesh& mesh, const Geometry& geometr
 // The cotangent Laplacian, lower triangle, without lists of entries: a column is a handful of numbers.
 // row_of_corner(corner): none where held; corners of both sides of an edge have the same rows unless it is open.
 template <typename RowOfCorner>
-Eigen::SparseMatrix<double> assemble_cotangents(const HalfedgeMesh& mesh, const Geometry& geometry, Index rows,
-                                                RowOfCorner row_of_corner) {
+Eigen::SparseMatrix<double> assemble_cotangents(const MetricMesh& surface, Index rows, RowOfCorner row_of_corner) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   const auto for_each_edge = [&](auto visit) {
     for (Index h = 0; h < mesh.halfedge_count(); ++h) {
       const Index from = row_of_corner(h), to = row_of_corner(next(h)), twin = mesh.twin[h];
@@ -95,10 +97,10 @@ Eigen::SparseMatrix<double> assemble_cotangents(const HalfedgeMesh& mesh, const 
 
 }  // namespace
 
-Eigen::SparseMatrix<Complex> assemble_form(Form form, const HalfedgeMesh& mesh, const Geometry& geometry,
-                                           const CutMesh& cut_mesh, const Reduction& reduction) {
+Eigen::SparseMatrix<Complex> assemble_form(Form form, const MetricMesh& surface, const CutMesh& cut_mesh,
+                                           const Reduction& reduction) {
   LowerAssembly<Complex> assembly(reduction.unknown_count, 4 * static_cast<std::size_t>(cut_mesh.copy_count()));
-  for_each_entry(form, mesh, geometry, cut_mesh, [&](Index from, Index to, Complex value) {
+  for_each_entry(form, surface, cut_mesh, [&](Index from, Index to, Complex value) {
     reduction.for_each_term(from, [&](const Term& row) {
       reduction.for_each_term(to, [&](const Term& column) {
         const Complex entry = std::conj(row.coefficient) * value * column.coefficient;
@@ -121,25 +123,28 @@ Geometry with_weights(const Geometry& geometry, const Eigen::VectorXd& weight) {
   return out;
 }
 
-Laplacian assemble_laplacian(const HalfedgeMesh& mesh, const Geometry& geometry, const PerVertex<char>& held) {
+Laplacian assemble_laplacian(const MetricMesh& surface, const PerVertex<char>& held) {
+  const HalfedgeMesh& mesh = surface.mesh;
   Laplacian laplacian;
   laplacian.row_of_vertex.assign(mesh.vertex_count(), none);
   Index rows = 0;
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     if (!held[v]) laplacian.row_of_vertex[v] = rows++;
   }
-  laplacian.lower = assemble_cotangents(mesh, geometry, rows,
-                                        [&](Index corner) { return laplacian.row_of_vertex[mesh.origin(corner)]; });
+  laplacian.lower =
+      assemble_cotangents(surface, rows, [&](Index corner) { return laplacian.row_of_vertex[mesh.origin(corner)]; });
   return laplacian;
 }
 
-Eigen::SparseMatrix<double> assemble_dirichlet(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                               const CutMesh& cut_mesh, const PerCopy<Index>& row_of_copy) {
-  return assemble_cotangents(mesh, geometry, cut_mesh.copy_count(),
+Eigen::SparseMatrix<double> assemble_dirichlet(const MetricMesh& surface, const CutMesh& cut_mesh,
+                                               const PerCopy<Index>& row_of_copy) {
+  return assemble_cotangents(surface, cut_mesh.copy_count(),
                              [&](Index corner) { return row_of_copy[cut_mesh.copy_of_corner[corner]]; });
 }
 
-Eigen::VectorXd apply_laplacian(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& values) {
+Eigen::VectorXd apply_laplacian(const MetricMesh& surface, const Eigen::VectorXd& values) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   Eigen::VectorXd out = Eigen::VectorXd::Zero(mesh.vertex_count());
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     const double flow = geometry.half_cotangent[h] * (values[mesh.origin(h)] - values[mesh.target(h)]);

@@ -17,8 +17,8 @@ enum class Form {
 };
 
 // The form's matrix over the unknowns, B^H L B or B^H C B; lower triangle.
-Eigen::SparseMatrix<Complex> assemble_form(Form form, const HalfedgeMesh& mesh, const Geometry& geometry,
-                                           const CutMesh& cut_mesh, const Reduction& reduction);
+Eigen::SparseMatrix<Complex> assemble_form(Form form, const MetricMesh& surface, const CutMesh& cut_mesh,
+                                           const Reduction& reduction);
 
 // The geometry whose Dirichlet form is weighted by triangle, (m).
 Geometry with_weights(const Geometry& geometry, const Eigen::VectorXd& weight);
@@ -29,13 +29,13 @@ struct Laplacian {
   Eigen::SparseMatrix<double> lower;
   PerVertex<Index> row_of_vertex;
 };
-Laplacian assemble_laplacian(const HalfedgeMesh& mesh, const Geometry& geometry, const PerVertex<char>& held);
+Laplacian assemble_laplacian(const MetricMesh& surface, const PerVertex<char>& held);
 
 // The Dirichlet form of the copies by themselves, each in the row given; lower triangle.
-Eigen::SparseMatrix<double> assemble_dirichlet(const HalfedgeMesh& mesh, const Geometry& geometry,
-                                               const CutMesh& cut_mesh, const PerCopy<Index>& row_of_copy);
+Eigen::SparseMatrix<double> assemble_dirichlet(const MetricMesh& surface, const CutMesh& cut_mesh,
+                                               const PerCopy<Index>& row_of_copy);
 
 // L y at every vertex, (n).
-Eigen::VectorXd apply_laplacian(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& values);
+Eigen::VectorXd apply_laplacian(const MetricMesh& surface, const Eigen::VectorXd& values);
 
 }  // namespace lsgp

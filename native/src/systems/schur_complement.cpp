@@ -8,18 +8,18 @@
 
 namespace lsgp {
 
-SchurComplement::SchurComplement(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const CutFactor& factor,
-                                 const Reduction& reduction)
+SchurComplement::SchurComplement(Borrowed<const HalfedgeMesh> mesh, const CutMesh& cut_mesh,
+                                 Borrowed<const CutFactor> factor, const Reduction& reduction)
     : mesh_(mesh),
       factor_(factor),
       copy_count_(cut_mesh.copy_count()),
-      own_copy_(factor.cut_mesh().copy_count()),
+      own_copy_(factor_.cut_mesh().copy_count()),
       number_of_(reduction.unknown_count, none),
       begin_{0} {
-  for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
-    own_copy_[factor.cut_mesh().copy_of_corner[corner]] = cut_mesh.copy_of_corner[corner];
+  for (Index corner = 0; corner < mesh_.halfedge_count(); ++corner) {
+    own_copy_[factor_.cut_mesh().copy_of_corner[corner]] = cut_mesh.copy_of_corner[corner];
   }
-  for (const Index copy : factor.retained()) {
+  for (const Index copy : factor_.retained()) {
     reduction.for_each_term(own_copy_[copy], [&](const Term& term) {
       if (number_of_[term.unknown] == none) number_of_[term.unknown] = unknown_count_++;
       terms_.push_back({number_of_[term.unknown], term.coefficient});

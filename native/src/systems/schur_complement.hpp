@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "base/array.hpp"
+#include "base/borrowed.hpp"
 #include "cut/transitions.hpp"
 #include "systems/cut_factor.hpp"
 
@@ -14,8 +15,8 @@ namespace lsgp {
 
 class SchurComplement {
  public:
-  // cut_mesh: along cuts that the factor covers.  mesh and factor have to outlive it.
-  SchurComplement(const HalfedgeMesh& mesh, const CutMesh& cut_mesh, const CutFactor& factor,
+  // cut_mesh: along cuts that the factor covers.
+  SchurComplement(Borrowed<const HalfedgeMesh> mesh, const CutMesh& cut_mesh, Borrowed<const CutFactor> factor,
                   const Reduction& reduction);
 
   // The condensed unknowns, numbered anew; the number of an unknown of the reduction, none if it is eliminated.

@@ -10,12 +10,14 @@
 
 namespace lsgp {
 
-Geometry stiffen_around(const HalfedgeMesh& mesh, const Geometry& geometry, const Array<Index>& cones) {
+Geometry stiffen_around(const MetricMesh& surface, const Array<Index>& cones) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   constexpr double stiffest = 1e4;
   if (cones.empty()) return geometry;
   Eigen::VectorXd weight(mesh.triangle_count());
   const double radius = std::sqrt(geometry.total_area / (M_PI * static_cast<double>(cones.size())));
-  NearestDistance nearest(mesh, geometry);
+  NearestDistance nearest(surface);
   nearest.add(cones);
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
     double mean = 0;

@@ -13,8 +13,7 @@ namespace lsgp {
 Eigen::VectorXcd unfold_aligned(const CutSurface& surface, const Reduction& reduction, const Jacobians& jacobians,
                                 const Array<Index>& edges, const Eigen::VectorXd& directions) {
   const CutMesh& cut_mesh = surface.cut_mesh;
-  const Eigen::SparseMatrix<Complex> form =
-      assemble_form(Form::dirichlet, surface.mesh, surface.geometry, cut_mesh, reduction);
+  const Eigen::SparseMatrix<Complex> form = assemble_form(Form::dirichlet, surface, cut_mesh, reduction);
   const Eigen::VectorXcd pull = gather(reduction, pull_of(surface, jacobians));
   // Unknown k becomes its real part, 2k, and its imaginary part, 2k + 1.
   const int size = 2 * reduction.unknown_count;

@@ -11,14 +11,17 @@ namespace lsgp {
 namespace {
 
 // The edge's direction in the frame on its left minus that in the frame on its right, radians.
-double turn_across(const HalfedgeMesh& mesh, const Geometry& geometry, Index h) {
+double turn_across(const MetricMesh& surface, Index h) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   return edge_direction(geometry, h) - (edge_direction(geometry, mesh.twin[h]) + M_PI);
 }
 
 }  // namespace
 
-FrameTree::FrameTree(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph)
-    : triangle_count_(mesh.triangle_count()) {
+FrameTree::FrameTree(const MetricMesh& surface, const CutGraph& cut_graph)
+    : triangle_count_(surface.mesh.triangle_count()) {
+  const HalfedgeMesh& mesh = surface.mesh;
   steps_.reserve(triangle_count_);
   Array<Index> across;  // (steps) the halfedge that each one crosses
   across.reserve(triangle_count_);
@@ -36,8 +39,8 @@ FrameTree::FrameTree(const HalfedgeMesh& mesh, const Geometry& geometry, const C
   leave(0);
   for (std::size_t i = 0; i < steps_.size(); ++i) leave(steps_[i].to);
   for_each_at_once(ssize(steps_), [&](std::ptrdiff_t i) {
-    steps_[i].turn = turn_across(mesh, geometry, across[i]);
-    steps_[i].weight = cotangent_weight(mesh, geometry, across[i]);
+    steps_[i].turn = turn_across(surface, across[i]);
+    steps_[i].weight = cotangent_weight(surface, across[i]);
   });
 }
 
@@ -50,13 +53,14 @@ Eigen::VectorXd FrameTree::integrate(const Eigen::VectorXd& log_scale) const {
   return frames;
 }
 
-Eigen::VectorXd read_rotations(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
-                               const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames) {
+Eigen::VectorXd read_rotations(const MetricMesh& surface, const CutGraph& cut_graph, const Eigen::VectorXd& log_scale,
+                               const Eigen::VectorXd& frames) {
+  const HalfedgeMesh& mesh = surface.mesh;
   Eigen::VectorXd rotation(cut_graph.cuts.size());
   for (Eigen::Index p = 0; p < rotation.size(); ++p) {
     const Index h = cut_graph.cuts[p].halfedges.front();
     const double scale_change = log_scale[mesh.target(h)] - log_scale[mesh.origin(h)];
-    const double step = turn_across(mesh, geometry, h) - cotangent_weight(mesh, geometry, h) * scale_change;
+    const double step = turn_across(surface, h) - cotangent_weight(surface, h) * scale_change;
     rotation[p] = frames[mesh.twin[h] / 3] - frames[h / 3] - step;
   }
   return rotation;
@@ -76,8 +80,9 @@ void HarmonicOneForm::for_each_crossing(Visit visit) const {
   }
 }
 
-HarmonicOneForm::HarmonicOneForm(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph)
-    : mesh_(mesh), geometry_(geometry), cut_graph_(cut_graph) {
+HarmonicOneForm::HarmonicOneForm(const MetricMesh& surface, const CutGraph& cut_graph)
+    : mesh_(surface.mesh), geometry_(surface.geometry), cut_graph_(cut_graph) {
+  const HalfedgeMesh& mesh = surface.mesh;
   LowerAssembly<double> assembly(mesh.triangle_count() - 1, 2 * static_cast<std::size_t>(mesh.halfedge_count()));
   const auto add = [&](Index row, Index column, double value) {
     if (row > 0 && column > 0) assembly.add(row - 1, column - 1, value);  // the first triangle stays
@@ -115,8 +120,10 @@ Eigen::MatrixXd HarmonicOneForm::energy(const Eigen::MatrixXd& changes) const {
   return out;
 }
 
-Eigen::VectorXd metric_directions(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& log_scale,
+Eigen::VectorXd metric_directions(const MetricMesh& surface, const Eigen::VectorXd& log_scale,
                                   const Eigen::VectorXd& frames, const Array<Index>& edges) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   Eigen::VectorXd out(edges.size());
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const Index h = edges[i];

@@ -18,7 +18,7 @@ namespace lsgp {
 // along a spanning tree of the triangles that crosses no cut.
 class FrameTree {
  public:
-  FrameTree(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph);
+  FrameTree(const MetricMesh& surface, const CutGraph& cut_graph);
 
   // Radians, (m).
   Eigen::VectorXd integrate(const Eigen::VectorXd& log_scale) const;
@@ -36,13 +36,13 @@ class FrameTree {
 
 // The rotation of every cut that those frames imply, radians modulo 2 pi: curvature determines it except for the loops
 // about handles, where this is the rotation with least distortion.
-Eigen::VectorXd read_rotations(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph,
-                               const Eigen::VectorXd& log_scale, const Eigen::VectorXd& frames);
+Eigen::VectorXd read_rotations(const MetricMesh& surface, const CutGraph& cut_graph, const Eigen::VectorXd& log_scale,
+                               const Eigen::VectorXd& frames);
 
 // Rotates the frames so that the rotations of the cuts change, in the smoothest way: a harmonic form.
 class HarmonicOneForm {
  public:
-  HarmonicOneForm(const HalfedgeMesh& mesh, const Geometry& geometry, const CutGraph& cut_graph);
+  HarmonicOneForm(const MetricMesh& surface, const CutGraph& cut_graph);
 
   // The increment of the frames, (m).  change: (cuts) of the rotations, radians; it closes around every node.
   Eigen::VectorXd spread(const Eigen::VectorXd& change) const;
@@ -63,7 +63,7 @@ class HarmonicOneForm {
 };
 
 // The direction of boundary edges in the metric (halfedges with the surface on their left), radians.
-Eigen::VectorXd metric_directions(const HalfedgeMesh& mesh, const Geometry& geometry, const Eigen::VectorXd& log_scale,
+Eigen::VectorXd metric_directions(const MetricMesh& surface, const Eigen::VectorXd& log_scale,
                                   const Eigen::VectorXd& frames, const Array<Index>& edges);
 
 }  // namespace lsgp

@@ -31,8 +31,9 @@ RelativeFit::RelativeFit(const CutSurface& surface, Jacobians jacobians)
   jacobians_.f_zbar = jacobians_.f_zbar.cwiseProduct(weight);
 }
 
-Jacobians measure_jacobians(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                            const Eigen::VectorXcd& position) {
+Jacobians measure_jacobians(const MetricMesh& surface, const CutMesh& cut_mesh, const Eigen::VectorXcd& position) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Geometry& geometry = surface.geometry;
   Jacobians out{Eigen::VectorXcd::Zero(mesh.triangle_count()), Eigen::VectorXcd::Zero(mesh.triangle_count())};
   for_each_at_once(mesh.triangle_count(), [&](Index f) {
     for (Index corner = 3 * f; corner < 3 * f + 3; ++corner) {

@@ -13,8 +13,7 @@ namespace lsgp {
 // The Jacobians of the flat metric: e^{y + i phi}, and no shear.
 Jacobians prescribed_jacobians(const HalfedgeMesh& mesh, const Eigen::VectorXd& log_scale,
                                const Eigen::VectorXd& frames);
-Jacobians measure_jacobians(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh,
-                            const Eigen::VectorXcd& position);
+Jacobians measure_jacobians(const MetricMesh& surface, const CutMesh& cut_mesh, const Eigen::VectorXcd& position);
 
 // What to fit for every triangle's error to count relative to the scale of its target: if scales differ much, large
 // triangles dominate the plain fit.
@@ -22,7 +21,7 @@ class RelativeFit {
  public:
   RelativeFit(const CutSurface& surface, Jacobians jacobians);
 
-  CutSurface surface() const { return {surface_.mesh, weighted_, surface_.cut_graph, surface_.cut_mesh}; }
+  CutSurface surface() const { return {{surface_.mesh, weighted_}, surface_.cut_graph, surface_.cut_mesh}; }
   const Jacobians& jacobians() const { return jacobians_; }
 
  private:

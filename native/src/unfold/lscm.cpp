@@ -27,12 +27,13 @@ Array<Index> open_border(const HalfedgeMesh& mesh, const CutMesh& cut_mesh) {
 
 }  // namespace
 
-Eigen::VectorXcd unfold_lscm(const HalfedgeMesh& mesh, const Geometry& geometry, const CutMesh& cut_mesh) {
+Eigen::VectorXcd unfold_lscm(const MetricMesh& surface, const CutMesh& cut_mesh) {
+  const HalfedgeMesh& mesh = surface.mesh;
   const Array<Index> border = open_border(mesh, cut_mesh);
   const Index first = border.front(), second = border[border.size() / 2];
   const Reduction reduction = leave_free(cut_mesh, first);
-  const auto conformal = assemble_form(Form::conformal, mesh, geometry, cut_mesh, reduction);
-  const auto dirichlet = assemble_form(Form::dirichlet, mesh, geometry, cut_mesh, reduction);
+  const auto conformal = assemble_form(Form::conformal, surface, cut_mesh, reduction);
+  const auto dirichlet = assemble_form(Form::dirichlet, surface, cut_mesh, reduction);
   // With one pin at the origin, a load at the other gives the map with both pinned, up to scale and rotation.
   Eigen::VectorXcd pull = Eigen::VectorXcd::Zero(reduction.unknown_count);
   pull[reduction.terms[reduction.begin[second]].unknown] = 1;

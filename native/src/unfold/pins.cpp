@@ -109,8 +109,7 @@ PinnedMap move_onto_pins(const CutSurface& surface, const Reduction& reduction, 
   }
 
   // Displacement d = B x + one constant. The constant is taken up by shifting the pins: the first becomes the origin.
-  const Eigen::SparseMatrix<Complex> form =
-      assemble_form(Form::dirichlet, surface.mesh, surface.geometry, cut_mesh, reduction);
+  const Eigen::SparseMatrix<Complex> form = assemble_form(Form::dirichlet, surface, cut_mesh, reduction);
   Eigen::SparseMatrix<Complex, Eigen::RowMajor> rows(static_cast<Eigen::Index>(pins.size()) - 1,
                                                      reduction.unknown_count);
   Eigen::VectorXcd values(rows.rows());

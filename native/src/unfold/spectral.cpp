@@ -33,9 +33,7 @@ Eigen::VectorXcd unfold_spectral(const CutSurface& surface, const Reduction& red
     return with_fixed_rotation(
         schur_complement.extend(smallest_eigenvector(schur_complement.conformal_form(dirichlet), dirichlet)));
   }
-  const auto form = [&](Form kind) {
-    return assemble_form(kind, surface.mesh, surface.geometry, surface.cut_mesh, reduction);
-  };
+  const auto form = [&](Form kind) { return assemble_form(kind, surface, surface.cut_mesh, reduction); };
   return with_fixed_rotation(expand(reduction, smallest_eigenvector(form(Form::conformal), form(Form::dirichlet))));
 }
 
