@@ -96,15 +96,13 @@ Bevels find_bevels(const MetricMesh& surface, const Eigen::VectorXd& bend, doubl
   const HalfedgeMesh& mesh = surface.mesh;
   const Geometry& geometry = surface.geometry;
   const PerTriangle<char> is_rounded = find_rounded(surface, bend);
-  const Bevels none_found{PerHalfedge<char>(mesh.halfedge_count(), 0), PerVertex<char>(mesh.vertex_count(), 0)};
-  Bevels out = none_found;
+  Bevels out{PerHalfedge<char>(mesh.halfedge_count(), 0), PerVertex<char>(mesh.vertex_count(), 0)};
   double area = 0;
-  for (Index f = 0; f < mesh.triangle_count(); ++f) {
-    if (!is_rounded[f]) continue;
-    area += geometry.area[f];
-    for (Index h = 3 * f; h < 3 * f + 3; ++h) out.is_rounded[mesh.origin(h)] = 1;
+  for (Index f = 0; f < mesh.triangle_count(); ++f) area += is_rounded[f] ? geometry.area[f] : 0;
+  if (area == 0 || area > most_area * geometry.total_area) return out;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (is_rounded[h / 3]) out.is_rounded[mesh.origin(h)] = 1;
   }
-  if (area == 0 || area > most_area * geometry.total_area) return none_found;
   const PerTriangle<Side> side = find_sides(mesh, is_rounded, bend, angle);
   out.crease = marked(mesh, [&](Index h) {
     const Side &here = side[h / 3], &there = side[mesh.twin[h] / 3];
