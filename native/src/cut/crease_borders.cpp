@@ -293,24 +293,31 @@ void open_tubes(const HalfedgeMesh& mesh, const Geometry& geometry, PerHalfedge<
   }
 }
 
+// The patches of a hard surface, with bevels if those are needed to make it one; none if it is none.
+std::optional<Patches> find_hard_patches(const HalfedgeMesh& mesh, const Geometry& geometry,
+                                         const PerHalfedge<char>& crease, const Eigen::VectorXd& bend,
+                                         const CreaseOptions& options) {
+  std::optional<Patches> out;
+  out.emplace(mesh, geometry, find_patches(mesh, geometry, crease, bend));
+  const PerVertex<char> nowhere(mesh.vertex_count(), 0);
+  if (out->carry_curvature(least_on_creases, nowhere, options.most_corners)) return out;
+  std::optional<Bevels> bevels = find_bevels(mesh, geometry, bend, options.angle);
+  if (!bevels) return std::nullopt;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    bevels->crease[h] = crease[h] || (bevels->crease[h] && may_cut(mesh, h));
+  }
+  out.emplace(mesh, geometry, find_patches(mesh, geometry, bevels->crease, bend));
+  if (!out->carry_curvature(least_on_bevels, bevels->is_rounded, options.most_corners)) out.reset();
+  return out;
+}
+
 }  // namespace
 
 PerHalfedge<char> find_crease_borders(const HalfedgeMesh& mesh, const Geometry& geometry,
                                       const PerHalfedge<char>& crease, const Eigen::VectorXd& bend,
                                       const CreaseOptions& options) {
-  std::optional<Patches> patches;
-  patches.emplace(mesh, geometry, find_patches(mesh, geometry, crease, bend));
-  const PerVertex<char> nowhere(mesh.vertex_count(), 0);
-  if (!patches->carry_curvature(least_on_creases, nowhere, options.most_corners)) {
-    Bevels bevels = find_bevels(mesh, geometry, bend, options.angle);
-    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-      bevels.crease[h] = crease[h] || (bevels.crease[h] && may_cut(mesh, h));
-    }
-    patches.emplace(mesh, geometry, find_patches(mesh, geometry, bevels.crease, bend));
-    if (!patches->carry_curvature(least_on_bevels, bevels.is_rounded, options.most_corners)) {
-      return PerHalfedge<char>(mesh.halfedge_count(), 0);
-    }
-  }
+  const std::optional<Patches> patches = find_hard_patches(mesh, geometry, crease, bend, options);
+  if (!patches) return PerHalfedge<char>(mesh.halfedge_count(), 0);
   PerHalfedge<char> open = patches->unfold_together();
   open_tubes(mesh, geometry, open);
   return open;
