@@ -4,7 +4,7 @@
     PYTHONPATH=tests python tools/benchmark/quad_meshes.py [--bpy PYTHON] [--quads N ...] [FOLDER]
 
 FOLDER holds closed meshes (default: ../shared/meshes); those that are missing are left out. --bpy names a Python with
-bpy; without it only our meshes are measured. Needs the lsgp wheel and the tests' scipy.
+bpy; without it only our meshes are measured. Needs the lsgp wheel and scipy.
 """
 
 from __future__ import annotations
@@ -19,10 +19,11 @@ from typing import NamedTuple
 
 import lsgp
 import numpy as np
+import oracle
 from numpy.typing import NDArray
+from placement_quality import SHARED
 from scipy.spatial import cKDTree
 
-SHARED = Path(__file__).resolve().parents[3] / "shared" / "meshes"
 MODELS = ("fandisk", "kitten-genus1", "hand-5k", "max-planck-25k", "elephant-genus3")
 IN_BLENDER = Path(__file__).with_name("quads_in_blender.py")
 LONGEST = 500  # seconds
@@ -74,9 +75,9 @@ def sampled(quads: Quads) -> tuple[Points, Points]:
 
 
 def distances(surface: lsgp.Surface, quads: Quads) -> Points:
-    """From the centers of the surface's triangles, weighted by their areas in a draw, to the quads."""
+    """From points drawn evenly on the surface to the quads."""
     corners = surface.positions[surface.triangles]
-    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    area = oracle.triangle_areas(surface.positions, surface.triangles)
     rng = np.random.default_rng(1)
     drawn = corners[rng.choice(len(corners), 20000, p=area / area.sum())]
     weights = rng.dirichlet((1, 1, 1), len(drawn))

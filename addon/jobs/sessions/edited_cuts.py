@@ -12,8 +12,6 @@ import numpy as np
 
 from ...core.errors import object_errors
 from ...core.screen import Screen
-from ...mesh import changes
-from ...mesh.stored_mesh import FrozenMesh
 from ..tasks.cuts import CutChoice
 from .cut_session import CutSession, CutsState
 from .edit_history import EditHistory
@@ -37,10 +35,6 @@ class CutObject(PickedObject):
             self.session = CutSession(self.obj, self._choice)
             self.start = self.session.state()
         return self.session
-
-    @property
-    def mesh(self) -> FrozenMesh:
-        return self.read if self.session is None else self.session.mesh
 
     def nearest_cut(self, picker: Picker, screen: Screen, place: tuple[float, float], radius: float) -> Hit | None:
         """The nearest edge of a cut within a radius, in pixels, its number counted through all cuts."""
@@ -76,12 +70,7 @@ class CutObjects(PickedObjects[CutObject]):
         if not self.begun:
             raise next(iter(self.failures.values()))
         self.history = EditHistory(self._state, self._put)
-        for edited in self._all:
-            changes.suspend(edited.obj.data)
-
-    @property
-    def begun(self) -> list[CutObject]:
-        return [edited for edited in self._all if edited.session is not None]
+        self._suspend_changes()
 
     @property
     def changed(self) -> list[CutObject]:
@@ -125,29 +114,10 @@ class CutObjects(PickedObjects[CutObject]):
         for edited in self.begun:
             edited.session.put(state.cuts.get(edited.uid, edited.start))
 
-    def is_intact(self) -> bool:
-        """Whether all meshes can still be written to."""
-        return self._in_edit_mode() and all(edited.session.is_intact() for edited in self.begun)
-
-    def doubt(self) -> None:
-        """Something else may have changed the meshes."""
-        for edited in self.begun:
-            edited.session.doubt()
-
     def store(self) -> None:
         """Store the reports on the maps that were changed."""
         for edited in self.changed:
             edited.session.store()
-
-    def restore(self) -> None:
-        """Leave all meshes as they were."""
-        for edited in self.begun:
-            edited.session.restore()
-
-    def end(self) -> None:
-        """Nothing is edited any more."""
-        for edited in self._all:
-            changes.resume(edited.uid)
 
 
 def place_of(session: CutSession, edge: int) -> tuple[int, int]:

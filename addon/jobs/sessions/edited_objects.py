@@ -11,9 +11,7 @@ from functools import cached_property
 import bpy
 
 from ...core.errors import object_errors
-from ...mesh import changes
 from ...mesh.cones import marked_cones
-from ...mesh.stored_mesh import FrozenMesh
 from ..angles import angle_table
 from ..layouts.maps import PackSettings
 from ..tasks.unwrapping import Unwrapped, UnwrapSettings
@@ -46,10 +44,6 @@ class EditedObject(PickedObject):
         return self.session
 
     @property
-    def mesh(self) -> FrozenMesh:
-        return self.read if self.session is None else self.session.mesh
-
-    @property
     def cones(self) -> list[int]:
         return self._marked if self.session is None else self.session.cones.vertices
 
@@ -80,12 +74,7 @@ class EditedObjects(PickedObjects[EditedObject]):
         self.history = EditHistory(self._state, self._put)
         if len(self._all) == 1:
             self._all[0].begin()
-        for edited in self._all:
-            changes.suspend(edited.obj.data)
-
-    @property
-    def begun(self) -> list[EditedObject]:
-        return [edited for edited in self._all if edited.session is not None]
+        self._suspend_changes()
 
     @property
     def changed(self) -> bool:
@@ -130,15 +119,6 @@ class EditedObjects(PickedObjects[EditedObject]):
             edited.session.cones.put(wanted if edited.uid == state.active else replace(wanted, active=None))
         self.active = next((edited for edited in self._all if edited.uid == state.active), None)
 
-    def is_intact(self) -> bool:
-        """Whether all meshes can still be written to."""
-        return self._in_edit_mode() and all(edited.session.is_intact() for edited in self.begun)
-
-    def doubt(self) -> None:
-        """Something else may have changed the meshes."""
-        for edited in self.begun:
-            edited.session.doubt()
-
     def follow(self) -> list[EditedObject]:
         """Bring the maps up to date; returns the objects of which a step was shown or failed."""
         return [edited for edited in self.begun if edited.follower.follow()]
@@ -165,11 +145,10 @@ class EditedObjects(PickedObjects[EditedObject]):
     def restore(self) -> None:
         """Leave all meshes as they were."""
         self.stop()
-        for edited in self.begun:
-            edited.session.restore()
+        super().restore()
 
     def end(self) -> None:
         """Nothing is edited any more."""
         for edited in self._all:
             angle_table.unfollow(edited.uid)
-            changes.resume(edited.uid)
+        super().end()

@@ -17,6 +17,7 @@ from ...core.screen import Screen
 from ...mesh import changes
 from ...mesh.reader import readable_mesh
 from ...mesh.stored_mesh import FrozenMesh
+from .map_session import MapSession
 from .picking import Hit, Picker
 
 
@@ -34,7 +35,12 @@ class Sight:
 
 
 class PickedObject:
-    """An object in edit mode.  holds_layout: whether its map, which follows a drag in it, is picked as it was."""
+    """An object in edit mode.
+
+    holds_layout: whether its map, which follows a drag in it, is picked as it was. session: once it has begun.
+    """
+
+    session: MapSession | None = None
 
     def __init__(self, obj: bpy.types.Object) -> None:
         self.obj, self.uid, self.name = obj, obj.data.session_uid, obj.name
@@ -46,7 +52,7 @@ class PickedObject:
     @property
     def mesh(self) -> FrozenMesh:
         """The mesh with its current UVs."""
-        return self.read
+        return self.read if self.session is None else self.session.mesh
 
     @cached_property
     def read(self) -> FrozenMesh:
@@ -80,6 +86,29 @@ class PickedObjects(Generic[Edited]):
         self._all = list(objects)
         self._era = changes.era()
 
+    @property
+    def begun(self) -> list[Edited]:
+        return [edited for edited in self._all if edited.session is not None]
+
+    def is_intact(self) -> bool:
+        """Whether all meshes can still be written to."""
+        return self._in_edit_mode() and all(edited.session.is_intact() for edited in self.begun)
+
+    def doubt(self) -> None:
+        """Something else may have changed the meshes."""
+        for edited in self.begun:
+            edited.session.doubt()
+
+    def restore(self) -> None:
+        """Leave all meshes as they were."""
+        for edited in self.begun:
+            edited.session.restore()
+
+    def end(self) -> None:
+        """Nothing is edited any more."""
+        for edited in self._all:
+            changes.resume(edited.uid)
+
     def hold_layouts(self, held: bool) -> None:
         """Whether maps are picked as they are now, while they follow what is dragged."""
         for edited in self._all:
@@ -112,6 +141,11 @@ class PickedObjects(Generic[Edited]):
             picker = None if screen is None else edited.picker(sight)
             if picker is not None:
                 yield edited, picker, screen
+
+    def _suspend_changes(self) -> None:
+        """Changes of the meshes are those of this editing until its end."""
+        for edited in self._all:
+            changes.suspend(edited.obj.data)
 
     def _in_edit_mode(self) -> bool:
         """Whether nothing has been undone and all objects are still in edit mode."""

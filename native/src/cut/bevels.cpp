@@ -92,18 +92,19 @@ PerTriangle<Side> find_sides(const HalfedgeMesh& mesh, const PerTriangle<char>& 
 
 }  // namespace
 
-Bevels find_bevels(const MetricMesh& surface, const Eigen::VectorXd& bend, double angle) {
+std::optional<Bevels> find_bevels(const MetricMesh& surface, const Eigen::VectorXd& bend, double angle) {
   const HalfedgeMesh& mesh = surface.mesh;
   const Geometry& geometry = surface.geometry;
   const PerTriangle<char> is_rounded = find_rounded(surface, bend);
-  Bevels out{PerHalfedge<char>(mesh.halfedge_count(), 0), PerVertex<char>(mesh.vertex_count(), 0)};
   double area = 0;
   for (Index f = 0; f < mesh.triangle_count(); ++f) area += is_rounded[f] ? geometry.area[f] : 0;
-  if (area == 0 || area > most_area * geometry.total_area) return out;
+  if (area == 0 || area > most_area * geometry.total_area) return std::nullopt;
+  const PerTriangle<Side> side = find_sides(mesh, is_rounded, bend, angle);
+  Bevels out;
+  out.is_rounded.assign(mesh.vertex_count(), 0);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (is_rounded[h / 3]) out.is_rounded[mesh.origin(h)] = 1;
   }
-  const PerTriangle<Side> side = find_sides(mesh, is_rounded, bend, angle);
   out.crease = marked(mesh, [&](Index h) {
     const Side &here = side[h / 3], &there = side[mesh.twin[h] / 3];
     if (here.face == none || there.face == none || here.face == there.face) return false;

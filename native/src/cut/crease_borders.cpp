@@ -304,24 +304,30 @@ void open_tubes(const MetricMesh& surface, PerHalfedge<char>& open) {
   }
 }
 
+// The patches of a hard surface, with bevels if those are needed to make it one; none if it is none.
+std::optional<Patches> find_hard_patches(const MetricMesh& surface, const PerHalfedge<char>& crease,
+                                         const Eigen::VectorXd& bend, const CreaseOptions& options) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  std::optional<Patches> out;
+  out.emplace(surface, find_patches(surface, crease, bend));
+  const PerVertex<char> nowhere(mesh.vertex_count(), 0);
+  if (out->carry_curvature(least_on_creases, nowhere, options.most_corners)) return out;
+  std::optional<Bevels> bevels = find_bevels(surface, bend, options.angle);
+  if (!bevels) return std::nullopt;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    bevels->crease[h] = crease[h] || (bevels->crease[h] && may_cut(mesh, h));
+  }
+  out.emplace(surface, find_patches(surface, bevels->crease, bend));
+  if (!out->carry_curvature(least_on_bevels, bevels->is_rounded, options.most_corners)) out.reset();
+  return out;
+}
+
 }  // namespace
 
 PerHalfedge<char> find_crease_borders(const MetricMesh& surface, const PerHalfedge<char>& crease,
                                       const Eigen::VectorXd& bend, const CreaseOptions& options) {
-  const HalfedgeMesh& mesh = surface.mesh;
-  std::optional<Patches> patches;
-  patches.emplace(surface, find_patches(surface, crease, bend));
-  const PerVertex<char> nowhere(mesh.vertex_count(), 0);
-  if (!patches->carry_curvature(least_on_creases, nowhere, options.most_corners)) {
-    Bevels bevels = find_bevels(surface, bend, options.angle);
-    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-      bevels.crease[h] = crease[h] || (bevels.crease[h] && may_cut(mesh, h));
-    }
-    patches.emplace(surface, find_patches(surface, bevels.crease, bend));
-    if (!patches->carry_curvature(least_on_bevels, bevels.is_rounded, options.most_corners)) {
-      return PerHalfedge<char>(mesh.halfedge_count(), 0);
-    }
-  }
+  const std::optional<Patches> patches = find_hard_patches(surface, crease, bend, options);
+  if (!patches) return PerHalfedge<char>(surface.mesh.halfedge_count(), 0);
   PerHalfedge<char> open = patches->unfold_together();
   open_tubes(surface, open);
   return open;

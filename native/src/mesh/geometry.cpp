@@ -124,4 +124,9 @@ double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
+double bend_at(const HalfedgeMesh& mesh, Index h) {
+  const auto normal = [&](Index f) { return area_normal(mesh.positions, mesh.triangles, f); };
+  return angle_between(normal(h / 3), normal(mesh.twin[h] / 3));
+}
+
 }  // namespace lsgp

@@ -40,6 +40,9 @@ Eigen::Vector3d area_normal(const Positions& positions, const Triangles& triangl
 // The angle between two directions, radians; 0 if one is zero.
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
+// The angle between the normals of the triangles on both sides of an inner edge, radians.
+double bend_at(const HalfedgeMesh& mesh, Index h);
+
 // The edge vector of halfedge h in its triangle's own frame, in which the triangle's first halfedge is real.
 inline Complex edge_vector(const Geometry& geometry, Index h) {
   const Index f = h / 3;

@@ -50,7 +50,8 @@ class CreaseTracer {
  public:
   CreaseTracer(const HalfedgeMesh& mesh, const CutMesh& cut_mesh)
       : mesh_(mesh), cut_mesh_(cut_mesh), is_left_(mesh.halfedge_count(), 0) {
-    for (Index h = 0; h < mesh.halfedge_count(); ++h) is_left_[h] = !is_open(mesh, cut_mesh, h) && is_sharp(h);
+    for (Index h = 0; h < mesh.halfedge_count(); ++h)
+      is_left_[h] = !is_open(mesh, cut_mesh, h) && bend_at(mesh, h) > sharp;
   }
 
   Creases trace() {
@@ -68,11 +69,6 @@ class CreaseTracer {
   }
 
  private:
-  bool is_sharp(Index h) const {
-    const auto normal = [&](Index f) { return area_normal(mesh_.positions, mesh_.triangles, f); };
-    return angle_between(normal(h / 3), normal(mesh_.twin[h] / 3)) > sharp;
-  }
-
   Array<Index> trace(const PerHalfedge<char>& is_crease, Index first) {
     Array<Index> line;
     for (Index h = first; h != none && is_left_[h]; h = following(is_crease, h)) {

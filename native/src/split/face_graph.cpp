@@ -17,8 +17,7 @@ constexpr double least_factor = seam_factor, largest_factor = 10;
 constexpr double units_of_mean_edge = 1e4;
 
 double sharpness_factor(const HalfedgeMesh& mesh, Index h) {
-  const auto normal = [&](Index f) { return area_normal(mesh.positions, mesh.triangles, f); };
-  return angle_between(normal(h / 3), normal(mesh.twin[h] / 3)) > sharp_angle ? sharp_factor : 1.0;
+  return bend_at(mesh, h) > sharp_angle ? sharp_factor : 1.0;
 }
 
 }  // namespace
