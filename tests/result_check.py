@@ -122,7 +122,7 @@ def _wrong_directions(surface: lsgp.Surface, result: lsgp.Result) -> list[str]:
         sides = (first**2).sum(axis=1) + (last**2).sum(axis=1)
         sure = (area > 1e-4 * sides) & (np.linalg.norm(inside, axis=1) > 1e-4) & (np.abs(image) > 0)
     wrong = sure & ~np.isin(np.arange(len(z)), named_by(result, "DUPLICATE_FACE"))
-    turn = TURN / (1 if result.seamless is None else result.seamless.symmetry)
+    turn = TURN / (1 if result.seamless is None else result.seamless.rotation_order)
     angle = np.angle(image[wrong] / 1j)
     wrong[wrong] = ~(np.abs(np.abs(angle - turn * np.round(angle / turn)) - result.direction_errors[wrong]) <= ANGLE)
     return [f"the directions of {np.flatnonzero(wrong)[:5].tolist()} are off by other angles"] if wrong.any() else []

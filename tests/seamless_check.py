@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from opened_surface import Opened, edge_keys, labels, named_by, next_corner
 
 TURN = 2 * np.pi
-SYMMETRY = {"square": 4, "stripe": 2, "translation": 1, "triangle": 3, "hexagon": 6}
+ROTATION_ORDER = {"square": 4, "stripe": 2, "translation": 1, "triangle": 3, "hexagon": 6}
 TWELFTHS = np.array([1, 0, 0, 1j, 0, 0, -1, 0, 0, -1j, 0, 0]) + np.sqrt(0.75) * np.array(
     [0, 1, 1j, 0, 1j, -1, 0, -1, -1j, 0, -1j, 1]
 )
@@ -31,20 +31,20 @@ CERTIFIED = 1e-11  # cells: what the certificate and this module may compute dif
 class Grid:
     """The lattice of a layout: q turns, the side of a cell, and where cones have to be in it."""
 
-    symmetry: int
+    rotation_order: int
     cell: float
     cone_shift: complex  # cells
 
     @property
     def square(self) -> bool:
-        return self.symmetry not in (3, 6)
+        return self.rotation_order not in (3, 6)
 
     @property
     def generator(self) -> complex:
         return 1j if self.square else complex(0.5, np.sqrt(0.75))
 
     def unit(self, turns: NDArray[np.integer]) -> NDArray[np.complex128]:
-        return TWELFTHS[np.asarray(turns) % self.symmetry * (12 // self.symmetry)]
+        return TWELFTHS[np.asarray(turns) % self.rotation_order * (12 // self.rotation_order)]
 
     def nearest(self, cells: NDArray[np.complex128]) -> NDArray[np.int64]:
         """(..., 2) coordinates of the lattice points nearest to the given places."""
@@ -61,9 +61,9 @@ class Grid:
     def back(self, turns: int, translation: tuple[int, int]) -> tuple[int, int, int]:
         """The inverse of z -> unit(turns) z + translation, in whole numbers."""
         a, b = -translation[0], -translation[1]
-        for _ in range(-turns % self.symmetry * ((4 if self.square else 6) // self.symmetry)):
+        for _ in range(-turns % self.rotation_order * ((4 if self.square else 6) // self.rotation_order)):
             a, b = (-b, a) if self.square else (-b, a + b)  # times i, or e^(i pi / 3)
-        return -turns % self.symmetry, a, b
+        return -turns % self.rotation_order, a, b
 
 
 def seamless_faults(opened: Opened, result: lsgp.Result, asked: lsgp.Seamless) -> list[str]:
@@ -75,10 +75,10 @@ def seamless_faults(opened: Opened, result: lsgp.Result, asked: lsgp.Seamless) -
     report = result.seamless
     if report is None:
         return ["no certificate of a seamless layout"]
-    grid = Grid(SYMMETRY[asked.lattice], asked.cell, 0.5 + 0.5j if asked.parity else 0)
+    grid = Grid(ROTATION_ORDER[asked.lattice], asked.cell, 0.5 + 0.5j if asked.parity else 0)
     faults = []
-    if (report.symmetry, report.cell) != (grid.symmetry, grid.cell):
-        faults.append(f"the certificate is of another lattice: {report.symmetry} turns, cells of {report.cell}")
+    if (report.rotation_order, report.cell) != (grid.rotation_order, grid.cell):
+        faults.append(f"the certificate is of another lattice: {report.rotation_order} turns, cells of {report.cell}")
     relaxed = np.isin(opened.vertex, report.relaxed_cones)
     exact = ~np.isin(np.repeat(opened.component, 3), np.repeat(opened.component, 3)[relaxed])
     given = np.stack([opened.z.real, opened.z.imag], axis=1)
@@ -139,7 +139,7 @@ def _cones(
     flat[opened.vertex[inner]] = TURN
     known = result.cones < len(flat)
     cones, angles = result.cones[known], result.cone_angles[known]
-    turns = (flat[cones] - angles) * grid.symmetry / TURN
+    turns = (flat[cones] - angles) * grid.rotation_order / TURN
     if np.abs(turns - np.round(turns)).max(initial=0) > 1e-9:
         faults.append(f"cone angles are off the lattice's turns by {np.abs(turns - np.round(turns)).max():.1e}")
     if np.isin(cones, result.seamless.flat_cones).any() or (np.round(turns) == 0)[flat[cones] == TURN].any():
@@ -181,7 +181,7 @@ def _cuts(
     left = np.stack([z[h], z[next_corner(h)]], axis=1)
     right = np.stack([z[next_corner(other)], z[other]], axis=1)
     along = (right[:, 1] - right[:, 0]) * (left[:, 1] - left[:, 0]).conj()
-    turns = np.round(np.angle(along) * grid.symmetry / TURN).astype(int) % grid.symmetry
+    turns = np.round(np.angle(along) * grid.rotation_order / TURN).astype(int) % grid.rotation_order
     image = grid.unit(turns)[:, None] * left
     real, exact_real = _minus(right.real, image.real)
     imag, exact_imag = _minus(right.imag, image.imag)

@@ -65,11 +65,11 @@ def seam_summary(certificate: dict[str, Any]) -> str:
 
 def seam_rows(certificate: dict[str, Any]) -> list[Row]:
     """The cuts, the worst first, with the map from one side to the other."""
-    symmetry = certificate["symmetry"]
+    rotation_order = certificate["rotation_order"]
     cuts = sorted(certificate["cuts"], key=lambda cut: -cut["error_texels"])
     return [
         (
-            f"{cut['turns'] * 360 // symmetry}°",
+            f"{cut['turns'] * 360 // rotation_order}°",
             f"{cut['translation'][0]}, {cut['translation'][1]}",
             _small(cut["error_texels"]),
         )

@@ -208,7 +208,7 @@ py::dict to_dict(const lsgp::SeamlessReport& report) {
   }
   const auto count = static_cast<py::ssize_t>(report.cuts.size());
   py::dict out;
-  out["symmetry"] = report.symmetry;
+  out["rotation_order"] = report.rotation_order;
   out["tiles"] = report.tiles;
   out["tile_size"] = report.tile_size;
   out["cell"] = report.cell;

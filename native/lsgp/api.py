@@ -312,13 +312,14 @@ class SeamQuality(ShortRepr):
 class SeamlessReport(EqualByContent, ShortRepr):
     """The certificate of a seamless layout: the transition and the error of every cut, and the cost of rounding.
 
-    A cut is crossed from its left side to its right one by z -> e^(2 pi i turns / symmetry) z + cell (a + b g), where g
-    is i on square lattices and e^(i pi / 3) on triangular ones and z = u + iv.
+    A cut is crossed from its left side to its right one by z -> e^(2 pi i turns / rotation_order) z + cell (a + b g),
+    where g is i on square lattices and e^(i pi / 3) on triangular ones and z = u + iv.
 
-    symmetry: rotations are multiples of 2 pi / symmetry. tiles: cells along the layout's longer side, before rounding.
+    rotation_order: rotations are multiples of 2 pi / rotation_order.
+    tiles: cells along the layout's longer side, before rounding.
     tile_size: side of a cell on the surface. cell: the same in texture coordinates.
     energy_before, energy_after: symmetric Dirichlet energy before and after rounding the translations, 1 is isometric.
-    cut_nodes: (c, 2) int32 vertices at the cuts' tails and heads. cut_turns: (c,) int32, 0 .. symmetry - 1.
+    cut_nodes: (c, 2) int32 vertices at the cuts' tails and heads. cut_turns: (c,) int32, 0 .. rotation_order - 1.
     cut_translations: (c, 2) int64, (a, b). cut_errors: (c,) float64, the largest distance of a vertex, as stored in
         float32, from the image of its copy, in cells. error: the largest of them, 0 on square lattices.
     flat_cones: cones whose curvature was rounded to zero, now ordinary vertices. merged_cones: cones merged with
@@ -326,7 +327,7 @@ class SeamlessReport(EqualByContent, ShortRepr):
     relaxed_cones: cones off the lattice; the cuts to them show a seam.
     """
 
-    symmetry: int
+    rotation_order: int
     tiles: float
     tile_size: float
     cell: float

@@ -18,7 +18,7 @@ SHOWN_CUTS = 12
 def certificate(report: SeamlessReport, texture_size: int) -> dict[str, Any]:
     """The certificate as data.
 
-    The left side of a cut is mapped to its right side by a rotation of `turns` / `symmetry` full turns and then a
+    The left side of a cut is mapped to its right side by a rotation of `turns` / `rotation_order` full turns and then a
     translation by `translation`: integer multiples of the two vectors of `basis`, which are (u, v) in cells. `cell` is
     the side of a cell in texture coordinates, `error` the largest error of a cut in cells; error_texels refers to a
     texture of `texture_size` texels a side that covers the unit square.  Raises InputError.
@@ -32,8 +32,8 @@ def certificate(report: SeamlessReport, texture_size: int) -> dict[str, Any]:
         strict=True,
     )
     return {
-        "symmetry": report.symmetry,
-        "basis": _basis(report.symmetry),
+        "rotation_order": report.rotation_order,
+        "basis": _basis(report.rotation_order),
         "tiles": report.tiles,
         "tile_size": report.tile_size,
         "cell": report.cell,
@@ -69,7 +69,7 @@ def certificate_table(report: SeamlessReport, texture_size: int) -> str:
     for cut in order[:SHOWN_CUTS].tolist():
         tail, head = report.cut_nodes[cut].tolist()
         turns = int(report.cut_turns[cut])
-        turn = f"{turns}/{report.symmetry}" if turns else "0"
+        turn = f"{turns}/{report.rotation_order}" if turns else "0"
         a, b = report.cut_translations[cut].tolist()
         lines.append(f"{tail:>11}{head:>11}{turn:>7}{f'{a}, {b}':>23}{_off(report.cut_errors[cut] * texels):>12}")
     rest = report.cut_errors[order[SHOWN_CUTS:]]
@@ -85,9 +85,9 @@ def _texels(report: SeamlessReport, texture_size: int) -> float:
     return report.cell * arguments.whole_number("texture_size", texture_size, 1, "pass how many texels a side has")
 
 
-def _basis(symmetry: int) -> list[list[float]]:
+def _basis(rotation_order: int) -> list[list[float]]:
     """The vectors between neighbouring lattice points: of unit squares, or of triangles of side 1."""
-    return [[1.0, 0.0], [0.5, math.sqrt(3) / 2] if symmetry in (3, 6) else [0.0, 1.0]]
+    return [[1.0, 0.0], [0.5, math.sqrt(3) / 2] if rotation_order in (3, 6) else [0.0, 1.0]]
 
 
 def _off(texels: float) -> str:

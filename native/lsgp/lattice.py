@@ -22,31 +22,31 @@ from .errors import InputError
 # Mantissa of float32: below 2^e it holds every multiple of 2^(e - 24).
 _MANTISSA_BITS = 24
 _QUARTER_TURNS = np.array([1, 1j, -1, -1j])
-# Of the lattices: rotations are multiples of 2 pi / symmetry.
-_SYMMETRIES = (1, 2, 3, 4, 6)
+# Of the lattices: rotations are multiples of 2 pi / rotation_order.
+_ROTATION_ORDERS = (1, 2, 3, 4, 6)
 
 
-def whole_cells(shift: ArrayLike, symmetry: int, cell: float) -> FloatArray:
+def whole_cells(shift: ArrayLike, rotation_order: int, cell: float) -> FloatArray:
     """Moves by whole cells near the given ones, (k, 2): the nearest in the nearest row of lattice points.
 
-    symmetry, cell: as in `SeamlessReport`.
+    rotation_order, cell: as in `SeamlessReport`.
     """
-    symmetry, cell = _cells(symmetry, cell)
+    rotation_order, cell = _cells(rotation_order, cell)
     x, y = _rows_of("shift", shift, 2).T
-    gx, gy = _second_vector(symmetry)
+    gx, gy = _second_vector(rotation_order)
     rows = np.round(y / (gy * cell))
-    return _points(np.round(x / cell - rows * gx), rows, symmetry, cell)
+    return _points(np.round(x / cell - rows * gx), rows, rotation_order, cell)
 
 
 def nearest_places(
-    corner_uv: FloatArray, old_uv: FloatArray, island: IndexArray, symmetry: int, cell: float
+    corner_uv: FloatArray, old_uv: FloatArray, island: IndexArray, rotation_order: int, cell: float
 ) -> FloatArray:
     """The move by whole cells, (islands, 2), that brings each island nearest to the former position of its corners.
 
     corner_uv, old_uv: (m, 3, 2). island: (m,), -1 for none. Islands with an old coordinate that is not finite do not
     move.
     """
-    symmetry, cell = _cells(symmetry, cell)
+    rotation_order, cell = _cells(rotation_order, cell)
     island = arguments.islands("island", island)
     corner_uv = arguments.corner_coordinates("corner_uv", corner_uv, len(island))
     old_uv = arguments.corner_coordinates("old_uv", old_uv, len(island))
@@ -58,15 +58,15 @@ def nearest_places(
     with np.errstate(invalid="ignore"):
         mean = np.stack([np.bincount(of_corner, away[:, i], count) for i in (0, 1)], axis=1) / corners[:, None]
     mean[~np.isfinite(mean).all(axis=1)] = 0.0
-    return whole_cells(mean, symmetry, cell)
+    return whole_cells(mean, rotation_order, cell)
 
 
-def shelf_places(boxes: ArrayLike, symmetry: int, cell: float) -> FloatArray:
+def shelf_places(boxes: ArrayLike, rotation_order: int, cell: float) -> FloatArray:
     """Moves by whole cells, (k, 2), that put boxes onto shelves from the origin upwards; none overlaps another.
 
     boxes: (k, 4), the least u and v and the largest u and v of each. The tallest come first.
     """
-    symmetry, cell = _cells(symmetry, cell)
+    rotation_order, cell = _cells(rotation_order, cell)
     boxes = _rows_of("boxes", boxes, 4)
     if not (np.isfinite(boxes).all() and (boxes[:, 2:] >= boxes[:, :2]).all()):
         raise InputError("WRONG_PARAMETER", "boxes are not finite or have no inside; pass those of solved islands.")
@@ -79,7 +79,7 @@ def shelf_places(boxes: ArrayLike, symmetry: int, cell: float) -> FloatArray:
     for i in np.argsort(-sizes[:, 1], kind="stable").tolist():
         if right > 0 and right + sizes[i, 0] > width:
             right, floor = 0.0, ceiling
-        shifts[i] = _cells_beyond((right, floor) - boxes[i, :2], symmetry, cell)
+        shifts[i] = _cells_beyond((right, floor) - boxes[i, :2], rotation_order, cell)
         right = boxes[i, 2] + shifts[i, 0]
         ceiling = max(ceiling, boxes[i, 3] + shifts[i, 1])
     return shifts
@@ -203,10 +203,10 @@ def _crossings(
             yield int(pairs[side, pair]), int(pairs[side + 2, pair]), turn
 
 
-def _cells(symmetry: int, cell: float) -> tuple[int, float]:
-    symmetry = arguments.whole_number("symmetry", symmetry, 1, f"choose one of {_SYMMETRIES}")
-    arguments.require_choice("symmetry", symmetry, _SYMMETRIES)
-    return symmetry, arguments.positive("cell", cell)
+def _cells(rotation_order: int, cell: float) -> tuple[int, float]:
+    rotation_order = arguments.whole_number("rotation_order", rotation_order, 1, f"choose one of {_ROTATION_ORDERS}")
+    arguments.require_choice("rotation_order", rotation_order, _ROTATION_ORDERS)
+    return rotation_order, arguments.positive("cell", cell)
 
 
 def _rows_of(name: str, values: ArrayLike, width: int) -> FloatArray:
@@ -215,18 +215,18 @@ def _rows_of(name: str, values: ArrayLike, width: int) -> FloatArray:
     return arguments.float_rows(name, array[None] if array.ndim == 1 and array.size else array, width)
 
 
-def _second_vector(symmetry: int) -> tuple[float, float]:
+def _second_vector(rotation_order: int) -> tuple[float, float]:
     """From a lattice point to its neighbour in the next row, in cells; in its own row the neighbour is at (1, 0)."""
-    return (0.5, math.sqrt(3) / 2) if symmetry in (3, 6) else (0.0, 1.0)
+    return (0.5, math.sqrt(3) / 2) if rotation_order in (3, 6) else (0.0, 1.0)
 
 
-def _points(columns: FloatArray, rows: FloatArray, symmetry: int, cell: float) -> FloatArray:
-    gx, gy = _second_vector(symmetry)
+def _points(columns: FloatArray, rows: FloatArray, rotation_order: int, cell: float) -> FloatArray:
+    gx, gy = _second_vector(rotation_order)
     return np.stack([columns + rows * gx, rows * gy], axis=-1) * cell
 
 
-def _cells_beyond(shift: FloatArray, symmetry: int, cell: float) -> FloatArray:
+def _cells_beyond(shift: FloatArray, rotation_order: int, cell: float) -> FloatArray:
     """The smallest move by whole cells, first upwards, then to the right, that is no less than the given one."""
-    gx, gy = _second_vector(symmetry)
+    gx, gy = _second_vector(rotation_order)
     rows = np.ceil(shift[1] / (gy * cell))
-    return _points(np.ceil(shift[0] / cell - rows * gx), rows, symmetry, cell)
+    return _points(np.ceil(shift[0] / cell - rows * gx), rows, rotation_order, cell)

@@ -454,7 +454,7 @@ class UvMap:
                     found.append(np.arctan2(along[1], along[0]))
         return np.array(found)
 
-    def crossings(self, symmetry: int = 4) -> list[tuple[complex, complex, float]]:
+    def crossings(self, rotation_order: int = 4) -> list[tuple[complex, complex, float]]:
         """For each split edge the turn and the shift that lead from one side to the other, and what they miss it by.
 
         The turn is the nearest one of a lattice; all is exact where that is a quarter turn.
@@ -462,19 +462,19 @@ class UvMap:
         found = []
         for edge in self.split_edges():
             left, right = (self.uv[list(loops)] @ (1, 1j) for loops in self.sides[edge])
-            turns = np.angle((right[1] - right[0]) / (left[1] - left[0])) * symmetry / (2 * np.pi)
-            quarters = round(turns) * 4 / symmetry
+            turns = np.angle((right[1] - right[0]) / (left[1] - left[0])) * rotation_order / (2 * np.pi)
+            quarters = round(turns) * 4 / rotation_order
             exact = quarters.is_integer()
             turn = [1, 1j, -1, -1j][int(quarters) % 4] if exact else np.exp(0.5j * np.pi * quarters)
             shift = right[0] - turn * left[0]
             found.append((complex(turn), complex(shift), float(abs(right[1] - turn * left[1] - shift))))
         return found
 
-    def tile_error(self, symmetry: int = 4, cell: float = 1.0) -> float:
+    def tile_error(self, rotation_order: int = 4, cell: float = 1.0) -> float:
         """How far split edges are from one turn and one shift by whole cells of the lattice; 0 is seamless."""
-        second = np.exp(1j * np.pi / 3) if symmetry in (3, 6) else 1j
+        second = np.exp(1j * np.pi / 3) if rotation_order in (3, 6) else 1j
         worst = 0.0
-        for _, shift, missed in self.crossings(symmetry):
+        for _, shift, missed in self.crossings(rotation_order):
             rows = round(shift.imag / second.imag / cell)
             columns = round((shift - rows * second * cell).real / cell)
             worst = max(worst, missed, abs(shift - cell * (columns + rows * second)))

@@ -58,12 +58,12 @@ class Crossings:
         return worst
 
 
-def turn_of(turns: int, symmetry: int) -> complex:
-    """e^(2 pi i turns / symmetry), exact where it is a quarter turn."""
-    quarters = 4 * turns / symmetry
+def turn_of(turns: int, rotation_order: int) -> complex:
+    """e^(2 pi i turns / rotation_order), exact where it is a quarter turn."""
+    quarters = 4 * turns / rotation_order
     if quarters.is_integer():
         return (1, 1j, -1, -1j)[int(quarters) % 4]
-    return complex(math.cos(2 * math.pi * turns / symmetry), math.sin(2 * math.pi * turns / symmetry))
+    return complex(math.cos(2 * math.pi * turns / rotation_order), math.sin(2 * math.pi * turns / rotation_order))
 
 
 def require_certified(path: Path, certificate: dict) -> float:
@@ -79,7 +79,7 @@ def require_certified(path: Path, certificate: dict) -> float:
     basis = np.array(certificate["basis"]) @ (1, 1j)
     worst = 0.0
     for cut in cuts:
-        turn = turn_of(cut["turns"], certificate["symmetry"])
+        turn = turn_of(cut["turns"], certificate["rotation_order"])
         shift = complex(certificate["cell"] * (np.array(cut["translation"]) @ basis))
         between = [p for p in paths if (p[0], p[-1]) == (cut["tail"], cut["head"])]
         best = min(between, key=lambda p: crossings.off(p, turn, shift))

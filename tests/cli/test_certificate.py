@@ -12,18 +12,18 @@ from lsgp.certificate import certificate, certificate_table
 from lsgp.run.report import to_json
 
 
-def report(errors: list[float], symmetry: int = 4, cell: float = 1.0) -> SeamlessReport:
+def report(errors: list[float], rotation_order: int = 4, cell: float = 1.0) -> SeamlessReport:
     """Cut i runs from vertex 100 + i to vertex 200 + i, turns i times and shifts by (i, -3 i) cells."""
     count = np.arange(len(errors))
     return SeamlessReport(
-        symmetry=symmetry,
+        rotation_order=rotation_order,
         tiles=15.5,
         tile_size=0.125,
         cell=cell,
         energy_before=1.0125,
         energy_after=1.0375,
         cut_nodes=np.stack([100 + count, 200 + count], axis=1).astype(np.int32),
-        cut_turns=(count % symmetry).astype(np.int32),
+        cut_turns=(count % rotation_order).astype(np.int32),
         cut_translations=np.stack([count, -3 * count], axis=1).astype(np.int64),
         cut_errors=np.array(errors, float),
         error=max(errors, default=0.0),
@@ -45,7 +45,7 @@ def test_certificate_as_json_holds_every_cut() -> None:
         {"tail": 101, "head": 201, "turns": 1, "translation": [1, -3], "error_texels": 0.5},
         {"tail": 102, "head": 202, "turns": 2, "translation": [2, -6], "error_texels": 0.0},
     ]
-    assert (found["symmetry"], found["tiles"], found["tile_size"], found["cell"]) == (4, 15.5, 0.125, 1.0)
+    assert (found["rotation_order"], found["tiles"], found["tile_size"], found["cell"]) == (4, 15.5, 0.125, 1.0)
     assert (found["error"], found["error_texels"], found["texture_size"]) == (2**-10, 0.5, 512)
     assert (found["energy_before"], found["energy_after"]) == (1.0125, 1.0375)
     assert (found["flat_cones"], found["merged_cones"], found["relaxed_cones"]) == ([5], [6, 7], [])
@@ -57,9 +57,9 @@ def test_texels_are_of_a_texture_over_the_unit_square(cell: float) -> None:
     assert found["error_texels"] == found["cuts"][0]["error_texels"] == 2 * cell
 
 
-@pytest.mark.parametrize(("symmetry", "angle"), [(1, 90), (2, 90), (4, 90), (3, 60), (6, 60)])
-def test_basis_is_of_squares_or_of_equilateral_triangles(symmetry: int, angle: float) -> None:
-    first, second = np.array(certificate(report([0.0], symmetry), 1024)["basis"])
+@pytest.mark.parametrize(("rotation_order", "angle"), [(1, 90), (2, 90), (4, 90), (3, 60), (6, 60)])
+def test_basis_is_of_squares_or_of_equilateral_triangles(rotation_order: int, angle: float) -> None:
+    first, second = np.array(certificate(report([0.0], rotation_order), 1024)["basis"])
     assert first.tolist() == [1, 0]
     assert np.linalg.norm(second) == pytest.approx(1, abs=1e-15)
     assert np.degrees(np.arctan2(second[1], second[0])) == pytest.approx(angle)

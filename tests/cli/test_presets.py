@@ -44,8 +44,8 @@ def test_tile_is_seamless_and_takes_the_options_of_seamless_layouts(lsgp, ball_f
     seamless = report_of(lsgp, "--preset", "tile", "--tiles", 24)["seamless"]
     up = ("--up", 0, 1, 0)
     assert seamless == report_of(lsgp, "--seamless", "--tiles", 24, "--overlaps", "split", *up)["seamless"]
-    assert report_of(lsgp, "--preset", "tile", "--lattice", "hexagon")["seamless"]["symmetry"] == 6
-    assert report_of(lsgp, "--preset", "paint", "--seamless")["seamless"]["symmetry"] == 4
+    assert report_of(lsgp, "--preset", "tile", "--lattice", "hexagon")["seamless"]["rotation_order"] == 6
+    assert report_of(lsgp, "--preset", "paint", "--seamless")["seamless"]["rotation_order"] == 4
     refused = lsgp(*UNWRAP, "--preset", "bake", "--tiles", 24)
     assert refused.code == 2 and "add --seamless" in refused.err
 

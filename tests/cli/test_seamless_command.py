@@ -38,15 +38,15 @@ def test_cuts_match_exactly_in_single_precision(lsgp, ball_files: Path, lattice:
     assert require_certified(ball_files / "out.obj", found) == 0
     assert (found["error"], found["error_texels"]) == (0, 0)
     assert {cut["error_texels"] for cut in found["cuts"]} == {0}
-    assert found["symmetry"] == {"square": 4, "stripe": 2}[lattice]
+    assert found["rotation_order"] == {"square": 4, "stripe": 2}[lattice]
 
 
-@pytest.mark.parametrize(("lattice", "symmetry"), [("triangle", 3), ("hexagon", 6)])
+@pytest.mark.parametrize(("lattice", "rotation_order"), [("triangle", 3), ("hexagon", 6)])
 def test_cuts_of_triangular_lattices_match_to_the_last_digit(
-    lsgp, ball_files: Path, lattice: str, symmetry: int
+    lsgp, ball_files: Path, lattice: str, rotation_order: int
 ) -> None:
     found = unwrapped(lsgp, "--lattice", lattice, "--tiles", TILES)
-    assert found["symmetry"] == symmetry
+    assert found["rotation_order"] == rotation_order
     last_digit = float(np.spacing(np.float32(np.abs(read_mesh(ball_files / "out.obj", with_uv=True).corner_uv).max())))
     assert 0 < require_certified(ball_files / "out.obj", found) <= last_digit
     assert found["error_texels"] <= 1024 * last_digit

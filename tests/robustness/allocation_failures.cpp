@@ -146,7 +146,7 @@ class Bytes {
     return *this << c.tail << c.head << c.turns << c.translation[0] << c.translation[1] << c.error;
   }
   Bytes& operator<<(const lsgp::SeamlessReport& r) {
-    return *this << r.symmetry << r.tiles << r.tile_size << r.cell << r.energy_before << r.energy_after << r.cuts
+    return *this << r.rotation_order << r.tiles << r.tile_size << r.cell << r.energy_before << r.energy_after << r.cuts
                  << r.error << r.flat_cones << r.merged_cones << r.relaxed_cones;
   }
   // All but the time it took.

@@ -28,7 +28,7 @@ PARTS = lsgp.build_ledger(WHOLE, BALL.cones)
 MAP = {"corner_uv": RESULT.corner_uv, "old_uv": RESULT.corner_uv, "island": RESULT.island}
 CALL = {"surface": WHOLE, "cones": BALL.cones, "angles": ANGLES, "options": lsgp.Options(), "progress": None}
 TEXELS = {"surface": WHOLE, "corner_uv": RESULT.corner_uv, "texture_size": (1024, 512)}
-CELLS = {"symmetry": 4, "cell": 1.0}
+CELLS = {"rotation_order": 4, "cell": 1.0}
 
 # By name the function and arguments it accepts; all parameters are among them.
 FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {

@@ -26,7 +26,9 @@ def step(options: lsgp.Seamless) -> float:
 def keep_places(region: Region, result: lsgp.Result, step: float) -> NDArray[np.float64]:
     """The layout with each island moved by whole cells as near as possible to where its faces were, (m, 3, 2)."""
     lattice = native.lsgp.lattice
-    shifts = lattice.nearest_places(result.corner_uv, region.corner_uv, result.island, result.seamless.symmetry, step)
+    shifts = lattice.nearest_places(
+        result.corner_uv, region.corner_uv, result.island, result.seamless.rotation_order, step
+    )
     return _moved(region, result, shifts)
 
 
@@ -35,7 +37,7 @@ def pack(solved: Sequence[Unwrapped]) -> list[NDArray[np.float64]]:
     lattice = native.lsgp.lattice
     boxes = [lattice.island_boxes(unwrapped.corner_uv, unwrapped.result.island) for unwrapped in solved]
     # The lattice and its cell are the same for all objects.
-    shifts = lattice.shelf_places(np.concatenate(boxes), solved[0].result.seamless.symmetry, solved[0].step)
+    shifts = lattice.shelf_places(np.concatenate(boxes), solved[0].result.seamless.rotation_order, solved[0].step)
     of_object = np.split(shifts, np.cumsum([len(part) for part in boxes])[:-1])
     return [_moved(unwrapped.region, unwrapped.result, part) for unwrapped, part in zip(solved, of_object, strict=True)]
 

@@ -44,7 +44,7 @@ struct SeamlessCut {
 
 // The certificate of a seamless layout, and the cost of rounding.
 struct SeamlessReport {
-  int symmetry = 4;                            // q
+  int rotation_order = 4;                      // q
   double tiles = 0;                            // cells along the layout's longer side, before rounding
   double tile_size = 0;                        // side of a cell on the surface
   double cell = 1;                             // the same in texture coordinates

@@ -207,7 +207,7 @@ void Assembly::collect_checks(const Component& component, const ComponentMap& ma
 }
 
 void Assembly::measure_directions(const Solved& solved) {
-  const int turns = result_.seamless ? result_.seamless->symmetry : 1;
+  const int turns = result_.seamless ? result_.seamless->rotation_order : 1;
   for (Index f = 0; f < solved.directions->weight.size(); ++f) {
     const Complex image = solved.directions->image(corners(solved), f);
     if (image == 0.0) continue;

@@ -101,7 +101,7 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
   arrange_on_lattice(layouts, lattice, seamless.parity ? 2 : 1);
 
   SeamlessReport report;
-  report.symmetry = lattice.rotation_order();
+  report.rotation_order = lattice.rotation_order();
   report.tiles = grid.tiles;
   report.tile_size = 1 / (grid.density * unit_scale);
   report.cell = seamless.cell;

@@ -54,7 +54,7 @@ def test_a_seamless_report_has_the_certificate_of_every_cut():
     add_ball()
     bpy.ops.uv.cone_unwrap(seamless=True)
     certificate = reports.find(bpy.context.object.data).certificate
-    assert certificate["symmetry"] == 4 and certificate["error"] == 0
+    assert certificate["rotation_order"] == 4 and certificate["error"] == 0
     assert len(certificate["cuts"]) == len(reports.find(bpy.context.object.data).paths)
 
 

@@ -91,17 +91,17 @@ def test_stripes_are_turned_by_halves_only():
     ball = add_ball()
     unwrap(lattice="STRIPE")
     uv_map = UvMap(ball)
-    assert uv_map.tile_error(symmetry=2) == 0
+    assert uv_map.tile_error(rotation_order=2) == 0
     assert {turn for turn, _, _ in uv_map.crossings(2)} <= {1, -1}
 
 
-@pytest.mark.parametrize(("lattice", "symmetry"), [("TRIANGLE", 3), ("HEXAGON", 6)])
-def test_triangles_match_to_the_last_digit(lattice, symmetry):
+@pytest.mark.parametrize(("lattice", "rotation_order"), [("TRIANGLE", 3), ("HEXAGON", 6)])
+def test_triangles_match_to_the_last_digit(lattice, rotation_order):
     ball = add_ball()
     unwrap(lattice=lattice)
     last_digit = float(np.spacing(np.float32(np.abs(active_uv(ball)).max())))
     uv_map = UvMap(ball)
-    assert uv_map.tile_error(symmetry) <= 4 * last_digit
+    assert uv_map.tile_error(rotation_order) <= 4 * last_digit
     assert uv_map.tile_error(4) > 1e-3
 
 

@@ -31,9 +31,9 @@ def way_of(obj, direction, *, in_world=True):
     return np.array(out)
 
 
-def off(image, symmetry=1):
+def off(image, rotation_order=1):
     angle = np.angle(image[image != 0] / 1j)
-    turn = 2 * np.pi / symmetry
+    turn = 2 * np.pi / rotation_order
     return np.abs(angle - turn * np.round(angle / turn)).max()
 
 

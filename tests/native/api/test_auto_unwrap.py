@@ -55,7 +55,7 @@ def test_painting_stretches_less_than_the_conformal_map_through_the_same_cones()
 def test_options_take_the_place_of_the_presets() -> None:
     given = surface(meshes.bumpy_sphere(3))
     hexagons = replace(lsgp.preset_options("tile"), seamless=lsgp.Seamless(lattice="hexagon"))
-    assert auto_unwrap(given, preset="tile", options=hexagons).seamless.symmetry == 6
+    assert auto_unwrap(given, preset="tile", options=hexagons).seamless.rotation_order == 6
     plain = auto_unwrap(given, options=lsgp.Options(), pack="shelves")
     placed = lsgp.place_cones(given)
     assert plain == lsgp.parameterize(given, placed.cones, placed.cone_angles)

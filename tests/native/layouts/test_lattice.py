@@ -10,9 +10,9 @@ from lsgp import lattice
 ROOT_3 = np.sqrt(3)
 
 
-def cells_of(shifts: np.ndarray, symmetry: int, cell: float) -> np.ndarray:
+def cells_of(shifts: np.ndarray, rotation_order: int, cell: float) -> np.ndarray:
     """The shifts in the lattice's own two vectors; whole numbers for lattice points."""
-    basis = np.array([[1, 0.5], [0, ROOT_3 / 2]] if symmetry in (3, 6) else np.eye(2))
+    basis = np.array([[1, 0.5], [0, ROOT_3 / 2]] if rotation_order in (3, 6) else np.eye(2))
     return np.linalg.solve(basis, shifts.T / cell).T
 
 
@@ -20,38 +20,38 @@ def is_whole(values: np.ndarray) -> bool:
     return bool((np.abs(values - np.round(values)) < 1e-9).all())
 
 
-@pytest.mark.parametrize("symmetry", [1, 2, 3, 4, 6])
+@pytest.mark.parametrize("rotation_order", [1, 2, 3, 4, 6])
 @pytest.mark.parametrize("cell", [1.0, 2.0, 2.0**-6])
-def test_moves_are_whole_cells_near_what_was_asked_for(symmetry, cell):
-    asked = np.random.default_rng(symmetry).uniform(-40, 40, (500, 2))
-    found = lattice.whole_cells(asked, symmetry, cell)
-    assert is_whole(cells_of(found, symmetry, cell))
+def test_moves_are_whole_cells_near_what_was_asked_for(rotation_order, cell):
+    asked = np.random.default_rng(rotation_order).uniform(-40, 40, (500, 2))
+    found = lattice.whole_cells(asked, rotation_order, cell)
+    assert is_whole(cells_of(found, rotation_order, cell))
     # No farther than half a row and half a cell in it.
-    row = ROOT_3 / 2 if symmetry in (3, 6) else 1.0
+    row = ROOT_3 / 2 if rotation_order in (3, 6) else 1.0
     assert (np.abs(found - asked) <= np.array([0.5, row / 2]) * cell + 1e-9).all()
 
 
-@pytest.mark.parametrize("symmetry", [4, 6])
-def test_islands_go_back_to_where_they_were(symmetry):
+@pytest.mark.parametrize("rotation_order", [4, 6])
+def test_islands_go_back_to_where_they_were(rotation_order):
     rng = np.random.default_rng(1)
     uv = rng.random((30, 3, 2)) * 5
     island = np.repeat([0, 1, -1, 2], [10, 10, 5, 5]).astype(np.int32)
-    moves = lattice.whole_cells(rng.uniform(-90, 90, (3, 2)), symmetry, 0.5)
+    moves = lattice.whole_cells(rng.uniform(-90, 90, (3, 2)), rotation_order, 0.5)
     old = uv + np.append(moves, [[7.3, 7.3]], axis=0)[island][:, None, :] + rng.uniform(-0.05, 0.05, uv.shape)
     old[28] = np.nan
-    found = lattice.nearest_places(uv, old, island, symmetry, 0.5)
+    found = lattice.nearest_places(uv, old, island, rotation_order, 0.5)
     assert np.allclose(found[:2], moves[:2], atol=1e-12)
     assert (found[2] == 0).all()
 
 
-@pytest.mark.parametrize("symmetry", [2, 3, 4, 6])
+@pytest.mark.parametrize("rotation_order", [2, 3, 4, 6])
 @pytest.mark.parametrize("cell", [1.0, 2.0**-4])
-def test_boxes_on_shelves_do_not_overlap_and_fill_a_square(symmetry, cell):
+def test_boxes_on_shelves_do_not_overlap_and_fill_a_square(rotation_order, cell):
     rng = np.random.default_rng(2)
     least = rng.uniform(-30, 30, (60, 2))
     boxes = np.concatenate([least, least + rng.uniform(1, 9, (60, 2))], axis=1)
-    shifts = lattice.shelf_places(boxes, symmetry, cell)
-    assert is_whole(cells_of(shifts, symmetry, cell))
+    shifts = lattice.shelf_places(boxes, rotation_order, cell)
+    assert is_whole(cells_of(shifts, rotation_order, cell))
     placed = boxes + np.tile(shifts, 2)
     assert placed.min() >= 0
     gap = np.maximum(placed[:, None, :2] - placed[None, :, 2:], placed[None, :, :2] - placed[:, None, 2:]).max(axis=2)

@@ -14,7 +14,7 @@ from map_checks import prescribe, surface
 from meshes import Mesh
 
 PI, TURN = np.pi, 2 * np.pi
-SYMMETRY = {"square": 4, "stripe": 2, "triangle": 3, "hexagon": 6}
+ROTATION_ORDER = {"square": 4, "stripe": 2, "triangle": 3, "hexagon": 6}
 BASES = {
     "bumpy sphere": (meshes.bumpy_sphere(2), 6),
     "very bumpy sphere": (meshes.bumpy_sphere(2, 0.35), 5),
@@ -38,9 +38,9 @@ def rounded(mesh: Mesh, lattice: str, angles: list[float | None] | None = None) 
     return prescribe(mesh, angles, seamless=lsgp.Seamless(lattice=lattice))
 
 
-def turns_of(found: lsgp.Prescription, symmetry: int) -> np.ndarray:
-    """What each cone takes away, in turns of 2 pi / symmetry."""
-    turns = (TURN - found.cone_angles) * symmetry / TURN
+def turns_of(found: lsgp.Prescription, rotation_order: int) -> np.ndarray:
+    """What each cone takes away, in turns of 2 pi / rotation_order."""
+    turns = (TURN - found.cone_angles) * rotation_order / TURN
     assert np.abs(turns - np.round(turns)).max(initial=0) <= 1e-12
     return np.round(turns).astype(int)
 
@@ -50,31 +50,31 @@ def lumped_l2(mesh: Mesh, found: lsgp.Prescription) -> float:
     return oracle.predicted_l2(found.log_scale, oracle.vertex_shares(mesh.positions, mesh.triangles))
 
 
-def usual_bounds(mesh: Mesh, symmetry: int) -> tuple[np.ndarray, np.ndarray]:
+def usual_bounds(mesh: Mesh, rotation_order: int) -> tuple[np.ndarray, np.ndarray]:
     """Angles from a quarter of a turn to two turns and to 100 degrees a triangle, flat always allowed."""
     most = np.minimum(2 * TURN, np.deg2rad(100) * np.bincount(mesh.triangles.ravel())[mesh.cones])
-    low = np.minimum(0, np.ceil((TURN - most) * symmetry / TURN - 1e-9)).astype(int)
-    return low, np.full(len(low), int(symmetry * 0.75 + 1e-9))
+    low = np.minimum(0, np.ceil((TURN - most) * rotation_order / TURN - 1e-9)).astype(int)
+    return low, np.full(len(low), int(rotation_order * 0.75 + 1e-9))
 
 
 @cache
-def is_no_torus(turns: tuple[int, ...], symmetry: int) -> bool:
+def is_no_torus(turns: tuple[int, ...], rotation_order: int) -> bool:
     """The only cones are two whose turns generate all rotations of the lattice."""
     bent = [t for t in turns if t]
-    return len(bent) == 2 and all(np.gcd(t, symmetry) == 1 for t in bent)
+    return len(bent) == 2 and all(np.gcd(t, rotation_order) == 1 for t in bent)
 
 
-def best_of_all(mesh: Mesh, symmetry: int) -> float:
+def best_of_all(mesh: Mesh, rotation_order: int) -> float:
     """The least predicted L2 stretch of all whole turns within the bounds."""
     model = oracle.scale_model(*mesh)
-    low, high = usual_bounds(mesh, symmetry)
+    low, high = usual_bounds(mesh, rotation_order)
     ranges = [np.arange(a, b + 1) for a, b in zip(low, high, strict=True)]
     every = np.stack([g.ravel() for g in np.meshgrid(*ranges, indexing="ij")], axis=1)
     if model.closed:
-        every = every[every.sum(axis=1) == round(model.total * symmetry / TURN)]
+        every = every[every.sum(axis=1) == round(model.total * rotation_order / TURN)]
         if oracle.euler_of(mesh.triangles) == 0:
-            every = every[[not is_no_torus(tuple(row), symmetry) for row in every.tolist()]]
-    y = model.base + every @ model.green.T * (TURN / symmetry)
+            every = every[[not is_no_torus(tuple(row), rotation_order) for row in every.tolist()]]
+    y = model.base + every @ model.green.T * (TURN / rotation_order)
     return float(np.sqrt(((np.exp(2 * y) @ model.share) * (np.exp(-2 * y) @ model.share)).min()))
 
 
@@ -85,9 +85,9 @@ def ratios() -> dict[tuple[str, str, int], float]:
     for name in BASES:
         for seed in SEEDS:
             mesh = with_random_cones(name, seed)
-            for lattice, symmetry in SYMMETRY.items():
+            for lattice, rotation_order in ROTATION_ORDER.items():
                 found = rounded(mesh, lattice)
-                out[name, lattice, seed] = lumped_l2(mesh, found) / best_of_all(mesh, symmetry)
+                out[name, lattice, seed] = lumped_l2(mesh, found) / best_of_all(mesh, rotation_order)
     return out
 
 
@@ -101,29 +101,29 @@ def test_almost_all_angles_are_the_best() -> None:
     assert np.mean(found <= 1 + 1e-9) >= 0.95
 
 
-@pytest.mark.parametrize("lattice", SYMMETRY)
+@pytest.mark.parametrize("lattice", ROTATION_ORDER)
 @pytest.mark.parametrize("name", BASES)
 def test_angles_are_multiples_and_add_up(name: str, lattice: str) -> None:
-    symmetry = SYMMETRY[lattice]
+    rotation_order = ROTATION_ORDER[lattice]
     for seed in SEEDS:
         mesh = with_random_cones(name, seed)
         found = rounded(mesh, lattice)
         assert found.cones.tolist() == mesh.cones.tolist()
-        turns = turns_of(found, symmetry)
-        low, high = usual_bounds(mesh, symmetry)
+        turns = turns_of(found, rotation_order)
+        low, high = usual_bounds(mesh, rotation_order)
         assert (turns >= low).all() and (turns <= high).all()
         if not oracle.boundary_loops(mesh.triangles):
-            assert turns.sum() == symmetry * oracle.euler_of(mesh.triangles)
+            assert turns.sum() == rotation_order * oracle.euler_of(mesh.triangles)
 
 
-@pytest.mark.parametrize("lattice", SYMMETRY)
+@pytest.mark.parametrize("lattice", ROTATION_ORDER)
 def test_given_multiples_stay_and_the_others_are_rounded(lattice: str) -> None:
-    symmetry = SYMMETRY[lattice]
+    rotation_order = ROTATION_ORDER[lattice]
     mesh = meshes.bumpy_sphere(2)
-    given = TURN - TURN / symmetry
+    given = TURN - TURN / rotation_order
     found = rounded(mesh, lattice, [given, None, None, given, None, 1.9 * PI])
     assert found.cone_angles[[0, 3]] == pytest.approx(given, abs=1e-12)
-    assert turns_of(found, symmetry).sum() == 2 * symmetry
+    assert turns_of(found, rotation_order).sum() == 2 * rotation_order
 
 
 def test_rounding_costs_less_than_rounding_cone_by_cone() -> None:
@@ -141,9 +141,11 @@ def test_rounding_costs_less_than_rounding_cone_by_cone() -> None:
 
 @pytest.mark.parametrize(("lattice", "least"), [("square", 3), ("stripe", 4), ("triangle", 3), ("hexagon", 3)])
 def test_a_sphere_needs_so_many_cones(lattice: str, least: int) -> None:
-    symmetry = SYMMETRY[lattice]
+    rotation_order = ROTATION_ORDER[lattice]
     mesh = meshes.icosphere(2)
-    assert turns_of(rounded(mesh._replace(cones=mesh.cones[:least]), lattice), symmetry).sum() == 2 * symmetry
+    assert (
+        turns_of(rounded(mesh._replace(cones=mesh.cones[:least]), lattice), rotation_order).sum() == 2 * rotation_order
+    )
     with pytest.raises(lsgp.LsgpError) as caught:
         rounded(mesh._replace(cones=mesh.cones[: least - 1]), lattice)
     # Two cones are too few for any angles.
@@ -151,18 +153,18 @@ def test_a_sphere_needs_so_many_cones(lattice: str, least: int) -> None:
     assert caught.value.elements.indices.tolist() == mesh.cones[: least - 1].tolist()
 
 
-@pytest.mark.parametrize("lattice", SYMMETRY)
+@pytest.mark.parametrize("lattice", ROTATION_ORDER)
 def test_a_sphere_whose_turns_cannot_add_up_is_refused_with_both_sums(lattice: str) -> None:
     """One turn at the first cone and at most all but one at the two others: one too few."""
-    symmetry = SYMMETRY[lattice]
+    rotation_order = ROTATION_ORDER[lattice]
     mesh = meshes.icosphere(2)
     mesh = mesh._replace(cones=mesh.cones[:3])
-    given = [TURN - TURN / symmetry, None, None]
+    given = [TURN - TURN / rotation_order, None, None]
     with pytest.raises(lsgp.CurvatureError) as caught:
         rounded(mesh, lattice, given)
     assert caught.value.code == "SEAMLESS_IMPOSSIBLE"
-    assert f" {2 * symmetry - 1} of these" in str(caught.value)
-    assert f"requires {2 * symmetry}." in str(caught.value)
+    assert f" {2 * rotation_order - 1} of these" in str(caught.value)
+    assert f"requires {2 * rotation_order}." in str(caught.value)
     assert caught.value.elements.indices.tolist() == mesh.cones.tolist()
 
 
@@ -174,7 +176,7 @@ def test_no_sphere_without_turns() -> None:
 
 @pytest.mark.parametrize("lattice", ["square", "stripe", "triangle", "hexagon"])
 def test_one_bent_cone_and_its_opposite_are_no_torus(lattice: str) -> None:
-    unit = TURN / SYMMETRY[lattice]
+    unit = TURN / ROTATION_ORDER[lattice]
     mesh = meshes.torus()._replace(cones=np.array([0, 95], np.int32))
     for verb in (lsgp.prescribe_curvature, lsgp.parameterize):
         with pytest.raises(lsgp.CurvatureError) as caught:
@@ -185,7 +187,7 @@ def test_one_bent_cone_and_its_opposite_are_no_torus(lattice: str) -> None:
                 lsgp.Options(seamless=lsgp.Seamless(lattice=lattice)),
             )
         assert caught.value.code == "SEAMLESS_IMPOSSIBLE"
-        assert f"{round(360 - 360 / SYMMETRY[lattice])}" in str(caught.value)
+        assert f"{round(360 - 360 / ROTATION_ORDER[lattice])}" in str(caught.value)
         assert sorted(caught.value.elements.indices.tolist()) == [0, 95]
 
 
@@ -194,9 +196,9 @@ def test_no_torus_with_automatic_angles_is_refused(lattice: str) -> None:
     """Where rounding leads to the impossible one, others follow."""
     for seed in range(30):
         mesh = with_random_cones("torus", seed)
-        turns = turns_of(rounded(mesh, lattice), SYMMETRY[lattice])
+        turns = turns_of(rounded(mesh, lattice), ROTATION_ORDER[lattice])
         assert turns.sum() == 0
-        assert not is_no_torus(tuple(turns.tolist()), SYMMETRY[lattice])
+        assert not is_no_torus(tuple(turns.tolist()), ROTATION_ORDER[lattice])
 
 
 # The four corners of a patch: two triangles meet at two of them, and one triangle is alone at each of the others.
@@ -212,7 +214,7 @@ def test_corners_of_a_single_triangle_keep_less_than_half_a_turn(lattice: str) -
     for found in (unwrapped, placed):
         angle = dict(zip(found.cones.tolist(), found.cone_angles.tolist(), strict=True))
         assert [angle[v] < PI for v in ALONE] == [True, True]
-        turns = (PI - np.array(list(angle.values()))) * SYMMETRY[lattice] / TURN
+        turns = (PI - np.array(list(angle.values()))) * ROTATION_ORDER[lattice] / TURN
         assert turns == pytest.approx(np.round(turns), abs=1e-9)
     assert len(unwrapped.flipped) == 0
 

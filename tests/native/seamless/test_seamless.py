@@ -20,7 +20,7 @@ from result_check import undeclared_faults
 
 TURN = 2 * np.pi
 LATTICES = ("square", "stripe", "translation", "triangle", "hexagon")
-SYMMETRY = {"square": 4, "stripe": 2, "translation": 1, "triangle": 3, "hexagon": 6}
+ROTATION_ORDER = {"square": 4, "stripe": 2, "translation": 1, "triangle": 3, "hexagon": 6}
 TILES = 24
 
 
@@ -117,7 +117,7 @@ def test_every_cut_is_a_lattice_motion(name: str, lattice: str) -> None:
     result = checked(EVERYTHING[name], lattice=lattice)
     assert "GRID_REFINED" not in codes(result.warnings)
     report = result.seamless
-    assert (report.symmetry, report.tiles, report.cell) == (SYMMETRY[lattice], TILES, 1)
+    assert (report.rotation_order, report.tiles, report.cell) == (ROTATION_ORDER[lattice], TILES, 1)
     if lattice in ("square", "stripe", "translation"):
         assert report.error == 0 and (report.cut_errors == 0).all()
 

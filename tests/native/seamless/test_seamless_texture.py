@@ -191,21 +191,23 @@ def test_checker_does_not_match_without_parity(name: str) -> None:
 
 # --- which texture for which lattice ----------------------------------------------------------------------------------
 
-SYMMETRY = {"translation": 1, "stripe": 2, "triangle": 3, "square": 4, "hexagon": 6}
+ROTATION_ORDER = {"translation": 1, "stripe": 2, "triangle": 3, "square": 4, "hexagon": 6}
 
 
 class Waves:
-    """A smooth texture that repeats on a lattice and is the same turned by a full turn over `symmetry`, but no less."""
+    """A smooth texture that repeats on a lattice and is unchanged by rotations of 2 pi / `rotation_order`, no less."""
 
-    def __init__(self, symmetry: int, triangular: bool) -> None:
-        rng = np.random.default_rng(symmetry)
+    def __init__(self, rotation_order: int, triangular: bool) -> None:
+        rng = np.random.default_rng(rotation_order)
         second = np.exp(1j * np.pi / 3) if triangular else 1j
         # Waves that repeat along 1 and along the second vector.
         whole = rng.integers(-2, 3, (2, 4))
         along_second = (whole[1] - whole[0] * second.real) / second.imag
         waves = whole[0] + 1j * along_second
-        self._waves = np.concatenate([waves * np.exp(2j * np.pi * turn / symmetry) for turn in range(symmetry)])
-        self._heights = np.tile(rng.normal(size=4) + 1j * rng.normal(size=4), symmetry)
+        self._waves = np.concatenate(
+            [waves * np.exp(2j * np.pi * turn / rotation_order) for turn in range(rotation_order)]
+        )
+        self._heights = np.tile(rng.normal(size=4) + 1j * rng.normal(size=4), rotation_order)
         self._heights /= np.abs(self._heights).sum()
         self.slope = 2 * np.pi * float((np.abs(self._heights) * np.abs(self._waves)).sum())
 
@@ -219,16 +221,16 @@ def lattice_mesh(lattice: str) -> Mesh:
     return meshes.torus(24, 14) if lattice == "translation" else meshes.bumpy_sphere(3)
 
 
-@pytest.mark.parametrize("lattice", SYMMETRY)
+@pytest.mark.parametrize("lattice", ROTATION_ORDER)
 def test_textures_of_a_lattice_and_of_those_it_is_part_of_show_no_seam(lattice: str) -> None:
     mesh = lattice_mesh(lattice)
     result = layout(mesh, 24, lattice=lattice)
     sides = Sides(mesh, result.corner_uv)
     assert sides.edges > 0
-    symmetry, triangular = SYMMETRY[lattice], lattice in ("triangle", "hexagon")
+    rotation_order, triangular = ROTATION_ORDER[lattice], lattice in ("triangle", "hexagon")
     # Textures of more turns are textures of fewer.
     for more in (1, 2, 3, 4, 6):
-        if more % symmetry or triangular != (more in (3, 6)):
+        if more % rotation_order or triangular != (more in (3, 6)):
             continue
         texture = Waves(more, triangular)
         off = differences(texture, sides.on).max()
@@ -238,9 +240,9 @@ def test_textures_of_a_lattice_and_of_those_it_is_part_of_show_no_seam(lattice: 
 
 
 @pytest.mark.parametrize(
-    ("lattice", "symmetry"), [("stripe", 1), ("square", 1), ("square", 2), ("hexagon", 3), ("hexagon", 2)]
+    ("lattice", "rotation_order"), [("stripe", 1), ("square", 1), ("square", 2), ("hexagon", 3), ("hexagon", 2)]
 )
-def test_textures_of_too_few_turns_show_seams(lattice: str, symmetry: int) -> None:
+def test_textures_of_too_few_turns_show_seams(lattice: str, rotation_order: int) -> None:
     mesh = lattice_mesh(lattice)
-    texture = Waves(symmetry, lattice == "hexagon")
+    texture = Waves(rotation_order, lattice == "hexagon")
     assert differences(texture, Sides(mesh, layout(mesh, 24, lattice=lattice).corner_uv).beside(1e-4)).mean() > SEEN

@@ -16,7 +16,7 @@ from result_check import undeclared_faults
 
 UP = (0.0, 0.0, 1.0)
 EXACT = 1e-9  # radians
-SYMMETRY = {"square": 4, "stripe": 2, "translation": 1, "triangle": 3, "hexagon": 6}
+ROTATION_ORDER = {"square": 4, "stripe": 2, "translation": 1, "triangle": 3, "hexagon": 6}
 ONE_STROKE = 0.02  # radians: what an automatic grid may turn it by
 
 
@@ -31,9 +31,9 @@ def images(surface: lsgp.Surface, result: lsgp.Result) -> NDArray[np.complex128]
     return out
 
 
-def off_v(image: NDArray[np.complex128], symmetry: int = 1) -> NDArray[np.float64]:
-    """Angles between images and v, up to rotations by a full turn / symmetry, radians."""
-    period = 2 * np.pi / symmetry
+def off_v(image: NDArray[np.complex128], rotation_order: int = 1) -> NDArray[np.float64]:
+    """Angles between images and v, up to rotations by a full turn / rotation_order, radians."""
+    period = 2 * np.pi / rotation_order
     angle = np.angle(image / 1j)
     return np.abs(angle - period * np.round(angle / period))
 
@@ -115,12 +115,12 @@ def test_several_strokes_on_an_island_are_met_in_the_sense_of_least_squares() ->
     assert result.direction_error == pytest.approx((errors * area * inside).sum() / (area * inside).sum(), abs=1e-9)
 
 
-@pytest.mark.parametrize("lattice", SYMMETRY)
+@pytest.mark.parametrize("lattice", ROTATION_ORDER)
 @pytest.mark.parametrize("name", ["ball", "hill", "tube", "torus", "cube", "flower"])
 def test_one_stroke_on_a_lattice(name: str, lattice: str) -> None:
     mesh = MODELS[name]()
     options = lsgp.Options(seamless=lsgp.Seamless(lattice=lattice))
-    symmetry = SYMMETRY[lattice]
+    rotation_order = ROTATION_ORDER[lattice]
     surface = with_stroke(mesh, 5)
     cones = mesh.cones if lattice not in ("translation", "stripe") or name == "ball" else []
     try:
@@ -129,10 +129,10 @@ def test_one_stroke_on_a_lattice(name: str, lattice: str) -> None:
         assert lattice != "square", error  # curvature that these turns cannot take up
         return
     image = images(surface, result)[5]
-    assert off_v(image, symmetry) <= ONE_STROKE
-    assert result.direction_errors[5] == pytest.approx(off_v(image, symmetry), abs=1e-9)
+    assert off_v(image, rotation_order) <= ONE_STROKE
+    assert result.direction_errors[5] == pytest.approx(off_v(image, rotation_order), abs=1e-9)
     # No turn of the lattice brings it nearer to v itself.
-    turned = image * np.exp(2j * np.pi * np.arange(symmetry) / symmetry)
+    turned = image * np.exp(2j * np.pi * np.arange(rotation_order) / rotation_order)
     assert off_v(image) <= off_v(turned).min() + 1e-9
     assert not undeclared_faults(surface, result, options)
 
