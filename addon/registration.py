@@ -31,7 +31,9 @@ from .operators.texels.get_density import UV_OT_cone_texel_get
 from .operators.texels.select_by_density import MESH_OT_cone_texel_select
 from .operators.texels.set_density import UV_OT_cone_texel_set
 from .operators.unwrapping.auto import UV_OT_cone_auto_unwrap
+from .operators.unwrapping.draw_up import MESH_OT_cone_draw_up
 from .operators.unwrapping.from_cones import UV_OT_cone_unwrap
+from .operators.unwrapping.mark_up import MESH_OT_cone_mark_up
 from .overlay import handlers
 from .ui import manual, menus, presets
 from .ui.angle_panel import VIEW3D_PT_cone_angles
@@ -43,6 +45,8 @@ CLASSES = (
     MESH_OT_cone_mark,
     MESH_OT_cone_edit,
     MESH_OT_cone_edit_cuts,
+    MESH_OT_cone_draw_up,
+    MESH_OT_cone_mark_up,
     MESH_OT_cone_select,
     MESH_OT_cone_place,
     MESH_OT_cone_steer_cuts,

@@ -18,7 +18,11 @@ PRESETS: Choices = {
 
 TEXTURE_SIZES = [(str(2**level), str(2**level), f"{2**level} texels per side") for level in range(6, 15)]
 DIRECTIONS: Choices = {
-    "AUTO": (None, "Automatic", "World Z where the UV map is for tiles, otherwise as the islands fit"),
+    "AUTO": (
+        None,
+        "Automatic",
+        "As drawn on the mesh, otherwise world Z where the UV map is for tiles, otherwise as it fits",
+    ),
     "FIT": (None, "As It Fits", "Islands are rotated so that they take little room"),
     "X": (None, "World X", "The texture's upward direction is the world's X axis where the surface lets it"),
     "Y": (None, "World Y", "The texture's upward direction is the world's Y axis where the surface lets it"),

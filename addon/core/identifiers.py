@@ -28,6 +28,9 @@ LOG_SCALE_ATTRIBUTE = "uv_cone_log_scale"
 GAIN_ATTRIBUTE = "uv_cone_gain"
 """Float attribute on points: by how much one more cone there would lower the predicted L2 stretch of its part."""
 
+UP_ATTRIBUTE = "uv_cone_up"
+"""Vector attribute on faces: the drawn upward direction of the texture, of unit length; (0, 0, 0) for none."""
+
 NEW_UV_LAYER = "UVMap"
 """UV layer created on a mesh that has none; Blender's own name for it."""
 
@@ -51,6 +54,8 @@ SELECT_CUTS = "mesh.cone_select_cuts"
 SEAMS_FROM_CUTS = "mesh.cone_seams_from_cuts"
 EDIT = "mesh.cone_edit"
 EDIT_CUTS = "mesh.cone_edit_cuts"
+DRAW_UP = "mesh.cone_draw_up"
+MARK_UP = "mesh.cone_mark_up"
 PLACE = "mesh.cone_place"
 SET_ANGLE = "mesh.cone_set_angle"
 SPREAD_REST = "mesh.cone_spread_rest"

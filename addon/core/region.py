@@ -33,6 +33,7 @@ class Region:
     cones: all cones of the mesh, also those outside the region.
     sharp: (s, 2) int32, the edges marked sharp.
     active_edge: vertices of the active edge in edit mode, if it is one of the faces'; None otherwise.
+    drawn_up: (m, 3) float64, the drawn upward direction of the texture, 0 for none; None where nothing is drawn.
     cut_paint: (n,) float64, from 0 where cuts should run to 1 where they should not; None without such a vertex group.
     axes: (3, 3), the rotation from the region's shape to the world: a direction in the world, times it, is one here.
     weights: (n,) float64, importance weights; None without such a vertex group, or where they were not asked for.
@@ -52,6 +53,7 @@ class Region:
     cones: ConeAngles
     sharp: NDArray[np.int32]
     active_edge: tuple[int, int] | None
+    drawn_up: NDArray[np.float64] | None
     cut_paint: NDArray[np.float64] | None
     axes: NDArray[np.float64]
     weights: NDArray[np.float64] | None

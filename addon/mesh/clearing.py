@@ -15,6 +15,7 @@ ATTRIBUTES = (
     identifiers.CONE_ANGLE_KIND_ATTRIBUTE,
     identifiers.LOG_SCALE_ATTRIBUTE,
     identifiers.GAIN_ATTRIBUTE,
+    identifiers.UP_ATTRIBUTE,
 )
 
 
@@ -36,9 +37,9 @@ def _remove_attributes(mesh: bpy.types.Mesh) -> bool:
         for name in present:
             mesh.attributes.remove(mesh.attributes[name])
         return bool(present)
-    layers = bmesh.from_edit_mesh(mesh).verts.layers
+    bm = bmesh.from_edit_mesh(mesh)
     present = False
-    for kind in (layers.float, layers.int):
+    for kind in (bm.verts.layers.float, bm.verts.layers.int, bm.faces.layers.float_vector):
         for name in ATTRIBUTES:
             if (layer := kind.get(name)) is not None:
                 kind.remove(layer)

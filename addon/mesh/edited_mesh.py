@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.identifiers import UP_ATTRIBUTE
 from .arrays import rows
 from .manifold_triangles import manifold_triangles
 from .mesh_reader import FloatArray, MeshReader, each_once, triangulated
@@ -108,6 +109,11 @@ class EditedMesh(MeshReader):
     def face_values(self, name: str) -> FloatArray | None:
         layer = self._bm.faces.layers.float.get(name)
         return None if layer is None else np.array([face[layer] for face in self._bm.faces], np.float32)
+
+    @property
+    def drawn_up(self) -> FloatArray | None:
+        layer = self._bm.faces.layers.float_vector.get(UP_ATTRIBUTE)
+        return None if layer is None else rows([face[layer][:] for face in self._bm.faces], 3)
 
     def _uv_layer(self) -> bmesh.types.BMLayerItem | None:
         active = self._mesh.uv_layers.active

@@ -62,6 +62,10 @@ class MeshReader(Protocol):
     def face_values(self, name: str) -> FloatArray | None:
         """(f,) values of a float attribute on faces; None where there is no such attribute."""
 
+    @property
+    def drawn_up(self) -> FloatArray | None:
+        """(f, 3) the drawn upward direction of the texture, 0 for none; None where there is no such attribute."""
+
 
 def triangulated(vertices: list[int], positions: list) -> list[tuple[int, int, int]]:
     """Vertices of triangles that cover one face."""

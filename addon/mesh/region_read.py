@@ -95,7 +95,8 @@ def build_region(
     vertex_used[triangles] = True
     edge_used = np.zeros(len(mesh.edges), bool)
     edge_used[mesh.loop_edges[chosen[mesh.loop_faces]]] = True
-    places, axes, size = _in_object_shape((mesh.places if places is None else places).astype(np.float64), obj)
+    shape, axes, size = _object_shape(obj)
+    places = (mesh.places if places is None else places).astype(np.float64) @ shape
     uv = np.full((len(mesh.loop_vertices), 2), np.nan) if mesh.uv is None else mesh.uv.astype(np.float64)
     return Region(
         surface=native.lsgp.Surface(
@@ -113,6 +114,7 @@ def build_region(
         cones=ConeAngles.none() if groups.cones is None else angles_in(obj, groups.cones, mesh),
         sharp=mesh.edges[edge_used & mesh.is_sharp],
         active_edge=_active_edge(obj, mesh.edges[edge_used]),
+        drawn_up=_drawn_up(mesh, inside, shape),
         cut_paint=weights_in(obj, SEAM_COST_GROUP, mesh, outside=0.5),
         axes=axes,
         weights=None if groups.weights is None else weights_in(obj, groups.weights, mesh),
@@ -137,20 +139,26 @@ def _active_edge(obj: bpy.types.Object, edges: NDArray[np.int32]) -> tuple[int, 
     return tuple(ends) if (np.sort(edges, axis=1) == ends).all(axis=1).any() else None
 
 
-def _in_object_shape(
-    places: NDArray[np.float64], obj: bpy.types.Object
-) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
-    """The places as the object's transform stretches them, along the mesh's axes, how it turns these, (3, 3), and how
-    much it enlarges them.
+def _drawn_up(mesh: StoredMesh, inside: NDArray[np.bool_], shape: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """Of the triangles inside, stretched as they are; None where nothing is drawn on them."""
+    if mesh.drawn_up is None:
+        return None
+    drawn = mesh.drawn_up[mesh.triangle_faces[inside]].astype(np.float64) @ shape
+    return drawn if drawn.any() else None
 
-    A transform that enlarges alike in all directions changes no shape, and one that flattens leaves none: then the
-    places are those of the mesh.
+
+def _object_shape(obj: bpy.types.Object) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+    """How the object's transform stretches places along the mesh's axes, (3, 3), which they are to be multiplied with
+    on the right, how it turns these axes, (3, 3), and how much it enlarges.
+
+    A transform that enlarges alike in all directions changes no shape, and one that flattens leaves none: then places
+    are as in the mesh.
     """
     turned, sizes, axes = np.linalg.svd(np.array(obj.matrix_world.to_3x3(), np.float64))
     if sizes[-1] <= FLAT * sizes[0] or sizes[0] <= (1 + UNIFORM) * sizes[-1]:
-        return places, turned @ axes, obj.matrix_world.median_scale
+        return np.eye(3), turned @ axes, obj.matrix_world.median_scale
     size = float(np.cbrt(sizes.prod()))
-    return places @ (axes.T * (sizes / size)) @ axes, turned @ axes, size
+    return (axes.T * (sizes / size)) @ axes, turned @ axes, size
 
 
 def require_editable(obj: bpy.types.Object) -> None:

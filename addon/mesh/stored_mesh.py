@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import versions
+from ..core.identifiers import UP_ATTRIBUTE
 from .arrays import read_array
 from .manifold_triangles import manifold_triangles
 from .mesh_reader import FloatArray, MeshReader, each_once, triangulated
@@ -130,6 +131,13 @@ class StoredMesh(MeshReader):
         return (
             np.ones(len(self._mesh.loops), bool) if layer is None else versions.selected_loops(self._mesh, layer.name)
         )
+
+    @cached_property
+    def drawn_up(self) -> FloatArray | None:
+        attribute = self._mesh.attributes.get(UP_ATTRIBUTE)
+        if attribute is None or (attribute.domain, attribute.data_type) != ("FACE", "FLOAT_VECTOR"):
+            return None
+        return read_array(attribute.data, "vector", np.float32, 3)
 
     @cached_property
     def _border(self) -> NDArray[np.bool_]:

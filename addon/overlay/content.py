@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ..core.identifiers import CONE_GROUP
 from ..mesh.angles import read_angles
 from ..mesh.reader import reader
+from ..mesh.texture_up import directions_in
 
 if TYPE_CHECKING:
     from ..core.cone_angles import ConeAngles
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from ..jobs.sessions.cut_session import CutSession
     from ..mesh.mesh_reader import MeshReader
     from ..mesh.reports import Report
+    from ..mesh.texture_up import Directions
 
 FloatArray = NDArray[np.float32]
 
@@ -31,6 +33,11 @@ CutSides = tuple[FloatArray, FloatArray]
 
 # Distance of the two lines of a cut from it, one on each side, relative to its mean edge length.
 SIDE_OFFSET = 0.12
+
+# Length of an arrow relative to the side of a square of its face's area, and of its head relative to the arrow.
+ARROW, HEAD = 0.6, 0.3
+# Faces on which the axes of the texture are drawn at most, and their length relative to such a side.
+MOST_AXES, AXIS = 1000, 0.35
 
 # Of the lines of the active cut, relative to others.
 ACTIVE_WIDTH = 2.0
@@ -55,8 +62,8 @@ class Content:
     which of the cones each is of. cut_lines: (s, 2, 3) segments along both sides of every cut, and cut_paths: (s,) the
     number of the path that each belongs to. cut_uv: (s, 2, 2) the same segments in the layout.
     kinds: of each path one of `cut_kinds`; empty where they are not known.
-    flipped, overlapping: (t, 3, 3) triangles. active: the vertex of the active cone, None for none. active_path: the
-    number of the path that is drawn wider, None for none.
+    flipped, overlapping: (t, 3, 3) triangles. up_lines: (s, 2, 3) arrows along the drawn directions. active: the vertex
+    of the active cone, None for none. active_path: the number of the path that is drawn wider, None for none.
     """
 
     cones: list[Cone] = field(default_factory=list)
@@ -68,6 +75,7 @@ class Content:
     cut_uv: FloatArray = field(default_factory=lambda: np.empty((0, 2, 2), np.float32))
     flipped: FloatArray = field(default_factory=lambda: np.empty((0, 3, 3), np.float32))
     overlapping: FloatArray = field(default_factory=lambda: np.empty((0, 3, 3), np.float32))
+    up_lines: FloatArray = field(default_factory=lambda: np.empty((0, 2, 3), np.float32))
     active: int | None = None
     active_path: int | None = None
     kinds: list[str] = field(default_factory=list)
@@ -107,7 +115,13 @@ def build_content(
         kinds=[] if report is None else report.kinds,
         flipped=_triangles(mesh, [] if report is None else report.flipped),
         overlapping=_triangles(mesh, [] if report is None else report.overlapping),
+        up_lines=_arrows(mesh, directions_in(mesh)),
     )
+
+
+def with_directions(content: Content, mesh: MeshReader, directions: Directions) -> Content:
+    """What to show of a mesh while directions are drawn on it."""
+    return replace(content, up_lines=_arrows(mesh, directions))
 
 
 def session_content(obj: bpy.types.Object, session: ConeSession) -> Content:
@@ -199,6 +213,47 @@ def _along_path(inward: FloatArray, *, closed: bool) -> FloatArray:
 def _unit(vectors: FloatArray) -> FloatArray:
     with np.errstate(invalid="ignore", divide="ignore"):
         return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+
+def _arrows(mesh: MeshReader, directions: Directions) -> FloatArray:
+    """(3k, 2, 3): a shaft and the two sides of a head over the middle of each face."""
+    lines = []
+    for face, up in directions.items():
+        middle, normal, size = _frame(mesh, face)
+        shaft = ARROW * size * np.array(up, np.float32)
+        across, tip = np.cross(normal, shaft), middle + shaft / 2
+        lines.append((middle - shaft / 2, tip))
+        lines += [(tip, tip - HEAD * shaft + side * HEAD * across) for side in (0.6, -0.6)]
+    return np.array(lines, np.float32).reshape(-1, 2, 3)
+
+
+def texture_axes(mesh: MeshReader) -> tuple[FloatArray, FloatArray]:
+    """(k, 2, 3) each: from the middle of faces, spread evenly over their numbers, the way u and the way v increases;
+    their lengths are in the ratio of the derivatives. None for faces without area in the UV map."""
+    count = mesh.size()[2]
+    axes = []
+    for face in range(0, count, max(-(-count // MOST_AXES), 1)):
+        vertices, uv = mesh.corners([face])
+        if not len(uv):
+            break
+        corners = mesh.positions(vertices)
+        # The linear map from texture to surface that fits the corners best.
+        found, _, rank, _ = np.linalg.lstsq(uv - uv.mean(axis=0), corners - corners.mean(axis=0), rcond=None)
+        if rank == 2:
+            middle, _, size = _frame(mesh, face)
+            axes.append([(middle, middle + way) for way in found * (AXIS * size / np.linalg.norm(found, axis=1).max())])
+    u, v = np.array(axes, np.float32).reshape(-1, 2, 2, 3).swapaxes(0, 1)
+    return u, v
+
+
+def _frame(mesh: MeshReader, face: int) -> tuple[FloatArray, FloatArray, float]:
+    """The middle of a face, its normal, and the side of a square of its area."""
+    corners = _triangles(mesh, [face])
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
+    areas = np.linalg.norm(normals, axis=1)
+    whole = max(areas.sum(), np.finfo(np.float32).tiny)
+    middle = areas @ corners.mean(axis=1) / whole
+    return middle, normals.sum(axis=0) / whole, float(np.sqrt(whole))
 
 
 def _triangles(mesh: MeshReader, faces: list[int]) -> FloatArray:

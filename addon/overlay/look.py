@@ -62,6 +62,7 @@ class OverlayLook(_CutColors):
     moved_cut: _color("By Hand", cut_kinds.KINDS["moved"][1], (0.25, 0.80, 0.35, 1.0))
     flipped: _color("Flipped", "Faces that are upside down in the UV map", (1.0, 0.05, 0.05, 0.6))
     overlapping: _color("Overlapping", "Faces that overlap others in the UV map", (0.85, 0.10, 0.95, 0.35))
+    up: _color("Texture Up", "Arrows along the drawn upward direction of the texture", (0.10, 0.85, 0.45, 1.0))
     text: _color("Text", "Angles next to cones", (1.0, 1.0, 1.0, 1.0))
     line_width: bpy.props.FloatProperty(
         name="Line Width", description="Width of cuts", default=3.0, min=1.0, max=10.0, subtype="PIXEL", update=_redraw

@@ -51,6 +51,19 @@ class ConeUnwrapOverlay(bpy.types.PropertyGroup):
     cut_colors: bpy.props.EnumProperty(
         name="Cut Colors", description="What the colors of cuts tell", items=CUT_COLORS, update=_redraw
     )
+    up: bpy.props.BoolProperty(
+        name="Texture Up",
+        description="Show arrows where the texture's upward direction was drawn or marked",
+        default=True,
+        update=_redraw,
+    )
+    axes: bpy.props.BoolProperty(
+        name="Texture Axes",
+        description="Show on the mesh which way u and v increase in the UV map, in the colors of the X and Y axes; on "
+        "every so many faces of large meshes",
+        default=False,
+        update=_redraw,
+    )
     flipped: bpy.props.BoolProperty(
         name="Flipped Faces", description="Show faces that are upside down in the UV map", default=True, update=_redraw
     )

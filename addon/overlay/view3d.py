@@ -19,7 +19,7 @@ from ..core.screen import Screen
 from ..mesh import distortion
 from ..mesh.reader import reader
 from . import cache, colors, labels, shaders
-from .content import Content
+from .content import Content, texture_axes
 from .heat import SCALES
 from .look import ACTIVE_SIZE, OverlayLook, overlay_look
 from .settings import ConeUnwrapOverlay, settings
@@ -56,7 +56,12 @@ def draw_in_scene() -> None:
         _seen.clear()
         if chosen.cones:
             _find_seen(context, see_through=see_through)
-        for draw, share in ((_draw_faces, FACES_NEARER), (_draw_cuts, 1.0), (_draw_cones, 1.0)):
+        for draw, share in (
+            (_draw_faces, FACES_NEARER),
+            (_draw_cuts, 1.0),
+            (_draw_directions, 1.0),
+            (_draw_cones, 1.0),
+        ):
             with _brought_nearer(context.region_data, share):
                 for obj in shown_objects(context):
                     with gpu.matrix.push_pop():
@@ -107,6 +112,32 @@ def _draw_cuts(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: OverlayLo
             shader.uniform_float("lineWidth", size * look.line_width * pixel)
             build = partial(_cut_batch, content, rows, look, chosen.cut_colors)
             entry.batch((name, chosen.cut_colors), build).draw(shader)
+
+
+def _draw_directions(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: OverlayLook) -> None:
+    entry, pixel = cache.entry(obj), bpy.context.preferences.system.pixel_size
+    batches = []
+    if chosen.axes:
+        batches += [entry.batch(name, partial(_axis_batch, obj, number)) for number, name in enumerate(("u", "v"))]
+    if chosen.up and len(entry.content.up_lines):
+        batches.append(entry.batch("up", partial(_arrow_batch, entry.content, look)))
+    shader = shaders.lines()
+    shader.bind()
+    shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
+    shader.uniform_float("lineWidth", 0.7 * look.line_width * pixel)
+    for batch in batches:
+        batch.draw(shader)
+
+
+def _arrow_batch(content: Content, look: OverlayLook) -> gpu.types.GPUBatch:
+    return shaders.line_batch(content.up_lines, colors.repeated(look.up, len(content.up_lines)))
+
+
+def _axis_batch(obj: bpy.types.Object, number: int) -> gpu.types.GPUBatch:
+    """number: 0 for u, 1 for v."""
+    lines, theme = texture_axes(reader(obj.data))[number], bpy.context.preferences.themes[0].user_interface
+    color = (theme.axis_x, theme.axis_y)[number]
+    return shaders.line_batch(lines, colors.repeated((*color, 1.0), len(lines)))
 
 
 def _draw_cones(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: OverlayLook) -> None:

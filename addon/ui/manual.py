@@ -11,6 +11,7 @@ CONES = "how-to/choosing-cones"
 ANGLES = "reference/cone-angles"
 CUTS = "how-to/cuts"
 TEXELS = "how-to/texel-density"
+DIRECTION = "how-to/texture-direction"
 
 PAGES = {
     identifiers.AUTO_UNWRAP: FIRST_UNWRAP,
@@ -24,6 +25,8 @@ PAGES = {
     identifiers.STEER_CUTS: CUTS,
     identifiers.SELECT_CUTS: CUTS,
     identifiers.SEAMS_FROM_CUTS: CUTS,
+    identifiers.DRAW_UP: DIRECTION,
+    identifiers.MARK_UP: DIRECTION,
     identifiers.SET_ANGLE: ANGLES,
     identifiers.SPREAD_REST: ANGLES,
     identifiers.SNAP_ANGLES: ANGLES,

@@ -71,6 +71,10 @@ class VIEW3D_MT_cone_unwrap(bpy.types.Menu):
         layout.operator(identifiers.SELECT_CUTS)
         layout.operator(identifiers.SEAMS_FROM_CUTS)
         layout.separator()
+        layout.operator(identifiers.DRAW_UP)
+        layout.operator(identifiers.MARK_UP).clear = False
+        layout.operator(identifiers.MARK_UP, text="Clear Texture Up").clear = True
+        layout.separator()
         layout.operator(identifiers.SELECT_REPORTED)
         layout.menu(VIEW3D_MT_cone_seeing.bl_idname)
         layout.menu(VIEW3D_MT_cone_texels.bl_idname)

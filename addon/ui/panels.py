@@ -78,6 +78,20 @@ class VIEW3D_PT_cone_unwrap_cones(ConeUnwrapSubPanel, bpy.types.Panel):
         column.operator(identifiers.EDIT_CUTS, icon="EDGESEL")
 
 
+class VIEW3D_PT_cone_unwrap_up(ConeUnwrapSubPanel, bpy.types.Panel):
+    bl_label = "Texture Up"
+    bl_order = 8
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        column = self.layout.column(align=True)
+        column.operator_context = "INVOKE_DEFAULT"
+        column.operator(identifiers.DRAW_UP, icon="GREASEPENCIL")
+        row = column.row(align=True)
+        row.operator(identifiers.MARK_UP, text="From Edges").clear = False
+        row.operator(identifiers.MARK_UP, text="Clear").clear = True
+
+
 class VIEW3D_PT_cone_unwrap_problems(ConeUnwrapSubPanel, bpy.types.Panel):
     bl_label = "Problems"
     bl_order = 5
@@ -156,7 +170,7 @@ class VIEW3D_PT_cone_unwrap_overlay(ConeUnwrapSubPanel, bpy.types.Panel):
         layout = self.layout
         layout.active = chosen.show
         grid = layout.grid_flow(columns=2, even_columns=True, align=True)
-        for name in ("cones", "angles", "cuts", "flipped", "overlapping"):
+        for name in ("cones", "angles", "cuts", "flipped", "overlapping", "up", "axes"):
             part = grid.row()
             part.active = name != "angles" or chosen.cones
             part.prop(chosen, name, text={"flipped": "Flipped", "overlapping": "Overlapping"}.get(name))
@@ -234,6 +248,7 @@ PANELS = (
     VIEW3D_PT_cone_unwrap,
     VIEW3D_PT_cone_unwrap_problems,
     VIEW3D_PT_cone_unwrap_cones,
+    VIEW3D_PT_cone_unwrap_up,
     VIEW3D_PT_cone_unwrap_quality,
     VIEW3D_PT_cone_unwrap_seams,
     VIEW3D_PT_cone_unwrap_overlay,

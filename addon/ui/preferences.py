@@ -43,7 +43,7 @@ class ConeUnwrapPreferences(FirstPressProperties, OverlayLook, bpy.types.AddonPr
         split = layout.row()
         for heading, names in (
             ("Cones", ("tip", "saddle", "flat", "automatic")),
-            ("Faces and Text", ("flipped", "overlapping", "text")),
+            ("Faces, Arrows and Text", ("flipped", "overlapping", "up", "text")),
             ("Sizes", ("line_width", "cone_size", "text_size")),
         ):
             column = split.column()

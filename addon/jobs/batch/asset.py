@@ -157,7 +157,6 @@ def _layouts(
             args.preset or "bake",
             MARGIN if packing is None or packing.margin is None else packing.margin,
             by_cells=solved[0].result.seamless is not None,
-            turned=not direction_choice(args).is_any,
             udim=1 if packing is None or packing.udim is None else packing.udim,
         )
         layouts = final_layouts(solved, replace(pack, stack=args.stack))

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -26,6 +26,8 @@ from .stacking import packed_in_stacks
 if TYPE_CHECKING:
     import lsgp
 
+    from ...core.region import Region
+
 TEXTURE_SIZE = 1024
 """Side, in texels, of the texture for which errors of seams are reported."""
 
@@ -37,7 +39,8 @@ FILLED = 0.6
 class PackSettings:
     """How islands are placed: packed, those of all objects together, or not; by whole cells or not.
 
-    margin_method, margin, turned, udim: as of `packing.pack`; udim not by cells. texels: the layout at a texel density,
+    margin_method, margin, turned, udim: as of `packing.pack`; udim not by cells, and islands are not turned where the
+    texture of a map follows directions. texels: the layout at a texel density,
     with its own margin and tiles, per `unit` of length in Blender's own; None: the square is filled. stack: whether
     islands of one shape lie on each other, as of `lsgp.auto_unwrap`; not at a texel density and not by cells.
     """
@@ -53,11 +56,16 @@ class PackSettings:
     stack: str | None = None
 
 
-def packing_of_preset(preset: str, margin: float, *, by_cells: bool, turned: bool, udim: int = 1) -> PackSettings:
+def packing_of_preset(preset: str, margin: float, *, by_cells: bool, udim: int = 1) -> PackSettings:
     """How the islands of all objects are packed by a preset of `lsgp.auto_unwrap`.  The others as above."""
     # Blender's packer takes several passes for exact margins, which are for textures that are computed to the texel.
     exact = preset == "bake" or packing.is_tight()
-    return PackSettings(True, by_cells, packing.EXACT if exact else "ADD", margin, turned, udim)
+    return PackSettings(True, by_cells, packing.EXACT if exact else "ADD", margin, udim=udim)
+
+
+def turned_for(regions: Iterable[Region], settings: PackSettings) -> PackSettings:
+    """The settings, without rotating islands where the texture on a region follows directions."""
+    return replace(settings, turned=all(region.surface.directions is None for region in regions))
 
 
 def final_layouts(solved: Sequence[Unwrapped], settings: PackSettings) -> list[NDArray[np.float64]]:
@@ -72,6 +80,7 @@ def stacked_layouts(solved: Sequence[Unwrapped], settings: PackSettings) -> tupl
         return [unwrapped.corner_uv for unwrapped in solved], 0
     if settings.by_cells:
         return cells.pack(solved), 0
+    settings = turned_for([unwrapped.region for unwrapped in solved], settings)
     parts = _with_one_density(solved)
     if settings.texels is not None:
         alike = _whole(solved, [part.corner_uv for part in parts])

@@ -91,6 +91,11 @@ class ConeSession(MapSession):
         self._places = np.where(known[:, :, None], region.corner_uv, np.nan)
         super().__init__(obj, mesh)
 
+    @property
+    def region(self) -> Region:
+        """All faces of the mesh."""
+        return self._whole.region
+
     def table(self) -> FollowedTable:
         """The table of the cones as they are edited."""
         return FollowedTable(self._obj, self._whole.region.surface, self.cones.current)

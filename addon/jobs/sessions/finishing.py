@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ...core.errors import object_errors
-from ..layouts.maps import PackSettings
+from ..layouts.maps import PackSettings, turned_for
 from ..tasks.unwrapping import Unwrapped
 from .cone_session import ConeSession
 from .edited_layout import packed_where_needed
@@ -25,7 +25,8 @@ def finish(
     placed = [*done, *others]
     if done:
         try:
-            layouts = packed_where_needed([session.placement() for session in placed], placing)
+            settings = turned_for([session.region for session in placed], placing)
+            layouts = packed_where_needed([session.placement() for session in placed], settings)
             for session, layout in zip(placed, layouts, strict=True):
                 if layout is not None:
                     session.place(layout)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Generic, TypeVar
+from typing import Generic, Protocol, TypeVar
 
 import bpy
 import numpy as np
@@ -17,8 +17,7 @@ from ...core.screen import Screen
 from ...mesh import changes
 from ...mesh.reader import readable_mesh
 from ...mesh.stored_mesh import FrozenMesh
-from .map_session import MapSession
-from .picking import Hit, Picker
+from .picking import Hit, PickedPlace, Picker
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,13 +33,28 @@ class Sight:
     selected: bool = False
 
 
+class EditSession(Protocol):
+    """What is edited of one mesh, until it is restored or stored.  mesh: with its current UVs."""
+
+    mesh: FrozenMesh
+
+    def doubt(self) -> None:
+        """Something else may have changed the mesh."""
+
+    def is_intact(self) -> bool:
+        """Whether the mesh can still be written to."""
+
+    def restore(self) -> None:
+        """Leave the mesh as it was before the session."""
+
+
 class PickedObject:
     """An object in edit mode.
 
     holds_layout: whether its map, which follows a drag in it, is picked as it was. session: once it has begun.
     """
 
-    session: MapSession | None = None
+    session: EditSession | None = None
 
     def __init__(self, obj: bpy.types.Object) -> None:
         self.obj, self.uid, self.name = obj, obj.data.session_uid, obj.name
@@ -117,6 +131,11 @@ class PickedObjects(Generic[Edited]):
     def vertex_at(self, sight: Sight, x: float, y: float) -> tuple[Edited, Hit] | None:
         """The nearest vertex of the first triangle under a pixel, and its object; None where there is no triangle."""
         found = [(edited, picker.vertex_at(screen, x, y)) for edited, picker, screen in self._shown(sight)]
+        return min((pick for pick in found if pick[1] is not None), key=lambda pick: pick[1].depth, default=None)
+
+    def place_at(self, sight: Sight, x: float, y: float) -> tuple[Edited, PickedPlace] | None:
+        """The place on the first triangle under a pixel, and its object; None where there is no triangle."""
+        found = [(edited, picker.place_at(screen, x, y)) for edited, picker, screen in self._shown(sight)]
         return min((pick for pick in found if pick[1] is not None), key=lambda pick: pick[1].depth, default=None)
 
     def nearest(self, sight: Sight, pick: Callable[[Edited, Picker, Screen], Hit | None]) -> tuple[Edited, Hit] | None:

@@ -31,6 +31,15 @@ class Hit:
     edge: int = -1
 
 
+@dataclass(frozen=True, slots=True)
+class PickedPlace:
+    """triangle: its number. place: (3,) in the mesh's own space. depth: as of `Screen.pixels`."""
+
+    triangle: int
+    place: NDArray[np.float64]
+    depth: float
+
+
 class Picker:
     """Casts rays at the triangles of a mesh as it is drawn, or of its UV map, which is then at z = 0."""
 
@@ -58,13 +67,21 @@ class Picker:
 
     def vertex_at(self, screen: Screen, x: float, y: float) -> Hit | None:
         """The nearest vertex of the triangle under a pixel; None where there is no triangle."""
-        origin, direction = screen.ray(x, y)
-        hit, _, triangle, _ = self._tree.ray_cast(origin, direction)
-        if hit is None:
+        found = self.place_at(screen, x, y)
+        if found is None:
             return None
-        corners = self._triangles[triangle]
-        nearest = corners[np.linalg.norm(self._points[corners] - np.array(hit), axis=1).argmin()]
-        return Hit(int(self._owner[nearest]), float(screen.pixels(hit)[0, 2]))
+        corners = self._triangles[found.triangle]
+        nearest = corners[np.linalg.norm(self._points[corners] - found.place, axis=1).argmin()]
+        return Hit(int(self._owner[nearest]), found.depth)
+
+    def place_at(self, screen: Screen, x: float, y: float) -> PickedPlace | None:
+        """The place on the first triangle under a pixel; None where there is no triangle."""
+        hit, _, triangle, _ = self._tree.ray_cast(*screen.ray(x, y))
+        return None if hit is None else PickedPlace(triangle, np.array(hit), float(screen.pixels(hit)[0, 2]))
+
+    def distance(self, place: NDArray[np.float64]) -> float:
+        """From a place to the nearest triangle."""
+        return float(self._tree.find_nearest(place)[3])
 
     def cone_at(self, screen: Screen, cones: Iterable[int], x: float, y: float, radius: float) -> Hit | None:
         """The nearest cone to a pixel within a radius, in pixels, that the mesh does not hide; None without one."""

@@ -15,7 +15,7 @@ def _poll_targets(operator: type[bpy.types.Operator], context: bpy.types.Context
         operator.poll_message_set(wanted)
         return False
     if any(changes.is_suspended(obj.data) for obj in objects):
-        operator.poll_message_set("Finish Edit Cones or Edit Cuts first: Enter, or Esc to cancel")
+        operator.poll_message_set("Finish what is edited with the mouse first: Enter, or Esc to cancel")
         return False
     return True
 

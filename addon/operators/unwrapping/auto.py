@@ -17,7 +17,6 @@ from ...core.region import Region
 from ...core.text import counted
 from ...jobs.layouts.maps import PackSettings, packing_of_preset, stacked_layouts, write_map
 from ...jobs.layouts.remembered import unwrap_all_once
-from ...jobs.tasks.directions import DirectionChoice
 from ...jobs.tasks.placing import mark_placed
 from ...jobs.tasks.summaries import unwrap_summary
 from ...jobs.tasks.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_task
@@ -183,7 +182,7 @@ class UV_OT_cone_auto_unwrap(
             keep_placement=False,
             correct_aspect=options.seamless is None,
             cuts=chosen_cuts(self.cuts),
-            direction=self._direction(),
+            direction=chosen_direction(self.direction, tiles=self.preset == "TILE"),
         )
 
         def make_task(obj: bpy.types.Object, region: Region) -> UnwrapTask:
@@ -212,18 +211,14 @@ class UV_OT_cone_auto_unwrap(
 
     def _packing(self) -> PackSettings:
         size = int(self.texture_size)
-        by_cells, turned = self.preset == "TILE", not self._direction().is_any
-        preset = PRESETS[self.preset][0]
-        pack = packing_of_preset(preset, self.margin / size, by_cells=by_cells, turned=turned, udim=self.udim)
+        by_cells, preset = self.preset == "TILE", PRESETS[self.preset][0]
+        pack = packing_of_preset(preset, self.margin / size, by_cells=by_cells, udim=self.udim)
         if by_cells:
             return pack
         if self.scale == "FILL":
             return replace(pack, stack=STACKS[self.stack][0])
         layout = native.lsgp.TexelLayout(self.density, size, self.udim, self.margin)
         return replace(pack, texels=layout, unit=length_unit(bpy.context.scene).size)
-
-    def _direction(self) -> DirectionChoice:
-        return chosen_direction(self.direction, tiles=self.preset == "TILE")
 
     def _options(self) -> lsgp.Options:
         """Raises InputError."""

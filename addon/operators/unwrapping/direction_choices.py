@@ -11,5 +11,5 @@ AXES = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": UP}
 def chosen_direction(identifier: str, *, tiles: bool) -> DirectionChoice:
     """identifier: of the property of `DirectionProperty`. tiles: whether the UV map is for tiles."""
     if identifier == "AUTO":
-        return DirectionChoice(UP if tiles else None)
+        return DirectionChoice(UP if tiles else None, if_drawn=True)
     return DirectionChoice(AXES.get(identifier), by_edge=identifier == "EDGE")

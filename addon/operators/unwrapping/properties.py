@@ -140,5 +140,4 @@ def unwrap_settings(chosen: bpy.types.OperatorProperties) -> UnwrapSettings:
 def pack_settings(chosen: bpy.types.OperatorProperties) -> PackSettings:
     """How these properties ask islands to be placed."""
     pack = chosen.pack and not chosen.keep_placement
-    turned = not chosen_direction(chosen.direction, tiles=chosen.seamless).is_any
-    return PackSettings(pack, chosen.seamless, chosen.margin_method, chosen.margin, turned)
+    return PackSettings(pack, chosen.seamless, chosen.margin_method, chosen.margin)

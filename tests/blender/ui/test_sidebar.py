@@ -55,7 +55,7 @@ def shown():
     return {panel.bl_label for panel in panels.PANELS if is_shown(panel)}
 
 
-ALWAYS = {"Cone Unwrap", "Cones", "Overlay", "Distortion", "Texel Density", "Texture"}
+ALWAYS = {"Cone Unwrap", "Cones", "Overlay", "Distortion", "Texel Density", "Texture", "Texture Up"}
 
 
 def test_panels_come_with_what_they_tell():
