@@ -124,7 +124,7 @@ def _draw_directions(obj: bpy.types.Object, chosen: ConeUnwrapOverlay, look: Ove
     shader = shaders.lines()
     shader.bind()
     shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
-    shader.uniform_float("lineWidth", 0.7 * look.line_width * pixel)
+    shader.uniform_float("lineWidth", look.line_width * pixel)
     for batch in batches:
         batch.draw(shader)
 
