@@ -91,6 +91,7 @@ class PickedObject:
 
 
 Edited = TypeVar("Edited", bound=PickedObject)
+Picked = TypeVar("Picked", Hit, PickedPlace)
 
 
 class PickedObjects(Generic[Edited]):
@@ -130,13 +131,16 @@ class PickedObjects(Generic[Edited]):
 
     def vertex_at(self, sight: Sight, x: float, y: float) -> tuple[Edited, Hit] | None:
         """The nearest vertex of the first triangle under a pixel, and its object; None where there is no triangle."""
-        found = [(edited, picker.vertex_at(screen, x, y)) for edited, picker, screen in self._shown(sight)]
-        return min((pick for pick in found if pick[1] is not None), key=lambda pick: pick[1].depth, default=None)
+        return self._first(sight, lambda picker, screen: picker.vertex_at(screen, x, y))
 
     def place_at(self, sight: Sight, x: float, y: float) -> tuple[Edited, PickedPlace] | None:
         """The place on the first triangle under a pixel, and its object; None where there is no triangle."""
-        found = [(edited, picker.place_at(screen, x, y)) for edited, picker, screen in self._shown(sight)]
-        return min((pick for pick in found if pick[1] is not None), key=lambda pick: pick[1].depth, default=None)
+        return self._first(sight, lambda picker, screen: picker.place_at(screen, x, y))
+
+    def _first(self, sight: Sight, pick: Callable[[Picker, Screen], Picked | None]) -> tuple[Edited, Picked] | None:
+        """What pick() finds in front of what it finds on other objects, and its object."""
+        found = [(edited, pick(picker, screen)) for edited, picker, screen in self._shown(sight)]
+        return min((one for one in found if one[1] is not None), key=lambda one: one[1].depth, default=None)
 
     def nearest(self, sight: Sight, pick: Callable[[Edited, Picker, Screen], Hit | None]) -> tuple[Edited, Hit] | None:
         """What pick() finds nearest in pixels and no other object hides, and its object."""

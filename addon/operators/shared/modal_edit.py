@@ -23,8 +23,8 @@ class ModalEdit:
     """Mix-in of operators.
 
     A tool calls `_start` when it is invoked, with the objects that it edits: these have doubt(), is_intact(),
-    restore(), end(), hold_layouts() and a history. It has `_follow` for the timer, `_handle` for events that nothing
-    here takes, `_finish` for Enter and `_draw` to show everything.
+    restore(), end(), hold_layouts() and a history. It has `_follow` for the timer, `_click` for the left mouse button,
+    `_finish` for Enter and `_draw` to show everything.
     """
 
     _dragging = False
@@ -73,6 +73,16 @@ class ModalEdit:
             # What is beside the view lights up under the mouse.
             return {"RUNNING_MODAL"} if self._dragging else {"PASS_THROUGH"}
         return self._handle(event)
+
+    def _handle(self, event: bpy.types.Event) -> set[str]:
+        """For events that nothing else takes; tools with more keys have their own."""
+        if event.type == "LEFTMOUSE":
+            return self._click(event)
+        if event.type in {"WHEELUPMOUSE", "WHEELDOWNMOUSE"}:
+            return {"PASS_THROUGH"}
+        if event.value == "PRESS" and (event.ctrl or event.oskey):
+            self._go_back(event)
+        return {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Also called by Blender where it ends the operator, for example before another file is opened."""

@@ -45,15 +45,6 @@ class MESH_OT_cone_draw_up(ModalEdit, bpy.types.Operator):
         self._contents: dict[int, Content] = {}
         return self._start(context, event, edited)
 
-    def _handle(self, event: bpy.types.Event) -> set[str]:
-        if event.type == "LEFTMOUSE":
-            return self._click(event)
-        if event.type in {"WHEELUPMOUSE", "WHEELDOWNMOUSE"}:
-            return {"PASS_THROUGH"}
-        if event.value == "PRESS" and (event.ctrl or event.oskey):
-            self._go_back(event)
-        return {"RUNNING_MODAL"}
-
     def _click(self, event: bpy.types.Event) -> set[str]:
         if event.value == "RELEASE":
             if not self._dragging:
