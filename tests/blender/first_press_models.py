@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+import tempfile
 from math import cos, pi, sin
+from pathlib import Path
 
 import bmesh
 import bpy
+import numpy as np
 
 
 def _applied(obj: bpy.types.Object, *modifiers: str) -> bpy.types.Object:
@@ -26,6 +29,24 @@ def default_cube() -> list[bpy.types.Object]:
 def suzanne() -> list[bpy.types.Object]:
     bpy.ops.mesh.primitive_monkey_add()
     return [bpy.context.object]
+
+
+def _without_half(obj: bpy.types.Object) -> bpy.types.Object:
+    """The object with what lies at negative x cut off its mesh, and the modifiers that bring it back and smooth all."""
+    bm = bmesh.new()
+    bm.from_mesh(obj.data)
+    everything = [*bm.verts, *bm.edges, *bm.faces]
+    bmesh.ops.bisect_plane(bm, geom=everything, plane_co=(0, 0, 0), plane_no=(1, 0, 0), clear_inner=True)
+    bm.to_mesh(obj.data)
+    bm.free()
+    obj.modifiers.new("Mirror", "MIRROR")
+    obj.modifiers.new("Subdivision", "SUBSURF").levels = 2
+    return obj
+
+
+def half_suzanne() -> list[bpy.types.Object]:
+    """One half of the head, with Mirror and Subdivision Surface still on it."""
+    return [_without_half(suzanne()[0])]
 
 
 def text() -> list[bpy.types.Object]:
@@ -69,6 +90,54 @@ def man() -> list[bpy.types.Object]:
     return [obj]
 
 
+def torus() -> list[bpy.types.Object]:
+    bpy.ops.mesh.primitive_torus_add()
+    return [bpy.context.object]
+
+
+def cylinder() -> list[bpy.types.Object]:
+    bpy.ops.mesh.primitive_cylinder_add()
+    return [bpy.context.object]
+
+
+def cone() -> list[bpy.types.Object]:
+    bpy.ops.mesh.primitive_cone_add()
+    return [bpy.context.object]
+
+
+def bevelled_block() -> list[bpy.types.Object]:
+    """A block with a hole that a Boolean modifier cut, and all edges bevelled."""
+    bpy.ops.mesh.primitive_cylinder_add(radius=0.5, depth=4)
+    drill = bpy.context.object
+    bpy.ops.mesh.primitive_cube_add()
+    block = bpy.context.object
+    block.data.transform(np.diag([1.5, 1, 0.7, 1]))
+    modifier = block.modifiers.new("Boolean", "BOOLEAN")
+    modifier.object, modifier.operation = drill, "DIFFERENCE"
+    bevel = block.modifiers.new("Bevel", "BEVEL")
+    bevel.width, bevel.segments = 0.05, 2
+    _applied(block, "Boolean", "Bevel")
+    bpy.data.objects.remove(drill)
+    return [block]
+
+
+def scan() -> list[bpy.types.Object]:
+    """A lumpy stone with the noise of a scanner, written to a file and imported from there."""
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=5)
+    stone = bpy.context.object
+    noise = np.random.default_rng(0)
+    for vertex in stone.data.vertices:
+        x, y, z = vertex.co
+        lump = 0.25 * sin(3 * x + 1) * cos(2 * y - z) + 0.12 * sin(7 * z + 2 * y) + 0.004 * noise.standard_normal()
+        vertex.co *= 1 + lump
+    with tempfile.TemporaryDirectory() as folder:
+        file = str(Path(folder, "scan.ply"))
+        bpy.ops.wm.ply_export(filepath=file, export_selected_objects=True, export_uv=False, export_normals=False)
+        bpy.data.objects.remove(stone)
+        bpy.ops.wm.ply_import(filepath=file)
+    return [bpy.context.object]
+
+
 def kit() -> list[bpy.types.Object]:
     """One object of thirty loose parts of four kinds and many sizes."""
     for i in range(30):
@@ -94,15 +163,7 @@ def mirrored() -> list[bpy.types.Object]:
     bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8, radius=0.3, location=(3, 0, 0))
     small = bpy.context.object
     bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8)
-    half = bpy.context.object
-    bm = bmesh.new()
-    bm.from_mesh(half.data)
-    everything = [*bm.verts, *bm.edges, *bm.faces]
-    bmesh.ops.bisect_plane(bm, geom=everything, plane_co=(0, 0, 0), plane_no=(1, 0, 0), clear_inner=True)
-    bm.to_mesh(half.data)
-    bm.free()
-    half.modifiers.new("Mirror", "MIRROR")
-    half.modifiers.new("Subdivision", "SUBSURF").levels = 2
+    half = _without_half(bpy.context.object)
     small.select_set(True)
     return [half, small]
 
@@ -136,4 +197,20 @@ def scaled_copies() -> list[bpy.types.Object]:
     return [*objects, bpy.context.collection.objects["Cylinder"]]
 
 
-MODELS = (default_cube, suzanne, text, screw, man, kit, mirrored, one_material, scaled_copies)
+MODELS = (
+    default_cube,
+    suzanne,
+    half_suzanne,
+    text,
+    screw,
+    torus,
+    cylinder,
+    cone,
+    bevelled_block,
+    scan,
+    man,
+    kit,
+    mirrored,
+    one_material,
+    scaled_copies,
+)

@@ -1,0 +1,286 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Auto Unwrap as the first press of an artist: twelve models in Blender's window, beside Blender's own unwraps.
+
+    export LIBGL_ALWAYS_SOFTWARE=1
+    xvfb-run --auto-servernum "--server-args=-screen 0 1280x660x24" blender --factory-startup \
+        --window-geometry 0 0 1280 660 --python tools/pictures/first_press.py -- --extension ZIP --out OUT [--only NAME]
+
+Every model is made by Blender's generators, in the scene of the start, and unwrapped by a single press of *Auto Unwrap*
+with each preset, by *Smart UV Project* and by *Unwrap* with the seams that it has, which are none. OUT/NAME.png shows
+all five, each as the UV editor and the 3D view with a texture; OUT/table.md has their figures. Fails where a map of
+*Auto Unwrap* has overlaps or flipped faces, leaves the square (*Paint*, *Bake*), or where more than one line was said.
+
+BLENDER_USER_RESOURCES must name a throw-away profile, and ImageMagick has to be installed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ctypes
+import os
+import re
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Generator, Iterator
+from contextlib import contextmanager
+from dataclasses import astuple, dataclass
+from functools import partial
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "blender"))
+import demo_scene
+import first_press_models as models
+from blender_window import WAIT, areas, arrange, inside, run
+from windows import PICTURES, running, take_picture
+
+Objects = list[bpy.types.Object]
+
+MODELS = (
+    models.default_cube,
+    models.suzanne,
+    models.half_suzanne,
+    models.text,
+    models.screw,
+    models.torus,
+    models.bevelled_block,
+    models.kit,
+    models.cylinder,
+    models.cone,
+    models.one_material,
+    models.scan,
+)
+PRESETS = ("PAINT", "BAKE", "TILE")
+METHODS = (*PRESETS, "SMART", "UNWRAP")
+SIZE = 1024  # points across the raster that counts overlaps and what is covered
+MOST_SECONDS = 120.0
+TITLES = ("model", "method", "seconds", "islands", "covered", "doubly", "smallest", "flipped", "outside", "said")
+
+
+@dataclass(frozen=True)
+class Row:
+    """The figures of one map, in the order of the titles.
+
+    covered, doubly: shares of the square that one triangle or several cover. smallest: the area of the least island as
+    a share of the mean's. outside: how far the map leaves the square.
+    """
+
+    model: str
+    method: str
+    seconds: float
+    islands: int
+    covered: float
+    doubly: float
+    smallest: float
+    flipped: int
+    outside: float
+    said: str
+
+    def is_good(self) -> bool:
+        """Whether it is as Auto Unwrap promises."""
+        packed = self.method == "TILE" or (self.doubly == 0 and self.outside == 0)
+        return packed and self.flipped == 0 and ";" not in self.said
+
+
+def press(method: str) -> None:
+    """What an artist does with the objects selected; may go on in the background."""
+    if method in PRESETS:
+        bpy.ops.uv.cone_auto_unwrap("INVOKE_DEFAULT", True, preset=method)
+        return
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    # Blender's operators say nothing of what they leave out.
+    bpy.ops.uv.smart_project() if method == "SMART" else bpy.ops.uv.unwrap()
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def triangles_of(objects: Objects) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Of each mesh of the objects, the coordinates of its triangles, (m, 3, 2), and the island of each."""
+    lsgp = sys.modules["lsgp"]
+    for mesh in {obj.data: None for obj in objects}:
+        mesh.calc_loop_triangles()
+        loops, vertices = (np.empty(3 * len(mesh.loop_triangles), np.int32) for _ in range(2))
+        mesh.loop_triangles.foreach_get("loops", loops)
+        mesh.loop_triangles.foreach_get("vertices", vertices)
+        uv, places = np.empty(2 * len(mesh.loops), np.float32), np.empty(3 * len(mesh.vertices), np.float32)
+        mesh.uv_layers.active.uv.foreach_get("vector", uv)
+        mesh.vertices.foreach_get("co", places)
+        corner_uv = uv.reshape(-1, 2)[loops].reshape(-1, 3, 2).astype(np.float64)
+        surface = lsgp.Surface(places.reshape(-1, 3).astype(np.float64), vertices.reshape(-1, 3))
+        yield corner_uv, lsgp.measure_distortion(surface, corner_uv).island
+
+
+def coverage(corner_uv: np.ndarray) -> np.ndarray:
+    """(SIZE, SIZE), how many triangles each point of a raster of the unit square lies in."""
+    count = np.zeros((SIZE, SIZE), int)
+    # Points are on no edge in a usual place.
+    across, up = ((np.arange(SIZE) + offset) / SIZE for offset in (0.37, 0.61))
+    for corners in corner_uv @ (1, 1j):
+        left, right = np.searchsorted(across, (corners.real.min(), corners.real.max()))
+        low, high = np.searchsorted(up, (corners.imag.min(), corners.imag.max()))
+        points = across[None, left:right] + 1j * up[low:high, None]
+        sides = [((points - a) * np.conj(b - a)).imag > 0 for a, b in zip(corners, np.roll(corners, -1), strict=True)]
+        count[low:high, left:right] += np.all(sides, axis=0) | ~np.any(sides, axis=0)
+    return count
+
+
+def figures(objects: Objects, name: tuple[str, str], seconds: float, said: list[str]) -> Row:
+    """name: of the model and the method."""
+    corner_uv, island = zip(*triangles_of(objects), strict=True)
+    first = np.cumsum([0, *(part.max() + 1 for part in island)])
+    island = np.concatenate([part + at for part, at in zip(island, first[:-1], strict=True)])
+    uv = np.concatenate(corner_uv)
+    z = uv @ (1, 1j)
+    areas_of = ((z[:, 1] - z[:, 0]).conj() * (z[:, 2] - z[:, 0])).imag / 2
+    of_island = np.bincount(island, np.abs(areas_of))
+    count = coverage(uv)
+    return Row(
+        *name,
+        seconds,
+        len(of_island),
+        float((count > 0).mean()),
+        float((count > 1).mean()),
+        float(of_island.min() / of_island.mean()),
+        int((areas_of <= 0).sum()),
+        float(max(0.0, -uv.min(), uv.max() - 1)),
+        "; ".join(said),
+    )
+
+
+@contextmanager
+def heard(out: Path) -> Iterator[Callable[[], list[str]]]:
+    """What Blender reports meanwhile, which it prints; the function returns the lines so far."""
+    file = out / "said.txt"
+    # Blenders differ in where they print it.
+    kept, written = {stream: os.dup(stream) for stream in (1, 2)}, os.open(file, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+    flush = partial(ctypes.CDLL(None).fflush, None)
+
+    def lines() -> list[str]:
+        flush()
+        return re.findall(r"(?:Info|Warning|Error): .*", file.read_text())
+
+    sys.stdout.flush()
+    flush()
+    for stream in kept:
+        os.dup2(written, stream)
+    try:
+        yield lines
+    finally:
+        flush()
+        for stream, copy in kept.items():
+            os.dup2(copy, stream)
+            os.close(copy)
+        os.close(written)
+        file.unlink()
+
+
+def show(method: str) -> Iterator[float]:
+    """The maps in the UV editor and the objects with a texture; yields seconds to wait."""
+    view, editor = areas("VIEW_3D")[0], areas("IMAGE_EDITOR")[0]
+    with inside(view):
+        bpy.ops.uv.cone_texture(pattern="ASYMMETRIC", tiles=1 if method == "TILE" else 8)
+        bpy.ops.view3d.view_selected()
+        view.spaces.active.region_3d.view_distance *= 1.2
+        view.spaces.active.overlay.show_overlays = False
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.select_all(action="SELECT")
+    # The picture of the texture would hide the lines.
+    editor.spaces.active.use_image_pin, editor.spaces.active.image = True, None
+    yield WAIT
+    with inside(editor):
+        bpy.ops.uv.select_all(action="SELECT")
+        bpy.ops.image.view_selected() if method == "TILE" else bpy.ops.image.view_all(fit_view=True)
+    yield 2 * WAIT
+
+
+def press_all(out: Path, only: str | None) -> Iterator[float]:
+    """Press, measure and draw; yields seconds to wait."""
+    os.environ[PICTURES] = str(out)
+    rows: list[Row] = []
+    for model in MODELS:
+        if only is not None and only not in model.__name__:
+            continue
+        for method in METHODS:
+            rows.append((yield from press_once(model, method, out)))
+        pictures = [str(out / f"{model.__name__}-{method.lower()}.png") for method in METHODS]
+        sheet = ["(", *pictures[:3], "+append", ")", "(", *pictures[3:], "+append", ")", "-append", "-resize", "50%"]
+        subprocess.run(["convert", *sheet, str(out / f"{model.__name__}.png")], check=True)
+    (out / "table.md").write_text(table(rows))
+    bad = [row for row in rows if row.method in PRESETS and not row.is_good()]
+    if bad:
+        raise RuntimeError("first_press: not as promised:\n" + table(bad))
+
+
+def press_once(model: Callable[[], Objects], method: str, out: Path) -> Generator[float, None, Row]:
+    """Returns the row of the map."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    yield WAIT
+    yield from prepare()
+    with inside(areas("VIEW_3D")[0]):
+        bpy.ops.object.select_all(action="SELECT")
+        bpy.ops.object.delete()
+        objects = model()
+        bpy.ops.object.select_all(action="DESELECT")
+        for obj in objects:
+            obj.select_set(True)
+        bpy.context.view_layer.objects.active = objects[0]
+    yield WAIT
+    begin = time.monotonic()
+    with heard(out) as lines:
+        with inside(areas("VIEW_3D")[0]):
+            press(method)
+        while running("UV_OT_cone_auto_unwrap"):
+            if time.monotonic() - begin > MOST_SECONDS:
+                raise TimeoutError(f"{model.__name__} takes longer with {method}")
+            yield 0.05
+        said = lines()
+    row = figures(objects, (model.__name__, method), time.monotonic() - begin, said)
+    print(line_of(row), flush=True)
+    yield from show(method)
+    take_picture(f"{model.__name__}-{method.lower()}")
+    return row
+
+
+def prepare() -> Iterator[float]:
+    """A UV editor beside a 3D view, and nothing else."""
+    for kind in ("PROPERTIES", "OUTLINER"):
+        for area in areas(kind):
+            with inside(area):
+                bpy.ops.screen.area_close()
+    yield WAIT
+    yield from arrange(0.5)
+    for space in areas("VIEW_3D")[0].spaces:
+        space.show_region_toolbar = False
+    for space in areas("IMAGE_EDITOR")[0].spaces:
+        space.show_region_toolbar = False
+
+
+def line_of(row: Row) -> str:
+    cells = (f"{cell:.3g}" if isinstance(cell, float) else str(cell) for cell in astuple(row))
+    return f"| {' | '.join(cells)} |"
+
+
+def table(rows: list[Row]) -> str:
+    return "\n".join([f"| {' | '.join(TITLES)} |", "|" + "---|" * len(TITLES), *map(line_of, rows), ""])
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--extension", type=Path, required=True, help="the extension's zip")
+    parser.add_argument("--out", type=Path, required=True, help="folder for the pictures and the table")
+    parser.add_argument("--only", help="models with this in their name")
+    arguments = parser.parse_args(sys.argv[sys.argv.index("--") + 1 :])
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    bpy.context.preferences.view.show_splash = False
+    bpy.context.preferences.view.smooth_view = 0
+    bpy.context.preferences.system.viewport_aa = "OFF"
+    demo_scene.install_extension(arguments.extension)
+    run(press_all(arguments.out.resolve(), arguments.only))
+
+
+if __name__ == "__main__":
+    main()
