@@ -27,10 +27,9 @@ sys.path.append(str(Path(__file__).parent))
 from run_in_blender import EXTENSION, install
 from run_in_window import run
 from scenes import UvMap, changed, marked, snapshot, uv_key
-from windows import click, drag, move_to, place_of, press, region, running, take_picture, type_text, until
+from windows import DRAWN, choose, click, done, drag, middle, move_to, place_of, press, running, take_picture, until
 
 SECONDS = 180
-DRAWN = 0.8  # seconds, until what was opened is seen
 # Of the eight corners of Blender's cube four that are no neighbors, all of them in sight, and where one is dragged.
 CORNERS = ((1, -1, 1), (1, 1, -1), (-1, 1, 1), (-1, -1, -1))
 TARGET = (1, -0.5, 0.5)
@@ -44,33 +43,6 @@ def vertex_at(place: tuple[float, float, float]) -> int:
 
 def cube() -> bpy.types.Object:
     return bpy.data.objects["Cube"]
-
-
-def middle() -> tuple[float, float]:
-    within = region()
-    return within.x + within.width / 2, within.y + within.height / 2
-
-
-def choose(key: str, entry: str, **keys: bool) -> Iterator[float]:
-    """An entry of the menu that a key opens, found by typing."""
-    yield from move_to(middle())
-    yield from press(key, middle(), **keys)
-    yield DRAWN
-    if key != "F3":
-        take_picture(f"menu_{key}")
-        yield from press("SPACE", middle(), " ")
-        yield DRAWN
-    yield from type_text(entry, middle())
-    yield DRAWN
-    take_picture("choosing_" + entry.replace(" ", "_"))
-    yield from press("RET", middle())
-    yield DRAWN
-
-
-def done(idname: str) -> bool:
-    """Whether an operator was the last to be."""
-    operators = bpy.context.window_manager.operators
-    return bool(operators) and operators[-1].bl_idname == idname
 
 
 def first_session(package: Path) -> Iterator[float]:

@@ -484,16 +484,21 @@ class UvMap:
         return np.linalg.norm(self.uv[pairs[:, 0]] - self.uv[pairs[:, 1]], axis=1)
 
 
-def covered_twice(maps: Iterable[UvMap], resolution: int = 400) -> int:
-    """How many points of a raster in the unit square lie in more than one triangle of these maps."""
+def coverage(triangles: np.ndarray, resolution: int) -> np.ndarray:
+    """(resolution, resolution), in how many triangles, (t, 3) complex, each point of a raster of the square lies."""
     # Points on an edge that two triangles share are in both of them by rounding: no edge in a usual place has any.
     across, up = ((np.arange(resolution) + offset) / resolution for offset in (0.37, 0.61))
-    points = across[None, :] + 1j * up[:, None]
-    count = np.zeros(points.shape, int)
-    for uv_map in maps:
-        for triangle in uv_map._turned_triangles():
-            inside = np.ones(points.shape, bool)
-            for side in range(3):
-                inside &= ((points - triangle[side]) * (triangle[(side + 1) % 3] - triangle[side]).conj()).imag > 0
-            count += inside
-    return int((count > 1).sum())
+    count = np.zeros((resolution, resolution), int)
+    for corners in triangles:
+        left, right = np.searchsorted(across, (corners.real.min(), corners.real.max()))
+        low, high = np.searchsorted(up, (corners.imag.min(), corners.imag.max()))
+        points = across[None, left:right] + 1j * up[low:high, None]
+        sides = [((points - a) * np.conj(b - a)).imag > 0 for a, b in zip(corners, np.roll(corners, -1), strict=True)]
+        count[low:high, left:right] += np.all(sides, axis=0)
+    return count
+
+
+def covered_twice(maps: Iterable[UvMap], resolution: int = 400) -> int:
+    """How many points of a raster in the unit square lie in more than one triangle of these maps."""
+    triangles = np.concatenate([uv_map._turned_triangles() for uv_map in maps])
+    return int((coverage(triangles, resolution) > 1).sum())

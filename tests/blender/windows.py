@@ -15,10 +15,12 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+from mathutils import Vector
 
 Place = tuple[float, float]
 
 STEP = 0.05
+DRAWN = 0.8  # seconds, until what was opened is seen
 PICTURES = "CONE_UNWRAP_PICTURES"
 """Names the folder for pictures of the screen; without it none are taken."""
 DIGITS = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE")
@@ -51,8 +53,13 @@ def until(condition: Callable[[], bool], seconds: float = 20.0) -> Iterator[floa
 
 def place_of(obj: bpy.types.Object, vertex: int, within: bpy.types.Region | None = None) -> Place:
     """Pixels of a vertex in the window; the mesh as it was when edit mode began.  within: by default the first view."""
+    return place_at(obj.matrix_world @ obj.data.vertices[vertex].co, within)
+
+
+def place_at(point: Vector, within: bpy.types.Region | None = None) -> Place:
+    """Pixels of a point of the world in the window."""
     within = region() if within is None else within
-    corner = within.data.perspective_matrix @ obj.matrix_world @ obj.data.vertices[vertex].co.to_4d()
+    corner = within.data.perspective_matrix @ point.to_4d()
     across, up = np.array(corner.xy) / corner.w
     return within.x + round((across + 1) / 2 * within.width), within.y + round((up + 1) / 2 * within.height)
 
@@ -103,3 +110,30 @@ def take_picture(name: str) -> None:
         return
     Path(folder).mkdir(parents=True, exist_ok=True)
     subprocess.run(["import", "-window", "root", str(Path(folder, f"{name}.png"))], check=True)
+
+
+def middle() -> tuple[float, float]:
+    within = region()
+    return within.x + within.width / 2, within.y + within.height / 2
+
+
+def choose(key: str, entry: str, **keys: bool) -> Iterator[float]:
+    """An entry of the menu that a key opens, found by typing."""
+    yield from move_to(middle())
+    yield from press(key, middle(), **keys)
+    yield DRAWN
+    if key != "F3":
+        take_picture(f"menu_{key}")
+        yield from press("SPACE", middle(), " ")
+        yield DRAWN
+    yield from type_text(entry, middle())
+    yield DRAWN
+    take_picture("choosing_" + entry.replace(" ", "_"))
+    yield from press("RET", middle())
+    yield DRAWN
+
+
+def done(idname: str) -> bool:
+    """Whether an operator was the last to be."""
+    operators = bpy.context.window_manager.operators
+    return bool(operators) and operators[-1].bl_idname == idname

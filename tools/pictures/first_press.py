@@ -36,6 +36,7 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "blender"))
 import demo_scene
 import first_press_models as models
 from blender_window import WAIT, areas, arrange, inside, run
+from scenes import coverage
 from windows import PICTURES, running, take_picture
 
 Objects = list[bpy.types.Object]
@@ -114,20 +115,6 @@ def triangles_of(objects: Objects) -> Iterator[tuple[np.ndarray, np.ndarray]]:
         yield corner_uv, lsgp.measure_distortion(surface, corner_uv).island
 
 
-def coverage(corner_uv: np.ndarray) -> np.ndarray:
-    """(SIZE, SIZE), how many triangles each point of a raster of the unit square lies in."""
-    count = np.zeros((SIZE, SIZE), int)
-    # Points are on no edge in a usual place.
-    across, up = ((np.arange(SIZE) + offset) / SIZE for offset in (0.37, 0.61))
-    for corners in corner_uv @ (1, 1j):
-        left, right = np.searchsorted(across, (corners.real.min(), corners.real.max()))
-        low, high = np.searchsorted(up, (corners.imag.min(), corners.imag.max()))
-        points = across[None, left:right] + 1j * up[low:high, None]
-        sides = [((points - a) * np.conj(b - a)).imag > 0 for a, b in zip(corners, np.roll(corners, -1), strict=True)]
-        count[low:high, left:right] += np.all(sides, axis=0) | ~np.any(sides, axis=0)
-    return count
-
-
 def figures(objects: Objects, name: tuple[str, str], seconds: float, said: list[str]) -> Row:
     """name: of the model and the method."""
     corner_uv, island = zip(*triangles_of(objects), strict=True)
@@ -137,7 +124,7 @@ def figures(objects: Objects, name: tuple[str, str], seconds: float, said: list[
     z = uv @ (1, 1j)
     areas_of = ((z[:, 1] - z[:, 0]).conj() * (z[:, 2] - z[:, 0])).imag / 2
     of_island = np.bincount(island, np.abs(areas_of))
-    count = coverage(uv)
+    count = coverage(np.where(areas_of[:, None] < 0, z[:, ::-1], z), SIZE)
     return Row(
         *name,
         seconds,

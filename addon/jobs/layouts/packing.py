@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ...core import native
 from ...core.digest import digest_of
 from ...core.errors import Refused
-from ...core.islands import Islands
+from ...core.islands import Islands, lie_along_axes
 from ..tasks.areas import total_area
 from .blender_packer import pack_once
 
@@ -24,9 +24,8 @@ MOST_ABOVE = 0.02
 """With Blender's packer what is left of an exact margin may be so much wider; it is not narrower."""
 MOST_PASSES = 5
 """Of Blender's packer, for each way to turn islands."""
-ANY_TURN = "ANY"
-TURNS = (None, "CARDINAL", ANY_TURN)
-"""Ways of Blender's packer to turn islands, the faster ones first: the last takes seconds."""
+QUARTER_TURN, ANY_TURN = "CARDINAL", "ANY"
+"""Ways of Blender's packer to turn islands, the faster one first: the other takes seconds."""
 ENOUGH = 0.65
 """Part of the square from which on a layout by Blender's packer is large enough."""
 # Of a full turn, tried for an island that is alone, and what another of them has to gain.
@@ -50,14 +49,15 @@ def pack(
     """Pack the islands of all parts together into the unit square; returns the new corner_uv of each part.
 
     margin_method: of Blender's packer, or EXACT, which looks for the largest layout that leaves the margin.
-    margin: around each island. turned: whether islands may be. udim: over how many UDIM tiles they are spread at most.
+    margin: around each island. turned: whether islands may be; by quarters alone where most of their border lies along
+    the axes. udim: over how many UDIM tiles they are spread at most.
     Every island is moved by a single similarity.  Raises Refused where Blender does not pack, and where several tiles
     are asked for that it would have to fill.
     """
     if len(parts) == 1 and not parts[0].island.any() and not parts[0].pinned.any():
         return [_alone(parts[0], margin, turned)]
     if margin_method != EXACT and udim == 1:
-        return pack_once(parts, margin_method, margin, ANY_TURN if turned else None)
+        return pack_once(parts, margin_method, margin, _turns(parts, turned)[-1])
     obstacle = _obstacle(parts)
     if obstacle is None:
         try:
@@ -67,7 +67,14 @@ def pack(
             obstacle = "the margin leaves no room for so many islands; lower it"
     if udim > 1:
         raise Refused(f"Islands cannot be spread over UDIM tiles: {obstacle}, or set UDIM Tiles to 1")
-    return _with_exact_margin(parts, margin, TURNS if turned else (None,))
+    return _with_exact_margin(parts, margin, _turns(parts, turned))
+
+
+def _turns(parts: Sequence[Islands], turned: bool) -> list[str | None]:
+    """How Blender's packer may turn these, the faster ways first."""
+    if not turned:
+        return [None]
+    return [None, QUARTER_TURN] if lie_along_axes(parts) else [None, QUARTER_TURN, ANY_TURN]
 
 
 def pack_at_scale(parts: Sequence[Islands], margin: float, *, turned: bool) -> list[NDArray[np.float64]] | None:
@@ -140,7 +147,7 @@ def _alone(part: Islands, margin: float, turned: bool) -> NDArray[np.float64]:
     squeeze = native.lsgp.correct_aspect((1.0, 1.0), part.aspect)
     places = (part.corner_uv / squeeze).reshape(-1, 2)
     if turned:
-        turn = _filling_turn(places, squeeze)
+        turn = _filling_turn(places, squeeze, DIRECTIONS // 4 if lie_along_axes([part]) else 1)
         places = places @ np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
     places = places * squeeze
     low = places.min(axis=0)
@@ -148,15 +155,17 @@ def _alone(part: Islands, margin: float, turned: bool) -> NDArray[np.float64]:
     return (margin + scale * (places - low)).reshape(part.corner_uv.shape)
 
 
-def _filling_turn(places: NDArray[np.float64], squeeze: NDArray[np.float64]) -> float:
-    """The turn with which an island gets largest, radians; Blender's packer does not look for that."""
+def _filling_turn(places: NDArray[np.float64], squeeze: NDArray[np.float64], step: int) -> float:
+    """The turn with which an island gets largest, radians, one of every `step` directions; Blender's packer does not
+    look for that."""
     angles = np.arange(DIRECTIONS) * (2 * np.pi / DIRECTIONS)
     reach = np.array([(places @ (np.cos(angle), np.sin(angle))).max() for angle in angles])
     quarter = DIRECTIONS // 4
     across, up = reach + np.roll(reach, -2 * quarter), np.roll(reach, -quarter) + np.roll(reach, -3 * quarter)
     side = np.maximum(across * squeeze[0], up * squeeze[1])
     # As it lies, where turning gains nothing.
-    return float(angles[np.flatnonzero(side <= side.min() * (1 + TURN_GAINS))[0]])
+    side = side[::step]
+    return float(angles[::step][np.flatnonzero(side <= side.min() * (1 + TURN_GAINS))[0]])
 
 
 def _scale(parts: Sequence[Islands], packed: Sequence[NDArray[np.float64]]) -> float:

@@ -259,7 +259,8 @@ void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
     copies[part].push_back(copy);
   }
   Array<std::optional<Complex>> axes;
-  if (map.natural_l2 > 0) axes = turns_to_axes(mesh, map.cut_mesh, map.position, solved.part);
+  // Closed components have no sides to be straightened, but those of cubes are straight.
+  if (options_.straighten) axes = turns_to_axes(mesh, map.cut_mesh, map.position, solved.part);
   for (Index part = 0; part < solved.part_count; ++part) {
     const Array<Index>& own = copies[part];
     Island island{Eigen::VectorXcd(own.size()), upward[part].turn(), std::nullopt, static_cast<Index>(solved_.size())};

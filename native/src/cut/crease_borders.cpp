@@ -22,6 +22,8 @@ namespace {
 
 constexpr double least_patch = 0.0002;       // of the area: smaller ones are no islands
 constexpr double least_on_creases = 0.8;     // of the curvature
+constexpr double least_beside_apexes = 0.5;  // where the others carry the rest
+constexpr double most_apexes = 2;            // few enough to be cones
 constexpr double least_on_bevels = 0.98;     // and creases: what is round everywhere has as much on what is narrow
 constexpr double is_curved = 0.06;           // radians at a vertex
 constexpr double is_bent = 0.25;             // radians along a border that two patches share
@@ -104,19 +106,25 @@ class Patches {
     }
   }
 
-  // Whether so much of the curvature lies where patches meet or at these vertices, and at more than most_corners.
+  // Whether so much of the curvature lies where patches meet or at these vertices, and at more than most_corners. Less
+  // is enough where the others are the apexes of cones.
   bool carry_curvature(double least_share, const PerVertex<char>& there, Index most_corners) const {
     constexpr double least = 0.1;  // radians: below, there is nothing to take out
-    double all = 0, own = 0, squares = 0;
+    double all = 0, squares = 0, own = 0, own_squares = 0;
     for (Index v = 0; v < mesh_.vertex_count(); ++v) {
       if (!is_inside(mesh_, v)) continue;
       const double curvature = std::abs(geometry_.angle_defect[v]);
       all += curvature;
-      if (degree_[v] > 0 || there[v]) own += curvature;
       squares += curvature * curvature;
+      if (degree_[v] == 0 && !there[v]) continue;
+      own += curvature;
+      own_squares += curvature * curvature;
     }
-    const double corners = all * all / squares;  // were all alike
-    return all > least && own >= least_share * all && std::round(corners) > most_corners;
+    // Vertices that carry so much, were they alike.
+    const auto count = [](double sum, double of_squares) { return std::round(sum * sum / of_squares); };
+    if (!(all > least) || std::max(count(all, squares), count(own, own_squares)) <= most_corners) return false;
+    if (own >= least_share * all) return true;
+    return own >= least_beside_apexes * all && count(all - own, squares - own_squares) <= most_apexes;
   }
 
   // Where patches end that are unfolded together, the longest shares of a perimeter first.

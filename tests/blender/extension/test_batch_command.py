@@ -228,6 +228,26 @@ def test_tiles_without_a_density_are_filled(scaled, tmp_path, preset):
     assert max(densities) / min(densities) < 1.001
 
 
+@pytest.mark.parametrize(
+    "how",
+    [["--preset", "paint"], ["--preset", "bake", "--texel-density", 20], ["--texel-density", 20]],
+    ids=["filled", "preset at a density", "density"],
+)
+def test_objects_get_as_many_times_the_density_as_their_weights_say(tmp_path, how):
+    for name, weight in (("Plain", 1.0), ("Fine", 2.0), ("Coarse", 0.5)):
+        add_cube(name, cuts=1).cone_unwrap_density_weight = weight
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "weighted.blend"), copy=True)
+    clear()
+    out = tmp_path / "out"
+    sized = ["--texture-size", 512] if "--texel-density" in how else []
+    assert run(tmp_path / "weighted.blend", "--out", out, *how, *sized, "--no-pictures") == 0
+    bpy.ops.wm.open_mainfile(filepath=str(out / "weighted.blend"))
+    found = np.array([density_in_world(bpy.data.objects[name], 512) for name in ("Plain", "Fine", "Coarse")])
+    assert found / found[0] == pytest.approx([1, 2, 0.5], rel=1e-3)
+    if sized:
+        assert found[0] == pytest.approx(20, rel=1e-3)
+
+
 @pytest.mark.parametrize("options", [["--pack", "shelves"], ["--pack", "tight", "--texel-density", 9, "--margin", 1]])
 def test_other_ways_to_pack_are_refused(scaled, tmp_path, options):
     if "tight" in options and addon.core.native.lsgp.packer_name() is None:

@@ -189,3 +189,14 @@ def test_operators_with_a_margin_method_are_for_blenders_packer(packer, runs):
     parts[0].select_set(True)
     assert bpy.ops.uv.cone_unwrap(pack=True, margin=0.01, margin_method="ADD") == {"FINISHED"}
     assert runs == ["Blender"]
+
+
+@pytest.mark.parametrize("compact", [True, False])
+@pytest.mark.parametrize("preset", ["PAINT", "BAKE"])
+def test_straight_sides_stay_along_the_axes(packer, preset, compact):
+    """A cross of six squares has a larger scale where it lies at an angle."""
+    bpy.ops.mesh.primitive_cube_add()
+    unwrap(preset=preset, compact=compact)
+    uv_map = UvMap(bpy.context.object)
+    along = [np.diff(uv_map.uv[list(side)], axis=0)[0] for sides in uv_map.sides.values() for side in sides]
+    assert np.abs(along).min(axis=1).max() < 1e-6

@@ -101,6 +101,23 @@ def test_smooth_and_flat_surfaces_have_none(mesh: Mesh) -> None:
     assert len(lsgp.crease_borders(surface(mesh))) == 0
 
 
+@pytest.mark.parametrize("preset", ["paint", "bake"])
+def test_a_circular_cone_becomes_a_disk_and_a_sector_with_one_cone_at_the_apex(preset: str) -> None:
+    """Its apex has more than a fifth of the curvature, but at a single vertex."""
+    mesh = closed.lathe(np.array([1.0, 0.0]), np.array([0.0, 2.0]), 32, caps=(True, False))
+    apex = int(np.argmax(mesh.positions[:, 2]))
+    result = lsgp.auto_unwrap(surface(mesh), preset=preset)
+    assert result.island.max() == 1 and result.cones.tolist() == [apex]
+    assert result.distortion.l2_stretch == pytest.approx(1, abs=1e-9)
+
+
+def test_round_surfaces_with_a_rim_are_no_hard_ones() -> None:
+    """A dome on a disk has as much of its curvature off the rim, at many vertices."""
+    height = np.sin(np.linspace(0, np.pi / 2, 9))
+    dome = closed.lathe(np.cos(np.linspace(0, np.pi / 2, 9)).clip(0), height, 32, caps=(True, False))
+    assert len(lsgp.crease_borders(surface(dome))) == 0
+
+
 def test_what_the_artist_has_marked_is_left_alone() -> None:
     cylinder = SOLIDS["cylinder"]
     both = meshes.merge([cylinder, cylinder])

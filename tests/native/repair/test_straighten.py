@@ -203,3 +203,17 @@ def test_cuts_that_make_islands_compact_are_straight_too() -> None:
     assert share_along_axes(mesh, result) == 1
     assert_angles_met(mesh, result)
     assert_exact_transitions(mesh, result)
+
+
+@pytest.mark.parametrize("straighten", [True, False])
+def test_squares_of_a_cross_lie_along_the_axes(straighten: bool) -> None:
+    """Five faces of a cube, whose smallest box lies at 45 degrees, and the sixth beside them."""
+    mesh = closed.box(1, (1, 1, 1))
+    edges = meshes.edges_of(mesh.triangles)
+    is_side = (np.ptp(mesh.positions[edges], axis=1) > 0).sum(axis=1) == 1  # no diagonal
+    whole = surface(mesh, edges=edges[is_side])
+    hidden = replace(whole, cut_costs=lsgp.cut_costs(whole, (0, -1, 0)))
+    options = replace(lsgp.preset_options("paint"), straighten=straighten)
+    result = lsgp.parameterize(hidden, range(8), options=options)
+    assert sorted(np.bincount(result.island)) == [2, 10]
+    assert (share_along_axes(mesh, result) == 1) == straighten
