@@ -42,6 +42,7 @@ INFORMATION = frozenset(
         "CUTS_ADDED",
         "DEGENERATE_FACES",
         "DUPLICATE_FACE",
+        "FEATURES_OFF_LATTICE",
         "FLAT_CONES",
         "GRID_REFINED",
         "ISLANDS_STACKED",

@@ -221,6 +221,7 @@ py::dict to_dict(const lsgp::SeamlessReport& report) {
   out["error"] = report.error;
   out["flat_cones"] = to_array(report.flat_cones);
   out["merged_cones"] = to_array(report.merged_cones);
+  out["feature_share"] = report.feature_share;
   out["relaxed_cones"] = to_array(report.relaxed_cones);
   return out;
 }
@@ -411,6 +412,15 @@ py::array_t<Index> crease_borders(const SurfaceArrays& surface_arrays, const Ind
   const lsgp::CreaseOptions options{angle, to_matrix<lsgp::VertexPairs>(sharp), most_corners};
   const lsgp::Progress tell = to_progress(progress);
   return to_array(without_gil([&] { return lsgp::crease_borders(surface, marked, options, tell); }));
+}
+
+py::tuple feature_cones(const SurfaceArrays& surface_arrays, const py::object& progress) {
+  const lsgp::Surface surface = to_surface(surface_arrays);
+  const lsgp::Progress tell = to_progress(progress);
+  const lsgp::Cones found = without_gil([&] { return lsgp::feature_cones(surface, tell); });
+  std::vector<double> angles;
+  for (const std::optional<double>& angle : found.angles) angles.push_back(*angle);
+  return py::make_tuple(to_array(found.vertices), to_array(angles));
 }
 
 py::dict prescribe_curvature(const SurfaceArrays& surface_arrays, const ConeArrays& cones,
@@ -605,6 +615,7 @@ PYBIND11_MODULE(_lsgp, module) {
   module.def("overlapping_triangles", &overlapping_triangles, "corner_uv"_a);
   module.def("find_cuts", &find_cuts, "surface"_a, "cones"_a, "options"_a, "progress"_a);
   module.def("crease_borders", &crease_borders, "surface"_a, "cones"_a, "options"_a, "progress"_a);
+  module.def("feature_cones", &feature_cones, "surface"_a, "progress"_a);
   module.def("cut_costs", &cut_costs, "surface"_a, "preferences"_a, "progress"_a);
   module.def("prescribe_curvature", &prescribe_curvature, "surface"_a, "cones"_a, "options"_a, "progress"_a);
   module.def("build_ledger", &build_ledger, "surface"_a, "cones"_a, "options"_a, "gets_cones"_a);

@@ -76,6 +76,7 @@ def crease_borders(
     options: _CreaseOptions,
     progress: _Progress,
 ) -> _Indices: ...
+def feature_cones(surface: _Surface, progress: _Progress) -> tuple[_Indices, NDArray[np.float64]]: ...
 def cut_costs(
     surface: _Surface,
     preferences: _CutPreferences,

@@ -197,7 +197,9 @@ class Options:
     stretch: with "low-stretch", from 0, the conformal map, to 1, the map of least stretch.
     straighten: with "low-stretch" and free boundaries: boundaries and cuts that are nearly straight in the map become
         exactly straight, and those nearly at right angles are aligned with u and v, unless that costs noticeable
-        stretch. Not in seamless layouts.
+        stretch. In seamless layouts on squares instead, in either mode: creases of hard surfaces, of 40 degrees or
+        more, run along lines of the lattice, as many as cost at most a tenth of L2 stretch; FEATURES_OFF_LATTICE names
+        the others.
     repair: untangle flipped triangles and correct angles that are off by a full turn.
     overlaps: "keep" islands that overlap themselves, or "split" them until none does: first along other cuts for the
         same cones, unless seams are marked, then along further cuts. Transitions stay exact.
@@ -325,6 +327,8 @@ class SeamlessReport(EqualByContent, ShortRepr):
     flat_cones: cones whose curvature was rounded to zero, now ordinary vertices. merged_cones: cones merged with
         another within a cell.
     relaxed_cones: cones off the lattice; the cuts to them show a seam.
+    feature_share: with `Options.straighten`, the share of the length of the creases of hard surfaces that runs along
+        the lattice exactly, as stored in float32; None without creases.
     """
 
     rotation_order: int
@@ -341,6 +345,7 @@ class SeamlessReport(EqualByContent, ShortRepr):
     flat_cones: IndexArray
     merged_cones: IndexArray
     relaxed_cones: IndexArray
+    feature_share: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

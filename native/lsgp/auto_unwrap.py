@@ -10,7 +10,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import arguments
+from . import _lsgp, arguments
 from .api import (
     Options,
     Pins,
@@ -22,11 +22,12 @@ from .api import (
     crease_borders,
     parameterize,
     place_cones,
+    surface_arrays,
 )
 from .arguments import FloatArray, IndexArray
 from .errors import Cancelled, Finding, InputError, LsgpError
 from .ledger import LedgerPart, build_ledger, surface_of_triangles
-from .map_comparison import may_replace_map
+from .map_comparison import may_replace_for_features, may_replace_map
 from .packing import Pack, Packing, Stack, laid_out
 from .texels import TexelLayout, at_texel_density
 
@@ -38,7 +39,9 @@ TARGET = 1.05
 PLACING = 0.6
 # And with making the map, where islands are packed afterwards.
 PACKING = 0.9
-# Of the time of placing cones, and of mapping: what two attempts, with and without symmetry, have each.
+# Of the time of placing cones: where those for creases are placed.
+_BEFORE_FEATURES = 0.9
+# Of the time of placing cones: what two attempts, with and without symmetry, have each.
 TRYING = 0.5
 # What tells that a component is not symmetric.
 _ODD = "NOT_SYMMETRIC"
@@ -50,7 +53,7 @@ _MOST_CORNERS: dict[Preset, int | None] = {"paint": 24, "tile": None, "bake": 0}
 # layout show nowhere.
 _PRESETS: dict[Preset, Options] = {
     "paint": Options(mode="low-stretch", straighten=True, overlaps="split", compact="sparing"),
-    "tile": Options(seamless=Seamless(lattice="square"), overlaps="split"),
+    "tile": Options(seamless=Seamless(lattice="square"), straighten=True, overlaps="split"),
     "bake": Options(mode="low-stretch", straighten=True, overlaps="split", compact="full"),
 }
 
@@ -178,7 +181,8 @@ class CompletedCones:
 
     cones: (k,) int32, given ones first. angles: one each for `parameterize`, None = automatic. placement: on the
     components that needed or were tried for cones; None if there are none. by_target: whether the number was determined
-    by a target stretch. is_symmetric: whether they mirror each other, so that cuts may as well.
+    by a target stretch. is_symmetric: whether they mirror each other, so that cuts may as well. for_features: whether
+    they were chosen so that creases can run along the lattice.
     """
 
     cones: IndexArray
@@ -186,6 +190,7 @@ class CompletedCones:
     placement: Placement | None
     by_target: bool = True
     is_symmetric: bool = False
+    for_features: bool = False
 
     def options_of_map(self, options: Options) -> Options:
         """Those of a map through these cones."""
@@ -248,10 +253,52 @@ def possible_cones(
     symmetric: bool,
     progress: Progress | None = None,
 ) -> list[CompletedCones]:
-    """Those of `complete_cones`, and symmetric ones after them where there are others.
+    """Those of `complete_cones`, and after them, where there are others, symmetric ones and those for creases.
 
     symmetric: whether to try, where no cones are given. Errors as of `complete_cones`.
     """
+    is_free = count is None and not len(arguments.index_vector("cones", cones))
+    if not (is_free and follows_features(surface, options)):
+        return _symmetric_cones(surface, cones, angles, options, count, symmetric, progress)
+    found = _symmetric_cones(
+        surface, cones, angles, options, count, symmetric, part_of(progress, 0.0, _BEFORE_FEATURES)
+    )
+    for_features = feature_cones(surface, options, part_of(progress, _BEFORE_FEATURES, 1.0))
+    return found if for_features is None else [*found, for_features]
+
+
+def follows_features(surface: Surface, options: Options) -> bool:
+    """Whether creases of hard surfaces are to run along the lattice."""
+    is_square = options.seamless is not None and options.seamless.lattice == "square"
+    return is_square and options.straighten and options.prescription is None and not len(surface.seams)
+
+
+def feature_cones(surface: Surface, options: Options, progress: Progress | None = None) -> CompletedCones | None:
+    """Cones with which the creases of hard surfaces can run along the lattice, and those of `complete_cones` on other
+    components; None without hard surfaces, or if there are no such cones."""
+    arrays = surface_arrays(surface)
+    try:
+        cones, angles = _lsgp.feature_cones(arrays, part_of(progress, 0.0, TRYING))
+        if not len(cones):
+            return None
+        found = complete_cones(surface, cones, angles, options, None, part_of(progress, TRYING, 1.0))
+    except Cancelled:
+        raise
+    except LsgpError:
+        return None
+    return replace(found, for_features=True)
+
+
+def _symmetric_cones(
+    surface: Surface,
+    cones: ArrayLike,
+    angles: Sequence[float | None] | None,
+    options: Options,
+    count: int | None,
+    symmetric: bool,
+    progress: Progress | None,
+) -> list[CompletedCones]:
+    """Those of `complete_cones`, and symmetric ones after them where there are others."""
     if not symmetric or len(arguments.index_vector("cones", cones)):
         return [complete_cones(surface, cones, angles, options, count, progress)]
     try:
@@ -281,23 +328,39 @@ def best_map(
     pins: Pins | None = None,
     progress: Progress | None = None,
 ) -> tuple[CompletedCones, Result]:
-    """The map through the cones of `possible_cones`: the symmetric ones if that costs little.
+    """The map through the cones of `possible_cones`: the symmetric ones, or those for creases, if that costs little.
 
     pins, progress, errors: as for `parameterize`.
     """
-    usual, *others = choices
-    most = 1.0 if not others else TRYING
-    best = usual, _map_through(surface, usual, options, pins, part_of(progress, 0.0, most))
-    for alike in others:
-        try:
-            result = _map_through(surface, alike, options, pins, part_of(progress, most, 1.0))
-        except Cancelled:
-            raise
-        except LsgpError:
-            continue
-        if may_replace_map(result, best[1]):
-            best = alike, result
+    along = [choice for choice in choices if choice.for_features]
+    usual, *others = [choice for choice in choices if not choice.for_features]
+    # Creases along the lattice take time, and need not be tried with cones that are not for them.
+    plain = replace(options, straighten=False) if along else options
+    share = 1.0 / (len(choices) + len(along))
+    parts = iter([part_of(progress, i * share, (i + 1) * share) for i in range(len(choices) + len(along))])
+    best = usual, _map_through(surface, usual, plain, pins, next(parts))
+    for other in others:
+        result = _possible_map(surface, other, plain, pins, next(parts))
+        if result is not None and may_replace_map(result, best[1]):
+            best = other, result
+    for other in along:
+        result = _possible_map(surface, other, options, pins, next(parts))
+        if result is not None and may_replace_for_features(result, best[1]):
+            best = other, result
+        else:
+            best = best[0], _map_through(surface, best[0], options, pins, next(parts))
     return best[0], best[0].told(best[1], options)
+
+
+def _possible_map(
+    surface: Surface, completed: CompletedCones, options: Options, pins: Pins | None, progress: Progress | None
+) -> Result | None:
+    try:
+        return _map_through(surface, completed, options, pins, progress)
+    except Cancelled:
+        raise
+    except LsgpError:
+        return None
 
 
 def _map_through(

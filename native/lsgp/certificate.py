@@ -49,6 +49,7 @@ def certificate(report: SeamlessReport, texture_size: int) -> dict[str, Any]:
         "flat_cones": report.flat_cones.tolist(),
         "merged_cones": report.merged_cones.tolist(),
         "relaxed_cones": report.relaxed_cones.tolist(),
+        "feature_share": report.feature_share,
     }
 
 

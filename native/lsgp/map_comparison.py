@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a map with symmetric cones may cost compared with the map that it replaces."""
+"""What a map with symmetric cones, or with those for creases, may cost compared with the map that it replaces."""
 
 from __future__ import annotations
 
@@ -15,6 +15,9 @@ _LEAST_FILLED = 0.97
 _MOST_CUTS = 1.25
 _ISLANDS_FOR_ONE = 10
 _FEW_ISLANDS = 3
+# The same for creases along the lattice, and what share of their length has to lie there.
+_MOST_L2_FOR_FEATURES = 1.1
+_LEAST_FEATURES = 0.25
 
 
 def may_replace_map(symmetric: Result, usual: Result) -> bool:
@@ -33,6 +36,18 @@ def may_replace_map(symmetric: Result, usual: Result) -> bool:
         and len(symmetric.cut_edges) <= _MOST_CUTS * len(usual.cut_edges)
         and len(np.unique(symmetric.island[symmetric.solved])) <= islands + islands // _ISLANDS_FOR_ONE
         and filled(symmetric) >= _LEAST_FILLED * filled(usual)
+    )
+
+
+def may_replace_for_features(along: Result, usual: Result) -> bool:
+    """Whether a seamless map through cones for creases has a quarter of their length along its lattice, at up to a
+    tenth more of L2 stretch and without further defects. Both as from `parameterize`.
+    """
+    return (
+        along.solved.tolist() == usual.solved.tolist()
+        and _defects(along) <= _defects(usual)
+        and along.distortion.l2_stretch <= _MOST_L2_FOR_FEATURES * usual.distortion.l2_stretch
+        and along.seamless.feature_share >= _LEAST_FEATURES
     )
 
 

@@ -13,9 +13,10 @@ from numpy.typing import ArrayLike
 from . import _lsgp, arguments
 from .api import Options, Progress, Result, Seamless, Solver, Surface, surface_arrays
 from .arguments import FloatArray, IndexArray
-from .auto_unwrap import CompletedCones, complete_cones, part_of
+from .auto_unwrap import CompletedCones, complete_cones, feature_cones, part_of
 from .equality import EqualByContent
-from .errors import Finding, InputError, SolverError
+from .errors import Cancelled, Finding, InputError, LsgpError, SolverError
+from .map_comparison import may_replace_for_features
 from .short_repr import ShortRepr
 from .triangles import uv_area
 
@@ -131,8 +132,9 @@ def remesh_to_quads(
         (GRID_REFINED).
         size: or the side of a quad on the surface, in its unit. Neither: the coarsest grid that costs at most a tenth
         in distortion.
-    options: for the layout, as for `parameterize`; None: `Options(seamless=Seamless())`. Its `seamless` must not have a
-        size, and uses the square lattice without parity.
+    options: for the layout, as for `parameterize`; None: `Options(seamless=Seamless(), straighten=True)`. Its
+        `seamless` must not have a size, and uses the square lattice without parity. With `straighten` creases of hard
+        surfaces become rows of edges, and automatic cones are chosen for that.
     If the surface has `directions`, rows of quads follow them as far as the cones permit; its seams have no effect.
     progress: as for `parameterize`.  Raises the errors of `parameterize` and `extract_quads`, OPEN_SURFACE before any
     work is done; COMPONENT_SKIPPED if a component has no layout.
@@ -143,9 +145,13 @@ def remesh_to_quads(
     chosen = _options(options)
     _lsgp.require_closed(surface_arrays(surface))
     chosen = replace(chosen, seamless=replace(chosen.seamless, tile_size=_side(surface, target, size)))
+    is_free = count is None and not len(arguments.index_vector("cones", cones))
+    along = feature_cones(surface, chosen) if is_free and chosen.straighten else None
     completed = _wide_cones(surface, cones, angles, chosen, count, part_of(progress, 0.0, _PLACED))
-    layouts = _Layouts(surface, completed, chosen)
+    layouts = _Layouts(surface, completed, chosen if along is None else replace(chosen, straighten=False))
     layout = layouts.nearest(target, part_of(progress, _PLACED, _LAID_OUT))
+    if along is not None:
+        layouts, layout = _along_features((surface, target, chosen), (along, completed), layout)
     mesh, layout = layouts.extracted(layout, part_of(progress, _LAID_OUT, 1.0))
     warnings = [finding for finding in layout.warnings if finding.code not in _OF_LAYOUTS_ALONE]
     return QuadRemesh(mesh, layout, warnings)
@@ -182,7 +188,7 @@ def quad_quality(positions: ArrayLike, quads: ArrayLike) -> QuadQuality:
 
 def _options(options: Options | None) -> Options:
     """Those of a layout whose grid can be traced."""
-    chosen = Options(seamless=Seamless()) if options is None else options
+    chosen = Options(seamless=Seamless(), straighten=True) if options is None else options
     arguments.require_type("options", chosen, Options)
     seamless = chosen.seamless
     remedy = "pass seamless=Seamless() on squares, without parity, tiles and tile_size"
@@ -285,6 +291,26 @@ class _Layouts:
             if finding.code == "COMPONENT_SKIPPED":
                 raise SolverError(finding.code, finding.message, finding.elements)
         return self._completed.told(layout, options)
+
+
+def _along_features(
+    asked: tuple[Surface, int | None, Options], cones: tuple[CompletedCones, CompletedCones], plain: Result
+) -> tuple[_Layouts, Result]:
+    """Layouts along creases, and the nearest of them to the target: through the cones for creases, which are the first,
+    or if these cost much more than a plain layout, through the usual ones."""
+    surface, target, options = asked
+    for_features, usual = cones
+    layouts = _Layouts(surface, for_features, options)
+    try:
+        layout = layouts.nearest(target, None)
+    except Cancelled:
+        raise
+    except LsgpError:
+        layout = None
+    if layout is None or not may_replace_for_features(layout, plain):
+        layouts = _Layouts(surface, usual, options)
+        layout = layouts.nearest(target, None)
+    return layouts, layout
 
 
 def _refined(layout: Result) -> Finding:

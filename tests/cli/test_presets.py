@@ -72,7 +72,7 @@ def test_nearly_straight_sides_become_straight_unless_that_is_turned_off(lsgp, t
     assert covered_share("--preset", "bake") == pytest.approx(1, abs=1e-6)
     assert covered_share("--preset", "bake", "--no-straighten") < 0.999
     refused = lsgp("unwrap", "panel.obj", "-o", "out.obj", "--no-straighten")
-    assert refused.code == 2 and "add --preset paint or bake" in refused.err
+    assert refused.code == 2 and "add --preset paint, tile or bake" in refused.err
 
 
 def test_cones_of_a_file_are_completed_with_a_preset_alone(lsgp, ball_files: Path) -> None:

@@ -118,6 +118,7 @@ class OBJECT_OT_cone_remesh_to_quads(ConeGroupProperty, BackgroundOperator, bpy.
             options=lsgp.Options(
                 seamless=lsgp.Seamless(coarse_grid=COARSE_GRIDS[self.coarse_grid][0]),
                 mode="low-stretch" if self.even_sizes else "conformal",
+                straighten=True,
             ),
             target=self.count if self.amount == "COUNT" else None,
             size=self.size if self.amount == "SIZE" else None,

@@ -103,7 +103,8 @@ class UV_OT_cone_auto_unwrap(
     straighten: bpy.props.BoolProperty(
         name="Straight Sides",
         description="Make sides of islands that are nearly straight exactly straight, and align them with the axes of "
-        "the UV map, wherever that takes hardly any stretch. Round sides stay round",
+        "the UV map, wherever that takes hardly any stretch. Round sides stay round. With Tile: let creases of hard "
+        "surfaces run along the tiles",
         default=True,
     )
     compact: bpy.props.BoolProperty(
@@ -162,7 +163,8 @@ class UV_OT_cone_auto_unwrap(
             body.prop(self, "seams")
             if self.preset != "TILE":
                 body.prop(self, "creases")
-                body.prop(self, "straighten")
+            body.prop(self, "straighten")
+            if self.preset != "TILE":
                 body.prop(self, "compact")
             body.prop(self, "symmetric")
             body.prop(self, "use_subsurf_data")

@@ -79,6 +79,7 @@ enum class Code {
   flat_cones,
   grid_refined,
   grid_distorts,
+  features_off_lattice,
   cones_merged,
   cones_not_snapped,
   angles_adjusted,

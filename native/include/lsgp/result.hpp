@@ -54,6 +54,9 @@ struct SeamlessReport {
   std::vector<Index> flat_cones;     // rounded to zero curvature, now ordinary vertices
   std::vector<Index> merged_cones;   // merged with another within a cell
   std::vector<Index> relaxed_cones;  // off the lattice: the cuts to them show a seam
+  // With Options::straighten: share of the length of the creases of hard surfaces that runs along the lattice exactly,
+  // as stored in float32; none without creases.
+  std::optional<double> feature_share;
 };
 
 // Defects of the first unfolding, and the work of repairing and relaxing the map.

@@ -112,5 +112,6 @@ def _options(args: argparse.Namespace) -> Options:
         seamless=Seamless(coarse_grid=args.coarse_grid),
         mode=args.mode or "conformal",
         stretch=1.0 if args.stretch is None else args.stretch,
+        straighten=True,
         threads=args.threads,
     )

@@ -46,9 +46,10 @@ _PRESET_SWITCHES = {
         "bake cut there where hardly any stretch remains",
     ),
     "straighten": (
-        "paint or bake",
+        "paint, tile or bake",
         "leave nearly straight boundaries and cuts of the layout as they are; by default paint and bake make them "
-        "exactly straight and align them with u and v where that costs hardly any stretch",
+        "exactly straight and align them with u and v where that costs hardly any stretch, and with tile creases of "
+        "hard surfaces run along the tiles where that costs at most a tenth of L2 stretch",
     ),
     "symmetric": (
         "paint, tile or bake",

@@ -4,6 +4,10 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <vector>
+
+#include "solvers/cholesky.hpp"
+#include "systems/quadratic_forms.hpp"
 
 namespace lsgp {
 
@@ -72,12 +76,62 @@ class Elimination {
   std::map<Index, Sum> solved_;
 };
 
+using RealMatrix = Eigen::SparseMatrix<double>;
+using Entries = std::vector<Eigen::Triplet<double>>;
+
+RealMatrix matrix_of(const Entries& entries, Index rows, Index columns) {
+  RealMatrix out(rows, columns);
+  out.setFromTriplets(entries.begin(), entries.end());
+  return out;
+}
+
+RealMatrix coordinates_from(const DegreesOfFreedom& freedom) {
+  const Array<Index> rows = first_rows(freedom);
+  const Index copies = freedom.displacement.copy_count();
+  Entries entries;
+  for (Index copy = 0; copy < copies; ++copy) {
+    freedom.displacement.for_each_term(copy, [&](const Term& term) {
+      Complex factor = term.coefficient;
+      for (Index row = rows[term.unknown]; row < rows[term.unknown + 1]; ++row, factor *= Complex(0, 1)) {
+        entries.emplace_back(2 * copy, row, factor.real());
+        entries.emplace_back(2 * copy + 1, row, factor.imag());
+      }
+    });
+  }
+  return matrix_of(entries, 2 * copies, rows.back());
+}
+
+// The Dirichlet form of these coordinates, all of it.
+RealMatrix form_of_coordinates(const CutSurface& surface) {
+  const Index copies = surface.cut_mesh.copy_count();
+  PerCopy<Index> row_of_copy(copies);
+  std::iota(row_of_copy.begin(), row_of_copy.end(), 0);
+  const RealMatrix form = assemble_dirichlet(surface, surface.cut_mesh, row_of_copy);
+  Entries entries;
+  for (int column = 0; column < copies; ++column) {
+    for (RealMatrix::InnerIterator it(form, column); it; ++it) {
+      const int row = static_cast<int>(it.row());
+      for (const int axis : {0, 1}) {
+        entries.emplace_back(2 * row + axis, 2 * column + axis, it.value());
+        if (row != column) entries.emplace_back(2 * column + axis, 2 * row + axis, it.value());
+      }
+    }
+  }
+  return matrix_of(entries, 2 * copies, 2 * copies);
+}
+
 // The factor of an unknown's real or imaginary part in the position of a copy, from that of the unknown.
 Complex factor_of(Index variable, Complex of_unknown) {
   return variable % 2 == 0 ? of_unknown : of_unknown * Complex(0, 1);
 }
 
 }  // namespace
+
+double value_of(const CoordinateForm& form, const Eigen::VectorXcd& position) {
+  Complex sum = 0;
+  for (const auto& [copy, factor] : form) sum += factor * position[copy];
+  return sum.imag();
+}
 
 DegreesOfFreedom free_along(const CutSurface& surface, const Reduction& reduction, const DirectedEdges& edges) {
   const CutMesh& cut_mesh = surface.cut_mesh;
@@ -96,6 +150,11 @@ DegreesOfFreedom free_along(const CutSurface& surface, const Reduction& reductio
       add(copy, factor, coordinate);
       elimination.add(coordinate);
     }
+  }
+  for (const CoordinateForm& form : edges.fixed) {
+    Sum coordinate;
+    for (const auto& [copy, factor] : form) add(copy, factor, coordinate);
+    elimination.add(coordinate);
   }
   for (Index i = 0; i < ssize(edges.halfedges); ++i) {
     const Index h = edges.halfedges[i];
@@ -139,6 +198,38 @@ DegreesOfFreedom free_along(const CutSurface& surface, const Reduction& reductio
   out.triangles.resize(surface.mesh.triangle_count());
   std::iota(out.triangles.begin(), out.triangles.end(), 0);
   return out;
+}
+
+FreedomSystem::FreedomSystem(const CutSurface& surface, const DegreesOfFreedom& freedom)
+    : surface_(surface), coordinates_(coordinates_from(freedom)) {
+  dirichlet_ = coordinates_.transpose() * form_of_coordinates(surface) * coordinates_;
+}
+
+Eigen::VectorXcd FreedomSystem::fit(const Jacobians& jacobians) const {
+  const Eigen::VectorXcd pull = pull_of(surface_, jacobians);
+  Eigen::VectorXd right(2 * pull.size());
+  for (Eigen::Index copy = 0; copy < pull.size(); ++copy) {
+    right.segment<2>(2 * copy) << pull[copy].real(), pull[copy].imag();
+  }
+  right = (coordinates_.transpose() * right).eval();
+  return expand(Cholesky<double>(dirichlet_.triangularView<Eigen::Lower>()).solve(right));
+}
+
+Eigen::VectorXcd FreedomSystem::expand(const Eigen::VectorXd& values) const {
+  const Eigen::VectorXd coordinates = coordinates_ * values;
+  Eigen::VectorXcd out(coordinates.size() / 2);
+  for (Eigen::Index copy = 0; copy < out.size(); ++copy) out[copy] = {coordinates[2 * copy], coordinates[2 * copy + 1]};
+  return out;
+}
+
+Eigen::VectorXd FreedomSystem::coefficients_of(const CoordinateForm& form) const {
+  // The imaginary part of factor * (u + i v) is Im(factor) u + Re(factor) v.
+  Eigen::VectorXd of_coordinates = Eigen::VectorXd::Zero(coordinates_.rows());
+  for (const auto& [copy, factor] : form) {
+    of_coordinates[2 * copy] += factor.imag();
+    of_coordinates[2 * copy + 1] += factor.real();
+  }
+  return coordinates_.transpose() * of_coordinates;
 }
 
 }  // namespace lsgp

@@ -10,8 +10,6 @@
 
 #include "base/union_find.hpp"
 #include "repair/line_constraints.hpp"
-#include "solvers/cholesky.hpp"
-#include "systems/quadratic_forms.hpp"
 #include "unfold/jacobians.hpp"
 
 namespace lsgp {
@@ -68,67 +66,6 @@ DirectedEdges edges_of(const StraightSides& straight) {
   return out;
 }
 
-using RealMatrix = Eigen::SparseMatrix<double>;
-using Entries = std::vector<Eigen::Triplet<double>>;
-
-RealMatrix matrix_of(const Entries& entries, Index rows, Index columns) {
-  RealMatrix out(rows, columns);
-  out.setFromTriplets(entries.begin(), entries.end());
-  return out;
-}
-
-// The coordinates of all copies, 2 c being u of copy c and 2 c + 1 its v, from the degrees of freedom.
-RealMatrix coordinates_from(const DegreesOfFreedom& freedom) {
-  const Array<Index> rows = first_rows(freedom);
-  const Index copies = freedom.displacement.copy_count();
-  Entries entries;
-  for (Index copy = 0; copy < copies; ++copy) {
-    freedom.displacement.for_each_term(copy, [&](const Term& term) {
-      Complex factor = term.coefficient;
-      for (Index row = rows[term.unknown]; row < rows[term.unknown + 1]; ++row, factor *= Complex(0, 1)) {
-        entries.emplace_back(2 * copy, row, factor.real());
-        entries.emplace_back(2 * copy + 1, row, factor.imag());
-      }
-    });
-  }
-  return matrix_of(entries, 2 * copies, rows.back());
-}
-
-// The Dirichlet form of these coordinates, all of it.
-RealMatrix form_of_coordinates(const CutSurface& surface) {
-  const Index copies = surface.cut_mesh.copy_count();
-  PerCopy<Index> row_of_copy(copies);
-  std::iota(row_of_copy.begin(), row_of_copy.end(), 0);
-  const RealMatrix form = assemble_dirichlet(surface, surface.cut_mesh, row_of_copy);
-  Entries entries;
-  for (int column = 0; column < copies; ++column) {
-    for (RealMatrix::InnerIterator it(form, column); it; ++it) {
-      const int row = static_cast<int>(it.row());
-      for (const int axis : {0, 1}) {
-        entries.emplace_back(2 * row + axis, 2 * column + axis, it.value());
-        if (row != column) entries.emplace_back(2 * column + axis, 2 * row + axis, it.value());
-      }
-    }
-  }
-  return matrix_of(entries, 2 * copies, 2 * copies);
-}
-
-// The least squares fit to Jacobians among positions that are sums of the degrees of freedom.
-Eigen::VectorXcd fit_along(const CutSurface& surface, const DegreesOfFreedom& freedom, const Jacobians& jacobians) {
-  const RealMatrix coordinates = coordinates_from(freedom);
-  const RealMatrix form = coordinates.transpose() * form_of_coordinates(surface) * coordinates;
-  const Eigen::VectorXcd pull = pull_of(surface, jacobians);
-  Eigen::VectorXd right(2 * pull.size());
-  for (Eigen::Index copy = 0; copy < pull.size(); ++copy) {
-    right.segment<2>(2 * copy) << pull[copy].real(), pull[copy].imag();
-  }
-  right = (coordinates.transpose() * right).eval();
-  const Eigen::VectorXd fitted = coordinates * Cholesky<double>(form.triangularView<Eigen::Lower>()).solve(right);
-  Eigen::VectorXcd out(pull.size());
-  for (Eigen::Index copy = 0; copy < out.size(); ++copy) out[copy] = {fitted[2 * copy], fitted[2 * copy + 1]};
-  return out;
-}
-
 // Gives the copies on sides along the axes their mean coordinate across the side, from which they differ by rounding.
 void equalize(const CutMesh& cut_mesh, const DirectedEdges& edges, Eigen::VectorXcd& position) {
   for (const bool is_level : {true, false}) {
@@ -167,7 +104,7 @@ Eigen::VectorXcd straighten(const CutSurface& surface, const MapTarget& target, 
     const Eigen::VectorXd rest = scale_at_rest(surface, target.curvature, options.stretch, position);
     before_step();
     DegreesOfFreedom freedom = free_along(surface, target.connection.reduction, edges);
-    position = fit_along(surface, freedom, measure_jacobians(surface, cut_mesh, position));
+    position = FreedomSystem(surface, freedom).fit(measure_jacobians(surface, cut_mesh, position));
     NewtonMinimizer newton(surface, {rest, target.connection.frames}, std::move(freedom), before_step, position);
     newton.weigh(importance_of_triangles(surface, options.importance));
     if (newton.unfold(Kind::foldover_free, unfolding_steps)) relax_stretch(newton);

@@ -12,10 +12,13 @@ namespace lsgp {
 
 namespace {
 
-constexpr double coarsest_tiles = 4;       // tried for an automatic grid
-constexpr double acceptable_growth = 1.1;  // of the energy by an automatic grid
-constexpr double acceptable_turn = 0.02;   // radians, of directions by an automatic grid
-constexpr double near_finest = 1.02;       // of the growth that the finest grid has where that is more
+constexpr double coarsest_tiles = 4;  // tried for an automatic grid
+using Features = LayoutEffort::Features;
+
+constexpr double finest_with_features = 128;  // tried for an automatic grid
+constexpr double acceptable_growth = 1.1;     // of the energy by an automatic grid
+constexpr double acceptable_turn = 0.02;      // radians, of directions by an automatic grid
+constexpr double near_finest = 1.02;          // of the growth that the finest grid has where that is more
 
 // The next finer size of 1, 1.5, 2, 3, 4, 6, ...
 double next_size(double tiles) {
@@ -37,9 +40,10 @@ void report_growth(double growth, std::vector<Finding>& findings) {
 
 }  // namespace
 
-GridSearch::GridSearch(bool parity, PointLattice lattice, Array<SeamlessComponent>& components,
+GridSearch::GridSearch(const Options& options, PointLattice lattice, Array<SeamlessComponent>& components,
                        ProgressMonitor& monitor)
-    : parity_(parity),
+    : parity_(options.seamless->parity),
+      features_(options.straighten),
       lattice_(lattice),
       components_(components),
       monitor_(monitor),
@@ -78,20 +82,29 @@ std::optional<Grid> GridSearch::lay_out(double tiles, const LayoutEffort& effort
 }
 
 std::optional<Grid> GridSearch::refine(double tiles, const LayoutEffort& effort) {
-  for (; tiles <= most_tiles; tiles = next_size(tiles)) {
+  const double finest = effort.features == Features::required ? finest_with_features : most_tiles;
+  for (; tiles <= finest; tiles = next_size(tiles)) {
     if (auto grid = lay_out(tiles, effort)) return grid;
   }
   return std::nullopt;
 }
 
 std::optional<Grid> GridSearch::find_coarsest() {
-  if (auto grid = refine(coarsest_tiles, {acceptable_growth, acceptable_turn, true})) return grid;
+  const bool has_features = std::any_of(quantizers_.begin(), quantizers_.end(),
+                                        [](const auto& quantizer) { return quantizer->has_features(); });
+  if (has_features) {
+    if (auto grid = refine(coarsest_tiles, {acceptable_growth, acceptable_turn, true, Features::required})) return grid;
+  }
+  if (auto grid = refine(coarsest_tiles, {acceptable_growth, acceptable_turn, true, Features::ignored})) return grid;
   // Layouts that need more repair take longer: bisects the sizes, since finer grids cost less.
   Array<double> sizes;
   for (double tiles = coarsest_tiles; tiles <= most_tiles; tiles = next_size(tiles)) sizes.push_back(tiles);
-  std::optional<Grid> best = lay_out(sizes.back(), {});
-  if (!best) return refine(coarsest_tiles, {});
-  const LayoutEffort thorough{std::max(acceptable_growth, near_finest * growth(*best)), acceptable_turn, false};
+  LayoutEffort without_features;
+  without_features.features = Features::ignored;
+  std::optional<Grid> best = lay_out(sizes.back(), without_features);
+  if (!best) return refine(coarsest_tiles, without_features);
+  const LayoutEffort thorough{std::max(acceptable_growth, near_finest * growth(*best)), acceptable_turn, false,
+                              Features::ignored};
   std::size_t low = 0, high = sizes.size() - 1;
   while (low < high) {
     const std::size_t middle = (low + high) / 2;
@@ -163,7 +176,7 @@ std::optional<QuantizedLayout> GridSearch::quantize(std::size_t component, doubl
 
 void GridSearch::prepare(std::size_t component) {
   const SeamlessComponent& of = components_[component];
-  const LatticeDemands demands{lattice_, parity_, relaxed_[component], of.task->directions};
+  const LatticeDemands demands{lattice_, parity_, relaxed_[component], of.task->directions, features_};
   quantizers_[component] = std::make_unique<LayoutQuantizer>(*of.system, *of.map, demands, step_);
 }
 

@@ -24,7 +24,8 @@ struct Grid {
 // The layouts of all components on a sequence of grids.
 class GridSearch {
  public:
-  GridSearch(bool parity, PointLattice lattice, Array<SeamlessComponent>& components, ProgressMonitor& monitor);
+  GridSearch(const Options& options, PointLattice lattice, Array<SeamlessComponent>& components,
+             ProgressMonitor& monitor);
 
   double extent() const;
   double energy(std::size_t component) const { return quantizers_[component]->energy(); }
@@ -68,7 +69,7 @@ class GridSearch {
   // One of the cones takes up the curvature of both: the one whose own is nearer to that.
   bool merge(const ConePair& pair, const Options& options);
 
-  const bool parity_;
+  const bool parity_, features_;
   const PointLattice lattice_;
   Array<SeamlessComponent>& components_;
   ProgressMonitor& monitor_;

@@ -120,6 +120,11 @@ bool LayoutQuantizer::follow(double scale, const Eigen::VectorXcd& change, Eigen
 }
 
 void LayoutQuantizer::lower_stretch(double stretch, const Eigen::VectorXd& importance, QuantizedLayout& layout) const {
+  if (layout.has_features) {
+    features_->relax(importance_of_triangles({mesh_, geometry_}, importance), layout.position);
+    layout.energy = measure_energy(layout.position);
+    return;
+  }
   const Eigen::VectorXd rest = scale_at_rest(surface(), curvature_, stretch, layout.position);
   NewtonMinimizer newton(
       surface(), {rest, Eigen::VectorXd::Zero(mesh_.triangle_count())},

@@ -10,6 +10,7 @@
 
 #include "base/memory.hpp"
 #include "cut/cone_triangulation.hpp"
+#include "cut/features.hpp"
 #include "plane/layout.hpp"
 #include "prescription/parallel_transport.hpp"
 #include "prescription/quantize_curvature.hpp"
@@ -77,6 +78,7 @@ LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, Borrowed<const Compone
                         turns_of_cuts(rotation_, lattice_.rotation_order()), {lattice_, demands.parity, relaxed});
   motion_of_copies_ = motion_of_copies(mesh_, cut_graph_, cut_mesh_, rotation_);
   set_start(map);
+  if (demands.features && relaxed.empty() && lattice_.rotation_order() == 4) align_features();
   integers_ = integers_of(start_);
 
   const double integers = static_cast<double>(integers_.size());
@@ -121,6 +123,34 @@ void LayoutQuantizer::set_start(const ComponentMap& map) {
     }
   }
   strain_ = triangle_energies(1, jacobians);
+}
+
+// Leaves features_ empty on soft surfaces and where no feature can be aligned.
+void LayoutQuantizer::align_features() {
+  constexpr double most_growth = 1.1;  // of the L2 stretch
+  const PerHalfedge<char> feature = find_features({mesh_, geometry_});
+  if (std::find(feature.begin(), feature.end(), 1) == feature.end()) return;
+  const double l2 = l2_stretch(geometry_, measure_jacobians({mesh_, geometry_}, cut_mesh_, start_));
+  most_l2_ = most_growth * l2;
+  features_ = std::make_unique<FeatureLayout>(FeatureTask{surface(), curvature_, rotation_, reduction_, before_step_},
+                                              feature, start_, most_l2_);
+  if (!features_->is_aligned()) return features_.reset();
+  energy_ = std::max(energy_, measure_energy(features_->start()));
+}
+
+std::optional<QuantizedLayout> LayoutQuantizer::quantize_with_features(double density,
+                                                                       const LayoutEffort& effort) const {
+  std::optional<Eigen::VectorXcd> position = features_->quantize(density);
+  if (!position) return std::nullopt;
+  QuantizedLayout out{std::move(*position), 1, true};
+  out.energy = measure_energy(out.position);
+  if (!(out.energy <= effort.most_growth * energy_)) return std::nullopt;
+  const double l2 = l2_stretch(geometry_, measure_jacobians({mesh_, geometry_}, cut_mesh_, out.position));
+  if (!(l2 <= most_l2_)) return std::nullopt;
+  if (!demands_.directions.empty()) {
+    out.position *= lattice_.unit(find_upward_turn(out.position).turns_on_lattice());
+  }
+  return out;
 }
 
 UpwardTurn LayoutQuantizer::find_upward_turn(const Eigen::VectorXcd& position) const {
@@ -237,6 +267,10 @@ double LayoutQuantizer::measure_energy(const Eigen::VectorXcd& position) const {
 
 std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, const LayoutEffort& effort) const {
   const bool quick = effort.quick;
+  if (features_ && effort.features != LayoutEffort::Features::ignored) {
+    auto out = quantize_with_features(density, effort);
+    if (out || effort.features == LayoutEffort::Features::required) return out;
+  }
   const Array<Target> targets = find_targets(density, quick ? few_angles : tried_angles);
   // With relaxed cones it is unknown whether the points can be reached, and continuation would take too long.
   const int ways = !demands_.relaxed.empty() || quick ? 1 : 2;

@@ -12,6 +12,7 @@
 #include "pipeline/component_map.hpp"
 #include "plane/point_lattice.hpp"
 #include "repair/newton.hpp"
+#include "seamless/feature_layout.hpp"
 #include "seamless/lattice_energy.hpp"
 #include "seamless/lattice_search.hpp"
 #include "seamless/lattice_transitions.hpp"
@@ -24,6 +25,7 @@ namespace lsgp {
 struct QuantizedLayout {
   Eigen::VectorXcd position;  // (copies)
   double energy = 1;          // symmetric Dirichlet energy, 1 is isometric
+  bool has_features = false;  // along lines of the lattice
 };
 
 // What a layout on some grid is worth.
@@ -31,6 +33,7 @@ struct LayoutEffort {
   double most_growth = std::numeric_limits<double>::infinity();  // of the energy by rounding
   double most_turned = std::numeric_limits<double>::infinity();  // radians, of directions by rounding, on average
   bool quick = false;  // only layouts are wanted that need little repair; otherwise they are also followed in steps
+  enum class Features { if_possible, required, ignored } features = Features::if_possible;
 };
 
 // Two cones next to each other.
@@ -45,6 +48,7 @@ struct LatticeDemands {
   bool parity;                          // translations lead from white cells to white ones
   const Array<Index>& relaxed;          // cones that need not lie on the lattice
   const TextureDirections& directions;  // what v is to run along
+  bool features;                        // are to run along lines of the lattice
 };
 
 // The layouts of one map on grids of any size. What does not depend on the size is computed once.
@@ -59,6 +63,8 @@ class LayoutQuantizer {
   // The layout's longer side, where it has the surface's area.
   double extent() const { return extent_; }
   double energy() const { return energy_; }
+
+  bool has_features() const { return features_ != nullptr; }
 
   // The nearest first; closed surfaces.
   const Array<ConePair>& cone_pairs() const { return cone_pairs_; }
@@ -87,6 +93,8 @@ class LayoutQuantizer {
 
   CutSurface surface() const { return {{mesh_, geometry_}, cut_graph_, cut_mesh_}; }
   void set_start(const ComponentMap& map);
+  void align_features();
+  std::optional<QuantizedLayout> quantize_with_features(double density, const LayoutEffort& effort) const;
   Array<MovingTriangle> moving_triangles(const ComponentMap& map);
   UpwardTurn find_upward_turn(const Eigen::VectorXcd& position) const;
   void turn_upwards(Eigen::VectorXcd& position) const;
@@ -124,6 +132,8 @@ class LayoutQuantizer {
   LatticeReduction reduction_;
   Eigen::VectorXcd integers_;                      // (d) at the start
   std::unique_ptr<LatticeEnergy> lattice_energy_;  // of the Dirichlet form, stiffened around cones
+  std::unique_ptr<FeatureLayout> features_;        // or null
+  double most_l2_ = 0;                             // stretch with features along the lattice
   Array<ConePair> cone_pairs_;
   std::optional<LatticeSearch> search_;
 };

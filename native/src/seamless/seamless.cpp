@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/text.hpp"
+#include "cut/features.hpp"
 #include "plane/layout.hpp"
 #include "seamless/exact_layout.hpp"
 #include "seamless/grid_search.hpp"
@@ -80,11 +81,53 @@ void split_layouts(const GridSearch& search, Complex shift, const Grid& grid, Ar
   for (std::size_t i = 0; i < components.size(); ++i) *components[i].map = std::move(maps[i]);
 }
 
+// The features of hard surfaces, and which of them run exactly along the axes.
+class FeatureReport {
+ public:
+  void add(const Component& component, const CutSurface& surface, const Eigen::VectorXcd& position) {
+    const HalfedgeMesh& mesh = component.mesh;
+    const PerHalfedge<char> feature = find_features(surface);
+    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+      if (!feature[h] || mesh.twin[h] < h) continue;
+      const Complex edge = as_stored(position[surface.cut_mesh.copy_of_corner[next(h)]]) -
+                           as_stored(position[surface.cut_mesh.copy_of_corner[h]]);
+      const double length = surface.geometry.length[h];
+      all_ += length;
+      if (edge.real() == 0 || edge.imag() == 0) continue;
+      off_ += length;
+      most_ = std::max(most_, std::abs(std::remainder(std::arg(edge), M_PI / 2)));
+      edges_.push_back(component.source_vertex[mesh.origin(h)]);
+      edges_.push_back(component.source_vertex[mesh.target(h)]);
+    }
+  }
+
+  // Of their length; none without features.
+  std::optional<double> aligned_share() const {
+    return all_ > 0 ? std::optional<double>(1 - off_ / all_) : std::nullopt;
+  }
+
+  void report_off_lattice(std::vector<Finding>& findings) {
+    if (edges_.empty()) return;
+    findings.push_back(
+        {Code::features_off_lattice,
+         concat(count(edges_.size() / 2, "edge", "edges"), " of creases, ", rounded(100 * off_ / all_, 2),
+                " % of their length, ", edges_.size() == 2 ? "does" : "do", " not run along the lattice, up to ",
+                rounded(most_ * 180 / M_PI, 2),
+                " degrees off: they would cross or fold, or cost too much stretch. Use smaller tiles, or "
+                "mark cones at the ends of these creases."),
+         {ElementKind::edges, std::move(edges_)}});
+  }
+
+ private:
+  double all_ = 0, off_ = 0, most_ = 0;  // lengths, and radians
+  Array<Index> edges_;                   // off the axes, as the caller's vertices
+};
+
 SeamlessReport lay_out(const Options& options, double unit_scale, Array<SeamlessComponent>& components,
                        std::vector<Finding>& findings, ProgressMonitor& monitor) {
   const Seamless& seamless = *options.seamless;
   const PointLattice lattice(rotation_order(seamless.lattice));
-  GridSearch search(seamless.parity, lattice, components, monitor);
+  GridSearch search(options, lattice, components, monitor);
   Grid grid = find_grid(options, unit_scale, search, findings);
   if (options.mode == Mode::low_stretch && options.stretch > 0) search.lower_stretch(options.stretch, grid);
   // With parity cones are at the centres of cells: around a corner of cells an odd number of them may meet.
@@ -106,6 +149,7 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
   report.tile_size = 1 / (grid.density * unit_scale);
   report.cell = seamless.cell;
   double area = 0, before = 0, after = 0;
+  FeatureReport features;
   Array<Failure> failures;
   for (std::size_t i = 0; i < components.size(); ++i) {
     const SeamlessComponent& component = components[i];
@@ -121,6 +165,10 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
       report.cuts.push_back(cut);
       report.error = std::max(report.error, cut.error);
     }
+    if (options.straighten && lattice.rotation_order() == 4) {
+      features.add(*component.source, component.system->open(component.map->cut_graph, component.map->cut_mesh),
+                   component.map->position);
+    }
     area += component.system->geometry().total_area;
     before += component.system->geometry().total_area * search.energy(i);
     // Triangles that collapsed in single precision, which are reported, have none.
@@ -131,6 +179,8 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
   }
   report_cones_given_up(report, findings);
   if (!failures.empty()) leave_out(failures, components, findings);
+  report.feature_share = features.aligned_share();
+  features.report_off_lattice(findings);
   report.energy_before = before / area;
   report.energy_after = after / area;
   return report;

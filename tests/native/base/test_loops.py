@@ -207,8 +207,13 @@ REVIEWED = {
             SHORT,
         ),
     ],
+    "seamless/feature_layout.cpp": [("for (;;)", "each round rounds a coordinate, or ends it", OWN)],
+    "seamless/feature_lines.cpp": [
+        ("for (Index at = next(h);; at = next(mesh_.twin[at]))", AROUND_A_VERTEX, SHORT),
+        ("for (Index h = first; h != none && !is_traced_[h]; h = following(h))", ONCE_EACH, SHORT),
+    ],
     "seamless/grid_search.cpp": [
-        ("for (; tiles <= most_tiles; tiles = next_size(tiles))", "27 sizes up to 16384", WITHIN),
+        ("for (; tiles <= finest; tiles = next_size(tiles))", "27 sizes up to 16384", WITHIN),
         (
             "for (double tiles = coarsest_tiles; tiles <= most_tiles; tiles = next_size(tiles))",
             "the same sizes, from 4 on",

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "seamless/feature_layout.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/checkpoint.hpp"
+#include "base/union_find.hpp"
+#include "lsgp/errors.hpp"
+#include "repair/low_stretch.hpp"
+#include "unfold/distortion.hpp"
+#include "unfold/jacobians.hpp"
+
+namespace lsgp {
+
+namespace {
+
+using Kind = DistortionEnergy::Kind;
+
+constexpr int most_attempts = 6;              // to align lines
+constexpr Index attempted_triangles = 40000;  // in all of them together, as far as there is more than one
+constexpr std::ptrdiff_t most_parts = 16;     // into which lines are divided for that
+constexpr double mendable_share = 0.1;        // of the triangles, flipped, that are repaired
+constexpr Index few = 8;                      // that are always
+constexpr int unfolding_steps = 8;
+constexpr int relaxing_steps = 30;
+constexpr double least_decrease = 1e-3;           // of the energy, for which a further step is taken
+constexpr double fine_step = 1.0 / 256;           // exact in single precision on any grid
+constexpr double dependent = 1e-9;                // share of a coordinate's compliance that is left
+constexpr double short_length = 1.5;              // cells: lines that are rounded first
+constexpr double whole = 1e-5;                    // deviation of a dependent coordinate from its step
+constexpr int tried_scales = 3;                   // above and below the one asked for, by sixteenths of an octave
+constexpr std::ptrdiff_t many_coordinates = 128;  // for which only one scale is tried
+
+CoordinateForm coordinate(Index of) { return {{of / 2, of % 2 == 0 ? Complex(0, 1) : Complex(1)}}; }
+
+double coordinate_at(Index of, const Eigen::VectorXcd& position) {
+  return of % 2 == 0 ? position[of / 2].real() : position[of / 2].imag();
+}
+
+void set_coordinate(Index of, double value, Eigen::VectorXcd& position) {
+  Complex& at = position[of / 2];
+  at = of % 2 == 0 ? Complex(value, at.imag()) : Complex(at.real(), value);
+}
+
+}  // namespace
+
+FeatureLayout::FeatureLayout(const FeatureTask& task, const PerHalfedge<char>& feature, const Eigen::VectorXcd& start,
+                             double most_l2)
+    : task_(task), unaligned_(start), most_l2_(most_l2) {
+  const HalfedgeMesh& mesh = task_.surface.mesh;
+  left_ = std::clamp(attempted_triangles / mesh.triangle_count(), 1, most_attempts);
+  is_cone_.assign(mesh.vertex_count(), 0);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    is_cone_[v] = mesh.loop_of_vertex[v] == none && task_.curvature.at_vertex[v] != 0;
+  }
+  // Close to an isometry lines have about the directions that they have in the end.
+  held_ = free_all(mesh, task_.surface.cut_mesh, task_.lattice.reduction, PerVertex<char>(mesh.vertex_count(), 0));
+  minimize(unaligned_);
+  unaligned_ *= turn_to_features(task_.surface, feature, unaligned_);
+  const Array<FeatureLine> lines = trace_features(task_.surface, feature, is_cone_, unaligned_);
+  add(lines, 0, ssize(lines));
+  if (!aligned_.empty()) find_coordinates();
+}
+
+// All of them, or else as many as possible: halves that fail are divided again.
+bool FeatureLayout::add(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  if (begin == end || left_ == 0) return false;
+  if (align(lines, begin, end)) return true;
+  if (end - begin <= std::max<std::ptrdiff_t>(1, ssize(lines) / most_parts)) return false;
+  const std::ptrdiff_t middle = begin + (end - begin) / 2;
+  add(lines, begin, middle);
+  add(lines, middle, end);
+  return false;
+}
+
+bool FeatureLayout::align(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  --left_;
+  Array<FeatureLine> more = aligned_;
+  more.insert(more.end(), lines.begin() + begin, lines.begin() + end);
+  DegreesOfFreedom freedom = free_along(task_.surface, task_.lattice.reduction, edges_of(more));
+  const Jacobians jacobians = measure_jacobians(task_.surface, task_.surface.cut_mesh, unaligned_);
+  Eigen::VectorXcd position;
+  try {
+    task_.before_step();
+    position = FreedomSystem(task_.surface, freedom).fit(jacobians);
+  } catch (const Error& error) {
+    if (error.code() != Code::solver_failed) throw;
+    return false;
+  }
+  held_ = std::move(freedom);
+  if (!position.allFinite() || !minimize(position)) return false;
+  if (l2_stretch(task_.surface.geometry, measure_jacobians(task_.surface, task_.surface.cut_mesh, position)) >
+      most_l2_) {
+    return false;
+  }
+  aligned_ = std::move(more);
+  start_ = std::move(position);
+  return true;
+}
+
+DirectedEdges FeatureLayout::edges_of(const Array<FeatureLine>& lines) const {
+  DirectedEdges out;
+  for (const FeatureLine& line : lines) {
+    out.halfedges.insert(out.halfedges.end(), line.halfedges.begin(), line.halfedges.end());
+    out.directions.insert(out.directions.end(), line.directions.begin(), line.directions.end());
+  }
+  return out;
+}
+
+// What the lattice rounds, as coordinates of the copies.
+void FeatureLayout::find_lattice_coordinates() {
+  const auto& [surface, curvature, rotation, lattice, before_step] = task_;
+  Array<Array<std::pair<Index, Complex>>> integer;
+  for (const Index v : lattice.cones) integer.push_back({{v, 1.0}});
+  for (const Index p : lattice.cuts) {
+    const Sisters sisters = origin_sisters(surface.mesh, surface.cut_mesh, surface.cut_graph.cuts[p].halfedges.front());
+    integer.push_back({{sisters.right, 1.0}, {sisters.left, -std::polar(1.0, rotation[p])}});
+  }
+  for (const FeatureLine& line : aligned_) {
+    const Index tail = surface.mesh.origin(line.halfedges.front()), head = surface.mesh.target(line.halfedges.back());
+    if (!is_cone_[tail] || !is_cone_[head]) continue;
+    CoordinateForm length;
+    for (Index i = 0; i < ssize(line.halfedges); ++i) {
+      const Index h = line.halfedges[i];
+      const Complex along = Complex(0, 1) * std::conj(line.directions[i]);
+      length.emplace_back(surface.cut_mesh.copy_of_corner[next(h)], along);
+      length.emplace_back(surface.cut_mesh.copy_of_corner[h], -along);
+    }
+    rounded_.push_back(std::move(length));
+  }
+  length_count_ = ssize(rounded_);
+  const Eigen::MatrixXcd inverse = lattice.basis.inverse();
+  for (Eigen::Index k = 0; k < inverse.rows(); ++k) {
+    for (const Complex part : {Complex(0, 1), Complex(1)}) {
+      CoordinateForm form;
+      for (Eigen::Index l = 0; l < inverse.cols(); ++l) {
+        if (inverse(k, l) == 0.0) continue;
+        for (const auto& [copy, factor] : integer[l]) form.emplace_back(copy, part * inverse(k, l) * factor);
+      }
+      rounded_.push_back(std::move(form));
+    }
+  }
+  lattice_count_ = ssize(rounded_);
+  may_shift_ = lattice.origin == none && (rotation.array() == 0).all();
+}
+
+void FeatureLayout::find_coordinates() {
+  const CutMesh& cut_mesh = task_.surface.cut_mesh;
+  const DirectedEdges edges = edges_of(aligned_);
+  UnionFind same(2 * cut_mesh.copy_count());
+  PerCopy<std::array<char, 2>> is_on_line(cut_mesh.copy_count(), {0, 0});
+  for (Index i = 0; i < ssize(edges.halfedges); ++i) {
+    const Index tail = cut_mesh.copy_of_corner[edges.halfedges[i]];
+    const Index head = cut_mesh.copy_of_corner[next(edges.halfedges[i])];
+    const Index across = edges.directions[i].imag() == 0 ? 1 : 0;
+    same.unite(2 * tail + across, 2 * head + across);
+    is_on_line[tail][across] = is_on_line[head][across] = 1;
+  }
+  Array<Index> number(2 * cut_mesh.copy_count(), none);
+  for (Index of = 0; of < ssize(number); ++of) {
+    if (!is_on_line[of / 2][of % 2]) continue;
+    Index& line = number[same.find(of)];
+    if (line == none) {
+      line = static_cast<Index>(lines_.size());
+      lines_.emplace_back();
+    }
+    lines_[line].push_back(of);
+  }
+  find_lattice_coordinates();
+  std::array<Index, 2> reference{none, none};
+  for (const Array<Index>& line : lines_) {
+    CoordinateForm form = coordinate(line.front());
+    Index& first = reference[line.front() % 2];
+    if (may_shift_ && first == none) first = line.front();
+    if (may_shift_ && first != line.front()) form.emplace_back(first / 2, -form.front().second);
+    if (may_shift_ && first == line.front()) continue;
+    rounded_.push_back(std::move(form));
+  }
+  const Reduction& reduction = task_.lattice.reduction;
+  system_.emplace(task_.surface, free_along(task_.surface, reduction, edges));
+  factor_.emplace(system_->dirichlet().triangularView<Eigen::Lower>());
+  coefficients_.resize(system_->dirichlet().rows(), ssize(rounded_));
+  for (std::ptrdiff_t i = 0; i < ssize(rounded_); ++i) coefficients_.col(i) = system_->coefficients_of(rounded_[i]);
+  compliance_.resize(ssize(rounded_), ssize(rounded_));
+  constexpr Eigen::Index at_once = 16;
+  for (Eigen::Index i = 0; i < compliance_.cols(); i += at_once) {
+    const Eigen::Index width = std::min(at_once, compliance_.cols() - i);
+    const Eigen::MatrixXd forces = coefficients_.middleCols(i, width);
+    compliance_.middleCols(i, width) = coefficients_.transpose() * factor_->solve(forces);
+  }
+  DirectedEdges fixed = edges;
+  fixed.fixed = rounded_;
+  held_ = free_along(task_.surface, reduction, fixed);
+}
+
+// Rounds one coordinate after the other, the cheapest first; the others follow.
+std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, double step_of_lines) const {
+  const std::ptrdiff_t count = ssize(rounded_);
+  Choice out{scale, {}, {}, 0};
+  Eigen::VectorXd value(count);
+  for (std::ptrdiff_t i = 0; i < count; ++i) value[i] = scale * value_of(rounded_[i], start_);
+  Eigen::MatrixXd left = compliance_;
+  Array<char> is_done(count, 0);
+  const auto off = [&](std::ptrdiff_t i) {
+    const double step = i < lattice_count_ ? 1 : step_of_lines;
+    const double nearest = step * std::round(value[i] / step);
+    return (i < length_count_ ? std::max(nearest, 1.0) : nearest) - value[i];
+  };
+  // Lines between cones keep a length; where lines need not be on the lattice, they wait for it.
+  for (const std::ptrdiff_t end : {length_count_, step_of_lines < 1 ? lattice_count_ : count, count}) {
+    for (;;) {
+      checkpoint(static_cast<double>(count * count));
+      std::ptrdiff_t best = -1;
+      double least = std::numeric_limits<double>::infinity();
+      for (std::ptrdiff_t i = 0; i < end; ++i) {
+        if (is_done[i] || !(left(i, i) > dependent * compliance_(i, i))) continue;
+        if (end == length_count_ && value[i] > short_length) continue;
+        const double cost = off(i) * off(i) / left(i, i);
+        if (!(cost < least)) continue;
+        least = cost;
+        best = i;
+      }
+      if (best < 0) break;
+      const double by = off(best);
+      const Eigen::VectorXd column = left.col(best) / left(best, best);
+      value += column * by;
+      left -= column * left.row(best);
+      is_done[best] = 1;
+      out.independent.push_back(static_cast<Index>(best));
+      out.cost += least;
+    }
+  }
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    if (!is_done[i] && std::abs(off(i)) > whole) return std::nullopt;
+  }
+  const Eigen::Index chosen = ssize(out.independent);
+  Eigen::MatrixXd block(chosen, chosen);
+  Eigen::VectorXd moved(chosen);
+  for (Eigen::Index k = 0; k < chosen; ++k) {
+    const Index i = out.independent[k];
+    moved[k] = value[i] - scale * value_of(rounded_[i], start_);
+    for (Eigen::Index l = 0; l < chosen; ++l) block(k, l) = compliance_(i, out.independent[l]);
+  }
+  out.pull = block.ldlt().solve(moved);
+  return out;
+}
+
+std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density) const {
+  auto out = quantize(density, 1);
+  return out ? out : quantize(density, fine_step);
+}
+
+std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, double step_of_lines) const {
+  std::optional<Choice> best;
+  double least = std::numeric_limits<double>::infinity();
+  const int scales = ssize(rounded_) > many_coordinates ? 0 : tried_scales;
+  for (int k = -scales; k <= scales; ++k) {
+    const double growth = k * M_LN2 / 16;
+    std::optional<Choice> choice = round(density * std::exp(growth), step_of_lines);
+    if (!choice) continue;
+    const double cost =
+        choice->cost / (choice->scale * choice->scale) + 2 * task_.surface.geometry.total_area * growth * growth;
+    if (!(cost < least)) continue;
+    least = cost;
+    best = std::move(choice);
+  }
+  if (!best) return std::nullopt;
+  Eigen::VectorXd forces = Eigen::VectorXd::Zero(coefficients_.rows());
+  for (Eigen::Index k = 0; k < best->pull.size(); ++k) {
+    forces += best->pull[k] * coefficients_.col(best->independent[k]);
+  }
+  Eigen::VectorXcd position = best->scale * start_ + system_->expand(factor_->solve(forces));
+  if (!minimize(position)) return std::nullopt;
+  snap(step_of_lines, position);
+  if (!is_valid(position)) return std::nullopt;
+  return position;
+}
+
+// Removes what rounding errors leave of the deviations of lines.
+void FeatureLayout::snap(double step, Eigen::VectorXcd& position) const {
+  if (may_shift_) {
+    Complex shift = 0;
+    for (const Index axis : {1, 0}) {
+      const auto first = std::find_if(lines_.begin(), lines_.end(),
+                                      [&](const Array<Index>& line) { return line.front() % 2 == axis; });
+      if (first == lines_.end()) continue;
+      const double at = coordinate_at(first->front(), position), off = std::round(at) - at;
+      shift += axis == 0 ? Complex(off, 0) : Complex(0, off);
+    }
+    position.array() += shift;
+  }
+  for (const Array<Index>& line : lines_) {
+    const double at = step * std::round(coordinate_at(line.front(), position) / step);
+    for (const Index of : line) set_coordinate(of, at, position);
+  }
+}
+
+// Removes flips and relaxes stretch under the conditions, unless too much is flipped; whether the map is valid then.
+bool FeatureLayout::minimize(Eigen::VectorXcd& position) const {
+  const HalfedgeMesh& mesh = task_.surface.mesh;
+  Index flipped = 0;
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    const auto corner = [&](int c) { return position[task_.surface.cut_mesh.copy_of_corner[3 * f + c]]; };
+    if (!(std::imag(std::conj(corner(1) - corner(0)) * (corner(2) - corner(0))) > 0)) ++flipped;
+  }
+  if (flipped > few && flipped > mendable_share * mesh.triangle_count()) return false;
+  relax(Eigen::VectorXd::Ones(task_.surface.mesh.triangle_count()), position);
+  return is_valid(position);
+}
+
+void FeatureLayout::relax(const Eigen::VectorXd& weights, Eigen::VectorXcd& position) const {
+  const Eigen::VectorXd frames = Eigen::VectorXd::Zero(weights.size());
+  const Eigen::VectorXd rest = scale_at_rest(task_.surface, task_.curvature, 1, position);
+  NewtonMinimizer newton(task_.surface, {rest, frames}, held_, task_.before_step, position);
+  newton.weigh(weights);
+  if (newton.unfold(Kind::foldover_free, unfolding_steps)) {
+    newton.smooth(Kind::symmetric_dirichlet, relaxing_steps, least_decrease);
+  }
+}
+
+bool FeatureLayout::is_valid(const Eigen::VectorXcd& position) const {
+  const CutSurface& surface = task_.surface;
+  return check_map(surface.mesh, at_corners(surface.cut_mesh, position), task_.curvature.at_vertex,
+                   task_.curvature.is_free)
+             .defects() == 0;
+}
+
+}  // namespace lsgp

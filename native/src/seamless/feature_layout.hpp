@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Layouts on a square lattice whose features run along its lines (Bommes, Zimmer and Kobbelt 2009, sections 4 and 5:
+// alignment constraints and greedy rounding).
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "base/array.hpp"
+#include "prescription/curvature.hpp"
+#include "repair/line_constraints.hpp"
+#include "repair/newton.hpp"
+#include "seamless/feature_lines.hpp"
+#include "seamless/lattice_transitions.hpp"
+#include "solvers/cholesky.hpp"
+
+namespace lsgp {
+
+// A map whose features are to run along the axes.
+struct FeatureTask {
+  CutSurface surface;
+  const Curvature& curvature;
+  const Eigen::VectorXd& rotation;  // (cuts) radians, multiples of quarter turns
+  const LatticeReduction& lattice;
+  StepHook before_step;
+};
+
+class FeatureLayout {
+ public:
+  // start: (copies) a valid map of the surface's area, without a lattice.  most_l2: the largest stretch that features
+  // may cost. As many as possible run along the axes, those of least cost first.
+  FeatureLayout(const FeatureTask& task, const PerHalfedge<char>& feature, const Eigen::VectorXcd& start,
+                double most_l2);
+
+  // Whether any feature runs along an axis.
+  bool is_aligned() const { return factor_.has_value(); }
+  // The start with features along the axes.
+  const Eigen::VectorXcd& start() const { return start_; }
+
+  // The layout with about `density` cells a unit of length, with cones and translations on the lattice. Features are on
+  // lines of the lattice or, where cells are too large for that, at multiples of 1 / 256 of a cell. None where no such
+  // layout without flips is found.
+  std::optional<Eigen::VectorXcd> quantize(double density) const;
+
+  // Moves what lies between features and cones to where it stretches least.  weights: (m) of triangles.
+  void relax(const Eigen::VectorXd& weights, Eigen::VectorXcd& position) const;
+
+ private:
+  // A choice of values for the rounded coordinates.
+  struct Choice {
+    double scale;              // of the start
+    Array<Index> independent;  // coordinates that determine the others
+    Eigen::VectorXd pull;      // (independent) the forces that move them there
+    double cost;
+  };
+
+  bool add(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end);
+  bool align(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end);
+  DirectedEdges edges_of(const Array<FeatureLine>& lines) const;
+  void find_coordinates();
+  void find_lattice_coordinates();
+  std::optional<Choice> round(double scale, double step_of_lines) const;
+  std::optional<Eigen::VectorXcd> quantize(double density, double step_of_lines) const;
+  void snap(double step, Eigen::VectorXcd& position) const;
+  bool minimize(Eigen::VectorXcd& position) const;
+  bool is_valid(const Eigen::VectorXcd& position) const;
+
+  const FeatureTask task_;
+  Eigen::VectorXcd unaligned_;  // relaxed, with features near the axes
+  const double most_l2_;
+  int left_ = 0;  // attempts
+  Array<FeatureLine> aligned_;
+  Eigen::VectorXcd start_;
+  Array<Array<Index>> lines_;  // coordinates, 2 copy for u and 2 copy + 1 for v, that are the same
+  PerVertex<char> is_cone_;
+  Array<CoordinateForm> rounded_;  // lengths of lines between cones, the lattice's, and then one of each line
+  std::ptrdiff_t length_count_ = 0, lattice_count_ = 0;  // the ends of the first two
+  bool may_shift_ = false;
+  DegreesOfFreedom held_;  // with the rounded coordinates fixed
+  std::optional<FreedomSystem> system_;
+  std::optional<Cholesky<double>> factor_;
+  Eigen::MatrixXd coefficients_;  // (rows, rounded)
+  Eigen::MatrixXd compliance_;    // (rounded, rounded) how far each moves under a unit force on another
+};
+
+}  // namespace lsgp

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Creases of hard surfaces run along the lattice of a seamless layout, and become rows of edges of a quad mesh."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import lsgp
+import meshes
+import numpy as np
+import oracle
+import pytest
+from map_checks import codes, only, surface
+from meshes import Mesh
+from numpy.typing import NDArray
+from result_check import undeclared_faults
+from zoo import closed
+
+TILE = lsgp.preset_options("tile")
+PLAIN = replace(TILE, straighten=False)
+SHARP = np.radians(40)
+MOST_L2 = 1.1  # of the stretch without
+
+SLAB = np.zeros((5, 5, 2), bool)
+SLAB[:2], SLAB[:, :2] = True, True
+HARD = {
+    "box": closed.box(4, (1, 1.37, 2.11)),
+    "turned box": meshes.transform(closed.box(4, (1, 1.37, 2.11)), seed=1),
+    "L": meshes.voxels(SLAB),
+    "cylinder": closed.lathe(np.ones(5), np.linspace(0, 2, 5), 24, caps=(True, True)),
+}
+
+
+@cache
+def of(name: str, along: bool = True) -> lsgp.Result:
+    return lsgp.auto_unwrap(surface(HARD[name]), preset="tile", options=TILE if along else PLAIN)
+
+
+def creases(mesh: Mesh) -> NDArray[np.int64]:
+    """The halfedges at which a closed surface bends, both of each edge."""
+    corners = mesh.positions[mesh.triangles]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    twin = oracle.halfedges(mesh.triangles)[2]
+    h = np.arange(len(twin))
+    return h[np.arccos(np.clip((normal[h // 3] * normal[twin // 3]).sum(axis=1), -1, 1)) > SHARP]
+
+
+def ends(result: lsgp.Result, halfedges: NDArray[np.int64]) -> NDArray[np.float64]:
+    """(h, 2, 2) both ends of halfedges in the layout, as float32 stores them."""
+    uv = result.corner_uv.astype(np.float32).astype(float).reshape(-1, 2)
+    return np.stack([uv[halfedges], uv[halfedges // 3 * 3 + (halfedges + 1) % 3]], axis=1)
+
+
+@pytest.mark.parametrize("name", HARD)
+def test_every_crease_lies_on_a_line_of_the_lattice(name: str) -> None:
+    mesh, result = HARD[name], of(name)
+    both = ends(result, creases(mesh))
+    on_line = (both[:, 0] == both[:, 1]) & (both[:, 0] == np.round(both[:, 0]))
+    assert on_line.any(axis=1).all()
+    assert result.seamless.feature_share == 1
+    assert "FEATURES_OFF_LATTICE" not in codes(result.warnings)
+    assert undeclared_faults(surface(mesh), result, TILE) == []
+
+
+@pytest.mark.parametrize("name", HARD)
+def test_that_costs_at_most_a_tenth_of_stretch(name: str) -> None:
+    assert of(name).distortion.l2_stretch <= MOST_L2 * of(name, False).distortion.l2_stretch
+
+
+@pytest.mark.parametrize("mesh", [meshes.bumpy_sphere(2), meshes.torus(), meshes.icosphere(1)])
+def test_soft_surfaces_are_laid_out_as_without(mesh: Mesh) -> None:
+    """The ball is so coarse that it is bent by more than 20 degrees, but nowhere by 40."""
+    along, plain = (lsgp.auto_unwrap(surface(mesh), preset="tile", options=each) for each in (TILE, PLAIN))
+    np.testing.assert_array_equal(along.corner_uv, plain.corner_uv)
+    assert along.seamless.feature_share is None and plain.seamless.feature_share is None
+
+
+def test_creases_off_the_lattice_are_named() -> None:
+    """Those of this gear contradict each other; the warning and the share say which are off, and how much of them."""
+    mesh = closed.gear(5, 0.3, 2)
+    result = lsgp.auto_unwrap(surface(mesh), preset="tile", options=TILE)
+    found = creases(mesh)
+    both = ends(result, found)
+    off = (both[:, 0] != both[:, 1]).all(axis=1)
+    corners = np.stack([found, found // 3 * 3 + (found + 1) % 3], axis=1)
+    edges = np.sort(mesh.triangles.ravel()[corners[off]], axis=1)
+    named = only(result.warnings, "FEATURES_OFF_LATTICE").elements
+    assert named.kind == "edges"
+    assert {tuple(sorted(edge)) for edge in named.indices.reshape(-1, 2).tolist()} == set(map(tuple, edges.tolist()))
+    length = np.linalg.norm(np.diff(mesh.positions[mesh.triangles.ravel()[corners]], axis=1)[:, 0], axis=1)
+    assert result.seamless.feature_share == pytest.approx(length[~off].sum() / length.sum(), abs=1e-12)
+
+
+def test_a_rim_along_the_lattice_does_not_turn() -> None:
+    """A disk whose rim is straight has its whole turn in cones of the disk and in corners of the rim."""
+    mesh, result = HARD["cylinder"], of("cylinder")
+    for height in (0.0, 2.0):
+        rim = np.isclose(mesh.positions[result.cones][:, 2], height)
+        assert (2 * np.pi - result.cone_angles[rim]).sum() == pytest.approx(2 * np.pi)
+
+
+@pytest.mark.parametrize("name", ["box", "L"])
+def test_creases_become_edges_of_quads(name: str) -> None:
+    mesh = HARD[name]
+    quads = lsgp.remesh_to_quads(surface(mesh), target=300).mesh
+    sides = quads.positions[np.stack([quads.quads, np.roll(quads.quads, -1, axis=1)], axis=-1).reshape(-1, 2)]
+    middle, side = sides.mean(axis=1), np.diff(sides, axis=1)[:, 0]
+    ends_of = np.stack([(found := creases(mesh)), found // 3 * 3 + (found + 1) % 3], axis=1)
+    covered = whole = 0.0
+    for a, b in mesh.positions[mesh.triangles.ravel()[ends_of]]:
+        length = np.linalg.norm(b - a)
+        along = (middle - a) @ (b - a) / length
+        away = np.linalg.norm(middle - a - along[:, None] * (b - a) / length, axis=1)
+        is_parallel = np.abs(side @ (b - a)) > 0.999 * length * np.linalg.norm(side, axis=1)
+        near = (away < 1e-5) & is_parallel & (along >= 0) & (along < length)
+        covered += np.linalg.norm(side[near], axis=1).sum() / 2  # every side is in two quads
+        whole += length
+    assert covered == pytest.approx(whole, rel=0.05)
