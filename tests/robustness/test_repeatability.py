@@ -96,6 +96,10 @@ def test_processes_with_any_number_of_threads(threads: str) -> None:
     assert json.loads(in_another_process(PRINT_ANSWERS, **numbers)) == answers()
 
 
+# By name: Windows does not ask the environment.
+SET_LOCALE = "import locale, os; locale.setlocale(locale.LC_ALL, os.environ.get('LC_ALL', '')); "
+
+
 @pytest.fixture(scope="session")
 def decimal_comma(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     """The environment of a locale that writes 1,5 for 1.5; made where the system has the means, else skipped."""
@@ -105,9 +109,7 @@ def decimal_comma(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
         subprocess.run([localedef, "-i", "de_DE", "-f", "UTF-8", folder / "de_DE.UTF-8"], capture_output=True)
     environment = {"LC_ALL": "de_DE.UTF-8"} | ({"LOCPATH": str(folder)} if any(folder.iterdir()) else {})
     try:
-        comma = in_another_process(
-            "import locale; locale.setlocale(locale.LC_ALL, ''); print(locale.str(1.5))", **environment
-        )
+        comma = in_another_process(SET_LOCALE + "print(locale.str(1.5))", **environment)
     except AssertionError:
         pytest.skip("no locale with decimal commas: install de_DE.UTF-8, or localedef and its sources")
     assert comma.strip() == "1,5"
@@ -115,7 +117,7 @@ def decimal_comma(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 
 
 def test_a_locale_with_decimal_commas(decimal_comma: dict[str, str]) -> None:
-    script = "import locale; locale.setlocale(locale.LC_ALL, ''); assert locale.str(0.5) == '0,5'\n" + PRINT_ANSWERS
+    script = SET_LOCALE + "assert locale.str(0.5) == '0,5'\n" + PRINT_ANSWERS
     assert json.loads(in_another_process(script, **decimal_comma)) == answers()
 
 
@@ -125,7 +127,7 @@ def test_files_and_reports_in_a_locale_with_decimal_commas(tmp_path: Path, decim
     (tmp_path / "in.obj").write_text("\n".join(lines))
     written = {}
     for name, environment in (("plain", {}), ("comma", decimal_comma)):
-        script = "import locale, sys; locale.setlocale(locale.LC_ALL, ''); from lsgp.cli import main; sys.exit(main())"
+        script = SET_LOCALE + "import sys; from lsgp.cli import main; sys.exit(main())"
         out, report = tmp_path / f"{name}.obj", tmp_path / f"{name}.json"
         in_another_process(script, "unwrap", tmp_path / "in.obj", "-o", out, "--report", report, **environment)
         told = json.loads(report.read_text())
