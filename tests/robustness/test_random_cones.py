@@ -58,7 +58,7 @@ SEAMLESS = ("cube-768", "eight-genus2", "moebius", "bird", "blobby-misoriented")
 SEAMLESS_SEEDS = range(6)
 # Refusals of surfaces, cones and angles with which there is no map: of the rest a share has to end in a valid one.
 HOPELESS = ("no set", "NOT_ORIENTABLE", "TOO_FEW_CONES", "GAUSS_BONNET", "CONE_ANGLE_RANGE", "ANGLES_IMPOSSIBLE")
-VALID_SHARE = {"chosen": 0.98, "given": 0.75}
+VALID_SHARE = {"chosen": 0.98, "given": 0.9}
 
 
 def mesh_names() -> list[str]:

@@ -107,15 +107,15 @@ void ComponentRepair::smooth(ComponentMap& map) {
   check(map);
 }
 
-void ComponentRepair::continue_from(ComponentMap start, const MetricChange& metric, ComponentMap& map,
-                                    std::vector<Finding>& findings) {
+double ComponentRepair::continue_from(ComponentMap start, const MetricChange& metric, ComponentMap& map,
+                                      std::vector<Finding>& findings) {
   const CutSurface surface = open(start);
   const ParallelTransportChoice connections(surface, metric.end, task_.cones.rotation_order);
   Path path = path_between(metric.begin, connections, metric.end);
   path.aligned = aligned_edges(mesh_, task_.cones);
   Continuation found = follow(surface, path, Effort::global, counter(), {start.position, fixed_vertices(map)});
   if (found.reached < 1) {
-    if (task_.cones.rotation_order > 0) return;
+    if (task_.cones.rotation_order > 0) return found.reached;
     report_adjusted(map, found, findings);
   }
   map.cut_graph = std::move(start.cut_graph);
@@ -126,6 +126,7 @@ void ComponentRepair::continue_from(ComponentMap start, const MetricChange& metr
   map.rotation = std::move(found.at.connection.rotation);
   map.position = std::move(found.position);
   check(map);
+  return found.reached;
 }
 
 void ComponentRepair::report_adjusted(const ComponentMap& map, const Continuation& end,

@@ -45,8 +45,10 @@ class ComponentRepair {
 
   // Replaces the map by one continued from a valid map with the same holes closed, towards its own angles, with the
   // cuts of that map. If they cannot be reached, takes the nearest angles reached and reports that; rounded angles are
-  // never changed.  metric: of the surface itself; either map may be of fatter triangles.
-  void continue_from(ComponentMap start, const MetricChange& metric, ComponentMap& map, std::vector<Finding>& findings);
+  // never changed.  metric: of this surface; either map may be of other triangles. Returns how far it came, 1 being all
+  // the way.
+  double continue_from(ComponentMap start, const MetricChange& metric, ComponentMap& map,
+                       std::vector<Finding>& findings);
 
   // Lowers the stretch of a valid map.
   void relax(ComponentMap& map);

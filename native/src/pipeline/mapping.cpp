@@ -25,6 +25,9 @@ namespace {
 // angles up to 2 pi that has no flips has the right angles too.
 constexpr AngleRange angle_ranges[]{widest_angles, {M_PI / 2, 2.5 * M_PI}, {M_PI / 2, 2 * M_PI, false}};
 
+// Of triangles made fatter, see `mollified`; in the end hardly any edge is longer than others.
+constexpr double fat_margins[]{0.2, 1};
+
 bool any_given(const ComponentCones& cones) {
   return std::any_of(cones.angles.begin(), cones.angles.end(), [](const auto& angle) { return angle.has_value(); });
 }
@@ -90,6 +93,11 @@ class Mapping {
   // Prescribed angles for which no valid map is found directly can often be reached by continuation from angles that
   // have one.
   void approach_angles(FoundMap& found);
+  // The task without its angles, to start from.  map: with them, and the holes it closes.
+  ComponentTask with_automatic_angles(const ComponentMap& map) const;
+  // Continues that map on a surface whose triangles may be fatter; how far it came, 1 being all the way.
+  double approach_from(const ComponentMap& start, ComponentSystem& system, const ComponentCones& cones,
+                       FoundMap& found);
   // Straightens the nearly straight sides of the boundary of a valid map of low stretch and aligns them with the axes;
   // leaves the map unchanged if that costs noticeable stretch.
   void straighten(ComponentMap& map);
@@ -137,7 +145,6 @@ ComponentMap Mapping::first(std::vector<Finding>& findings) {
 }
 
 FoundMap Mapping::find_valid_map(const ComponentTask& task) {
-  constexpr double fat_margin = 0.2;
   const bool is_free = repairs_ && task.cones.rotation_order == 0 &&
                        (options_.prescription == PrescriptionRule::least_distortion ||
                         (options_.prescription == PrescriptionRule::manual && !all_given(task.cones)));
@@ -150,7 +157,7 @@ FoundMap Mapping::find_valid_map(const ComponentTask& task) {
     // Local repairs are first tried on the surface itself; hard cases are easier on fat triangles.
     for (const bool is_fat : {effort == Effort::global, effort == Effort::local}) {
       if (is_fat && !fat) {
-        fat = mollified(mesh, geometry, fat_margin);
+        fat = mollified(mesh, geometry, fat_margins[0]);
         fat_system.emplace(MetricMesh{mesh, *fat}, task.cones, options_.factorization);
       }
       for (std::size_t i = 0; i < (is_free ? std::size(angle_ranges) : 1); ++i) {
@@ -257,34 +264,56 @@ void Mapping::unfold_and_repair(ComponentSystem& system, const ComponentTask& ta
 }
 
 void Mapping::approach_angles(FoundMap& found) {
-  ComponentMap& map = found.map;
-  const HalfedgeMesh& mesh = system_.mesh();
+  const ComponentMap& map = found.map;
   if (task_.cones.border == BorderMode::straight || map.pins.size() > 1 || map.cones.empty()) return;
   const ProgressMonitor::Stage stage(monitor_, "repair");
-  ComponentTask automatic = task_;
-  automatic.cones.vertices = map.cones;
-  for (const Index v : task_.cones.vertices) {
-    if (mesh.loop_of_vertex[v] != none) automatic.cones.vertices.push_back(v);
-  }
-  automatic.cones.angles.assign(automatic.cones.vertices.size(), std::nullopt);
-  automatic.cones.rotation_order = 0;
-  automatic.cones.holes = Holes::as_given;
-  for (std::size_t loop = 0; loop < map.curvature.needs_no_cut.size(); ++loop) {
-    if (map.curvature.needs_no_cut[loop]) automatic.cones.loop_turning[loop] = once_around_a_hole;
-  }
+  const ComponentTask automatic = with_automatic_angles(map);
   Options plain = options_;
   plain.prescription = PrescriptionRule::least_distortion;
   plain.mode = Mode::conformal;
   std::vector<Finding> unsaid;
   ComponentSystem system(system_.surface(), automatic.cones, options_.factorization);
-  ComponentMap start = Mapping(system, automatic, plain, monitor_).best(unsaid);
+  const ComponentMap start = Mapping(system, automatic, plain, monitor_).best(unsaid);
   report_->iterations += start.repair.iterations;
   if (start.validity.defects() > 0 || start.curvature.needs_no_cut != map.curvature.needs_no_cut) return;
+  const FoundMap unreached = found;
+  double reached = approach_from(start, system, automatic.cones, found);
+  // The fatter the triangles, the farther it comes, but the more stretch the map has.
+  for (const double margin : fat_margins) {
+    if (reached == 1 || task_.cones.rotation_order > 0) return;
+    const Geometry fat = mollified(system_.mesh(), system_.geometry(), margin);
+    ComponentSystem fat_system({system_.mesh(), fat}, automatic.cones, options_.factorization);
+    FoundMap other = unreached;
+    const double farther = approach_from(start, fat_system, automatic.cones, other);
+    if (!(farther > reached)) continue;
+    repair_on(system_, task_).smooth(other.map);
+    reached = farther;
+    found = std::move(other);
+  }
+}
+
+ComponentTask Mapping::with_automatic_angles(const ComponentMap& map) const {
+  ComponentTask out = task_;
+  out.cones.vertices = map.cones;
+  for (const Index v : task_.cones.vertices) {
+    if (system_.mesh().loop_of_vertex[v] != none) out.cones.vertices.push_back(v);
+  }
+  out.cones.angles.assign(out.cones.vertices.size(), std::nullopt);
+  out.cones.rotation_order = 0;
+  out.cones.holes = Holes::as_given;
+  for (std::size_t loop = 0; loop < map.curvature.needs_no_cut.size(); ++loop) {
+    if (map.curvature.needs_no_cut[loop]) out.cones.loop_turning[loop] = once_around_a_hole;
+  }
+  return out;
+}
+
+double Mapping::approach_from(const ComponentMap& start, ComponentSystem& system, const ComponentCones& cones,
+                              FoundMap& found) {
+  ComponentMap& map = found.map;
   // Either map may be of fatter triangles, whose metric and cuts are others.
-  const Curvature begin = metric_of(system, automatic.cones, start.curvature);
-  const Curvature end =
-      task_.cones.rotation_order > 0 ? map.curvature : metric_of(system, automatic.cones, map.curvature);
-  repair_on(system, task_).continue_from(std::move(start), {begin, end}, map, found.findings);
+  const Curvature begin = metric_of(system, cones, start.curvature);
+  const Curvature end = task_.cones.rotation_order > 0 ? map.curvature : metric_of(system, cones, map.curvature);
+  return repair_on(system, task_).continue_from(start, {begin, end}, map, found.findings);
 }
 
 void Mapping::straighten(ComponentMap& map) {

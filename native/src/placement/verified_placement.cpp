@@ -12,6 +12,8 @@ namespace {
 
 constexpr Index small = 2000;         // triangles: all repairs of such a surface cost little
 constexpr int most_hard_repairs = 2;  // of a larger one
+constexpr Index very_large = 20000;   // triangles: too many for repairs without hope of low stretch
+constexpr int fewer_defects = 2;      // times fewer than in a map that was repaired with high stretch
 constexpr double hopeless_l2 = 2;     // as predicted: lower targets are out of reach
 constexpr double as_predicted = 1.03;
 constexpr double same_angles = 1e-9;  // of all of them
@@ -22,6 +24,10 @@ constexpr double least_lowered = 0.4, most_lowered = 0.9, lowered_when_invalid =
 // Additions, of one cone for so many, and what one may leave of the stretch above 1 to come before lower targets.
 constexpr int most_additions = 3, least_added = 2, added_share = 6;
 constexpr double worthwhile = 0.7;
+// Moves of cones that are tried, the triangles of all their maps, and what one may leave of the stretch above 1.
+constexpr int most_moves = 400;
+constexpr Index triangles_moved = 150000;
+constexpr double worth_moving = 0.99;
 // More cones than the stages have, if nothing else helps: so many times as many each time, as long as each time leaves
 // no more than this of the stretch above 1.
 constexpr double more_cones = 1.25, still_worthwhile = 0.9;
@@ -57,6 +63,9 @@ VerifiedChoice VerifiedPlacement::place() {
     choose_other_angles(weaker);
     if (is_better(weaker.map, out.map)) out = std::move(weaker);
   }
+  // Unwrapping would repair it anyway.
+  const bool is_left = !out.map.is_valid() && !out.map.is_repaired && out.cones.is_possible();
+  if (is_left && chooser_.task().mesh.triangle_count() <= very_large) repair(out);
   return out;
 }
 
@@ -74,20 +83,33 @@ bool VerifiedPlacement::misses(const VerifiedChoice& choice) const {
 }
 
 VerifiedChoice VerifiedPlacement::verified(ConeChoice cones) {
-  if (!cones.is_possible()) return {std::move(cones), {}};
   VerifiedChoice out{std::move(cones), {}};
+  if (!out.cones.is_possible()) return out;
   out.map = trial_.make(chooser_.with_angles(out.cones), MapTrial::Repairs::easy);
-  const bool try_all = is_worth_trying(out.cones) && (is_small() || hard_repairs_ < most_hard_repairs);
-  if (out.map.is_valid() || !try_all) return out;
-  ++hard_repairs_;
-  TriedMap repaired = trial_.make(chooser_.with_angles(out.cones), MapTrial::Repairs::all);
-  if (!repaired.is_valid() || repaired.curvature.isApprox(out.cones.curvature, same_angles)) {
-    out.map = std::move(repaired);
-  } else {
-    out.map.is_repaired = true;
-    if (chooses_angles()) take_angles(repaired, MapTrial::Repairs::all, out);
-  }
+  if (!out.map.is_valid() && is_worth_repairing(out)) repair(out);
   return out;
+}
+
+// Repairs take long; a map with about as many defects as one that they left with high stretch will not be better.
+bool VerifiedPlacement::is_worth_repairing(const VerifiedChoice& choice) const {
+  if (!is_worth_trying(choice.cones)) return false;
+  if (is_small()) return true;
+  const bool promises_more =
+      hopeless_defects_ == 0 || choice.map.failed || fewer_defects * choice.map.defects() < hopeless_defects_;
+  return hard_repairs_ < most_hard_repairs && promises_more;
+}
+
+// As far as the map can be, with other angles if only these have a valid one.
+void VerifiedPlacement::repair(VerifiedChoice& choice) {
+  ++hard_repairs_;
+  TriedMap repaired = trial_.make(chooser_.with_angles(choice.cones), MapTrial::Repairs::all);
+  if (repaired.is_valid() && repaired.l2 > hopeless_l2) hopeless_defects_ = choice.map.defects();
+  if (!repaired.is_valid() || repaired.curvature.isApprox(choice.cones.curvature, same_angles)) {
+    choice.map = std::move(repaired);
+  } else {
+    choice.map.is_repaired = true;
+    if (chooses_angles()) take_angles(repaired, MapTrial::Repairs::all, choice);
+  }
 }
 
 // The angles of another map with the same cones, if they give a better map.
@@ -262,7 +284,45 @@ VerifiedChoice VerifiedPlacement::place_count(int count) {
     if (is_better(found.map, best.map)) best = std::move(found);
     monitor_.tick();
   }
+  if (!is_settled()) move_cones(best);
   return best;
+}
+
+// Moves one cone after another to a neighbour or to where the map is stretched most, as long as that improves it.
+void VerifiedPlacement::move_cones(VerifiedChoice& best) {
+  if (!chooses_angles() || !best.map.is_valid()) return;
+  int left = std::min(most_moves, triangles_moved / chooser_.task().mesh.triangle_count());
+  const auto kept = static_cast<std::size_t>(chooser_.existing_count()), count = best.cones.vertices.size();
+  for (bool is_moved = true; is_moved && left > 0;) {
+    is_moved = false;
+    for (std::size_t cone = kept; cone < count; ++cone) is_moved |= move_cone(best, cone, left);
+  }
+}
+
+bool VerifiedPlacement::move_cone(VerifiedChoice& best, std::size_t cone, int& left) {
+  const Index from = best.cones.vertices[cone];
+  for (const Index to : places_near(best, from)) {
+    if (left == 0 || is_as_predicted(best)) return false;
+    std::optional<ConeChoice> moved = chooser_.choose_moved(best.cones, from, to);
+    if (!moved || !moved->is_possible()) continue;
+    --left;
+    monitor_.tick();
+    TriedMap map = trial_.make(chooser_.with_angles(*moved), MapTrial::Repairs::easy);
+    if (!(map.l2 - 1 < worth_moving * (best.map.l2 - 1))) continue;
+    best = {std::move(*moved), std::move(map)};
+    return true;
+  }
+  return false;
+}
+
+// Where the map is stretched most, at corners of the surface and anywhere, and the neighbours of a cone.
+Array<Index> VerifiedPlacement::places_near(const VerifiedChoice& choice, Index cone) const {
+  const HalfedgeMesh& mesh = chooser_.task().mesh;
+  Array<Index> out(2);
+  choice.map.stretch.cwiseProduct(chooser_.task().geometry.angle_defect.cwiseAbs()).maxCoeff(&out[0]);
+  choice.map.stretch.maxCoeff(&out[1]);
+  mesh.for_each_outgoing(cone, [&](Index h) { out.push_back(mesh.target(h)); });
+  return out;
 }
 
 // Angles without bounds, independent of the variance: those of least distortion. If angles or seams are off, all

@@ -23,10 +23,13 @@ struct VerifiedChoice {
 // Without a number of cones the target applies to the map: if it is missed, corners of a polyhedron become cones, cones
 // are added where the map is stretched, or chosen for a lower target, continuing the previous choice, with as few as
 // suffice; if that misses, too, more cones than the stages have. A given number of cones is kept, but other choices are
-// tried if the map is worse than predicted. If all of these miss, the angles of least distortion are tried.
+// tried if the map is worse than predicted, and then one cone after another is moved. If all of these miss, the angles
+// of least distortion are tried.
 //
-// At most some ten maps are computed, most of them with local repairs only; one or two if the prediction is hopeless or
-// there are more cones, existing or requested, than are chosen one by one.
+// At most some ten maps are computed, most of them with local repairs only, and more to move cones, hundreds of small
+// surfaces; one or two if the prediction is hopeless or there are more cones, existing or requested, than are chosen
+// one by one. The map of the result is repaired as far as it can be, unless it is one of many cones or of a very large
+// surface.
 class VerifiedPlacement {
  public:
   VerifiedPlacement(ConeChooser& chooser, ProgressMonitor& monitor);
@@ -38,12 +41,17 @@ class VerifiedPlacement {
   VerifiedChoice place_to_target();
   VerifiedChoice place_count(int count);
   VerifiedChoice verified(ConeChoice cones);
+  void repair(VerifiedChoice& choice);
+  bool is_worth_repairing(const VerifiedChoice& choice) const;
   VerifiedChoice place_as_asked();
   ConeChoice choose(std::optional<AutomaticCones>& automatic);
   ConeChoice choose_where_cheap(std::optional<AutomaticCones>& automatic);
   bool misses(const VerifiedChoice& choice) const;
   std::optional<VerifiedChoice> placed_naturally(Corners corners);
   void add_where_stretched(VerifiedChoice& best, double share);
+  void move_cones(VerifiedChoice& best);
+  bool move_cone(VerifiedChoice& best, std::size_t cone, int& left);
+  Array<Index> places_near(const VerifiedChoice& choice, Index cone) const;
   void lower_target(AutomaticCones& automatic, VerifiedChoice& best);
   void take_fewer(const AutomaticCones& automatic, double missed, double reached, VerifiedChoice& best);
   void take_many(VerifiedChoice& best);
@@ -59,6 +67,7 @@ class VerifiedPlacement {
   ProgressMonitor& monitor_;
   MapTrial trial_;
   int hard_repairs_ = 0;
+  Index hopeless_defects_ = 0;  // before them, of the latest map that became valid with high stretch
 };
 
 }  // namespace lsgp

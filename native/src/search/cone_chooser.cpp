@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 #include <utility>
 
 #include "plane/point_lattice.hpp"
@@ -118,6 +117,28 @@ ConeChoice ConeChooser::choose_more(const ConeChoice& present, const Eigen::Vect
       if (v != none) mark_rings(task_.mesh, v, 1, near);
     }
   }
+  return choose_at(sites);
+}
+
+std::optional<ConeChoice> ConeChooser::choose_moved(const ConeChoice& present, Index from, Index to) {
+  PerVertex<char> is_cone(task_.mesh.vertex_count(), 0);
+  for (const Index v : present.vertices) is_cone[v] = 1;
+  if (is_cone[to]) return std::nullopt;
+  is_cone[from] = 0;
+  is_cone[to] = 1;
+  Array<int> sites;
+  bool is_site = false;
+  for (int i = 0; i < kernel_.site_count(); ++i) {
+    const Index v = kernel_.sites()[i].vertex;
+    if (is_cone[v]) sites.push_back(i);
+    is_site |= v == to;
+  }
+  if (!is_site) return std::nullopt;
+  return choose_at(sites);
+}
+
+// Stronger cones if these are predicted to stretch much less.
+ConeChoice ConeChooser::choose_at(const Array<int>& sites) {
   std::optional<ConeChoice> best;
   for (const double reach : {usual_reach, wider_reach}) {
     ConeSet set(problem_, reach);

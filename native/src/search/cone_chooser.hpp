@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
@@ -53,6 +54,8 @@ class ConeChooser {
   ConeChoice choose_harmonically(int count);
   // These cones and so many more where this is largest, (n), apart from each other.
   ConeChoice choose_more(const ConeChoice& present, const Eigen::VectorXd& wanted, int more);
+  // The same cones with one that was not there before moved to another vertex; none if no cone may be there.
+  std::optional<ConeChoice> choose_moved(const ConeChoice& present, Index from, Index to);
   // The same cones with these curvatures, one for each.
   ConeChoice choice_with(const Array<Index>& vertices, const Eigen::VectorXd& curvature) const;
 
@@ -97,6 +100,7 @@ class ConeChooser {
   ConeChoice choice_of(const Set& set) const;
   template <typename Set>
   ConeChoice rounded(const Set& set, Lattice lattice);
+  ConeChoice choose_at(const Array<int>& sites);
   ConeChoice choose_in_batches(int count);
   ConeChoice quantized(ConeChoice choice, int rotation_order);
   void use_cones(const Array<Index>& vertices);

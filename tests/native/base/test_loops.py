@@ -129,6 +129,13 @@ REVIEWED = {
     ],
     "mesh/nearest_distance.cpp": [("while (!reached.empty())", NEAREST, SHORT)],
     "mesh/topology.hpp": [("while (h != none && h != outgoing[v])", AROUND_A_VERTEX, SHORT)],
+    "placement/verified_placement.cpp": [
+        (
+            "for (bool is_moved = true; is_moved && left > 0;)",
+            "each round tries moves of cones, hundreds at most, or ends it",
+            OWN,
+        ),
+    ],
     "search/batch_placement.cpp": [
         ("while (rings > 0 && cones * vertices_within() > vertices)", "rings fall from 2", SHORT),
         ("while (cone_count() < cones)", "each round adds a cone, or ends it", OWN),

@@ -32,6 +32,18 @@ def drawn_angles(mesh: Mesh, count: int, seed: int) -> dict[int, float]:
     return dict(zip(cones.tolist(), (quarters * QUARTER).tolist(), strict=True))
 
 
+def with_needles(mesh: Mesh, seed: int) -> Mesh:
+    """Twenty edges, no two of which touch, are shortened to half a percent."""
+    edges = meshes.edges_of(mesh.triangles)
+    positions = mesh.positions.copy()
+    moved: set[int] = set()
+    for a, b in np.random.default_rng(seed).permutation(edges).tolist():
+        if len(moved) < 40 and not moved & {a, b}:
+            moved |= {a, b}
+            positions[a] = positions[b] + 0.005 * (positions[a] - positions[b])
+    return meshes.make(positions, mesh.triangles)
+
+
 def assert_valid_with(mesh: Mesh, asked: dict[int, float]) -> None:
     result = lsgp.parameterize(surface(mesh), list(asked), list(asked.values()))
     assert len(result.flipped) == len(result.wrong_angle_sums) == 0
@@ -63,6 +75,12 @@ def test_angles_are_reached_beside_holes_that_close_without_a_cut(seed: int) -> 
 def test_angles_are_reached_with_corners_on_the_boundary(seed: int) -> None:
     rim = oracle.boundary_loops(HILL.triangles)[0]
     assert_valid_with(HILL, drawn_angles(HILL, 16, seed) | {int(rim[3]): QUARTER, int(rim[12]): 3 * QUARTER})
+
+
+@pytest.mark.parametrize(("needles", "seed"), [(1, 0), (1, 3), (2, 5)])
+def test_angles_are_reached_across_needles(needles: int, seed: int) -> None:
+    mesh = with_needles(CLOSED["flower"], needles)
+    assert_valid_with(mesh, drawn_angles(mesh, 16, seed))
 
 
 def test_adjusted_angles_are_named_with_those_of_corners() -> None:
