@@ -155,6 +155,17 @@ REVIEWED = {
     "search/cone_set.cpp": [
         ("while (!reaches_sum() && out.used_reach <= widest_reach)", "the reach grows by a tenth up to 8", SHORT),
     ],
+    "sites/coarse_surface.cpp": [
+        (
+            "for (int pass = 1; ssize(removals) < most && !left_.empty(); ++pass)",
+            "a pass that removes no vertex ends it",
+            OWN,
+        ),
+        ("while (!suspects_.empty())", "a budget of flips", OWN),
+        ("while (h != outgoing_[v])", AROUND_A_VERTEX, SHORT),
+        ("while (++degree <= most_around && h != outgoing_[v])", AROUND_A_VERTEX, SHORT),
+        ("while (h != outgoing_[v])", AROUND_A_VERTEX, SHORT),
+    ],
     "sites/cone_sites.cpp": [
         (
             "for (int rings = 1; static_cast<int>(spread.size()) > most; ++rings)",
