@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/checkpoint.hpp"
+#include "base/memory.hpp"
 
 namespace lsgp {
 
@@ -17,6 +18,7 @@ constexpr double least_area = 1e-3;  // of triangles that flips on the way to a 
 constexpr double no_area = 1e-9;
 // Sine of the angle by which an edge fails to be Delaunay before it is flipped; less is a tie.
 constexpr double delaunay_tie = 1e-10;
+constexpr double bytes_a_halfedge = 40;
 constexpr int most_around = 24;               // triangles at a vertex that is removed
 constexpr double operations_a_removal = 500;  // about
 constexpr std::int64_t flips_an_edge = 20;    // that keep it Delaunay, at most, on average
@@ -75,7 +77,9 @@ class CoarseSurface::Triangulation {
       if (place[h] == none) continue;
       mesh.triangles.data()[place[h]] = node[origin(h)];
       mesh.twin[place[h]] = twin(h) == none ? none : place[twin(h)];
-      geometry.half_cotangent[place[h]] = dot_opposite(h) / (2 * area_[h / 3]);
+      // A vertex that could not be removed may have been left on the line between two neighbours.
+      const double least = no_area * (square(h) + square(next(h)) + square(prev(h)));
+      geometry.half_cotangent[place[h]] = dot_opposite(h) / (2 * std::max(area_[h / 3], least));
     }
     for (std::size_t v = 0; v < node.size(); ++v) {
       if (node[v] != none) mesh.outgoing.push_back(place[outgoing_[v]]);
@@ -247,6 +251,8 @@ class CoarseSurface::Triangulation {
 
 CoarseSurface::CoarseSurface(const MetricMesh& surface, const PerVertex<char>& kept, Index nodes)
     : node_of_vertex_(surface.mesh.vertex_count(), 0) {
+  require_memory(bytes_a_halfedge * surface.mesh.halfedge_count() +
+                 static_cast<double>(sizeof(Removal)) * surface.mesh.vertex_count());
   Triangulation triangulation(surface, kept);
   removals_ = triangulation.remove(surface.mesh.vertex_count() - nodes);
   for (const Removal& removal : removals_) node_of_vertex_[removal.vertex] = none;

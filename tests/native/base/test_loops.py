@@ -168,7 +168,12 @@ REVIEWED = {
     ],
     "sites/cone_sites.cpp": [
         (
-            "for (int rings = 1; static_cast<int>(spread.size()) > most; ++rings)",
+            "while (static_cast<double>(candidates) > most * vertices_within())",
+            "rings grow until they cover the component",
+            SHORT,
+        ),
+        (
+            "for (int rings = least_rings(ssize(candidates), most); static_cast<int>(spread.size()) > most; ++rings)",
             "rings grow until they cover the component",
             SHORT,
         ),

@@ -109,7 +109,7 @@ def bent_torus(around: int, along: int) -> Mesh:
 
 def test_cones_chosen_on_a_coarse_triangulation_are_as_good() -> None:
     """Cones of so large a surface are: those of a coarse mesh of the same shape are chosen on the surface itself."""
-    few, many = bent_torus(60, 32), bent_torus(300, 160)
+    few, many = bent_torus(60, 32), bent_torus(320, 160)
     exact, placed = place(few, count=8), place(many, count=8)
     assert placed.mapped_l2 - 1 <= 1.05 * (exact.mapped_l2 - 1)
     assert placed.mapped_l2 == pytest.approx(placed.predicted_l2, rel=1e-3)
