@@ -144,7 +144,10 @@ PlacedCones place_component(const PlacementTask& task, const PlacementOptions& o
   out.cones = chooser.with_angles(choice.cones);
   out.curvature = impose(chooser.scale(), out.cones, choice.cones.curvature,
                          chooser.scale().evaluate_held(choice.cones.vertices, choice.cones.curvature), findings);
-  connect_cones(task, inside_only(task.mesh, choice.cones.vertices), out.curvature.needs_no_cut);
+  // A map that was made has cuts to all cones.
+  if (choice.map.failed) {
+    connect_cones(task, inside_only(task.mesh, choice.cones.vertices), out.curvature.needs_no_cut);
+  }
   refuse_with_remedy([&] { require_right(choice, !task.existing.vertices.empty()); });
   out.mapped_l2 = choice.map.l2;
   if (auto finding = unusable_map(task, options, choice, monitor, out.maps)) findings.push_back(std::move(*finding));

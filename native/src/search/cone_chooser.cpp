@@ -27,7 +27,7 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 }  // namespace
 
 PlacementEffort effort_for(Index vertices) {
-  return vertices > large ? PlacementEffort{12000, 24, 1} : PlacementEffort{12000, 48, 2};
+  return vertices > large ? PlacementEffort{12000, 48, 4} : PlacementEffort{12000, 48, 2};
 }
 
 ConeChooser::ConeChooser(const PlacementTask& task, PlacementOptions options, const PlacementEffort& effort,
@@ -39,6 +39,7 @@ ConeChooser::ConeChooser(const PlacementTask& task, PlacementOptions options, co
       border_(free_border(task.mesh, task.existing.vertices)),
       scale_(task, border_),
       sites_(find_cone_sites(task, effort.sites)),
+      model_(scale_, sites_.sites),
       kernel_(make_kernel()),
       limits_(task, kernel_.sites(), given_curvature()),
       prices_(site_prices(task, kernel_.sites())),
@@ -66,7 +67,7 @@ Index ConeChooser::place_count() const {
 LogScaleVariance ConeChooser::make_kernel() {
   monitor_.advance(0.1);
   const ProgressMonitor::Interval interval(monitor_, 0.1, 0.3);
-  return LogScaleVariance(scale_, sites_.sites, effort_.probes, monitor_);
+  return LogScaleVariance(model_, sites_.sites, effort_.probes, monitor_);
 }
 
 Eigen::VectorXd ConeChooser::given_curvature() const {
@@ -222,12 +223,12 @@ ConeChoice ConeChooser::choose_in_batches(int count) {
 
 ConeChoice ConeChooser::choose_harmonically(int count) {
   ConeSet set = existing(usual_reach);
+  scale_.remove_cones();
   while (set.cone_count() < count) {
-    const ConeChoice now = choice_of(set);
-    use_cones(now.vertices);
-    Eigen::VectorXd y =
-        now.vertices.empty() ? kernel_.log_scale({}, {}) : scale_.evaluate_held(scale_.harmonic_curvature());
-    if (!now.vertices.empty()) y.array() -= y[now.vertices.front()];
+    const Array<Index> now = vertices_of(set.sites());
+    scale_.add_cones({now.begin() + scale_.cone_count(), now.end()});
+    Eigen::VectorXd y = now.empty() ? kernel_.log_scale({}, {}) : scale_.evaluate_held(scale_.harmonic_curvature());
+    if (!now.empty()) y.array() -= y[now.front()];
     const Array<char> open = search_.open_sites(set.sites());
     int best = -1;
     double most = -1;
@@ -241,8 +242,14 @@ ConeChoice ConeChooser::choose_harmonically(int count) {
     set.add(best);
     monitor_.tick();
   }
-  search_.exchange(set, effort_.sweeps);
-  return choice_of(set);
+  // The variance hardly sees spikes: their cones may be moved elsewhere, which stretches them much.
+  ConeChoice best = choice_of(set);
+  for (int sweep = 0; sweep < effort_.sweeps; ++sweep) {
+    search_.exchange(set, 1);
+    ConeChoice exchanged = choice_of(set);
+    if (exchanged.predicted_l2 < best.predicted_l2) best = std::move(exchanged);
+  }
+  return best;
 }
 
 // Alternates between curvatures that are multiples of the lattice's rotation and sites for them; flat cones are

@@ -113,6 +113,7 @@ class ConeChooser {
   BorderConditions border_;
   LogScale scale_;
   ConeSites sites_;
+  LogScaleModel model_;
   LogScaleVariance kernel_;
   CurvatureBounds limits_;
   Eigen::VectorXd prices_;  // (sites) of `site_prices`

@@ -50,6 +50,14 @@ bool side_by_side(const HalfedgeMesh& mesh, Index a, Index b) {
   return std::find(reached.begin(), reached.end(), b) != reached.end();
 }
 
+// Around so many sites of all candidates, where vertices have six neighbours: fewer leave too many.
+int least_rings(std::ptrdiff_t candidates, int most) {
+  int rings = 1;
+  const auto vertices_within = [&] { return 1.0 + 3 * rings * (rings + 1); };
+  while (static_cast<double>(candidates) > most * vertices_within()) ++rings;
+  return rings;
+}
+
 Array<Site> existing_sites(const HalfedgeMesh& mesh, const ComponentCones& existing, const PerVertex<Index>& mirrored,
                            PerVertex<char>& taken) {
   PerVertex<Index> place(mesh.vertex_count(), none);
@@ -118,7 +126,7 @@ ConeSites find_cone_sites(const PlacementTask& task, int most) {
     return std::abs(angle_defect[a.vertex]) > std::abs(angle_defect[b.vertex]);
   });
   Array<Site> spread = candidates;
-  for (int rings = 1; static_cast<int>(spread.size()) > most; ++rings) {
+  for (int rings = least_rings(ssize(candidates), most); static_cast<int>(spread.size()) > most; ++rings) {
     spread.clear();
     PerVertex<char> near(mesh.vertex_count(), 0);
     for (const Site& site : candidates) {

@@ -29,12 +29,10 @@ class Signs {
 
 }  // namespace
 
-LogScaleVariance::LogScaleVariance(const LogScale& scale, Array<Site> sites, int probes, ProgressMonitor& monitor)
-    : scale_(scale),
-      elsewhere_(scale.border().curvature - scale.geometry().angle_defect),
-      weight_(scale.geometry().vertex_area / scale.geometry().total_area),
-      sites_(std::move(sites)) {
-  // What the probes and some columns of the surface at a time take.
+LogScaleVariance::LogScaleVariance(Borrowed<const LogScaleModel> model, Array<Site> sites, int probes,
+                                   ProgressMonitor& monitor)
+    : model_(model), elsewhere_(model_.elsewhere()), weight_(model_.weight()), sites_(std::move(sites)) {
+  // What the probes and some columns of the model at a time take.
   require_matrix_memory(static_cast<double>(site_count()), 2.0 * probes);
   require_matrix_memory(static_cast<double>(weight_.size()), 6.0 * solved_at_once);
   const Eigen::MatrixXd y = caused_by(elsewhere_);
@@ -48,43 +46,43 @@ Eigen::MatrixXd LogScaleVariance::impulses(const Array<int>& sites) const {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(weight_.size(), static_cast<Eigen::Index>(sites.size()));
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const Site& site = sites_[sites[i]];
-    out(site.vertex, static_cast<Eigen::Index>(i)) = 1.0 / site.cones();
-    if (site.mirrored != none) out(site.mirrored, static_cast<Eigen::Index>(i)) = 0.5;
+    out(model_.node(site.vertex), static_cast<Eigen::Index>(i)) = 1.0 / site.cones();
+    if (site.mirrored != none) out(model_.node(site.mirrored), static_cast<Eigen::Index>(i)) = 0.5;
   }
   return out;
 }
 
-Eigen::VectorXd LogScaleVariance::at_vertices(const Array<int>& sites, const Eigen::VectorXd& curvature) const {
+Eigen::VectorXd LogScaleVariance::at_nodes(const Array<int>& sites, const Eigen::VectorXd& curvature) const {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(weight_.size());
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const Site& site = sites_[sites[i]];
     const double share = curvature[static_cast<Eigen::Index>(i)] / site.cones();
-    out[site.vertex] += share;
-    if (site.mirrored != none) out[site.mirrored] += share;
+    out[model_.node(site.vertex)] += share;
+    if (site.mirrored != none) out[model_.node(site.mirrored)] += share;
   }
   return out;
 }
 
 Eigen::MatrixXd LogScaleVariance::caused_by(Eigen::MatrixXd curvature) const {
   // If Gauss-Bonnet has to hold, curvature is compensated evenly over the area.
-  if (scale_.balanced()) curvature -= weight_ * curvature.colwise().sum().eval();
-  Eigen::MatrixXd y = scale_.solve_columns(curvature);
+  if (model_.balanced()) curvature -= weight_ * curvature.colwise().sum().eval();
+  Eigen::MatrixXd y = model_.solve_columns(curvature);
   y.rowwise() -= (weight_.transpose() * y).eval();
   return y;
 }
 
 Eigen::MatrixXd LogScaleVariance::transposed(Eigen::MatrixXd values) const {
   values -= weight_ * values.colwise().sum().eval();
-  Eigen::MatrixXd out = scale_.solve_columns(values);
-  if (scale_.balanced()) out.rowwise() -= (weight_.transpose() * out).eval();
+  Eigen::MatrixXd out = model_.solve_columns(values);
+  if (model_.balanced()) out.rowwise() -= (weight_.transpose() * out).eval();
   return out;
 }
 
 Eigen::MatrixXd LogScaleVariance::at_sites(const Eigen::MatrixXd& values) const {
   Eigen::MatrixXd out(site_count(), values.cols());
   for (int i = 0; i < site_count(); ++i) {
-    out.row(i) = values.row(sites_[i].vertex);
-    if (sites_[i].mirrored != none) out.row(i) = (out.row(i) + values.row(sites_[i].mirrored)) / 2;
+    out.row(i) = values.row(model_.node(sites_[i].vertex));
+    if (sites_[i].mirrored != none) out.row(i) = (out.row(i) + values.row(model_.node(sites_[i].mirrored))) / 2;
   }
   return out;
 }
@@ -111,12 +109,12 @@ Eigen::MatrixXd LogScaleVariance::entries(const Array<int>& rows, const Array<in
 }
 
 Eigen::VectorXd LogScaleVariance::product(const Array<int>& sites, const Eigen::VectorXd& curvature) const {
-  const Eigen::MatrixXd y = caused_by(at_vertices(sites, curvature));
+  const Eigen::MatrixXd y = caused_by(at_nodes(sites, curvature));
   return at_sites(transposed(weight_.asDiagonal() * y));
 }
 
 Eigen::VectorXd LogScaleVariance::log_scale(const Array<int>& sites, const Eigen::VectorXd& curvature) const {
-  return caused_by(elsewhere_ + at_vertices(sites, curvature));
+  return model_.at_vertices(caused_by(elsewhere_ + at_nodes(sites, curvature)));
 }
 
 // H is nearly of low rank: H = Y (Omega' Y)^-1 Y' with Y = H Omega for random Omega, and the missing part of the
@@ -135,8 +133,8 @@ void LogScaleVariance::estimate_diagonal(int probes, ProgressMonitor& monitor) {
     Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(weight_.size(), width);
     for (int i = 0; i < count; ++i) {
       const auto share = omega.row(i).segment(begin, width) / sites_[i].cones();
-      curvature.row(sites_[i].vertex) += share;
-      if (sites_[i].mirrored != none) curvature.row(sites_[i].mirrored) += share;
+      curvature.row(model_.node(sites_[i].vertex)) += share;
+      if (sites_[i].mirrored != none) curvature.row(model_.node(sites_[i].mirrored)) += share;
     }
     const Eigen::MatrixXd y = caused_by(std::move(curvature));
     image.middleCols(begin, width) = at_sites(transposed(weight_.asDiagonal() * y));

@@ -7,16 +7,17 @@
 #include <map>
 
 #include "base/array.hpp"
+#include "base/borrowed.hpp"
 #include "base/progress_monitor.hpp"
-#include "prescription/curvature.hpp"
 #include "sites/cone_sites.hpp"
+#include "sites/log_scale_model.hpp"
 
 namespace lsgp {
 
 class LogScaleVariance {
  public:
   // probes: random curvatures from which the diagonal of H is estimated (Nystrom), to about 1 % with 48 of them.
-  LogScaleVariance(const LogScale& scale, Array<Site> sites, int probes, ProgressMonitor& monitor);
+  LogScaleVariance(Borrowed<const LogScaleModel> model, Array<Site> sites, int probes, ProgressMonitor& monitor);
 
   const Array<Site>& sites() const { return sites_; }
   int site_count() const { return static_cast<int>(sites_.size()); }
@@ -36,16 +37,16 @@ class LogScaleVariance {
 
  private:
   Eigen::MatrixXd impulses(const Array<int>& sites) const;
-  Eigen::VectorXd at_vertices(const Array<int>& sites, const Eigen::VectorXd& curvature) const;
-  // The log scale, of mean 0, that curvatures (n, k) cause, and the transpose of this.
+  Eigen::VectorXd at_nodes(const Array<int>& sites, const Eigen::VectorXd& curvature) const;
+  // The log scale, of mean 0, that curvatures (nodes, k) cause, and the transpose of this.
   Eigen::MatrixXd caused_by(Eigen::MatrixXd curvature) const;
   Eigen::MatrixXd transposed(Eigen::MatrixXd values) const;
   Eigen::MatrixXd at_sites(const Eigen::MatrixXd& values) const;  // (sites, k)
   void estimate_diagonal(int probes, ProgressMonitor& monitor);
 
-  const LogScale& scale_;
-  Eigen::VectorXd elsewhere_;  // (n) curvature imposed without cones less the angle defects
-  Eigen::VectorXd weight_;     // (n) share of the area
+  const LogScaleModel& model_;
+  const Eigen::VectorXd& elsewhere_;  // (nodes) of the model, and its weight
+  const Eigen::VectorXd& weight_;
   Array<Site> sites_;
   double without_cones_ = 0;
   Eigen::VectorXd gradient_, diagonal_;

@@ -162,9 +162,25 @@ REVIEWED = {
     "search/cone_set.cpp": [
         ("while (!reaches_sum() && out.used_reach <= widest_reach)", "the reach grows by a tenth up to 8", SHORT),
     ],
+    "sites/coarse_surface.cpp": [
+        (
+            "for (int pass = 1; ssize(removals) < most && !left_.empty(); ++pass)",
+            "a pass that removes no vertex ends it",
+            OWN,
+        ),
+        ("while (!suspects_.empty())", "a budget of flips", OWN),
+        ("while (h != outgoing_[v])", AROUND_A_VERTEX, SHORT),
+        ("while (++degree <= most_around && h != outgoing_[v])", AROUND_A_VERTEX, SHORT),
+        ("while (h != outgoing_[v])", AROUND_A_VERTEX, SHORT),
+    ],
     "sites/cone_sites.cpp": [
         (
-            "for (int rings = 1; static_cast<int>(spread.size()) > most; ++rings)",
+            "while (static_cast<double>(candidates) > most * vertices_within())",
+            "rings grow until they cover the component",
+            SHORT,
+        ),
+        (
+            "for (int rings = least_rings(ssize(candidates), most); static_cast<int>(spread.size()) > most; ++rings)",
             "rings grow until they cover the component",
             SHORT,
         ),

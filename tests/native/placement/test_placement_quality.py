@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import lsgp
+import meshes
 import numpy as np
 import pytest
 from map_checks import surface
@@ -97,3 +98,18 @@ def test_an_artist_gets_a_usable_map_without_any_choice(name: str) -> None:
     mesh = shared_mesh(name)
     result = unwrapped(mesh, place(mesh))
     assert result.solved.all() and result.distortion.l2_stretch <= 1.15
+
+
+def bent_torus(around: int, along: int) -> Mesh:
+    mesh = meshes.torus(around, along)
+    x, y, z = mesh.positions.T
+    bump = np.sin(1.3 * x + 0.7) * np.cos(1.1 * y - 0.3) + 0.5 * np.sin(2.1 * z + 0.6 * x)
+    return mesh._replace(positions=mesh.positions * (1 + 0.25 * bump)[:, None])
+
+
+def test_cones_chosen_on_a_coarse_triangulation_are_as_good() -> None:
+    """Cones of so large a surface are: those of a coarse mesh of the same shape are chosen on the surface itself."""
+    few, many = bent_torus(60, 32), bent_torus(320, 160)
+    exact, placed = place(few, count=8), place(many, count=8)
+    assert placed.mapped_l2 - 1 <= 1.05 * (exact.mapped_l2 - 1)
+    assert placed.mapped_l2 == pytest.approx(placed.predicted_l2, rel=1e-3)

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A coarse intrinsic triangulation of a surface, for what varies slowly over it.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "base/array.hpp"
+#include "mesh/border.hpp"
+#include "mesh/geometry.hpp"
+#include "systems/laplace_solver.hpp"
+
+namespace lsgp {
+
+// Vertices are removed by flips of edges until few are left (Liu et al. 2023); what is flat stays isometric, and a
+// curved vertex that is removed changes the metric within its three last triangles alone.
+class CoarseSurface {
+ public:
+  // kept: (n) vertices that stay; those of boundaries do as well.  nodes: how many vertices are to be left, about; more
+  // are where they cannot be removed.
+  CoarseSurface(const MetricMesh& surface, const PerVertex<char>& kept, Index nodes);
+
+  Index node_count() const { return node_count_; }
+  Index node(Index vertex) const { return node_of_vertex_[vertex]; }  // none where it was removed
+
+  // The sum of values at vertices (n) to each node, (nodes): the transpose of `at_vertices`.
+  Eigen::VectorXd at_nodes(Eigen::VectorXd values) const;
+  // The piecewise linear interpolation of values at nodes, (n).
+  Eigen::VectorXd at_vertices(const Eigen::VectorXd& values) const;
+
+  // Of its cotangent Laplacian.  held: (n) where the solution is 0, among the nodes; the first of them if there is
+  // none.
+  std::unique_ptr<LaplaceSolver> laplace(const PerVertex<char>& held) const;
+
+ private:
+  // A vertex and its barycentric coordinates in the triangle that it left.
+  struct Removal {
+    Index vertex;
+    Index corner[3];
+    double share[3];
+  };
+  class Triangulation;
+
+  PerVertex<Index> node_of_vertex_;
+  Array<Removal> removals_;  // in that order
+  Index node_count_ = 0;
+  HalfedgeMesh mesh_;  // of nodes: triangles, twins and outgoing halfedges alone
+  Geometry geometry_;  // half cotangents alone
+};
+
+}  // namespace lsgp

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The log scale that curvatures make, as cones are chosen by it: on the surface itself, or, where that is large, on a
+// coarse triangulation of it.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+
+#include "base/array.hpp"
+#include "prescription/log_scale.hpp"
+#include "sites/coarse_surface.hpp"
+#include "sites/cone_sites.hpp"
+
+namespace lsgp {
+
+// L y = kappa - K at its nodes, as in LogScale.
+class LogScaleModel {
+ public:
+  // sites: where there may be cones, which all are nodes.
+  LogScaleModel(const LogScale& scale, const Array<Site>& sites);
+
+  bool balanced() const { return scale_.balanced(); }
+  Index node_count() const { return static_cast<Index>(weight_.size()); }
+  Index node(Index vertex) const { return coarse_ ? coarse_->node(vertex) : vertex; }
+  const Eigen::VectorXd& weight() const { return weight_; }        // (nodes) share of the area
+  const Eigen::VectorXd& elsewhere() const { return elsewhere_; }  // (nodes) curvature without cones less angle defects
+  // Solves L y = right side, (nodes, k), up to a constant when balanced.
+  Eigen::MatrixXd solve_columns(const Eigen::MatrixXd& right_sides) const;
+  Eigen::VectorXd at_vertices(Eigen::VectorXd values) const;  // (n) of (nodes)
+
+ private:
+  const LogScale& scale_;
+  std::optional<CoarseSurface> coarse_;
+  std::unique_ptr<LaplaceSolver> laplace_;  // of the coarse surface
+  Eigen::VectorXd weight_, elsewhere_;
+};
+
+}  // namespace lsgp
