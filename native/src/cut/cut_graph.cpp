@@ -164,6 +164,12 @@ PerVertex<char> mark_vertices(const HalfedgeMesh& mesh, const Array<Index>& vert
 
 }  // namespace
 
+Array<Index> halfedges_of(const CutGraph& cut_graph) {
+  Array<Index> out;
+  for (const Cut& cut : cut_graph.cuts) out.insert(out.end(), cut.halfedges.begin(), cut.halfedges.end());
+  return out;
+}
+
 PerVertex<char> on_cuts(const HalfedgeMesh& mesh, const CutGraph& cut_graph) {
   PerVertex<char> out(mesh.vertex_count(), 0);
   for (const Cut& cut : cut_graph.cuts) {

@@ -271,6 +271,10 @@ REVIEWED = {
     ],
     "split/compact_islands.cpp": [("while (!pending.empty())", "each division pays a price out of a sum", WITHIN)],
     "split/merge_islands.cpp": [("while (merge_next())", "each round makes two groups one", WITHIN)],
+    "split/mirrored_islands.cpp": [
+        ("while (!queue.empty() && queue.top().second != to)", NEAREST, OWN),
+        ("for (Index h = at(to).by; h != none; h = at(mesh_.origin(h)).by)", LINKED, SHORT),
+    ],
     "split/minimum_cut.cpp": [
         ("while (!queue.empty())", NEAREST, SHORT),
         ("for (;;)", "each round holds more cells, or ends it", WITHIN),
