@@ -218,7 +218,7 @@ CutGraph connect_cones(const MetricMesh& surface, const Array<Index>& interior_c
   }
   const PerVertex<char> is_cone = mark_vertices(mesh, interior_cones);
   CutNetwork network({surface, edges}, is_cone, avoided, prune(mesh, is_cone, std::move(is_cut)));
-  exchange_key_paths(network);
+  shorten_cuts(network);
   return trace_cuts(mesh, is_cone, prune(mesh, is_cone, std::move(network.is_cut)));
 }
 
