@@ -208,7 +208,7 @@ class Options:
         seams; "full", wherever the filled area outweighs the cost of the cut and the additional island. Transitions
         stay exact. Components with pins keep their islands.
     mirrored_cuts: cuts are alike on both sides of a component's mirror plane, which is detected, if its cones are and
-        that costs at most half as much again. Those that split overlaps, and those of compact, may differ.
+        that costs at most half as much again; so are islands that are split or made compact, if that adds few cuts.
     square_share: with compact, the area available to these islands, 1 being a whole square: less if other surfaces are
         packed beside them, so that they are cut less; the number of UDIM tiles, up to 100, so that all are filled.
     factorization: how linear systems are solved; maps differ only by rounding. "cut" factors once and leaves dense

@@ -164,6 +164,12 @@ PerVertex<char> mark_vertices(const HalfedgeMesh& mesh, const Array<Index>& vert
 
 }  // namespace
 
+Array<Index> halfedges_of(const CutGraph& cut_graph) {
+  Array<Index> out;
+  for (const Cut& cut : cut_graph.cuts) out.insert(out.end(), cut.halfedges.begin(), cut.halfedges.end());
+  return out;
+}
+
 PerVertex<char> on_cuts(const HalfedgeMesh& mesh, const CutGraph& cut_graph) {
   PerVertex<char> out(mesh.vertex_count(), 0);
   for (const Cut& cut : cut_graph.cuts) {
@@ -212,7 +218,7 @@ CutGraph connect_cones(const MetricMesh& surface, const Array<Index>& interior_c
   }
   const PerVertex<char> is_cone = mark_vertices(mesh, interior_cones);
   CutNetwork network({surface, edges}, is_cone, avoided, prune(mesh, is_cone, std::move(is_cut)));
-  exchange_key_paths(network);
+  shorten_cuts(network);
   return trace_cuts(mesh, is_cone, prune(mesh, is_cone, std::move(network.is_cut)));
 }
 

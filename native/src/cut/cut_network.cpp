@@ -30,6 +30,12 @@ double CutNetwork::cost(const CutPath& path) const {
   return out;
 }
 
+double CutNetwork::total_cost() const {
+  double out = 0;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) out += is_cut[h] && mesh.twin[h] > h ? cut_cost(*this, h) : 0;
+  return out;
+}
+
 CutPath CutNetwork::trace(Index h) const {
   // The other cut at a vertex that has two.
   const auto cut_after = [&](Index before) {

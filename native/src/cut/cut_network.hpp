@@ -31,6 +31,7 @@ struct CutNetwork : CuttableSurface {
   bool holds(Index v) const { return degree[v] > 0 || is_cone[v] || (is_on_border(v) && !is_avoided[v]); }
   bool is_node(Index v) const { return is_cone[v] || is_on_border(v) || degree[v] != 2; }
   double cost(const CutPath& path) const;
+  double total_cost() const;
 
   // The path between two nodes that contains a cut halfedge, or a closed curve without nodes.
   CutPath trace(Index h) const;

@@ -24,15 +24,7 @@ constexpr double straying = 30;  // what the square of the distance from it cost
 constexpr Index most_single = 6;  // places tried for a trunk that is a point
 constexpr double operations_a_search = 500;
 
-enum class Side : char { own, plane, other };
-
-Index find_halfedge(const HalfedgeMesh& mesh, Index from, Index to) {
-  Index out = none;
-  mesh.for_each_outgoing(from, [&](Index h) {
-    if (mesh.target(h) == to) out = h;
-  });
-  return out;
-}
+using Side = MirrorSide;
 
 double cost_of(const CutTask& task, const CutGraph& cuts) {
   double out = 0;
@@ -45,9 +37,6 @@ double cost_of(const CutTask& task, const CutGraph& cuts) {
 class MirroredCuts {
  public:
   MirroredCuts(const CutTask& task, Borrowed<const Mirroring> mirroring);
-
-  // Whether cones come in pairs, each with one on either side, or lie in the plane.
-  bool has_mirrored_cones() const;
 
   // Cuts of one side and the trunk; none if the trunk cannot be connected.
   CutGraph free_half() const { return connect_cones({half_, task_.geometry}, own_cones_, beyond_); }
@@ -66,7 +55,6 @@ class MirroredCuts {
     return side(task_.mesh.origin(h)) != Side::other && side(task_.mesh.target(h)) != Side::other;
   }
   Index image_of(Index h) const;
-  void find_sides();
   void classify_loops();
   void price_half();
   Index nearest_in_plane(const CutGraph& cuts) const;
@@ -79,7 +67,7 @@ class MirroredCuts {
 
   const CutTask task_;
   const Mirroring& mirroring_;
-  PerVertex<Side> side_;
+  const PerVertex<Side> side_;
   Array<Index> own_cones_;  // not beyond the plane
   PerLoop<char> beyond_;    // no cuts of this side have to reach them
   PerLoop<char> crosses_;   // boundaries through the plane that have to be reached
@@ -87,33 +75,12 @@ class MirroredCuts {
 };
 
 MirroredCuts::MirroredCuts(const CutTask& task, Borrowed<const Mirroring> mirroring)
-    : task_(task), mirroring_(mirroring), half_(task.mesh) {
-  find_sides();
+    : task_(task), mirroring_(mirroring), side_(find_mirror_sides(task.mesh, mirroring)), half_(task.mesh) {
   classify_loops();
   price_half();
   for (const Index v : task.interior_cones) {
     if (side(v) != Side::other) own_cones_.push_back(v);
   }
-}
-
-// Of each edge from one side to the other, the end nearer to the plane counts as in it, so that no edge leads past it.
-void MirroredCuts::find_sides() {
-  constexpr double nearer = 0.9;  // mirror images are equally near
-  const HalfedgeMesh& mesh = task_.mesh;
-  const auto height = [&](Index v) {
-    return (mesh.positions.row(v) - mirroring_.plane.point.transpose()).dot(mirroring_.plane.normal);
-  };
-  side_.resize(mesh.vertex_count());
-  for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    side_[v] = mirroring_.image[v] == v ? Side::plane : height(v) < 0 ? Side::other : Side::own;
-  }
-  Array<Index> near;
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    Index a = mesh.origin(h), b = mesh.target(h);
-    if (side(a) == Side::other) std::swap(a, b);
-    if (side(a) == Side::own && side(b) == Side::other) near.push_back(-height(b) < nearer * height(a) ? b : a);
-  }
-  for (const Index v : near) side_[v] = Side::plane;
 }
 
 void MirroredCuts::classify_loops() {
@@ -131,9 +98,7 @@ void MirroredCuts::classify_loops() {
 
 // The edge at an edge's mirror image, none if there is none that may be cut.
 Index MirroredCuts::image_of(Index h) const {
-  const Index a = mirroring_.image[task_.mesh.origin(h)], b = mirroring_.image[task_.mesh.target(h)];
-  if (a == none || b == none) return none;
-  const Index image = find_halfedge(task_.mesh, a, b);
+  const Index image = mirrored_halfedge(task_.mesh, mirroring_, h);
   return image != none && may_cut(task_.mesh, image) ? image : none;
 }
 
@@ -150,13 +115,6 @@ void MirroredCuts::price_half() {
       half_.cut_factor[h] = image == none ? unmatched * factor(h) : (factor(h) + factor(image)) / 2;
     }
   }
-}
-
-bool MirroredCuts::has_mirrored_cones() const {
-  PerVertex<char> is_cone(task_.mesh.vertex_count(), 0);
-  for (const Index v : task_.interior_cones) is_cone[v] = 1;
-  return std::all_of(task_.interior_cones.begin(), task_.interior_cones.end(),
-                     [&](Index v) { return mirroring_.image[v] != none && is_cone[mirroring_.image[v]]; });
 }
 
 // The vertex in the plane that cuts reach most cheaply from cuts of one side or its cones; none if there is no way.
@@ -322,11 +280,10 @@ CutGraph MirroredCuts::complete(const CutGraph& half) const {
 
 CutGraph connect_symmetrically(const CutTask& task, const Mirroring& mirroring) {
   CutGraph usual = connect_cones(task, task.interior_cones, task.uncut);
-  if (mirroring.empty() || usual.cuts.empty()) return usual;
+  if (usual.cuts.empty() || !are_mirrored(mirroring, task.interior_cones)) return usual;
   const double most = dearest * cost_of(task, usual);
   try {
-    MirroredCuts mirrored(task, mirroring);
-    if (!mirrored.has_mirrored_cones()) return usual;
+    const MirroredCuts mirrored(task, mirroring);
     const CutGraph free_half = mirrored.free_half();
     if (const auto half = mirrored.half_with_trunk(free_half)) {
       CutGraph cuts = mirrored.complete(*half);

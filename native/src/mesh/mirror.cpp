@@ -259,6 +259,45 @@ Eigen::RowVector3d reflected(const MirrorPlane& plane, const Eigen::RowVector3d&
   return at - 2 * (at - plane.point.transpose()).dot(normal) * normal;
 }
 
+PerVertex<MirrorSide> find_mirror_sides(const HalfedgeMesh& mesh, const Mirroring& mirroring) {
+  constexpr double nearer = 0.9;  // mirror images are equally near
+  const auto height = [&](Index v) {
+    return (mesh.positions.row(v) - mirroring.plane.point.transpose()).dot(mirroring.plane.normal);
+  };
+  PerVertex<MirrorSide> side(mesh.vertex_count());
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    side[v] = mirroring.image[v] == v ? MirrorSide::plane : height(v) < 0 ? MirrorSide::other : MirrorSide::own;
+  }
+  Array<Index> near;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    Index a = mesh.origin(h), b = mesh.target(h);
+    if (side[a] == MirrorSide::other) std::swap(a, b);
+    if (side[a] != MirrorSide::own || side[b] != MirrorSide::other) continue;
+    near.push_back(-height(b) < nearer * height(a) ? b : a);
+  }
+  for (const Index v : near) side[v] = MirrorSide::plane;
+  return side;
+}
+
+Index mirrored_halfedge(const HalfedgeMesh& mesh, const Mirroring& mirroring, Index h) {
+  const Index from = mirroring.image[mesh.origin(h)], to = mirroring.image[mesh.target(h)];
+  Index out = none;
+  if (from == none || to == none) return out;
+  mesh.for_each_outgoing(from, [&](Index g) {
+    if (mesh.target(g) == to) out = g;
+  });
+  return out;
+}
+
+bool are_mirrored(const Mirroring& mirroring, const Array<Index>& vertices) {
+  if (mirroring.empty()) return false;
+  PerVertex<char> is_one(mirroring.image.size(), 0);
+  for (const Index v : vertices) is_one[v] = 1;
+  return std::all_of(vertices.begin(), vertices.end(), [&](Index v) {
+    return mirroring.image[v] != none && is_one[mirroring.image[v]];
+  });
+}
+
 Mirroring find_mirror_images(const MetricMesh& surface, const std::optional<MirrorPlane>& plane) {
   const MirroredSurface mirrored(surface);
   Array<MirrorPlane> planes = plane ? Array<MirrorPlane>{with_unit_normal(*plane)} : mirrored.likely_planes();

@@ -21,6 +21,18 @@ struct Mirroring {
   bool empty() const { return image.empty(); }
 };
 
+enum class MirrorSide : char { own, plane, other };
+
+// Of each edge from one side to the other, the end nearer to the plane counts as in it, so that no edge leads past it.
+// mirroring: of the mesh, not empty.
+PerVertex<MirrorSide> find_mirror_sides(const HalfedgeMesh& mesh, const Mirroring& mirroring);
+
+// The halfedge between the images of a halfedge's ends, or none.
+Index mirrored_halfedge(const HalfedgeMesh& mesh, const Mirroring& mirroring, Index h);
+
+// Whether vertices come in pairs, each with one on either side, or lie in the plane; false without a plane.
+bool are_mirrored(const Mirroring& mirroring, const Array<Index>& vertices);
+
 // An image's image is the vertex itself.
 // plane: if none, those through the centroid along the axes and the principal directions are tried, and fitted to the
 // surface where that helps. A plane in which the surface itself lies comes last.

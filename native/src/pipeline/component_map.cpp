@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/component_map.hpp"
 
+#include <algorithm>
+
+#include "plane/overlaps.hpp"
+
 namespace lsgp {
 
 void check_seams(const HalfedgeMesh& mesh, const CornerPositions& corners, ComponentMap& map) {
@@ -25,6 +29,20 @@ void check_positions(const HalfedgeMesh& mesh, ComponentMap& map) {
   map.uv_area = 0;
   for (Index f = 0; f < mesh.triangle_count(); ++f) map.uv_area += doubled_area(corners, f) / 2;
   check_triangles(mesh, corners, map);
+}
+
+bool has_overlap_within(const PerTriangle<Index>& part, Eigen::VectorXcd position, const PerHalfedge<Index>& twin) {
+  // Parts side by side.
+  PerPart<PositionBox> boxes(1 + *std::max_element(part.begin(), part.end()));
+  for (Eigen::Index c = 0; c < position.size(); ++c) boxes[part[c / 3]].add(position[c]);
+  Complex at = 0;
+  PerPart<Complex> shift;
+  for (const PositionBox& box : boxes) {
+    shift.push_back(at - box.low());
+    at += 2 * box.size();
+  }
+  for (Eigen::Index c = 0; c < position.size() && boxes.size() > 1; ++c) position[c] += shift[part[c / 3]];
+  return has_overlap(position, twin);
 }
 
 }  // namespace lsgp

@@ -45,4 +45,7 @@ void check_triangles(const HalfedgeMesh& mesh, const CornerPositions& corners, C
 // Measures the map's own positions in this way, and their area. Throws SOLVER_FAILED if some are not finite.
 void check_positions(const HalfedgeMesh& mesh, ComponentMap& map);
 
+// Whether a part of a layout without flipped triangles overlaps itself.  position, twin: as for has_overlap.
+bool has_overlap_within(const PerTriangle<Index>& part, Eigen::VectorXcd position, const PerHalfedge<Index>& twin);
+
 }  // namespace lsgp

@@ -216,9 +216,7 @@ void Mapping::cut(ComponentSystem& system, const ComponentTask& task, ComponentM
   } else {
     map.cut_graph = keep_cones(mesh, system.all_cuts(), map.cones);
   }
-  for (const Cut& cut : map.cut_graph.cuts) {
-    map.required_cuts.insert(map.required_cuts.end(), cut.halfedges.begin(), cut.halfedges.end());
-  }
+  map.required_cuts = halfedges_of(map.cut_graph);
   map.has_straight_cuts = options_.prescription == PrescriptionRule::straightness;
   map.cut_mesh = cut_open(mesh, map.cut_graph);
   map.pins = pins_of_copies(map.cut_mesh, task.pinned_corners);

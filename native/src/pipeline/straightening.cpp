@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "cut/holonomy.hpp"
-#include "plane/overlaps.hpp"
 #include "repair/straighten.hpp"
 #include "unfold/jacobians.hpp"
 
@@ -40,18 +39,8 @@ bool overlaps(const CutSurface& surface, const ComponentMap& map) {
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (is_open(mesh, surface.cut_mesh, h)) twin[h] = none;
   }
-  // Islands side by side.
-  Array<PositionBox> boxes(label_parts(mesh, surface.cut_graph.is_cut, part));
-  Eigen::VectorXcd corners = at_corners(surface.cut_mesh, map.position);
-  for (Eigen::Index c = 0; c < corners.size(); ++c) boxes[part[c / 3]].add(corners[c]);
-  Complex at = 0;
-  Array<Complex> shift;
-  for (const PositionBox& box : boxes) {
-    shift.push_back(at - box.low());
-    at += 2 * box.size();
-  }
-  for (Eigen::Index c = 0; c < corners.size() && boxes.size() > 1; ++c) corners[c] += shift[part[c / 3]];
-  return has_overlap(corners, twin);
+  label_parts(mesh, surface.cut_graph.is_cut, part);
+  return has_overlap_within(part, at_corners(surface.cut_mesh, map.position), twin);
 }
 
 // Whether all cuts are connected, boundaries included, so that each can be related to the others.

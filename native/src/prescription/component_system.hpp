@@ -23,6 +23,7 @@ class ComponentSystem {
   const HalfedgeMesh& mesh() const { return surface_.mesh; }
   const Geometry& geometry() const { return surface_.geometry; }
   const BorderConditions& border() const { return border_; }
+  const Mirroring& mirroring() const { return mirroring_; }
 
   // Cuts through all interior cones and to all boundaries.
   const CutGraph& all_cuts();

@@ -75,8 +75,8 @@ void split_layouts(const GridSearch& search, Complex shift, const Grid& grid, Ar
     maps[i].position = grid.layouts[i].position.array() + shift;
     // Cones off the lattice have translations off it, across which no part may move.
     const PerHalfedge<char> nowhere(mesh.halfedge_count(), 0), everywhere(mesh.halfedge_count(), 1);
-    split_map({components[i].system->surface(), nowhere}, search.relaxed(i).empty() ? mesh.seam : everywhere, monitor,
-              maps[i]);
+    const SplitTask task{search.relaxed(i).empty() ? mesh.seam : everywhere, components[i].system->mirroring()};
+    split_map({components[i].system->surface(), nowhere}, task, monitor, maps[i]);
   });
   for (std::size_t i = 0; i < components.size(); ++i) *components[i].map = std::move(maps[i]);
 }

@@ -289,7 +289,7 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& island) {
 
 }  // namespace
 
-void compact_islands(const OpenedSurface& surface, const SharedSquare& square, ComponentMap& map) {
+bool compact_islands(const OpenedSurface& surface, const SharedSquare& square, ComponentMap& map) {
   const HalfedgeMesh& mesh = surface.mesh;
   PerHalfedge<char> ends = surface.open, is_cut = map.cut_graph.is_cut;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) ends[h] = ends[h] || is_cut[h];
@@ -305,10 +305,11 @@ void compact_islands(const OpenedSurface& surface, const SharedSquare& square, C
     for (const Index h : {link.halfedge, mesh.twin[link.halfedge]}) ends[h] = is_cut[h] = 1;
     has_opened = true;
   }
-  if (!has_opened) return;
+  if (!has_opened) return false;
   PerTriangle<Index> part_of_triangle;
   const PerPart<Motion> motions(label_parts(mesh, ends, part_of_triangle));
   cut_apart(mesh, std::move(is_cut), part_of_triangle, motions, map);
+  return true;
 }
 
 }  // namespace lsgp

@@ -12,7 +12,7 @@ namespace lsgp {
 // Cuts islands that are far from convex, or long compared with the square, if the area saved outweighs the additional
 // cut length and islands; sharp edges are preferred. The parts do not move, so transitions are unchanged, and those
 // across the additional cuts are the identity.
-// surface: its open edges, besides the cuts.
-void compact_islands(const OpenedSurface& surface, const SharedSquare& square, ComponentMap& map);
+// surface: its open edges, besides the cuts. Returns whether any was cut.
+bool compact_islands(const OpenedSurface& surface, const SharedSquare& square, ComponentMap& map);
 
 }  // namespace lsgp

@@ -3,18 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
-#include <tuple>
+#include <utility>
 
 #include "base/checkpoint.hpp"
 #include "plane/overlaps.hpp"
+#include "split/part_borders.hpp"
 
 namespace lsgp {
 
 namespace {
 
-constexpr double same_place = 1e-9;            // of the layout's size
 constexpr double operations_a_triangle = 200;  // of the overlap test
 constexpr double narrowest_joint = 0.25;       // of the square root of the smaller part's area
 
@@ -27,12 +26,7 @@ class IslandMerger {
   }
 
  private:
-  // Open edges along one cut between two parts, and the motion that brings the left one to the right one.
-  struct Border {
-    Index left, right;  // parts
-    Motion across;
-    Array<Index> halfedges;
-    double length = 0;
+  struct Border : PartBorder {
     Array<Index> tried;  // its groups and their states when they could not be merged
   };
 
@@ -88,29 +82,10 @@ IslandMerger::IslandMerger(const MetricMesh& surface, const ComponentMap& map, c
     triangles_[part[f]].push_back(f);
     area_[part[f]] += geometry.area[f];
   }
-  size_ = std::max(corners_.real().maxCoeff() - corners_.real().minCoeff(),
-                   corners_.imag().maxCoeff() - corners_.imag().minCoeff());
-
-  std::map<std::tuple<Index, Index, Index>, Border> borders;  // by cut, left and right part
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    const Index twin = mesh.twin[h], cut = map.cut_graph.cut_of[h];
-    if (twin == none || !open_[h] || kept[h] || part[h / 3] == part[twin / 3]) continue;
-    if (cut == none ? h > twin : !map.cut_graph.runs_forward[h]) continue;
-    Border& border = borders[{cut, part[h / 3], part[twin / 3]}];
-    if (border.halfedges.empty()) {
-      border.left = part[h / 3];
-      border.right = part[twin / 3];
-      if (cut != none) {
-        const double angle = (*map.rotation)[cut];
-        border.across = {angle, corners_[next(twin)] - std::polar(1.0, angle) * corners_[h]};
-      }
-    }
-    border.halfedges.push_back(h);
-    border.length += geometry.length[h];
+  size_ = size_of(corners_);
+  for (PartBorder& border : find_part_borders(surface, map, kept, parts)) {
+    borders_.push_back({std::move(border), {}});
   }
-  for (auto& [key, border] : borders) borders_.push_back(std::move(border));
-  std::stable_sort(borders_.begin(), borders_.end(),
-                   [](const Border& a, const Border& b) { return a.length > b.length; });
 }
 
 bool IslandMerger::merge_next() {
@@ -134,7 +109,7 @@ bool IslandMerger::try_to_merge(const Border& border) {
     const bool runs_along = group_[other.left] == left && group_[other.right] == right;
     if (!runs_along && !(group_[other.left] == right && group_[other.right] == left)) continue;
     const Motion rest = runs_along ? motion.inverse() * to_meet(other) : motion * to_meet(other);
-    if (std::abs(std::polar(1.0, rest.angle) - 1.0) > same_place || std::abs(rest.shift) > same_place * size_) continue;
+    if (!is_rest(rest, size_)) continue;
     for (const Index h : other.halfedges) closed.insert(closed.end(), {h, mesh_.twin[h]});
     length += other.length;
   }

@@ -4,16 +4,9 @@
 
 #include "base/array.hpp"
 #include "pipeline/component_map.hpp"
-#include "split/cut_apart.hpp"
+#include "split/part_borders.hpp"
 
 namespace lsgp {
-
-// A map divided into parts.
-struct MapParts {
-  PerHalfedge<char> open;  // between parts, on both sides of an edge
-  PerTriangle<Index> part;
-  PerPart<Motion> motion;
-};
 
 // Merges overlap-free parts across shared cuts, longest first, wherever the union stays overlap-free. Parts whose
 // shared cut is only a few edges long are not merged.

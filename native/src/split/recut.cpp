@@ -332,10 +332,7 @@ Array<ComponentMap> recut(const MetricMesh& surface, const ComponentMap& map) {
   for (const Recutter::State& state : recutter.search()) {
     out.push_back(map);
     cut_apart(mesh, recutter.cuts_of(mesh, state), recutter.piece_of(), state.motion, out.back());
-    out.back().required_cuts.clear();
-    for (const Cut& cut : out.back().cut_graph.cuts) {
-      out.back().required_cuts.insert(out.back().required_cuts.end(), cut.halfedges.begin(), cut.halfedges.end());
-    }
+    out.back().required_cuts = halfedges_of(out.back().cut_graph);
   }
   return out;
 }

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "split/cut_apart.hpp"
 #include "split/merge_islands.hpp"
+#include "split/mirrored_islands.hpp"
 #include "split/recut.hpp"
 #include "split/split_overlaps.hpp"
 
@@ -16,8 +18,9 @@ namespace lsgp {
 
 namespace {
 
-// Cost of every island, additional cost of a sliver, and cost of cuts as long as the square root of the surface's area.
-constexpr double cost_of_island = 0.5, cost_of_sliver = 2, cost_of_cut = 1;
+// Cost of every island, additional cost of a sliver, and cost of cuts as long as the square root of the surface's area;
+// what is added for those without a mirror image where cuts are symmetric.
+constexpr double cost_of_island = 0.5, cost_of_sliver = 2, cost_of_cut = 1, cost_of_one_side = 2;
 constexpr double sliver = 0.005;  // of the area
 
 // factor: as from relative_cut_factors.
@@ -55,21 +58,84 @@ Array<Overlap> find_own_overlaps(const HalfedgeMesh& mesh, const ComponentMap& m
   return find_overlaps(corners, twin);
 }
 
+// Whether an island of a division overlaps itself.
+bool has_own_overlap(const HalfedgeMesh& mesh, const ComponentMap& map, const MapParts& parts) {
+  Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
+  PerHalfedge<Index> twin = mesh.twin;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    corners[h] = parts.motion[parts.part[h / 3]](corners[h]);
+    if (parts.open[h]) twin[h] = none;
+  }
+  PerTriangle<Index> island;
+  label_parts(mesh, parts.open, island);
+  return has_overlap_within(island, std::move(corners), twin);
+}
+
+// What a way of splitting may do, and what it costs.
+class SplitRules {
+ public:
+  SplitRules(const OpenedSurface& surface, const SplitTask& task, const ComponentMap& map)
+      : surface_(surface), kept_(task.kept), factor_(relative_cut_factors(surface.mesh)) {
+    // Marked seams, straight cuts and pinned islands stay as they are.
+    may_recut_ = map.rotation && !map.has_straight_cuts && map.pins.empty() && !map.cut_graph.cuts.empty() &&
+                 std::find(kept_.begin(), kept_.end(), 1) == kept_.end();
+    const bool has_images = may_recut_ && map.validity.flipped.empty() && are_mirrored(task.mirroring, map.cones);
+    if (has_images) mirrored_.emplace(surface, task.mirroring);
+  }
+
+  const OpenedSurface& surface() const { return surface_; }
+  const PerHalfedge<char>& kept() const { return kept_; }
+  bool may_recut() const { return may_recut_; }
+  double least_cost(const PerHalfedge<char>& ends) const { return cost(surface_, factor_, ends); }
+  double cost_of(const PerHalfedge<char>& ends) const {
+    const double one_sided = mirrored_ ? mirrored_->one_sided_length(ends) : 0;
+    return least_cost(ends) + cost_of_one_side * one_sided / std::sqrt(surface_.geometry.total_area);
+  }
+
+  // The divisions that are alike on both sides of the mirror plane, if there is one, and like one on either side.
+  Array<MapParts> mirror(const ComponentMap& map, const PerHalfedge<char>& open) const {
+    Array<MapParts> out;
+    if (!mirrored_) return out;
+    for (const MirrorSide side : {MirrorSide::own, MirrorSide::other}) {
+      out.push_back(mirrored_->along_side(map, open, side));
+    }
+    return out;
+  }
+
+  // A division of a map, or one that is like it on one side of the mirror plane or both.
+  Division cheapest(const ComponentMap& map, MapParts parts) const {
+    Array<MapParts> mirrored = mirror(map, parts.open);
+    if (mirrored_) mirrored.push_back(mirrored_->along_both(map, parts.open));
+    const double total = cost_of(parts.open);
+    Division best{std::move(parts), total};
+    for (MapParts& other : mirrored) {
+      const double cost = cost_of(other.open);
+      if (cost < best.cost && !has_own_overlap(surface_.mesh, map, other)) best = {std::move(other), cost};
+    }
+    return best;
+  }
+
+ private:
+  const OpenedSurface surface_;
+  const PerHalfedge<char>& kept_;  // may not be closed
+  const PerHalfedge<double> factor_;  // of edges as cuts
+  bool may_recut_;
+  std::optional<MirroredIslands> mirrored_;
+};
+
 // The candidate divisions of a map that overlaps itself.
 class MapDivider {
  public:
-  // surface: where the map is open, cuts included.  kept: as for split_map.
-  MapDivider(const OpenedSurface& surface, const ComponentMap& map, const PerHalfedge<char>& kept,
-             ProgressMonitor& monitor)
-      : surface_(surface),
+  // ends: where the map is open, cuts included.
+  MapDivider(const SplitRules& rules, const PerHalfedge<char>& ends, const ComponentMap& map, ProgressMonitor& monitor)
+      : rules_(rules),
+        surface_{rules.surface(), ends},
         map_(map),
-        kept_(kept),
         monitor_(monitor),
-        overlaps_(find_own_overlaps(surface.mesh, map)),
-        factor_(relative_cut_factors(surface.mesh)) {}
+        overlaps_(find_own_overlaps(surface_.mesh, map)) {}
 
   bool is_whole() const { return overlaps_.empty(); }
-  double cost_before() const { return cost(surface_, factor_, surface_.open); }
+  double cost_before() const { return rules_.least_cost(surface_.open); }
 
   Division divide(CutCost rule) const {
     const HalfedgeMesh& mesh = surface_.mesh;
@@ -77,18 +143,16 @@ class MapDivider {
     const Array<Index> opened = split_overlaps(surface_, overlaps_, rule, [&] { monitor_.advance(0); });
     for (const Index h : opened) parts.open[h] = parts.open[mesh.twin[h]] = 1;
     parts.motion.resize(label_parts(mesh, parts.open, parts.part));
-    if (map_.rotation) merge_islands(surface_, map_, kept_, parts);
-    const double total = cost(surface_, factor_, parts.open);
-    return {std::move(parts), total};
+    if (map_.rotation) merge_islands(surface_, map_, rules_.kept(), parts);
+    return rules_.cheapest(map_, std::move(parts));
   }
 
  private:
+  const SplitRules& rules_;
   const OpenedSurface surface_;
   const ComponentMap& map_;
-  const PerHalfedge<char>& kept_;
   ProgressMonitor& monitor_;
   const Array<Overlap> overlaps_;
-  const PerHalfedge<double> factor_;  // of edges as cuts
 };
 
 // Where a map is open: where it was before, and along its cuts.
@@ -101,16 +165,15 @@ PerHalfedge<char> ends_of(const OpenedSurface& surface, const ComponentMap& map)
 // The cheapest division of maps that differ by their cuts.
 class WaySearch {
  public:
-  WaySearch(const OpenedSurface& surface, const PerHalfedge<char>& kept, ProgressMonitor& monitor)
-      : surface_(surface), kept_(kept), monitor_(monitor) {}
+  WaySearch(const SplitRules& rules, ProgressMonitor& monitor) : rules_(rules), monitor_(monitor) {}
 
   // least: dividing an overlapping layout is assumed to add at least this cost.
-  void divide(const ComponentMap& way, std::initializer_list<CutCost> rules, double least) {
-    const PerHalfedge<char> ends = ends_of(surface_, way);
-    const MapDivider divider({surface_, ends}, way, kept_, monitor_);
-    for (const CutCost rule : rules) {
+  void divide(const ComponentMap& way, std::initializer_list<CutCost> costs, double least) {
+    const PerHalfedge<char> ends = ends_of(rules_.surface(), way);
+    const MapDivider divider(rules_, ends, way, monitor_);
+    for (const CutCost cost : costs) {
       if (chosen_ && divider.cost_before() + (divider.is_whole() ? 0 : least) >= best_.cost) break;
-      Division other = divider.divide(rule);
+      Division other = divider.divide(cost);
       if (chosen_ && !(other.cost < best_.cost)) continue;
       best_ = std::move(other);
       chosen_ = &way;
@@ -121,18 +184,11 @@ class WaySearch {
   const ComponentMap* chosen() const { return chosen_; }
 
  private:
-  const OpenedSurface& surface_;
-  const PerHalfedge<char>& kept_;
+  const SplitRules& rules_;
   ProgressMonitor& monitor_;
   Division best_{};
   const ComponentMap* chosen_ = nullptr;  // none so far
 };
-
-// Marked seams, straight cuts and pinned islands stay as they are.
-bool may_recut(const PerHalfedge<char>& kept, const ComponentMap& map) {
-  return map.rotation && !map.has_straight_cuts && map.pins.empty() && !map.cut_graph.cuts.empty() &&
-         std::find(kept.begin(), kept.end(), 1) == kept.end();
-}
 
 // The map of the pieces that a division leaves.
 void apply(const OpenedSurface& surface, const MapParts& parts, ComponentMap& map) {
@@ -151,16 +207,32 @@ void apply(const OpenedSurface& surface, const MapParts& parts, ComponentMap& ma
   cut_apart(mesh, std::move(is_cut), part, motion, map);
 }
 
+// Maps with other cuts for the same cones, and those that are like one of them on one side of a mirror plane.
+Array<ComponentMap> find_ways(const SplitRules& rules, const ComponentMap& map) {
+  Array<ComponentMap> ways;
+  if (!rules.may_recut()) return ways;
+  ways = recut(rules.surface(), map);
+  for (std::size_t i = 0, count = ways.size(); i < count; ++i) {
+    for (const MapParts& parts : rules.mirror(ways[i], ways[i].cut_graph.is_cut)) {
+      ComponentMap way = ways[i];
+      apply(rules.surface(), parts, way);
+      way.required_cuts = halfedges_of(way.cut_graph);
+      ways.push_back(std::move(way));
+    }
+  }
+  return ways;
+}
+
 }  // namespace
 
-bool split_map(const OpenedSurface& surface, const PerHalfedge<char>& kept, ProgressMonitor& monitor,
-               ComponentMap& map) {
+bool split_map(const OpenedSurface& surface, const SplitTask& task, ProgressMonitor& monitor, ComponentMap& map) {
   const ProgressMonitor::Stage stage(monitor, "split");
   if (find_own_overlaps(surface.mesh, map).empty()) return false;
+  const SplitRules rules(surface, task, map);
   // The fastest rule selects among the recut maps. The map's own cuts compete with every rule, so that recutting never
   // costs more.
-  const Array<ComponentMap> ways = may_recut(kept, map) ? recut(surface, map) : Array<ComponentMap>{};
-  WaySearch search(surface, kept, monitor);
+  const Array<ComponentMap> ways = find_ways(rules, map);
+  WaySearch search(rules, monitor);
   for (const ComponentMap& way : ways) search.divide(way, {CutCost::shortest}, cost_of_island);
   if (search.chosen()) search.divide(*search.chosen(), {CutCost::no_slivers, CutCost::no_small_parts}, 0);
   search.divide(map, {CutCost::shortest, CutCost::no_slivers, CutCost::no_small_parts}, 0);
@@ -168,6 +240,12 @@ bool split_map(const OpenedSurface& surface, const PerHalfedge<char>& kept, Prog
   apply(surface, search.best().parts, chosen);
   map = std::move(chosen);
   return true;
+}
+
+void restore_symmetry(const OpenedSurface& surface, const SplitTask& task, ComponentMap& map) {
+  MapParts parts{ends_of(surface, map), {}, {}};
+  parts.motion.resize(label_parts(surface.mesh, parts.open, parts.part));
+  apply(surface, SplitRules(surface, task, map).cheapest(map, std::move(parts)).parts, map);
 }
 
 }  // namespace lsgp

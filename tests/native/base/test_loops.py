@@ -100,6 +100,11 @@ REVIEWED = {
         ("for (Index h = at(mesh.target(bridge)).by; h != none; h = at(mesh.origin(h)).by)", LINKED, SHORT),
     ],
     "cut/key_path_exchange.cpp": [("while (true)", "each round takes a vertex of the cuts, each once", SHORT)],
+    "cut/star_exchange.cpp": [
+        ("for (std::size_t i = 0; i + (out.size() == 2) < out.size(); ++i)", "cuts at a vertex", SHORT),
+        ("for (Index h = from[v].by; h != none; h = from[mesh_.origin(h)].by)", LINKED, SHORT),
+        ("for (std::size_t i = 0; work_left_ > 0; ++i)", "pairs of cuts at a vertex, while work is left", OWN),
+    ],
     "cut/shortest_paths.hpp": [("while (!queue.empty())", NEAREST, OWN)],
     "cut/strip_search.cpp": [
         ("while (!is_border(g))", AROUND_A_VERTEX, SHORT),
@@ -299,6 +304,10 @@ REVIEWED = {
     ],
     "split/compact_islands.cpp": [("while (!pending.empty())", "each division pays a price out of a sum", WITHIN)],
     "split/merge_islands.cpp": [("while (merge_next())", "each round makes two groups one", WITHIN)],
+    "split/mirrored_islands.cpp": [
+        ("while (!queue.empty() && queue.top().second != to)", NEAREST, OWN),
+        ("for (Index h = at(to).by; h != none; h = at(mesh_.origin(h)).by)", LINKED, SHORT),
+    ],
     "split/minimum_cut.cpp": [
         ("while (!queue.empty())", NEAREST, SHORT),
         ("for (;;)", "each round holds more cells, or ends it", WITHIN),

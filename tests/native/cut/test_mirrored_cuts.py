@@ -153,3 +153,29 @@ def test_auto_unwrap_mirrors_cuts_with_the_cones() -> None:
     result = lsgp.auto_unwrap(surface(mesh), options=options, pack="shelves")
     assert set(image[result.cones].tolist()) == set(result.cones.tolist()) and len(result.cones) > 2
     assert_mirrored(mesh, image, result.cut_edges)
+
+
+@pytest.mark.parametrize(
+    ("mesh", "count"),
+    [
+        (meshes.two_horned(2), 24),
+        (meshes.two_horned(3), 24),
+        (meshes.two_horned(3, 0.4), 12),
+        (meshes.subdivide(meshes.double_torus()), 12),
+    ],
+    ids=["coarse", "fine", "turned", "handles"],
+)
+def test_islands_that_are_split_or_made_compact_are_alike_on_both_sides(mesh: meshes.Mesh, count: int) -> None:
+    middle = (mesh.positions[:, 0].min() + mesh.positions[:, 0].max()) / 2
+    placed = lsgp.place_cones(surface(mesh), symmetric=True, count=count)
+    kept = lsgp.parameterize(surface(mesh), placed.cones, placed.cone_angles, MIRRORED)
+    assert len(kept.overlapping) > 0
+    for compact in ("off", "full"):
+        options = replace(MIRRORED, overlaps="split", compact=compact)
+        split = lsgp.parameterize(surface(mesh), placed.cones, placed.cone_angles, options)
+        assert len(split.overlapping) == 0
+        assert mirrored_share(mesh, split.cut_edges, middle) >= 0.98
+        assert set(placed.cones.tolist()) <= set(split.cut_edges.ravel().tolist())
+        assert split.seams.sister_ratio_max <= 1 + 1e-9
+        # A motion for each piece: no triangle changes its shape.
+        assert oracle.metric_gap(kept.corner_uv, split.corner_uv) <= 1e-9

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Islands that are alike on both sides of a mirror plane.
+#pragma once
+
+#include "base/array.hpp"
+#include "base/borrowed.hpp"
+#include "mesh/mirror.hpp"
+#include "mesh/point_tree.hpp"
+#include "split/part_borders.hpp"
+
+namespace lsgp {
+
+// What is cut otherwise on the other side of a mirror plane, and layouts of which that is not so.
+class MirroredIslands {
+ public:
+  // mirroring: of the mesh, not empty.
+  MirroredIslands(const MetricMesh& surface, Borrowed<const Mirroring> mirroring);
+
+  // Length of the open edges with no open edge within a mean edge of their mirror image. Those in the plane have one.
+  double one_sided_length(const PerHalfedge<char>& open) const;
+
+  // Opens the map where `open` is on one side, and at the mirror image of that. Its other cuts are closed, the most
+  // expensive first, as far as the cones allow: what is left of them is on one side alone. Islands may overlap
+  // themselves then.
+  // map: with transitions, without seams.  open: on both halfedges, with all cones on it.  side: not `plane`.
+  MapParts along_side(const ComponentMap& map, const PerHalfedge<char>& open, MirrorSide side) const;
+
+  // The same where it is on either side.
+  MapParts along_both(const ComponentMap& map, const PerHalfedge<char>& open) const;
+
+ private:
+  bool is_in_plane(Index h) const;
+  bool is_on(Index h, MirrorSide side) const;
+  Index image_near(Index v) const;
+  Array<Index> image_of(const Array<Index>& path) const;
+  PerHalfedge<char> with_images(const PerHalfedge<char>& open, const Array<Index>& cones, MirrorSide side) const;
+  MapParts along(const ComponentMap& map, const PerHalfedge<char>& wanted) const;
+  void join(const ComponentMap& map, const PerHalfedge<char>& kept, MapParts& parts) const;
+
+  const MetricMesh surface_;
+  const Mirroring& mirroring_;
+  const PerVertex<MirrorSide> side_;
+  const PointTree vertices_;
+  const double edge_;  // mean length
+};
+
+}  // namespace lsgp
