@@ -22,7 +22,7 @@ _LEAST_FEATURES = 0.25
 
 def may_replace_map(symmetric: Result, usual: Result) -> bool:
     """Whether a map through symmetric cones costs little: L2 stretch up to 1 % more, a quarter more of edges cut, one
-    island more for ten, the square filled at most 3 % less, and no further defects.
+    island more, or one for ten if there are as many, the square filled at most 3 % less, and no further defects.
 
     Both as from `parameterize`, with islands on shelves. How far these fill the square says how far they do once they
     are packed tightly only where they are few, and how far they fill their boxes only where they are more.
@@ -34,7 +34,7 @@ def may_replace_map(symmetric: Result, usual: Result) -> bool:
         and _defects(symmetric) <= _defects(usual)
         and symmetric.distortion.l2_stretch <= _MOST_L2 * usual.distortion.l2_stretch
         and len(symmetric.cut_edges) <= _MOST_CUTS * len(usual.cut_edges)
-        and len(np.unique(symmetric.island[symmetric.solved])) <= islands + islands // _ISLANDS_FOR_ONE
+        and len(np.unique(symmetric.island[symmetric.solved])) <= islands + max(islands // _ISLANDS_FOR_ONE, 1)
         and filled(symmetric) >= _LEAST_FILLED * filled(usual)
     )
 
