@@ -57,6 +57,9 @@ INFORMATION = frozenset(
 )
 """Codes of warnings after which nothing needs to be done."""
 
+IN_SUMMARY = frozenset({"FEATURES_OFF_LATTICE"})
+"""Codes of those that the one line on an object says in other words."""
+
 MOST_NAMES = 3
 """Of objects in one sentence."""
 
@@ -92,6 +95,8 @@ def in_groups(found: Mapping[str, Iterable[Problem]]) -> list[tuple[Severity, st
     names: dict[tuple[Severity, str], list[str]] = {}
     for name, problems in found.items():
         for problem in problems:
+            if getattr(problem, "code", None) in IN_SUMMARY:
+                continue
             names.setdefault((severity(problem), explain(problem)), []).append(name)
     lines = []
     for (how, text), said in sorted(names.items(), key=lambda group: group[0][0]):

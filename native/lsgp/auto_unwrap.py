@@ -253,7 +253,7 @@ def possible_cones(
     symmetric: bool,
     progress: Progress | None = None,
 ) -> list[CompletedCones]:
-    """Those of `complete_cones`, and after them, where there are others, symmetric ones and those for creases.
+    """Those of `complete_cones`, and after them symmetric ones and those for creases, where there are such.
 
     symmetric: whether to try, where no cones are given. Errors as of `complete_cones`.
     """
@@ -298,7 +298,8 @@ def _symmetric_cones(
     symmetric: bool,
     progress: Progress | None,
 ) -> list[CompletedCones]:
-    """Those of `complete_cones`, and symmetric ones after them where there are others."""
+    """Those of `complete_cones`, and after them, where a component is symmetric, symmetric ones; if these are the same,
+    their cuts may still be others."""
     if not symmetric or len(arguments.index_vector("cones", cones)):
         return [complete_cones(surface, cones, angles, options, count, progress)]
     try:
@@ -318,7 +319,7 @@ def _symmetric_cones(
     if alike is None:
         return [usual]
     is_same = set(alike.cones.tolist()) == set(usual.cones.tolist())
-    return [replace(usual, is_symmetric=True)] if is_same else [usual, alike]
+    return [usual, replace(usual, is_symmetric=True) if is_same else alike]
 
 
 def best_map(

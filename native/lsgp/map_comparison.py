@@ -14,7 +14,7 @@ _MOST_L2 = 1.01
 _LEAST_FILLED = 0.97
 _MOST_CUTS = 1.25
 _ISLANDS_FOR_ONE = 10
-_FEW_ISLANDS = 3
+_FEW_ISLANDS = 4
 # The same for creases along the lattice, and what share of their length has to lie there.
 _MOST_L2_FOR_FEATURES = 1.1
 _LEAST_FEATURES = 0.25
@@ -25,17 +25,19 @@ def may_replace_map(symmetric: Result, usual: Result) -> bool:
     island more, or one for ten if there are as many, the square filled at most 3 % less, and no further defects.
 
     Both as from `parameterize`, with islands on shelves. How far these fill the square says how far they do once they
-    are packed tightly only where they are few, and how far they fill their boxes only where they are more.
+    are packed tightly only where they are few; how far they fill their boxes always says something of it.
     """
     islands = len(np.unique(usual.island[usual.solved]))
-    filled = _filled_boxes if islands > _FEW_ISLANDS or usual.seamless is not None else _filled_square
+    measures = [_filled_boxes]
+    if islands <= _FEW_ISLANDS and usual.seamless is None:
+        measures.append(_filled_square)
     return (
         symmetric.solved.tolist() == usual.solved.tolist()
         and _defects(symmetric) <= _defects(usual)
         and symmetric.distortion.l2_stretch <= _MOST_L2 * usual.distortion.l2_stretch
         and len(symmetric.cut_edges) <= _MOST_CUTS * len(usual.cut_edges)
         and len(np.unique(symmetric.island[symmetric.solved])) <= islands + max(islands // _ISLANDS_FOR_ONE, 1)
-        and filled(symmetric) >= _LEAST_FILLED * filled(usual)
+        and all(filled(symmetric) >= _LEAST_FILLED * filled(usual) for filled in measures)
     )
 
 

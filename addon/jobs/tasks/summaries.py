@@ -49,6 +49,8 @@ def quad_summary(mesh: lsgp.QuadMesh) -> str:
 def _seam_summary(unwrapped: Unwrapped) -> str:
     report = unwrapped.result.seamless
     tiles = f"{report.tiles:.4g} tiles across"
+    if report.feature_share is not None:
+        tiles += f", {100 * report.feature_share:.0f} % of creases along them"
     count = len(report.cut_errors)
     if not count:
         return f"{tiles}, no cuts"
