@@ -342,7 +342,7 @@ def best_map(
     best = usual, _map_through(surface, usual, plain, pins, next(parts))
     for other in others:
         result = _possible_map(surface, other, plain, pins, next(parts))
-        if result is not None and may_replace_map(result, best[1]):
+        if result is not None and may_replace_map(result, best[1], options.square_share):
             best = other, result
     for other in along:
         result = _possible_map(surface, other, options, pins, next(parts))

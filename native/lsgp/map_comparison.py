@@ -20,24 +20,24 @@ _MOST_L2_FOR_FEATURES = 1.1
 _LEAST_FEATURES = 0.25
 
 
-def may_replace_map(symmetric: Result, usual: Result) -> bool:
+def may_replace_map(symmetric: Result, usual: Result, square_share: float = 1.0) -> bool:
     """Whether a map through symmetric cones costs little: L2 stretch up to 1 % more, a quarter more of edges cut, one
     island more, or one for ten if there are as many, the square filled at most 3 % less, and no further defects.
 
-    Both as from `parameterize`, with islands on shelves. How far these fill the square says how far they do once they
-    are packed tightly only where they are few; how far they fill their boxes always says something of it.
+    Both as from `parameterize`, with islands on shelves, for this share of a square. How far these fill the square says
+    how far they do once they are packed tightly only where they are few and have one square, and how far they fill
+    their boxes only elsewhere.
     """
     islands = len(np.unique(usual.island[usual.solved]))
-    measures = [_filled_boxes]
-    if islands <= _FEW_ISLANDS and usual.seamless is None:
-        measures.append(_filled_square)
+    fills_square = islands <= _FEW_ISLANDS and square_share <= 1 and usual.seamless is None
+    filled = _filled_square if fills_square else _filled_boxes
     return (
         symmetric.solved.tolist() == usual.solved.tolist()
         and _defects(symmetric) <= _defects(usual)
         and symmetric.distortion.l2_stretch <= _MOST_L2 * usual.distortion.l2_stretch
         and len(symmetric.cut_edges) <= _MOST_CUTS * len(usual.cut_edges)
         and len(np.unique(symmetric.island[symmetric.solved])) <= islands + max(islands // _ISLANDS_FOR_ONE, 1)
-        and all(filled(symmetric) >= _LEAST_FILLED * filled(usual) for filled in measures)
+        and filled(symmetric) >= _LEAST_FILLED * filled(usual)
     )
 
 
