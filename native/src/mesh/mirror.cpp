@@ -293,9 +293,8 @@ bool are_mirrored(const Mirroring& mirroring, const Array<Index>& vertices) {
   if (mirroring.empty()) return false;
   PerVertex<char> is_one(mirroring.image.size(), 0);
   for (const Index v : vertices) is_one[v] = 1;
-  return std::all_of(vertices.begin(), vertices.end(), [&](Index v) {
-    return mirroring.image[v] != none && is_one[mirroring.image[v]];
-  });
+  return std::all_of(vertices.begin(), vertices.end(),
+                     [&](Index v) { return mirroring.image[v] != none && is_one[mirroring.image[v]]; });
 }
 
 Mirroring find_mirror_images(const MetricMesh& surface, const std::optional<MirrorPlane>& plane) {

@@ -117,7 +117,7 @@ class SplitRules {
 
  private:
   const OpenedSurface surface_;
-  const PerHalfedge<char>& kept_;  // may not be closed
+  const PerHalfedge<char>& kept_;     // may not be closed
   const PerHalfedge<double> factor_;  // of edges as cuts
   bool may_recut_;
   std::optional<MirroredIslands> mirrored_;
