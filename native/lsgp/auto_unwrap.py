@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal, get_args
+from functools import partial
+from typing import Literal, TypeVar, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,6 +33,8 @@ from .packing import Pack, Packing, Stack, laid_out
 from .texels import TexelLayout, at_texel_density
 
 Preset = Literal["paint", "tile", "bake"]
+
+T = TypeVar("T")
 
 # The stretch of the map that automatic cones are to reach, as of `place_cones`.
 TARGET = 1.05
@@ -233,11 +236,8 @@ def complete_cones(
     triangles = np.sort(np.concatenate([part.triangles for part in lacking]))
     present = np.unique(np.concatenate([part.cones for part in lacking]))
     part = surface_of_triangles(surface, triangles)
-    try:
-        placed = _place(part, given[present], [held[i] for i in present], options, count, progress)
-    except Cancelled:
-        raise
-    except LsgpError:
+    placed = or_none(lambda: _place(part, given[present], [held[i] for i in present], options, count, progress))
+    if placed is None:
         # The other components can still be mapped; mapping reports the defect of these.
         return CompletedCones(given, held, None)
     placed = replace(placed, warnings=_renumbered(placed.warnings, triangles))
@@ -277,16 +277,11 @@ def feature_cones(surface: Surface, options: Options, progress: Progress | None 
     """Cones with which the creases of hard surfaces can run along the lattice, and those of `complete_cones` on other
     components; None without hard surfaces, or if there are no such cones."""
     arrays = surface_arrays(surface)
-    try:
-        cones, angles = _lsgp.feature_cones(arrays, part_of(progress, 0.0, TRYING))
-        if not len(cones):
-            return None
-        found = complete_cones(surface, cones, angles, options, None, part_of(progress, TRYING, 1.0))
-    except Cancelled:
-        raise
-    except LsgpError:
+    chosen = or_none(lambda: _lsgp.feature_cones(arrays, part_of(progress, 0.0, TRYING)))
+    if chosen is None or not len(chosen[0]):
         return None
-    return replace(found, for_features=True)
+    found = or_none(lambda: complete_cones(surface, *chosen, options, None, part_of(progress, TRYING, 1.0)))
+    return None if found is None else replace(found, for_features=True)
 
 
 def _symmetric_cones(
@@ -302,12 +297,9 @@ def _symmetric_cones(
     their cuts may still be others."""
     if not symmetric or len(arguments.index_vector("cones", cones)):
         return [complete_cones(surface, cones, angles, options, count, progress)]
-    try:
-        alike = complete_cones(surface, cones, angles, options, count, part_of(progress, 0.0, TRYING), symmetric=True)
-    except Cancelled:
-        raise
-    except LsgpError:
-        alike = None
+    alike = or_none(
+        lambda: complete_cones(surface, cones, angles, options, count, part_of(progress, 0.0, TRYING), symmetric=True)
+    )
     if alike is not None:
         odd = [finding for finding in alike.placement.warnings if finding.code == _ODD]
         others = [finding for finding in alike.placement.warnings if finding.code != _ODD]
@@ -341,27 +333,16 @@ def best_map(
     parts = iter([part_of(progress, i * share, (i + 1) * share) for i in range(len(choices) + len(along))])
     best = usual, _map_through(surface, usual, plain, pins, next(parts))
     for other in others:
-        result = _possible_map(surface, other, plain, pins, next(parts))
+        result = or_none(partial(_map_through, surface, other, plain, pins, next(parts)))
         if result is not None and may_replace_map(result, best[1], options.square_share):
             best = other, result
     for other in along:
-        result = _possible_map(surface, other, options, pins, next(parts))
+        result = or_none(partial(_map_through, surface, other, options, pins, next(parts)))
         if result is not None and may_replace_for_features(result, best[1]):
             best = other, result
         else:
             best = best[0], _map_through(surface, best[0], options, pins, next(parts))
     return best[0], best[0].told(best[1], options)
-
-
-def _possible_map(
-    surface: Surface, completed: CompletedCones, options: Options, pins: Pins | None, progress: Progress | None
-) -> Result | None:
-    try:
-        return _map_through(surface, completed, options, pins, progress)
-    except Cancelled:
-        raise
-    except LsgpError:
-        return None
 
 
 def _map_through(
@@ -375,6 +356,16 @@ def joined_warnings(of_placement: Sequence[Finding], of_map: Sequence[Finding]) 
     """Merges the findings of placement and mapping, without duplicates."""
     said = {(finding.code, finding.message) for finding in of_map}
     return [finding for finding in of_placement if (finding.code, finding.message) not in said] + list(of_map)
+
+
+def or_none(attempt: Callable[[], T]) -> T | None:
+    """What an attempt returns; None where the library refuses it. Cancelling is no refusal."""
+    try:
+        return attempt()
+    except Cancelled:
+        raise
+    except LsgpError:
+        return None
 
 
 def part_of(progress: Progress | None, begin: float, end: float) -> Progress | None:
