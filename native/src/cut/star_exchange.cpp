@@ -74,20 +74,22 @@ Array<StarExchange::Star> StarExchange::stars_at(Index node) const {
 
 // Returns whether the ends of a closed star are in different parts.
 bool StarExchange::mark_parts(const Star& star) {
-  for (Index part = 0; part < 3; ++part) {
-    if (part_of_[star.ends[part]] != none) return false;
+  Index part = 0;
+  for (const Index end : star.ends) {
+    if (part_of_[end] != none) return false;
     std::size_t next_marked = marked_.size();
     const auto visit = [&](Index v) {
       if (part_of_[v] != none) return;
       part_of_[v] = part;
       marked_.push_back(v);
     };
-    for (visit(star.ends[part]); next_marked < marked_.size(); ++next_marked) {
+    for (visit(end); next_marked < marked_.size(); ++next_marked) {
       mesh_.for_each_outgoing(marked_[next_marked], [&](Index h) {
         if (network_.is_cut[h] || mesh_.twin[h] == none) visit(mesh_.target(h));
         if (mesh_.twin[prev(h)] == none) visit(mesh_.origin(prev(h)));
       });
     }
+    ++part;
   }
   return true;
 }
