@@ -186,8 +186,10 @@ SOURCES = {
     "solvers": (),
     "mesh": ("solvers",),
     "plane": ("solvers",),
-    "cut": ("solvers",),
-    "systems": ("plane",),
+    "cut": ("solvers", "plane"),
+    "transitions": ("solvers",),
+    "creases": ("solvers", "plane", "transitions"),
+    "systems": ("plane", "creases"),
     "unfold": (),
     "prescription": (),
     "sites": (),
@@ -198,8 +200,8 @@ SOURCES = {
     "placement": ("split",),
     "seamless": ("sites", "search", "placement"),
     "quads": (
-        *("solvers", "plane", "cut", "systems", "unfold", "prescription", "sites", "search", "repair", "pipeline"),
-        *("split", "placement", "seamless"),
+        *("solvers", "plane", "cut", "transitions", "creases", "systems", "unfold", "prescription", "sites", "search"),
+        *("repair", "pipeline", "split", "placement", "seamless"),
     ),
     "api": (),
 }

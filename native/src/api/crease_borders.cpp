@@ -10,7 +10,7 @@
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
 #include "base/text.hpp"
-#include "cut/crease_borders.hpp"
+#include "creases/crease_borders.hpp"
 #include "cut/cut_cost.hpp"
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"

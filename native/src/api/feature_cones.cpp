@@ -5,7 +5,7 @@
 
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
-#include "cut/features.hpp"
+#include "creases/features.hpp"
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
 #include "pipeline/wording.hpp"

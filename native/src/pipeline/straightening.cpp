@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "cut/holonomy.hpp"
 #include "repair/straighten.hpp"
+#include "transitions/holonomy.hpp"
 #include "unfold/jacobians.hpp"
 
 namespace lsgp {

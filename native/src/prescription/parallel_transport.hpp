@@ -5,9 +5,9 @@
 #include <Eigen/Core>
 
 #include "cut/cut_mesh.hpp"
-#include "cut/holonomy.hpp"
-#include "cut/transitions.hpp"
 #include "prescription/curvature.hpp"
+#include "transitions/holonomy.hpp"
+#include "transitions/transitions.hpp"
 
 namespace lsgp {
 

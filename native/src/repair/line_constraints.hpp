@@ -8,9 +8,9 @@
 
 #include "base/array.hpp"
 #include "cut/cut_mesh.hpp"
-#include "cut/transitions.hpp"
 #include "repair/newton.hpp"
 #include "systems/poisson_system.hpp"
+#include "transitions/transitions.hpp"
 
 namespace lsgp {
 

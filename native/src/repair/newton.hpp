@@ -9,11 +9,11 @@
 
 #include "base/array.hpp"
 #include "cut/cut_mesh.hpp"
-#include "cut/transitions.hpp"
 #include "mesh/geometry.hpp"
 #include "solvers/cholesky.hpp"
 #include "solvers/sparse_assembly.hpp"
 #include "systems/distortion_energy.hpp"
+#include "transitions/transitions.hpp"
 
 namespace lsgp {
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "cut/transitions.hpp"
 #include "repair/newton.hpp"
+#include "transitions/transitions.hpp"
 #include "unfold/distortion.hpp"
 #include "unfold/jacobians.hpp"
 

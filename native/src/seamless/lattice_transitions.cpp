@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "cut/transition_elimination.hpp"
 #include "lsgp/errors.hpp"
+#include "transitions/transition_elimination.hpp"
 
 namespace lsgp {
 

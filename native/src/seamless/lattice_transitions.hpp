@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
-#include "cut/transitions.hpp"
 #include "plane/point_lattice.hpp"
+#include "transitions/transitions.hpp"
 
 namespace lsgp {
 

@@ -9,13 +9,13 @@
 #include <utility>
 
 #include "base/memory.hpp"
-#include "cut/cone_triangulation.hpp"
-#include "cut/features.hpp"
+#include "creases/features.hpp"
 #include "plane/layout.hpp"
 #include "prescription/parallel_transport.hpp"
 #include "prescription/quantize_curvature.hpp"
 #include "repair/newton.hpp"
 #include "systems/stiffness.hpp"
+#include "transitions/cone_triangulation.hpp"
 #include "unfold/jacobians.hpp"
 
 namespace lsgp {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/text.hpp"
-#include "cut/features.hpp"
+#include "creases/features.hpp"
 #include "plane/layout.hpp"
 #include "seamless/exact_layout.hpp"
 #include "seamless/grid_search.hpp"

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "cut/cut_mesh.hpp"
-#include "cut/transitions.hpp"
+#include "transitions/transitions.hpp"
 
 namespace lsgp {
 

@@ -6,8 +6,8 @@
 
 #include "base/array.hpp"
 #include "cut/cut_mesh.hpp"
-#include "cut/transitions.hpp"
 #include "mesh/geometry.hpp"
+#include "transitions/transitions.hpp"
 
 namespace lsgp {
 

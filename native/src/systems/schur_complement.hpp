@@ -8,8 +8,8 @@
 
 #include "base/array.hpp"
 #include "base/borrowed.hpp"
-#include "cut/transitions.hpp"
 #include "systems/cut_factor.hpp"
+#include "transitions/transitions.hpp"
 
 namespace lsgp {
 

@@ -6,8 +6,8 @@
 
 #include "base/array.hpp"
 #include "cut/cut_mesh.hpp"
-#include "cut/transitions.hpp"
 #include "systems/poisson_system.hpp"
+#include "transitions/transitions.hpp"
 
 namespace lsgp {
 

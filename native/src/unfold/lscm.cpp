@@ -2,10 +2,10 @@
 #include "unfold/lscm.hpp"
 
 #include "base/array.hpp"
-#include "cut/transitions.hpp"
 #include "solvers/cholesky.hpp"
 #include "solvers/eigenproblem.hpp"
 #include "systems/quadratic_forms.hpp"
+#include "transitions/transitions.hpp"
 
 namespace lsgp {
 

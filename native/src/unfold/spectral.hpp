@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "cut/cut_mesh.hpp"
-#include "cut/transitions.hpp"
+#include "transitions/transitions.hpp"
 
 namespace lsgp {
 

@@ -39,7 +39,7 @@ REVIEWED = {
         ("while (!is_over_)", "waits for work until the call that started the thread ends", WITHIN),
     ],
     "base/union_find.hpp": [("while (parent_[i] != i)", LINKED, SHORT)],
-    "cut/cone_triangulation.cpp": [
+    "transitions/cone_triangulation.cpp": [
         (
             "while (i != a.translations.end() || j != b.translations.end())",
             "each round moves on one of two ends",
@@ -65,8 +65,8 @@ REVIEWED = {
         ),
         ("while (true)", "edges of the cut, each once, to an end or back to the start", SHORT),
     ],
-    "cut/bevels.cpp": [("while (!queue.empty())", "three entries for each triangle", OWN)],
-    "cut/crease_borders.cpp": [
+    "creases/bevels.cpp": [("while (!queue.empty())", "three entries for each triangle", OWN)],
+    "creases/crease_borders.cpp": [
         (
             "while (!smallest.empty() && smallest.top().first < least_patch * geometry.total_area)",
             "an entry for each patch and each time two become one",

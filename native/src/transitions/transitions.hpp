@@ -9,7 +9,7 @@
 
 #include "base/array.hpp"
 #include "cut/cut_mesh.hpp"
-#include "cut/holonomy.hpp"
+#include "transitions/holonomy.hpp"
 
 namespace lsgp {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cut/transition_elimination.hpp"
+#include "transitions/transition_elimination.hpp"
 
 #include <cmath>
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "cut/transitions.hpp"
+#include "transitions/transitions.hpp"
 
 namespace lsgp {
 

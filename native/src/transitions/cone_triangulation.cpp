@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cut/cone_triangulation.hpp"
+#include "transitions/cone_triangulation.hpp"
 
 #include <algorithm>
 #include <cmath>

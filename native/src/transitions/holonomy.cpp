@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cut/holonomy.hpp"
+#include "transitions/holonomy.hpp"
 
 namespace lsgp {
 

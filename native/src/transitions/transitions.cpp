@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cut/transitions.hpp"
+#include "transitions/transitions.hpp"
 
 #include <cmath>
 
-#include "cut/transition_elimination.hpp"
+#include "transitions/transition_elimination.hpp"
 
 namespace lsgp {
 

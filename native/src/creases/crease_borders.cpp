@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cut/crease_borders.hpp"
+#include "creases/crease_borders.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 
 #include "base/checkpoint.hpp"
 #include "base/union_find.hpp"
-#include "cut/bevels.hpp"
+#include "creases/bevels.hpp"
 #include "cut/cut_cost.hpp"
 
 namespace lsgp {

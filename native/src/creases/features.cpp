@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cut/features.hpp"
+#include "creases/features.hpp"
 
 #include <algorithm>
 #include <cmath>

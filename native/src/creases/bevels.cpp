@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cut/bevels.hpp"
+#include "creases/bevels.hpp"
 
 #include <algorithm>
 #include <cmath>
