@@ -154,17 +154,17 @@ void FeatureLayout::find_coordinates() {
   const CutMesh& cut_mesh = task_.surface.cut_mesh;
   const DirectedEdges edges = edges_of(aligned_);
   UnionFind same(2 * cut_mesh.copy_count());
-  PerCopy<std::array<char, 2>> is_on_line(cut_mesh.copy_count(), {0, 0});
+  Array<char> is_on_line(2 * cut_mesh.copy_count(), 0);
   for (Index i = 0; i < ssize(edges.halfedges); ++i) {
     const Index tail = cut_mesh.copy_of_corner[edges.halfedges[i]];
     const Index head = cut_mesh.copy_of_corner[next(edges.halfedges[i])];
     const Index across = edges.directions[i].imag() == 0 ? 1 : 0;
     same.unite(2 * tail + across, 2 * head + across);
-    is_on_line[tail][across] = is_on_line[head][across] = 1;
+    is_on_line[2 * tail + across] = is_on_line[2 * head + across] = 1;
   }
   Array<Index> number(2 * cut_mesh.copy_count(), none);
   for (Index of = 0; of < ssize(number); ++of) {
-    if (!is_on_line[of / 2][of % 2]) continue;
+    if (!is_on_line[of]) continue;
     Index& line = number[same.find(of)];
     if (line == none) {
       line = static_cast<Index>(lines_.size());
@@ -173,7 +173,7 @@ void FeatureLayout::find_coordinates() {
     lines_[line].push_back(of);
   }
   find_lattice_coordinates();
-  std::array<Index, 2> reference{none, none};
+  Array<Index> reference(2, none);
   for (const Array<Index>& line : lines_) {
     CoordinateForm form = coordinate(line.front());
     Index& first = reference[line.front() % 2];

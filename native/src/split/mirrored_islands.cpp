@@ -69,7 +69,7 @@ Array<Index> ImagePath::find(Index from, Index to) {
       Reached& there = at(mesh_.target(h));
       if (there.apart > corridor && mesh_.target(h) != to) return;
       const double squares = here.apart * here.apart + there.apart * there.apart;
-      const double through = distance + geometry_.length[h] * (1 + straying * squares);
+      const double through = here.distance + geometry_.length[h] * (1 + straying * squares);
       if (!(through < there.distance)) return;
       there.distance = through;
       there.by = h;
