@@ -3,6 +3,7 @@
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
+#include <pybind11/typing.h>
 
 #include <algorithm>
 #include <charconv>
@@ -25,6 +26,8 @@ using Places = py::array_t<std::int64_t, py::array::c_style>;
 using Vertices = py::array_t<std::int32_t, py::array::c_style>;
 using Numbers = py::array_t<double, py::array::c_style>;
 using Marks = py::array_t<bool, py::array::c_style>;
+// What split_rows returns.
+using TokenRows = py::typing::Tuple<Places, Places, Places, Places>;
 
 std::string_view view_of(const py::bytes& data) { return static_cast<std::string_view>(data); }
 
@@ -48,7 +51,7 @@ class RowSplitter {
   RowSplitter(std::string_view text, bool comments, bool continued)
       : text_(text), comments_(comments), continued_(continued) {}
 
-  py::tuple split() {
+  TokenRows split() {
     std::size_t at = 0;
     for (std::int64_t line = 1; at < text_.size(); ++line) {
       std::size_t end = at;
@@ -95,7 +98,7 @@ class RowSplitter {
 // The tokens of every line that has any, as places in data, (t) each; the number of tokens of each such row, and its
 // line, from 1.  comments: a # ends what counts of a line.  continued: a line that ends in a backslash goes on with
 // the next one that has something; the row has the number of its first line.
-py::tuple split_rows(const py::bytes& data, bool comments, bool continued) {
+TokenRows split_rows(const py::bytes& data, bool comments, bool continued) {
   return RowSplitter(view_of(data), comments, continued).split();
 }
 
@@ -179,7 +182,8 @@ bool parse_number(std::string_view token, std::int64_t& out) {
 
 // The numbers that the picked tokens are, and the index in picks of the first that is none, -1 for none such.
 template <typename Number>
-py::tuple parse_numbers(const py::bytes& data, const Places& begins, const Places& ends, const Places& picks) {
+py::typing::Tuple<py::array_t<Number>, py::ssize_t> parse_numbers(const py::bytes& data, const Places& begins,
+                                                                  const Places& ends, const Places& picks) {
   const Tokens tokens(data, begins, ends);
   const auto pick = picks.unchecked<1>();
   py::array_t<Number> out(pick.shape(0));
@@ -192,7 +196,8 @@ py::tuple parse_numbers(const py::bytes& data, const Places& begins, const Place
 
 // Where the first or second of the parts between slashes of each picked token begins and ends; at most two slashes
 // separate. A token without slashes has its end as second part.
-py::tuple slash_parts(const py::bytes& data, const Places& begins, const Places& ends, const Places& picks, int part) {
+py::typing::Tuple<Places, Places> slash_parts(const py::bytes& data, const Places& begins, const Places& ends,
+                                              const Places& picks, int part) {
   const Tokens tokens(data, begins, ends);
   const auto pick = picks.unchecked<1>();
   Places part_begins(pick.shape(0)), part_ends(pick.shape(0));
@@ -210,13 +215,14 @@ py::tuple slash_parts(const py::bytes& data, const Places& begins, const Places&
 }
 
 // The different texts of the picked tokens, in the order in which they first appear, and which one each token is.
-py::tuple distinct_tokens(const py::bytes& data, const Places& begins, const Places& ends, const Places& picks) {
+py::typing::Tuple<py::typing::List<py::bytes>, Places> distinct_tokens(const py::bytes& data, const Places& begins,
+                                                                       const Places& ends, const Places& picks) {
   const Tokens tokens(data, begins, ends);
   const auto pick = picks.unchecked<1>();
   Places which(pick.shape(0));
   auto out = which.mutable_unchecked<1>();
   std::unordered_map<std::string_view, std::int64_t> known;
-  py::list texts;
+  py::typing::List<py::bytes> texts;
   std::string_view last;
   std::int64_t last_index = -1;
   for (py::ssize_t i = 0; i < pick.shape(0); ++i) {
@@ -363,7 +369,8 @@ LineKind kind_of(std::string_view line) {
 }
 
 // The plain lines of one kind from a place on, at most so many: the kind, where they end, and how many they are.
-py::tuple plain_lines(const py::bytes& data, std::size_t at, std::int64_t most) {
+py::typing::Tuple<py::str, py::ssize_t, py::ssize_t> plain_lines(const py::bytes& data, std::size_t at,
+                                                                 std::int64_t most) {
   constexpr const char* names[] = {"", "other", "coordinates", "faces"};
   const std::string_view text = view_of(data);
   LineKind kind = LineKind::peculiar;

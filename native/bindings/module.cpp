@@ -3,6 +3,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
+#include <pybind11/typing.h>
 
 #include <array>
 #include <chrono>
@@ -88,6 +89,12 @@ py::array_t<Scalar> to_array(const std::vector<Scalar>& values) {
 py::array_t<double> to_array(const Eigen::VectorXd& values) { return to_array(values.data(), {values.size()}); }
 
 py::array_t<Index> to_array(const lsgp::VertexPairs& pairs) { return to_array(pairs.data(), {pairs.rows(), 2}); }
+
+py::typing::List<IndexArray> to_arrays(const std::vector<std::vector<Index>>& lists) {
+  py::typing::List<IndexArray> out;
+  for (const std::vector<Index>& list : lists) out.append(to_array(list));
+  return out;
+}
 
 py::object to_elements(const lsgp::Elements& elements) {
   const auto count = static_cast<py::ssize_t>(elements.indices.size());
@@ -286,14 +293,23 @@ lsgp::Progress watch_for_signals() {
   };
 }
 
-// callback: takes what is done; False from it stops the verb, and so does what it raises, or a signal.
-lsgp::Progress to_progress(const py::object& callback) {
-  if (callback.is_none()) return watch_for_signals();
+// Takes what is done; False from it stops the verb, and so does what it raises, or a signal.
+using ProgressCallback = std::optional<py::typing::Callable<std::optional<bool>(double)>>;
+
+lsgp::Progress to_progress(const ProgressCallback& callback) {
+  if (!callback) return watch_for_signals();
   return [&callback](double done) {
     const py::gil_scoped_acquire acquire;
     require_no_signal();
-    return !callback(done).is(py::bool_(false));
+    return !(*callback)(done).is(py::bool_(false));
   };
+}
+
+py::list to_names(const std::vector<lsgp::CutPathKind>& kinds) {
+  constexpr std::array names{"seam", "required", "added"};
+  py::list out;
+  for (const lsgp::CutPathKind kind : kinds) out.append(names[static_cast<std::size_t>(kind)]);
+  return out;
 }
 
 py::dict to_dict(const lsgp::Result& result) {
@@ -307,6 +323,8 @@ py::dict to_dict(const lsgp::Result& result) {
   out["island"] = to_array(result.island);
   out["cut_edges"] = to_array(result.cut_edges);
   out["required_cuts"] = to_array(result.required_cuts);
+  out["cut_paths"] = to_arrays(result.cut_paths);
+  out["cut_kinds"] = to_names(result.cut_kinds);
   out["cones"] = to_array(result.cones);
   out["cone_angles"] = to_array(result.cone_angles);
   out["distortion"] = to_dict(result.distortion);
@@ -344,7 +362,7 @@ struct Call {
   lsgp::Pins pins;
   lsgp::Progress progress;
 
-  Call(const ConeArrays& cones, const py::dict& option_values, const PinArrays& pins, const py::object& progress)
+  Call(const ConeArrays& cones, const py::dict& option_values, const PinArrays& pins, const ProgressCallback& progress)
       : cones(to_cones(cones)),
         options(to_options(option_values)),
         pins(to_pins(pins)),
@@ -352,7 +370,7 @@ struct Call {
 };
 
 py::dict parameterize(const SurfaceArrays& surface_arrays, const ConeArrays& cones, const py::dict& option_values,
-                      const PinArrays& pins, const py::object& progress) {
+                      const PinArrays& pins, const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
   const Call call(cones, option_values, pins, progress);
   return to_dict(
@@ -360,24 +378,28 @@ py::dict parameterize(const SurfaceArrays& surface_arrays, const ConeArrays& con
 }
 
 py::dict parameterize_again(lsgp::Solver& solver, const ConeArrays& cones, const py::dict& option_values,
-                            const PinArrays& pins, const py::object& progress) {
+                            const PinArrays& pins, const ProgressCallback& progress) {
   const Call call(cones, option_values, pins, progress);
   return to_dict(without_gil([&] { return solver.parameterize(call.cones, call.options, call.pins, call.progress); }));
 }
 
 py::dict find_cuts(const SurfaceArrays& surface_arrays, const IndexArray& cones, const py::dict& option_values,
-                   const py::object& progress) {
+                   const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
   const std::vector<Index> wanted = to_vector(cones);
   const lsgp::Options options = to_options(option_values);
   const lsgp::Progress tell = to_progress(progress);
   const lsgp::CutPaths cuts = without_gil([&] { return lsgp::find_cuts(surface, wanted, options, tell); });
-  py::list paths;
-  for (const auto& path : cuts.paths) paths.append(to_array(path));
   py::dict out;
   out["edges"] = to_array(cuts.edges);
-  out["paths"] = paths;
+  out["paths"] = to_arrays(cuts.paths);
   return out;
+}
+
+py::typing::List<IndexArray> split_into_paths(const IndexArray& edges, const IndexArray& nodes) {
+  const auto pairs = to_matrix<lsgp::VertexPairs>(edges);
+  const std::vector<Index> ends = to_vector(nodes);
+  return to_arrays(without_gil([&] { return lsgp::split_into_paths(pairs, ends); }));
 }
 
 // Front, creases, sharp edges and paint.
@@ -394,7 +416,7 @@ lsgp::CutPreferences to_cut_preferences(const CutPreferenceArrays& arrays) {
 }
 
 py::array_t<double> cut_costs(const SurfaceArrays& surface_arrays, const CutPreferenceArrays& preference_arrays,
-                              const py::object& progress) {
+                              const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
   const lsgp::CutPreferences preferences = to_cut_preferences(preference_arrays);
   const lsgp::Progress tell = to_progress(progress);
@@ -405,7 +427,7 @@ py::array_t<double> cut_costs(const SurfaceArrays& surface_arrays, const CutPref
 using CreaseOptionArrays = std::tuple<double, IndexArray, Index>;
 
 py::array_t<Index> crease_borders(const SurfaceArrays& surface_arrays, const IndexArray& cones,
-                                  const CreaseOptionArrays& option_arrays, const py::object& progress) {
+                                  const CreaseOptionArrays& option_arrays, const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
   const std::vector<Index> marked = to_vector(cones);
   const auto& [angle, sharp, most_corners] = option_arrays;
@@ -414,7 +436,8 @@ py::array_t<Index> crease_borders(const SurfaceArrays& surface_arrays, const Ind
   return to_array(without_gil([&] { return lsgp::crease_borders(surface, marked, options, tell); }));
 }
 
-py::tuple feature_cones(const SurfaceArrays& surface_arrays, const py::object& progress) {
+py::typing::Tuple<IndexArray, FloatArray> feature_cones(const SurfaceArrays& surface_arrays,
+                                                        const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
   const lsgp::Progress tell = to_progress(progress);
   const lsgp::Cones found = without_gil([&] { return lsgp::feature_cones(surface, tell); });
@@ -424,7 +447,7 @@ py::tuple feature_cones(const SurfaceArrays& surface_arrays, const py::object& p
 }
 
 py::dict prescribe_curvature(const SurfaceArrays& surface_arrays, const ConeArrays& cones,
-                             const py::dict& option_values, const py::object& progress) {
+                             const py::dict& option_values, const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
   const lsgp::Cones wanted = to_cones(cones);
   const lsgp::Options options = to_options(option_values);
@@ -440,13 +463,13 @@ py::dict prescribe_curvature(const SurfaceArrays& surface_arrays, const ConeArra
   return out;
 }
 
-py::list build_ledger(const SurfaceArrays& surface_arrays, const ConeArrays& cones, const py::dict& option_values,
-                      bool gets_cones) {
+py::typing::List<py::dict> build_ledger(const SurfaceArrays& surface_arrays, const ConeArrays& cones,
+                                        const py::dict& option_values, bool gets_cones) {
   const lsgp::Surface surface = to_surface(surface_arrays);
   const lsgp::Cones given = to_cones(cones);
   const lsgp::Options options = to_options(option_values);
   const auto of = gets_cones ? lsgp::LedgerOf::placement : lsgp::LedgerOf::map;
-  py::list out;
+  py::typing::List<py::dict> out;
   for (const lsgp::LedgerPart& part : without_gil([&] { return lsgp::build_ledger(surface, given, options, of); })) {
     py::dict values;
     values["triangles"] = to_array(part.triangles);
@@ -481,7 +504,7 @@ lsgp::PlacementOptions to_placement_options(const py::dict& values) {
 }
 
 py::dict place_cones(const SurfaceArrays& surface_arrays, const ConeArrays& cones, const py::dict& option_values,
-                     const py::object& progress) {
+                     const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
   const lsgp::Cones existing = to_cones(cones);
   const lsgp::PlacementOptions options = to_placement_options(option_values);
@@ -502,7 +525,7 @@ py::dict place_cones(const SurfaceArrays& surface_arrays, const ConeArrays& cone
 }
 
 py::dict cone_gains(const SurfaceArrays& surface_arrays, const ConeArrays& cones, const std::string& seam_mode,
-                    const py::object& progress) {
+                    const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
   const lsgp::Cones existing = to_cones(cones);
   const lsgp::SeamMode mode = to_seam_mode(seam_mode);
@@ -517,7 +540,7 @@ py::dict cone_gains(const SurfaceArrays& surface_arrays, const ConeArrays& cones
 }
 
 py::dict measure_distortion(const SurfaceArrays& surface_arrays, const FloatArray& corner_uv,
-                            const std::optional<IndexArray>& cones, const py::object& progress) {
+                            const std::optional<IndexArray>& cones, const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
   if (corner_uv.size() != 6 * surface.triangles.rows()) throw py::value_error("array of the wrong shape");
   const lsgp::CornerUv uv = Eigen::Map<const lsgp::CornerUv>(corner_uv.data(), 3 * surface.triangles.rows(), 2);
@@ -552,7 +575,7 @@ py::dict to_dict(const lsgp::QuadMesh& mesh) {
 }
 
 py::dict extract_quads(const SurfaceArrays& surface_arrays, const FloatArray& corner_uv, double cell,
-                       const py::object& progress) {
+                       const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
   if (corner_uv.size() != 6 * surface.triangles.rows()) throw py::value_error("array of the wrong shape");
   const lsgp::CornerUv uv = Eigen::Map<const lsgp::CornerUv>(corner_uv.data(), 3 * surface.triangles.rows(), 2);
@@ -614,6 +637,7 @@ PYBIND11_MODULE(_lsgp, module) {
       .def("grab", &grab, "cuts"_a, "path"_a, "nodes"_a);
   module.def("overlapping_triangles", &overlapping_triangles, "corner_uv"_a);
   module.def("find_cuts", &find_cuts, "surface"_a, "cones"_a, "options"_a, "progress"_a);
+  module.def("split_into_paths", &split_into_paths, "edges"_a, "nodes"_a);
   module.def("crease_borders", &crease_borders, "surface"_a, "cones"_a, "options"_a, "progress"_a);
   module.def("feature_cones", &feature_cones, "surface"_a, "progress"_a);
   module.def("cut_costs", &cut_costs, "surface"_a, "preferences"_a, "progress"_a);

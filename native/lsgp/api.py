@@ -27,6 +27,7 @@ Mode = Literal["conformal", "low-stretch"]
 Overlaps = Literal["keep", "split"]
 Compactness = Literal["off", "sparing", "full"]
 Factorization = Literal["automatic", "cut", "sparse"]
+CutKind = Literal["seam", "required", "added"]
 
 Progress = Callable[[float], bool | None]
 
@@ -197,7 +198,7 @@ class Options:
     stretch: with "low-stretch", from 0, the conformal map, to 1, the map of least stretch.
     straighten: with "low-stretch" and free boundaries: boundaries and cuts that are nearly straight in the map become
         exactly straight, and those nearly at right angles are aligned with u and v, unless that costs noticeable
-        stretch. In seamless layouts on squares instead, in either mode: creases of hard surfaces, of 40 degrees or
+        stretch. In seamless layouts on squares instead, in either mode: creases of hard surfaces, of 0.7 radians or
         more, run along lines of the lattice, as many as cost at most a tenth of L2 stretch; FEATURES_OFF_LATTICE names
         the others.
     repair: untangle flipped triangles and correct angles that are off by a full turn.
@@ -375,6 +376,10 @@ class Result(EqualByContent, ShortRepr):
         coincide. required_cuts: (r, 2) int32, those of them that cones, handles and boundaries need, also along seams;
         the others are seams, or split overlaps and islands.
     borders: (b, 2) int32 vertex pairs, those of `Surface.borders`.
+    cut_paths: cut_edges and borders as paths, each an int32 array of vertices from node to node; nodes are the cones,
+        vertices where not exactly two of the edges meet, and those where edges of two kinds do. cut_kinds: of each
+        path: "seam" along marked seams; "required" as required_cuts; "added" for other reasons, such as creases and
+        overlaps.
     cones, cone_angles: (k,) int32 and (k,) float64, radians, the angles that were imposed.
     flipped: indices of triangles with UV area <= 0. wrong_angle_sums: vertices whose UV angle sum, with negative angles
         of flipped triangles, misses the imposed sum by more than a degree: by full turns, or by any amount if the two
@@ -402,6 +407,8 @@ class Result(EqualByContent, ShortRepr):
     cut_edges: IndexArray
     required_cuts: IndexArray
     borders: IndexArray
+    cut_paths: list[IndexArray]
+    cut_kinds: list[CutKind]
     cones: IndexArray
     cone_angles: FloatArray
     distortion: Distortion

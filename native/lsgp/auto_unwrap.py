@@ -28,7 +28,7 @@ from .api import (
 from .arguments import FloatArray, IndexArray
 from .errors import Cancelled, Finding, InputError, LsgpError
 from .ledger import LedgerPart, build_ledger, surface_of_triangles
-from .map_comparison import may_replace_for_features, may_replace_map
+from .map_comparison import may_replace_for_features, may_replace_map, runs_along_features
 from .packing import Pack, Packing, Stack, laid_out
 from .texels import TexelLayout, at_texel_density
 
@@ -325,23 +325,27 @@ def best_map(
 
     pins, progress, errors: as for `parameterize`.
     """
-    along = [choice for choice in choices if choice.for_features]
     usual, *others = [choice for choice in choices if not choice.for_features]
-    # Creases along the lattice take time, and need not be tried with cones that are not for them.
-    plain = replace(options, straighten=False) if along else options
-    share = 1.0 / (len(choices) + len(along))
-    parts = iter([part_of(progress, i * share, (i + 1) * share) for i in range(len(choices) + len(along))])
-    best = usual, _map_through(surface, usual, plain, pins, next(parts))
+    for_features = next((choice for choice in choices if choice.for_features), None)
+    share = 1.0 / (len(choices) + (for_features is not None))
+    parts = iter([part_of(progress, i * share, (i + 1) * share) for i in range(round(1 / share))])
+    along = None
+    if for_features is not None:
+        along = or_none(partial(_map_through, surface, for_features, options, pins, next(parts)))
+        if along is not None and not runs_along_features(along):
+            along = None
+    # Creases along the lattice take time: they are tried with the cones that are chosen.
+    is_chosen = for_features is None or (along is None and not others)
+    tried = options if is_chosen else replace(options, straighten=False)
+    best = usual, _map_through(surface, usual, tried, pins, next(parts))
     for other in others:
-        result = or_none(partial(_map_through, surface, other, plain, pins, next(parts)))
+        result = or_none(partial(_map_through, surface, other, tried, pins, next(parts)))
         if result is not None and may_replace_map(result, best[1], options.square_share):
             best = other, result
-    for other in along:
-        result = or_none(partial(_map_through, surface, other, options, pins, next(parts)))
-        if result is not None and may_replace_for_features(result, best[1]):
-            best = other, result
-        else:
-            best = best[0], _map_through(surface, best[0], options, pins, next(parts))
+    if along is not None and may_replace_for_features(along, best[1]):
+        best = for_features, along
+    elif not is_chosen:
+        best = best[0], _map_through(surface, best[0], options, pins, next(parts))
     return best[0], best[0].told(best[1], options)
 
 

@@ -41,15 +41,20 @@ def may_replace_map(symmetric: Result, usual: Result, square_share: float = 1.0)
     )
 
 
+def runs_along_features(result: Result) -> bool:
+    """Whether a seamless map has a quarter of the length of creases along its lattice."""
+    return result.seamless.feature_share is not None and result.seamless.feature_share >= _LEAST_FEATURES
+
+
 def may_replace_for_features(along: Result, usual: Result) -> bool:
-    """Whether a seamless map through cones for creases has a quarter of their length along its lattice, at up to a
-    tenth more of L2 stretch and without further defects. Both as from `parameterize`.
+    """Whether a seamless map through cones for creases runs along them, at up to a tenth more of L2 stretch and without
+    further defects. Both as from `parameterize`.
     """
     return (
         along.solved.tolist() == usual.solved.tolist()
         and _defects(along) <= _defects(usual)
         and along.distortion.l2_stretch <= _MOST_L2_FOR_FEATURES * usual.distortion.l2_stretch
-        and along.seamless.feature_share >= _LEAST_FEATURES
+        and runs_along_features(along)
     )
 
 

@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core import cut_kinds, native
+from ...core import native
 from ...core.islands import Islands
 from ...mesh import reports
 from ...mesh.uv_write import write_uv
@@ -134,13 +134,12 @@ def write_map(obj: bpy.types.Object, unwrapped: Unwrapped, corner_uv: NDArray[np
 def report_on(unwrapped: Unwrapped) -> reports.Report:
     """What is kept of a finished map."""
     result, region = unwrapped.result, unwrapped.region
-    paths, kinds = _paths(unwrapped)
     certificate = None
     if result.seamless is not None:
         certificate = native.lsgp.certificate.certificate(result.seamless, TEXTURE_SIZE)
     return reports.Report(
-        paths=paths,
-        kinds=kinds,
+        paths=[path.tolist() for path in result.cut_paths],
+        kinds=list(result.cut_kinds),
         cones=result.cones.tolist(),
         cone_angles=result.cone_angles.tolist(),
         flipped=np.unique(region.triangle_faces[result.flipped]).tolist(),
@@ -152,25 +151,3 @@ def report_on(unwrapped: Unwrapped) -> reports.Report:
         overlap_area=result.overlap_area,
         certificate=certificate,
     )
-
-
-def _paths(unwrapped: Unwrapped) -> tuple[list[list[int]], list[str]]:
-    """The cuts and borders as vertices, each of one kind, and their kinds."""
-    result = unwrapped.result
-    opened = np.concatenate([result.cut_edges, result.borders])
-    is_seam, is_required = (_among(opened, edges) for edges in (unwrapped.region.surface.seams, result.required_cuts))
-    kind = np.where(is_seam, cut_kinds.SEAM, np.where(is_required, cut_kinds.REQUIRED, cut_kinds.ADDED))
-    kinds_at: dict[int, set[str]] = {}
-    for pair, name in zip(opened.tolist(), kind.tolist(), strict=True):
-        for vertex in pair:
-            kinds_at.setdefault(vertex, set()).add(name)
-    changes = [vertex for vertex, names in kinds_at.items() if len(names) > 1]
-    paths = native.lsgp.split_into_paths(opened, np.union1d(result.cones, changes).astype(np.int32))
-    of_edge = dict(zip(map(tuple, np.sort(opened, axis=1).tolist()), kind.tolist(), strict=True))
-    return [path.tolist() for path in paths], [of_edge[tuple(sorted(path[:2].tolist()))] for path in paths]
-
-
-def _among(edges: NDArray[np.int32], others: NDArray[np.int32]) -> NDArray[np.bool_]:
-    """(c,) which edges, (c, 2) vertex pairs, are among others."""
-    keys = [np.sort(pairs, axis=1).astype(np.int64) @ (1 << 32, 1) for pairs in (edges, others)]
-    return np.isin(*keys)

@@ -7,9 +7,11 @@ namespace lsgp {
 
 // Which creases a hard surface may be cut at.
 struct CreaseOptions {
-  double angle = 0.7;      // least angle between the normals at a crease, radians
-  VertexPairs sharp;       // (s, 2) edges that are creases whatever their angle
-  Index most_corners = 0;  // components with curvature at no more vertices than this are left to cones there
+  static constexpr double usual_angle = 0.7;
+
+  double angle = usual_angle;  // least angle between the normals at a crease, radians
+  VertexPairs sharp;           // (s, 2) edges that are creases whatever their angle
+  Index most_corners = 0;      // components with curvature at no more vertices than this are left to cones there
 };
 
 }  // namespace lsgp

@@ -35,6 +35,10 @@ LSGP_API Result parameterize(const Surface& surface, const Cones& cones, const O
 LSGP_API CutPaths find_cuts(const Surface& surface, const std::vector<Index>& cones, const Options& options = {},
                             const Progress& progress = {});
 
+// Vertex chains between nodes: the given ones and every vertex where not exactly two of the edges meet. A loop without
+// a node begins and ends at its lowest vertex. The same for any order of the edges; those given twice count once.
+LSGP_API std::vector<std::vector<Index>> split_into_paths(const VertexPairs& edges, const std::vector<Index>& nodes);
+
 // The cost per length of a cut along each of the surface's `edges`, (e), for `Surface::cut_costs`: low if it is hidden,
 // along a crease or attracted by paint. WRONG_PARAMETER without edges, or with invalid preferences.
 LSGP_API Eigen::VectorXd cut_costs(const Surface& surface, const CutPreferences& preferences,

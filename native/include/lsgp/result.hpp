@@ -76,6 +76,10 @@ struct CutPaths {
   std::vector<std::vector<Index>> paths;  // vertices from node to node
 };
 
+// Why the edges of a path are cut: marked seams; cones, handles and boundaries that need it; or anything else, such as
+// creases and overlaps.
+enum class CutPathKind { seam, required, added };
+
 struct Prescription {
   std::vector<Index> cones;         // (k)
   std::vector<double> cone_angles;  // (k) radians
@@ -85,12 +89,16 @@ struct Prescription {
 };
 
 struct Result {
-  CornerUv corner_uv;               // (3m, 2), NaN where not solved
-  std::vector<Index> island;        // (m), -1 where not solved
-  VertexPairs cut_edges;            // (c, 2)
-  VertexPairs required_cuts;        // (r, 2) those of them that cones, handles and boundaries need
-  std::vector<Index> cones;         // (k) those of solved components
-  std::vector<double> cone_angles;  // (k) imposed, radians
+  CornerUv corner_uv;         // (3m, 2), NaN where not solved
+  std::vector<Index> island;  // (m), -1 where not solved
+  VertexPairs cut_edges;      // (c, 2)
+  VertexPairs required_cuts;  // (r, 2) those of them that cones, handles and boundaries need
+  // Cut edges and the surface's borders, each path of one kind: vertices from node to node, as of split_into_paths.
+  // Nodes are the cones, and where kinds meet.
+  std::vector<std::vector<Index>> cut_paths;
+  std::vector<CutPathKind> cut_kinds;  // (paths)
+  std::vector<Index> cones;            // (k) those of solved components
+  std::vector<double> cone_angles;     // (k) imposed, radians
   Distortion distortion;
   SeamQuality seams;
   std::vector<Index> flipped;           // triangles with UV area <= 0

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "api/cut_paths.hpp"
 #include "api/divided_seams.hpp"
 #include "api/doubled_triangles.hpp"
 #include "api/report_defects.hpp"
@@ -69,7 +70,7 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
   const PerHalfedge<char> open = open_seams(component.mesh);
   const OpenedSurface opened{{component.mesh, geometry}, open};
   const SplitTask split{component.mesh.seam, task.cones.mirroring};
-  // A seamless layout was split before its parts were put onto the lattice; pinned ones keep their position.
+  // A seamless layout was split before its islands were put onto the lattice; pinned ones keep their position.
   if (options_.overlaps == Overlaps::split && !result_.seamless && map.pins.size() < 2) {
     try {
       split_map(opened, split, monitor_, map);
@@ -150,6 +151,7 @@ void Assembly::finish(const Cones& cones, const Array<std::pair<Index, Index>>& 
     result_.cones.push_back(v);
     result_.cone_angles.push_back(cone_angle_[v]);
   }
+  trace_cut_paths(surface_, result_);
   report_defects(options_, std::move(defects_), result_);
 }
 
@@ -162,19 +164,19 @@ void Assembly::place(const Array<Similarity>& placement) {
   layout_.resize(corner_count);
   for (Solved& solved : solved_) {
     const Component& component = *solved.component;
-    solved.turn.assign(solved.part_count, 0);
-    for (Index part = 0; part < solved.part_count && !solved.is_in_place; ++part) {
-      solved.turn[part] = std::arg(placement[solved.first_island + part].turn);
+    solved.turn.assign(solved.island_count, 0);
+    for (Index i = 0; i < solved.island_count && !solved.is_in_place; ++i) {
+      solved.turn[i] = std::arg(placement[solved.first_island + i].turn);
     }
-    const auto move = [&](Index part, Complex z) {
-      return solved.is_in_place ? z : placement[solved.first_island + part](solved.scale * z);
+    const auto move = [&](Index island, Complex z) {
+      return solved.is_in_place ? z : placement[solved.first_island + island](solved.scale * z);
     };
-    const bool is_whole = solved.part_count == 1;  // its copies are moved just once each
+    const bool is_whole = solved.island_count == 1;  // its copies are moved just once each
     Eigen::VectorXcd moved = solved.map.position;
     if (is_whole) for_each_at_once(moved.size(), [&](Eigen::Index copy) { moved[copy] = move(0, moved[copy]); });
     for_each_at_once(component.mesh.halfedge_count(), [&](Index corner) {
       Complex z = moved[solved.map.cut_mesh.copy_of_corner[corner]];
-      if (!is_whole) z = move(solved.part[corner / 3], z);
+      if (!is_whole) z = move(solved.island[corner / 3], z);
       layout_[solved.first_corner + corner] = z;
       result_.corner_uv.row(component.source_corner(corner)) << z.real(), z.imag();
     });
@@ -189,10 +191,10 @@ void Assembly::check_in_layout(Solved& solved) const {
   const HalfedgeMesh& mesh = solved.component->mesh;
   check_triangles(mesh, corners(solved), solved.map);
   if (result_.seamless) add_flips_as_stored(mesh, corners(solved), solved.map.validity);
-  if (solved.part_count == 1)
+  if (solved.island_count == 1)
     check_seams(mesh, corners(solved), solved.map);
   else
-    check_divided_seams(mesh, {solved.part, solved.turn}, corners(solved), solved.map);
+    check_divided_seams(mesh, {solved.island, solved.turn}, corners(solved), solved.map);
 }
 
 void Assembly::collect_checks(const Component& component, const ComponentMap& map) {
@@ -232,7 +234,7 @@ void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
   const HalfedgeMesh& mesh = component.mesh;
   PerHalfedge<char> open = open_seams(mesh);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) open[h] = open[h] || map.cut_graph.is_cut[h];
-  solved.part_count = label_parts(mesh, open, solved.part);
+  solved.island_count = label_parts(mesh, open, solved.island);
   append_ends(component, open, cut_edges_);
   for (const Index h : map.required_cuts) {
     // Islands may have been moved across some.
@@ -241,39 +243,40 @@ void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
     required_cuts_.push_back(component.source_vertex[mesh.target(h)]);
   }
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
-    element(result_.island, component.source_triangle[f]) = island_count_ + solved.part[f];
+    element(result_.island, component.source_triangle[f]) = island_count_ + solved.island[f];
   }
-  island_count_ += solved.part_count;
+  island_count_ += solved.island_count;
   solved.is_in_place = map.pins.size() > 1 || result_.seamless;
   if (solved.is_in_place) return;
   solved.scale = scale_to_surface({mesh, geometry}, map);
   solved.first_island = ssize(islands_);
-  PerPart<UpwardTurn> upward(solved.part_count);
+  PerPart<UpwardTurn> upward(solved.island_count);
   if (!solved.directions->empty()) {
     const Eigen::VectorXcd position = at_corners(map.cut_mesh, map.position);
-    for (Index f = 0; f < mesh.triangle_count(); ++f) upward[solved.part[f]].add(solved.directions->image(position, f));
+    for (Index f = 0; f < mesh.triangle_count(); ++f)
+      upward[solved.island[f]].add(solved.directions->image(position, f));
   }
-  PerPart<Array<Index>> copies(solved.part_count);  // of every island
+  PerPart<Array<Index>> copies(solved.island_count);  // of every island
   PerCopy<Index> listed_in(map.cut_mesh.copy_count(), none);
   for (Index corner = 0; corner < mesh.halfedge_count(); ++corner) {
-    const Index copy = map.cut_mesh.copy_of_corner[corner], part = solved.part[corner / 3];
-    if (listed_in[copy] == part) continue;
-    listed_in[copy] = part;
-    copies[part].push_back(copy);
+    const Index copy = map.cut_mesh.copy_of_corner[corner], own = solved.island[corner / 3];
+    if (listed_in[copy] == own) continue;
+    listed_in[copy] = own;
+    copies[own].push_back(copy);
   }
   Array<std::optional<Complex>> axes;
   // Closed components have no sides to be straightened, but those of cubes are straight.
-  if (options_.straighten) axes = turns_to_axes(mesh, map.cut_mesh, map.position, solved.part);
-  for (Index part = 0; part < solved.part_count; ++part) {
-    const Array<Index>& own = copies[part];
-    Island island{Eigen::VectorXcd(own.size()), upward[part].turn(), std::nullopt, static_cast<Index>(solved_.size())};
+  if (options_.straighten) axes = turns_to_axes(mesh, map.cut_mesh, map.position, solved.island);
+  for (Index i = 0; i < solved.island_count; ++i) {
+    const Array<Index>& own = copies[i];
+    Island island{Eigen::VectorXcd(own.size()), upward[i].turn(), std::nullopt, static_cast<Index>(solved_.size())};
     for (std::size_t k = 0; k < own.size(); ++k) {
       island.position[static_cast<Eigen::Index>(k)] = solved.scale * map.position[own[k]];
       if (!map.pins.empty() && own[k] == map.pins.front().copy) {
         island.pin = {static_cast<Eigen::Index>(k), map.pins.front().position};
       }
     }
-    if (!axes.empty()) island.axes = axes[part];
+    if (!axes.empty()) island.axes = axes[i];
     islands_.push_back(std::move(island));
   }
 }
@@ -321,7 +324,7 @@ void Assembly::find_overlapping() {
     for (Index h = 0; h < mesh.halfedge_count(); ++h) {
       const Index other = mesh.twin[h];
       const bool runs_on =
-          other != none && !solved.map.cut_graph.is_cut[h] && solved.part[h / 3] == solved.part[other / 3];
+          other != none && !solved.map.cut_graph.is_cut[h] && solved.island[h / 3] == solved.island[other / 3];
       twin[first + h] = runs_on ? first + other : none;
     }
     for (Index f = 0; f < mesh.triangle_count(); ++f) {

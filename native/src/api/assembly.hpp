@@ -35,10 +35,10 @@ class Assembly {
     const Component* component;
     const TextureDirections* directions;
     ComponentMap map;
-    PerTriangle<Index> part;  // the island, counted from the component's first
-    Index part_count = 1;
+    PerTriangle<Index> island;  // counted from the component's first
+    Index island_count = 1;
     double scale = 1;               // of the map to the texel density of all
-    PerPart<double> turn;           // by which each is turned in the layout, radians
+    PerPart<double> turn;           // by which each island is turned in the layout, radians
     Eigen::Index first_island = 0;  // of those to be arranged
     bool is_in_place = false;       // its islands are not to be arranged
     Eigen::Index first_corner = 0;  // in the layout

@@ -22,14 +22,9 @@ namespace {
 
 // The angle between the normals of the triangles at each edge, radians, 0 on borders, (3m).
 Eigen::VectorXd bends(const HalfedgeMesh& mesh) {
-  Positions normal(mesh.triangle_count(), 3);
-  for (Index f = 0; f < mesh.triangle_count(); ++f) {
-    normal.row(f) = area_normal(mesh.positions, mesh.triangles, f).stableNormalized();
-  }
   Eigen::VectorXd out = Eigen::VectorXd::Zero(mesh.halfedge_count());
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    if (mesh.twin[h] == none) continue;
-    out[h] = angle_between(normal.row(h / 3), normal.row(mesh.twin[h] / 3));
+    if (mesh.twin[h] > h) out[h] = out[mesh.twin[h]] = bend_at(mesh, h);
   }
   return out;
 }

@@ -90,8 +90,8 @@ std::pair<Array<Index>, Index> CutRouter::Kept::along(const std::vector<Index>& 
                   {ElementKind::edges, {path[i], path[i + 1]}});
     }
     component = owner;
-    const Component& part = components[component];
-    if (part.source_vertex[part.mesh.origin(h)] != path[i]) h = part.mesh.twin[h];
+    const Component& on = components[component];
+    if (on.source_vertex[on.mesh.origin(h)] != path[i]) h = on.mesh.twin[h];
     halfedges.push_back(h);
   }
   return {std::move(halfedges), component};

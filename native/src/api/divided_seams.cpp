@@ -9,10 +9,10 @@ namespace lsgp {
 
 namespace {
 
-PerPart<double> sizes_of_parts(const PlacedParts& parts, const CornerPositions& corners) {
-  PerPart<PositionBox> boxes(parts.turn.size());
+PerPart<double> island_sizes(const PlacedIslands& islands, const CornerPositions& corners) {
+  PerPart<PositionBox> boxes(islands.turn.size());
   for (Eigen::Index corner = 0; corner < corners.size(); ++corner) {
-    boxes[parts.of_triangle[corner / 3]].add(corners[corner]);
+    boxes[islands.of_triangle[corner / 3]].add(corners[corner]);
   }
   PerPart<double> out;
   for (const PositionBox& box : boxes) out.push_back(box.size());
@@ -21,13 +21,15 @@ PerPart<double> sizes_of_parts(const PlacedParts& parts, const CornerPositions& 
 
 }  // namespace
 
-void check_divided_seams(const HalfedgeMesh& mesh, const PlacedParts& parts, const CornerPositions& corners,
+void check_divided_seams(const HalfedgeMesh& mesh, const PlacedIslands& islands, const CornerPositions& corners,
                          ComponentMap& map) {
-  const PerPart<double> size = sizes_of_parts(parts, corners);
+  const PerPart<double> size = island_sizes(islands, corners);
   using Sides = std::pair<Index, Index>;
-  const auto sides_of = [&](Index h) { return Sides{parts.of_triangle[h / 3], parts.of_triangle[mesh.twin[h] / 3]}; };
+  const auto sides_of = [&](Index h) {
+    return Sides{islands.of_triangle[h / 3], islands.of_triangle[mesh.twin[h] / 3]};
+  };
   const auto between = [&](const Sides& sides, std::optional<double> rotation) {
-    if (rotation) *rotation += parts.turn[sides.second] - parts.turn[sides.first];
+    if (rotation) *rotation += islands.turn[sides.second] - islands.turn[sides.first];
     return SisterEdges{{}, rotation, std::max(size[sides.first], size[sides.second])};
   };
   Array<SisterEdges> seams;
@@ -42,15 +44,15 @@ void check_divided_seams(const HalfedgeMesh& mesh, const PlacedParts& parts, con
       before = sides;
     }
   }
-  std::map<Sides, SisterEdges> parted;
+  std::map<Sides, SisterEdges> divided;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (mesh.twin[h] == none || map.cut_graph.is_cut[h]) continue;
     const Sides sides = sides_of(h);
     if (sides.first >= sides.second) continue;
-    const auto found = parted.try_emplace(sides, between(sides, 0.0)).first;
+    const auto found = divided.try_emplace(sides, between(sides, 0.0)).first;
     found->second.halfedges.push_back(h);
   }
-  for (auto& [sides, edges] : parted) seams.push_back(std::move(edges));
+  for (auto& [sides, edges] : divided) seams.push_back(std::move(edges));
   map.seams = measure_seams(mesh, seams, corners, map.rotation ? &map.inexact_seams : nullptr);
 }
 

@@ -7,14 +7,14 @@
 
 namespace lsgp {
 
-struct PlacedParts {
+struct PlacedIslands {
   const PerTriangle<Index>& of_triangle;
   PerPart<double> turn;  // by which each was turned, radians
 };
 
 // Measures positions u + iv at the component's corners, (3m), against the imposed transitions and the rotations of the
-// parts: its cuts, and the edges along which it was divided without a cut.
-void check_divided_seams(const HalfedgeMesh& mesh, const PlacedParts& parts, const CornerPositions& corners,
+// islands: its cuts, and the edges along which it was divided without a cut.
+void check_divided_seams(const HalfedgeMesh& mesh, const PlacedIslands& islands, const CornerPositions& corners,
                          ComponentMap& map);
 
 }  // namespace lsgp

@@ -27,6 +27,8 @@ bool same_cones(const ComponentCones& a, const ComponentCones& b) {
   return a.vertices == b.vertices && a.border == b.border && a.mirroring.image == b.mirroring.image;
 }
 
+using ComponentMaps = PerComponent<std::optional<ComponentMap>>;  // none of those that have no map
+
 class Pipeline {
  public:
   // keeps_systems: from one run to the next, rather than until each component is done.
@@ -50,6 +52,9 @@ class Pipeline {
   const Geometry& geometry_of(std::size_t i, std::vector<Finding>& findings);
   const Mirroring& mirroring_of(std::size_t i);
   ComponentSystem& system_of(std::size_t i, const Options& options);
+  // Puts the maps onto a lattice, and takes away those of components that cannot be.
+  SeamlessReport quantize(const Options& options, PerComponent<ComponentTask>& tasks, ComponentMaps& maps,
+                          std::vector<Finding>& findings, ProgressMonitor& monitor);
   void release(std::size_t i) {
     if (!keeps_systems_) kept_[i]->system->release();
   }
@@ -105,6 +110,26 @@ ComponentSystem& Pipeline::system_of(std::size_t i, const Options& options) {
   return *kept.system;
 }
 
+SeamlessReport Pipeline::quantize(const Options& options, PerComponent<ComponentTask>& tasks, ComponentMaps& maps,
+                                  std::vector<Finding>& findings, ProgressMonitor& monitor) {
+  const PerComponent<Component>& components = work_.topology.components;
+  monitor.advance(0);
+  Array<SeamlessComponent> laid_out;
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    if (maps[i]) laid_out.push_back({&components[i], &tasks[i], &*maps[i], &*kept_[i]->system});
+  }
+  SeamlessReport report = make_seamless(options, work_.unit_scale, laid_out, findings, monitor);
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    if (!maps[i]) continue;
+    release(i);
+    const bool is_laid_out = std::any_of(laid_out.begin(), laid_out.end(), [&](const SeamlessComponent& component) {
+      return component.source == &components[i];
+    });
+    if (!is_laid_out) maps[i].reset();
+  }
+  return report;
+}
+
 Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& options, const Pins& pins,
                      const Progress& progress) {
   Result result;
@@ -120,7 +145,7 @@ Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& 
   constexpr double share_of_rounding = 0.5;
   const double share_of_maps = options.seamless ? 1 - share_of_rounding : 1;
   Index triangles_before = 0;
-  PerComponent<std::optional<ComponentMap>> maps(components.size());
+  ComponentMaps maps(components.size());
   PerComponent<std::vector<Finding>> found(components.size());  // about the maps
   for_each_component(components, result.warnings, [&](std::size_t i) {
     const Component& component = components[i];
@@ -150,20 +175,7 @@ Result Pipeline::run(const Surface& surface, const Cones& cones, const Options& 
   if (options.seamless) {
     const ProgressMonitor::Stage stage(monitor, "quantize");
     const ProgressMonitor::Interval interval(monitor, share_of_maps, 1);
-    monitor.advance(0);
-    Array<SeamlessComponent> laid_out;
-    for (std::size_t i = 0; i < components.size(); ++i) {
-      if (maps[i]) laid_out.push_back({&components[i], &tasks[i], &*maps[i], &*kept_[i]->system});
-    }
-    result.seamless = make_seamless(options, work_.unit_scale, laid_out, result.warnings, monitor);
-    for (std::size_t i = 0; i < components.size(); ++i) {
-      if (!maps[i]) continue;
-      release(i);
-      const bool is_laid_out = std::any_of(laid_out.begin(), laid_out.end(), [&](const SeamlessComponent& component) {
-        return component.source == &components[i];
-      });
-      if (!is_laid_out) maps[i].reset();
-    }
+    result.seamless = quantize(options, tasks, maps, result.warnings, monitor);
   }
   const ProgressMonitor::Stage stage(monitor, "layout");
   Assembly assembly(surface, components, options, monitor, result);

@@ -14,6 +14,7 @@
 #include "base/checkpoint.hpp"
 #include "base/union_find.hpp"
 #include "creases/bevels.hpp"
+#include "creases/features.hpp"
 #include "cut/cut_cost.hpp"
 
 namespace lsgp {
@@ -21,8 +22,7 @@ namespace lsgp {
 namespace {
 
 constexpr double least_patch = 0.0002;       // of the area: smaller ones are no islands
-constexpr double least_on_creases = 0.8;     // of the curvature
-constexpr double least_beside_apexes = 0.5;  // where the others carry the rest
+constexpr double least_beside_apexes = 0.5;  // of the curvature, where the others carry the rest
 constexpr double most_apexes = 2;            // few enough to be cones
 constexpr double least_on_bevels = 0.98;     // and creases: what is round everywhere has as much on what is narrow
 constexpr double is_curved = 0.06;           // radians at a vertex
@@ -108,23 +108,14 @@ class Patches {
 
   // Whether so much of the curvature lies where patches meet or at these vertices, and at more than most_corners. Less
   // is enough where the others are the apexes of cones.
-  bool carry_curvature(double least_share, const PerVertex<char>& there, Index most_corners) const {
-    constexpr double least = 0.1;  // radians: below, there is nothing to take out
-    double all = 0, squares = 0, own = 0, own_squares = 0;
-    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-      if (!is_inside(mesh_, v)) continue;
-      const double curvature = std::abs(geometry_.angle_defect[v]);
-      all += curvature;
-      squares += curvature * curvature;
-      if (degree_[v] == 0 && !there[v]) continue;
-      own += curvature;
-      own_squares += curvature * curvature;
+  bool carry_curvature(double least_share, PerVertex<char> there, Index most_corners) const {
+    for (Index v = 0; v < mesh_.vertex_count(); ++v) there[v] = there[v] || degree_[v] > 0;
+    const CreaseCurvature found({mesh_, geometry_}, there);
+    if (!found.is_curved() || std::max(found.vertex_count(), found.vertex_count_at_creases()) <= most_corners) {
+      return false;
     }
-    // Vertices that carry so much, were they alike.
-    const auto count = [](double sum, double of_squares) { return std::round(sum * sum / of_squares); };
-    if (!(all > least) || std::max(count(all, squares), count(own, own_squares)) <= most_corners) return false;
-    if (own >= least_share * all) return true;
-    return own >= least_beside_apexes * all && count(all - own, squares - own_squares) <= most_apexes;
+    if (found.is_carried(least_share)) return true;
+    return found.is_carried(least_beside_apexes) && found.vertex_count_elsewhere() <= most_apexes;
   }
 
   // Where patches end that are unfolded together, the longest shares of a perimeter first.
@@ -319,7 +310,7 @@ std::optional<Patches> find_hard_patches(const MetricMesh& surface, const PerHal
   std::optional<Patches> out;
   out.emplace(surface, find_patches(surface, crease, bend));
   const PerVertex<char> nowhere(mesh.vertex_count(), 0);
-  if (out->carry_curvature(least_on_creases, nowhere, options.most_corners)) return out;
+  if (out->carry_curvature(CreaseCurvature::least_share, nowhere, options.most_corners)) return out;
   std::optional<Bevels> bevels = find_bevels(surface, bend, options.angle);
   if (!bevels) return std::nullopt;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Borders along the creases of a hard surface.
 //
-// A cylinder with its caps has no curvature but along its rims: cut along these, its parts unfold without any stretch,
-// where cones would have to stand on every vertex of a rim. What lies between creases is a patch; patches are unfolded
-// together across what they share of a border where that is straight, as the faces of a cube are.
+// A cylinder with its caps has no curvature but along its rims: cut along these, its patches unfold without any
+// stretch, where cones would have to stand on every vertex of a rim. What lies between creases is a patch; patches are
+// unfolded together across what they share of a border where that is straight, as the faces of a cube are.
 #pragma once
 
 #include "base/array.hpp"

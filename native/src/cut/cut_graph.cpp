@@ -30,7 +30,7 @@ Array<Index> find_seam_networks(const HalfedgeMesh& mesh) {
 }
 
 // Shortest paths from the sources: cones by themselves, a boundary loop's vertices together, and a seam network, along
-// which a path costs nothing. That networks are joined like cones keeps the parts that seams close off in one piece
+// which a path costs nothing. That networks are joined like cones keeps the regions that seams close off in one piece
 // each; where a cut does not need a network, its branch ends in no cone and is pruned.
 struct Forest {
   PerVertex<Reached> reached;

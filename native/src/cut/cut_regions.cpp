@@ -112,7 +112,7 @@ CutPath CutRegions::find(const CutPath& closed, const PerVertex<Index>& is_apart
     }
   }
   if (best == none) return {};
-  // Cuts may have been opened across the path since the regions were built: a segment from part to part suffices.
+  // Cuts may have been opened across the path since the regions were built: a segment from one to the other suffices.
   const CutPath whole = path_through(best);
   const bool from = is_apart[mesh.origin(whole.front())] == mark;
   CutPath path;

@@ -14,9 +14,9 @@ class CutRegions {
   // below: what paths cost that are going to be looked for; dearer ones take longer.
   CutRegions(const CutNetwork& network, double below);
 
-  // The cheapest path between the two parts of the cuts after closing a path, with the regions of the path's vertices
-  // distributed over the others; empty if none is below a cost.
-  // is_apart: marks the vertices of one part by `mark`.
+  // The cheapest path between the two subtrees of the cuts after closing a path, with the regions of the path's
+  // vertices distributed over the others; empty if none is below a cost. is_apart: marks the vertices of one of them by
+  // `mark`.
   CutPath find(const CutPath& closed, const PerVertex<Index>& is_apart, Index mark, double below);
 
  private:

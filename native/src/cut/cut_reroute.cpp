@@ -86,7 +86,7 @@ PerHalfedge<int> CutReroute::jumps(const Array<Index>& way) const {
       jump[mesh_.twin[h]] -= amount;
     }
   };
-  // Where the cut was, both sides meet: the left one moves once more. Where it is, they part in the same way.
+  // Where the cut was, both sides meet: the left one moves once more. Where it is, they separate in the same way.
   add(cut_.path, -1);
   add(way, 1);
   return jump;

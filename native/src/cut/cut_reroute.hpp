@@ -26,7 +26,7 @@ class CutReroute {
   Array<Index> way_through(Index v) const;
 
   // How often the transition from the left to the right side of the cut applies to each triangle, so that the layout
-  // is open along the way instead. 0 beside all other cuts and on the larger part; throws CUT_NOT_MOVABLE if
+  // is open along the way instead. 0 beside all other cuts and on the larger side; throws CUT_NOT_MOVABLE if
   // that is impossible.
   PerTriangle<int> powers(const Array<Index>& way) const;
 

@@ -13,13 +13,13 @@ namespace lsgp {
 
 namespace {
 
-// Marks the smaller of the two parts of the cuts after closing a path.
-class Parting {
+// Marks the smaller of the two subtrees of the cuts after closing a path.
+class SmallerSubtree {
  public:
-  explicit Parting(const CutNetwork& network) : network_(network), mark_of_(network.mesh.vertex_count(), 0) {}
+  explicit SmallerSubtree(const CutNetwork& network) : network_(network), mark_of_(network.mesh.vertex_count(), 0) {}
 
-  // Searches from both ends at once, so that the cost is that of the smaller part. Returns the mark, none if there is
-  // only one part.
+  // Searches from both ends at once, so that the cost is that of the smaller subtree. Returns the mark, none if there
+  // is only one.
   std::optional<Index> mark(Index head, Index tail) {
     if (head == tail) return std::nullopt;
     Front fronts[] = {{++marks_, {head}}, {++marks_, {tail}}};
@@ -68,7 +68,7 @@ class Parting {
 class KeyPathExchange {
  public:
   explicit KeyPathExchange(CutNetwork& network)
-      : network_(network), parting_(network), strips_(network), traced_(network.mesh.halfedge_count(), 0) {}
+      : network_(network), smaller_(network), strips_(network), traced_(network.mesh.halfedge_count(), 0) {}
 
   // Tries every path once. Returns the relative reduction of cost.
   double try_all();
@@ -78,7 +78,7 @@ class KeyPathExchange {
   CutPath find_cheaper(const CutPath& path, CutRegions& regions);
 
   CutNetwork& network_;
-  Parting parting_;
+  SmallerSubtree smaller_;
   StripSearch strips_;
   PerHalfedge<Index> traced_;  // the last round that saw the path of a halfedge
   Index rounds_ = 0;
@@ -97,8 +97,8 @@ CutPath KeyPathExchange::find_cheaper(const CutPath& path, CutRegions& regions) 
   const double below = (1 - least_gain) * network_.cost(path);
   const StripSearch::Ends ends = strips_.ends_of(path);
   network_.close(path);
-  if (const auto mark = parting_.mark(mesh.target(path.back()), mesh.origin(path.front()))) {
-    return regions.find(path, parting_.mark_of(), *mark, below);
+  if (const auto mark = smaller_.mark(mesh.target(path.back()), mesh.origin(path.front()))) {
+    return regions.find(path, smaller_.mark_of(), *mark, below);
   }
   // A closed path may be the whole boundary of a piece.
   const bool is_whole = ends.after_head == path.front() || ends.after_tail == mesh.twin[path.back()];

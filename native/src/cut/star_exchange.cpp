@@ -16,7 +16,7 @@ constexpr double reach = 0.34;           // of the cost of the paths that are cl
 constexpr double work_a_vertex = 0.5;    // vertices around stars for each of the surface, in all
 constexpr double least_work = 2500;      // of them, anyway
 constexpr double least_gain = 1e-9;      // of the cost: rounding is no gain
-constexpr double operations_a_cut = 20;  // of finding the parts
+constexpr double operations_a_cut = 20;  // of finding the subtrees
 
 }  // namespace
 
@@ -24,7 +24,7 @@ StarExchange::StarExchange(CutNetwork& network)
     : network_(network),
       mesh_(network.mesh),
       work_left_(std::max(least_work, work_a_vertex * static_cast<double>(network.mesh.vertex_count()))),
-      part_of_(network.mesh.vertex_count(), none),
+      subtree_of_(network.mesh.vertex_count(), none),
       near_(network.mesh.vertex_count()) {
   for (PerVertex<Reached>& from : from_) from.resize(mesh_.vertex_count());
 }
@@ -72,15 +72,15 @@ Array<StarExchange::Star> StarExchange::stars_at(Index node) const {
   return stars;
 }
 
-// Returns whether the ends of a closed star are in different parts.
-bool StarExchange::mark_parts(const Star& star) {
-  Index part = 0;
+// Returns whether the ends of a closed star are in different subtrees.
+bool StarExchange::mark_subtrees(const Star& star) {
+  Index subtree = 0;
   for (const Index end : star.ends) {
-    if (part_of_[end] != none) return false;
+    if (subtree_of_[end] != none) return false;
     std::size_t next_marked = marked_.size();
     const auto visit = [&](Index v) {
-      if (part_of_[v] != none) return;
-      part_of_[v] = part;
+      if (subtree_of_[v] != none) return;
+      subtree_of_[v] = subtree;
       marked_.push_back(v);
     };
     for (visit(end); next_marked < marked_.size(); ++next_marked) {
@@ -89,7 +89,7 @@ bool StarExchange::mark_parts(const Star& star) {
         if (mesh_.twin[prev(h)] == none) visit(mesh_.origin(prev(h)));
       });
     }
-    ++part;
+    ++subtree;
   }
   return true;
 }
@@ -108,7 +108,7 @@ void StarExchange::grow_around(const Star& star) {
     start(mesh_.target(path.back()));
   }
   const auto admits = [&](Index v) {
-    const bool is_known = part_of_[v] != none || !network_.holds(v);  // no part of other cuts
+    const bool is_known = subtree_of_[v] != none || !network_.holds(v);  // not on other cuts
     if (network_.is_avoided[v] || !is_known) return false;
     if (near_[v].source == none) around_.push_back(v);
     return true;
@@ -116,18 +116,18 @@ void StarExchange::grow_around(const Star& star) {
   grow_paths(network_.edges, {std::move(starts), reach * star.cost}, admits, near_);
 }
 
-void StarExchange::grow_from(std::size_t part, double below) {
-  PerVertex<Reached>& from = from_[part];
+void StarExchange::grow_from(std::size_t subtree, double below) {
+  PerVertex<Reached>& from = from_[subtree];
   PathStarts starts;
   for (const Index v : around_) {
-    if (part_of_[v] != static_cast<Index>(part)) continue;
+    if (subtree_of_[v] != static_cast<Index>(subtree)) continue;
     from[v] = {0, none, v};
     starts.emplace_back(0.0, v);
   }
   grow_paths(network_.edges, {std::move(starts), below}, [&](Index v) { return near_[v].source != none; }, from);
 }
 
-// `none` if nowhere the paths from all parts cost less.
+// `none` if nowhere the paths from all subtrees cost less.
 Index StarExchange::nearest_to_all(double below) const {
   Index best = none;
   for (const Index v : around_) {
@@ -149,11 +149,11 @@ CutPath StarExchange::joint_at(Index v) const {
   return out;
 }
 
-// Whether edges join all parts and close no curve.
+// Whether edges join all subtrees and close no curve.
 bool StarExchange::is_tree(const CutPath& joint) const {
-  std::map<Index, Index> number;  // of vertices off the parts
+  std::map<Index, Index> number;  // of vertices off the subtrees
   const auto node = [&](Index v) {
-    if (part_of_[v] != none) return part_of_[v];
+    if (subtree_of_[v] != none) return subtree_of_[v];
     return 3 + number.try_emplace(v, static_cast<Index>(number.size())).first->second;
   };
   UnionFind joined(3 + 2 * static_cast<Index>(joint.size()));
@@ -163,7 +163,7 @@ bool StarExchange::is_tree(const CutPath& joint) const {
 }
 
 void StarExchange::clear() {
-  for (const Index v : marked_) part_of_[v] = none;
+  for (const Index v : marked_) subtree_of_[v] = none;
   for (const Index v : around_) near_[v] = from_[0][v] = from_[1][v] = from_[2][v] = {};
   work_left_ -= static_cast<double>(around_.size());
   checkpoint(operations_a_cut * static_cast<double>(marked_.size()));
@@ -176,10 +176,10 @@ double StarExchange::exchange(const Star& star) {
   if (std::any_of(star.paths.begin(), star.paths.end(), is_closed)) return 0;
   for (const CutPath& path : star.paths) network_.close(path);
   CutPath joint;
-  if (mark_parts(star)) {
+  if (mark_subtrees(star)) {
     const double below = (1 - least_gain) * star.cost;
     grow_around(star);
-    for (std::size_t part = 0; part < 3; ++part) grow_from(part, below);
+    for (std::size_t subtree = 0; subtree < 3; ++subtree) grow_from(subtree, below);
     const Index at = nearest_to_all(below);
     if (at != none) joint = joint_at(at);
     if (!joint.empty() && !is_tree(joint)) joint.clear();

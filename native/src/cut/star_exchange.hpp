@@ -10,9 +10,9 @@
 
 namespace lsgp {
 
-// Closes the three paths of a junction, or two paths that meet, and joins the three parts of the cuts that are left at
-// the vertex nearby where that costs least (key-vertex elimination and insertion of Steiner vertices, Uchoa and Werneck
-// 2012).
+// Closes the three paths of a junction, or two paths that meet, and joins the three subtrees of the cuts that are left
+// at the vertex nearby where that costs least (key-vertex elimination and insertion of Steiner vertices, Uchoa and
+// Werneck 2012).
 class StarExchange {
  public:
   explicit StarExchange(CutNetwork& network);
@@ -22,10 +22,10 @@ class StarExchange {
   double try_all();
 
  private:
-  // Two or three paths from a node, which part the cuts in three when closed.
+  // Two or three paths from a node, which divide the cuts in three when closed.
   struct Star {
     Array<CutPath> paths;
-    std::array<Index, 3> ends;  // a vertex of each part
+    std::array<Index, 3> ends;  // a vertex of each subtree
     double cost = 0;
   };
 
@@ -33,9 +33,9 @@ class StarExchange {
   Array<Star> stars_at(Index node) const;
   Star star_of(Index node, const Array<Index>& out) const;
   double exchange(const Star& star);
-  bool mark_parts(const Star& star);
+  bool mark_subtrees(const Star& star);
   void grow_around(const Star& star);
-  void grow_from(std::size_t part, double below);
+  void grow_from(std::size_t subtree, double below);
   Index nearest_to_all(double below) const;
   CutPath joint_at(Index v) const;
   bool is_tree(const CutPath& joint) const;
@@ -46,10 +46,10 @@ class StarExchange {
   double work_left_;
 
   // Scratch, as it is here between stars.
-  PerVertex<Index> part_of_;                // none
+  PerVertex<Index> subtree_of_;             // none
   Array<Index> marked_;                     // empty
   PerVertex<Reached> near_;                 // from the paths, none reached
-  std::array<PerVertex<Reached>, 3> from_;  // from each part, none reached
+  std::array<PerVertex<Reached>, 3> from_;  // from each subtree, none reached
   Array<Index> around_;                     // empty
 };
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "creases/features.hpp"
+
 namespace lsgp {
 
 namespace {
@@ -18,7 +20,6 @@ constexpr double least_side = 0.004;                    // of a boundary: anythi
 constexpr double least_side_beside_arcs = 0.1;
 constexpr double telling = 0.25;         // share of the boundaries from which straight sides and axes count
 constexpr double exact_rotation = 1e-9;  // radians
-constexpr double sharp = 40 * degree;    // between the normals at a crease
 
 bool is_quarter_turn(double rotation) { return std::abs(std::remainder(rotation, M_PI / 2)) < exact_rotation; }
 
@@ -51,7 +52,7 @@ class CreaseTracer {
   CreaseTracer(const HalfedgeMesh& mesh, const CutMesh& cut_mesh)
       : mesh_(mesh), cut_mesh_(cut_mesh), is_left_(mesh.halfedge_count(), 0) {
     for (Index h = 0; h < mesh.halfedge_count(); ++h)
-      is_left_[h] = !is_open(mesh, cut_mesh, h) && bend_at(mesh, h) > sharp;
+      is_left_[h] = !is_open(mesh, cut_mesh, h) && bend_at(mesh, h) >= crease_angle;
   }
 
   Creases trace() {
@@ -98,7 +99,7 @@ class CreaseTracer {
 
 Complex unit(Complex direction) { return direction / std::abs(direction); }
 
-// Part of a polyline; if that is closed, a run may pass its end.
+// A section of a polyline; if that is closed, a run may pass its end.
 struct Run {
   std::size_t begin, count;
 };
@@ -316,24 +317,24 @@ StraightSides find_straight_sides(const CutSurface& surface, const Eigen::Vector
 }
 
 Array<std::optional<Complex>> turns_to_axes(const HalfedgeMesh& mesh, const CutMesh& cut_mesh,
-                                            const Eigen::VectorXcd& position, const PerTriangle<Index>& part) {
+                                            const Eigen::VectorXcd& position, const PerTriangle<Index>& island) {
   constexpr double exactly = 1e-9;  // radians
   Array<Array<Complex>> boundaries;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (!is_open(mesh, cut_mesh, h)) continue;
-    if (part[h / 3] >= ssize(boundaries)) boundaries.resize(part[h / 3] + 1);
-    boundaries[part[h / 3]].push_back(position[cut_mesh.copy_of_corner[next(h)]] -
-                                      position[cut_mesh.copy_of_corner[h]]);
+    if (island[h / 3] >= ssize(boundaries)) boundaries.resize(island[h / 3] + 1);
+    boundaries[island[h / 3]].push_back(position[cut_mesh.copy_of_corner[next(h)]] -
+                                        position[cut_mesh.copy_of_corner[h]]);
   }
-  Array<std::optional<Complex>> out(*std::max_element(part.begin(), part.end()) + 1);
-  for (Index island = 0; island < ssize(boundaries); ++island) {
-    const Complex turn = turn_to_axes(boundaries[island], exactly);
+  Array<std::optional<Complex>> out(*std::max_element(island.begin(), island.end()) + 1);
+  for (Index i = 0; i < ssize(boundaries); ++i) {
+    const Complex turn = turn_to_axes(boundaries[i], exactly);
     double length = 0, along = 0;
-    for (const Complex edge : boundaries[island]) {
+    for (const Complex edge : boundaries[i]) {
       length += std::abs(edge);
       if (std::abs(off_axis(edge * turn)) < exactly) along += std::abs(edge);
     }
-    if (along > telling * length) out[island] = std::abs(std::arg(turn)) < exactly ? 1.0 : turn;
+    if (along > telling * length) out[i] = std::abs(std::arg(turn)) < exactly ? 1.0 : turn;
   }
   return out;
 }

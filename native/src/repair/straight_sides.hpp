@@ -40,9 +40,9 @@ StraightSides find_straight_sides(const CutSurface& surface, const Eigen::Vector
                                   const Eigen::VectorXcd& position, const SideLimits& limits);
 
 // For every island the rotation, up to quarters, that aligns the greatest length of its straight sides with the axes,
-// if that is a considerable part of its boundary.  part: the islands.
+// if that is a considerable part of its boundary.  island: of each.
 Array<std::optional<Complex>> turns_to_axes(const HalfedgeMesh& mesh, const CutMesh& cut_mesh,
-                                            const Eigen::VectorXcd& position, const PerTriangle<Index>& part);
+                                            const Eigen::VectorXcd& position, const PerTriangle<Index>& island);
 
 // Orders the sides by what they cost relative to their length, creases inside last. Returns the number of the others. A
 // side that is turned or bowed by an angle costs the square of the angle times the square of its length.

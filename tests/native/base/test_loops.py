@@ -26,6 +26,9 @@ SIDES = "the sides of a closed border, each once"
 # file: [(head, what bounds the rounds, where the caller is let in)]
 REVIEWED = {
     "api/assembly.cpp": [("for (auto side = sides.begin(); side != sides.end();)", "passes an edge each time", SHORT)],
+    "api/cut_paths.cpp": [
+        ("while (at != start && !is_node_[at])", "edges, each once, to a node or back to the start", SHORT),
+    ],
     "api/measure_distortion.cpp": [
         ("for (std::size_t i = 0, end = 0; i < sides.size(); i = end)", "passes a side each time", SHORT),
         ("for (end = i + 1; same_edge(i, end);)", "passes a side each time", SHORT),

@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import lsgp
 import meshes
@@ -118,3 +120,22 @@ def test_creases_become_edges_of_quads(name: str) -> None:
         covered += np.linalg.norm(side[near], axis=1).sum() / 2  # every side is in two quads
         whole += length
     assert covered == pytest.approx(whole, rel=0.05)
+
+
+def test_the_usual_layout_is_made_once_where_cones_for_creases_admit_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    unwrapping = sys.modules["lsgp.auto_unwrap"]
+    box = surface(HARD["box"])
+    usual = unwrapping.complete_cones(box, (), None, TILE)
+    # Gauss-Bonnet requires more than one cone of half a turn.
+    refused = unwrapping.CompletedCones(usual.cones[:1], [np.pi], None, for_features=True)
+    tried = []
+
+    def parameterize(whole: lsgp.Surface, cones: NDArray[np.int32], *others: Any) -> lsgp.Result:
+        tried.append(len(cones))
+        return lsgp.parameterize(whole, cones, *others)
+
+    monkeypatch.setattr(unwrapping, "parameterize", parameterize)
+    chosen, result = unwrapping.best_map(box, [usual, refused], TILE)
+    assert tried == [1, len(usual.cones)]
+    assert chosen == usual
+    np.testing.assert_array_equal(result.corner_uv, lsgp.parameterize(box, usual.cones, usual.angles, TILE).corner_uv)
