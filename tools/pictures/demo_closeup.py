@@ -137,26 +137,19 @@ def texture_material(texture: FloatArray) -> bpy.types.Material:
 
 def render_view(model: bpy.types.Object, view: View, path: Path, samples: int) -> None:
     """Write a picture of the model alone, its background clear, beads along the cut; nothing is left in the scene."""
-    before = set(bpy.data.objects)
-    hidden = {obj: obj.hide_render for obj in before}
-    for obj in before:
-        obj.hide_render = True
     frame = view.size[0] / PIXELS
     turn = frame / view.width * np.array(Euler(TILT).to_matrix()) @ view.rotation
-    shown = model.copy()
-    shown.hide_render = False
-    shown.matrix_world = Matrix(turn.tolist()).to_4x4() @ Matrix.Translation((-view.focus).tolist())
-    bpy.context.collection.objects.link(shown)
     line = (vectors(model.data.vertices, "co")[view.path] - view.focus) @ turn.T
-    demo_picture.add_balls(places_along(line, BEAD_STEP), BEAD_COLOUR, BEAD)
-    demo_picture.add_light(0.6, LAMPS)
-    demo_picture.add_camera(LENS, frame * LENS / 36)
-    bpy.context.scene.render.film_transparent = True
-    demo_picture.render(path, samples, *view.size)
-    for obj in set(bpy.data.objects) - before:
-        bpy.data.objects.remove(obj)
-    for obj, was in hidden.items():
-        obj.hide_render = was
+    with demo_picture.empty_stage():
+        shown = model.copy()
+        shown.hide_render = False
+        shown.matrix_world = Matrix(turn.tolist()).to_4x4() @ Matrix.Translation((-view.focus).tolist())
+        bpy.context.collection.objects.link(shown)
+        demo_picture.add_balls(places_along(line, BEAD_STEP), BEAD_COLOUR, BEAD)
+        demo_picture.add_light(0.6, LAMPS)
+        demo_picture.add_camera(LENS, frame * LENS / 36)
+        bpy.context.scene.render.film_transparent = True
+        demo_picture.render(path, samples, *view.size)
 
 
 def places_along(line: FloatArray, step: float) -> FloatArray:

@@ -7,6 +7,8 @@ between the two halves by themselves. Runs inside Blender.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
 
@@ -34,8 +36,22 @@ def render_picture(
     model: bpy.types.Object, cut_edges: np.ndarray, cones: np.ndarray, path: Path, samples: int, width: int = WIDTH
 ) -> None:
     """Write the picture of `model`, as `compose` has it, to `path`.  width: pixels; it is half as high."""
-    compose(model, cut_edges, cones)
-    render(path, samples, width, width // 2)
+    with empty_stage():
+        compose(model, cut_edges, cones)
+        render(path, samples, width, width // 2)
+
+
+@contextmanager
+def empty_stage() -> Iterator[None]:
+    """Hides all objects from the renderer; afterwards they are as they were, and those added since are gone."""
+    hidden = {obj: obj.hide_render for obj in bpy.data.objects}
+    for obj in hidden:
+        obj.hide_render = True
+    yield
+    for obj in set(bpy.data.objects) - set(hidden):
+        bpy.data.objects.remove(obj)
+    for obj, was in hidden.items():
+        obj.hide_render = was
 
 
 def compose(model: bpy.types.Object, cut_edges: np.ndarray, cones: np.ndarray) -> None:
@@ -51,9 +67,9 @@ def compose(model: bpy.types.Object, cut_edges: np.ndarray, cones: np.ndarray) -
     shown = model.copy()
     shown.data = mesh.copy()
     shown.data.shade_smooth()
+    shown.hide_render = False
     shown.location, shown.rotation_euler, shown.scale = MODEL_CENTRE, MODEL_TURN, (MODEL_SIZE,) * 3
     bpy.context.collection.objects.link(shown)
-    model.hide_render = True
     turn = MODEL_SIZE * np.array(Euler(MODEL_TURN).to_matrix())
     positions = np.array([vertex.co for vertex in mesh.vertices]) @ turn.T + MODEL_CENTRE
 

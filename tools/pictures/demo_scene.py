@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The demo's job inside Blender: unwrap subdivided Suzanne through automatic cones, measure, save, draw.
+"""The demo's job inside Blender: unwrap subdivided Suzanne by one press of Auto Unwrap, measure, save, draw.
 
 Run by tools/demo, in the bpy module (python demo_scene.py ...) or in a Blender (blender -b --python demo_scene.py --
 ...). BLENDER_USER_RESOURCES must name a throw-away profile: the extension is installed there.
@@ -20,37 +20,44 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
 import demo_picture
-from demo_table import ANGLES, AREA, AREA_P10, AREA_P90, FLIPPED, MISMATCH, OVERLAPPING, STRETCH, table
+from demo_table import ANGLES, AREA, CUT_LENGTH, FLIPPED, ISLANDS, MISMATCH, OVERLAPPING, STRETCH, table
 
 ADDON = "bl_ext.user_default.cone_unwrap"
 CONE_GROUP = "uv_cones"
 BLENDER_METHODS = {"CONFORMAL": "Conformal", "ANGLE_BASED": "Angle Based", "MINIMUM_STRETCH": "Minimum Stretch"}
-COLUMNS = (ANGLES, AREA, AREA_P10, AREA_P90, STRETCH, MISMATCH, FLIPPED, OVERLAPPING)
+COLUMNS = (ISLANDS, CUT_LENGTH, STRETCH, ANGLES, AREA, MISMATCH, FLIPPED, OVERLAPPING)
 
 
 def main() -> None:
     arguments = parse_arguments()
     lsgp = install_extension(arguments.extension)
     suzanne = unwrapped_suzanne()
-    surface, measured = measure(lsgp, suzanne)
-    cones = marked_cones(suzanne)
+    say("pressing Blender's Smart UV Project")
+    projected = add_copy(suzanne)
+    run_in_edit_mode(projected, bpy.ops.uv.smart_project)
+    (surface, ours), (_, theirs) = measure(lsgp, suzanne), measure(lsgp, projected)
 
-    rows = [("Unwrap from Cones", figures(measured, suzanne))]
+    rows = [("Auto Unwrap", figures(ours, suzanne)), ("Smart UV Project", figures(theirs, projected))]
     for method, label in BLENDER_METHODS.items():
         if method in bpy.ops.uv.unwrap.get_rna_type().properties["method"].enum_items:
-            say(f"unwrapping by Blender's {label}, through the same cuts")
-            rows.append((f"Blender {label}", unwrapped_by_blender(lsgp, suzanne, measured.cut_edges, method)))
-    islands = len(np.unique(measured.island))
+            say(f"unwrapping by Blender's {label}, through the cuts of Auto Unwrap")
+            rows.append((f"{label}, same cuts", unwrapped_by_blender(lsgp, suzanne, ours.cut_edges, method)))
     print(
-        f"\nSuzanne, {len(surface.triangles):,} triangles, {islands} islands, {len(cones)} cones, "
-        f"{len(measured.cut_edges)} cut edges, the same cuts for all (Blender {bpy.app.version_string})\n"
+        f"\nSuzanne, {len(surface.triangles):,} triangles, as she is in the scene: no cones, no seams "
+        f"(Blender {bpy.app.version_string})\n"
     )
     print(table("method", COLUMNS, rows), end="\n\n", flush=True)
 
-    say("rendering the picture")
-    demo_picture.add_checker(suzanne)
+    for obj in (suzanne, projected):
+        demo_picture.add_checker(obj)
     bpy.ops.wm.save_as_mainfile(filepath=str(arguments.out / "suzanne.blend"))
-    demo_picture.render_picture(suzanne, measured.cut_edges, cones, arguments.out / "suzanne.png", arguments.samples)
+    no_cones = np.empty(0, np.int32)
+    for number, (obj, found, cones) in enumerate(
+        ((suzanne, ours, marked_cones(suzanne)), (projected, theirs, no_cones))
+    ):
+        say(f"rendering picture {number + 1} of 2")
+        path = arguments.out / f"suzanne-{number}.png"
+        demo_picture.render_picture(obj, found.cut_edges, cones, path, arguments.samples)
 
 
 def say(step: str) -> None:
@@ -59,12 +66,10 @@ def say(step: str) -> None:
 
 
 def unwrapped_suzanne() -> bpy.types.Object:
-    """The model of the picture: subdivided Suzanne, with automatic cones marked, unwrapped from them."""
+    """The model of the picture: subdivided Suzanne after one press of Auto Unwrap, its cones marked."""
     suzanne = add_suzanne(subdivisions=2)
-    say("placing cones")
-    run_in_edit_mode(suzanne, bpy.ops.mesh.cone_place)
-    say("unwrapping from them")
-    run_in_edit_mode(suzanne, bpy.ops.uv.cone_unwrap)
+    say("pressing Auto Unwrap")
+    run_in_edit_mode(suzanne, bpy.ops.uv.cone_auto_unwrap, mark=True)
     return suzanne
 
 
@@ -146,22 +151,30 @@ def unwrapped_by_blender(lsgp, obj: bpy.types.Object, cut_edges: np.ndarray, met
 
 def add_copy_unwrapped_by_blender(obj: bpy.types.Object, cut_edges: np.ndarray, method: str) -> bpy.types.Object:
     """A copy of the object with seams on the given cuts, unwrapped by Blender."""
-    copy = obj.copy()
-    copy.data = obj.data.copy()
-    bpy.context.collection.objects.link(copy)
+    copy = add_copy(obj)
     cuts = {frozenset(edge) for edge in cut_edges.tolist()}
     for edge in copy.data.edges:
         edge.use_seam = frozenset(edge.vertices) in cuts
-    bpy.ops.object.select_all(action="DESELECT")
     run_in_edit_mode(copy, bpy.ops.uv.unwrap, method=method)
+    return copy
+
+
+def add_copy(obj: bpy.types.Object) -> bpy.types.Object:
+    """A copy of the object with a mesh of its own, nothing else selected."""
+    bpy.ops.object.select_all(action="DESELECT")
+    copy = obj.copy()
+    copy.data = obj.data.copy()
+    bpy.context.collection.objects.link(copy)
     return copy
 
 
 def figures(measured, obj: bpy.types.Object) -> tuple[float, ...]:
     """Those of COLUMNS; distortions are means over the triangles, the mismatch is the worst of all cut edges."""
-    d, mismatch = measured.distortion, measured.seams.sister_ratio_max - 1
-    distortions = (d.quasi_conformal, d.area, d.area_p10, d.area_p90, d.l2_stretch)
-    return (*distortions, mismatch, len(measured.flipped), overlapping_faces(obj))
+    places = np.array([vertex.co for vertex in obj.data.vertices])
+    cut_length = np.linalg.norm(np.diff(places[measured.cut_edges], axis=1), axis=2).sum()
+    islands, d, mismatch = len(np.unique(measured.island)), measured.distortion, measured.seams.sister_ratio_max - 1
+    distortions = (d.l2_stretch, d.quasi_conformal, d.area)
+    return (islands, cut_length, *distortions, mismatch, len(measured.flipped), overlapping_faces(obj))
 
 
 def overlapping_faces(obj: bpy.types.Object) -> int:
