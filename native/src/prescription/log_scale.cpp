@@ -60,7 +60,8 @@ Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& columns, const Eigen::Vecto
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
   Array<Eigen::MatrixXd> blocks(blocks_at_once);
   for (Eigen::Index begin = 0; begin < rows; begin += rows_at_once) {
-    const Eigen::Index left = (rows - begin + rows_of_block - 1) / rows_of_block, count = std::min(left, blocks_at_once);
+    const Eigen::Index left = (rows - begin + rows_of_block - 1) / rows_of_block,
+                       count = std::min(left, blocks_at_once);
     team_of_this_call().run_each(static_cast<int>(count), [&](int i) {
       const Eigen::Index first = begin + i * rows_of_block;
       blocks[i] = gram_of_rows(columns, weight, first, std::min(first + rows_of_block, rows));
