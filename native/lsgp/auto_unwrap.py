@@ -99,8 +99,8 @@ def auto_unwrap(
         requires, which may be 0; one whose cones cannot take up its curvature gets more.
     options: instead of `preset_options(preset)`. count: cones on each component that gets some, as for `place_cones`;
         None: the fewest that bring the L2 stretch to 1.05.
-    symmetric: whether cones are placed alike on both sides of a mirror plane, and on parts that mirror each other, as
-        by `place_cones`, and cuts run alike on both sides, as with `Options.mirrored_cuts`, if that costs little: at
+    symmetric: whether cones are placed alike on both sides of a mirror plane, and on components that mirror each other,
+        as by `place_cones`, and cuts run alike on both sides, as with `Options.mirrored_cuts`, if that costs little: at
         most 1 % of L2 stretch, one island (one for ten if there are more), a quarter of the edges cut, and some 3 % of
         the filled part of the square. Only without cones and `count`.
     creases: whether hard surfaces may be cut at their creases, as in `with_crease_borders`, which takes `sharp`.
@@ -230,13 +230,14 @@ def complete_cones(
     if not len(given):
         placed = _place(surface, given, held, options, count, progress, symmetric)
         return _completed(given, held, options, count, placed)
-    lacking = [part for part in build_ledger(surface, given, held, options, gets_cones=True) if _lacks(part)]
+    ledger = build_ledger(surface, given, held, options, gets_cones=True)
+    lacking = [component for component in ledger if _lacks(component)]
     if not lacking:
         return CompletedCones(given, held, None)
-    triangles = np.sort(np.concatenate([part.triangles for part in lacking]))
-    present = np.unique(np.concatenate([part.cones for part in lacking]))
-    part = surface_of_triangles(surface, triangles)
-    placed = or_none(lambda: _place(part, given[present], [held[i] for i in present], options, count, progress))
+    triangles = np.sort(np.concatenate([component.triangles for component in lacking]))
+    present = np.unique(np.concatenate([component.cones for component in lacking]))
+    own = surface_of_triangles(surface, triangles)
+    placed = or_none(lambda: _place(own, given[present], [held[i] for i in present], options, count, progress))
     if placed is None:
         # The other components can still be mapped; mapping reports the defect of these.
         return CompletedCones(given, held, None)
@@ -328,24 +329,24 @@ def best_map(
     usual, *others = [choice for choice in choices if not choice.for_features]
     for_features = next((choice for choice in choices if choice.for_features), None)
     share = 1.0 / (len(choices) + (for_features is not None))
-    parts = iter([part_of(progress, i * share, (i + 1) * share) for i in range(round(1 / share))])
+    stages = iter([part_of(progress, i * share, (i + 1) * share) for i in range(round(1 / share))])
     along = None
     if for_features is not None:
-        along = or_none(partial(_map_through, surface, for_features, options, pins, next(parts)))
+        along = or_none(partial(_map_through, surface, for_features, options, pins, next(stages)))
         if along is not None and not runs_along_features(along):
             along = None
     # Creases along the lattice take time: they are tried with the cones that are chosen.
     is_chosen = for_features is None or (along is None and not others)
     tried = options if is_chosen else replace(options, straighten=False)
-    best = usual, _map_through(surface, usual, tried, pins, next(parts))
+    best = usual, _map_through(surface, usual, tried, pins, next(stages))
     for other in others:
-        result = or_none(partial(_map_through, surface, other, tried, pins, next(parts)))
+        result = or_none(partial(_map_through, surface, other, tried, pins, next(stages)))
         if result is not None and may_replace_map(result, best[1], options.square_share):
             best = other, result
     if along is not None and may_replace_for_features(along, best[1]):
         best = for_features, along
     elif not is_chosen:
-        best = best[0], _map_through(surface, best[0], options, pins, next(parts))
+        best = best[0], _map_through(surface, best[0], options, pins, next(stages))
     return best[0], best[0].told(best[1], options)
 
 
@@ -425,5 +426,5 @@ def _renumbered(findings: Sequence[Finding], triangles: NDArray[np.integer]) -> 
     return of_surface
 
 
-def _lacks(part: LedgerPart) -> bool:
-    return not len(part.cones) or not part.closes
+def _lacks(component: LedgerPart) -> bool:
+    return not len(component.cones) or not component.closes

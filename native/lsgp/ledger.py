@@ -113,10 +113,11 @@ def hold_complete(
     tentative = arguments.flags("tentative", tentative, len(held))
     if not tentative.any():
         return held
-    for part in build_ledger(surface, cones, angles, options):
-        places = part.cones[tentative[part.cones]]
-        missing = 0.0 if part.border_takes_up else part.missing
-        complete = not len(part.automatic) and abs(missing) <= CLOSED_WITHIN + _STORED_WITHIN * len(part.cones)
+    for component in build_ledger(surface, cones, angles, options):
+        places = component.cones[tentative[component.cones]]
+        missing = 0.0 if component.border_takes_up else component.missing
+        tolerance = CLOSED_WITHIN + _STORED_WITHIN * len(component.cones)
+        complete = not len(component.automatic) and abs(missing) <= tolerance
         for place in places:
             held[place] = given[place] - missing / len(places) if complete else None
     return held

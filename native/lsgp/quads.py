@@ -16,14 +16,15 @@ from .arguments import FloatArray, IndexArray
 from .auto_unwrap import CompletedCones, complete_cones, feature_cones, or_none, part_of
 from .equality import EqualByContent
 from .errors import Finding, InputError, SolverError
-from .map_comparison import may_replace_for_features
+from .map_comparison import may_replace_for_features, runs_along_features
 from .short_repr import ShortRepr
 from .triangles import uv_area
 
 # Of the time that a remesh takes, where placing the cones and where the layouts end.
 _PLACED, _LAID_OUT = 0.6, 0.95
-# Of the time of placing, where cones for creases are placed, and of that of layouts, where the plain one is made.
-_FOR_FEATURES, _PLAIN = 0.1, 0.3
+# Of the time of placing, where cones for creases are placed, and of that of layouts, where those along creases and the
+# plain one end.
+_FOR_FEATURES, _ALONG, _PLAIN = 0.1, 0.4, 0.6
 # What layouts are warned of does not matter to the grid on the surface.
 _OF_LAYOUTS_ALONE = frozenset({"OVERLAPPING_TRIANGLES"})
 _MOST_QUADS = 2**28
@@ -153,11 +154,11 @@ def remesh_to_quads(
     if is_free and chosen.straighten:
         along = feature_cones(surface, chosen, part_of(placing, 0.0, _FOR_FEATURES))
     completed = _wide_cones(surface, cones, angles, chosen, count, part_of(placing, _FOR_FEATURES, 1.0))
-    layouts = _Layouts(surface, completed, chosen if along is None else replace(chosen, straighten=False))
-    layout = layouts.nearest(target, laying_out if along is None else part_of(laying_out, 0.0, _PLAIN))
-    if along is not None:
-        progress_along = part_of(laying_out, _PLAIN, 1.0)
-        layouts, layout = _along_features((surface, target, chosen), (along, completed), layout, progress_along)
+    if along is None:
+        layouts = _Layouts(surface, completed, chosen)
+        layout = layouts.nearest(target, laying_out)
+    else:
+        layouts, layout = _along_features((surface, target, chosen), (along, completed), laying_out)
     mesh, layout = layouts.extracted(layout, part_of(progress, _LAID_OUT, 1.0))
     warnings = [finding for finding in layout.warnings if finding.code not in _OF_LAYOUTS_ALONE]
     return QuadRemesh(mesh, layout, warnings)
@@ -302,19 +303,20 @@ class _Layouts:
 def _along_features(
     asked: tuple[Surface, int | None, Options],
     cones: tuple[CompletedCones, CompletedCones],
-    plain: Result,
     progress: Progress | None,
 ) -> tuple[_Layouts, Result]:
     """Layouts along creases, and the nearest of them to the target: through the cones for creases, which are the first,
-    or if these cost much more than a plain layout, through the usual ones."""
+    or if these gain nothing or cost much more than a plain layout, through the usual ones."""
     surface, target, options = asked
     for_features, usual = cones
     layouts = _Layouts(surface, for_features, options)
-    layout = or_none(lambda: layouts.nearest(target, part_of(progress, 0.0, 0.5)))
-    if layout is None or not may_replace_for_features(layout, plain):
-        layouts = _Layouts(surface, usual, options)
-        layout = layouts.nearest(target, part_of(progress, 0.5, 1.0))
-    return layouts, layout
+    layout = or_none(lambda: layouts.nearest(target, part_of(progress, 0.0, _ALONG)))
+    if layout is not None and runs_along_features(layout):
+        plain = _Layouts(surface, usual, replace(options, straighten=False))
+        if may_replace_for_features(layout, plain.nearest(target, part_of(progress, _ALONG, _PLAIN))):
+            return layouts, layout
+    layouts = _Layouts(surface, usual, options)
+    return layouts, layouts.nearest(target, part_of(progress, _PLAIN, 1.0))
 
 
 def _refined(layout: Result) -> Finding:

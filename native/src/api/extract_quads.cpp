@@ -103,9 +103,9 @@ class Collector {
     const std::size_t first = weights_.size();
     weights_.resize(first + 3);
     for (int c = 0; c < 3; ++c) {
-      const std::int64_t part = orient(grid.at[corner + (c + 1) % 3], grid.at[corner + (c + 2) % 3], vertex.at);
+      const std::int64_t opposite = orient(grid.at[corner + (c + 1) % 3], grid.at[corner + (c + 2) % 3], vertex.at);
       weights_[first + static_cast<std::size_t>(component.source_corner(corner + c) % 3)] =
-          static_cast<double>(part) / area;
+          static_cast<double>(opposite) / area;
     }
     out_.triangles.push_back(component.source_triangle[vertex.triangle]);
     const Index at = vertex.place.corner == none ? none : component.mesh.origin(vertex.place.corner);

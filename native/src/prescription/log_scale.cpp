@@ -51,21 +51,22 @@ Eigen::MatrixXd gram_of_rows(const Eigen::MatrixXd& columns, const Eigen::Vector
   return sum;
 }
 
-// columns^T diag(weight) columns, lower triangle. The rows of each thread's parts and the order in which these are
+// columns^T diag(weight) columns, lower triangle. The rows of each thread's blocks and the order in which these are
 // added depend on the size alone.
 Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& columns, const Eigen::VectorXd& weight) {
-  constexpr Eigen::Index rows_of_part = 16384, parts_at_once = 8, rows_at_once = rows_of_part * parts_at_once;
+  constexpr Eigen::Index rows_of_block = 16384, blocks_at_once = 8, rows_at_once = rows_of_block * blocks_at_once;
   const Eigen::Index rows = columns.rows();
-  if (rows <= rows_of_part) return gram_of_rows(columns, weight, 0, rows);
+  if (rows <= rows_of_block) return gram_of_rows(columns, weight, 0, rows);
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
-  Array<Eigen::MatrixXd> parts(parts_at_once);
+  Array<Eigen::MatrixXd> blocks(blocks_at_once);
   for (Eigen::Index begin = 0; begin < rows; begin += rows_at_once) {
-    const Eigen::Index left = (rows - begin + rows_of_part - 1) / rows_of_part, count = std::min(left, parts_at_once);
+    const Eigen::Index left = (rows - begin + rows_of_block - 1) / rows_of_block,
+                       count = std::min(left, blocks_at_once);
     team_of_this_call().run_each(static_cast<int>(count), [&](int i) {
-      const Eigen::Index first = begin + i * rows_of_part;
-      parts[i] = gram_of_rows(columns, weight, first, std::min(first + rows_of_part, rows));
+      const Eigen::Index first = begin + i * rows_of_block;
+      blocks[i] = gram_of_rows(columns, weight, first, std::min(first + rows_of_block, rows));
     });
-    for (Eigen::Index i = 0; i < count; ++i) sum += parts[i];
+    for (Eigen::Index i = 0; i < count; ++i) sum += blocks[i];
   }
   return sum;
 }

@@ -70,7 +70,7 @@ struct Cholesky<Scalar>::Factor {
                 ThreadTeam& team);
   void take_in(int child, const Scalar* update, const Front<Scalar>& front, const Array<int>& local) const;
   void complete_schur(ThreadTeam& team);
-  void add_outer(int front, const Scalar* outer, int part);
+  void add_outer(int front, const Scalar* outer, int block);
   void fill(const Eigen::SparseMatrix<Scalar>& lower, int front, const Array<int>& local);
   void start_schur(const Eigen::SparseMatrix<Scalar>& lower);
 
@@ -213,9 +213,9 @@ void Cholesky<Scalar>::Factor::complete_schur(ThreadTeam& team) {
     } else {
       team.run_each(static_cast<int>(some.size()), subtract_outer);
     }
-    const int parts = (retained() + schur_columns - 1) / schur_columns;
-    team.run_each(parts, [&](int part) {
-      for (int k = 0; k < ssize(some); ++k) add_outer(some[k], outer.data() + begin[k], part);
+    const int blocks = (retained() + schur_columns - 1) / schur_columns;
+    team.run_each(blocks, [&](int block) {
+      for (int k = 0; k < ssize(some); ++k) add_outer(some[k], outer.data() + begin[k], block);
     });
   }
   for (Eigen::Index column = 1; column < schur.cols(); ++column) {
@@ -223,10 +223,10 @@ void Cholesky<Scalar>::Factor::complete_schur(ThreadTeam& team) {
   }
 }
 
-// Adds what a front's outer product has for a part of the columns.
+// Adds what a front's outer product has for a block of columns.
 template <typename Scalar>
-void Cholesky<Scalar>::Factor::add_outer(int front, const Scalar* outer, int part) {
-  const int count = plan.retained_rows[front], first = plan.eliminated + part * schur_columns;
+void Cholesky<Scalar>::Factor::add_outer(int front, const Scalar* outer, int block) {
+  const int count = plan.retained_rows[front], first = plan.eliminated + block * schur_columns;
   const int *end = rows(front) + plan.below(front), *begin = end - count;
   const int* from = std::lower_bound(begin, end, first);
   for (const int* at = from; at < end && *at < first + schur_columns; ++at) {
