@@ -66,9 +66,12 @@ def triangle_texel_density(surface: Surface, corner_uv: ArrayLike, texture_size:
     Raises InputError.
     """
     unit, surface = _of_unit_size(surface)
-    largest, smallest = singular_values(surface, corner_uv)
+    uv = arguments.corner_coordinates("corner_uv", corner_uv, len(surface.triangles))
+    # Areas of coordinates of any size can be computed in a unit of theirs.
+    extent = float(np.abs(uv).max(initial=0.0, where=np.isfinite(uv))) or 1.0
+    largest, smallest = singular_values(surface, uv / extent)
     with np.errstate(over="ignore"):
-        return np.sqrt(largest) * np.sqrt(smallest) * _side(texture_size) / unit
+        return np.sqrt(largest) * np.sqrt(smallest) * (_side(texture_size) * (extent / unit))
 
 
 def texel_density(surface: Surface, corner_uv: ArrayLike, texture_size: float | Sequence[float]) -> TexelDensity:
