@@ -30,7 +30,7 @@ from .errors import Cancelled, Finding, InputError, LsgpError
 from .ledger import LedgerPart, build_ledger, surface_of_triangles
 from .map_comparison import may_replace_for_features, may_replace_map, runs_along_features
 from .packing import Pack, Packing, Stack, laid_out
-from .texels import TexelLayout, at_texel_density
+from .texels import TexelLayout, at_texel_density, tiny_findings
 
 Preset = Literal["paint", "tile", "bake"]
 
@@ -113,7 +113,7 @@ def auto_unwrap(
         includes reflected ones. `ISLANDS_STACKED` among the warnings says how many; they do not count as overlaps.
     texels: a layout at a texel density, as by `at_texel_density`; None: it fills the unit square. Not with pins.
     pins, progress, errors and the result as for `parameterize`; `Result.cones` includes the placed cones, its warnings
-        those of the placement.
+        those of the placement, and ISLANDS_TINY names islands that do not keep their shape in single precision.
     """
     chosen = preset_options(preset)
     if options is not None:
@@ -135,8 +135,10 @@ def auto_unwrap(
     choices = possible_cones(surface, cones, angles, chosen, count, is_free, placing)
     _, result = best_map(surface, choices, chosen, pins, mapping)
     if packs:
-        return laid_out(surface, result, packing, texels, part_of(progress, PACKING, 1.0)).result
-    return result if texels is None else at_texel_density(surface, result, texels)
+        result = laid_out(surface, result, packing, texels, part_of(progress, PACKING, 1.0)).result
+    elif texels is not None:
+        result = at_texel_density(surface, result, texels)
+    return replace(result, warnings=[*result.warnings, *tiny_findings(result.corner_uv, result.island)])
 
 
 def _may_pack(packing: Packing, options: Options, pins: Pins | None, texels: TexelLayout | None) -> bool:

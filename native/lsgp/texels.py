@@ -25,6 +25,9 @@ DEFAULT_MARGIN = 4.0
 
 # Rounding of sums of sizes, in tiles.
 _ROUNDING = 1e-12
+# Units in the last place of single precision that an island of some shape spans: less than half a texel of the largest
+# textures, 65536, at the far end of the square.
+_LEAST_UNITS = 100
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,9 +66,12 @@ def triangle_texel_density(surface: Surface, corner_uv: ArrayLike, texture_size:
     Raises InputError.
     """
     unit, surface = _of_unit_size(surface)
-    largest, smallest = singular_values(surface, corner_uv)
+    uv = arguments.corner_coordinates("corner_uv", corner_uv, len(surface.triangles))
+    # Areas of coordinates of any size can be computed in a unit of theirs.
+    extent = float(np.abs(uv).max(initial=0.0, where=np.isfinite(uv))) or 1.0
+    largest, smallest = singular_values(surface, uv / extent)
     with np.errstate(over="ignore"):
-        return np.sqrt(largest) * np.sqrt(smallest) * _side(texture_size) / unit
+        return np.sqrt(largest) * np.sqrt(smallest) * (_side(texture_size) * (extent / unit))
 
 
 def texel_density(surface: Surface, corner_uv: ArrayLike, texture_size: float | Sequence[float]) -> TexelDensity:
@@ -208,6 +214,29 @@ def _tile_places(
             _triangles_of(np.flatnonzero(tile_of >= tiles), island),
         )
     return places + free + np.stack([tile_of % TILES_IN_ROW, tile_of // TILES_IN_ROW], axis=1) - boxes[:, :2]
+
+
+def tiny_islands(uv: FloatArray, island: IndexArray) -> NDArray[np.intp]:
+    """The islands that single precision, in which files and programs store coordinates, does not keep in shape there.
+
+    uv: (m, 3, 2). island: (m,), -1 for none."""
+    boxes = island_boxes(uv, island)
+    with np.errstate(invalid="ignore", over="ignore"):
+        unit = np.spacing(np.abs(boxes).max(axis=1).astype(np.float32))
+        return np.flatnonzero((boxes[:, 2:] - boxes[:, :2]).max(axis=1) < _LEAST_UNITS * unit)
+
+
+def tiny_findings(uv: FloatArray, island: IndexArray) -> list[Finding]:
+    """The warning of tiny islands, where there are any."""
+    tiny = tiny_islands(uv, island)
+    if not len(tiny):
+        return []
+    message = (
+        f"{_of_islands(len(tiny), int(island.max()) + 1)} so small in the layout that they lose their shape where "
+        "coordinates are stored in single precision, as in most files and programs. Unwrap these parts separately, or "
+        "delete them if they are debris."
+    )
+    return [Finding("ISLANDS_TINY", message, _triangles_of(tiny, island))]
 
 
 def _of_islands(count: int, total: int) -> str:

@@ -269,6 +269,22 @@ def test_strict_refuses_parts_left_out_with_given_cones(lsgp, ball_files: Path) 
     assert not (ball_files / "strict.obj").exists()
 
 
+def test_strict_refuses_parts_that_single_precision_spoils(lsgp, ball_files: Path) -> None:
+    ball = read_mesh(ball_files / "ball.obj")
+    whole = faces_of(ball)
+    speck = (np.array(whole[: len(whole) // 6]) + len(ball.positions)).tolist()
+    places = np.concatenate([ball.positions, 1e-9 * ball.positions])
+    (ball_files / "both.obj").write_text(obj_text(places, [*whole, *speck]))
+    unwrap = ["unwrap", "both.obj", "--report", "report.json", "-o"]
+    loose = lsgp(*unwrap, "loose.glb")
+    (warning,) = [said for said in loose.report()["warnings"] if said["code"] == "ISLANDS_TINY"]
+    assert warning["elements"]["indices"] == list(range(len(whole), len(whole) + len(speck)))
+    assert lsgp("measure", "loose.glb", "--report", "report.json").report()["flipped"] > 0
+    strict = lsgp(*unwrap, "strict.glb", "--strict")
+    assert strict.code == 3 and "refused: ISLANDS_TINY" in strict.err
+    assert not (ball_files / "strict.glb").exists()
+
+
 def test_seams_on_the_way_are_no_reason_to_refuse_placed_cones(lsgp, ball_files: Path) -> None:
     corners = read_mesh(ball_files / "ball.obj").corners[:4].tolist()
     (ball_files / "seams.json").write_text(json.dumps([corners[:2], corners[1:3]]))

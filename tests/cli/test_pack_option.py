@@ -162,7 +162,10 @@ def test_seamless_and_udim_layouts_are_left_alone(lsgp, parts: Path) -> None:
         (("--seamless", "--udim", 2), "not seamless"),
         (("--preset", "bake", "--margin", 2), "or --pack tight"),
         (("--preset", "bake", "--pack", "shelves", "--margin", 2), "--pack tight"),
-        (("--preset", "bake", "--pack", "shelves", "--texture-size", 512), "add --seamless"),
+        (
+            ("--preset", "bake", "--pack", "shelves", "--texture-size", 512),
+            "add --pack tight, --udim, --texel-density or --seamless",
+        ),
         (("--preset", "bake", "--pack", "loose"), "invalid choice"),
     ):
         done = lsgp(*UNWRAP, *options)

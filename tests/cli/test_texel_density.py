@@ -127,7 +127,7 @@ def test_what_does_not_fit_is_refused_and_nothing_written(lsgp, parts: Path, opt
     [
         (("--texel-density", 10), "add --texture-size"),
         (("--margin", 2), "add --udim"),
-        (("--texture-size", 1024), "add --seamless"),
+        (("--texture-size", 1024), "add --pack tight, --udim, --texel-density or --seamless"),
         (("--texel-density", 10, "--texture-size", 1024, "--margin", 2), "add --udim"),
         (("--texel-density", 10, "--texture-size", 16, "--udim", 2, "--margin", 8), "no room"),
         (("--texel-density", 10, "--seamless"), "add --texture-size"),

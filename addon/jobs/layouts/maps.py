@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ...core import native
 from ...core.islands import Islands
+from ...core.text import counted
 from ...mesh import reports
 from ...mesh.uv_write import write_uv
 from ..tasks import cells
@@ -129,6 +130,12 @@ def write_map(obj: bpy.types.Object, unwrapped: Unwrapped, corner_uv: NDArray[np
     report = reports.joined(reports.find(obj.data), found, unwrapped.region)
     write_uv(obj, unwrapped.region, unwrapped.result.solved, corner_uv)
     reports.store(obj.data, report)
+
+
+def tiny_islands_in_words(unwrapped: Unwrapped, corner_uv: NDArray[np.float64]) -> str:
+    """How many islands of a final layout, (m, 3, 2), lose their shape in single precision, as more of a summary."""
+    count = len(native.part("texels").tiny_islands(corner_uv, unwrapped.result.island))
+    return f"; {counted(count, 'island')} too small for UV coordinates to keep in shape" if count else ""
 
 
 def report_on(unwrapped: Unwrapped) -> reports.Report:

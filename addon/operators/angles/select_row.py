@@ -12,6 +12,7 @@ from ...core import identifiers
 from ...mesh.reader import reader
 from ...mesh.selection import VERTEX_MODE, select_elements, select_stored_vertex, set_select_mode
 from ...overlay import cache
+from ..shared.polling import poll_active_mesh
 
 
 class MESH_OT_cone_select_one(bpy.types.Operator):
@@ -32,10 +33,7 @@ class MESH_OT_cone_select_one(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if context.mode in {"EDIT_MESH", "OBJECT"} and context.object is not None and context.object.type == "MESH":
-            return True
-        cls.poll_message_set("Make a mesh the active object, in edit mode or object mode")
-        return False
+        return poll_active_mesh(cls, context)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         self.extend = event.shift

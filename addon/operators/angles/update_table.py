@@ -5,7 +5,7 @@ import bpy
 
 from ...core import identifiers
 from ...jobs.angles.angle_table import current_table, last_settings
-from ..shared.polling import ComputingOperator
+from ..shared.polling import ComputingOperator, poll_active_mesh
 
 
 class MESH_OT_cone_update_table(ComputingOperator, bpy.types.Operator):
@@ -15,6 +15,10 @@ class MESH_OT_cone_update_table(ComputingOperator, bpy.types.Operator):
     bl_label = "Update Table"
     bl_description = "Read the cone angles of this large mesh and update their table"
     bl_options = {"INTERNAL"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and poll_active_mesh(cls, context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         current_table(context.object, last_settings(context), on_request=True)

@@ -34,6 +34,14 @@ def poll_meshes(operator: type[bpy.types.Operator], context: bpy.types.Context) 
     return _poll_targets(operator, context, "Enter edit mode on a mesh, or select mesh objects in object mode")
 
 
+def poll_active_mesh(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
+    """True where the active object is a mesh, in edit mode or object mode."""
+    if context.mode in {"EDIT_MESH", "OBJECT"} and context.object is not None and context.object.type == "MESH":
+        return True
+    operator.poll_message_set("Make a mesh the active object, in edit mode or object mode")
+    return False
+
+
 def poll_computation(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
     """True where there are meshes to work on and the computing library is available."""
     return _poll_library(operator) and poll_meshes(operator, context)

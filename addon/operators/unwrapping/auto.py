@@ -15,7 +15,7 @@ from ...core.length_units import length_unit
 from ...core.preferences import chosen_threads, preferences
 from ...core.region import Region
 from ...core.text import counted
-from ...jobs.layouts.maps import PackSettings, packing_of_preset, stacked_layouts, write_map
+from ...jobs.layouts.maps import PackSettings, packing_of_preset, stacked_layouts, tiny_islands_in_words, write_map
 from ...jobs.layouts.remembered import unwrap_all_once
 from ...jobs.tasks.placing import mark_placed
 from ...jobs.tasks.summaries import unwrap_summary
@@ -206,7 +206,10 @@ class UV_OT_cone_auto_unwrap(
             write_map(obj, unwrapped, corner_uv)
             if self.mark:
                 mark_placed(obj, self.vertex_group, task.cones, unwrapped.result)
-        summaries = [unwrap_summary(unwrapped) for _, _, unwrapped in solved]
+        summaries = [
+            unwrap_summary(unwrapped) + tiny_islands_in_words(unwrapped, corner_uv)
+            for (_, _, unwrapped), corner_uv in zip(solved, layouts, strict=True)
+        ]
         if stacked:
             summaries[-1] += f"; {counted(stacked, 'island')} stacked on others"
         return summaries

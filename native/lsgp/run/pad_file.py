@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from pathlib import Path
 
 import numpy as np
@@ -48,7 +49,13 @@ def pad_file(args: argparse.Namespace, run: Run) -> str:
     """Pad args.input into args.output; returns the line for people.  Raises OSError, LsgpError."""
     if args.mips < 0:
         raise UsageError(f"--mips {args.mips} is below 0; give how many mip levels to write")
+    if not 0 <= args.margin < math.inf:
+        raise UsageError(f"--margin {args.margin:g} is no width; give pixels, 0 or more")
     image = read_image(args.input)
+    height, width = image.shape[:2]
+    most = max(height, width).bit_length() - 1
+    if args.mips > most:
+        raise UsageError(f"--mips {args.mips}: an image of {width} x {height} pixels has {most}; give no more")
     file = read_file(args.uv, run, args.format, with_uv=True)
     corner_uv = uv_of(file, "use")
     margins = _margins(args.margin, args.mips)
@@ -60,7 +67,6 @@ def pad_file(args: argparse.Namespace, run: Run) -> str:
         write_whole(path, content)
     changed = levels[0] != image
     texels = int(np.count_nonzero(changed.any(axis=2) if changed.ndim == 3 else changed))
-    height, width = image.shape[:2]
     written = f", and mip levels 1 to {args.mips}" if args.mips else ""
     return f"{args.output}: {width} x {height} texels, {texels} of them changed{written}"
 

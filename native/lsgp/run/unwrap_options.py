@@ -131,7 +131,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
         action="store_true",
         help="overwrite the input, which is kept as a backup until the result is complete",
     )
-    add_strict_option(unwrap, "layout")
+    add_strict_option(unwrap, "layout", "tiny islands, ")
     _add_low_stretch_options(unwrap)
     _add_seamless_options(unwrap)
     _add_texel_options(unwrap)
@@ -280,12 +280,13 @@ def up_of(args: argparse.Namespace) -> FloatArray | None:
     return up if up.any() else None
 
 
-def add_strict_option(command: argparse.ArgumentParser, result: str) -> None:
+def add_strict_option(command: argparse.ArgumentParser, result: str, further_flaws: str = "") -> None:
     command.add_argument(
         "--strict",
         action="store_true",
-        help=f"refuse a {result} with flipped triangles, wrong or inexact angles, inexact seams, components left out, "
-        "or cones that miss the target, instead of warning: exit code 3, and no file but the report",
+        help=f"refuse a {result} with flipped triangles, wrong or inexact angles, inexact seams, "
+        f"{further_flaws}components left out, or cones that miss the target, instead of warning: exit code 3, and no "
+        "file but the report",
     )
 
 
@@ -548,10 +549,15 @@ def _seamless(args: argparse.Namespace, preset: Seamless | None) -> Seamless | N
     base = Seamless() if args.seamless else preset
     if base is None:
         for name in ("tiles", "tile_size", "lattice", "parity", "coarse_grid", "texture_size", "mip_levels"):
-            tiled = args.texel_density is not None or args.udim is not None or args.pack == "tight"
-            elsewhere = name == "texture_size" and tiled
-            if getattr(args, name) is not None and not elsewhere:
+            if getattr(args, name) is None:
+                continue
+            if name != "texture_size":
                 raise UsageError(f"--{name.replace('_', '-')} is for seamless layouts; add --seamless")
+            if args.texel_density is None and args.udim is None and args.pack != "tight":
+                raise UsageError(
+                    "--texture-size is for margins, texel densities and seamless layouts; add --pack tight, --udim, "
+                    "--texel-density or --seamless"
+                )
         return None
     wanted = {name: getattr(args, name) for name in ("lattice", "tiles", "tile_size", "parity", "coarse_grid")}
     if args.texel_density is not None:

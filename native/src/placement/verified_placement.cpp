@@ -284,32 +284,43 @@ VerifiedChoice VerifiedPlacement::place_count(int count) {
     if (is_better(found.map, best.map)) best = std::move(found);
     monitor_.tick();
   }
-  if (!is_settled()) move_cones(best);
+  if (!is_settled()) move_cones(MovedAngles::bounded, best);
+  if (!is_settled() && is_small()) move_cones(MovedAngles::least_distortion, best);
   return best;
 }
 
-// Moves one cone after another to a neighbour or to where the map is stretched most, as long as that improves it.
-void VerifiedPlacement::move_cones(VerifiedChoice& best) {
+// Moves one cone after another to a neighbour or to where the map is stretched most, as long as that improves it, until
+// it is as predicted. What is predicted with angles beyond the bounds is no promise: that before the moves is.
+void VerifiedPlacement::move_cones(MovedAngles angles, VerifiedChoice& best) {
   if (!chooses_angles() || !best.map.is_valid()) return;
+  const double promised = as_predicted * best.cones.predicted_l2;
   int left = std::min(most_moves, triangles_moved / chooser_.task().mesh.triangle_count());
   const auto kept = static_cast<std::size_t>(chooser_.existing_count()), count = best.cones.vertices.size();
   for (bool is_moved = true; is_moved && left > 0;) {
     is_moved = false;
-    for (std::size_t cone = kept; cone < count; ++cone) is_moved |= move_cone(best, cone, left);
+    for (std::size_t cone = kept; cone < count; ++cone) {
+      if (angles == MovedAngles::bounded ? is_as_predicted(best) : best.map.l2 <= promised) return;
+      is_moved |= move_cone(best, cone, angles, left);
+    }
   }
 }
 
-bool VerifiedPlacement::move_cone(VerifiedChoice& best, std::size_t cone, int& left) {
+bool VerifiedPlacement::move_cone(VerifiedChoice& best, std::size_t cone, MovedAngles angles, int& left) {
+  const auto improves = [&](const TriedMap& map) { return map.l2 - 1 < worth_moving * (best.map.l2 - 1); };
   const Index from = best.cones.vertices[cone];
   for (const Index to : places_near(best, from)) {
-    if (left == 0 || is_as_predicted(best)) return false;
+    if (left == 0) return false;
     std::optional<ConeChoice> moved = chooser_.choose_moved(best.cones, from, to);
     if (!moved || !moved->is_possible()) continue;
     --left;
     monitor_.tick();
-    TriedMap map = trial_.make(chooser_.with_angles(*moved), MapTrial::Repairs::easy);
-    if (!(map.l2 - 1 < worth_moving * (best.map.l2 - 1))) continue;
-    best = {std::move(*moved), std::move(map)};
+    VerifiedChoice found{std::move(*moved), {}};
+    found.map = trial_.make(chooser_.with_angles(found.cones), MapTrial::Repairs::easy);
+    if (angles == MovedAngles::least_distortion && !improves(found.map)) {
+      take_least_distortion(MapTrial::Repairs::easy, found);
+    }
+    if (!improves(found.map)) continue;
+    best = std::move(found);
     return true;
   }
   return false;
@@ -325,13 +336,17 @@ Array<Index> VerifiedPlacement::places_near(const VerifiedChoice& choice, Index 
   return out;
 }
 
+void VerifiedPlacement::take_least_distortion(MapTrial::Repairs repairs, VerifiedChoice& choice) {
+  take_angles(trial_.make(chooser_.with_given_angles(choice.cones.vertices), repairs), repairs, choice);
+}
+
 // Angles without bounds, independent of the variance: those of least distortion. If angles or seams are off, all
 // attempts of unwrapping with automatic angles.
 void VerifiedPlacement::choose_other_angles(VerifiedChoice& best) {
   const std::size_t count = best.cones.vertices.size();
   if (!chooses_angles() || count == 0 || count > most_one_by_one || !is_worth_trying(best.cones)) return;
   const auto repairs = best.map.is_off() || is_small() ? MapTrial::Repairs::all : MapTrial::Repairs::easy;
-  take_angles(trial_.make(chooser_.with_given_angles(best.cones.vertices), repairs), repairs, best);
+  take_least_distortion(repairs, best);
 }
 
 // Repairs of large surfaces with high stretch take long.

@@ -23,8 +23,8 @@ struct VerifiedChoice {
 // Without a number of cones the target applies to the map: if it is missed, corners of a polyhedron become cones, cones
 // are added where the map is stretched, or chosen for a lower target, continuing the previous choice, with as few as
 // suffice; if that misses, too, more cones than the stages have. A given number of cones is kept, but other choices are
-// tried if the map is worse than predicted, and then one cone after another is moved. If all of these miss, the angles
-// of least distortion are tried.
+// tried if the map is worse than predicted, and then one cone after another is moved, on small surfaces also with
+// angles of least distortion at the new places. If all of these miss, these angles are tried.
 //
 // At most some ten maps are computed, most of them with local repairs only, and more to move cones, hundreds of small
 // surfaces; one or two if the prediction is hopeless or there are more cones, existing or requested, than are chosen
@@ -38,6 +38,9 @@ class VerifiedPlacement {
   int maps() const { return trial_.made(); }
 
  private:
+  // Of cones that are moved: within the bounds of the sites, or, where these are no better, those of least distortion.
+  enum class MovedAngles { bounded, least_distortion };
+
   VerifiedChoice place_to_target();
   VerifiedChoice place_count(int count);
   VerifiedChoice verified(ConeChoice cones);
@@ -49,8 +52,8 @@ class VerifiedPlacement {
   bool misses(const VerifiedChoice& choice) const;
   std::optional<VerifiedChoice> placed_naturally(Corners corners);
   void add_where_stretched(VerifiedChoice& best, double share);
-  void move_cones(VerifiedChoice& best);
-  bool move_cone(VerifiedChoice& best, std::size_t cone, int& left);
+  void move_cones(MovedAngles angles, VerifiedChoice& best);
+  bool move_cone(VerifiedChoice& best, std::size_t cone, MovedAngles angles, int& left);
   Array<Index> places_near(const VerifiedChoice& choice, Index cone) const;
   void lower_target(AutomaticCones& automatic, VerifiedChoice& best);
   void take_fewer(const AutomaticCones& automatic, double missed, double reached, VerifiedChoice& best);
@@ -61,6 +64,7 @@ class VerifiedPlacement {
   bool chooses_angles() const;
   bool is_short(const VerifiedChoice& choice) const;  // of the target, and not hopelessly
   void take_angles(const TriedMap& other, MapTrial::Repairs repairs, VerifiedChoice& choice);
+  void take_least_distortion(MapTrial::Repairs repairs, VerifiedChoice& choice);
   void choose_other_angles(VerifiedChoice& best);
 
   ConeChooser& chooser_;

@@ -65,6 +65,13 @@ def test_a_larger_surface_has_fewer_texels_per_unit(scale: float) -> None:
         assert getattr(other, name) == pytest.approx(getattr(one, name) / scale, rel=1e-9)
 
 
+@pytest.mark.parametrize("scale", [1e-290, 1e-200, 1e200, 1e290])
+def test_density_grows_with_the_layout_at_any_size(scale: float) -> None:
+    one, other = (texel_density(PARTS, factor * SPLIT.corner_uv, SIZE) for factor in (1.0, scale))
+    for name in ("minimum", "median", "maximum", "mean"):
+        assert getattr(other, name) == pytest.approx(getattr(one, name) * scale, rel=1e-9)
+
+
 def test_a_flat_map_of_one_scale_has_one_density() -> None:
     grid = surface(meshes.grid(5, 4))
     uv = 0.25 * grid.positions[grid.triangles][..., :2]

@@ -173,6 +173,26 @@ def test_cones_are_moved_until_the_map_is_as_predicted(name: str) -> None:
     assert placed.mapped_l2 == pytest.approx(unwrapped(COARSE_HANDLES[name], placed).distortion.l2_stretch, rel=1e-6)
 
 
+# With the stretch of the maps of eight cones that are moved within the bounds of their angles.
+BEYOND_BOUNDS = {
+    "two tunnels": (tunnels.tunnelled_plate(2, 1, 3), 1.187),
+    "three tunnels": (tunnels.tunnelled_plate(1, 3, 1), 1.464),
+    "sponge": (tunnels.sponge(1), 1.587),
+    "spring": (swept.spring(3, 6, True), 1.197),
+    "pipe": (swept.pipe(8, 10, 1.5, True), 1.199),
+}
+
+
+@pytest.mark.parametrize("name", BEYOND_BOUNDS)
+def test_moved_cones_get_angles_beyond_their_bounds_if_these_stretch_less(name: str) -> None:
+    mesh, bounded = BEYOND_BOUNDS[name]
+    placed = place(mesh, count=8)
+    result = unwrapped(mesh, placed)
+    assert len(placed.cones) == 8 and len(result.flipped) == len(result.wrong_angle_sums) == 0
+    assert placed.mapped_l2 < 0.95 * bounded
+    assert placed.mapped_l2 == pytest.approx(result.distortion.l2_stretch, rel=1e-6)
+
+
 def test_moved_cones_leave_marked_ones() -> None:
     mesh = COARSE_HANDLES["four tunnels"]
     marked = place(mesh, count=8).cones[[1, 4]]
