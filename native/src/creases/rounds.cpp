@@ -16,6 +16,7 @@ constexpr double most_bend = 1.27;   // radians at an edge of something round: o
 constexpr double most_bends = 1.45;  // of one edge to the next: less than for rims of frustums that bend by most_bend
 constexpr double most_widths = 2.5;  // of a face to the next
 constexpr int most_triangles = 32;   // of a face that are crossed
+constexpr double rounding = 1e-9;    // of a direction: it may not decide on which side a path through a vertex goes on
 
 double ratio(double a, double b) { return std::max(a, b) / std::min(a, b); }
 
@@ -39,7 +40,8 @@ std::optional<Crossing> cross(const HalfedgeMesh& mesh, const Eigen::VectorXd& b
   const Vector across = normal.cross(position(next(first)) - position(first)).stableNormalized();
   Index h = first;
   for (int i = 0; i < most_triangles; ++i) {
-    const bool apex_is_left = across.cross(position(prev(h)) - middle).dot(normal) > 0;
+    const Vector to_apex = position(prev(h)) - middle;
+    const bool apex_is_left = across.cross(to_apex).dot(normal) > -rounding * to_apex.norm();
     h = apex_is_left ? next(h) : prev(h);
     if (mesh.twin[h] == none) return std::nullopt;
     if (bend[h] >= is_flat) {
