@@ -630,9 +630,10 @@ def crease_borders(
 
     The regions between creases are patches. Patches are unfolded together across shared boundary segments that are
     straight and not short, and a tube is opened from end to end: a cylinder becomes a rectangle and two disks.
-    Narrow bevels that turn the surface by `angle` are creases along their middle. Components with cones or marked
-    seams, and those with more than a fifth of their curvature off the creases, or 2 % off creases and bevels, have no
-    such edges; half of it may be at one or two apexes, which remain for cones.
+    Narrow bevels that turn the surface by `angle` are creases along their middle; edges of coarse round shapes, of less
+    than 1.27 radians and like their neighbours, are none. Components with cones or marked seams, and those with more
+    than a fifth of their curvature off the creases, or 2 % off creases and bevels, have no such edges; half of it may
+    be at one or two apexes, which remain for cones.
     angle: least angle between the normals at a crease, radians.
     sharp: (s, 2) int32, edges that are creases whatever their angle.
     most_corners: components with their curvature at no more vertices than this have none, since cones there serve as

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from .api import Result
@@ -25,12 +27,12 @@ def may_replace_map(symmetric: Result, usual: Result, square_share: float = 1.0)
     island more, or one for ten if there are as many, the square filled at most 3 % less, and no further defects.
 
     Both as from `parameterize`, with islands on shelves, for this share of a square. How far these fill the square says
-    how far they do once they are packed tightly only where they are few and have one square, and how far they fill
-    their boxes only elsewhere.
+    how far they do once they are packed tightly only where they are few and have one square. Elsewhere it is how far
+    they fill their boxes, and at most what the longest island leaves them of one square.
     """
     islands = len(np.unique(usual.island[usual.solved]))
-    fills_square = islands <= _FEW_ISLANDS and square_share <= 1 and usual.seamless is None
-    filled = _filled_square if fills_square else _filled_boxes
+    has_one_square = square_share <= 1 and usual.seamless is None
+    filled = _filled_square if islands <= _FEW_ISLANDS and has_one_square else partial(_filled_boxes, has_one_square)
     return (
         symmetric.solved.tolist() == usual.solved.tolist()
         and _defects(symmetric) <= _defects(usual)
@@ -67,8 +69,8 @@ def _filled_square(result: Result) -> float:
     return uv_area(result.corner_uv[result.solved])
 
 
-def _filled_boxes(result: Result) -> float:
-    """The part of the boxes of all islands that these fill."""
+def _filled_boxes(has_one_square: bool, result: Result) -> float:
+    """The part that islands fill of all their boxes, or of the square around the longest one, if that is less."""
     uv = result.corner_uv[result.solved]
     if not len(uv):
         return 1.0
@@ -77,4 +79,5 @@ def _filled_boxes(result: Result) -> float:
     np.minimum.at(low, island.ravel(), uv.min(axis=1))
     np.maximum.at(high, island.ravel(), uv.max(axis=1))
     boxes = float((high - low).prod(axis=1).sum())
-    return uv_area(uv) / boxes if boxes > 0 else 1.0
+    room = max(boxes, float((high - low).max()) ** 2) if has_one_square else boxes
+    return uv_area(uv) / room if room > 0 else 1.0

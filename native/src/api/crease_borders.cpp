@@ -11,6 +11,7 @@
 #include "base/progress_monitor.hpp"
 #include "base/text.hpp"
 #include "creases/crease_borders.hpp"
+#include "creases/rounds.hpp"
 #include "cut/cut_cost.hpp"
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
@@ -63,7 +64,8 @@ VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& con
     for (Index h = 0; h < mesh.halfedge_count(); ++h) {
       if (!may_cut(mesh, h)) continue;
       const Index a = component.source_vertex[mesh.origin(h)], b = component.source_vertex[mesh.target(h)];
-      crease[h] = bend[h] >= options.angle || (!sharp.empty() && sharp.count(std::minmax(a, b)) > 0);
+      crease[h] = (bend[h] >= options.angle && !is_round(mesh, bend, h)) ||
+                  (!sharp.empty() && sharp.count(std::minmax(a, b)) > 0);
     }
     const PerHalfedge<char> open = find_crease_borders({mesh, geometry}, crease, bend, options);
     append_ends(component, open, edges);

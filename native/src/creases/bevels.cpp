@@ -16,6 +16,7 @@ namespace {
 
 constexpr double is_flat = 0.05;             // radians between triangles of one face
 constexpr double least_bend = 0.1;           // radians between faces of a bevel
+constexpr double most_bend = 1.1;            // the same: a chamfer has two edges, each with about half the turn
 constexpr double largest_radius = 0.05;      // of a bevel, in square roots of the component's area
 constexpr double most_area = 0.4;            // of the component
 constexpr double unit_of_turns = 1e-6;       // radians: whole numbers of them tie where rounding would decide
@@ -83,7 +84,7 @@ PerTriangle<Side> find_sides(const HalfedgeMesh& mesh, const PerTriangle<char>& 
     out[f] = {side, turn};
     for (Index h = 3 * f; h < 3 * f + 3; ++h) {
       const Index there = mesh.twin[h] == none ? none : mesh.twin[h] / 3;
-      if (there == none || !is_rounded[there] || out[there].face != none) continue;
+      if (there == none || !is_rounded[there] || out[there].face != none || bend[h] > most_bend) continue;
       queue.emplace(turn + std::llround(bend[h] / unit_of_turns), side, there);
     }
   }
@@ -101,15 +102,19 @@ std::optional<Bevels> find_bevels(const MetricMesh& surface, const Eigen::Vector
   if (area == 0 || area > most_area * geometry.total_area) return std::nullopt;
   const PerTriangle<Side> side = find_sides(mesh, is_rounded, bend, angle);
   Bevels out;
+  const auto is_of_bevel = [&](Index f) { return is_rounded[f] && side[f].face != none; };
   out.is_rounded.assign(mesh.vertex_count(), 0);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    if (is_rounded[h / 3]) out.is_rounded[mesh.origin(h)] = 1;
+    if (is_of_bevel(h / 3)) out.is_rounded[mesh.origin(h)] = 1;
   }
+  out.edge = marked(mesh, [&](Index h) {
+    const Index f = h / 3, g = mesh.twin[h] / 3;
+    return bend[h] <= most_bend && side[f].face != none && side[g].face != none && (is_of_bevel(f) || is_of_bevel(g));
+  });
   out.crease = marked(mesh, [&](Index h) {
     const Side &here = side[h / 3], &there = side[mesh.twin[h] / 3];
-    if (here.face == none || there.face == none || here.face == there.face) return false;
     const double turn = bend[h] + unit_of_turns * static_cast<double>(here.turn + there.turn);
-    return turn >= angle && (is_rounded[h / 3] || is_rounded[mesh.twin[h] / 3]);
+    return out.edge[h] && here.face != there.face && turn >= angle;
   });
   return out;
 }

@@ -10,7 +10,8 @@
 namespace lsgp {
 
 struct Bevels {
-  PerHalfedge<char> crease;    // both halfedges of edges along the middle of a bevel
+  PerHalfedge<char> edge;      // both halfedges of the edges of the strips' triangles, sharp ones excepted
+  PerHalfedge<char> crease;    // those of them along the middle of a bevel
   PerVertex<char> is_rounded;  // vertices of the strips
 };
 

@@ -303,21 +303,23 @@ void open_tubes(const MetricMesh& surface, PerHalfedge<char>& open) {
   }
 }
 
-// The patches of a hard surface, with bevels if those are needed to make it one; none if it is none.
+// The patches of a hard surface, which end in the middle of its bevels, or else at all its creases, those beside narrow
+// strips included; none if it is none.
 std::optional<Patches> find_hard_patches(const MetricMesh& surface, const PerHalfedge<char>& crease,
                                          const Eigen::VectorXd& bend, const CreaseOptions& options) {
   const HalfedgeMesh& mesh = surface.mesh;
   std::optional<Patches> out;
+  if (std::optional<Bevels> bevels = find_bevels(surface, bend, options.angle)) {
+    for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+      const bool is_marked = crease[h] && bend[h] < options.angle;
+      bevels->crease[h] = bevels->edge[h] && !is_marked ? bevels->crease[h] && may_cut(mesh, h) : crease[h];
+    }
+    out.emplace(surface, find_patches(surface, bevels->crease, bend));
+    if (out->carry_curvature(least_on_bevels, bevels->is_rounded, options.most_corners)) return out;
+  }
   out.emplace(surface, find_patches(surface, crease, bend));
   const PerVertex<char> nowhere(mesh.vertex_count(), 0);
-  if (out->carry_curvature(CreaseCurvature::least_share, nowhere, options.most_corners)) return out;
-  std::optional<Bevels> bevels = find_bevels(surface, bend, options.angle);
-  if (!bevels) return std::nullopt;
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    bevels->crease[h] = crease[h] || (bevels->crease[h] && may_cut(mesh, h));
-  }
-  out.emplace(surface, find_patches(surface, bevels->crease, bend));
-  if (!out->carry_curvature(least_on_bevels, bevels->is_rounded, options.most_corners)) out.reset();
+  if (!out->carry_curvature(CreaseCurvature::least_share, nowhere, options.most_corners)) out.reset();
   return out;
 }
 

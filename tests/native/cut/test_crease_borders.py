@@ -12,6 +12,7 @@ import pytest
 from map_checks import pairs, surface
 from meshes import Mesh
 from result_check import undeclared_faults
+from scipy.spatial import ConvexHull
 from zoo import closed, swept, tunnels
 
 SOLIDS = {
@@ -44,6 +45,18 @@ def angle_between_normals(mesh: Mesh, edges: np.ndarray) -> np.ndarray:
         one, other = normal[np.isin(mesh.triangles, edge).sum(axis=1) == 2]
         out.append(np.arccos(np.clip(one @ other, -1, 1)))
     return np.array(out)
+
+
+def chamfered_box(size: tuple[float, float, float], chamfer: float) -> Mesh:
+    """A box whose edges and corners are cut off by one face each."""
+    signs = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3), axis=-1).reshape(-1, 3)
+    points = np.concatenate([signs * (np.array(size) / 2 - chamfer * (np.arange(3) != axis)) for axis in range(3)])
+    hull = ConvexHull(points)
+    triangles = hull.simplices.copy()
+    a, b, c = points[triangles].transpose(1, 0, 2)
+    inwards = (np.cross(b - a, c - a) * hull.equations[:, :3]).sum(axis=1) < 0
+    triangles[inwards] = triangles[inwards, ::-1]
+    return meshes.make(points, triangles)
 
 
 @pytest.mark.parametrize("name", SOLIDS)
@@ -116,6 +129,43 @@ def test_round_surfaces_with_a_rim_are_no_hard_ones() -> None:
     height = np.sin(np.linspace(0, np.pi / 2, 9))
     dome = closed.lathe(np.cos(np.linspace(0, np.pi / 2, 9)).clip(0), height, 32, caps=(True, False))
     assert len(lsgp.crease_borders(surface(dome))) == 0
+
+
+@pytest.mark.parametrize("size", [(1, 1, 1), (1, 2, 0.6), (3, 1, 1)])
+@pytest.mark.parametrize("chamfer", [0.01, 0.03, 0.05])
+def test_chamfers_are_no_islands(size: tuple[float, float, float], chamfer: float) -> None:
+    """Their edges bend by as much as creases do, but only both together turn from one face to the next."""
+    mesh = chamfered_box(size, chamfer)
+    result = lsgp.auto_unwrap(surface(mesh), preset="bake")
+    a, b, c = mesh.positions[mesh.triangles].transpose(1, 0, 2)
+    is_face = (np.abs(np.cross(b - a, c - a)) > 1e-9).sum(axis=1) == 1
+    assert is_face.sum() == 12 and set(result.island) == set(result.island[is_face])
+    assert result.distortion.l2_stretch < 1.005
+    marked = lsgp.crease_borders(surface(mesh), angle=1.0, sharp=meshes.edges_of(mesh.triangles))
+    assert len(marked) > len(lsgp.crease_borders(surface(mesh), angle=1.0)) > 0
+
+
+@pytest.mark.parametrize(("around", "along"), [(12, 6), (48, 6), (24, 7), (48, 8), (100, 8)])
+def test_rings_of_a_coarse_torus_are_no_creases(around: int, along: int) -> None:
+    torus = meshes.torus(around, along, 1.0, 0.25)
+    assert angle_between_normals(torus, meshes.edges_of(torus.triangles)).max() > 0.7
+    assert len(lsgp.crease_borders(surface(torus))) == 0
+
+
+@pytest.mark.parametrize("sides", [8, 12, 24])
+@pytest.mark.parametrize("slope", [45, 60, 70, 72, 74, 80, 90])
+def test_rims_of_a_frustum_are_creases(sides: int, slope: float) -> None:
+    """Where a rim and the cap beyond bend alike, the other rim does not."""
+    height = 0.4 * np.tan(np.radians(slope)) if slope < 90 else 1.0
+    top = 0.6 if slope < 90 else 1.0
+    frustum = closed.lathe(np.array([1.0, top]), np.array([0.0, height]), sides, caps=(True, True))
+    z = frustum.positions[:, 2]
+    edges = meshes.edges_of(frustum.triangles)
+    bends = angle_between_normals(frustum, edges)
+    rims = edges[(np.ptp(z[edges], axis=1) == 0) & (bends >= 0.7)]
+    borders = pairs(lsgp.crease_borders(surface(frustum)))
+    # Two faces may be unfolded together across an edge of a rim, as the base of a pyramid and one of its sides.
+    assert len(pairs(rims) - borders) <= 2
 
 
 def test_what_the_artist_has_marked_is_left_alone() -> None:

@@ -159,6 +159,9 @@ def test_a_symmetric_map_replaces_another_only_at_a_small_cost() -> None:
     assert not may_replace_map(with_islands(islands // 10 + 1), usual)
     assert may_replace_map(with_l2(1.009), usual) and not may_replace_map(with_l2(1.011), usual)
     assert not may_replace_map(replace(usual, flipped=np.array([3], np.int32)), usual)
+    # Islands fill their boxes as before, but one square around the longest is larger than all boxes.
+    longer = replace(usual, corner_uv=usual.corner_uv * [8, 1 / 8])
+    assert not may_replace_map(longer, usual) and may_replace_map(longer, usual, square_share=2.0)
 
 
 def test_a_single_island_may_fill_little_less_of_the_square() -> None:

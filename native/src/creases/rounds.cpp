@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "creases/rounds.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <optional>
+
+#include "mesh/geometry.hpp"
+
+namespace lsgp {
+
+namespace {
+
+constexpr double is_flat = 0.01;     // radians between triangles of one face
+constexpr double most_bend = 1.27;   // radians at an edge of something round: of a tube with five sides
+constexpr double most_bends = 1.45;  // of one edge to the next: less than for rims of frustums that bend by most_bend
+constexpr double most_widths = 2.5;  // of a face to the next
+constexpr int most_triangles = 32;   // of a face that are crossed
+constexpr double rounding = 1e-9;    // of a direction: it may not decide on which side a path through a vertex goes on
+
+double ratio(double a, double b) { return std::max(a, b) / std::min(a, b); }
+
+bool is_convex(const HalfedgeMesh& mesh, Index h) {
+  const Index beside = mesh.origin(prev(mesh.twin[h]));
+  const Eigen::RowVector3d there = mesh.positions.row(beside) - mesh.positions.row(mesh.origin(h));
+  return area_normal(mesh.positions, mesh.triangles, h / 3).dot(there) < 0;
+}
+
+struct Crossing {
+  Index edge;  // a halfedge of the face
+  double width;
+};
+
+// The edge of a face that is met from the middle of another one at right angles; none at borders and on large fans.
+std::optional<Crossing> cross(const HalfedgeMesh& mesh, const Eigen::VectorXd& bend, Index first) {
+  using Vector = Eigen::Vector3d;
+  const auto position = [&](Index h) -> Vector { return mesh.positions.row(mesh.origin(h)); };
+  const Vector normal = area_normal(mesh.positions, mesh.triangles, first / 3).stableNormalized();
+  const Vector middle = (position(first) + position(next(first))) / 2;
+  const Vector across = normal.cross(position(next(first)) - position(first)).stableNormalized();
+  Index h = first;
+  for (int i = 0; i < most_triangles; ++i) {
+    const Vector to_apex = position(prev(h)) - middle;
+    const bool apex_is_left = across.cross(to_apex).dot(normal) > -rounding * to_apex.norm();
+    h = apex_is_left ? next(h) : prev(h);
+    if (mesh.twin[h] == none) return std::nullopt;
+    if (bend[h] >= is_flat) {
+      const Vector edge = position(next(h)) - position(h);
+      const double width = (position(h) - middle).cross(edge).dot(normal) / across.cross(edge).dot(normal);
+      return Crossing{h, width};
+    }
+    h = mesh.twin[h];
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool is_round(const HalfedgeMesh& mesh, const Eigen::VectorXd& bend, Index h) {
+  if (bend[h] > most_bend) return false;
+  const std::optional<Crossing> here = cross(mesh, bend, h), there = cross(mesh, bend, mesh.twin[h]);
+  if (!here || !there || !(ratio(here->width, there->width) <= most_widths)) return false;
+  const bool is_convex_here = is_convex(mesh, h);
+  const auto goes_on = [&](Index edge) {
+    return ratio(bend[edge], bend[h]) <= most_bends && is_convex(mesh, edge) == is_convex_here;
+  };
+  return goes_on(here->edge) && goes_on(there->edge);
+}
+
+}  // namespace lsgp
