@@ -43,6 +43,12 @@ class Solver:
         pins: _Pins,
         progress: _Progress,
     ) -> dict[str, Any]: ...
+    def place_cones(
+        self,
+        cones: _Cones,
+        options: dict[str, Any],
+        progress: _Progress,
+    ) -> dict[str, Any]: ...
 
 class GrabbedCut:
     @property
