@@ -503,13 +503,7 @@ lsgp::PlacementOptions to_placement_options(const py::dict& values) {
   return options;
 }
 
-py::dict place_cones(const SurfaceArrays& surface_arrays, const ConeArrays& cones, const py::dict& option_values,
-                     const ProgressCallback& progress) {
-  const lsgp::Surface surface = to_surface(surface_arrays);
-  const lsgp::Cones existing = to_cones(cones);
-  const lsgp::PlacementOptions options = to_placement_options(option_values);
-  const lsgp::Progress tell = to_progress(progress);
-  const lsgp::Placement result = without_gil([&] { return lsgp::place_cones(surface, existing, options, tell); });
+py::dict to_dict(const lsgp::Placement& result) {
   py::dict out;
   out["cones"] = to_array(result.cones);
   out["cone_angles"] = to_array(result.cone_angles);
@@ -522,6 +516,23 @@ py::dict place_cones(const SurfaceArrays& surface_arrays, const ConeArrays& cone
   out["factorizations"] = result.linear_algebra.factorizations;
   out["back_substitutions"] = result.linear_algebra.back_substitutions;
   return out;
+}
+
+py::dict place_cones(const SurfaceArrays& surface_arrays, const ConeArrays& cones, const py::dict& option_values,
+                     const ProgressCallback& progress) {
+  const lsgp::Surface surface = to_surface(surface_arrays);
+  const lsgp::Cones existing = to_cones(cones);
+  const lsgp::PlacementOptions options = to_placement_options(option_values);
+  const lsgp::Progress tell = to_progress(progress);
+  return to_dict(without_gil([&] { return lsgp::place_cones(surface, existing, options, tell); }));
+}
+
+py::dict place_cones_again(lsgp::Solver& solver, const ConeArrays& cones, const py::dict& option_values,
+                           const ProgressCallback& progress) {
+  const lsgp::Cones existing = to_cones(cones);
+  const lsgp::PlacementOptions options = to_placement_options(option_values);
+  const lsgp::Progress tell = to_progress(progress);
+  return to_dict(without_gil([&] { return solver.place_cones(existing, options, tell); }));
 }
 
 py::dict cone_gains(const SurfaceArrays& surface_arrays, const ConeArrays& cones, const std::string& seam_mode,
@@ -623,7 +634,8 @@ PYBIND11_MODULE(_lsgp, module) {
   module.def("parameterize", &parameterize, "surface"_a, "cones"_a, "options"_a, "pins"_a, "progress"_a);
   py::class_<lsgp::Solver>(module, "Solver")
       .def(py::init([](const SurfaceArrays& surface) { return lsgp::Solver(to_surface(surface)); }), "surface"_a)
-      .def("parameterize", &parameterize_again, "cones"_a, "options"_a, "pins"_a, "progress"_a);
+      .def("parameterize", &parameterize_again, "cones"_a, "options"_a, "pins"_a, "progress"_a)
+      .def("place_cones", &place_cones_again, "cones"_a, "options"_a, "progress"_a);
   py::class_<lsgp::GrabbedCut>(module, "GrabbedCut")
       .def_property_readonly("left", [](const lsgp::GrabbedCut& grabbed) { return to_array(grabbed.left()); })
       .def_property_readonly("right", [](const lsgp::GrabbedCut& grabbed) { return to_array(grabbed.right()); })

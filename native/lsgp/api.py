@@ -554,18 +554,23 @@ def parameterize(
 
 
 class Solver:
-    """Parameterizes one surface repeatedly, for instance while a cone is dragged or an angle is tried.
+    """Parameterizes one surface repeatedly, for instance while a cone is dragged or an angle is tried, or once cones
+    are placed.
 
-    Every call returns the same as `lsgp.parameterize` and caches data for the next one: the surface's topology and
-    geometry, and, as long as a component's cones do not move, its factored linear systems. Angles and all options
-    except `seams`, `border` and `factorization`, including those of seamless layouts, can then change without a new
-    factorization.
+    Every call returns the same as the function of that name and caches data for the next one: the surface's topology
+    and geometry, and, as long as a component's cones do not move, its factored linear systems, also those of the cones
+    that `place_cones` has placed. Angles and all options except `seams`, `border` and `factorization`, including those
+    of seamless layouts, can then change without a new factorization.
     A call during another one, from another thread or from its progress callback, raises SolverError (SOLVER_BUSY).
     """
 
     def __init__(self, surface: Surface) -> None:
         self._solver = _lsgp.Solver(surface_arrays(surface))
-        self._borders = surface.borders
+        self._surface = surface
+
+    @property
+    def surface(self) -> Surface:
+        return self._surface
 
     def parameterize(
         self,
@@ -577,7 +582,20 @@ class Solver:
     ) -> Result:
         """Arguments, result and errors as for `lsgp.parameterize`."""
         out = self._solver.parameterize(*_call(cones, angles, options, pins, progress))
-        return _to_result(out, self._borders)
+        return _to_result(out, self._surface.borders)
+
+    def place_cones(
+        self,
+        cones: ArrayLike = (),
+        angles: Sequence[float | None] | FloatArray | None = None,
+        *,
+        progress: Progress | None = None,
+        **options: Any,
+    ) -> Placement:
+        """Arguments, result and errors as for `lsgp.place_cones`, whose others are options here."""
+        arguments.require_callable(progress)
+        values = _placement_options(**options)
+        return Placement(**self._solver.place_cones(_given_cones(cones, angles), values, progress))
 
 
 def _call(
@@ -726,12 +744,36 @@ def place_cones(
     Raises InputError, TopologyError, CurvatureError, SolverError, Cancelled.
     """
     arguments.require_callable(progress)
+    options = _placement_options(
+        count=count,
+        target=target,
+        lattice=lattice,
+        prefer_sharp=prefer_sharp,
+        symmetric=symmetric,
+        mirror=mirror,
+        seams=seams,
+        threads=threads,
+    )
+    return Placement(**_lsgp.place_cones(surface_arrays(surface), _given_cones(cones, angles), options, progress))
+
+
+def _placement_options(
+    *,
+    count: int | None = None,
+    target: float = 1.05,
+    lattice: Lattice | None = None,
+    prefer_sharp: bool = False,
+    symmetric: bool = False,
+    mirror: tuple[ArrayLike, ArrayLike] | None = None,
+    seams: SeamMode = "follow",
+    threads: int = 0,
+) -> dict[str, Any]:
     if count is not None:
         count = arguments.whole_number("count", count, 0, "pass a number of cones, or None for automatic")
     if lattice is not None:
         arguments.require_choice("lattice", lattice, get_args(Lattice))
     arguments.require_choice("seams", seams, get_args(SeamMode))
-    options = {
+    return {
         "count": count,
         "target": arguments.number("target", target, "pass an L2 stretch, a number above 1"),
         "lattice": lattice,
@@ -741,8 +783,6 @@ def place_cones(
         "seams": seams,
         "threads": _threads(threads),
     }
-    out = _lsgp.place_cones(surface_arrays(surface), _given_cones(cones, angles), options, progress)
-    return Placement(**out)
 
 
 def cone_gains(

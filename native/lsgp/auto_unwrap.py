@@ -19,10 +19,9 @@ from .api import (
     Progress,
     Result,
     Seamless,
+    Solver,
     Surface,
     crease_borders,
-    parameterize,
-    place_cones,
     surface_arrays,
 )
 from .arguments import FloatArray, IndexArray
@@ -132,8 +131,9 @@ def auto_unwrap(
     packs = _may_pack(packing, chosen, pins, texels)
     placing, mapping = part_of(progress, 0.0, PLACING), part_of(progress, PLACING, PACKING if packs else 1.0)
     is_free = arguments.flag("symmetric", symmetric) and count is None
-    choices = possible_cones(surface, cones, angles, chosen, count, is_free, placing)
-    _, result = best_map(surface, choices, chosen, pins, mapping)
+    solver = Solver(surface)
+    choices = possible_cones(solver, cones, angles, chosen, count, is_free, placing)
+    _, result = best_map(solver, choices, chosen, pins, mapping)
     if packs:
         result = laid_out(surface, result, packing, texels, part_of(progress, PACKING, 1.0)).result
     elif texels is not None:
@@ -213,7 +213,7 @@ class CompletedCones:
 
 
 def complete_cones(
-    surface: Surface,
+    solver: Solver,
     cones: ArrayLike,
     angles: Sequence[float | None] | FloatArray | None,
     options: Options,
@@ -230,15 +230,15 @@ def complete_cones(
     given = arguments.index_vector("cones", cones)
     held = list(arguments.cone_angles("angles", angles, len(given)))
     if not len(given):
-        placed = _place(surface, given, held, options, count, progress, symmetric)
+        placed = _place(solver, given, held, options, count, progress, symmetric)
         return _completed(given, held, options, count, placed)
-    ledger = build_ledger(surface, given, held, options, gets_cones=True)
+    ledger = build_ledger(solver.surface, given, held, options, gets_cones=True)
     lacking = [component for component in ledger if _lacks(component)]
     if not lacking:
         return CompletedCones(given, held, None)
     triangles = np.sort(np.concatenate([component.triangles for component in lacking]))
     present = np.unique(np.concatenate([component.cones for component in lacking]))
-    own = surface_of_triangles(surface, triangles)
+    own = Solver(surface_of_triangles(solver.surface, triangles))
     placed = or_none(lambda: _place(own, given[present], [held[i] for i in present], options, count, progress))
     if placed is None:
         # The other components can still be mapped; mapping reports the defect of these.
@@ -248,7 +248,7 @@ def complete_cones(
 
 
 def possible_cones(
-    surface: Surface,
+    solver: Solver,
     cones: ArrayLike,
     angles: Sequence[float | None] | None,
     options: Options,
@@ -261,12 +261,10 @@ def possible_cones(
     symmetric: whether to try, where no cones are given. Errors as of `complete_cones`.
     """
     is_free = count is None and not len(arguments.index_vector("cones", cones))
-    if not (is_free and follows_features(surface, options)):
-        return _symmetric_cones(surface, cones, angles, options, count, symmetric, progress)
-    found = _symmetric_cones(
-        surface, cones, angles, options, count, symmetric, part_of(progress, 0.0, _BEFORE_FEATURES)
-    )
-    for_features = feature_cones(surface, options, part_of(progress, _BEFORE_FEATURES, 1.0))
+    if not (is_free and follows_features(solver.surface, options)):
+        return _symmetric_cones(solver, cones, angles, options, count, symmetric, progress)
+    found = _symmetric_cones(solver, cones, angles, options, count, symmetric, part_of(progress, 0.0, _BEFORE_FEATURES))
+    for_features = feature_cones(solver, options, part_of(progress, _BEFORE_FEATURES, 1.0))
     return found if for_features is None else [*found, for_features]
 
 
@@ -276,19 +274,19 @@ def follows_features(surface: Surface, options: Options) -> bool:
     return is_square and options.straighten and options.prescription is None and not len(surface.seams)
 
 
-def feature_cones(surface: Surface, options: Options, progress: Progress | None = None) -> CompletedCones | None:
+def feature_cones(solver: Solver, options: Options, progress: Progress | None = None) -> CompletedCones | None:
     """Cones with which the creases of hard surfaces can run along the lattice, and those of `complete_cones` on other
     components; None without hard surfaces, or if there are no such cones."""
-    arrays = surface_arrays(surface)
+    arrays = surface_arrays(solver.surface)
     chosen = or_none(lambda: _lsgp.feature_cones(arrays, part_of(progress, 0.0, TRYING)))
     if chosen is None or not len(chosen[0]):
         return None
-    found = or_none(lambda: complete_cones(surface, *chosen, options, None, part_of(progress, TRYING, 1.0)))
+    found = or_none(lambda: complete_cones(solver, *chosen, options, None, part_of(progress, TRYING, 1.0)))
     return None if found is None else replace(found, for_features=True)
 
 
 def _symmetric_cones(
-    surface: Surface,
+    solver: Solver,
     cones: ArrayLike,
     angles: Sequence[float | None] | None,
     options: Options,
@@ -299,18 +297,18 @@ def _symmetric_cones(
     """Those of `complete_cones`, and after them, where a component is symmetric, symmetric ones; if these are the same,
     their cuts may still be others."""
     if not symmetric or len(arguments.index_vector("cones", cones)):
-        return [complete_cones(surface, cones, angles, options, count, progress)]
+        return [complete_cones(solver, cones, angles, options, count, progress)]
     alike = or_none(
-        lambda: complete_cones(surface, cones, angles, options, count, part_of(progress, 0.0, TRYING), symmetric=True)
+        lambda: complete_cones(solver, cones, angles, options, count, part_of(progress, 0.0, TRYING), symmetric=True)
     )
     if alike is not None:
         odd = [finding for finding in alike.placement.warnings if finding.code == _ODD]
         others = [finding for finding in alike.placement.warnings if finding.code != _ODD]
         alike = replace(alike, placement=replace(alike.placement, warnings=others))
-        if sum(len(finding.elements.indices) for finding in odd) == len(surface.triangles):
+        if sum(len(finding.elements.indices) for finding in odd) == len(solver.surface.triangles):
             return [alike]
         alike = replace(alike, is_symmetric=True)
-    usual = complete_cones(surface, cones, angles, options, count, part_of(progress, TRYING, 1.0))
+    usual = complete_cones(solver, cones, angles, options, count, part_of(progress, TRYING, 1.0))
     if alike is None:
         return [usual]
     is_same = set(alike.cones.tolist()) == set(usual.cones.tolist())
@@ -318,7 +316,7 @@ def _symmetric_cones(
 
 
 def best_map(
-    surface: Surface,
+    solver: Solver,
     choices: Sequence[CompletedCones],
     options: Options,
     pins: Pins | None = None,
@@ -334,29 +332,29 @@ def best_map(
     stages = iter([part_of(progress, i * share, (i + 1) * share) for i in range(round(1 / share))])
     along = None
     if for_features is not None:
-        along = or_none(partial(_map_through, surface, for_features, options, pins, next(stages)))
+        along = or_none(partial(_map_through, solver, for_features, options, pins, next(stages)))
         if along is not None and not runs_along_features(along):
             along = None
     # Creases along the lattice take time: they are tried with the cones that are chosen.
     is_chosen = for_features is None or (along is None and not others)
     tried = options if is_chosen else replace(options, straighten=False)
-    best = usual, _map_through(surface, usual, tried, pins, next(stages))
+    best = usual, _map_through(solver, usual, tried, pins, next(stages))
     for other in others:
-        result = or_none(partial(_map_through, surface, other, tried, pins, next(stages)))
+        result = or_none(partial(_map_through, solver, other, tried, pins, next(stages)))
         if result is not None and may_replace_map(result, best[1], options.square_share):
             best = other, result
     if along is not None and may_replace_for_features(along, best[1]):
         best = for_features, along
     elif not is_chosen:
-        best = best[0], _map_through(surface, best[0], options, pins, next(stages))
+        best = best[0], _map_through(solver, best[0], options, pins, next(stages))
     return best[0], best[0].told(best[1], options)
 
 
 def _map_through(
-    surface: Surface, completed: CompletedCones, options: Options, pins: Pins | None, progress: Progress | None
+    solver: Solver, completed: CompletedCones, options: Options, pins: Pins | None, progress: Progress | None
 ) -> Result:
     chosen = completed.options_of_map(options)
-    return parameterize(surface, completed.cones, completed.angles, chosen, pins, progress)
+    return solver.parameterize(completed.cones, completed.angles, chosen, pins, progress)
 
 
 def joined_warnings(of_placement: Sequence[Finding], of_map: Sequence[Finding]) -> list[Finding]:
@@ -381,7 +379,7 @@ def part_of(progress: Progress | None, begin: float, end: float) -> Progress | N
 
 
 def _place(
-    surface: Surface,
+    solver: Solver,
     cones: IndexArray,
     angles: list[float | None],
     options: Options,
@@ -390,8 +388,7 @@ def _place(
     symmetric: bool = False,
 ) -> Placement:
     lattice = None if options.seamless is None else options.seamless.lattice
-    return place_cones(
-        surface,
+    return solver.place_cones(
         cones,
         angles,
         count=count,

@@ -150,10 +150,10 @@ def remesh_to_quads(
     chosen = replace(chosen, seamless=replace(chosen.seamless, tile_size=_side(surface, target, size)))
     placing, laying_out = part_of(progress, 0.0, _PLACED), part_of(progress, _PLACED, _LAID_OUT)
     is_free = count is None and not len(arguments.index_vector("cones", cones))
-    along = None
+    solver, along = Solver(surface), None
     if is_free and chosen.straighten:
-        along = feature_cones(surface, chosen, part_of(placing, 0.0, _FOR_FEATURES))
-    completed = _wide_cones(surface, cones, angles, chosen, count, part_of(placing, _FOR_FEATURES, 1.0))
+        along = feature_cones(solver, chosen, part_of(placing, 0.0, _FOR_FEATURES))
+    completed = _wide_cones(solver, cones, angles, chosen, count, part_of(placing, _FOR_FEATURES, 1.0))
     if along is None:
         layouts = _Layouts(surface, completed, chosen)
         layout = layouts.nearest(target, laying_out)
@@ -226,7 +226,7 @@ def _side(surface: Surface, target: int | None, size: float | None) -> float | N
 
 
 def _wide_cones(
-    surface: Surface,
+    solver: Solver,
     cones: ArrayLike,
     angles: Sequence[float | None] | FloatArray | None,
     options: Options,
@@ -235,7 +235,7 @@ def _wide_cones(
 ) -> CompletedCones:
     """Those of `complete_cones`, but where it places one of 90 degrees that is held at 180, and others are placed
     besides."""
-    completed = complete_cones(surface, cones, angles, options, count, part_of(progress, 0.0, 0.5))
+    completed = complete_cones(solver, cones, angles, options, count, part_of(progress, 0.0, 0.5))
     given = arguments.index_vector("cones", cones)
     held, done = np.empty(0, np.int32), 0.5
     for _ in range(_MOST_HOLDS):
@@ -247,7 +247,7 @@ def _wide_cones(
         fixed = [*arguments.cone_angles("angles", angles, len(given)), *[math.pi] * len(held)]
         begin, done = done, (1 + done) / 2
         part = part_of(progress, begin, done)
-        again = complete_cones(surface, np.concatenate([given, held]), fixed, options, count, part)
+        again = complete_cones(solver, np.concatenate([given, held]), fixed, options, count, part)
         if again.placement is None:
             break  # there is no other place: what the narrow cones are refused for is said of them
         completed = again

@@ -5,17 +5,18 @@
 
 #include "lsgp/export.hpp"
 #include "lsgp/options.hpp"
+#include "lsgp/placement.hpp"
 #include "lsgp/progress.hpp"
 #include "lsgp/result.hpp"
 #include "lsgp/surface.hpp"
 
 namespace lsgp {
 
-// Parameterizes one surface repeatedly, for instance while a cone is dragged or an angle is tried. Every call returns
-// the
-// same as the function of that name and caches data for the next one: the topology and geometry of the surface, and, as
-// long as a component's cones do not move, its factored linear systems. Angles, prescription, unfolding, repair, mode
-// and seamless options can then change without a new factorization.
+// Parameterizes one surface repeatedly, for instance while a cone is dragged or an angle is tried, or once cones are
+// placed. Every call returns the same as the function of that name and caches data for the next one: the topology and
+// geometry of the surface, and, as long as a component's cones do not move, its factored linear systems, also those of
+// placed cones. Angles, prescription, unfolding, repair, mode and seamless options can then change without a new
+// factorization.
 // A call during another one, from another thread or from its progress callback, throws SOLVER_BUSY.
 class LSGP_API Solver {
  public:
@@ -25,6 +26,8 @@ class LSGP_API Solver {
 
   Result parameterize(const Cones& cones, const Options& options = {}, const Pins& pins = {},
                       const Progress& progress = {});
+  Placement place_cones(const Cones& existing = {}, const PlacementOptions& options = {},
+                        const Progress& progress = {});
 
  private:
   struct Kept;

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..api import Options, Placement, Progress, Result, Surface, parameterize
+from ..api import Options, Placement, Progress, Result, Solver, Surface, parameterize
 from ..auto_unwrap import PACKING, PLACING, best_map, part_of, possible_cones, with_crease_borders
 from ..errors import Finding, InputError, LsgpError
 from ..io.mesh_files import MeshFile, format_mesh, parse_mesh, triangulated
@@ -192,8 +192,9 @@ def _map(
         return file, result
     placing, mapping = part_of(progress, 0.0, PLACING), part_of(progress, PLACING, 1.0)
     with run.stage("place_cones"):
-        choices = possible_cones(surface, *given, options, cone_count(args), tries_symmetry(args), placing)
-    completed, result = best_map(surface, choices, options, progress=mapping)
+        solver = Solver(surface)
+        choices = possible_cones(solver, *given, options, cone_count(args), tries_symmetry(args), placing)
+    completed, result = best_map(solver, choices, options, progress=mapping)
     run.placement = completed.placement
     run.stage_seconds.update(result.stage_seconds)
     return file, result

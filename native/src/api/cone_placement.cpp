@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The functions of cone placement; components are independent.
+#include "api/cone_placement.hpp"
+
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "api/opened_component.hpp"
@@ -11,7 +14,6 @@
 #include "base/thread_team.hpp"
 #include "lsgp/lsgp.hpp"
 #include "mesh/mirror.hpp"
-#include "pipeline/components.hpp"
 #include "pipeline/validation.hpp"
 #include "pipeline/wording.hpp"
 #include "placement/component_placement.hpp"
@@ -28,18 +30,23 @@ constexpr double same_angle = 1e-9;  // radians
 // A surface split into components, with the vertices where cones may be placed.
 class PlacementWork {
  public:
-  PlacementWork(const PlacementRequest& request, std::vector<Finding>& findings, const Progress& progress)
-      : triangles_(request.surface.triangles.rows()), findings_(findings), monitor_(progress, seconds_) {
-    work_ = prepare_placement(request, findings);
+  PlacementWork(const PlacementRequest& request, KeptComponents& kept, std::vector<Finding>& findings,
+                const Progress& progress)
+      : triangles_(request.surface.triangles.rows()), kept_(kept), findings_(findings), monitor_(progress, seconds_) {
+    kept_.update([&](Work earlier) { return prepare_placement(request, findings, std::move(earlier)); });
     copies_.assign(request.surface.positions.rows(), 0);
-    for (const Component& component : work_.topology.components) {
+    for (const Component& component : components()) {
       for (const Index v : component.source_vertex) ++copies_[v];
     }
   }
 
-  double unit_scale() const { return work_.unit_scale; }
-  const PerComponent<Component>& components() const { return work_.topology.components; }
+  double unit_scale() const { return kept_.work().unit_scale; }
+  const PerComponent<Component>& components() const { return kept_.work().topology.components; }
   ProgressMonitor& monitor() { return monitor_; }
+
+  void keep_system(const Component& component, std::unique_ptr<ComponentSystem> system, const ComponentCones& cones) {
+    kept_.keep_system(static_cast<std::size_t>(&component - components().data()), std::move(system), cones);
+  }
 
   // Calls visit(component, geometry, existing cones, allowed vertices, findings) for every component.
   template <typename Visit>
@@ -47,18 +54,19 @@ class PlacementWork {
     Index triangles_before = 0;
     for_each_component(components(), findings_, [&](std::size_t i) {
       const Component& component = components()[i];
+      const ComponentTask& task = kept_.work().tasks[i];
       const double begin = static_cast<double>(triangles_before) / static_cast<double>(triangles_);
       triangles_before += component.mesh.triangle_count();
       const ProgressMonitor::Interval interval(monitor_, begin,
                                                static_cast<double>(triangles_before) / static_cast<double>(triangles_));
       monitor_.advance(0);
-      const Geometry geometry = require_geometry(component, findings_);
+      const Geometry& geometry = kept_.geometry_of(i, findings_);
       // A vertex shared by components cannot have an angle on each.
       PerVertex<char> allowed;
       for (const Index v : component.source_vertex) allowed.push_back(copies_[v] == 1);
       std::vector<Finding> found;
-      visit(component, geometry, work_.tasks[i].cones, allowed, found);
-      report_border_cones(component, work_.tasks[i].border_cones, findings_);
+      visit(component, geometry, task.cones, allowed, found);
+      report_border_cones(component, task.border_cones, findings_);
       move_findings(component, found, findings_);
     });
     monitor_.advance(1);
@@ -66,10 +74,10 @@ class PlacementWork {
 
  private:
   Eigen::Index triangles_;
+  KeptComponents& kept_;
   std::vector<Finding>& findings_;
   StageSeconds seconds_;
   ProgressMonitor monitor_;
-  Work work_;
   PerVertex<Index> copies_;  // components' vertices that are one of the caller's
 };
 
@@ -114,14 +122,15 @@ void report_shared(Array<Index> vertices, std::vector<Finding>& findings) {
 
 }  // namespace
 
-Placement place_cones(const Surface& surface, const Cones& existing, const PlacementOptions& options,
-                      const Progress& progress) try {
+Placement place_cones_on(const KnownSurface& known, const Cones& existing, const PlacementOptions& options,
+                         const Progress& progress) {
+  const Surface& surface = known.surface;
   require_valid(options);
   Placement out;
   const LinearAlgebraCounter counter;
   const ThreadCount threads(options.threads);
   const MoreCones more = options.count == 0 ? MoreCones::none : MoreCones::some;
-  PlacementWork work({surface, existing, options.seams, more}, out.warnings, progress);
+  PlacementWork work({surface, existing, options.seams, more}, known.components, out.warnings, progress);
   out.log_scale = Eigen::VectorXd::Zero(surface.positions.rows());
   PerVertex<std::optional<double>> angle(surface.positions.rows());
   Array<Index> placed, shared;
@@ -160,6 +169,7 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
     if (!options.count && !found.reached) {
       shortfalls.add(found.mapped_l2, own, component.source_triangle);
     }
+    work.keep_system(component, std::move(found.system), found.cones);
   });
   shortfalls.report(out.warnings);
   report_shared(std::move(shared), out.warnings);
@@ -175,6 +185,12 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
     angle[v].reset();  // listed
   }
   return out;
+}
+
+Placement place_cones(const Surface& surface, const Cones& existing, const PlacementOptions& options,
+                      const Progress& progress) try {
+  KeptComponents components(false);
+  return place_cones_on({surface, components}, existing, options, progress);
 } catch (const Error& error) {
   throw in_words(error);
 }
@@ -182,7 +198,8 @@ Placement place_cones(const Surface& surface, const Cones& existing, const Place
 ConeGains cone_gains(const Surface& surface, const Cones& existing, SeamMode seams, const Progress& progress) try {
   constexpr double unlimited = std::numeric_limits<double>::infinity();
   ConeGains out;
-  PlacementWork work({surface, existing, seams, MoreCones::some}, out.warnings, progress);
+  KeptComponents components(false);
+  PlacementWork work({surface, existing, seams, MoreCones::some}, components, out.warnings, progress);
   out.predicted_l2 = Eigen::VectorXd::Constant(surface.positions.rows(), std::numeric_limits<double>::quiet_NaN());
   double stretched_area = 0, total_area = 0, most = 0, most_without = 0;
   work.for_each([&](const Component& component, const Geometry& geometry, const ComponentCones& cones,

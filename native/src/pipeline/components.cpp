@@ -229,13 +229,13 @@ bool is_flat_along_seams(const HalfedgeMesh& torus) {
 
 }  // namespace
 
-Work prepare_placement(const PlacementRequest& request, std::vector<Finding>& findings) {
-  require_valid(request.surface);
+Work prepare_placement(const PlacementRequest& request, std::vector<Finding>& findings, Work earlier) {
+  if (earlier.topology.components.empty()) require_valid(request.surface);
   require_valid(request.surface, request.existing);
   Options options;
   options.prescription = PrescriptionRule::manual;
   options.seams = request.seams;
-  Work work;
+  Work work = std::move(earlier);
   divide({request.surface, request.existing, options}, request.more, findings, work);
   findings.insert(findings.end(), work.found.begin(), work.found.end());
   return work;

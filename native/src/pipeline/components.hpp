@@ -64,7 +64,7 @@ struct PlacementRequest {
   SeamMode seams;
   MoreCones more;
 };
-Work prepare_placement(const PlacementRequest& request, std::vector<Finding>& findings);
+Work prepare_placement(const PlacementRequest& request, std::vector<Finding>& findings, Work earlier = {});
 
 // The same without positions, which are not accessed.
 Work prepare_topology(const Request& request, MoreCones more);

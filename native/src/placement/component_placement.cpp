@@ -142,8 +142,10 @@ PlacedCones place_component(const PlacementTask& task, const PlacementOptions& o
   require_possible(task, out.cones);
   out.missing = missing_cones(chooser, choice.cones);
   out.cones = chooser.with_angles(choice.cones);
-  out.curvature = impose(chooser.scale(), out.cones, choice.cones.curvature,
-                         chooser.scale().evaluate_held(choice.cones.vertices, choice.cones.curvature), findings);
+  out.system = placement.take_system(choice.cones);
+  const LogScale& scale = out.system ? out.system->log_scale() : chooser.scale();
+  out.curvature = impose(scale, out.cones, choice.cones.curvature,
+                         scale.evaluate_held(choice.cones.vertices, choice.cones.curvature), findings);
   // A map that was made has cuts to all cones.
   if (choice.map.failed) {
     connect_cones(task, inside_only(task.mesh, choice.cones.vertices), out.curvature.needs_no_cut);

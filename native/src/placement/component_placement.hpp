@@ -2,12 +2,14 @@
 // Cones placed automatically on one component.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "base/progress_monitor.hpp"
 #include "lsgp/placement.hpp"
 #include "placement/shortfalls.hpp"
+#include "prescription/component_system.hpp"
 #include "search/cone_chooser.hpp"
 
 namespace lsgp {
@@ -20,6 +22,7 @@ struct PlacedCones {
   int maps = 0;          // that were made
   std::optional<MissingCones> missing;
   bool reached = true;
+  std::unique_ptr<ComponentSystem> system;  // of the cones; none if the latest map was not theirs
 };
 
 // findings are added to. Throws what require_feasible, require_possible and connect_cones throw, and SOLVER_FAILED

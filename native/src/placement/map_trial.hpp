@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "base/progress_monitor.hpp"
@@ -28,7 +29,8 @@ struct TriedMap {
   bool is_off() const { return failed || wrong_angles > 0 || inexact_seams > 0; }
 };
 
-// Computes maps of one component as unwrapping with default options does. Their linear algebra is not counted.
+// Computes maps of one component as unwrapping with default options does. Their linear algebra is not counted. The
+// system of the latest one is kept.
 class MapTrial {
  public:
   MapTrial(const MetricMesh& surface, ProgressMonitor& monitor)
@@ -43,16 +45,21 @@ class MapTrial {
   std::optional<Eigen::VectorXcd> corners_of_map(const ComponentCones& cones);
 
   int made() const { return made_; }
+  // The system of the latest map, if it is that of these cones; none otherwise, and none from then on.
+  std::unique_ptr<ComponentSystem> take_system(const ComponentCones& cones);
 
  private:
   // None where it fails.
   std::optional<ComponentMap> map(const ComponentCones& cones, Repairs repairs);
+  ComponentSystem& system_of(const ComponentCones& cones);
   TriedMap measured(ComponentMap map, const ComponentCones& cones) const;
 
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
   ProgressMonitor& monitor_;
   int made_ = 0;
+  ComponentCones cones_;  // of the system
+  std::unique_ptr<ComponentSystem> system_;
 };
 
 }  // namespace lsgp

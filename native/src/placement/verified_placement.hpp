@@ -2,6 +2,7 @@
 // Automatic cones, verified on their maps.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "placement/map_trial.hpp"
@@ -36,6 +37,10 @@ class VerifiedPlacement {
 
   VerifiedChoice place();
   int maps() const { return trial_.made(); }
+  // The system of the latest map, if it is that of these cones; none otherwise, and none from then on.
+  std::unique_ptr<ComponentSystem> take_system(const ConeChoice& choice) {
+    return trial_.take_system(chooser_.with_angles(choice));
+  }
 
  private:
   // Of cones that are moved: within the bounds of the sites, or, where these are no better, those of least distortion.
@@ -47,7 +52,7 @@ class VerifiedPlacement {
   void repair(VerifiedChoice& choice);
   bool is_worth_repairing(const VerifiedChoice& choice) const;
   VerifiedChoice place_as_asked();
-  ConeChoice choose(std::optional<AutomaticCones>& automatic);
+  ConeChoice choose(std::optional<AutomaticCones>& automatic, double most_l2);
   ConeChoice choose_where_cheap(std::optional<AutomaticCones>& automatic);
   bool misses(const VerifiedChoice& choice) const;
   std::optional<VerifiedChoice> placed_naturally(Corners corners);

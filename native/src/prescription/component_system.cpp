@@ -17,6 +17,10 @@ Array<Index> inside_only(const HalfedgeMesh& mesh, const Array<Index>& vertices)
   return out;
 }
 
+bool have_same_system(const ComponentCones& a, const ComponentCones& b) {
+  return a.vertices == b.vertices && a.border == b.border && a.mirroring.image == b.mirroring.image;
+}
+
 ComponentSystem::ComponentSystem(const MetricMesh& surface, const ComponentCones& cones, Factorization factorization,
                                  Eigen::VectorXd memory)
     : surface_(surface),

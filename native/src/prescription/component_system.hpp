@@ -67,6 +67,9 @@ class ComponentSystem {
   std::optional<StiffFactor> stiff_factor_;
 };
 
+// Whether these cones, on the same surface, have the same system: all but angles.
+bool have_same_system(const ComponentCones& a, const ComponentCones& b);
+
 // The interior ones of the vertices.
 Array<Index> inside_only(const HalfedgeMesh& mesh, const Array<Index>& vertices);
 

@@ -118,21 +118,36 @@ LogScale::LogScale(const MetricMesh& surface, const BorderConditions& border, co
       border_(border),
       cones_(cones),
       weight_(surface.geometry.vertex_area / surface.geometry.total_area) {
-  const HalfedgeMesh& mesh = surface.mesh;
-  const Geometry& geometry = surface.geometry;
-  PerVertex<char> held = border.held;
-  if (border.balanced) held[ground(cones, factor)] = 1;
-  require_matrix_memory(mesh.vertex_count(), static_cast<double>(cones.size()), GrowsWith::conditions);
+  require_matrix_memory(mesh().vertex_count(), static_cast<double>(cones.size()), GrowsWith::conditions);
+  green_.resize(mesh().vertex_count(), 0);
+  if (cones.empty() && factor == nullptr) return;
+  const PerVertex<char> held = held_with(ground(cones, factor));
   laplace_ = factor != nullptr ? laplace_on_cut(*factor, held) : sparse_laplace(surface, held);
-  LaplaceSolver::Response response = laplace_->solve(border.curvature - geometry.angle_defect, cones);
+  LaplaceSolver::Response response = laplace_->solve(border.curvature - geometry().angle_defect, cones);
   without_cones_ = std::move(response.to_right_side);
   green_ = std::move(response.to_impulses);
 }
 
-Eigen::VectorXd LogScale::solve(const Eigen::VectorXd& right_side) const { return laplace_->solve(right_side); }
+PerVertex<char> LogScale::held_with(Index vertex) const {
+  PerVertex<char> held = border_.held;
+  if (border_.balanced) held[vertex] = 1;
+  return held;
+}
+
+const LaplaceSolver& LogScale::laplace() const {
+  if (!laplace_) laplace_ = sparse_laplace(surface_, held_with(ground({}, nullptr)));
+  return *laplace_;
+}
+
+const Eigen::VectorXd& LogScale::without_cones() const {
+  if (without_cones_.size() == 0) without_cones_ = laplace().solve(border_.curvature - geometry().angle_defect);
+  return without_cones_;
+}
+
+Eigen::VectorXd LogScale::solve(const Eigen::VectorXd& right_side) const { return laplace().solve(right_side); }
 
 Eigen::MatrixXd LogScale::solve_columns(const Eigen::MatrixXd& right_sides) const {
-  return laplace_->solve(right_sides);
+  return laplace().solve(right_sides);
 }
 
 void LogScale::add_cones(const Array<Index>& vertices) {
@@ -141,7 +156,7 @@ void LogScale::add_cones(const Array<Index>& vertices) {
   Eigen::MatrixXd impulses =
       Eigen::MatrixXd::Zero(surface_.mesh.vertex_count(), static_cast<Eigen::Index>(vertices.size()));
   for (std::size_t i = 0; i < vertices.size(); ++i) impulses(vertices[i], static_cast<Eigen::Index>(i)) = 1;
-  const Eigen::MatrixXd added = laplace_->solve(impulses);
+  const Eigen::MatrixXd added = laplace().solve(impulses);
   green_.conservativeResize(Eigen::NoChange, green_.cols() + added.cols());
   green_.rightCols(added.cols()) = added;
   cones_.insert(cones_.end(), vertices.begin(), vertices.end());
@@ -159,13 +174,13 @@ Eigen::VectorXd LogScale::evaluate(const Eigen::VectorXd& cone_curvature) const 
 }
 
 Eigen::VectorXd LogScale::evaluate_held(const Eigen::VectorXd& cone_curvature) const {
-  return without_cones_ + green_ * cone_curvature;
+  return without_cones() + green_ * cone_curvature;
 }
 
 Eigen::VectorXd LogScale::evaluate_held(const Array<Index>& vertices, const Eigen::VectorXd& curvature) const {
   Eigen::VectorXd right_side = Eigen::VectorXd::Zero(surface_.mesh.vertex_count());
   for (std::size_t i = 0; i < vertices.size(); ++i) right_side[vertices[i]] += curvature[static_cast<Eigen::Index>(i)];
-  return without_cones_ + solve(right_side);
+  return without_cones() + solve(right_side);
 }
 
 Eigen::VectorXd LogScale::harmonic_curvature() const {
@@ -175,7 +190,7 @@ Eigen::VectorXd LogScale::harmonic_curvature() const {
   Eigen::VectorXd right(k + balanced);
   for (Index i = 0; i < k; ++i) {
     system.row(i).head(k) = green_.row(cones_[i]);
-    right[i] = -without_cones_[cones_[i]];
+    right[i] = -without_cones()[cones_[i]];
   }
   if (balanced) {
     system.col(k).head(k).setOnes();
@@ -190,7 +205,7 @@ Eigen::VectorXd LogScale::least_distortion_curvature(const Eigen::VectorXd& low,
                                                      Eigen::VectorXd start) const {
   const double gradients_of_hessian = 2 + cone_count() / 20.0;
   Eigen::VectorXd kappa = std::move(start);
-  Eigen::VectorXd y = without_cones_ + green_ * kappa;
+  Eigen::VectorXd y = without_cones() + green_ * kappa;
   Stretch stretch(weight_, green_);
   BoxProgram program(border_.balanced);
   double value = stretch.evaluate(y), before = infinity;
@@ -249,7 +264,7 @@ LogScale::Variance LogScale::variance() const {
   Variance out{weighted_gram(green_, weight_), {}};
   out.hessian.triangularView<Eigen::StrictlyUpper>() = out.hessian.transpose();
   out.hessian -= mean * mean.transpose();
-  out.gradient = green_.transpose() * weight_.cwiseProduct(without_cones_) - weight_.dot(without_cones_) * mean;
+  out.gradient = green_.transpose() * weight_.cwiseProduct(without_cones()) - weight_.dot(without_cones()) * mean;
   return out;
 }
 

@@ -18,8 +18,9 @@ namespace lsgp {
 constexpr double largest_l2 = 1e100;
 
 // The log scale y of the metric with given curvatures: L y = kappa - K where y is not held at 0, so y is affine in the
-// cone curvatures, y = y_0 + sum of kappa_c G_c. One factorization; one more back-substitution for every cone. With
-// nothing held, y is known up to a constant, Gauss-Bonnet has to hold, and y is held at one vertex, a cone if any.
+// cone curvatures, y = y_0 + sum of kappa_c G_c. One factorization; one more back-substitution for every cone. Without
+// cones it waits for the first use, since large surfaces may never need their own. With nothing held, y is known up to
+// a constant, Gauss-Bonnet has to hold, and y is held at one vertex, a cone if any.
 class LogScale {
  public:
   // cones: interior, distinct.  factor: if given, an existing one with the cones on its cuts.
@@ -73,13 +74,18 @@ class LogScale {
   Variance variance() const;
 
  private:
+  PerVertex<char> held_with(Index vertex) const;  // if balanced
+  const LaplaceSolver& laplace() const;
+  const Eigen::VectorXd& without_cones() const;
+
   const MetricMesh surface_;
   BorderConditions border_;
   Array<Index> cones_;
-  std::unique_ptr<LaplaceSolver> laplace_;
-  Eigen::VectorXd weight_;         // (n) share of the area
-  Eigen::VectorXd without_cones_;  // (n) y_0
-  Eigen::MatrixXd green_;          // (n, k) G_c
+  Eigen::VectorXd weight_;  // (n) share of the area
+  Eigen::MatrixXd green_;   // (n, k) G_c
+  // Made on first use, if not with cones at once.
+  mutable std::unique_ptr<LaplaceSolver> laplace_;
+  mutable Eigen::VectorXd without_cones_;  // (n) y_0
 };
 
 }  // namespace lsgp

@@ -168,7 +168,7 @@ ConeChoice ConeChooser::choice_of(const Set& set) const {
   return out;
 }
 
-ConeChoice ConeChooser::choose(int count) {
+ConeChoice ConeChooser::choose(int count, double most_l2) {
   const int most = std::max(count, sites_.existing);
   if (most > most_one_by_one) return choose_in_batches(most);
   // If so few cones have high stretch, stronger ones have less.
@@ -180,7 +180,8 @@ ConeChoice ConeChooser::choose(int count) {
     if (!best || choice.predicted_l2 - 1 < worth_strong_cones * (best->predicted_l2 - 1)) best = std::move(choice);
     if (best->predicted_l2 <= low_l2 || options_.lattice || all_there) break;
   }
-  if (best->predicted_l2 <= hopeless_l2 || !best->is_possible() || options_.lattice) return *best;
+  const bool is_seen = std::min(best->predicted_l2, most_l2) <= hopeless_l2;  // by the variance, if it is of use
+  if (is_seen || !best->is_possible() || options_.lattice) return *best;
   ConeChoice other = choose_harmonically(static_cast<int>(best->vertices.size()));
   return other.predicted_l2 < best->predicted_l2 ? other : *best;
 }
@@ -223,11 +224,15 @@ ConeChoice ConeChooser::choose_in_batches(int count) {
 
 ConeChoice ConeChooser::choose_harmonically(int count) {
   ConeSet set = existing(usual_reach);
-  scale_.remove_cones();
+  LogScale& scale = model_.scale();
+  scale.remove_cones();
   while (set.cone_count() < count) {
     const Array<Index> now = vertices_of(set.sites());
-    scale_.add_cones({now.begin() + scale_.cone_count(), now.end()});
-    Eigen::VectorXd y = now.empty() ? kernel_.log_scale({}, {}) : scale_.evaluate_held(scale_.harmonic_curvature());
+    Array<Index> added(now.begin() + scale.cone_count(), now.end());
+    for (Index& vertex : added) vertex = model_.node(vertex);
+    scale.add_cones(added);
+    Eigen::VectorXd y =
+        now.empty() ? kernel_.log_scale({}, {}) : model_.at_vertices(scale.evaluate_held(scale.harmonic_curvature()));
     if (!now.empty()) y.array() -= y[now.front()];
     const Array<char> open = search_.open_sites(set.sites());
     int best = -1;

@@ -260,6 +260,10 @@ CoarseSurface::CoarseSurface(const MetricMesh& surface, const PerVertex<char>& k
     if (node != none) node = node_count_++;
   }
   triangulation.read(node_of_vertex_, mesh_, geometry_);
+  mesh_.euler = surface.mesh.euler;
+  geometry_.vertex_area = at_nodes(surface.geometry.vertex_area);
+  geometry_.angle_defect = at_nodes(surface.geometry.angle_defect);
+  geometry_.total_area = surface.geometry.total_area;
 }
 
 Eigen::VectorXd CoarseSurface::at_nodes(Eigen::VectorXd values) const {
@@ -286,13 +290,12 @@ Eigen::VectorXd CoarseSurface::at_vertices(const Eigen::VectorXd& values) const 
   return out;
 }
 
-std::unique_ptr<LaplaceSolver> CoarseSurface::laplace(const PerVertex<char>& held) const {
-  PerVertex<char> held_nodes(node_count_, 0);
-  for (std::size_t v = 0; v < held.size(); ++v) {
-    if (node_of_vertex_[v] != none) held_nodes[node_of_vertex_[v]] = held[v];
+BorderConditions CoarseSurface::at_nodes(const BorderConditions& border) const {
+  BorderConditions out{PerVertex<char>(node_count_, 0), at_nodes(border.curvature), border.balanced};
+  for (std::size_t v = 0; v < border.held.size(); ++v) {
+    if (node_of_vertex_[v] != none) out.held[node_of_vertex_[v]] = border.held[v];
   }
-  if (std::find(held_nodes.begin(), held_nodes.end(), 1) == held_nodes.end()) held_nodes.front() = 1;
-  return sparse_laplace({mesh_, geometry_}, held_nodes);
+  return out;
 }
 
 }  // namespace lsgp

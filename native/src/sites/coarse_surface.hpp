@@ -3,12 +3,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 
 #include "base/array.hpp"
 #include "mesh/border.hpp"
 #include "mesh/geometry.hpp"
-#include "systems/laplace_solver.hpp"
 
 namespace lsgp {
 
@@ -23,14 +21,15 @@ class CoarseSurface {
   Index node_count() const { return node_count_; }
   Index node(Index vertex) const { return node_of_vertex_[vertex]; }  // none where it was removed
 
+  // Of nodes: without positions and lengths, but with the areas and angle defects of the vertices, summed as below.
+  MetricMesh surface() const { return {mesh_, geometry_}; }
+
   // The sum of values at vertices (n) to each node, (nodes): the transpose of `at_vertices`.
   Eigen::VectorXd at_nodes(Eigen::VectorXd values) const;
   // The piecewise linear interpolation of values at nodes, (n).
   Eigen::VectorXd at_vertices(const Eigen::VectorXd& values) const;
 
-  // Of its cotangent Laplacian.  held: (n) where the solution is 0, among the nodes; the first of them if there is
-  // none.
-  std::unique_ptr<LaplaceSolver> laplace(const PerVertex<char>& held) const;
+  BorderConditions at_nodes(const BorderConditions& border) const;
 
  private:
   // A vertex and its barycentric coordinates in the triangle that it left.
@@ -44,8 +43,8 @@ class CoarseSurface {
   PerVertex<Index> node_of_vertex_;
   Array<Removal> removals_;  // in that order
   Index node_count_ = 0;
-  HalfedgeMesh mesh_;  // of nodes: triangles, twins and outgoing halfedges alone
-  Geometry geometry_;  // half cotangents alone
+  HalfedgeMesh mesh_;  // triangles, twins, outgoing halfedges and Euler characteristic alone
+  Geometry geometry_;  // half cotangents, areas of nodes and angle defects alone
 };
 
 }  // namespace lsgp

@@ -34,7 +34,7 @@ std::optional<CoarseSurface> coarsened(const LogScale& scale, const Array<Site>&
 
 }  // namespace
 
-LogScaleModel::LogScaleModel(const LogScale& scale, const Array<Site>& sites)
+LogScaleModel::LogScaleModel(LogScale& scale, const Array<Site>& sites)
     : scale_(scale),
       coarse_(coarsened(scale, sites)),
       weight_(scale.geometry().vertex_area / scale.geometry().total_area),
@@ -42,11 +42,11 @@ LogScaleModel::LogScaleModel(const LogScale& scale, const Array<Site>& sites)
   if (!coarse_) return;
   weight_ = coarse_->at_nodes(std::move(weight_));
   elsewhere_ = coarse_->at_nodes(std::move(elsewhere_));
-  laplace_ = coarse_->laplace(scale.border().held);
+  coarse_scale_.emplace(coarse_->surface(), coarse_->at_nodes(scale.border()));
 }
 
 Eigen::MatrixXd LogScaleModel::solve_columns(const Eigen::MatrixXd& right_sides) const {
-  return coarse_ ? laplace_->solve(right_sides) : scale_.solve_columns(right_sides);
+  return scale().solve_columns(right_sides);
 }
 
 Eigen::VectorXd LogScaleModel::at_vertices(Eigen::VectorXd values) const {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 #include <optional>
 
 #include "base/array.hpp"
@@ -18,8 +17,13 @@ namespace lsgp {
 class LogScaleModel {
  public:
   // sites: where there may be cones, which all are nodes.
-  LogScaleModel(const LogScale& scale, const Array<Site>& sites);
+  LogScaleModel(LogScale& scale, const Array<Site>& sites);
+  LogScaleModel(const LogScaleModel&) = delete;
+  LogScaleModel& operator=(const LogScaleModel&) = delete;
 
+  // That of the surface itself, or one whose vertices are the nodes.
+  LogScale& scale() { return coarse_scale_ ? *coarse_scale_ : scale_; }
+  const LogScale& scale() const { return coarse_scale_ ? *coarse_scale_ : scale_; }
   bool balanced() const { return scale_.balanced(); }
   Index node_count() const { return static_cast<Index>(weight_.size()); }
   Index node(Index vertex) const { return coarse_ ? coarse_->node(vertex) : vertex; }
@@ -30,9 +34,9 @@ class LogScaleModel {
   Eigen::VectorXd at_vertices(Eigen::VectorXd values) const;  // (n) of (nodes)
 
  private:
-  const LogScale& scale_;
+  LogScale& scale_;
   std::optional<CoarseSurface> coarse_;
-  std::unique_ptr<LaplaceSolver> laplace_;  // of the coarse surface
+  std::optional<LogScale> coarse_scale_;
   Eigen::VectorXd weight_, elsewhere_;
 };
 

@@ -91,6 +91,50 @@ def test_changed_angles_take_no_factorization() -> None:
     assert_same(solver.parameterize(mesh.cones, options=RAW), first)
 
 
+def assert_same_placement(one: lsgp.Placement, other: lsgp.Placement) -> None:
+    assert np.array_equal(one.cones, other.cones) and np.array_equal(one.cone_angles, other.cone_angles)
+    assert np.array_equal(one.log_scale, other.log_scale) and one.mapped_l2 == other.mapped_l2
+    assert one.warnings == other.warnings
+
+
+def two_spheres() -> meshes.Mesh:
+    return meshes.merge([meshes.bumpy_sphere(2), meshes.flower(2)])
+
+
+@pytest.mark.parametrize("make", [meshes.bumpy_sphere, meshes.torus, two_spheres])
+def test_the_map_of_placed_cones_takes_no_factorization(make: object) -> None:
+    surface = surface_of(make())
+    solver = lsgp.Solver(surface)
+    placed = solver.place_cones(count=8)
+    assert placed.factorizations > 0
+    assert_same_placement(placed, lsgp.place_cones(surface, count=8))
+    given = placed.cones, placed.cone_angles
+    result = solver.parameterize(*given)
+    assert result.factorizations == 0
+    assert_same(result, lsgp.parameterize(surface, *given))
+    low = lsgp.Options(mode="low-stretch")
+    assert_same(solver.parameterize(*given, low), lsgp.parameterize(surface, *given, low))
+
+
+def test_placing_cones_again_is_as_at_first() -> None:
+    surface, cones = two_seamed_cubes(), meshes.cube(2).cones
+    solver = lsgp.Solver(surface)
+    for given, count in [((), 8), (cones, None), ((), 0), ((), 6)]:
+        assert_same_placement(solver.place_cones(given, count=count), lsgp.place_cones(surface, given, count=count))
+        assert_same(solver.parameterize(cones), lsgp.parameterize(surface, cones))
+
+
+def test_a_placement_that_is_stopped_leaves_no_trace() -> None:
+    surface = surface_of(meshes.bumpy_sphere())
+    solver = lsgp.Solver(surface)
+    fresh = lsgp.place_cones(surface, count=6)
+    for calls in (0, 3, 12):
+        with contextlib.suppress(lsgp.Cancelled):
+            solver.place_cones(count=6, progress=stops_after(calls))
+        assert_same_placement(solver.place_cones(count=6), fresh)
+        assert_same(solver.parameterize(fresh.cones), lsgp.parameterize(surface, fresh.cones))
+
+
 @pytest.mark.parametrize("make", [meshes.cube, meshes.bumpy_sphere, meshes.torus])
 def test_changed_seamless_options_take_no_factorization(make: object) -> None:
     mesh = make()

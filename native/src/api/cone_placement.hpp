@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `place_cones` on a surface of which much is known.
+#pragma once
+
+#include "api/kept_components.hpp"
+#include "lsgp/placement.hpp"
+#include "lsgp/progress.hpp"
+#include "lsgp/surface.hpp"
+
+namespace lsgp {
+
+struct KnownSurface {
+  const Surface& surface;
+  KeptComponents& components;
+};
+
+// Keeps the systems of the cones that it places, as far as their maps were made.
+Placement place_cones_on(const KnownSurface& known, const Cones& existing, const PlacementOptions& options,
+                         const Progress& progress);
+
+}  // namespace lsgp

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What calls on one surface have in common: its components, and of each the geometry and the factored systems.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/array.hpp"
+#include "mesh/mirror.hpp"
+#include "pipeline/components.hpp"
+#include "prescription/component_system.hpp"
+
+namespace lsgp {
+
+class KeptComponents {
+ public:
+  // keeps_systems: from one call to the next, rather than until each component is done.
+  explicit KeptComponents(bool keeps_systems) : keeps_systems_(keeps_systems) {}
+  KeptComponents(const KeptComponents&) = delete;
+  KeptComponents& operator=(const KeptComponents&) = delete;
+
+  // prepare: makes the work of a call from that of the one before. All that follows is of the new one.
+  void update(const std::function<Work(Work)>& prepare);
+  Work& work() { return work_; }
+
+  // Measures it first; findings are added to.
+  const Geometry& geometry_of(std::size_t i, std::vector<Finding>& findings);
+  const Geometry& geometry(std::size_t i) const { return kept_[i]->geometry; }  // after that
+  const Mirroring& mirroring_of(std::size_t i);
+
+  // That of the task's cones.
+  ComponentSystem& system_of(std::size_t i, Factorization factorization);
+  ComponentSystem* system(std::size_t i) { return kept_[i]->system.get(); }  // after that
+  // Takes over one with automatic factorization, of these cones.
+  void keep_system(std::size_t i, std::unique_ptr<ComponentSystem> system, const ComponentCones& cones);
+  void release(std::size_t i) {
+    if (!keeps_systems_) kept_[i]->system->release();
+  }
+
+ private:
+  struct Kept {
+    Geometry geometry;
+    std::optional<Mirroring> mirroring;  // where it was asked for
+    std::vector<Finding> found;          // while it was built
+    ComponentCones cones;                // of the system
+    Factorization factorization = Factorization::automatic;
+    std::unique_ptr<ComponentSystem> system;
+  };
+
+  const bool keeps_systems_;
+  Work work_;
+  PerComponent<std::unique_ptr<Kept>> kept_;  // systems refer to the geometry beside them
+  std::int64_t kept_of_ = 0;                  // generation of the topology it was made from
+};
+
+}  // namespace lsgp
