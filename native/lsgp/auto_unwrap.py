@@ -101,8 +101,9 @@ def auto_unwrap(
         None: the fewest that bring the L2 stretch to 1.05.
     symmetric: whether cones are placed alike on both sides of a mirror plane, and on parts that mirror each other, as
         by `place_cones`, and cuts run alike on both sides, as with `Options.mirrored_cuts`, if that costs little: at
-        most 1 % of L2 stretch, one island (one for ten if there are more), a quarter of the edges cut, and some 3 % of
-        the filled part of the square. Only without cones and `count`.
+        most 1 % of L2 stretch, one island (one for ten if there are more; two if the square is not filled less), a
+        quarter of the edges cut, and a tenth of the filled part of the square, packed tightly if the packer is
+        installed. Only without cones and `count`.
     creases: whether hard surfaces may be cut at their creases, as in `with_crease_borders`, which takes `sharp`.
     pack: "tight": as by `pack_islands`; "shelves": in rows; None: tight if `packer_name` returns a packer. Layouts that
         are seamless, pinned or in UDIM tiles at a texel density are never packed.
@@ -332,9 +333,10 @@ def best_map(
     share = 1.0 / (len(choices) + len(along))
     parts = iter([part_of(progress, i * share, (i + 1) * share) for i in range(len(choices) + len(along))])
     best = usual, _map_through(surface, usual, plain, pins, next(parts))
-    for other in others:
+    for i, other in enumerate(others, start=2):
         result = or_none(partial(_map_through, surface, other, plain, pins, next(parts)))
-        if result is not None and may_replace_map(result, best[1], options.square_share):
+        compared = part_of(progress, i * share, i * share)
+        if result is not None and may_replace_map(result, best[1], options.square_share, compared):
             best = other, result
     for other in along:
         result = or_none(partial(_map_through, surface, other, options, pins, next(parts)))
