@@ -98,10 +98,11 @@ def auto_unwrap(
         requires, which may be 0; one whose cones cannot take up its curvature gets more.
     options: instead of `preset_options(preset)`. count: cones on each component that gets some, as for `place_cones`;
         None: the fewest that bring the L2 stretch to 1.05.
-    symmetric: whether cones are placed alike on both sides of a mirror plane, and on components that mirror each other,
-        as by `place_cones`, and cuts run alike on both sides, as with `Options.mirrored_cuts`, if that costs little: at
-        most 1 % of L2 stretch, one island (one for ten if there are more), a quarter of the edges cut, and some 3 % of
-        the filled part of the square. Only without cones and `count`.
+    symmetric: whether cones are placed alike on both sides of a mirror plane, and on components that mirror each other, as
+        by `place_cones`, and cuts run alike on both sides, as with `Options.mirrored_cuts`, if that costs little: at
+        most 1 % of L2 stretch, one island (one for ten if there are more; two if the square is not filled less), a
+        quarter of the edges cut, and a tenth of the filled part of the square, packed tightly if the packer is
+        installed. Only without cones and `count`.
     creases: whether hard surfaces may be cut at their creases, as in `with_crease_borders`, which takes `sharp`.
     pack: "tight": as by `pack_islands`; "shelves": in rows; None: tight if `packer_name` returns a packer. Layouts that
         are seamless, pinned or in UDIM tiles at a texel density are never packed.
@@ -339,9 +340,10 @@ def best_map(
     is_chosen = for_features is None or (along is None and not others)
     tried = options if is_chosen else replace(options, straighten=False)
     best = usual, _map_through(solver, usual, tried, pins, next(stages))
-    for other in others:
+    for i, other in enumerate(others, start=2 + (for_features is not None)):
         result = or_none(partial(_map_through, solver, other, tried, pins, next(stages)))
-        if result is not None and may_replace_map(result, best[1], options.square_share):
+        compared = part_of(progress, i * share, i * share)
+        if result is not None and may_replace_map(result, best[1], options.square_share, compared):
             best = other, result
     if along is not None and may_replace_for_features(along, best[1]):
         best = for_features, along

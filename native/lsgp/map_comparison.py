@@ -3,44 +3,57 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
 
-from .api import Result
+from .api import Progress, Result
+from .errors import InputError
+from .packing import pack_islands, packer_name
 from .triangles import uv_area
 
-# Of the L2 stretch that the other one has, of the edges that it cuts, and of what it fills of the square; one island
-# more for so many.
+# Of the L2 stretch that the other one has, of the edges that it cuts, and of what it fills of the square: a tenth less
+# is a twentieth of the texel density. One island more for so many; one for fewer, or a pair that fills the square as
+# well.
 _MOST_L2 = 1.01
-_LEAST_FILLED = 0.97
+_LEAST_FILLED = 0.9
 _MOST_CUTS = 1.25
 _ISLANDS_FOR_ONE = 10
+_PAIR = 2
+# More than this lie on shelves too differently to compare them; packing more than that takes long.
 _FEW_ISLANDS = 4
+_MOST_PACKED = 32
 # The same for creases along the lattice, and what share of their length has to lie there.
 _MOST_L2_FOR_FEATURES = 1.1
 _LEAST_FEATURES = 0.25
 
 
-def may_replace_map(symmetric: Result, usual: Result, square_share: float = 1.0) -> bool:
-    """Whether a map through symmetric cones costs little: L2 stretch up to 1 % more, a quarter more of edges cut, one
-    island more, or one for ten if there are as many, the square filled at most 3 % less, and no further defects.
+def may_replace_map(
+    symmetric: Result, usual: Result, square_share: float = 1.0, progress: Progress | None = None
+) -> bool:
+    """Whether a map through symmetric cones costs little: L2 stretch up to 1 % more, a quarter more of edges cut, the
+    square filled at most a tenth less, no further defects, and one island more, or one for ten if there are as many;
+    two of fewer than ten only if the square is not filled less.
 
-    Both as from `parameterize`, with islands on shelves, for this share of a square. How far these fill the square says
-    how far they do once they are packed tightly only where they are few and have one square. Elsewhere it is how far
-    they fill their boxes, and at most what the longest island leaves them of one square.
+    Both as from `parameterize`, with islands on shelves, for this share of a square. They are packed tightly if the
+    packer is installed. How far many islands, several squares and seamless layouts are filled follows from the boxes of
+    the islands, and in one square from the longest island. progress: of packing.  Raises Cancelled.
     """
-    islands = len(np.unique(usual.island[usual.solved]))
-    has_one_square = square_share <= 1 and usual.seamless is None
-    filled = _filled_square if islands <= _FEW_ISLANDS and has_one_square else partial(_filled_boxes, has_one_square)
-    return (
+    islands = _island_count(usual)
+    more = _island_count(symmetric) - islands
+    has_few = islands < _ISLANDS_FOR_ONE
+    if not (
         symmetric.solved.tolist() == usual.solved.tolist()
         and _defects(symmetric) <= _defects(usual)
         and symmetric.distortion.l2_stretch <= _MOST_L2 * usual.distortion.l2_stretch
         and len(symmetric.cut_edges) <= _MOST_CUTS * len(usual.cut_edges)
-        and len(np.unique(symmetric.island[symmetric.solved])) <= islands + max(islands // _ISLANDS_FOR_ONE, 1)
-        and filled(symmetric) >= _LEAST_FILLED * filled(usual)
-    )
+        and more <= (_PAIR if has_few else islands // _ISLANDS_FOR_ONE)
+    ):
+        return False
+    least = 1.0 if has_few and more == _PAIR else _LEAST_FILLED
+    filled = _measure_of_filling(usual, square_share, progress)
+    return filled(symmetric) >= least * filled(usual)
 
 
 def runs_along_features(result: Result) -> bool:
@@ -62,6 +75,29 @@ def may_replace_for_features(along: Result, usual: Result) -> bool:
 
 def _defects(result: Result) -> int:
     return len(result.flipped) + len(result.wrong_angle_sums) + len(result.overlapping)
+
+
+def _island_count(result: Result) -> int:
+    return len(np.unique(result.island[result.solved]))
+
+
+def _measure_of_filling(usual: Result, square_share: float, progress: Progress | None) -> Callable[[Result], float]:
+    """What tells how far a map that is compared with the usual one fills its part of the square."""
+    islands = _island_count(usual)
+    has_one_square = square_share <= 1 and usual.seamless is None
+    if has_one_square and islands <= _MOST_PACKED and packer_name() is not None:
+        return partial(_filled_when_packed, progress=progress)
+    return _filled_square if has_one_square and islands <= _FEW_ISLANDS else partial(_filled_boxes, has_one_square)
+
+
+def _filled_when_packed(result: Result, progress: Progress | None) -> float:
+    """The part of the unit square that the islands fill once they are packed tightly; 0 if they cannot be."""
+    turned = result.direction_error is None
+    try:
+        packed = pack_islands(result.corner_uv, result.island, turned=turned, progress=progress)
+    except InputError:
+        return 0.0
+    return uv_area(packed[result.solved])
 
 
 def _filled_square(result: Result) -> float:

@@ -11,7 +11,6 @@
 
 #include "base/checkpoint.hpp"
 #include "cut/cut_cost.hpp"
-#include "cut/cut_graph.hpp"
 
 namespace lsgp {
 
@@ -158,13 +157,32 @@ PerHalfedge<char> MirroredIslands::with_images(const PerHalfedge<char>& open, co
     out[h] = mesh.twin[h] != none && open[h] && is_on(h, side);
     one_side[h] = out[h] && !is_in_plane(h);
   }
-  PerVertex<char> is_node(mesh.vertex_count(), 0);
-  for (Index v = 0; v < mesh.vertex_count(); ++v) is_node[v] = side_[v] == MirrorSide::plane;
-  for (const Index v : cones) is_node[v] = 1;
-  for (const Cut& path : trace_cuts(mesh, is_node, std::move(one_side)).cuts) {
+  for (const Cut& path : paths_of(std::move(one_side), cones)) {
     for (const Index h : image_of(path.halfedges)) out[h] = out[mesh.twin[h]] = 1;
   }
   return out;
+}
+
+// Those between cones, junctions and the plane.
+Array<Cut> MirroredIslands::paths_of(PerHalfedge<char> edges, const Array<Index>& cones) const {
+  const HalfedgeMesh& mesh = surface_.mesh;
+  PerVertex<char> is_node(mesh.vertex_count(), 0);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) is_node[v] = side_[v] == MirrorSide::plane;
+  for (const Index v : cones) is_node[v] = 1;
+  return trace_cuts(mesh, is_node, std::move(edges)).cuts;
+}
+
+// The cheapest path near the projection of another onto the plane.
+Array<Index> MirroredIslands::in_plane(const Cut& path) const {
+  const HalfedgeMesh& mesh = surface_.mesh;
+  Positions points(2 * ssize(path.halfedges), 3);
+  for (Index i = 0; i < ssize(path.halfedges); ++i) {
+    const auto tail = mesh.positions.row(mesh.origin(path.halfedges[i]));
+    const auto head = mesh.positions.row(mesh.target(path.halfedges[i]));
+    points.row(2 * i) = (tail + reflected(mirroring_.plane, tail)) / 2;
+    points.row(2 * i + 1) = (head + reflected(mirroring_.plane, head)) / 2;
+  }
+  return ImagePath(surface_, points, edge_).find(path.tail, path.head);
 }
 
 // Joins all parts that can be, except along some edges, and closes what then fits.
@@ -220,6 +238,28 @@ MapParts MirroredIslands::along_both(const ComponentMap& map, const PerHalfedge<
   const PerHalfedge<char> other = with_images(open, map.cones, MirrorSide::other);
   for (std::size_t h = 0; h < wanted.size(); ++h) wanted[h] = wanted[h] || other[h];
   return along(map, wanted);
+}
+
+std::optional<MapParts> MirroredIslands::along_plane(const ComponentMap& map, const PerHalfedge<char>& open) const {
+  const HalfedgeMesh& mesh = surface_.mesh;
+  PerHalfedge<char> led = open, beside(mesh.halfedge_count(), 0);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) beside[h] = open[h] && mesh.twin[h] != none && !is_in_plane(h);
+  const auto has_image = [&](Index h) {
+    const Index image = mirrored_halfedge(mesh, mirroring_, h);
+    return image != none && open[image];
+  };
+  bool is_other = false;
+  for (const Cut& path : paths_of(std::move(beside), map.cones)) {
+    if (side_[path.tail] != MirrorSide::plane || side_[path.head] != MirrorSide::plane) continue;
+    if (std::all_of(path.halfedges.begin(), path.halfedges.end(), has_image)) continue;
+    const Array<Index> flat = in_plane(path);
+    if (flat.empty()) continue;
+    for (const Index h : path.halfedges) led[h] = led[mesh.twin[h]] = 0;
+    for (const Index h : flat) led[h] = led[mesh.twin[h]] = 1;
+    is_other = true;
+  }
+  if (!is_other) return std::nullopt;
+  return along_both(map, led);
 }
 
 }  // namespace lsgp

@@ -2,8 +2,11 @@
 // Islands that are alike on both sides of a mirror plane.
 #pragma once
 
+#include <optional>
+
 #include "base/array.hpp"
 #include "base/borrowed.hpp"
+#include "cut/cut_graph.hpp"
 #include "mesh/mirror.hpp"
 #include "mesh/point_tree.hpp"
 #include "split/part_borders.hpp"
@@ -28,11 +31,17 @@ class MirroredIslands {
   // The same where it is on either side.
   MapParts along_both(const ComponentMap& map, const PerHalfedge<char>& open) const;
 
+  // The same after cuts of one side that run from the plane to the plane are led along it instead, since they would
+  // enclose a piece with their images; none without such cuts.
+  std::optional<MapParts> along_plane(const ComponentMap& map, const PerHalfedge<char>& open) const;
+
  private:
   bool is_in_plane(Index h) const;
   bool is_on(Index h, MirrorSide side) const;
   Index image_near(Index v) const;
   Array<Index> image_of(const Array<Index>& path) const;
+  Array<Cut> paths_of(PerHalfedge<char> edges, const Array<Index>& cones) const;
+  Array<Index> in_plane(const Cut& path) const;
   PerHalfedge<char> with_images(const PerHalfedge<char>& open, const Array<Index>& cones, MirrorSide side) const;
   MapParts along(const ComponentMap& map, const PerHalfedge<char>& wanted) const;
   void join(const ComponentMap& map, const PerHalfedge<char>& kept, MapParts& parts) const;

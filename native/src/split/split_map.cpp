@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <initializer_list>
 #include <limits>
 #include <optional>
 #include <utility>
 
+#include "plane/convex_hull.hpp"
 #include "split/cut_apart.hpp"
 #include "split/merge_islands.hpp"
 #include "split/mirrored_islands.hpp"
@@ -22,6 +24,8 @@ namespace {
 // what is added for those without a mirror image where cuts are symmetric.
 constexpr double cost_of_island = 0.5, cost_of_sliver = 2, cost_of_cut = 1, cost_of_one_side = 4;
 constexpr double sliver = 0.005;  // of the area
+// Of what islands cut to fill a square take of it: what those alike on both sides may take.
+constexpr double most_demand = 1.05;
 
 // factor: as from relative_cut_factors.
 double cost(const MetricMesh& surface, const PerHalfedge<double>& factor, const PerHalfedge<char>& ends) {
@@ -58,17 +62,42 @@ Array<Overlap> find_own_overlaps(const HalfedgeMesh& mesh, const ComponentMap& m
   return find_overlaps(corners, twin);
 }
 
+// The islands of a division, each with its parts where they meet.
+struct IslandLayout {
+  Eigen::VectorXcd corners;
+  PerTriangle<Index> island;
+  Index count;
+};
+
+IslandLayout lay_out(const HalfedgeMesh& mesh, const ComponentMap& map, const MapParts& parts) {
+  IslandLayout out{at_corners(map.cut_mesh, map.position), {}, 0};
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) out.corners[h] = parts.motion[parts.part[h / 3]](out.corners[h]);
+  out.count = label_parts(mesh, parts.open, out.island);
+  return out;
+}
+
 // Whether an island of a division overlaps itself.
 bool has_own_overlap(const HalfedgeMesh& mesh, const ComponentMap& map, const MapParts& parts) {
-  Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
+  IslandLayout layout = lay_out(mesh, map, parts);
   PerHalfedge<Index> twin = mesh.twin;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    corners[h] = parts.motion[parts.part[h / 3]](corners[h]);
     if (parts.open[h]) twin[h] = none;
   }
-  PerTriangle<Index> island;
-  label_parts(mesh, parts.open, island);
-  return has_overlap_within(island, std::move(corners), twin);
+  return has_overlap_within(layout.island, std::move(layout.corners), twin);
+}
+
+// What the islands of a division take of the square.
+double demand(const SharedSquare& square, const IslandLayout& layout) {
+  PerPart<Array<Complex>> points(static_cast<std::size_t>(layout.count));
+  for (Index h = 0; h < layout.corners.size(); ++h) {
+    points[layout.island[h / 3]].push_back(square.scale * layout.corners[h]);
+  }
+  const DivisionSearch search(square);
+  double out = 0;
+  for (const Array<Complex>& own : points) {
+    out += search.demand(convex_hull(Eigen::Map<const Eigen::VectorXcd>(own.data(), ssize(own))));
+  }
+  return out;
 }
 
 // What a way of splitting may do, and what it costs.
@@ -86,6 +115,7 @@ class SplitRules {
   const OpenedSurface& surface() const { return surface_; }
   const PerHalfedge<char>& kept() const { return kept_; }
   bool may_recut() const { return may_recut_; }
+  bool is_mirrored() const { return mirrored_.has_value(); }
   double least_cost(const PerHalfedge<char>& ends) const { return cost(surface_, factor_, ends); }
   double cost_of(const PerHalfedge<char>& ends) const {
     const double one_sided = mirrored_ ? mirrored_->one_sided_length(ends) : 0;
@@ -103,14 +133,20 @@ class SplitRules {
   }
 
   // A division of a map, or one that is like it on one side of the mirror plane or both.
-  Division cheapest(const ComponentMap& map, MapParts parts) const {
+  // may_replace: whether it may.
+  Division cheapest(const ComponentMap& map, MapParts parts,
+                    const std::function<bool(const MapParts&)>& may_replace) const {
     Array<MapParts> mirrored = mirror(map, parts.open);
-    if (mirrored_) mirrored.push_back(mirrored_->along_both(map, parts.open));
+    if (mirrored_) {
+      mirrored.push_back(mirrored_->along_both(map, parts.open));
+      if (auto led = mirrored_->along_plane(map, parts.open)) mirrored.push_back(std::move(*led));
+    }
     const double total = cost_of(parts.open);
     Division best{std::move(parts), total};
     for (MapParts& other : mirrored) {
       const double cost = cost_of(other.open);
-      if (cost < best.cost && !has_own_overlap(surface_.mesh, map, other)) best = {std::move(other), cost};
+      if (cost < best.cost && !has_own_overlap(surface_.mesh, map, other) && may_replace(other))
+        best = {std::move(other), cost};
     }
     return best;
   }
@@ -144,7 +180,7 @@ class MapDivider {
     for (const Index h : opened) parts.open[h] = parts.open[mesh.twin[h]] = 1;
     parts.motion.resize(label_parts(mesh, parts.open, parts.part));
     if (map_.rotation) merge_islands(surface_, map_, rules_.kept(), parts);
-    return rules_.cheapest(map_, std::move(parts));
+    return rules_.cheapest(map_, std::move(parts), [](const MapParts&) { return true; });
   }
 
  private:
@@ -242,10 +278,15 @@ bool split_map(const OpenedSurface& surface, const SplitTask& task, ProgressMoni
   return true;
 }
 
-void restore_symmetry(const OpenedSurface& surface, const SplitTask& task, ComponentMap& map) {
+void restore_symmetry(const OpenedSurface& surface, const SplitTask& task, const SharedSquare& square,
+                      ComponentMap& map) {
+  const HalfedgeMesh& mesh = surface.mesh;
   MapParts parts{ends_of(surface, map), {}, {}};
-  parts.motion.resize(label_parts(surface.mesh, parts.open, parts.part));
-  apply(surface, SplitRules(surface, task, map).cheapest(map, std::move(parts)).parts, map);
+  parts.motion.resize(label_parts(mesh, parts.open, parts.part));
+  const SplitRules rules(surface, task, map);
+  const double most = rules.is_mirrored() ? most_demand * demand(square, lay_out(mesh, map, parts)) : 0;
+  const auto fills_as_well = [&](const MapParts& other) { return demand(square, lay_out(mesh, map, other)) <= most; };
+  apply(surface, rules.cheapest(map, std::move(parts), fills_as_well).parts, map);
 }
 
 }  // namespace lsgp

@@ -6,6 +6,7 @@
 #include "mesh/mirror.hpp"
 #include "pipeline/component_map.hpp"
 #include "split/face_graph.hpp"
+#include "split/island_division.hpp"
 
 namespace lsgp {
 
@@ -22,8 +23,9 @@ struct SplitTask {
 // Returns whether anything changed.
 bool split_map(const OpenedSurface& surface, const SplitTask& task, ProgressMonitor& monitor, ComponentMap& map);
 
-// Makes the islands of a map without overlaps alike on both sides again after some were cut further, unless that costs
-// too much.
-void restore_symmetry(const OpenedSurface& surface, const SplitTask& task, ComponentMap& map);
+// Makes the islands of a map without overlaps alike on both sides again after some were cut further to fill a square,
+// unless that costs too much or fills the square less.
+void restore_symmetry(const OpenedSurface& surface, const SplitTask& task, const SharedSquare& square,
+                      ComponentMap& map);
 
 }  // namespace lsgp

@@ -179,3 +179,28 @@ def test_islands_that_are_split_or_made_compact_are_alike_on_both_sides(mesh: me
         assert split.seams.sister_ratio_max <= 1 + 1e-9
         # A motion for each piece: no triangle changes its shape.
         assert oracle.metric_gap(kept.corner_uv, split.corner_uv) <= 1e-9
+
+
+@pytest.mark.parametrize(
+    ("mesh", "count"),
+    [(meshes.two_horned(3), 12), (meshes.two_horned(3, 0.4), 8), (meshes.ellipsoid(2, (1, 1, 3)), 16)],
+    ids=["horned", "turned", "ellipsoid"],
+)
+def test_cuts_that_fill_the_square_are_not_closed_to_be_alike(mesh: meshes.Mesh, count: int) -> None:
+    middle = (mesh.positions[:, 0].min() + mesh.positions[:, 0].max()) / 2
+    placed = lsgp.place_cones(surface(mesh), symmetric=True, count=count)
+
+    def unwrapped(compact: str) -> tuple[lsgp.Result, float]:
+        """The map, and how far its area fills the box of its largest island, made a square."""
+        options = replace(MIRRORED, overlaps="split", compact=compact)
+        result = lsgp.parameterize(surface(mesh), placed.cones, placed.cone_angles, options)
+        sides = [
+            np.ptp(result.corner_uv[result.island == i], axis=(0, 1)).max() for i in range(result.island.max() + 1)
+        ]
+        return result, float(oracle.signed_areas(result.corner_uv).sum() / max(sides) ** 2)
+
+    (whole, filled_whole), (cut, filled_cut) = unwrapped("off"), unwrapped("full")
+    assert whole.island.max() == 0 and filled_whole < 0.45
+    assert filled_cut > 1.5 * filled_whole
+    assert mirrored_share(mesh, cut.cut_edges, middle) >= 0.98
+    assert oracle.metric_gap(whole.corner_uv, cut.corner_uv) <= 1e-9

@@ -9,6 +9,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
+from lsgp import map_comparison
 from lsgp.map_comparison import may_replace_map
 from map_checks import assert_curvature_adds_up, codes, only, surface
 from meshes import Mesh, make
@@ -164,8 +165,46 @@ def test_a_symmetric_map_replaces_another_only_at_a_small_cost() -> None:
     assert not may_replace_map(longer, usual) and may_replace_map(longer, usual, square_share=2.0)
 
 
-def test_a_single_island_may_fill_little_less_of_the_square() -> None:
+@pytest.mark.parametrize("packer", ["xatlas 1", None])
+def test_a_symmetric_map_may_fill_a_tenth_less_of_the_square(
+    packer: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if packer is not None:
+        pytest.importorskip("xatlas")
+    monkeypatch.setattr(map_comparison, "packer_name", lambda: packer)
     usual = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
     assert usual.island.max() == 0
-    for side, may in ((0.99, True), (0.98, False)):
-        assert may_replace_map(replace(usual, corner_uv=side * usual.corner_uv), usual) == may
+    size = np.ptp(usual.corner_uv, axis=(0, 1))
+    # The longer side stays as it is, and with it the square.
+    for height, may in ((0.91, True), (0.89, False)):
+        narrower = usual.corner_uv * np.where(size == size.max(), 1, height)
+        assert may_replace_map(replace(usual, corner_uv=narrower), usual) == may
+
+
+def test_a_pair_of_islands_more_has_to_fill_the_square_as_well() -> None:
+    pytest.importorskip("xatlas")
+    usual = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
+    solved = np.arange(len(usual.island)) < 10
+    square = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]], float)
+
+    def with_squares(count: int) -> lsgp.Result:
+        """So many islands of two triangles; the others are points in the first."""
+        corner_uv = np.zeros_like(usual.corner_uv)
+        island = np.where(solved, 0, -1).astype(np.int32)
+        for i in range(count):
+            corner_uv[2 * i : 2 * i + 2] = square + np.array([1.1 * i, 0])
+            island[2 * i : 2 * i + 2] = i
+        return replace(usual, corner_uv=corner_uv, island=island, solved=solved)
+
+    # One square fills a square, two do half of it, three three quarters, four all of it, and five five ninths.
+    replaced = {
+        (1, 1): True,
+        (1, 2): False,
+        (1, 3): False,
+        (2, 3): True,
+        (2, 4): True,
+        (2, 5): False,
+        (3, 5): False,
+    }
+    for (before, after), may in replaced.items():
+        assert may_replace_map(with_squares(after), with_squares(before)) == may
