@@ -98,8 +98,8 @@ def auto_unwrap(
         requires, which may be 0; one whose cones cannot take up its curvature gets more.
     options: instead of `preset_options(preset)`. count: cones on each component that gets some, as for `place_cones`;
         None: the fewest that bring the L2 stretch to 1.05.
-    symmetric: whether cones are placed alike on both sides of a mirror plane, and on components that mirror each other, as
-        by `place_cones`, and cuts run alike on both sides, as with `Options.mirrored_cuts`, if that costs little: at
+    symmetric: whether cones are placed alike on both sides of a mirror plane, and on components that mirror each other,
+        as by `place_cones`, and cuts run alike on both sides, as with `Options.mirrored_cuts`, if that costs little: at
         most 1 % of L2 stretch, one island (one for ten if there are more; two if the square is not filled less), a
         quarter of the edges cut, and a tenth of the filled part of the square, packed tightly if the packer is
         installed. Only without cones and `count`.
