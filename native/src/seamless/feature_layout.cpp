@@ -193,50 +193,62 @@ void FeatureLayout::find_coordinates() {
     const Eigen::MatrixXd forces = coefficients_.middleCols(i, width);
     compliance_.middleCols(i, width) = coefficients_.transpose() * factor_->solve(forces);
   }
+  whole_values_ = WholeValues::among(compliance_);
+  Eigen::VectorXd units = Eigen::VectorXd::Ones(ssize(rounded_));
+  units.tail(ssize(rounded_) - lattice_count_).setConstant(1 / fine_step);
+  fine_values_ = WholeValues::among(units.asDiagonal() * compliance_ * units.asDiagonal());
   DirectedEdges fixed = edges;
   fixed.fixed = rounded_;
   held_ = free_along(task_.surface, reduction, fixed);
 }
 
 // Rounds one coordinate after the other, the cheapest first; the others follow.
-std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, double step_of_lines) const {
+std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, bool is_fine) const {
+  const std::optional<WholeValues>& all = is_fine ? fine_values_ : whole_values_;
+  if (!all) return std::nullopt;
+  WholeValues values = *all;
   const std::ptrdiff_t count = ssize(rounded_);
   Choice out{scale, {}, {}, 0};
   Eigen::VectorXd value(count);
   for (std::ptrdiff_t i = 0; i < count; ++i) value[i] = scale * value_of(rounded_[i], start_);
-  Eigen::MatrixXd left = compliance_;
+  PivotedCholesky cholesky(compliance_);
   Array<char> is_done(count, 0);
+  const auto unit = [&](std::ptrdiff_t i) { return is_fine && i >= lattice_count_ ? fine_step : 1.0; };
+  const auto least = [&](std::ptrdiff_t i) {
+    return i < length_count_ ? 1.0 : -std::numeric_limits<double>::infinity();
+  };
   const auto off = [&](std::ptrdiff_t i) {
-    const double step = i < lattice_count_ ? 1 : step_of_lines;
-    const double nearest = step * std::round(value[i] / step);
-    return (i < length_count_ ? std::max(nearest, 1.0) : nearest) - value[i];
+    return std::max(unit(i) * std::round(value[i] / unit(i)), least(i)) - value[i];
   };
   // Lines between cones keep a length; where lines need not be on the lattice, they wait for it.
-  for (const std::ptrdiff_t end : {length_count_, step_of_lines < 1 ? lattice_count_ : count, count}) {
+  for (const std::ptrdiff_t end : {length_count_, is_fine ? lattice_count_ : count, count}) {
     for (;;) {
-      checkpoint(static_cast<double>(count * count));
+      checkpoint(static_cast<double>(count * (ssize(out.independent) + 1)));
       std::ptrdiff_t best = -1;
-      double least = std::numeric_limits<double>::infinity();
+      double cheapest = std::numeric_limits<double>::infinity();
       for (std::ptrdiff_t i = 0; i < end; ++i) {
-        if (is_done[i] || !(left(i, i) > dependent * compliance_(i, i))) continue;
+        if (is_done[i] || !(cholesky.left()[i] > dependent * compliance_(i, i))) continue;
         if (end == length_count_ && value[i] > short_length) continue;
-        const double cost = off(i) * off(i) / left(i, i);
-        if (!(cost < least)) continue;
-        least = cost;
+        const double cost = off(i) * off(i) / cholesky.left()[i];
+        if (!(cost < cheapest)) continue;
+        cheapest = cost;
         best = i;
       }
       if (best < 0) break;
-      const double by = off(best);
-      const Eigen::VectorXd column = left.col(best) / left(best, best);
-      value += column * by;
-      left -= column * left.row(best);
       is_done[best] = 1;
+      const double step = values.isolate(best);
+      const double to = values.nearest(best, step, value[best] / unit(best), least(best));
+      if (!values.fix(best, step, to)) return std::nullopt;
+      const double by = unit(best) * to - value[best];
+      const Eigen::VectorXd column = cholesky.column(best);
+      value += column * (by / column[best]);
+      out.cost += by * by / column[best];
+      cholesky.eliminate(best, column);
       out.independent.push_back(static_cast<Index>(best));
-      out.cost += least;
     }
   }
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    if (!is_done[i] && std::abs(off(i)) > whole) return std::nullopt;
+  for (std::ptrdiff_t i = 0; i < length_count_; ++i) {
+    if (value[i] < 1 - whole) return std::nullopt;
   }
   const Eigen::Index chosen = ssize(out.independent);
   Eigen::MatrixXd block(chosen, chosen);
@@ -251,17 +263,17 @@ std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, double s
 }
 
 std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density) const {
-  auto out = quantize(density, 1);
-  return out ? out : quantize(density, fine_step);
+  auto out = quantize(density, false);
+  return out ? out : quantize(density, true);
 }
 
-std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, double step_of_lines) const {
+std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, bool is_fine) const {
   std::optional<Choice> best;
   double least = std::numeric_limits<double>::infinity();
   const int scales = ssize(rounded_) > many_coordinates ? 0 : tried_scales;
   for (int k = -scales; k <= scales; ++k) {
     const double growth = k * M_LN2 / 16;
-    std::optional<Choice> choice = round(density * std::exp(growth), step_of_lines);
+    std::optional<Choice> choice = round(density * std::exp(growth), is_fine);
     if (!choice) continue;
     const double cost =
         choice->cost / (choice->scale * choice->scale) + 2 * task_.surface.geometry.total_area * growth * growth;
@@ -276,7 +288,7 @@ std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, double s
   }
   Eigen::VectorXcd position = best->scale * start_ + system_->expand(factor_->solve(forces));
   if (!minimize(position)) return std::nullopt;
-  snap(step_of_lines, position);
+  snap(is_fine ? fine_step : 1, position);
   if (!is_valid(position)) return std::nullopt;
   return position;
 }

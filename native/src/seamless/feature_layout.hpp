@@ -12,6 +12,7 @@
 #include "repair/newton.hpp"
 #include "seamless/feature_lines.hpp"
 #include "seamless/lattice_transitions.hpp"
+#include "seamless/whole_values.hpp"
 #include "solvers/cholesky.hpp"
 
 namespace lsgp {
@@ -59,8 +60,8 @@ class FeatureLayout {
   DirectedEdges edges_of(const Array<FeatureLine>& lines) const;
   void find_coordinates();
   void find_lattice_coordinates();
-  std::optional<Choice> round(double scale, double step_of_lines) const;
-  std::optional<Eigen::VectorXcd> quantize(double density, double step_of_lines) const;
+  std::optional<Choice> round(double scale, bool is_fine) const;
+  std::optional<Eigen::VectorXcd> quantize(double density, bool is_fine) const;
   void snap(double step, Eigen::VectorXcd& position) const;
   bool minimize(Eigen::VectorXcd& position) const;
   bool is_valid(const Eigen::VectorXcd& position) const;
@@ -81,6 +82,7 @@ class FeatureLayout {
   std::optional<Cholesky<double>> factor_;
   Eigen::MatrixXd coefficients_;  // (rows, rounded)
   Eigen::MatrixXd compliance_;    // (rounded, rounded) how far each moves under a unit force on another
+  std::optional<WholeValues> whole_values_, fine_values_;  // of the rounded ones; lines in cells, or in fine steps
 };
 
 }  // namespace lsgp

@@ -243,6 +243,10 @@ REVIEWED = {
         ("for (Index at = next(h);; at = next(mesh_.twin[at]))", AROUND_A_VERTEX, SHORT),
         ("for (Index h = first; h != none && !is_traced_[h]; h = following(h))", ONCE_EACH, SHORT),
     ],
+    "seamless/whole_values.cpp": [
+        ("for (;;)", "Euclid's algorithm: each round lowers the smallest coefficient, or ends it", OWN),
+        ("while (factor * out <= most_divisor && !is_whole(factor * out * coefficient))", "up to 840 factors", SHORT),
+    ],
     "seamless/grid_search.cpp": [
         ("for (; tiles <= finest; tiles = next_size(tiles))", "27 sizes up to 16384", WITHIN),
         (
