@@ -38,6 +38,7 @@ class Solver:
     def parameterize(
         self, cones: _Cones, options: dict[str, Any], pins: _Pins, progress: _Progress
     ) -> dict[str, Any]: ...
+    def place_cones(self, cones: _Cones, options: dict[str, Any], progress: _Progress) -> dict[str, Any]: ...
 
 class GrabbedCut:
     @property
