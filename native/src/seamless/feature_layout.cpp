@@ -208,7 +208,7 @@ std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, bool is_
   if (!all) return std::nullopt;
   WholeValues values = *all;
   const std::ptrdiff_t count = ssize(rounded_);
-  Choice out{scale, {}, {}, 0};
+  Choice out{scale, {}, {}, {}, 0};
   Eigen::VectorXd value(count);
   for (std::ptrdiff_t i = 0; i < count; ++i) value[i] = scale * value_of(rounded_[i], start_);
   PivotedCholesky cholesky(compliance_);
@@ -259,15 +259,27 @@ std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, bool is_
     for (Eigen::Index l = 0; l < chosen; ++l) block(k, l) = compliance_(i, out.independent[l]);
   }
   out.pull = block.ldlt().solve(moved);
+  out.values = std::move(value);
   return out;
 }
 
 std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density) const {
-  auto out = quantize(density, false);
-  return out ? out : quantize(density, true);
+  const std::optional<Choice> whole_lines = choose(density, false);
+  if (whole_lines) {
+    if (auto out = lay_out(*whole_lines, 1)) return out;
+  }
+  const std::optional<Choice> fine_lines = choose(density, true);
+  if (!fine_lines) return std::nullopt;
+  // The same values would fail in the same way.
+  if (whole_lines && whole_lines->scale == fine_lines->scale &&
+      (whole_lines->values - fine_lines->values).cwiseAbs().maxCoeff() < whole) {
+    return std::nullopt;
+  }
+  return lay_out(*fine_lines, fine_step);
 }
 
-std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, bool is_fine) const {
+// The cheapest one of some scales about this one.
+std::optional<FeatureLayout::Choice> FeatureLayout::choose(double density, bool is_fine) const {
   std::optional<Choice> best;
   double least = std::numeric_limits<double>::infinity();
   const int scales = ssize(rounded_) > many_coordinates ? 0 : tried_scales;
@@ -281,14 +293,17 @@ std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, bool is_
     least = cost;
     best = std::move(choice);
   }
-  if (!best) return std::nullopt;
+  return best;
+}
+
+std::optional<Eigen::VectorXcd> FeatureLayout::lay_out(const Choice& choice, double step_of_lines) const {
   Eigen::VectorXd forces = Eigen::VectorXd::Zero(coefficients_.rows());
-  for (Eigen::Index k = 0; k < best->pull.size(); ++k) {
-    forces += best->pull[k] * coefficients_.col(best->independent[k]);
+  for (Eigen::Index k = 0; k < choice.pull.size(); ++k) {
+    forces += choice.pull[k] * coefficients_.col(choice.independent[k]);
   }
-  Eigen::VectorXcd position = best->scale * start_ + system_->expand(factor_->solve(forces));
+  Eigen::VectorXcd position = choice.scale * start_ + system_->expand(factor_->solve(forces));
   if (!minimize(position)) return std::nullopt;
-  snap(is_fine ? fine_step : 1, position);
+  snap(step_of_lines, position);
   if (!is_valid(position)) return std::nullopt;
   return position;
 }

@@ -52,6 +52,7 @@ class FeatureLayout {
     double scale;              // of the start
     Array<Index> independent;  // coordinates that determine the others
     Eigen::VectorXd pull;      // (independent) the forces that move them there
+    Eigen::VectorXd values;    // of all rounded coordinates
     double cost;
   };
 
@@ -61,7 +62,8 @@ class FeatureLayout {
   void find_coordinates();
   void find_lattice_coordinates();
   std::optional<Choice> round(double scale, bool is_fine) const;
-  std::optional<Eigen::VectorXcd> quantize(double density, bool is_fine) const;
+  std::optional<Choice> choose(double density, bool is_fine) const;
+  std::optional<Eigen::VectorXcd> lay_out(const Choice& choice, double step_of_lines) const;
   void snap(double step, Eigen::VectorXcd& position) const;
   bool minimize(Eigen::VectorXcd& position) const;
   bool is_valid(const Eigen::VectorXcd& position) const;
