@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 namespace lsgp {
@@ -179,22 +178,21 @@ void VerifiedPlacement::take_many(VerifiedChoice& best) {
 }
 
 // The requested number of cones, or as many as the target takes.  automatic: receives the growth that led to these.
-// most_l2: a choice of more stretch is of no use.
-ConeChoice VerifiedPlacement::choose(std::optional<AutomaticCones>& automatic, double most_l2) {
-  if (chooser_.options().count || has_many()) return chooser_.choose(chooser_.options().count.value_or(0), most_l2);
+ConeChoice VerifiedPlacement::choose(std::optional<AutomaticCones>& automatic) {
+  if (chooser_.options().count || has_many()) return chooser_.choose(chooser_.options().count.value_or(0));
   automatic.emplace(chooser_);
   return automatic->reach(chooser_.options().target);
 }
 
 // Cones that cuts reach cheaply, if these stretch no more than others and are not many more.
 ConeChoice VerifiedPlacement::choose_where_cheap(std::optional<AutomaticCones>& automatic) {
-  ConeChoice anywhere = choose(automatic, std::numeric_limits<double>::infinity());
+  ConeChoice anywhere = choose(automatic);
   if (!chooser_.has_prices()) return anywhere;
   const double most_l2 = std::max(chooser_.options().target, anywhere.predicted_l2);
   for (const double weight : price_weights) {
     chooser_.weigh_prices(weight);
     std::optional<AutomaticCones> growth;
-    ConeChoice cheap = choose(growth, most_l2);
+    ConeChoice cheap = choose(growth);
     const auto count = [](const ConeChoice& choice) { return static_cast<double>(choice.vertices.size()); };
     if (cheap.predicted_l2 > most_l2 || much_fewer * count(cheap) > count(anywhere)) continue;
     if (growth) automatic.emplace(std::move(*growth));

@@ -52,7 +52,7 @@ class VerifiedPlacement {
   void repair(VerifiedChoice& choice);
   bool is_worth_repairing(const VerifiedChoice& choice) const;
   VerifiedChoice place_as_asked();
-  ConeChoice choose(std::optional<AutomaticCones>& automatic, double most_l2);
+  ConeChoice choose(std::optional<AutomaticCones>& automatic);
   ConeChoice choose_where_cheap(std::optional<AutomaticCones>& automatic);
   bool misses(const VerifiedChoice& choice) const;
   std::optional<VerifiedChoice> placed_naturally(Corners corners);

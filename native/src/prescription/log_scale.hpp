@@ -37,6 +37,7 @@ class LogScale {
   Index cone_count() const { return static_cast<Index>(cones_.size()); }
   const Array<Index>& cones() const { return cones_; }
   bool balanced() const { return border_.balanced; }
+  bool is_factored() const { return laplace_ != nullptr; }
   // The required sum of the cone curvatures when balanced.
   double required_sum() const { return 2 * M_PI * surface_.mesh.euler - border_.curvature.sum(); }
 

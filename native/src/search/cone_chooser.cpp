@@ -168,7 +168,7 @@ ConeChoice ConeChooser::choice_of(const Set& set) const {
   return out;
 }
 
-ConeChoice ConeChooser::choose(int count, double most_l2) {
+ConeChoice ConeChooser::choose(int count) {
   const int most = std::max(count, sites_.existing);
   if (most > most_one_by_one) return choose_in_batches(most);
   // If so few cones have high stretch, stronger ones have less.
@@ -180,8 +180,7 @@ ConeChoice ConeChooser::choose(int count, double most_l2) {
     if (!best || choice.predicted_l2 - 1 < worth_strong_cones * (best->predicted_l2 - 1)) best = std::move(choice);
     if (best->predicted_l2 <= low_l2 || options_.lattice || all_there) break;
   }
-  const bool is_seen = std::min(best->predicted_l2, most_l2) <= hopeless_l2;  // by the variance, if it is of use
-  if (is_seen || !best->is_possible() || options_.lattice) return *best;
+  if (best->predicted_l2 <= hopeless_l2 || !best->is_possible() || options_.lattice) return *best;
   ConeChoice other = choose_harmonically(static_cast<int>(best->vertices.size()));
   return other.predicted_l2 < best->predicted_l2 ? other : *best;
 }

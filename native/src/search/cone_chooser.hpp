@@ -46,8 +46,7 @@ class ConeChooser {
   ConeChooser& operator=(const ConeChooser&) = delete;
 
   // So many cones, existing ones included, or as many as there is room for.
-  // most_l2: a choice of more stretch is of no use.
-  ConeChoice choose(int count, double most_l2 = std::numeric_limits<double>::infinity());
+  ConeChoice choose(int count);
   // As many, one by one, with curvatures within this of the angle defects, in units of pi; see CurvatureBounds.
   ConeChoice choose_within(double reach, int count);
   // As many at the extrema of the log scale that is 0 at the cones so far (Ben-Chen et al. 2008), then exchanged: where
