@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 #include <utility>
-#include <vector>
 
+#include "base/array.hpp"
 #include "base/checkpoint.hpp"
 
 namespace lsgp {
@@ -51,8 +51,8 @@ void PivotedCholesky::eliminate(Eigen::Index i, const Eigen::VectorXd& column) {
 std::optional<WholeValues> WholeValues::among(const Eigen::MatrixXd& compliance) {
   const Eigen::Index count = compliance.rows();
   PivotedCholesky cholesky(compliance);
-  std::vector<Eigen::Index> pivots;
-  std::vector<char> is_pivot(count, 0);
+  Array<Eigen::Index> pivots;
+  Array<char> is_pivot(count, 0);
   for (Eigen::Index i = 0; i < count; ++i) {
     checkpoint(static_cast<double>(count * (i + 1)));
     if (!(cholesky.left()[i] > dependent * compliance(i, i))) continue;
@@ -83,7 +83,7 @@ std::optional<WholeValues> WholeValues::among(const Eigen::MatrixXd& compliance)
     }
     out.columns_.row(i) = multiples;
     const double step = out.isolate(i);
-    const double shared = std::gcd(std::llround(step), std::llround(divisor));
+    const auto shared = static_cast<double>(std::gcd(std::llround(step), std::llround(divisor)));
     if (step != 0) out.columns_.col(out.free_ - 1) *= divisor / shared;
     out.columns_.row(i) /= divisor;
     if (!(out.columns_.cwiseAbs().maxCoeff() < most_exact)) return std::nullopt;
