@@ -35,7 +35,7 @@ double common_divisor(const Eigen::RowVectorXd& coefficients) {
 }  // namespace
 
 PivotedCholesky::PivotedCholesky(Borrowed<const Eigen::MatrixXd> matrix)
-    : matrix_(matrix.get()), left_(matrix_.diagonal()) {}
+    : matrix_(matrix.get()), factor_(matrix_.rows(), 0), left_(matrix_.diagonal()) {}
 
 Eigen::VectorXd PivotedCholesky::column(Eigen::Index i) const {
   return matrix_.col(i) - factor_.leftCols(count_) * factor_.row(i).head(count_).transpose();
