@@ -10,6 +10,7 @@ import numpy as np
 
 from .api import Progress, Result
 from .errors import InputError
+from .lattice import island_boxes
 from .packing import pack_islands, packer_name
 from .triangles import uv_area
 
@@ -107,13 +108,9 @@ def _filled_square(result: Result) -> float:
 
 def _filled_boxes(has_one_square: bool, result: Result) -> float:
     """The part that islands fill of all their boxes, or of the square around the longest one, if that is less."""
-    uv = result.corner_uv[result.solved]
-    if not len(uv):
-        return 1.0
-    _, island = np.unique(result.island[result.solved], return_inverse=True)
-    low, high = np.full((island.max() + 1, 2), np.inf), np.full((island.max() + 1, 2), -np.inf)
-    np.minimum.at(low, island.ravel(), uv.min(axis=1))
-    np.maximum.at(high, island.ravel(), uv.max(axis=1))
-    boxes = float((high - low).prod(axis=1).sum())
-    room = max(boxes, float((high - low).max()) ** 2) if has_one_square else boxes
-    return uv_area(uv) / room if room > 0 else 1.0
+    boxes = island_boxes(result.corner_uv, result.island)
+    size = boxes[:, 2:] - boxes[:, :2]
+    room = float(size.prod(axis=1).sum())
+    if has_one_square:
+        room = max(room, float(size.max(initial=0.0)) ** 2)
+    return uv_area(result.corner_uv[result.solved]) / room if room > 0 else 1.0
