@@ -17,7 +17,7 @@ namespace lsgp {
 namespace {
 
 // One of the caller's triangles in its component.
-struct Place {
+struct LocalTriangle {
   Index component = none, triangle = none;
 };
 
@@ -42,7 +42,7 @@ struct CutRouter::Kept {
   const EdgeTable edges;
   PerComponent<Component> components;
   PerComponent<Geometry> geometry;
-  PerTriangle<Place> place;
+  PerTriangle<LocalTriangle> place;
 };
 
 CutRouter::Kept::Kept(Surface given)
@@ -74,7 +74,7 @@ Index CutRouter::Kept::edge_between(Index a, Index b) const {
 }
 
 std::pair<Index, Index> CutRouter::Kept::local_halfedge(Index source) const {
-  const Place& at = place[source / 3];
+  const LocalTriangle& at = place[source / 3];
   if (at.component == none) return {none, none};
   const bool reversed = components[at.component].reversed[at.triangle];
   return {3 * at.triangle + (reversed ? 2 - source % 3 : source % 3), at.component};

@@ -14,13 +14,13 @@ namespace lsgp {
 
 namespace {
 
-constexpr double is_flat = 0.05;             // radians between triangles of one face
-constexpr double least_bend = 0.1;           // radians between faces of a bevel
-constexpr double most_bend = 1.1;            // the same: a chamfer has two edges, each with about half the turn
-constexpr double largest_radius = 0.05;      // of a bevel, in square roots of the component's area
-constexpr double most_area = 0.4;            // of the component
-constexpr double unit_of_turns = 1e-6;       // radians: whole numbers of them tie where rounding would decide
-constexpr double operations_an_entry = 100;  // of a queue
+constexpr double within_face = 0.05;       // radians between triangles of one face
+constexpr double least_bend = 0.1;         // radians between faces of a bevel
+constexpr double most_bevel_bend = 1.1;    // the same: a chamfer has two edges, each with about half the turn
+constexpr double largest_radius = 0.05;    // of a bevel, in square roots of the component's area
+constexpr double most_area = 0.4;          // of the component
+constexpr double unit_of_turns = 1e-6;     // radians: whole numbers of them tie where rounding would decide
+constexpr double operations_a_side = 100;  // of a queue
 
 // Halfedges of edges that this is true of.
 template <typename Is>
@@ -35,7 +35,7 @@ PerTriangle<char> find_rounded(const MetricMesh& surface, const Eigen::VectorXd&
   const HalfedgeMesh& mesh = surface.mesh;
   const Geometry& geometry = surface.geometry;
   PerTriangle<Index> face;
-  const Index count = label_parts(mesh, marked(mesh, [&](Index h) { return bend[h] >= is_flat; }), face);
+  const Index count = label_parts(mesh, marked(mesh, [&](Index h) { return bend[h] >= within_face; }), face);
   PerPart<double> area(count, 0), perimeter(count, 0);
   for (Index f = 0; f < mesh.triangle_count(); ++f) area[face[f]] += geometry.area[f];
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
@@ -77,14 +77,14 @@ PerTriangle<Side> find_sides(const HalfedgeMesh& mesh, const PerTriangle<char>& 
     if (!is_rounded[f]) queue.emplace(0, face[f], f);
   }
   while (!queue.empty()) {
-    checkpoint(operations_an_entry);
+    checkpoint(operations_a_side);
     const auto [turn, side, f] = queue.top();
     queue.pop();
     if (out[f].face != none) continue;
     out[f] = {side, turn};
     for (Index h = 3 * f; h < 3 * f + 3; ++h) {
       const Index there = mesh.twin[h] == none ? none : mesh.twin[h] / 3;
-      if (there == none || !is_rounded[there] || out[there].face != none || bend[h] > most_bend) continue;
+      if (there == none || !is_rounded[there] || out[there].face != none || bend[h] > most_bevel_bend) continue;
       queue.emplace(turn + std::llround(bend[h] / unit_of_turns), side, there);
     }
   }
@@ -109,7 +109,8 @@ std::optional<Bevels> find_bevels(const MetricMesh& surface, const Eigen::Vector
   }
   out.edge = marked(mesh, [&](Index h) {
     const Index f = h / 3, g = mesh.twin[h] / 3;
-    return bend[h] <= most_bend && side[f].face != none && side[g].face != none && (is_of_bevel(f) || is_of_bevel(g));
+    return bend[h] <= most_bevel_bend && side[f].face != none && side[g].face != none &&
+           (is_of_bevel(f) || is_of_bevel(g));
   });
   out.crease = marked(mesh, [&](Index h) {
     const Side &here = side[h / 3], &there = side[mesh.twin[h] / 3];

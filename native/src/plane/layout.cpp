@@ -15,15 +15,15 @@ namespace {
 constexpr double margin = 0.01;  // between islands, of the unit square's side before scaling
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-struct Box {
+struct IslandBox {
   double width, height;
 };
 
 // Orders boxes by height, the highest first; those of one height but for rounding remain in the order of their numbers.
-Array<std::size_t> by_height(const Array<Box>& boxes) {
+Array<std::size_t> by_height(const Array<IslandBox>& boxes) {
   constexpr double steps = 0x1p30;
   double highest = 0;
-  for (const Box& box : boxes) highest = std::max(highest, box.height);
+  for (const IslandBox& box : boxes) highest = std::max(highest, box.height);
   const auto steps_high = [&](std::size_t i) { return std::round(boxes[i].height / highest * steps); };
   Array<std::size_t> order(boxes.size());
   std::iota(order.begin(), order.end(), 0);
@@ -36,9 +36,9 @@ struct Shelves {
   Array<Complex> place;
   double size;  // of the square that holds them
 };
-Shelves shelve(const Array<Box>& boxes, double gap) {
+Shelves shelve(const Array<IslandBox>& boxes, double gap) {
   double total = 0, widest = 0;
-  for (const Box& box : boxes) {
+  for (const IslandBox& box : boxes) {
     total += box.width * box.height;
     widest = std::max(widest, box.width);
   }
@@ -77,7 +77,7 @@ Complex upright(const Eigen::VectorXcd& position) { return longer_side(convex_hu
 
 Array<Similarity> arrange(const Array<Island>& islands) {
   Array<Similarity> out(islands.size());
-  Array<Box> boxes;
+  Array<IslandBox> boxes;
   double total = 0;
   for (std::size_t i = 0; i < islands.size(); ++i) {
     const Array<Complex> hull = convex_hull(islands[i].position);
@@ -121,7 +121,7 @@ void arrange_on_lattice(const Array<DividedLayout>& layouts, const PointLattice&
               std::max(span.top, row + 1)};
     }
   }
-  Array<Box> boxes;
+  Array<IslandBox> boxes;
   for (const Span& span : spans) boxes.push_back({span.right - span.left, span.top - span.bottom});
   const Shelves shelves = shelve(boxes, 0);
   Index first = 0;

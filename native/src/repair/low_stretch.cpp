@@ -13,9 +13,9 @@ namespace {
 
 using Kind = DistortionEnergy::Kind;
 
-constexpr int most_steps = 30;
-constexpr double least_decrease = 1e-5;  // of the energy in a step
-constexpr double least_weight = 1e-3;    // of the mean, so that no vertex is without any
+constexpr int newton_steps = 30;
+constexpr double newton_decrease = 1e-5;  // of the energy in a step
+constexpr double least_weight = 1e-3;     // of the mean, so that no vertex is without any
 
 }  // namespace
 
@@ -33,7 +33,7 @@ Eigen::VectorXd importance_of_triangles(const MetricMesh& surface, const Eigen::
   return (out / mean).cwiseMax(least_weight);
 }
 
-void relax_stretch(NewtonMinimizer& newton) { newton.smooth(Kind::symmetric_dirichlet, most_steps, least_decrease); }
+void relax_stretch(NewtonMinimizer& newton) { newton.smooth(Kind::symmetric_dirichlet, newton_steps, newton_decrease); }
 
 Eigen::VectorXd scale_at_rest(const CutSurface& surface, const Curvature& curvature, double stretch,
                               const Eigen::VectorXcd& position) {

@@ -22,7 +22,7 @@ struct Steps {
   int unfolding, smoothing;
 };
 constexpr Steps local_steps{30, 3}, global_steps{25, 10};
-constexpr double least_decrease = 1e-3;  // of the energy in a step of smoothing
+constexpr double smoothing_decrease = 1e-3;  // of the energy in a step of smoothing
 
 // The rotation of a whole map against frames.
 double turn_against(const MetricMesh& surface, const CutMesh& cut_mesh, const Eigen::VectorXd& frames,
@@ -65,7 +65,7 @@ Eigen::VectorXcd untangle(const CutSurface& surface, const MapTarget& target, co
     Eigen::VectorXcd tried = best;
     NewtonMinimizer newton(surface, {curvature.log_scale, frames}, std::move(freedom), before_step, tried);
     if (newton.unfold(energy, most.unfolding)) {
-      newton.smooth(Kind::conformal_barrier, most.smoothing, least_decrease);
+      newton.smooth(Kind::conformal_barrier, most.smoothing, smoothing_decrease);
     }
     Validity after = check(tried);
     if (after.defects() >= left.defects()) return;

@@ -30,7 +30,6 @@ constexpr int unfolding_steps = 8;
 constexpr int relaxing_steps = 30;
 constexpr double least_decrease = 1e-3;           // of the energy, for which a further step is taken
 constexpr double fine_step = 1.0 / 256;           // exact in single precision on any grid
-constexpr double dependent = 1e-9;                // share of a coordinate's compliance that is left
 constexpr double short_length = 1.5;              // cells: lines that are rounded first
 constexpr double whole = 1e-5;                    // deviation of a dependent coordinate from its step
 constexpr int tried_scales = 3;                   // above and below the one asked for, by sixteenths of an octave
@@ -227,7 +226,7 @@ std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, bool is_
       std::ptrdiff_t best = -1;
       double cheapest = std::numeric_limits<double>::infinity();
       for (std::ptrdiff_t i = 0; i < end; ++i) {
-        if (is_done[i] || !(cholesky.left()[i] > dependent * compliance_(i, i))) continue;
+        if (is_done[i] || !cholesky.is_independent(i)) continue;
         if (end == length_count_ && value[i] > short_length) continue;
         const double cost = off(i) * off(i) / cholesky.left()[i];
         if (!(cost < cheapest)) continue;

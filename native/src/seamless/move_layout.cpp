@@ -20,9 +20,9 @@ constexpr int most_moves = 20;
 constexpr double shortest_step = 0.01;  // of the way
 // Smoothing by the symmetric Dirichlet energy.
 constexpr int smoothed_rings = 4;  // around stretched triangles
-constexpr int relaxing_steps = 30;
+constexpr int smoothing_steps = 30;
 // Automatic grids.
-constexpr double mendable_share = 0.1;  // of the triangles, stretched, that are smoothed
+constexpr double most_stretched = 0.1;  // of the triangles, stretched, that are smoothed
 constexpr double easy_share = 2e-4;     // of the triangles, flipped, that are repaired
 
 }  // namespace
@@ -80,7 +80,7 @@ bool LayoutQuantizer::looks_easy(double scale, double most_energy, const Validit
   if (static_cast<double>(validity.flipped.size()) > 1 + easy_share * mesh_.triangle_count()) return false;
   Jacobians jacobians = measure_jacobians({mesh_, geometry_}, cut_mesh_, position);
   const Array<Index> stretched = find_stretched(scale, jacobians);
-  if (static_cast<double>(stretched.size()) > mendable_share * mesh_.triangle_count()) return false;
+  if (static_cast<double>(stretched.size()) > most_stretched * mesh_.triangle_count()) return false;
   for (const Index f : stretched) {
     jacobians.f_z[f] = scale;
     jacobians.f_zbar[f] = 0;
@@ -131,7 +131,7 @@ void LayoutQuantizer::lower_stretch(double stretch, const Eigen::VectorXd& impor
       free_vertices(mesh_, cut_mesh_, motion_of_copies_, without_cones(PerVertex<char>(mesh_.vertex_count(), 1))),
       before_step_, layout.position);
   newton.weigh(importance_of_triangles({mesh_, geometry_}, importance));
-  newton.smooth(DistortionEnergy::Kind::symmetric_dirichlet, relaxing_steps, least_decrease);
+  newton.smooth(DistortionEnergy::Kind::symmetric_dirichlet, smoothing_steps, least_decrease);
   layout.energy = measure_energy(layout.position);
 }
 

@@ -41,6 +41,8 @@ Eigen::VectorXd PivotedCholesky::column(Eigen::Index i) const {
   return matrix_.col(i) - factor_.leftCols(count_) * factor_.row(i).head(count_).transpose();
 }
 
+bool PivotedCholesky::is_independent(Eigen::Index i) const { return left_[i] > dependent * matrix_(i, i); }
+
 void PivotedCholesky::eliminate(Eigen::Index i, const Eigen::VectorXd& column) {
   if (count_ == factor_.cols()) factor_.conservativeResize(matrix_.rows(), std::max<Eigen::Index>(16, 2 * count_));
   factor_.col(count_) = column / std::sqrt(column[i]);
@@ -55,7 +57,7 @@ std::optional<WholeValues> WholeValues::among(const Eigen::MatrixXd& compliance)
   Array<char> is_pivot(count, 0);
   for (Eigen::Index i = 0; i < count; ++i) {
     checkpoint(static_cast<double>(count * (i + 1)));
-    if (!(cholesky.left()[i] > dependent * compliance(i, i))) continue;
+    if (!cholesky.is_independent(i)) continue;
     cholesky.eliminate(i, cholesky.column(i));
     pivots.push_back(i);
     is_pivot[i] = 1;

@@ -41,6 +41,8 @@ class PivotedCholesky {
   const Eigen::VectorXd& left() const { return left_; }
   // Column i of what is left.
   Eigen::VectorXd column(Eigen::Index i) const;
+  // Whether coordinate i does not follow from those that are eliminated.
+  bool is_independent(Eigen::Index i) const;
   // Eliminates i, whose column is given.
   void eliminate(Eigen::Index i, const Eigen::VectorXd& column);
   // (n, eliminated) in the order of elimination.

@@ -14,11 +14,11 @@ namespace lsgp {
 
 namespace {
 
-constexpr int batches_to_double = 6;  // with larger batches, cones of a batch interfere
-constexpr int exchanged_share = 10;   // one in so many
-constexpr double worthwhile = 0.998;  // of the variance: less is not worth a further round
-constexpr double blocks = 6;          // of H at once: the fit's form, its factor, and one to go back to
-constexpr std::size_t probes = 8;     // sites at which the spread is measured
+constexpr int batches_to_double = 6;     // with larger batches, cones of a batch interfere
+constexpr int exchanged_share = 10;      // one in so many
+constexpr double worth_a_round = 0.998;  // of the variance: less is not worth a further round
+constexpr double blocks = 6;             // of H at once: the fit's form, its factor, and one to go back to
+constexpr std::size_t probes = 8;        // sites at which the spread is measured
 
 // Rings that can be left free around each of so many cones.
 int rings_for(int cones, Index vertices) {
@@ -177,7 +177,7 @@ void BatchPlacement::exchange(int rounds) {
     const double objective_before = objective();
     remove(least_needed(exchanged));
     grow(cones);
-    if (cone_count() == cones && objective() < worthwhile * objective_before) continue;
+    if (cone_count() == cones && objective() < worth_a_round * objective_before) continue;
     if (!(cone_count() == cones && objective() < objective_before)) state_ = before;
     return;
   }

@@ -10,10 +10,9 @@ namespace lsgp {
 
 namespace {
 
-constexpr int tries = 2;                   // of new sites for a cone that is exchanged
-constexpr double worthwhile = 0.998;       // of the variance: less is not worth an exchange
-constexpr double sharp_defect = M_PI / 6;  // of an angle
-constexpr double sharp_price = 1.25;       // the factor of variance that it may cost
+constexpr int tries = 2;                     // of new sites for a cone that is exchanged
+constexpr double worth_an_exchange = 0.998;  // of the variance: less is not worth an exchange
+constexpr double sharp_price = 1.25;         // the factor of variance that it may cost
 
 }  // namespace
 
@@ -107,7 +106,7 @@ bool ConeSearch::exchange_one(ConeSet& set, const ConeSet::Explained& explained,
     if (!best || *best == site) return false;
     const bool sharper = prefers_sharp_ && is_sharp(*best) && !is_sharp(site);
     const double saved = price[site] - price[*best];
-    const double most = set.variance() * (sharper ? sharp_price : worthwhile) + saved;
+    const double most = set.variance() * (sharper ? sharp_price : worth_an_exchange) + saved;
     if (rest.variance() - gains[*best] >= most) return false;
     ConeSet moved = rest;
     moved.add(*best);

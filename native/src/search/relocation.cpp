@@ -7,8 +7,8 @@ namespace lsgp {
 
 namespace {
 
-constexpr double worthwhile = 0.002;  // of the objective
-constexpr int tries = 2;              // of new sites for a cone
+constexpr double least_gain = 0.002;  // of the objective
+constexpr int sites_tried = 2;        // of new sites for a cone
 
 // The part of the variance that depends on the site of a curvature, given the slope of the others' variance.
 double share(double curvature, double slope, double diagonal) {
@@ -38,7 +38,7 @@ bool relocate(const PlacementProblem& problem, const ConeSearch& search, int kep
     Array<char> open = search.open_sites(others);
     const int cones = kernel.sites()[sites[i]].cones();
     const auto price = problem.price_among(problem.cone_count(sites));
-    for (int tried = 0; tried < tries; ++tried) {
+    for (int tried = 0; tried < sites_tried; ++tried) {
       const auto at = [&](int site) { return share(kappa, slope[site], kernel.diagonal()[site]) + price[site]; };
       const double present = at(sites[i]);
       int best = sites[i];
@@ -47,7 +47,7 @@ bool relocate(const PlacementProblem& problem, const ConeSearch& search, int kep
         if (problem.limits.low(site, wider_reach) > kappa || problem.limits.high(site, wider_reach) < kappa) continue;
         best = site;
       }
-      const double wanted = present - worthwhile * objective;
+      const double wanted = present - least_gain * objective;
       if (best == sites[i] || at(best) > wanted) break;
       open[best] = 0;
       if (share(kappa, slope[best], kernel.column(best)[best]) + price[best] > wanted) continue;

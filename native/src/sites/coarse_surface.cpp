@@ -19,7 +19,7 @@ constexpr double no_area = 1e-9;
 // Sine of the angle by which an edge fails to be Delaunay before it is flipped; less is a tie.
 constexpr double delaunay_tie = 1e-10;
 constexpr double bytes_a_halfedge = 40;
-constexpr int most_around = 24;               // triangles at a vertex that is removed
+constexpr int most_degree = 24;               // triangles at a vertex that is removed
 constexpr double operations_a_removal = 500;  // about
 constexpr std::int64_t flips_an_edge = 20;    // that keep it Delaunay, at most, on average
 
@@ -199,8 +199,8 @@ class CoarseSurface::Triangulation {
     Index h = outgoing_[v];
     do {
       h = rotate(h);
-    } while (++degree <= most_around && h != outgoing_[v]);
-    if (degree > most_around) return false;
+    } while (++degree <= most_degree && h != outgoing_[v]);
+    if (degree > most_degree) return false;
     do {
       touched_in_[origin(next(h))] = pass;
       h = rotate(h);

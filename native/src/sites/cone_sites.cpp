@@ -10,9 +10,8 @@ namespace lsgp {
 
 namespace {
 
-constexpr int rings_between_images = 2;    // cones side by side cancel each other
-constexpr double sharp_defect = M_PI / 6;  // of an angle
-constexpr int most_around = 64;            // triangles: vertices around a hub of more are not near each other
+constexpr int rings_between_images = 2;  // cones side by side cancel each other
+constexpr int most_around = 64;          // triangles: vertices around a hub of more are not near each other
 
 // Vertices that cuts can connect to all boundaries and existing cones: those of the largest network if there are
 // none, or if these are not connected.

@@ -2,11 +2,15 @@
 // Sites of cones: single vertices, or vertices together with their mirror images.
 #pragma once
 
+#include <cmath>
+
 #include "base/array.hpp"
 #include "lsgp/placement.hpp"
 #include "prescription/curvature.hpp"
 
 namespace lsgp {
+
+constexpr double sharp_defect = M_PI / 6;  // of an angle
 
 // The site of a cone, or of two that mirror each other and share their curvature equally.
 struct Site {

@@ -12,7 +12,6 @@ namespace {
 constexpr double worth_while = 2;  // vertices to a node, from which on the surface is coarsened
 constexpr double nodes_a_site = 2, least_nodes = 20000;
 // A spike stretches what is next to it, which the variance has to see.
-constexpr double sharp_defect = M_PI / 6;
 constexpr int rings_around_sharp = 3;
 
 std::optional<CoarseSurface> coarsened(const LogScale& scale, const Array<Site>& sites) {

@@ -17,7 +17,7 @@ namespace {
 
 // Least saving, as a fraction of the area of all islands: for a cut as long as the square root of that area, and for
 // each additional island.
-constexpr double cost_of_cut = 0.15, cost_of_island = 0.01;
+constexpr double price_of_cut = 0.15, price_of_island = 0.01;
 // Multiplies both with Compactness::sparing.
 constexpr double sparing_factor = 8;
 // An island is assumed to occupy the mean area of its convex hull and its smallest box. If its smallest bounding square
@@ -32,7 +32,7 @@ constexpr double operations_a_point = 60;  // of finding hulls
 DivisionSearch::DivisionSearch(const SharedSquare& square)
     : area_(square.area), price_factor_(square.filling == Compactness::sparing ? sparing_factor : 1) {}
 
-double DivisionSearch::least_gain() const { return price_factor_ * cost_of_island * area_; }
+double DivisionSearch::least_gain() const { return price_factor_ * price_of_island * area_; }
 
 double DivisionSearch::demand(const Array<Complex>& hull) const {
   constexpr int turns = 45;  // of a quarter
@@ -47,8 +47,8 @@ double DivisionSearch::demand(const Array<Complex>& hull) const {
 }
 
 double DivisionSearch::worth(double gain, double length, std::size_t pieces) const {
-  const double price = price_factor_ * (area_ * cost_of_island * static_cast<double>(pieces - 1) +
-                                        std::sqrt(area_) * cost_of_cut * length);
+  const double price = price_factor_ * (area_ * price_of_island * static_cast<double>(pieces - 1) +
+                                        std::sqrt(area_) * price_of_cut * length);
   // A compromise between the largest gain and the largest gain per cost.
   return gain > price ? gain / std::sqrt(price) : 0;
 }

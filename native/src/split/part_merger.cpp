@@ -13,7 +13,7 @@ namespace lsgp {
 
 namespace {
 
-constexpr double operations_a_border = 10;
+constexpr double operations_a_merge = 10;
 
 }  // namespace
 
@@ -37,7 +37,7 @@ void PartMerger::merge_back() {
   PerPart<Index> merged_into(parts_.count);
   std::iota(merged_into.begin(), merged_into.end(), 0);
   while (!borders.empty()) {
-    checkpoint(operations_a_border * static_cast<double>(borders.size()));
+    checkpoint(operations_a_merge * static_cast<double>(borders.size()));
     const auto longest = std::max_element(borders.begin(), borders.end(),
                                           [](const auto& a, const auto& b) { return a.second < b.second; });
     const auto [kept, merged] = longest->first;

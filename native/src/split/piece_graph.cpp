@@ -13,7 +13,7 @@ namespace lsgp {
 
 namespace {
 
-constexpr double least_piece = 0.004;  // of the surface
+constexpr double least_piece_area = 0.004;  // of the surface
 constexpr double operations_a_border = 20;
 
 // Merges small pieces across paths that are not cut.
@@ -23,7 +23,7 @@ class PieceMerger {
       : mesh_(surface.mesh),
         is_cut_(is_cut),
         network_(network),
-        least_area_(least_piece * surface.geometry.total_area),
+        least_area_(least_piece_area * surface.geometry.total_area),
         area_(label_parts(surface.mesh, network, piece_), 0),
         groups_(static_cast<Index>(area_.size())) {
     const HalfedgeMesh& mesh = surface.mesh;
