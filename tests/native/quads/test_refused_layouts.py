@@ -144,3 +144,11 @@ def test_as_many_quads_as_the_refusal_names_are_made_on_request(monkeypatch: pyt
 def test_it_can_be_cancelled() -> None:
     with pytest.raises(lsgp.Cancelled):
         lsgp.extract_quads(surface(BALL), LAYOUT.corner_uv, progress=lambda done: False)
+
+
+def test_a_fine_grid_can_be_cancelled_all_the_time() -> None:
+    """Every step over a cell is counted as work of hundreds of multiplications at least."""
+    mesh, uv = flat_torus((600, 600))
+    asked = []
+    lsgp.extract_quads(surface(mesh), uv, progress=lambda done: not asked.append(done))
+    assert len(asked) > 600 * 600 * 700 / 5e7
