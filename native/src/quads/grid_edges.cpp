@@ -10,7 +10,7 @@ namespace lsgp {
 namespace {
 
 // Multiplications that take about as long as one of these.
-constexpr double operations_a_triangle = 50, operations_a_vertex = 100, operations_a_port = 50;
+constexpr double operations_a_triangle = 50, operations_a_start = 100, operations_a_port = 50;
 
 // A straight line of the grid traced through the triangles, in the chart of the current one.
 struct Ray {
@@ -34,7 +34,7 @@ class Tracer {
 
   GridEdges trace() {
     for (Index v = 0; v < vertices_.count(); ++v) {
-      checkpoint(operations_a_vertex);
+      checkpoint(operations_a_start);
       edges_.first_port.push_back(port_count());
       add_ports(v);
     }

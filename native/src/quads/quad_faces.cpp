@@ -16,13 +16,13 @@ namespace {
 }
 
 // Multiplications that a corner of cells and its sides take about as long as.
-constexpr double operations_a_vertex = 200, operations_a_cell = 200;
+constexpr double operations_a_neighborhood = 200, operations_a_cell = 200;
 
 // Vertices that occur twice in a cell, and the lower ones of pairs joined by more than one side.
 Array<Index> find_doubled(const GridVertices& vertices, const GridEdges& edges) {
   Array<Index> out, joined;
   for (Index from = 0; from < vertices.count(); ++from) {
-    checkpoint(operations_a_vertex);
+    checkpoint(operations_a_neighborhood);
     joined.clear();
     for (Index port = edges.first_port[from]; port < edges.first_port[from + 1]; ++port) {
       const Index to = edges.ports[edges.opposite[port]].vertex;
