@@ -35,6 +35,9 @@ _NARROW, _MOST_HOLDS = 0.75 * math.pi, 4
 # Where quads are too large for a mesh: by how much smaller ones are tried, and how often.
 _FINER = 0.8
 _MOST_REFINEMENTS = 12
+# More quads than this, and this many times what was asked for, are refused instead of made: parts of the surface differ
+# so much in size that the grid of the smallest one covers the others with millions.
+_MANY_QUADS, _FAR_ABOVE = 2**20, 2
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -132,7 +135,7 @@ def remesh_to_quads(
         curvature, get some, as with `auto_unwrap`, but none of 90 degrees. count: the number on each component that
         gets some.
     target: the approximate number of quads; it is larger if so few have no valid layout or are not a mesh
-        (GRID_REFINED).
+        (GRID_REFINED), but more than a million, and twice the target, are refused (TOO_MANY_QUADS).
         size: or the side of a quad on the surface, in its unit. Neither: the coarsest grid that costs at most a tenth
         in distortion.
     options: for the layout, as for `parameterize`; None: `Options(seamless=Seamless(), straighten=True)`. Its
@@ -140,14 +143,15 @@ def remesh_to_quads(
         surfaces become rows of edges, and automatic cones are chosen for that.
     If the surface has `directions`, rows of quads follow them as far as the cones permit; its seams have no effect.
     progress: as for `parameterize`.  Raises the errors of `parameterize` and `extract_quads`, OPEN_SURFACE before any
-    work is done; COMPONENT_SKIPPED if a component has no layout.
+    work is done; COMPONENT_SKIPPED if a component has no layout; TOO_MANY_QUADS.
     """
     arguments.require_callable(progress)
     arguments.require_type("surface", surface, Surface)
     surface = replace(surface, seams=None)
     chosen = _options(options)
     _lsgp.require_closed(surface_arrays(surface))
-    chosen = replace(chosen, seamless=replace(chosen.seamless, tile_size=_side(surface, target, size)))
+    side = _side(surface, target, size)
+    chosen = replace(chosen, seamless=replace(chosen.seamless, tile_size=side))
     placing, laying_out = part_of(progress, 0.0, _PLACED), part_of(progress, _PLACED, _LAID_OUT)
     is_free = count is None and not len(arguments.index_vector("cones", cones))
     solver, along = Solver(surface), None
@@ -159,7 +163,8 @@ def remesh_to_quads(
         layout = layouts.nearest(target, laying_out)
     else:
         layouts, layout = _along_features((surface, target, chosen), (along, completed), laying_out)
-    mesh, layout = layouts.extracted(layout, part_of(progress, _LAID_OUT, 1.0))
+    asked = 0.0 if side is None else _area(surface) / side**2
+    mesh, layout = layouts.extracted(layout, asked, part_of(progress, _LAID_OUT, 1.0))
     warnings = [finding for finding in layout.warnings if finding.code not in _OF_LAYOUTS_ALONE]
     return QuadRemesh(mesh, layout, warnings)
 
@@ -219,10 +224,14 @@ def _side(surface: Surface, target: int | None, size: float | None) -> float | N
     target = arguments.whole_number("target", target, 1, f"pass how many quads there are to be, up to {_MOST_QUADS}")
     if target > _MOST_QUADS:
         arguments.refuse("target", target, f"pass how many quads there are to be, up to {_MOST_QUADS}")
+    return math.sqrt(_area(surface) / target)
+
+
+def _area(surface: Surface) -> float:
     corners = surface.positions[surface.triangles]
     with np.errstate(over="ignore", invalid="ignore"):  # the verbs refuse such a surface by name
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        return math.sqrt(0.5 * float(np.linalg.norm(normals, axis=1).sum()) / target)
+        return 0.5 * float(np.linalg.norm(normals, axis=1).sum())
 
 
 def _wide_cones(
@@ -276,20 +285,27 @@ class _Layouts:
         second = self._lay_out(side * math.sqrt(quads / target), part_of(progress, 0.5, 1.0))
         return min(layout, second, key=lambda found: abs(_quad_count(found) - target))
 
-    def extracted(self, layout: Result, progress: Progress | None) -> tuple[QuadMesh, Result]:
-        """The quads of a layout, or of the first one on a finer grid on which they are a mesh, and that layout."""
-        done, cell = 0.0, self._options.seamless.cell
+    def extracted(self, layout: Result, asked: float, progress: Progress | None) -> tuple[QuadMesh, Result]:
+        """The quads of a layout, or of the first one on a finer grid on which they are a mesh, and that layout.
+
+        asked: the number of quads that was asked for, 0 for any. Raises SolverError: TOO_MANY_QUADS.
+        """
+        done = 0.0
         for _ in range(_MOST_REFINEMENTS):
             half = (1 + done) / 2
             try:
-                return extract_quads(self._surface, layout.corner_uv, cell, part_of(progress, done, half)), layout
+                return self._extract(layout, asked, part_of(progress, done, half)), layout
             except SolverError as error:
                 if error.code != "GRID_TOO_COARSE":
                     raise
             done = (1 + half) / 2
             layout = self._lay_out(_FINER * layout.seamless.tile_size, part_of(progress, half, done))
             layout = replace(layout, warnings=[*layout.warnings, _refined(layout)])
-        return extract_quads(self._surface, layout.corner_uv, cell, part_of(progress, done, 1.0)), layout
+        return self._extract(layout, asked, part_of(progress, done, 1.0)), layout
+
+    def _extract(self, layout: Result, asked: float, progress: Progress | None) -> QuadMesh:
+        _refuse_far_above(asked, layout)
+        return extract_quads(self._surface, layout.corner_uv, self._options.seamless.cell, progress)
 
     def _lay_out(self, side: float | None, progress: Progress | None) -> Result:
         options = replace(self._options, seamless=replace(self._options.seamless, tile_size=side))
@@ -324,6 +340,18 @@ def _refined(layout: Result) -> Finding:
         "GRID_REFINED",
         "With quads as large as asked for one would have a vertex twice, or two vertices more than one edge; they have "
         f"the side {layout.seamless.tile_size:.4g} now. Ask for more quads, or use fewer cones.",
+    )
+
+
+def _refuse_far_above(asked: float, layout: Result) -> None:
+    quads = _quad_count(layout)
+    if quads <= max(_MANY_QUADS, _FAR_ABOVE * asked):
+        return
+    raise SolverError(
+        "TOO_MANY_QUADS",
+        f"The grid has {quads} quads: all parts of the surface have quads of one size, and the smallest part, or cones "
+        f"close to each other, require small ones. Ask for a number (target, or --target), {quads} for as many, or "
+        "remesh small parts by themselves.",
     )
 
 

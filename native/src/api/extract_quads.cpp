@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/array.hpp"
+#include "base/checkpoint.hpp"
 #include "base/progress_monitor.hpp"
 #include "base/text.hpp"
 #include "lsgp/lsgp.hpp"
@@ -67,6 +68,9 @@ Topology build_closed_topology(const Surface& surface) {
   return topology;
 }
 
+// Multiplications that take about as long as collecting a vertex or a quad.
+constexpr double operations_an_element = 100;
+
 // The mesh of all components.
 class Collector {
  public:
@@ -74,8 +78,12 @@ class Collector {
 
   void add(const Component& component, const ExactGrid& grid, const GridVertices& vertices, const Quads& quads) {
     const auto first = static_cast<Index>(out_.triangles.size());
-    for (Index i = 0; i < vertices.count(); ++i) add(component, grid, vertices[i]);
+    for (Index i = 0; i < vertices.count(); ++i) {
+      checkpoint(operations_an_element);
+      add(component, grid, vertices[i]);
+    }
     for (Index q = 0; q < quads.rows(); ++q) {
+      checkpoint(operations_an_element);
       for (int c = 0; c < 4; ++c) corners_.push_back(first + quads(q, c));
     }
   }
@@ -86,6 +94,7 @@ class Collector {
     out_.weights = Eigen::Map<const Positions>(weights_.data(), count, 3);
     out_.positions.resize(count, 3);
     for (Index v = 0; v < count; ++v) {
+      checkpoint(operations_an_element);
       out_.positions.row(v).setZero();
       for (int c = 0; c < 3; ++c) {
         const double weight = out_.weights(v, c);

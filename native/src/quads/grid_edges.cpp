@@ -9,7 +9,8 @@ namespace lsgp {
 
 namespace {
 
-constexpr double operations_a_triangle = 50;
+// Multiplications that take about as long as one of these.
+constexpr double operations_a_triangle = 50, operations_a_start = 100, operations_a_port = 50;
 
 // A straight line of the grid traced through the triangles, in the chart of the current one.
 struct Ray {
@@ -33,6 +34,7 @@ class Tracer {
 
   GridEdges trace() {
     for (Index v = 0; v < vertices_.count(); ++v) {
+      checkpoint(operations_a_start);
       edges_.first_port.push_back(port_count());
       add_ports(v);
     }
@@ -40,6 +42,7 @@ class Tracer {
     edges_.opposite.reserve(edges_.ports.size());
     for (const Port& port : edges_.ports) edges_.opposite.push_back(arrival(port));
     for (Index port = 0; port < port_count(); ++port) {
+      checkpoint(operations_a_port);
       const Index other = edges_.opposite[port];
       if (other == none || other == port || edges_.opposite[other] != port) fail();
     }

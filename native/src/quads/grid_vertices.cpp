@@ -11,6 +11,9 @@ namespace lsgp {
 
 namespace {
 
+// Multiplications that a point of a row takes about as long as.
+constexpr double operations_a_point = 50;
+
 // Quotient rounded down; b > 0.
 std::int64_t floor_divide(std::int64_t a, std::int64_t b) { return a / b - (a % b < 0 ? 1 : 0); }
 std::int64_t ceil_divide(std::int64_t a, std::int64_t b) { return -floor_divide(-a, b); }
@@ -67,7 +70,7 @@ void GridVertices::add_points_of(Index triangle) {
   const std::int64_t top = std::max({a.y, b.y, c.y});
   for (std::int64_t y = ceil_divide(std::min({a.y, b.y, c.y}), cell) * cell; y <= top; y += cell) {
     const Range row = in_row(grid_, triangle, y);
-    checkpoint(static_cast<double>(row.high - row.low) / static_cast<double>(cell) + 1);
+    checkpoint(operations_a_point * (static_cast<double>(row.high - row.low) / static_cast<double>(cell) + 1));
     for (std::int64_t x = ceil_divide(row.low, cell) * cell; x <= row.high; x += cell) {
       const Place place = *find_place(grid_, triangle, {x, y});
       if (!is_home(place)) continue;

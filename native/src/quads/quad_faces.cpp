@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <string>
-#include <utility>
 
+#include "base/checkpoint.hpp"
 #include "base/text.hpp"
 
 namespace lsgp {
@@ -15,26 +15,30 @@ namespace {
   throw Error(Code::solver_failed, "The grid's cells do not close over the surface. Please report this mesh.");
 }
 
-// Vertices that occur twice in a cell, or pairs joined by more than one side.
-Array<Index> find_doubled(const GridEdges& edges) {
-  Array<Index> out;
-  Array<std::pair<Index, Index>> sides;
-  for (Index port = 0; port < ssize(edges.ports); ++port) {
-    const Index from = edges.ports[port].vertex, to = edges.ports[edges.opposite[port]].vertex;
-    const Index across = edges.ports[edges.opposite[edges.clockwise(edges.opposite[port])]].vertex;
-    if (from == to || from == across) out.push_back(from);
-    if (from < to) sides.emplace_back(from, to);
-  }
-  std::sort(sides.begin(), sides.end());
-  for (std::size_t i = 1; i < sides.size(); ++i) {
-    if (sides[i] == sides[i - 1]) out.push_back(sides[i].first);
+// Multiplications that a corner of cells and its sides take about as long as.
+constexpr double operations_a_neighborhood = 200, operations_a_cell = 200;
+
+// Vertices that occur twice in a cell, and the lower ones of pairs joined by more than one side.
+Array<Index> find_doubled(const GridVertices& vertices, const GridEdges& edges) {
+  Array<Index> out, joined;
+  for (Index from = 0; from < vertices.count(); ++from) {
+    checkpoint(operations_a_neighborhood);
+    joined.clear();
+    for (Index port = edges.first_port[from]; port < edges.first_port[from + 1]; ++port) {
+      const Index to = edges.ports[edges.opposite[port]].vertex;
+      const Index across = edges.ports[edges.opposite[edges.clockwise(edges.opposite[port])]].vertex;
+      if (from == to || from == across) out.push_back(from);
+      if (from < to) joined.push_back(to);
+    }
+    std::sort(joined.begin(), joined.end());
+    if (std::adjacent_find(joined.begin(), joined.end()) != joined.end()) out.push_back(from);
   }
   return out;
 }
 
 void require_fine(const GridVertices& vertices, const GridEdges& edges) {
   Array<Index> triangles;
-  for (const Index v : find_doubled(edges)) triangles.push_back(vertices[v].triangle);
+  for (const Index v : find_doubled(vertices, edges)) triangles.push_back(vertices[v].triangle);
   if (triangles.empty()) return;
   sort_unique(triangles);
   const std::string what =
@@ -54,6 +58,7 @@ Quads walk_faces(const HalfedgeMesh& mesh, const GridVertices& vertices, const G
   Index quad = 0;
   for (Index first = 0; first < ports; ++first) {
     if (walked[first]) continue;
+    checkpoint(operations_a_cell);
     // The cell on the left of a side: at its end, the next side is the first one clockwise from it.
     Index port = first;
     for (int corner = 0; corner < 4; ++corner) {

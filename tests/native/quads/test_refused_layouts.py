@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 import lsgp
@@ -120,6 +121,34 @@ def test_cells_too_large_for_a_mesh_are_refused(cells: tuple[int, int]) -> None:
     assert len(caught.value.elements.indices)
 
 
+def of_two_sizes(ratio: float) -> lsgp.Surface:
+    small = BALL._replace(positions=BALL.positions * ratio)
+    return surface(meshes.merge([BALL, small]))
+
+
+@pytest.mark.parametrize(("ratio", "asked"), [(1e-3, {}), (2e-4, {"target": 2000}), (2e-4, {"size": 0.05})])
+def test_millions_of_quads_that_nobody_asked_for_are_refused(ratio: float, asked: dict) -> None:
+    with pytest.raises(lsgp.SolverError) as caught:
+        lsgp.remesh_to_quads(of_two_sizes(ratio), **asked)
+    assert caught.value.code == "TOO_MANY_QUADS"
+
+
+def test_as_many_quads_as_the_refusal_names_are_made_on_request(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("lsgp.quads._MANY_QUADS", 500)
+    with pytest.raises(lsgp.SolverError) as caught:
+        lsgp.remesh_to_quads(of_two_sizes(0.1))
+    named = int(re.search(r"has (\d+) quads", caught.value.message)[1])
+    assert len(lsgp.remesh_to_quads(of_two_sizes(0.1), target=named).mesh.quads) == pytest.approx(named, rel=0.1)
+
+
 def test_it_can_be_cancelled() -> None:
     with pytest.raises(lsgp.Cancelled):
         lsgp.extract_quads(surface(BALL), LAYOUT.corner_uv, progress=lambda done: False)
+
+
+def test_a_fine_grid_can_be_cancelled_all_the_time() -> None:
+    """Every step over a cell is counted as work of hundreds of multiplications at least."""
+    mesh, uv = flat_torus((600, 600))
+    asked = []
+    lsgp.extract_quads(surface(mesh), uv, progress=lambda done: not asked.append(done))
+    assert len(asked) > 600 * 600 * 700 / 5e7
