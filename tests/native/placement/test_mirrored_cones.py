@@ -181,21 +181,21 @@ def test_a_symmetric_map_may_fill_a_tenth_less_of_the_square(
         assert may_replace_map(replace(usual, corner_uv=narrower), usual) == may
 
 
+def with_rectangles(usual: lsgp.Result, count: int, height: float = 1.0) -> lsgp.Result:
+    """So many islands of two triangles, each as high as this relative to its width; other triangles are points."""
+    solved = np.arange(len(usual.island)) < 10
+    rectangle = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]]) * [1, height]
+    corner_uv = np.zeros_like(usual.corner_uv)
+    island = np.where(solved, 0, -1).astype(np.int32)
+    for i in range(count):
+        corner_uv[2 * i : 2 * i + 2] = rectangle + np.array([1.1 * i, 0])
+        island[2 * i : 2 * i + 2] = i
+    return replace(usual, corner_uv=corner_uv, island=island, solved=solved)
+
+
 def test_a_pair_of_islands_more_has_to_fill_the_square_as_well() -> None:
     pytest.importorskip("xatlas")
     usual = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
-    solved = np.arange(len(usual.island)) < 10
-    square = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]], float)
-
-    def with_squares(count: int) -> lsgp.Result:
-        """So many islands of two triangles; the others are points in the first."""
-        corner_uv = np.zeros_like(usual.corner_uv)
-        island = np.where(solved, 0, -1).astype(np.int32)
-        for i in range(count):
-            corner_uv[2 * i : 2 * i + 2] = square + np.array([1.1 * i, 0])
-            island[2 * i : 2 * i + 2] = i
-        return replace(usual, corner_uv=corner_uv, island=island, solved=solved)
-
     # One square fills a square, two do half of it, three three quarters, four all of it, and five five ninths.
     replaced = {
         (1, 1): True,
@@ -207,4 +207,14 @@ def test_a_pair_of_islands_more_has_to_fill_the_square_as_well() -> None:
         (3, 5): False,
     }
     for (before, after), may in replaced.items():
-        assert may_replace_map(with_squares(after), with_squares(before)) == may
+        assert may_replace_map(with_rectangles(usual, after), with_rectangles(usual, before)) == may
+
+
+@pytest.mark.parametrize(("before", "filled", "least"), [(2, 1 / 2, 0.9), (3, 3 / 4, 0.7)])
+def test_a_pair_of_islands_fewer_may_fill_the_square_less(before: int, filled: float, least: float) -> None:
+    pytest.importorskip("xatlas")
+    usual = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
+    squares = with_rectangles(usual, before)
+    # A single rectangle fills as much of the square as its height, but for margins.
+    for more, may in ((0.05, True), (-0.05, False)):
+        assert may_replace_map(with_rectangles(usual, 1, filled * (least + more)), squares) == may
