@@ -21,6 +21,12 @@ _MOST_L2 = 1.01
 _LEAST_FILLED = 0.9
 _LEAST_FILLED_BY_FEWER = 0.7
 _MOST_CUTS = 1.25
+# Where the other one is stretched as well, far fewer edges cut are worth the stretch that cones are placed for, and
+# more of the square.
+_FAR_FEWER_CUTS = 0.6
+_ISOMETRIC_L2 = 1.001
+_TARGET_L2 = 1.05
+_LEAST_FILLED_FOR_CUTS = 0.75
 _ISLANDS_FOR_ONE = 10
 _PAIR = 2
 # More than this lie on shelves too differently to compare them; packing more than that takes long.
@@ -37,7 +43,8 @@ def may_replace_map(
     """Whether a map through symmetric cones costs little: L2 stretch up to 1 % more, a quarter more of edges cut, the
     square filled at most a tenth less, no further defects, and one island more, or one for ten if there are as many;
     two of fewer than ten only if the square is not filled less. With two islands fewer the square may be filled by
-    three tenths less.
+    three tenths less. If it cuts at most three fifths of the edges, its stretch may be up to 1.05 and the square filled
+    a quarter less, unless the other map is isometric.
 
     Both as from `parameterize`, with islands on shelves, for this share of a square. They are packed tightly if the
     packer is installed. How far many islands, several squares and seamless layouts are filled follows from the boxes of
@@ -46,23 +53,29 @@ def may_replace_map(
     islands = _island_count(usual)
     more = _island_count(symmetric) - islands
     has_few = islands < _ISLANDS_FOR_ONE
+    saves_cuts = _saves_many_cuts(symmetric, usual)
+    most_l2 = _MOST_L2 * usual.distortion.l2_stretch
+    if saves_cuts:
+        most_l2 = max(most_l2, _TARGET_L2)
     if not (
         symmetric.solved.tolist() == usual.solved.tolist()
         and _defects(symmetric) <= _defects(usual)
-        and symmetric.distortion.l2_stretch <= _MOST_L2 * usual.distortion.l2_stretch
+        and symmetric.distortion.l2_stretch <= most_l2
         and len(symmetric.cut_edges) <= _MOST_CUTS * len(usual.cut_edges)
         and more <= (_PAIR if has_few else islands // _ISLANDS_FOR_ONE)
     ):
         return False
     filled = _measure_of_filling(usual, square_share, progress)
-    return filled(symmetric) >= _least_filled(more, has_few) * filled(usual)
+    return filled(symmetric) >= _least_filled(more, has_few, saves_cuts) * filled(usual)
 
 
-def _least_filled(more: int, has_few: bool) -> float:
+def _least_filled(more: int, has_few: bool, saves_cuts: bool) -> float:
     """How far the square has to be filled with so many more islands, relative to the map that has few or many."""
     if more <= -_PAIR:
         return _LEAST_FILLED_BY_FEWER
-    return 1.0 if has_few and more == _PAIR else _LEAST_FILLED
+    if has_few and more == _PAIR:
+        return 1.0
+    return _LEAST_FILLED_FOR_CUTS if saves_cuts else _LEAST_FILLED
 
 
 def runs_along_features(result: Result) -> bool:
@@ -80,6 +93,12 @@ def may_replace_for_features(along: Result, usual: Result) -> bool:
         and along.distortion.l2_stretch <= _MOST_L2_FOR_FEATURES * usual.distortion.l2_stretch
         and runs_along_features(along)
     )
+
+
+def _saves_many_cuts(symmetric: Result, usual: Result) -> bool:
+    """Whether it has far fewer, and the other one is stretched for all of its own."""
+    has_far_fewer = len(symmetric.cut_edges) <= _FAR_FEWER_CUTS * len(usual.cut_edges)
+    return has_far_fewer and usual.distortion.l2_stretch > _ISOMETRIC_L2
 
 
 def _defects(result: Result) -> int:

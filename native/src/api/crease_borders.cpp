@@ -21,15 +21,6 @@ namespace lsgp {
 
 namespace {
 
-// The angle between the normals of the triangles at each edge, radians, 0 on borders, (3m).
-Eigen::VectorXd bends(const HalfedgeMesh& mesh) {
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(mesh.halfedge_count());
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    if (mesh.twin[h] > h) out[h] = out[mesh.twin[h]] = bend_at(mesh, h);
-  }
-  return out;
-}
-
 // Whether the component has marked cones or seams; those take precedence.
 bool is_marked(const HalfedgeMesh& mesh, const ComponentTask& task) {
   return !task.cones.vertices.empty() || !task.border_cones.empty() ||

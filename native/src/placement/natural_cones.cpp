@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "creases/rounds.hpp"
 #include "plane/point_lattice.hpp"
 #include "prescription/quantize_curvature.hpp"
 
@@ -11,10 +12,11 @@ namespace lsgp {
 
 namespace {
 
-constexpr double angle_of_flat = 1e-5;            // radians of defect: a vertex that is flat but for rounding
-constexpr double angle_of_corner = M_PI / 18;     // radians of defect: less is a bend of a smooth surface
-constexpr std::size_t most_natural = 32;          // cones
-constexpr std::size_t most_natural_on_fine = 64;  // where at most half of the vertices have one
+constexpr double angle_of_flat = 1e-5;             // radians of defect: a vertex that is flat but for rounding
+constexpr double angle_of_corner = M_PI / 18;      // radians of defect: less is a bend of a smooth surface
+constexpr std::size_t most_natural = 32;           // cones
+constexpr std::size_t most_natural_on_fine = 64;   // where at most half of the vertices have one
+constexpr std::size_t most_natural_on_round = 12;  // of an icosahedron: round shapes do with as few others
 
 // Vertices where existing or other cones may be.
 PerVertex<char> find_possible(const ConeChooser& chooser) {
@@ -75,6 +77,7 @@ std::optional<ConeChoice> natural_cones(const ConeChooser& chooser, Corners kind
   const PlacementOptions& options = chooser.options();
   const std::optional<Array<Index>> corners = find_corners(chooser, kind);
   if (!corners || (options.count && *options.count != static_cast<int>(corners->size()))) return std::nullopt;
+  if (!options.count && corners->size() > most_natural_on_round && has_round_shape(task)) return std::nullopt;
   const Eigen::VectorXd given = chooser.given_curvature();
   Eigen::VectorXd curvature(static_cast<Eigen::Index>(corners->size()));
   for (Eigen::Index i = 0; i < curvature.size(); ++i) {

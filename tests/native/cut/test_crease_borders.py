@@ -152,6 +152,16 @@ def test_rings_of_a_coarse_torus_are_no_creases(around: int, along: int) -> None
     assert len(lsgp.crease_borders(surface(torus))) == 0
 
 
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(("around", "along"), [(8, 6), (12, 6), (14, 7), (30, 7)])
+def test_noise_makes_no_creases_of_rings(around: int, along: int, seed: int) -> None:
+    """It twists quads, whose diagonals then bend a little."""
+    torus = meshes.torus(around, along, 1.0, 0.4)
+    size = np.median(in_space(torus))
+    moved = torus.positions + 0.02 * size * np.random.default_rng(seed).normal(size=torus.positions.shape)
+    assert len(lsgp.crease_borders(surface(torus._replace(positions=moved)))) == 0
+
+
 @pytest.mark.parametrize("sides", [8, 12, 24])
 @pytest.mark.parametrize("slope", [45, 60, 70, 72, 74, 80, 90])
 def test_rims_of_a_frustum_are_creases(sides: int, slope: float) -> None:

@@ -160,6 +160,11 @@ def test_a_symmetric_map_replaces_another_only_at_a_small_cost() -> None:
     assert not may_replace_map(with_islands(islands // 10 + 1), usual)
     assert may_replace_map(with_l2(1.009), usual) and not may_replace_map(with_l2(1.011), usual)
     assert not may_replace_map(replace(usual, flipped=np.array([3], np.int32)), usual)
+    # Half the cuts are worth a stretch up to the target, but not an isometric map.
+    l2 = usual.distortion.l2_stretch
+    for stretch, before, may in ((1.049, 1.02, True), (1.051, 1.02, False), (1.049, 1.0005, False)):
+        with_few_cuts = replace(with_l2(stretch / l2), cut_edges=usual.cut_edges[: len(usual.cut_edges) // 2])
+        assert may_replace_map(with_few_cuts, with_l2(before / l2)) == may
     # Islands fill their boxes as before, but one square around the longest is larger than all boxes.
     longer = replace(usual, corner_uv=usual.corner_uv * [8, 1 / 8])
     assert not may_replace_map(longer, usual) and may_replace_map(longer, usual, square_share=2.0)

@@ -46,6 +46,10 @@ POLYHEDRA = {
 }
 
 
+def unit(vectors: np.ndarray) -> np.ndarray:
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+
 def corner_angles(corners: np.ndarray) -> np.ndarray:
     """(m, 3) degrees, of triangles in the plane or in space, (m, 3, d)."""
     to_next, to_last = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
@@ -127,6 +131,28 @@ def test_the_map_of_a_coarse_surface_reaches_the_target(name: str) -> None:
     placed = place(COARSE[name])
     assert placed.reached and placed.mapped_l2 <= TARGET
     assert_keeps_its_word(COARSE[name], placed)
+
+
+def ball(around: int, rings: int) -> Mesh:
+    polar = np.linspace(np.pi, 0, rings + 1)
+    return closed.lathe(np.sin(polar).round(12), np.cos(polar), around, caps=(False, False))
+
+
+COARSE_ROUNDS = {
+    "ball of 8 by 4": ball(8, 4),
+    "ball of 6 by 5": ball(6, 5),
+    "ball of 7 by 4": ball(7, 4),
+    "smooth cube": meshes.cube(2)._replace(positions=unit(meshes.cube(2).positions - 0.5)),
+}
+
+
+@pytest.mark.parametrize("name", COARSE_ROUNDS)
+def test_a_coarse_round_shape_is_no_polyhedron(name: str) -> None:
+    """A cone at every vertex would unfold it without stretch, and cut it into its faces."""
+    mesh = COARSE_ROUNDS[name]
+    placed = place(mesh)
+    assert len(placed.cones) <= len(mesh.positions) / 2
+    assert_keeps_its_word(mesh, placed)
 
 
 @pytest.mark.parametrize("name", [member.name for member in zoo.members("small", "noise-ball")])
