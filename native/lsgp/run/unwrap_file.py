@@ -80,12 +80,18 @@ class Run:
 
 
 def unwrap_file(
-    args: argparse.Namespace, run: Run, progress: Progress | None = None, given_format: str | None = None
+    args: argparse.Namespace,
+    run: Run,
+    progress: Progress | None = None,
+    given_format: str | None = None,
+    *,
+    makes_folder: bool = False,
 ) -> Result:
     """Unwrap args.input into args.output.  Raises OSError, UsageError, LsgpError.
 
     args: these two, either of which may be "-", threads, and the values of the options of an unwrap.
-    given_format: of what has no suffix that tells it.
+    given_format: of what has no suffix that tells it. makes_folder: whether that of args.output is made if it is
+    missing, once there is something to write.
 
     The warnings of the result are also those of the files.
     """
@@ -112,6 +118,8 @@ def unwrap_file(
         require_flawless(result.warnings)
     with run.stage("write_file"):
         data, findings = format_mesh(file, result.corner_uv, form, None if target is None else target.parent)
+        if makes_folder and target is not None:
+            target.parent.mkdir(parents=True, exist_ok=True)
         write_output(args.output, data, keep_backup=args.in_place)
     return replace(result, warnings=[*file.findings, *findings, *result.warnings])
 
