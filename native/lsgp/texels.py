@@ -109,7 +109,7 @@ def at_texel_density(surface: Surface, result: Result, layout: TexelLayout) -> R
     arguments.require_type("result", result, Result)
     arguments.require_type("layout", layout, TexelLayout)
     density = arguments.positive("density", layout.density, "pass texels per unit of length, above 0")
-    size = arguments.whole_number("texture_size", layout.texture_size, 1, "pass how many texels a side has")
+    size = arguments.whole_number("texture_size", layout.texture_size, 1, "pass the number of texels of a side")
     if result.seamless is not None:
         raise InputError(
             "WRONG_PARAMETER",
@@ -186,14 +186,30 @@ def _tile_places(
             f"{_rounded_down(most)}, take a larger texture, or cut it by seams.",
             _triangles_of(large, island),
         )
-    places, tile_of = np.empty((len(boxes), 2)), np.empty(len(boxes), np.int64)
-    # Of each row: its tile, its lower end, its height, and where it is free from.
-    rows = np.empty((len(boxes), 4))
+    places, tile_of = _rows_in_tiles(sizes)
+    needed = int(tile_of.max(initial=-1)) + 1
+    if needed > tiles:
+        raise InputError(
+            "TOO_FEW_TILES",
+            f"At this texel density the islands take {needed} tiles of {texture_size} x {texture_size} texels, and "
+            f"there {'is 1' if tiles == 1 else f'are {tiles}'}. Take {needed} tiles or a larger texture, or lower "
+            "the texel density.",
+            _triangles_of(np.flatnonzero(tile_of >= tiles), island),
+        )
+    return places + free + np.stack([tile_of % TILES_IN_ROW, tile_of // TILES_IN_ROW], axis=1) - boxes[:, :2]
+
+
+def _rows_in_tiles(sizes: FloatArray) -> tuple[FloatArray, NDArray[np.int64]]:
+    """(k, 2), the lower left corners of boxes in their tiles, and (k,), these tiles: each box, the highest first, lies
+    in the first row that has room for it.  sizes: (k, 2), at most 1."""
+    places, tile_of = np.empty((len(sizes), 2)), np.empty(len(sizes), np.int64)
+    # Of each row: its tile, its lower end, and where it is free from.
+    rows = np.empty((len(sizes), 3))
     count = 0
     tops: list[float] = []
     for i in np.argsort(-sizes[:, 1], kind="stable").tolist():
         width, height = sizes[i]
-        fits = np.flatnonzero(rows[:count, 3] + width <= 1 + _ROUNDING)
+        fits = np.flatnonzero(rows[:count, 2] + width <= 1 + _ROUNDING)
         if len(fits):
             row = fits[0]
         else:
@@ -201,19 +217,11 @@ def _tile_places(
             if tile == len(tops):
                 tops.append(0.0)
             row, count = count, count + 1
-            rows[row] = tile, tops[tile], height, 0.0
+            rows[row] = tile, tops[tile], 0.0
             tops[tile] += height
-        tile_of[i], places[i] = rows[row, 0], (rows[row, 3], rows[row, 1])
-        rows[row, 3] += width
-    if len(tops) > tiles:
-        raise InputError(
-            "TOO_FEW_TILES",
-            f"At this texel density the islands take {len(tops)} tiles of {texture_size} x {texture_size} texels, and "
-            f"there {'is 1' if tiles == 1 else f'are {tiles}'}. Take {len(tops)} tiles or a larger texture, or lower "
-            "the texel density.",
-            _triangles_of(np.flatnonzero(tile_of >= tiles), island),
-        )
-    return places + free + np.stack([tile_of % TILES_IN_ROW, tile_of // TILES_IN_ROW], axis=1) - boxes[:, :2]
+        tile_of[i], places[i] = rows[row, 0], (rows[row, 2], rows[row, 1])
+        rows[row, 2] += width
+    return places, tile_of
 
 
 def tiny_islands(uv: FloatArray, island: IndexArray) -> NDArray[np.intp]:
@@ -226,8 +234,13 @@ def tiny_islands(uv: FloatArray, island: IndexArray) -> NDArray[np.intp]:
         return np.flatnonzero((boxes[:, 2:] - boxes[:, :2]).max(axis=1) < _LEAST_UNITS * unit)
 
 
+def with_tiny_findings(result: Result) -> Result:
+    """A result whose layout is final, with the warning of tiny islands, where there are any."""
+    return replace(result, warnings=[*result.warnings, *tiny_findings(result.corner_uv, result.island)])
+
+
 def tiny_findings(uv: FloatArray, island: IndexArray) -> list[Finding]:
-    """The warning of tiny islands, where there are any."""
+    """The warning of tiny islands, where there are any.  Arguments as above."""
     tiny = tiny_islands(uv, island)
     if not len(tiny):
         return []

@@ -17,7 +17,7 @@ import pytest
 from batch_meshes import off_text
 from lsgp.batch.records import EMPTY
 from lsgp.cli import main
-from meshes import cube, grid
+from meshes import cube, grid, merge, moebius_strip
 
 ASSETS = ["cube.off", "deep/ball two.off", "deep/ball.off", "moebius.off", "patch.off"]
 RESULTS = [name for name in ASSETS if name != "moebius.off"]
@@ -62,6 +62,24 @@ def test_exit_codes_of_all_some_and_none(batch, library: Path) -> None:
         assert (done.returncode, done.stderr) == (code, "")
         assert done.stdout.startswith(f"{len(listed)} assets\n")
         assert re.search(rf"^results +{code != 3 and len(set(listed) & set(RESULTS))}$", done.stdout, re.M) or code == 3
+
+
+def test_no_empty_folders_stay_behind(batch, tmp_path: Path) -> None:
+    folder = tmp_path / "library"
+    for name, mesh in {"good/cube.off": cube(2), "bad/moebius.off": moebius_strip()}.items():
+        (folder / name).parent.mkdir(parents=True)
+        (folder / name).write_text(off_text(mesh))
+    assert batch("library", "--out", "out", "--no-pictures").returncode == 4
+    assert [path.name for path in (tmp_path / "out").iterdir() if path.is_dir()] == ["good"]
+
+
+def test_warnings_of_one_kind_are_added_up(batch, lines_in, tmp_path: Path) -> None:
+    strip = moebius_strip()
+    both = merge([grid(3, 3), strip, strip])
+    (tmp_path / "both.off").write_text(off_text(both))
+    assert batch("both.off", "--out", "out", "--no-pictures").returncode == 0
+    (line,) = lines_in(tmp_path / "out" / "journal.jsonl")
+    assert line["warnings"]["COMPONENT_SKIPPED"] == 2 * len(strip.triangles)
 
 
 WRONG_USAGE = {

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 from pathlib import Path
 
@@ -187,6 +188,7 @@ MALFORMED = {
         "Face 0",
     ),
     "other format": ("a.fbx", b"Kaydara", "UNKNOWN_FORMAT", "OBJ, OFF, PLY, glTF, GLB or STL"),
+    "compressed": ("a.obj.gz", gzip.compress(b"v 0 0 0\n"), "UNKNOWN_FORMAT", "compressed.*gunzip"),
     "other format, empty": ("a", b"", "UNKNOWN_FORMAT", "OBJ, OFF, PLY, glTF, GLB or STL"),
 }
 

@@ -75,11 +75,10 @@ def _unwrap(task: Task, settings: Settings) -> Record:
             solved.append((obj, outcome))
     if not solved:
         return _nothing_solved(failures)
-    if args.strict:
-        native.part("run.unwrap_file").require_flawless(
-            [flaw for _, unwrapped in solved for flaw in unwrapped.result.warnings]
-        )
     layouts, findings = _layouts([unwrapped for _, unwrapped in solved], args)
+    if args.strict:
+        flaws = [flaw for _, unwrapped in solved for flaw in unwrapped.result.warnings]
+        native.part("run.unwrap_file").require_flawless([*flaws, *findings])
     for (obj, unwrapped), corner_uv in zip(solved, layouts, strict=True):
         write_uv(obj, unwrapped.region, unwrapped.result.solved, corner_uv)
     output = Path(task.out, task.output)
@@ -147,7 +146,7 @@ def _unwrap_task(obj: bpy.types.Object, args: argparse.Namespace) -> UnwrapTask:
 def _layouts(
     solved: Sequence[Unwrapped], args: argparse.Namespace
 ) -> tuple[list[NDArray[np.float64]], list[lsgp.Finding]]:
-    """The coordinates of each map as they are written, and what is to be said of them: packed together with a preset,
+    """The coordinates of each map as they are written, and findings about them: packed together with a preset,
     then at a texel density if that is asked for.  Raises InputError, Refused."""
     unwrap_options = native.part("run.unwrap_options")
     layouts = [unwrapped.corner_uv for unwrapped in solved]
@@ -160,10 +159,13 @@ def _layouts(
             udim=1 if packing is None or packing.udim is None else packing.udim,
         )
         layouts = final_layouts(solved, replace(pack, stack=args.stack))
-    texels = unwrap_options.texel_layout(args)
-    if texels is None:
-        return layouts, []
-    return at_density(solved, layouts, texels, share=args.preset is not None)
+    texels, findings = unwrap_options.texel_layout(args), []
+    if texels is not None:
+        layouts, findings = at_density(solved, layouts, texels, share=args.preset is not None)
+    tiny_findings = native.part("texels").tiny_findings
+    for unwrapped, corner_uv in zip(solved, layouts, strict=True):
+        findings = [*findings, *tiny_findings(corner_uv, unwrapped.result.island)]
+    return layouts, findings
 
 
 def _nothing_solved(failures: dict[str, Exception]) -> Record:
@@ -188,8 +190,8 @@ def _record(solved: Sequence[Unwrapped], findings: Sequence[lsgp.Finding], failu
     others count as a warning.  findings: about their layouts."""
     results = [unwrapped.result for unwrapped in solved]
     warnings: Counter[str] = Counter()
-    for found in (*(result.warnings for result in results), findings):
-        warnings.update({finding.code: len(finding.elements.indices) for finding in found})
+    for finding in (*(finding for result in results for finding in result.warnings), *findings):
+        warnings[finding.code] += len(finding.elements.indices)
     if failures:
         warnings["OBJECTS_REFUSED"] = len(failures)
     worst = max((result.distortion for result in results), key=lambda distortion: distortion.l2_stretch)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
@@ -42,9 +43,11 @@ _FROM_REPORT = ("triangles", "islands", "distortion", "flipped", "wrong_angle_su
 
 def record_of(report: Report) -> Record:
     """The figures of a result's report; of its cones their number, of a warning how many elements it names."""
-    warnings = {warning["code"]: len(warning["elements"]["indices"]) for warning in report["warnings"]}
+    warnings: Counter[str] = Counter()
+    for warning in report["warnings"]:
+        warnings[warning["code"]] += len(warning["elements"]["indices"])
     figures = {key: report[key] for key in _FROM_REPORT}
-    return EMPTY | figures | {"warnings": warnings, "cones": len(report["cones"])}
+    return EMPTY | figures | {"warnings": dict(warnings), "cones": len(report["cones"])}
 
 
 def is_record(value: Any) -> bool:

@@ -20,7 +20,7 @@ from .tasks import Settings, Task
 
 
 def unwrap_asset(task: Task, settings: Settings) -> Record:
-    """Unwrap an asset, write its files, and say how it ended."""
+    """Unwrap an asset, write its files, and return its record."""
     run = Run()
     try:
         _require_ordinary(Path(task.input))
@@ -51,9 +51,8 @@ def _require_ordinary(path: Path) -> None:
 
 def _unwrap(task: Task, settings: Settings, run: Run) -> Record:
     output = Path(task.out, task.output)
-    output.parent.mkdir(parents=True, exist_ok=True)
     args = argparse.Namespace(input=Path(task.input), output=output, threads=0, **settings.options_for(task))
-    result = unwrap_file(args, run)
+    result = unwrap_file(args, run, makes_folder=True)
     report = reports.unwrap_report(result, run, texture_size(args))
     if settings.reports:
         write_whole(output.with_name(f"{output.name}.report.json"), reports.to_json(report))

@@ -41,6 +41,9 @@ STL = Format("STL", ".stl", "trimesh", None)
 FORMATS = (OBJ, OFF, PLY, GLTF, GLB, STL)
 BY_KEY = {form.key: form for form in FORMATS}
 
+# Suffixes of compressed files, and the programs that decompress them.
+_COMPRESSED = {".gz": "gunzip", ".bz2": "bunzip2", ".xz": "unxz", ".zst": "unzstd", ".zip": "unzip"}
+
 
 def input_format(path: str | os.PathLike[str] | None, data: bytes, given: str | None = None) -> Format:
     """The format of a file that can be read: by its suffix, then as given, then by its first bytes.
@@ -50,6 +53,11 @@ def input_format(path: str | os.PathLike[str] | None, data: bytes, given: str | 
     """
     suffix = "" if path is None else Path(path).suffix.lower()
     found = BY_KEY.get(suffix[1:]) or (BY_KEY[given] if given else _by_content(data)) or (OBJ if path is None else None)
+    if suffix in _COMPRESSED:
+        raise InputError(
+            "UNKNOWN_FORMAT",
+            f"'{os.fspath(path)}' is compressed. Decompress it first, for instance with {_COMPRESSED[suffix]}.",
+        )
     if found is None or found.reader is None:
         readable = [form.name for form in FORMATS if form.reader is not None]
         raise InputError(

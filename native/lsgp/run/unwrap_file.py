@@ -23,7 +23,7 @@ from ..io.safe_files import is_standard_stream, read_input, require_separate
 from ..io.side_files import cones_in, directions_in, load_importance, load_json, seam_edges_in
 from ..io.whole_files import write_output
 from ..packing import laid_out
-from ..texels import TexelDensity, at_texel_density, texel_density, tiny_findings
+from ..texels import TexelDensity, at_texel_density, texel_density, with_tiny_findings
 from ..triangles import uv_area
 from .unwrap_options import (
     cone_count,
@@ -80,12 +80,18 @@ class Run:
 
 
 def unwrap_file(
-    args: argparse.Namespace, run: Run, progress: Progress | None = None, given_format: str | None = None
+    args: argparse.Namespace,
+    run: Run,
+    progress: Progress | None = None,
+    given_format: str | None = None,
+    *,
+    makes_folder: bool = False,
 ) -> Result:
     """Unwrap args.input into args.output.  Raises OSError, UsageError, LsgpError.
 
     args: these two, either of which may be "-", threads, and the values of the options of an unwrap.
-    given_format: of what has no suffix that tells it.
+    given_format: of what has no suffix that tells it. makes_folder: whether that of args.output is made if it is
+    missing, once there is something to write.
 
     The warnings of the result are also those of the files.
     """
@@ -105,13 +111,15 @@ def unwrap_file(
         run.packed = Packed(laid.packer, uv_area(result.corner_uv[seen]) / tiles, tiles)
     elif layout is not None:
         result = at_texel_density(run.surface, result, layout)
-    result = replace(result, warnings=[*result.warnings, *tiny_findings(result.corner_uv, result.island)])
+    result = with_tiny_findings(result)
     if args.texel_density is not None:
         run.texels = texel_density(run.surface, result.corner_uv, args.texture_size)
     if args.strict:
         require_flawless(result.warnings)
     with run.stage("write_file"):
         data, findings = format_mesh(file, result.corner_uv, form, None if target is None else target.parent)
+        if makes_folder and target is not None:
+            target.parent.mkdir(parents=True, exist_ok=True)
         write_output(args.output, data, keep_backup=args.in_place)
     return replace(result, warnings=[*file.findings, *findings, *result.warnings])
 
@@ -122,7 +130,7 @@ def _tiles_in_use(uv: NDArray[np.float64]) -> int:
 
 
 def require_flawless(warnings: Sequence[Finding]) -> None:
-    """Raise LsgpError with the first warning of what --strict does not let pass."""
+    """Raise LsgpError for the first warning that --strict does not permit."""
     for finding in warnings:
         if finding.code in FLAWS:
             raise LsgpError(finding.code, finding.message, finding.elements)
