@@ -271,7 +271,7 @@ std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density) const {
   if (!fine_lines) return std::nullopt;
   // The same values would fail in the same way.
   if (whole_lines && whole_lines->scale == fine_lines->scale &&
-      (whole_lines->values - fine_lines->values).cwiseAbs().maxCoeff() < whole) {
+      (whole_lines->values - fine_lines->values).isZero(whole)) {
     return std::nullopt;
   }
   return lay_out(*fine_lines, fine_step);

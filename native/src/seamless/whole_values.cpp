@@ -32,6 +32,11 @@ double common_divisor(const Eigen::RowVectorXd& coefficients) {
   return out;
 }
 
+// There are none where no coordinate is free; Eigen has no largest element of those.
+bool are_exact(const Eigen::Ref<const Eigen::MatrixXd>& values) {
+  return values.size() == 0 || values.cwiseAbs().maxCoeff() < most_exact;
+}
+
 }  // namespace
 
 PivotedCholesky::PivotedCholesky(Borrowed<const Eigen::MatrixXd> matrix)
@@ -88,7 +93,7 @@ std::optional<WholeValues> WholeValues::among(const Eigen::MatrixXd& compliance)
     const auto shared = static_cast<double>(std::gcd(std::llround(step), std::llround(divisor)));
     if (step != 0) out.columns_.col(out.free_ - 1) *= divisor / shared;
     out.columns_.row(i) /= divisor;
-    if (!(out.columns_.cwiseAbs().maxCoeff() < most_exact)) return std::nullopt;
+    if (!are_exact(out.columns_)) return std::nullopt;
   }
   return out;
 }
@@ -127,7 +132,7 @@ bool WholeValues::fix(Eigen::Index i, double step, double value) {
   if (step == 0) return true;
   const Eigen::Index last = --free_;
   offset_ += (value - offset_[i]) / columns_(i, last) * columns_.col(last);
-  return columns_.leftCols(free_).size() == 0 || columns_.leftCols(free_).cwiseAbs().maxCoeff() < most_exact;
+  return are_exact(columns_.leftCols(free_));
 }
 
 }  // namespace lsgp

@@ -17,7 +17,7 @@ from map_checks import codes, only, surface
 from meshes import Mesh
 from numpy.typing import NDArray
 from result_check import undeclared_faults
-from zoo import closed
+from zoo import broken, closed
 
 TILE = lsgp.preset_options("tile")
 PLAIN = replace(TILE, straighten=False)
@@ -164,3 +164,11 @@ def test_the_usual_layout_is_made_once_where_cones_for_creases_admit_none(monkey
     assert tried == [1, len(usual.cones)]
     assert chosen == usual
     np.testing.assert_array_equal(result.corner_uv, lsgp.parameterize(box, usual.cones, usual.angles, TILE).corner_uv)
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("corners", [4, 5])
+def test_lines_without_a_free_coordinate_are_laid_out(corners: int, seed: int) -> None:
+    """A few triangles without cuts and cones: nothing has to be rounded but creases, of which few are left."""
+    mesh = broken.scrap(corners, 2.0, seed)
+    assert undeclared_faults(surface(mesh), lsgp.auto_unwrap(surface(mesh), preset="tile"), TILE) == []
