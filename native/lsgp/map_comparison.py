@@ -65,6 +65,19 @@ def _least_filled(more: int, has_few: bool) -> float:
     return 1.0 if has_few and more == _PAIR else _LEAST_FILLED
 
 
+def mirrored_cuts_cost_islands(mirrored: Result, usual: Result) -> bool:
+    """Whether a map through symmetric cones with symmetric cuts is stretched little, but has at least two islands more
+    than the usual map, a tenth more if there are many: other cuts for the same cones may leave fewer."""
+    within_stretch = mirrored.distortion.l2_stretch <= _MOST_L2 * usual.distortion.l2_stretch
+    return within_stretch and _island_count(mirrored) - _island_count(usual) >= _worthwhile(usual)
+
+
+def saves_islands(free: Result, mirrored: Result, usual: Result) -> bool:
+    """Whether a map with other cuts for symmetric cones has as many islands fewer than the one with symmetric cuts as
+    `mirrored_cuts_cost_islands` says."""
+    return _island_count(mirrored) - _island_count(free) >= _worthwhile(usual)
+
+
 def runs_along_features(result: Result) -> bool:
     """Whether a seamless map has a quarter of the length of creases along its lattice."""
     return result.seamless.feature_share is not None and result.seamless.feature_share >= _LEAST_FEATURES
@@ -84,6 +97,11 @@ def may_replace_for_features(along: Result, usual: Result) -> bool:
 
 def _defects(result: Result) -> int:
     return len(result.flipped) + len(result.wrong_angle_sums) + len(result.overlapping)
+
+
+def _worthwhile(usual: Result) -> int:
+    """How many islands fewer are worth cuts that are not symmetric."""
+    return max(_PAIR, _island_count(usual) // _ISLANDS_FOR_ONE)
 
 
 def _island_count(result: Result) -> int:
