@@ -107,9 +107,10 @@ def auto_unwrap(
     symmetric: whether cones are placed alike on both sides of a mirror plane, and on components that mirror each other,
         as by `place_cones`, and cuts run alike on both sides, as with `Options.mirrored_cuts`, if that costs little: at
         most 1 % of L2 stretch, one island (one for ten if there are more; two if the square is not filled less), a
-        quarter of the edges cut, and a tenth of the filled part of the square (three tenths for two islands fewer),
-        packed tightly if the packer is installed. Where symmetric cuts cost two islands (or a tenth), symmetric cones
-        get other cuts if these save them. Only without cones and `count`.
+        quarter of the edges cut, and a tenth of the filled part of the square (a fifth where it saves one island of
+        few, three tenths where it saves two, or a tenth of many), packed tightly if the packer is installed. Where
+        symmetric cuts cost two islands (or a tenth), symmetric cones get other cuts if these save them. Only without
+        cones and `count`.
     creases: whether hard surfaces may be cut at their creases, as in `with_crease_borders`, which takes `sharp`.
     pack: "tight": as by `pack_islands`; "shelves": in rows; None: tight if `packer_name` returns a packer. Layouts that
         are seamless, pinned or in UDIM tiles at a texel density are never packed.

@@ -16,9 +16,11 @@ from .triangles import uv_area
 
 # Of the L2 stretch that the other one has, of the edges that it cuts, and of what it fills of the square: a tenth less
 # is a twentieth of the texel density. One island more for so many; one for fewer, or a pair that fills the square as
-# well. A pair of islands fewer is worth three tenths of what is filled: a sixth of the texel density.
+# well. One of few that is saved is worth a fifth of what is filled, a tenth of the texel density; a pair, or a tenth of
+# many, three tenths.
 _MOST_L2 = 1.01
 _LEAST_FILLED = 0.9
+_LEAST_FILLED_BY_ONE_FEWER = 0.8
 _LEAST_FILLED_BY_FEWER = 0.7
 _MOST_CUTS = 1.25
 _ISLANDS_FOR_ONE = 10
@@ -36,8 +38,8 @@ def may_replace_map(
 ) -> bool:
     """Whether a map through symmetric cones costs little: L2 stretch up to 1 % more, a quarter more of edges cut, the
     square filled at most a tenth less, no further defects, and one island more, or one for ten if there are as many;
-    two of fewer than ten only if the square is not filled less. With two islands fewer the square may be filled by
-    three tenths less.
+    two of fewer than ten only if the square is not filled less. One island fewer, of fewer than ten, allows for a
+    fifth less, and two fewer, or one for ten, for three tenths.
 
     Both as from `parameterize`, with islands on shelves, for this share of a square. They are packed tightly if the
     packer is installed. How far many islands, several squares and seamless layouts are filled follows from the boxes of
@@ -55,14 +57,16 @@ def may_replace_map(
     ):
         return False
     filled = _measure_of_filling(usual, square_share, progress)
-    return filled(symmetric) >= _least_filled(more, has_few) * filled(usual)
+    return filled(symmetric) >= _least_filled(more, usual) * filled(usual)
 
 
-def _least_filled(more: int, has_few: bool) -> float:
-    """How far the square has to be filled with so many more islands, relative to the map that has few or many."""
-    if more <= -_PAIR:
+def _least_filled(more: int, usual: Result) -> float:
+    """How far the square has to be filled with so many more islands, relative to the usual map."""
+    if more <= -_worthwhile(usual):
         return _LEAST_FILLED_BY_FEWER
-    return 1.0 if has_few and more == _PAIR else _LEAST_FILLED
+    if _island_count(usual) >= _ISLANDS_FOR_ONE:
+        return _LEAST_FILLED
+    return {_PAIR: 1.0, -1: _LEAST_FILLED_BY_ONE_FEWER}.get(more, _LEAST_FILLED)
 
 
 def mirrored_cuts_cost_islands(mirrored: Result, usual: Result) -> bool:
@@ -100,7 +104,7 @@ def _defects(result: Result) -> int:
 
 
 def _worthwhile(usual: Result) -> int:
-    """How many islands fewer are worth cuts that are not symmetric."""
+    """How many islands fewer are worth a less full square, or cuts that are not symmetric."""
     return max(_PAIR, _island_count(usual) // _ISLANDS_FOR_ONE)
 
 
