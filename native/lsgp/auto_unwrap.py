@@ -27,7 +27,13 @@ from .api import (
 from .arguments import FloatArray, IndexArray
 from .errors import Cancelled, Finding, InputError, LsgpError
 from .ledger import LedgerPart, build_ledger, surface_of_triangles
-from .map_comparison import may_replace_for_features, may_replace_map, runs_along_features
+from .map_comparison import (
+    may_replace_for_features,
+    may_replace_map,
+    mirrored_cuts_cost_islands,
+    runs_along_features,
+    saves_islands,
+)
 from .packing import Pack, Packing, Stack, laid_out
 from .texels import TexelLayout, at_texel_density, with_tiny_findings
 
@@ -101,9 +107,11 @@ def auto_unwrap(
     symmetric: whether cones are placed alike on both sides of a mirror plane, and on components that mirror each other,
         as by `place_cones`, and cuts run alike on both sides, as with `Options.mirrored_cuts`, if that costs little: at
         most 1 % of L2 stretch, one island (one for ten if there are more; two if the square is not filled less), a
-        quarter of the edges cut, and a tenth of the filled part of the square (three tenths for two islands fewer),
-        packed tightly if the packer is installed. Where two fifths of the cuts are saved, L2 stretch may be up to 1.05
-        and the filled part a quarter less, unless the usual map is isometric. Only without cones and `count`.
+        quarter of the edges cut, and a tenth of the filled part of the square (a fifth where it saves one island of
+        few, three tenths where it saves two, or a tenth of many), packed tightly if the packer is installed. Where two
+        fifths of the cuts are saved, L2 stretch may be up to 1.05 and the filled part a quarter less, unless the usual
+        map is isometric. Where symmetric cuts cost two islands (or a tenth), symmetric cones get other cuts if these
+        save them. Only without cones and `count`.
     creases: whether hard surfaces may be cut at their creases, as in `with_crease_borders`, which takes `sharp`.
     pack: "tight": as by `pack_islands`; "shelves": in rows; None: tight if `packer_name` returns a packer. Layouts that
         are seamless, pinned or in UDIM tiles at a texel density are never packed.
@@ -326,6 +334,7 @@ def best_map(
 ) -> tuple[CompletedCones, Result]:
     """The map through the cones of `possible_cones`: the symmetric ones, or those for creases, if that costs little.
 
+    Where symmetric cuts cost islands, the symmetric cones are tried with other cuts as well.
     pins, progress, errors: as for `parameterize`.
     """
     usual, *others = [choice for choice in choices if not choice.for_features]
@@ -343,14 +352,30 @@ def best_map(
     best = usual, _map_through(solver, usual, tried, pins, next(stages))
     for i, other in enumerate(others, start=2 + (for_features is not None)):
         result = or_none(partial(_map_through, solver, other, tried, pins, next(stages)))
-        compared = part_of(progress, i * share, i * share)
-        if result is not None and may_replace_map(result, best[1], options.square_share, compared):
+        # Comparing, and the map with other cuts, which few models need, have no time of their own.
+        still = part_of(progress, i * share, i * share)
+        may_replace = partial(may_replace_map, square_share=options.square_share, progress=still)
+        plain = best[1]
+        if result is not None and may_replace(result, plain):
             best = other, result
+        if not _may_free_cuts(other, usual, options) or result is None or not mirrored_cuts_cost_islands(result, plain):
+            continue
+        freed = replace(other, is_symmetric=False)
+        free = or_none(partial(_map_through, solver, freed, tried, pins, still))
+        if free is None or not saves_islands(free, result, plain):
+            continue
+        if may_replace(free, plain) and (best[1] is plain or may_replace(free, best[1])):
+            best = freed, free
     if along is not None and may_replace_for_features(along, best[1]):
         best = for_features, along
     elif not is_chosen:
         best = best[0], _map_through(solver, best[0], options, pins, next(stages))
     return best[0], best[0].told(best[1], options)
+
+
+def _may_free_cuts(alike: CompletedCones, usual: CompletedCones, options: Options) -> bool:
+    """Whether a map through symmetric cones may have other cuts, and then is not the usual one."""
+    return not options.mirrored_cuts and set(alike.cones.tolist()) != set(usual.cones.tolist())
 
 
 def _map_through(

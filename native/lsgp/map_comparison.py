@@ -16,9 +16,11 @@ from .triangles import uv_area
 
 # Of the L2 stretch that the other one has, of the edges that it cuts, and of what it fills of the square: a tenth less
 # is a twentieth of the texel density. One island more for so many; one for fewer, or a pair that fills the square as
-# well. A pair of islands fewer is worth three tenths of what is filled: a sixth of the texel density.
+# well. One of few that is saved is worth a fifth of what is filled, a tenth of the texel density; a pair, or a tenth of
+# many, three tenths.
 _MOST_L2 = 1.01
 _LEAST_FILLED = 0.9
+_LEAST_FILLED_BY_ONE_FEWER = 0.8
 _LEAST_FILLED_BY_FEWER = 0.7
 _MOST_CUTS = 1.25
 # Where the other one is stretched as well, far fewer edges cut are worth the stretch that cones are placed for, and
@@ -42,9 +44,9 @@ def may_replace_map(
 ) -> bool:
     """Whether a map through symmetric cones costs little: L2 stretch up to 1 % more, a quarter more of edges cut, the
     square filled at most a tenth less, no further defects, and one island more, or one for ten if there are as many;
-    two of fewer than ten only if the square is not filled less. With two islands fewer the square may be filled by
-    three tenths less. If it cuts at most three fifths of the edges, its stretch may be up to 1.05 and the square filled
-    a quarter less, unless the other map is isometric.
+    two of fewer than ten only if the square is not filled less. One island fewer, of fewer than ten, allows for a
+    fifth less, and two fewer, or one for ten, for three tenths. If it cuts at most three fifths of the edges, its
+    stretch may be up to 1.05 and the square filled a quarter less, unless the other map is isometric.
 
     Both as from `parameterize`, with islands on shelves, for this share of a square. They are packed tightly if the
     packer is installed. How far many islands, several squares and seamless layouts are filled follows from the boxes of
@@ -66,16 +68,32 @@ def may_replace_map(
     ):
         return False
     filled = _measure_of_filling(usual, square_share, progress)
-    return filled(symmetric) >= _least_filled(more, has_few, saves_cuts) * filled(usual)
+    return filled(symmetric) >= _least_filled(more, usual, saves_cuts) * filled(usual)
 
 
-def _least_filled(more: int, has_few: bool, saves_cuts: bool) -> float:
-    """How far the square has to be filled with so many more islands, relative to the map that has few or many."""
-    if more <= -_PAIR:
+def _least_filled(more: int, usual: Result, saves_cuts: bool) -> float:
+    """How far the square has to be filled with so many more islands, relative to the usual map."""
+    if more <= -_worthwhile(usual):
         return _LEAST_FILLED_BY_FEWER
-    if has_few and more == _PAIR:
-        return 1.0
-    return _LEAST_FILLED_FOR_CUTS if saves_cuts else _LEAST_FILLED
+    least = _LEAST_FILLED_FOR_CUTS if saves_cuts else _LEAST_FILLED
+    if _island_count(usual) >= _ISLANDS_FOR_ONE or more not in (_PAIR, -1):
+        return least
+    return 1.0 if more == _PAIR else min(least, _LEAST_FILLED_BY_ONE_FEWER)
+
+
+def mirrored_cuts_cost_islands(mirrored: Result, usual: Result) -> bool:
+    """Whether a map through symmetric cones with symmetric cuts is stretched little, but has at least two islands more
+    than the usual map, a tenth more if there are many: other cuts for the same cones may leave fewer.
+    """
+    within_stretch = mirrored.distortion.l2_stretch <= _MOST_L2 * usual.distortion.l2_stretch
+    return within_stretch and _island_count(mirrored) - _island_count(usual) >= _worthwhile(usual)
+
+
+def saves_islands(free: Result, mirrored: Result, usual: Result) -> bool:
+    """Whether a map with other cuts for symmetric cones has as many islands fewer than the one with symmetric cuts as
+    `mirrored_cuts_cost_islands` says.
+    """
+    return _island_count(mirrored) - _island_count(free) >= _worthwhile(usual)
 
 
 def runs_along_features(result: Result) -> bool:
@@ -103,6 +121,11 @@ def _saves_many_cuts(symmetric: Result, usual: Result) -> bool:
 
 def _defects(result: Result) -> int:
     return len(result.flipped) + len(result.wrong_angle_sums) + len(result.overlapping)
+
+
+def _worthwhile(usual: Result) -> int:
+    """How many islands fewer are worth a less full square, or cuts that are not symmetric."""
+    return max(_PAIR, _island_count(usual) // _ISLANDS_FOR_ONE)
 
 
 def _island_count(result: Result) -> int:

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import sys
+from dataclasses import dataclass, field, replace
 
 import lsgp
 import meshes
@@ -188,7 +189,7 @@ def test_a_symmetric_map_may_fill_a_tenth_less_of_the_square(
 
 def with_rectangles(usual: lsgp.Result, count: int, height: float = 1.0) -> lsgp.Result:
     """So many islands of two triangles, each as high as this relative to its width; other triangles are points."""
-    solved = np.arange(len(usual.island)) < 10
+    solved = np.arange(len(usual.island)) < 24
     rectangle = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]]) * [1, height]
     corner_uv = np.zeros_like(usual.corner_uv)
     island = np.where(solved, 0, -1).astype(np.int32)
@@ -215,11 +216,62 @@ def test_a_pair_of_islands_more_has_to_fill_the_square_as_well() -> None:
         assert may_replace_map(with_rectangles(usual, after), with_rectangles(usual, before)) == may
 
 
-@pytest.mark.parametrize(("before", "filled", "least"), [(2, 1 / 2, 0.9), (3, 3 / 4, 0.7)])
-def test_a_pair_of_islands_fewer_may_fill_the_square_less(before: int, filled: float, least: float) -> None:
+@pytest.mark.parametrize(("before", "filled", "least"), [(2, 1 / 2, 0.8), (3, 3 / 4, 0.7)])
+def test_fewer_islands_may_fill_the_square_less(before: int, filled: float, least: float) -> None:
     pytest.importorskip("xatlas")
     usual = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
     squares = with_rectangles(usual, before)
     # A single rectangle fills as much of the square as its height, but for margins.
     for more, may in ((0.05, True), (-0.05, False)):
         assert may_replace_map(with_rectangles(usual, 1, filled * (least + more)), squares) == may
+
+
+def test_one_island_fewer_of_many_may_not_fill_the_square_less(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(map_comparison, "packer_name", lambda: None)
+    usual = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
+    squares = with_rectangles(usual, 12)
+    # Strips fill as much of a square that is as wide as they are as their heights add up to.
+    for count, filled, may in ((11, 0.85, False), (11, 0.95, True), (10, 0.75, True), (10, 0.65, False)):
+        assert may_replace_map(with_rectangles(usual, count, filled / count), squares) == may
+
+
+@dataclass
+class MapsByCuts:
+    """Stands in for a solver: a map for the usual cones, and two for the symmetric ones, of which it counts islands."""
+
+    usual: lsgp.Result
+    mirrored: lsgp.Result
+    free: lsgp.Result
+    made: list[str] = field(default_factory=list)
+
+    def parameterize(self, cones: np.ndarray, angles: object, options: lsgp.Options, *_: object) -> lsgp.Result:
+        self.made.append("usual" if not len(cones) else "mirrored" if options.mirrored_cuts else "free")
+        return getattr(self, self.made[-1])
+
+
+# Islands of the maps, and which of them are made and chosen.
+@pytest.mark.parametrize(
+    ("usual", "mirrored", "free", "tried", "chosen"),
+    [
+        (3, 5, 3, True, "free"),
+        (3, 6, 4, True, "free"),
+        (3, 5, 4, True, "usual"),
+        (2, 4, 3, True, "mirrored"),
+        (3, 4, 2, False, "mirrored"),
+        (4, 4, 2, False, "mirrored"),
+    ],
+)
+def test_symmetric_cones_get_other_cuts_where_that_saves_two_islands(
+    usual: int, mirrored: int, free: int, tried: bool, chosen: str
+) -> None:
+    pytest.importorskip("xatlas")
+    unwrapping = sys.modules["lsgp.auto_unwrap"]
+    result = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
+    maps = MapsByCuts(*(with_rectangles(result, count) for count in (usual, mirrored, free)))
+    choices = [
+        unwrapping.CompletedCones(np.array([], np.int32), [], None),
+        unwrapping.CompletedCones(np.array([3, 5], np.int32), [None, None], None, is_symmetric=True),
+    ]
+    _, best = unwrapping.best_map(maps, choices, lsgp.preset_options("paint"))
+    assert maps.made == ["usual", "mirrored", "free"][: 2 + tried]
+    assert best == getattr(maps, chosen)
