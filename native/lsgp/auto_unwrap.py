@@ -29,7 +29,7 @@ from .errors import Cancelled, Finding, InputError, LsgpError
 from .ledger import LedgerPart, build_ledger, surface_of_triangles
 from .map_comparison import may_replace_for_features, may_replace_map, runs_along_features
 from .packing import Pack, Packing, Stack, laid_out
-from .texels import TexelLayout, at_texel_density, tiny_findings
+from .texels import TexelLayout, at_texel_density, with_tiny_findings
 
 Preset = Literal["paint", "tile", "bake"]
 
@@ -139,7 +139,7 @@ def auto_unwrap(
         result = laid_out(surface, result, packing, texels, part_of(progress, PACKING, 1.0)).result
     elif texels is not None:
         result = at_texel_density(surface, result, texels)
-    return replace(result, warnings=[*result.warnings, *tiny_findings(result.corner_uv, result.island)])
+    return with_tiny_findings(result)
 
 
 def _may_pack(packing: Packing, options: Options, pins: Pins | None, texels: TexelLayout | None) -> bool:

@@ -234,8 +234,13 @@ def tiny_islands(uv: FloatArray, island: IndexArray) -> NDArray[np.intp]:
         return np.flatnonzero((boxes[:, 2:] - boxes[:, :2]).max(axis=1) < _LEAST_UNITS * unit)
 
 
+def with_tiny_findings(result: Result) -> Result:
+    """A result whose layout is final, with the warning of tiny islands, where there are any."""
+    return replace(result, warnings=[*result.warnings, *tiny_findings(result.corner_uv, result.island)])
+
+
 def tiny_findings(uv: FloatArray, island: IndexArray) -> list[Finding]:
-    """The warning of tiny islands, where there are any."""
+    """The warning of tiny islands, where there are any.  Arguments as above."""
     tiny = tiny_islands(uv, island)
     if not len(tiny):
         return []

@@ -21,7 +21,7 @@ from ...core.identifiers import CONE_GROUP, IMPORTANCE_GROUP
 from ...mesh.region_read import Faces, Groups, read_region
 from ...mesh.uv_write import write_uv
 from ..layouts.densities import at_density
-from ..layouts.maps import final_layouts, packing_of_preset
+from ..layouts.maps import final_layouts, packing_of_preset, tiny_findings
 from ..tasks.cuts import cut_choice
 from ..tasks.directions import direction_choice
 from ..tasks.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_all, unwrap_task
@@ -75,11 +75,10 @@ def _unwrap(task: Task, settings: Settings) -> Record:
             solved.append((obj, outcome))
     if not solved:
         return _nothing_solved(failures)
-    if args.strict:
-        native.part("run.unwrap_file").require_flawless(
-            [flaw for _, unwrapped in solved for flaw in unwrapped.result.warnings]
-        )
     layouts, findings = _layouts([unwrapped for _, unwrapped in solved], args)
+    if args.strict:
+        flaws = [flaw for _, unwrapped in solved for flaw in unwrapped.result.warnings]
+        native.part("run.unwrap_file").require_flawless([*flaws, *findings])
     for (obj, unwrapped), corner_uv in zip(solved, layouts, strict=True):
         write_uv(obj, unwrapped.region, unwrapped.result.solved, corner_uv)
     output = Path(task.out, task.output)
@@ -160,10 +159,12 @@ def _layouts(
             udim=1 if packing is None or packing.udim is None else packing.udim,
         )
         layouts = final_layouts(solved, replace(pack, stack=args.stack))
-    texels = unwrap_options.texel_layout(args)
-    if texels is None:
-        return layouts, []
-    return at_density(solved, layouts, texels, share=args.preset is not None)
+    texels, findings = unwrap_options.texel_layout(args), []
+    if texels is not None:
+        layouts, findings = at_density(solved, layouts, texels, share=args.preset is not None)
+    for unwrapped, corner_uv in zip(solved, layouts, strict=True):
+        findings = [*findings, *tiny_findings(unwrapped, corner_uv)]
+    return layouts, findings
 
 
 def _nothing_solved(failures: dict[str, Exception]) -> Record:
@@ -188,8 +189,8 @@ def _record(solved: Sequence[Unwrapped], findings: Sequence[lsgp.Finding], failu
     others count as a warning.  findings: about their layouts."""
     results = [unwrapped.result for unwrapped in solved]
     warnings: Counter[str] = Counter()
-    for found in (*(result.warnings for result in results), findings):
-        warnings.update({finding.code: len(finding.elements.indices) for finding in found})
+    for finding in (*(finding for result in results for finding in result.warnings), *findings):
+        warnings[finding.code] += len(finding.elements.indices)
     if failures:
         warnings["OBJECTS_REFUSED"] = len(failures)
     worst = max((result.distortion for result in results), key=lambda distortion: distortion.l2_stretch)

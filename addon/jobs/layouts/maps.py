@@ -18,6 +18,7 @@ from ...mesh import reports
 from ...mesh.uv_write import write_uv
 from ..tasks import cells
 from ..tasks.areas import size_in_texels, total_area
+from ..tasks.summaries import unwrap_summary
 from ..tasks.unwrapping import Unwrapped
 from ..uv_maps.texels import map_density
 from . import packing
@@ -132,10 +133,22 @@ def write_map(obj: bpy.types.Object, unwrapped: Unwrapped, corner_uv: NDArray[np
     reports.store(obj.data, report)
 
 
-def tiny_islands_in_words(unwrapped: Unwrapped, corner_uv: NDArray[np.float64]) -> str:
-    """How many islands of a final layout, (m, 3, 2), lose their shape in single precision, as more of a summary."""
-    count = len(native.part("texels").tiny_islands(corner_uv, unwrapped.result.island))
-    return f"; {counted(count, 'island')} too small for UV coordinates to keep in shape" if count else ""
+def map_summary(unwrapped: Unwrapped, corner_uv: NDArray[np.float64]) -> str:
+    """A map in one line, with the number of islands that lose their shape in single precision, in which Blender stores
+    UVs.  corner_uv: (m, 3, 2), final."""
+    summary = unwrap_summary(unwrapped)
+    tiny = tiny_findings(unwrapped, corner_uv)
+    if not tiny:
+        return summary
+    count = len(np.unique(unwrapped.result.island[tiny[0].elements.indices]))
+    return f"{summary}; {counted(count, 'island')} too small for UV coordinates to keep in shape"
+
+
+def tiny_findings(unwrapped: Unwrapped, corner_uv: NDArray[np.float64]) -> list[lsgp.Finding]:
+    """The warning of tiny islands in a final layout, (m, 3, 2), unless the map has it already, as from Auto Unwrap."""
+    if any(finding.code == "ISLANDS_TINY" for finding in unwrapped.result.warnings):
+        return []
+    return native.part("texels").tiny_findings(corner_uv, unwrapped.result.island)
 
 
 def report_on(unwrapped: Unwrapped) -> reports.Report:

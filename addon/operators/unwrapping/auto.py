@@ -15,10 +15,9 @@ from ...core.length_units import length_unit
 from ...core.preferences import chosen_threads, preferences
 from ...core.region import Region
 from ...core.text import counted
-from ...jobs.layouts.maps import PackSettings, packing_of_preset, stacked_layouts, tiny_islands_in_words, write_map
+from ...jobs.layouts.maps import PackSettings, map_summary, packing_of_preset, stacked_layouts, write_map
 from ...jobs.layouts.remembered import unwrap_all_once
 from ...jobs.tasks.placing import mark_placed
-from ...jobs.tasks.summaries import unwrap_summary
 from ...jobs.tasks.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_task
 from ...mesh.angles import require_attributes
 from ...mesh.region_read import Groups
@@ -207,8 +206,7 @@ class UV_OT_cone_auto_unwrap(
             if self.mark:
                 mark_placed(obj, self.vertex_group, task.cones, unwrapped.result)
         summaries = [
-            unwrap_summary(unwrapped) + tiny_islands_in_words(unwrapped, corner_uv)
-            for (_, _, unwrapped), corner_uv in zip(solved, layouts, strict=True)
+            map_summary(unwrapped, corner_uv) for (_, _, unwrapped), corner_uv in zip(solved, layouts, strict=True)
         ]
         if stacked:
             summaries[-1] += f"; {counted(stacked, 'island')} stacked on others"

@@ -10,9 +10,8 @@ import bpy
 
 from ...core import identifiers
 from ...core.region import Region
-from ...jobs.layouts.maps import final_layouts, tiny_islands_in_words, write_map
+from ...jobs.layouts.maps import final_layouts, map_summary, write_map
 from ...jobs.layouts.remembered import unwrap_all_once
-from ...jobs.tasks.summaries import unwrap_summary
 from ...jobs.tasks.unwrapping import Unwrapped, UnwrapTask, unwrap_task
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
@@ -78,7 +77,4 @@ class UV_OT_cone_unwrap(
         layouts = final_layouts([unwrapped for _, _, unwrapped in solved], pack_settings(self))
         for (obj, _, unwrapped), corner_uv in zip(solved, layouts, strict=True):
             write_map(obj, unwrapped, corner_uv)
-        return [
-            unwrap_summary(unwrapped) + tiny_islands_in_words(unwrapped, corner_uv)
-            for (_, _, unwrapped), corner_uv in zip(solved, layouts, strict=True)
-        ]
+        return [map_summary(unwrapped, corner_uv) for (_, _, unwrapped), corner_uv in zip(solved, layouts, strict=True)]

@@ -23,7 +23,7 @@ from ..io.safe_files import is_standard_stream, read_input, require_separate
 from ..io.side_files import cones_in, directions_in, load_importance, load_json, seam_edges_in
 from ..io.whole_files import write_output
 from ..packing import laid_out
-from ..texels import TexelDensity, at_texel_density, texel_density, tiny_findings
+from ..texels import TexelDensity, at_texel_density, texel_density, with_tiny_findings
 from ..triangles import uv_area
 from .unwrap_options import (
     cone_count,
@@ -111,7 +111,7 @@ def unwrap_file(
         run.packed = Packed(laid.packer, uv_area(result.corner_uv[seen]) / tiles, tiles)
     elif layout is not None:
         result = at_texel_density(run.surface, result, layout)
-    result = replace(result, warnings=[*result.warnings, *tiny_findings(result.corner_uv, result.island)])
+    result = with_tiny_findings(result)
     if args.texel_density is not None:
         run.texels = texel_density(run.surface, result.corner_uv, args.texture_size)
     if args.strict:

@@ -9,7 +9,8 @@ import bpy
 import numpy as np
 import pytest
 from installed import addon
-from scenes import UvMap, add_ball, add_cone_cube, add_cube, add_sphere, covered_twice
+from mathutils import Matrix
+from scenes import UvMap, add_ball, add_cone_cube, add_cube, add_grid, add_sphere, covered_twice, joined
 
 command = addon.jobs.batch.command
 
@@ -146,6 +147,21 @@ def test_with_a_preset_all_objects_of_a_file_are_packed_together(library, tmp_pa
     else:
         assert min(uv_map.uv.min() for uv_map in maps) > 0 and max(uv_map.uv.max() for uv_map in maps) < 1
         assert covered_twice(maps) == 0
+
+
+@pytest.mark.parametrize("add_large", [add_sphere, add_ball], ids=["automatic cones", "marked cones"])
+def test_islands_that_single_precision_spoils_are_a_warning_which_strict_refuses(tmp_path, add_large):
+    speck = add_grid("Speck")  # without cuts, whose two sides would differ as well
+    triangles = 2 * len(speck.data.polygons)
+    speck.data.transform(Matrix.Scale(1e-7, 4))
+    joined(speck, add_large())
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "speck.blend"), copy=True)
+    clear()
+    (tmp_path / "list.txt").write_text("speck.blend\n")
+    assert run(tmp_path / "list.txt", "--out", tmp_path / "out", "--no-pictures") == 0
+    assert lines_of(tmp_path / "out")[0]["warnings"] == {"ISLANDS_TINY": triangles}
+    assert run(tmp_path / "list.txt", "--out", tmp_path / "strict", "--no-pictures", "--strict") == 3
+    assert lines_of(tmp_path / "strict")[0]["code"] == "ISLANDS_TINY"
 
 
 def test_options_that_name_files_of_one_mesh_are_refused(library, tmp_path):
