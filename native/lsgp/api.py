@@ -593,9 +593,7 @@ class Solver:
         **options: Any,
     ) -> Placement:
         """Arguments, result and errors as for `lsgp.place_cones`, whose others are options here."""
-        arguments.require_callable(progress)
-        values = _placement_options(**options)
-        return Placement(**self._solver.place_cones(_given_cones(cones, angles), values, progress))
+        return place_cones(self, cones, angles, progress=progress, **options)
 
 
 def _call(
@@ -708,7 +706,7 @@ def prescribe_curvature(
 
 
 def place_cones(
-    surface: Surface,
+    surface: Surface | Solver,
     cones: ArrayLike = (),
     angles: Sequence[float | None] | FloatArray | None = None,
     *,
@@ -724,6 +722,7 @@ def place_cones(
 ) -> Placement:
     """Place cones where they lower the stretch most, with their angles.
 
+    surface: or a `Solver`, as by its method of this name.
     cones, angles: existing cones and their fixed angles, which are kept; None = automatic.
     count: cones per component, including existing ones; a component without room for so many gets fewer, and a warning
         names it. If the map with this number is unusable, the error or warning says how many None gives. None: the
@@ -744,36 +743,12 @@ def place_cones(
     Raises InputError, TopologyError, CurvatureError, SolverError, Cancelled.
     """
     arguments.require_callable(progress)
-    options = _placement_options(
-        count=count,
-        target=target,
-        lattice=lattice,
-        prefer_sharp=prefer_sharp,
-        symmetric=symmetric,
-        mirror=mirror,
-        seams=seams,
-        threads=threads,
-    )
-    return Placement(**_lsgp.place_cones(surface_arrays(surface), _given_cones(cones, angles), options, progress))
-
-
-def _placement_options(
-    *,
-    count: int | None = None,
-    target: float = 1.05,
-    lattice: Lattice | None = None,
-    prefer_sharp: bool = False,
-    symmetric: bool = False,
-    mirror: tuple[ArrayLike, ArrayLike] | None = None,
-    seams: SeamMode = "follow",
-    threads: int = 0,
-) -> dict[str, Any]:
     if count is not None:
         count = arguments.whole_number("count", count, 0, "pass a number of cones, or None for automatic")
     if lattice is not None:
         arguments.require_choice("lattice", lattice, get_args(Lattice))
     arguments.require_choice("seams", seams, get_args(SeamMode))
-    return {
+    options = {
         "count": count,
         "target": arguments.number("target", target, "pass an L2 stretch, a number above 1"),
         "lattice": lattice,
@@ -783,6 +758,10 @@ def _placement_options(
         "seams": seams,
         "threads": _threads(threads),
     }
+    given = _given_cones(cones, angles)
+    if isinstance(surface, Solver):
+        return Placement(**surface._solver.place_cones(given, options, progress))
+    return Placement(**_lsgp.place_cones(surface_arrays(surface), given, options, progress))
 
 
 def cone_gains(
