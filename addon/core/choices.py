@@ -24,8 +24,8 @@ DIRECTIONS: Choices = {
         "As drawn on the mesh, otherwise world Z where the UV map is for tiles, otherwise as it fits",
     ),
     "FIT": (None, "As It Fits", "Islands are rotated so that they take little room"),
-    "X": (None, "World X", "The texture's upward direction is the world's X axis where the surface lets it"),
-    "Y": (None, "World Y", "The texture's upward direction is the world's Y axis where the surface lets it"),
+    "X": (None, "World X", "The texture's upward direction is the world's X axis, as far as the surface permits"),
+    "Y": (None, "World Y", "The texture's upward direction is the world's Y axis, as far as the surface permits"),
     "Z": (None, "World Z", "The texture's upward direction is the world's Z axis: bricks lie level"),
     "EDGE": (None, "Active Edge", "The texture's upward direction is that of the active edge, on the island beside it"),
 }
@@ -47,7 +47,7 @@ class DirectionProperty:
 
 
 class FirstPressProperties(DirectionProperty):
-    """Mix-in: what the preferences say of the first press of Auto Unwrap."""
+    """Mix-in: the properties of Auto Unwrap whose defaults are preferences."""
 
     NAMES = ("preset", "texture_size", "margin", "direction")
 
@@ -57,7 +57,7 @@ class FirstPressProperties(DirectionProperty):
     )
     margin: bpy.props.IntProperty(
         name="Margin",
-        description="Texels to keep free around each island in a texture of this size; about as many for Paint where "
+        description="Texels to keep free around each island in a texture of this size; approximate for Paint if "
         "Blender's packer is used",
         default=4,
         min=0,

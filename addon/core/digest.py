@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Digests of values made of arrays, dataclasses, lists and what has a text."""
+"""Digests of values composed of arrays, dataclasses, lists and anything else with a representation as text."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ INFORMATION = frozenset(
 """Codes of warnings after which nothing needs to be done."""
 
 IN_SUMMARY = frozenset({"FEATURES_OFF_LATTICE"})
-"""Codes of those that the one line on an object says in other words."""
+"""Codes of warnings that the one-line summary of an object already covers."""
 
 MOST_NAMES = 3
 """Of objects in one sentence."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Adds an object with a mesh of quads beside the one that it was made from."""
+"""Adds an object with a mesh of quads beside its source."""
 
 from __future__ import annotations
 

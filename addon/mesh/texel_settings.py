@@ -18,7 +18,7 @@ DENSITY_DESCRIPTION = "Pixels of the texture along a unit of length, which is th
 
 
 class ConeUnwrapTexels(bpy.types.PropertyGroup):
-    """What Get, Set and Select by Texel Density begin with."""
+    """The defaults of Get, Set and Select by Texel Density."""
 
     density: bpy.props.FloatProperty(
         name="Density", description=DENSITY_DESCRIPTION, default=1024.0, min=1e-6, soft_max=1e5, precision=2

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The add-on's preferences: the state of the computing library, its threads, what Auto Unwrap begins with, and how the
+"""The add-on's preferences: the state of the computing library, its threads, the defaults of Auto Unwrap, and how the
 overlay looks."""
 
 import bpy

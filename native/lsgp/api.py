@@ -722,7 +722,7 @@ def place_cones(
 ) -> Placement:
     """Place cones where they lower the stretch most, with their angles.
 
-    surface: or a `Solver`, as by its method of this name.
+    surface: a `Surface`, or a `Solver` of one, which caches data for later calls.
     cones, angles: existing cones and their fixed angles, which are kept; None = automatic.
     count: cones per component, including existing ones; a component without room for so many gets fewer, and a warning
         names it. If the map with this number is unusable, the error or warning says how many None gives. None: the

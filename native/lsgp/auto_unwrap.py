@@ -366,7 +366,7 @@ def joined_warnings(of_placement: Sequence[Finding], of_map: Sequence[Finding]) 
 
 
 def or_none(attempt: Callable[[], T]) -> T | None:
-    """What an attempt returns; None where the library refuses it. Cancelling is no refusal."""
+    """The value of an attempt; None if the library refuses it. Cancellation propagates."""
     try:
         return attempt()
     except Cancelled:

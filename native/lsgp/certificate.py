@@ -83,7 +83,7 @@ def certificate_table(report: SeamlessReport, texture_size: int) -> str:
 def _texels(report: SeamlessReport, texture_size: int) -> float:
     """On the side of a cell."""
     arguments.require_type("report", report, SeamlessReport)
-    return report.cell * arguments.whole_number("texture_size", texture_size, 1, "pass how many texels a side has")
+    return report.cell * arguments.whole_number("texture_size", texture_size, 1, "pass the number of texels of a side")
 
 
 def _basis(rotation_order: int) -> list[list[float]]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Islands in as small a square as the packer of xatlas finds, turned as they are given.
+"""Packs islands, without rotating them, into the smallest square that the packer of xatlas finds.
 
 xatlas compares rasters of islands. It may mirror islands and scales each to whole texels, so only their places are
 taken from it, and every island is moved as a whole. What comes out is measured, and counts if islands keep their
@@ -105,7 +105,7 @@ class Layout:
 
 
 class Packer:
-    """xatlas with islands and the square they are for."""
+    """xatlas with the islands and the square to pack them into."""
 
     def __init__(self, islands: Islands, square: Square) -> None:
         self._islands, self._square = islands, square
@@ -145,7 +145,7 @@ class Packer:
         )
 
     def _have_room(self) -> bool:
-        """Whether margins alone leave any: disks around islands cover at most pi / sqrt(12) of a square."""
+        """Whether the margins leave any room: disks around islands cover at most pi / sqrt(12) of a square."""
         return not (self._square.fill and self._islands.count * math.sqrt(12) * self._square.margin**2 >= 1)
 
     def _estimated_side(self, place: ComplexArray) -> float:
@@ -232,7 +232,7 @@ class Packer:
 
 
 def _run(charts: Islands, inside: int, padding: int) -> ComplexArray | None:
-    """(n,), where xatlas puts vertices, in texels; None where they do not fit into so many."""
+    """(n,), where xatlas puts vertices, in texels; None if they do not fit into the square."""
     xatlas = find_xatlas()
     atlas = xatlas.Atlas()
     positions = np.stack([charts.place.real, charts.place.imag], axis=1).astype(np.float32)

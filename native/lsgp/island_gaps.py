@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How near islands of a layout come to each other.
+"""The distances between islands of a layout.
 
 Places are complex numbers, u + iv.
 """

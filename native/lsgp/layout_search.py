@@ -41,7 +41,7 @@ def islands_of(uv: FloatArray, island: IndexArray) -> Islands:
 
 
 def best_layout(islands: Islands, square: Square, may_turn: bool, progress: Progress | None) -> Layout:
-    """The smallest layout of those that are tried.  Raises InputError, Cancelled."""
+    """The smallest of the layouts tried.  Raises InputError, Cancelled."""
     tries = max(1, _TRIES * _ISLANDS_OF_ALL_TRIES // max(islands.count, _ISLANDS_OF_ALL_TRIES)) if may_turn else 1
     packer = Packer(islands, square)
     # The generator whose numbers never change with the version of numpy.

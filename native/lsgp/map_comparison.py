@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a map with symmetric cones, or with those for creases, may cost compared with the map that it replaces."""
+"""What maps with symmetric cones, or with cones for creases, may cost compared with the usual map."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def _island_count(result: Result) -> int:
 
 
 def _measure_of_filling(usual: Result, square_share: float, progress: Progress | None) -> Callable[[Result], float]:
-    """What tells how far a map that is compared with the usual one fills its part of the square."""
+    """The measure of how well a map that is compared with the usual one fills its part of the square."""
     islands = _island_count(usual)
     has_one_square = square_share <= 1 and usual.seamless is None
     if has_one_square and islands <= _MOST_PACKED and packer_name() is not None:

@@ -76,7 +76,7 @@ class Packing:
 
     @property
     def is_tight(self) -> bool:
-        """Whether a tight layout is looked for."""
+        """Whether a tight layout is attempted."""
         return self.pack != SHELVES and packer_name() is not None
 
 

@@ -202,23 +202,21 @@ def _options(options: Options | None) -> Options:
     if seamless is None or seamless.lattice != "square" or seamless.parity or seamless.coarse_grid == "relax":
         arguments.refuse("options.seamless", seamless, remedy)
     if seamless.tiles is not None or seamless.tile_size is not None:
-        arguments.refuse("options.seamless", seamless, f"{remedy}; target or size says how many quads there are")
+        arguments.refuse("options.seamless", seamless, f"{remedy}; target or size determines the number of quads")
     return chosen
 
 
 def _side(surface: Surface, target: int | None, size: float | None) -> float | None:
     """The side of a quad; None where the grid is to be the coarsest one."""
     if target is not None and size is not None:
-        raise InputError(
-            "WRONG_PARAMETER", "target and size both say how many quads there are to be; pass one of them."
-        )
+        raise InputError("WRONG_PARAMETER", "target and size both determine the number of quads; pass one of them.")
     if size is not None:
         return arguments.positive("size", size)
     if target is None:
         return None
-    target = arguments.whole_number("target", target, 1, f"pass how many quads there are to be, up to {_MOST_QUADS}")
+    target = arguments.whole_number("target", target, 1, f"pass the number of quads, up to {_MOST_QUADS}")
     if target > _MOST_QUADS:
-        arguments.refuse("target", target, f"pass how many quads there are to be, up to {_MOST_QUADS}")
+        arguments.refuse("target", target, f"pass the number of quads, up to {_MOST_QUADS}")
     corners = surface.positions[surface.triangles]
     with np.errstate(over="ignore", invalid="ignore"):  # the verbs refuse such a surface by name
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -322,8 +320,8 @@ def _along_features(
 def _refined(layout: Result) -> Finding:
     return Finding(
         "GRID_REFINED",
-        "With quads as large as asked for one would have a vertex twice, or two vertices more than one edge; they have "
-        f"the side {layout.seamless.tile_size:.4g} now. Ask for more quads, or use fewer cones.",
+        "With quads as large as requested, one would have a vertex twice, or two vertices more than one edge; they "
+        f"have the side {layout.seamless.tile_size:.4g} now. Ask for more quads, or use fewer cones.",
     )
 
 

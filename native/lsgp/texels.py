@@ -109,7 +109,7 @@ def at_texel_density(surface: Surface, result: Result, layout: TexelLayout) -> R
     arguments.require_type("result", result, Result)
     arguments.require_type("layout", layout, TexelLayout)
     density = arguments.positive("density", layout.density, "pass texels per unit of length, above 0")
-    size = arguments.whole_number("texture_size", layout.texture_size, 1, "pass how many texels a side has")
+    size = arguments.whole_number("texture_size", layout.texture_size, 1, "pass the number of texels of a side")
     if result.seamless is not None:
         raise InputError(
             "WRONG_PARAMETER",

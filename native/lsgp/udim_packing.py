@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Islands spread over several UDIM tiles, all of them at one scale, so that they get as large as they can."""
+"""Islands spread over several UDIM tiles, all of them at one scale, so that they become as large as possible."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class _Spread:
 def spread_over_tiles(
     uv: FloatArray, island: IndexArray, margin: float, tiles: int, may_turn: bool, progress: Progress | None
 ) -> FloatArray:
-    """The coordinates, (m, 3, 2), in so many tiles or as many as islands get larger by.
+    """The coordinates, (m, 3, 2), in this many tiles, or in fewer if more do not make islands larger.
 
     uv: (m, 3, 2). island: (m,), 0 or more. margin: around each island, of a tile's side.
     Raises InputError where margins leave no room, Cancelled.
@@ -71,7 +71,7 @@ def spread_over_tiles(
 
 
 def _evened_out(search: _Search, area: FloatArray, tiles: int) -> _Spread:
-    """Islands in so many tiles that need about the same side.  area: (islands,)."""
+    """Islands distributed over this many tiles that need about the same side.  area: (islands,)."""
     tile = _shared_out(area, tiles)
     found = [search.filled(tile == t) for t in range(tiles)]
     for _ in range(_MOST_MOVES):

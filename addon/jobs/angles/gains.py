@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What one more cone would gain."""
+"""The gain from one more cone."""
 
 from __future__ import annotations
 

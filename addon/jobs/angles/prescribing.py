@@ -31,7 +31,7 @@ class NewAngles:
     prescription: lsgp.Prescription
 
     def flat(self) -> int:
-        """How many of all prescribed cones have a full turn, which is none."""
+        """The number of prescribed cones with a full turn, which makes them ordinary vertices."""
         return int((np.abs(self.prescription.cone_angles - 2 * math.pi) < SAME_ANGLE).sum())
 
 

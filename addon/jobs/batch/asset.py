@@ -146,7 +146,7 @@ def _unwrap_task(obj: bpy.types.Object, args: argparse.Namespace) -> UnwrapTask:
 def _layouts(
     solved: Sequence[Unwrapped], args: argparse.Namespace
 ) -> tuple[list[NDArray[np.float64]], list[lsgp.Finding]]:
-    """The coordinates of each map as they are written, and what is to be said of them: packed together with a preset,
+    """The coordinates of each map as they are written, and findings about them: packed together with a preset,
     then at a texel density if that is asked for.  Raises InputError, Refused."""
     unwrap_options = native.part("run.unwrap_options")
     layouts = [unwrapped.corner_uv for unwrapped in solved]

@@ -41,7 +41,7 @@ def packed_at_density(
     layouts: of one scale. layout: with udim. turned: whether islands may be. unit, errors: as of `at_density`.
     """
     if any(unwrapped.aspect != 1.0 for unwrapped in solved):
-        raise Refused("the image is not square, whose texels have two densities; take one that is")
+        raise Refused("the image is not square, so its texels have two densities; use a square one")
     scaled, _ = at_density(solved, layouts, replace(layout, udim=None), share=True, unit=unit)
     parts = [
         replace(unwrapped.islands(), corner_uv=uv[unwrapped.result.solved])
@@ -85,7 +85,7 @@ def _together(
     """As above, of maps in one texture."""
     lsgp = native.lsgp
     if not all(unwrapped.region.object_scale for unwrapped in solved):
-        raise Refused("an object is scaled to zero, where texels have no size; scale it up")
+        raise Refused("an object is scaled to zero, so texels have no size on it; scale it up")
     # One surface in the world, with triangles, islands and coordinates of all; more texels are those of longer edges.
     positions = [unwrapped.region.surface.positions * (unwrapped.region.texel_scale / unit) for unwrapped in solved]
     triangles = [unwrapped.region.surface.triangles for unwrapped in solved]

@@ -88,11 +88,11 @@ def pack_at_scale(parts: Sequence[Islands], margin: float, *, turned: bool) -> l
 def _obstacle(parts: Sequence[Islands]) -> str | None:
     """Why the packer of xatlas cannot pack these, and what to do; None where it can."""
     if not is_tight():
-        return "this extension has no packer that can do so for this Blender; take Blender from blender.org"
+        return "this extension has no packer for that on this Blender; use Blender from blender.org"
     if any(part.pinned.any() for part in parts):
         return "some are pinned; unpin them"
     if any(part.aspect != 1.0 for part in parts):
-        return "the image is not square; take one that is"
+        return "the image is not square; use a square one"
     return None
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ..tasks.solving import Progress
 
 MOST_TRIANGLES = 300_000
-"""Of all kept maps together, about a hundred megabytes."""
+"""Limit of all cached maps together, about a hundred megabytes."""
 
 _kept: OrderedDict[bytes, Unwrapped] = OrderedDict()
 

@@ -63,7 +63,7 @@ def quad_task(region: Region, settings: QuadSettings) -> QuadTask:
     size = settings.size
     if size is not None:
         if not region.object_scale:
-            raise Refused("the object is scaled to zero, where quads have no size; scale it up or give their number")
+            raise Refused("the object is scaled to zero, so quads have no size on it; scale it up or give their number")
         size /= region.object_scale
     # Quads run on across seams, which therefore do not matter to the angles of cones either.
     region = replace(region, surface=replace(region.surface, seams=None))

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 NOTICEABLE = math.radians(1.0)
-"""From which on a miss of the texture's direction is told."""
+"""The least deviation of the texture's direction that is reported."""
 
 
 def unwrap_summary(unwrapped: Unwrapped) -> str:

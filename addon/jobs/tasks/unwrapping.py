@@ -273,7 +273,9 @@ def _options_for(region: Region, options: lsgp.Options) -> lsgp.Options:
     if seamless is None or seamless.tile_size is None:
         return options
     if not region.object_scale:
-        raise Refused("the object is scaled to zero, where tiles have no size; scale it up or give a number of tiles")
+        raise Refused(
+            "the object is scaled to zero, so tiles have no size on it; scale it up or give a number of tiles"
+        )
     return replace(options, seamless=replace(seamless, tile_size=seamless.tile_size / region.texel_scale))
 
 

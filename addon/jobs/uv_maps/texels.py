@@ -40,7 +40,7 @@ class Texels:
 def measure_texels(region: Region, chosen: NDArray[np.bool_], size: tuple[int, int]) -> Texels:
     """size: width and height of the texture in texels.  Raises LsgpError; Refused where lengths have no meaning."""
     if not region.object_scale:
-        raise Refused("the object is scaled to zero, where texels have no size; scale it up")
+        raise Refused("the object is scaled to zero, so texels have no size on it; scale it up")
     corners = region.surface.positions[region.surface.triangles] * region.object_scale
     area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
     density = native.lsgp.triangle_texel_density(region.surface, region.corner_uv, size) / region.object_scale

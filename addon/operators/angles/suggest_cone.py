@@ -34,7 +34,7 @@ class MESH_OT_cone_suggest(CutsProperty, AngleOperator, bpy.types.Operator):
     bl_idname = identifiers.SUGGEST
     bl_label = "Suggest the Next Cone"
     bl_description = (
-        "Mark the vertex where one more cone would lower the stretch most, or nearly as much where cuts get to more "
+        "Mark the vertex where one more cone would lower the stretch most, or nearly as much if cuts reach it more "
         "easily, and select it in edit mode"
     )
     bl_options = {"REGISTER", "UNDO"}

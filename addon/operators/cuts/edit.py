@@ -28,8 +28,8 @@ class MESH_OT_cone_edit_cuts(ModalEdit, bpy.types.Operator):
     bl_idname = identifiers.EDIT_CUTS
     bl_label = "Edit Cuts"
     bl_description = (
-        "Drag cuts of the UV map with the mouse: the faces that a cut moves over change to its other side, and no face "
-        "changes its shape. Cuts run where the Cuts of the last Unwrap from Cones and painted costs prefer them"
+        "Drag cuts of the UV map with the mouse: faces that a cut passes move to its other side without changing their "
+        "shape. Cuts run as preferred by Cuts of the last Unwrap from Cones and by painted costs"
     )
     bl_options = {"UNDO"}
 

@@ -32,7 +32,7 @@ class UV_OT_cone_extend_image(ComputingOperator, bpy.types.Operator):
 
     margin: bpy.props.IntProperty(
         name="Margin",
-        description="How far from islands the image is filled; each further mip level of a texture takes twice as much",
+        description="How far from islands the image is filled; each further mip level of a texture needs twice as much",
         default=16,
         min=1,
         soft_max=256,
@@ -40,8 +40,8 @@ class UV_OT_cone_extend_image(ComputingOperator, bpy.types.Operator):
     )
     normal_map: bpy.props.BoolProperty(
         name="Normal Map",
-        description="The image holds tangent-space normals with green up, which turn with the map; set its color space "
-        "to Non-Color",
+        description="The image holds tangent-space normals with green up, which rotate with the map; set its color "
+        "space to Non-Color",
         default=False,
         options={"SKIP_SAVE"},
     )

@@ -19,7 +19,7 @@ from ..shared.polling import EditMeshOperator
 WEIGHTS: Choices = {
     "AWAY": (1.0, "Keep Cuts Away", "Keep cuts away from the selected vertices when the mesh is unwrapped"),
     "ATTRACT": (0.0, "Attract Cuts", "Draw cuts to the selected vertices when the mesh is unwrapped"),
-    "CLEAR": (None, "Clear Cut Costs", "Let cuts run at the selected vertices as if nothing had been painted there"),
+    "CLEAR": (None, "Clear Cut Costs", "Let cuts run at the selected vertices as if nothing were painted there"),
 }
 
 

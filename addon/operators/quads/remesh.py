@@ -32,12 +32,12 @@ AMOUNTS: Choices = {
 }
 ROWS: Choices = {
     "FREE": (None, "As They Fit", "Rows run where quads are distorted least"),
-    "X": (None, "World X", "Rows run along the world's X axis as far as the irregular vertices let them"),
-    "Y": (None, "World Y", "Rows run along the world's Y axis as far as the irregular vertices let them"),
-    "Z": (None, "World Z", "Rows run up, along the world's Z axis, as far as the irregular vertices let them"),
+    "X": (None, "World X", "Rows run along the world's X axis, as far as the irregular vertices permit"),
+    "Y": (None, "World Y", "Rows run along the world's Y axis, as far as the irregular vertices permit"),
+    "Z": (None, "World Z", "Rows run up, along the world's Z axis, as far as the irregular vertices permit"),
 }
 COARSE_GRIDS: Choices = {
-    "REFINE": ("refine", "Smaller Quads", "Take more quads than asked for"),
+    "REFINE": ("refine", "Smaller Quads", "Use more quads than requested"),
     "MERGE": ("merge", "Merge Cones", "Merge cones that are less than a quad apart"),
 }
 
@@ -60,7 +60,7 @@ class OBJECT_OT_cone_remesh_to_quads(ConeGroupProperty, BackgroundOperator, bpy.
     )
     count: bpy.props.IntProperty(
         name="Count",
-        description="About how many quads each object gets; more where so few do not fit between its cones",
+        description="Approximate number of quads on each object; more if so few do not fit between its cones",
         default=2000,
         min=1,
         max=2**24,
@@ -88,7 +88,7 @@ class OBJECT_OT_cone_remesh_to_quads(ConeGroupProperty, BackgroundOperator, bpy.
     )
     coarse_grid: bpy.props.EnumProperty(
         name="Too Large",
-        description="What to do where the quads are too large for the cones",
+        description="What to do if the quads are too large for the cones",
         items=enum_items(COARSE_GRIDS),
     )
     hide_original: bpy.props.BoolProperty(

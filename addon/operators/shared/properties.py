@@ -79,7 +79,7 @@ class SeamsProperty:
     """Mix-in: what marked seams mean."""
 
     seams: bpy.props.EnumProperty(
-        name="Seams", description="What edges marked as seams mean for the cuts", items=enum_items(SEAMS)
+        name="Seams", description="The effect of edges marked as seams on the cuts", items=enum_items(SEAMS)
     )
 
 
@@ -88,9 +88,9 @@ class CutsProperty:
 
     cuts: bpy.props.EnumProperty(
         name="Cuts",
-        description="Where cuts run. The faces keep the shapes in the UV map that the cones give them; automatic cones "
-        "go where such cuts get to. Weights in the vertex group "
-        f'"{SEAM_COST_GROUP}" keep cuts away where they are above 0.5, and draw them near where they are below',
+        description="Where cuts run. They do not change the shapes of faces in the UV map, which only depend on the "
+        "cones; automatic cones are placed where such cuts reach them. Weights in the vertex group "
+        f'"{SEAM_COST_GROUP}" keep cuts away where they are above 0.5, and attract them where they are below',
         items=enum_items(CUTS),
     )
 

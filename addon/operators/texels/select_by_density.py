@@ -24,21 +24,21 @@ class MESH_OT_cone_texel_select(DensityProperty, TexelOperator, bpy.types.Operat
 
     bl_idname = identifiers.TEXEL_SELECT
     bl_label = "Select by Texel Density"
-    bl_description = "Select the faces on which a unit of length gets about this many pixels, fewer, or more"
+    bl_description = "Select the faces that have about this many pixels per unit of length, fewer, or more"
     bl_options = {"REGISTER", "UNDO"}
 
     compare: bpy.props.EnumProperty(
         name="Compare",
         description="Which faces to select",
         items=(
-            ("EQUAL", "Equal", "Faces whose density differs by no more than the tolerance"),
+            ("EQUAL", "Equal", "Faces whose density differs by at most the tolerance"),
             ("LESS", "Less", "Faces whose density is lower by more than the tolerance"),
             ("GREATER", "Greater", "Faces whose density is higher by more than the tolerance"),
         ),
     )
     tolerance: bpy.props.FloatProperty(
         name="Tolerance",
-        description="Part of the density by which faces may differ from it",
+        description="Percentage of the density by which faces may deviate from it",
         default=10.0,
         min=0.0,
         soft_max=100.0,

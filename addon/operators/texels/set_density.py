@@ -47,7 +47,7 @@ class UV_OT_cone_texel_set(DensityProperty, TexelOperator, bpy.types.Operator):
             self.report({"ERROR"}, NOTHING_SELECTED)
         skipped = sum(result.skipped for _, (_, result, _) in found)
         if skipped:
-            self.report({"WARNING"}, f"{counted(skipped, 'island')} left alone for want of an area; unwrap first")
+            self.report({"WARNING"}, f"{counted(skipped, 'island')} skipped because they have no area; unwrap first")
         count = sum(result.islands for _, (_, result, _) in found)
         if not count:
             return conclude(self, [], {}, failures)

@@ -34,14 +34,18 @@ if TYPE_CHECKING:
     from ...jobs.tasks.solving import Progress
 
 SCALES: Choices = {
-    "FILL": (None, "Fill Square", "Islands get as large as they can"),
-    "DENSITY": (None, "Texel Density", "Islands get so many texels along a unit of length in the world"),
+    "FILL": (None, "Fill Square", "Islands become as large as possible"),
+    "DENSITY": (None, "Texel Density", "Islands get this many texels per unit of length in the world"),
 }
 
 STACKS: Choices = {
     "NONE": (None, "None", "Every island has texels of its own"),
     "SAME": ("same", "Same", "Islands of one shape lie on each other and share their texels"),
-    "MIRRORED": ("mirrored", "Same or Mirrored", "Islands lie also on mirrored ones, as of the two halves of a body"),
+    "MIRRORED": (
+        "mirrored",
+        "Same or Mirrored",
+        "Islands also lie on mirrored ones, such as those of the two halves of a body",
+    ),
 }
 
 # Values that were last taken from the preferences, by property.
@@ -62,7 +66,7 @@ class UV_OT_cone_auto_unwrap(
     bl_idname = identifiers.AUTO_UNWRAP
     bl_label = "Auto Unwrap"
     bl_description = (
-        "Unwrap ready for use: marked cones and seams are kept, what is missing is placed, nothing overlaps, and the "
+        "Unwrap ready for use: marked cones and seams are kept, missing cones are placed, nothing overlaps, and the "
         "islands of all objects are packed together. Works on the selected faces in edit mode, on all faces of the "
         "selected objects in object mode"
     )
@@ -72,9 +76,9 @@ class UV_OT_cone_auto_unwrap(
 
     udim: bpy.props.IntProperty(
         name="UDIM Tiles",
-        description="Spread the islands over so many UDIM tiles, 1001 and following, so that they get as large as they "
-        "can; Bake cuts them further for it. Fewer are taken where the largest island fills one alone. Each tile has a "
-        "texture of this size. At a texel density they are so many at most",
+        description="Spread the islands over this many UDIM tiles, 1001 and following, so that they become as large "
+        "as possible; Bake cuts them further for that. Fewer are used if the largest island alone fills one. Each tile "
+        "has a texture of this size. At a texel density this is the largest number",
         default=1,
         min=1,
         max=100,
@@ -83,8 +87,8 @@ class UV_OT_cone_auto_unwrap(
     scale: bpy.props.EnumProperty(name="Scale", description="How large islands are", items=enum_items(SCALES))
     stack: bpy.props.EnumProperty(
         name="Stack",
-        description="Which islands lie on each other, so that all get larger; what is painted or baked on one appears "
-        "on all. They do not count as overlapping. Not at a texel density",
+        description="Which islands lie on each other, so that all become larger; what is painted or baked on one "
+        "appears on all. They do not count as overlapping. Not at a texel density",
         items=enum_items(STACKS),
     )
     use_subsurf_data: bpy.props.BoolProperty(
@@ -94,21 +98,21 @@ class UV_OT_cone_auto_unwrap(
     )
     creases: bpy.props.BoolProperty(
         name="Creases as Borders",
-        description="Let hard surfaces end at their creases and at edges marked sharp, where that takes stretch out; "
-        "Paint does so only where many cones would be needed otherwise, Tile never. Parts with marked cones or seams "
-        "are left alone",
+        description="Cut hard surfaces at their creases and at edges marked sharp where that removes stretch; Paint "
+        "does so only where many cones would be needed otherwise, Tile never. Parts with marked cones or seams are not "
+        "affected",
         default=True,
     )
     straighten: bpy.props.BoolProperty(
         name="Straight Sides",
-        description="Make sides of islands that are nearly straight exactly straight, and align them with the axes of "
-        "the UV map, wherever that takes hardly any stretch. Round sides stay round. With Tile: let creases of hard "
-        "surfaces run along the tiles",
+        description="Make nearly straight sides of islands exactly straight, and align them with the axes of the UV "
+        "map, wherever that costs hardly any stretch. Round sides stay round. With Tile: let creases of hard surfaces "
+        "run along the tiles",
         default=True,
     )
     compact: bpy.props.BoolProperty(
         name="Compact Islands",
-        description="Cut islands further that would leave much of the square empty, such as long strips, rings and "
+        description="Further cut islands that would leave much of the square empty, such as long strips, rings and "
         "those with arms: Bake wherever that is worth it, Paint only where a short cut fills much of the square and no "
         "seams are marked",
         default=True,
@@ -116,7 +120,7 @@ class UV_OT_cone_auto_unwrap(
     symmetric: bpy.props.BoolProperty(
         name="Symmetric",
         description="Place cones alike on both sides of a mirror plane, and on parts that mirror each other, if that "
-        "hardly stretches the map more or takes more islands; only where no cones are marked",
+        "costs hardly any stretch and few islands; only where no cones are marked",
         default=True,
     )
     mark: bpy.props.BoolProperty(

@@ -18,7 +18,7 @@ from .seamless import SeamlessProperties
 PRESCRIPTIONS: Choices = {
     "AUTOMATIC": (None, "Automatic", "Keep the angles given to cones; choose the others for the least distortion"),
     "LEAST_DISTORTION": ("least-distortion", "Least Distortion", "Choose all angles for the least distortion"),
-    "HARMONIC": ("harmonic", "Harmonic", "Choose all angles by how much curvature is nearest to each cone"),
+    "HARMONIC": ("harmonic", "Harmonic", "Choose all angles by the amount of curvature around each cone"),
     "STRAIGHTNESS": ("straightness", "Straight Seams", "Choose all angles so that seams become straight lines"),
 }
 UNFOLDINGS: Choices = {
@@ -26,7 +26,7 @@ UNFOLDINGS: Choices = {
     "SPECTRAL": ("spectral", "Spectral", "The least conformal energy by an eigenvalue solve; slower"),
 }
 OVERLAPS: Choices = {
-    "KEEP": ("keep", "Keep", "Leave islands that overlap themselves as they are; where they do is reported"),
+    "KEEP": ("keep", "Keep", "Leave islands that overlap themselves as they are, and report where they do"),
     "SPLIT": (
         "split",
         "Split",

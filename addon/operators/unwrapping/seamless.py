@@ -88,7 +88,7 @@ class SeamlessProperties(TileSizeProperties, LatticeProperty):
     )
     coarse_grid: bpy.props.EnumProperty(
         name="Too Large",
-        description="What to do where the tiles are too large for the surface",
+        description="What to do if the tiles are too large for the surface",
         items=enum_items(COARSE_GRIDS),
     )
     mip_safe: bpy.props.BoolProperty(

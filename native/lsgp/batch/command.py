@@ -43,7 +43,7 @@ EXIT_CODES = exit_codes.listed(exit_codes.OF_A_BATCH)
 
 @dataclass(frozen=True)
 class Kind:
-    """What differs between the programs that run batches.
+    """The differences between the programs that run batches.
 
     suffixes: of the files in a folder that are assets. output_name: the name of an asset's result.
     worker: the command that starts a worker process.

@@ -25,7 +25,7 @@ MOST_FAILED_STARTS = 3
 class Pool:
     """jobs: processes at a time. task_of: makes the task of an asset. command: starts a worker.
 
-    seconds: time limit of an asset, None for no limit. assets_per_worker: a process is replaced after so many assets,
+    seconds: time limit of an asset, None for no limit. assets_per_worker: a process is replaced after this many assets,
     which bounds what leaks in long-lived processes.
     """
 

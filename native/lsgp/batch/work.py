@@ -20,7 +20,7 @@ from .tasks import Settings, Task
 
 
 def unwrap_asset(task: Task, settings: Settings) -> Record:
-    """Unwrap an asset, write its files, and say how it ended."""
+    """Unwrap an asset, write its files, and return its record."""
     run = Run()
     try:
         _require_ordinary(Path(task.input))

@@ -30,7 +30,7 @@ MARK = "\x1elsgp "
 
 
 def serve(work: Callable[[Task, Settings], Record]) -> None:
-    """Answer until the input ends, and end the process."""
+    """Answer tasks until the input ends, then end the process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is handled by the process that started this one
     # Any other output is redirected to standard error.
     answers = os.dup(1)
@@ -101,7 +101,7 @@ def _forget_peak_memory() -> None:
 
 
 def _peak_memory_mb() -> float | None:
-    """None where the system does not tell."""
+    """None if the system does not report it."""
     peak = _peak_on_windows() if sys.platform == "win32" else _peak_on_mac() if sys.platform == "darwin" else _peak()
     return None if peak is None else round(peak / 1e6, 3)
 

@@ -89,7 +89,7 @@ class WorkerProcess:
         return time.monotonic() - self._since
 
     def seconds_left(self, seconds: float | None) -> float | None:
-        """Time left to get ready, or to answer on an asset that may take so many seconds; None for no limit."""
+        """Time left to get ready, or to finish an asset whose limit is this many seconds; None for no limit."""
         allowed = START_SECONDS if self.name is None else seconds
         return None if allowed is None else allowed - self.seconds()
 

@@ -192,7 +192,7 @@ def _single_faces(data: bytes, segment: _Segment) -> Iterator[_Segment]:
 
 
 def _without_statement(data: bytes, segment: _Segment) -> bytes:
-    """What stays of lines whose statements are taken out: comments and empty lines between continued ones."""
+    """The rest of lines whose statements are removed: comments and empty lines between continued ones."""
     if not segment.pieces:
         return b""
     kept = []

@@ -46,7 +46,7 @@ def read_off(data: bytes) -> PolygonMesh:
 
 
 def _extras(keyword: bytes) -> tuple[str, ...]:
-    """What the header says that vertices have beside their place."""
+    """The data of vertices besides their position, according to the header."""
     header = HEADER.match(keyword)[0]
     letters = {b"ST": "texture coordinates", b"C": "vertex colours", b"N": "normals"}
     return tuple(name for letter, name in letters.items() if letter in header)

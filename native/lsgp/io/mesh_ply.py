@@ -36,7 +36,7 @@ class Property:
 
 @dataclass(frozen=True)
 class Element:
-    """A table of the file: so many rows of these properties."""
+    """A table of the file: a number of rows with these properties."""
 
     name: str
     count: int
@@ -80,7 +80,7 @@ def read_ply(data: bytes) -> PolygonMesh:
 
 
 def _extras(elements: list[Element]) -> tuple[str, ...]:
-    """What the file has beside its mesh."""
+    """The content of the file other than its mesh."""
     extras = []
     for element in elements:
         if element.name in ("vertex", "face"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the readers of text formats share: rows of tokens, their numbers, and the refusal that names the line."""
+"""Shared by the readers of text formats: rows of tokens, their numbers, and errors that name the line."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Rows:
         return cls(text, begins, ends, np.cumsum(counts) - counts, counts, lines)
 
     def select(self, rows: NDArray[np.bool_] | slice) -> Rows:
-        """Some of the rows, of the same tokens."""
+        """A subset of the rows, with the same tokens."""
         return replace(self, starts=self.starts[rows], counts=self.counts[rows], lines=self.lines[rows])
 
     def without_first(self) -> Rows:

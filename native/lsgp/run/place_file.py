@@ -87,7 +87,7 @@ def place_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
 
 
 def summary(args: argparse.Namespace, placement: Placement) -> str:
-    """What was placed and what it costs, on one line."""
+    """The placed cones and their stretch, on one line."""
     count = len(placement.cones)
     told = f"{args.output}: {count} {'cone' if count == 1 else 'cones'}"
     told += f", an L2 stretch of {placement.predicted_l2:.4f} predicted"

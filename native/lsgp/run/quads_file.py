@@ -88,7 +88,7 @@ def quads_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
 
 
 def summary(output: Path, remesh: QuadRemesh, quality: QuadQuality) -> str:
-    """What came out and how good it is, as lines of text."""
+    """The result and its quality, as lines of text."""
     mesh = remesh.mesh
     irregular = Counter(mesh.valences[mesh.irregular].tolist())
     kinds = ", ".join(f"{irregular[valence]} of valence {valence}" for valence in sorted(irregular))

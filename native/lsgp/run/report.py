@@ -75,8 +75,8 @@ def refusal_report(error: LsgpError, triangulation: Triangulation | None) -> Rep
 
 
 def placed_figures(placement: Placement) -> Report:
-    """What placed cones promise, over all components: the L2 stretch predicted and that of the map, null where it was
-    not made or is not valid, and whether the target was reached."""
+    """The expected quality with placed cones, over all components: the L2 stretch predicted and that of the map, null
+    where it was not made or is not valid, and whether the target was reached."""
     return {
         "predicted_l2": placement.predicted_l2,
         "mapped_l2": placement.mapped_l2,

@@ -130,7 +130,7 @@ def _tiles_in_use(uv: NDArray[np.float64]) -> int:
 
 
 def require_flawless(warnings: Sequence[Finding]) -> None:
-    """Raise LsgpError with the first warning of what --strict does not let pass."""
+    """Raise LsgpError for the first warning that --strict does not permit."""
     for finding in warnings:
         if finding.code in FLAWS:
             raise LsgpError(finding.code, finding.message, finding.elements)
