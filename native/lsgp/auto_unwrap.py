@@ -28,7 +28,7 @@ from .arguments import FloatArray, IndexArray
 from .errors import Cancelled, Finding, InputError, LsgpError
 from .ledger import LedgerPart, build_ledger, surface_of_triangles
 from .map_comparison import may_replace_for_features, may_replace_map, runs_along_features
-from .packing import Pack, Packing, Stack, laid_out
+from .packing import Pack, Packing, Stack, laid_out, packing_once
 from .texels import TexelLayout, at_texel_density, with_tiny_findings
 
 Preset = Literal["paint", "tile", "bake"]
@@ -73,6 +73,7 @@ def preset_options(preset: Preset) -> Options:
     return _PRESETS[preset]
 
 
+@packing_once()
 def auto_unwrap(
     surface: Surface,
     cones: ArrayLike = (),
