@@ -34,10 +34,10 @@ class KeptComponents {
   // That of the task's cones.
   ComponentSystem& system_of(std::size_t i, Factorization factorization);
   ComponentSystem* system(std::size_t i) { return kept_[i]->system.get(); }  // after that
-  // Takes over one with automatic factorization, of these cones.
-  void keep_system(std::size_t i, std::unique_ptr<ComponentSystem> system, const ComponentCones& cones);
+  // Takes over the system of a component, if there is one.
+  void keep_system(std::size_t i, KeptSystem system);
   void release(std::size_t i) {
-    if (!keeps_systems_) kept_[i]->system->release();
+    if (!keeps_systems_) system(i)->release();
   }
 
  private:
@@ -45,9 +45,7 @@ class KeptComponents {
     Geometry geometry;
     std::optional<Mirroring> mirroring;  // where it was asked for
     std::vector<Finding> found;          // while it was built
-    ComponentCones cones;                // of the system
-    Factorization factorization = Factorization::automatic;
-    std::unique_ptr<ComponentSystem> system;
+    KeptSystem system;
   };
 
   const bool keeps_systems_;
