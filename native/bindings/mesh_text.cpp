@@ -368,7 +368,7 @@ LineKind kind_of(std::string_view line) {
   return refers ? LineKind::peculiar : LineKind::other;
 }
 
-// The plain lines of one kind from a place on, at most so many: the kind, where they end, and how many they are.
+// The plain lines of one kind from a position on, up to a number: the kind, their end, and their number.
 py::typing::Tuple<py::str, py::ssize_t, py::ssize_t> plain_lines(const py::bytes& data, std::size_t at,
                                                                  std::int64_t most) {
   constexpr const char* names[] = {"", "other", "coordinates", "faces"};

@@ -269,7 +269,7 @@ lsgp::Options to_options(const py::dict& values) {
   return options;
 }
 
-// Python acts on signals such as that of Ctrl-C between its own instructions only, of which a running verb has none.
+// Python handles signals, such as that of Ctrl-C, only between its own instructions, and a running verb executes none.
 void require_no_signal() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
@@ -279,7 +279,7 @@ bool is_main_thread() {
   return threading.attr("get_ident")().equal(threading.attr("main_thread")().attr("ident"));
 }
 
-// Nobody is told anything; the main thread, to which all signals go, looks for them.
+// Without a callback progress only checks for signals, all of which go to the main thread.
 lsgp::Progress watch_for_signals() {
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds between_looks(50);
@@ -293,7 +293,7 @@ lsgp::Progress watch_for_signals() {
   };
 }
 
-// Takes what is done; False from it stops the verb, and so does what it raises, or a signal.
+// Gets the fraction done. The verb stops if it returns False or raises an exception, and at a signal.
 using ProgressCallback = std::optional<py::typing::Callable<std::optional<bool>(double)>>;
 
 lsgp::Progress to_progress(const ProgressCallback& callback) {

@@ -34,7 +34,7 @@ from .map_comparison import (
     runs_along_features,
     saves_islands,
 )
-from .packing import Pack, Packing, Stack, laid_out
+from .packing import Pack, Packing, Stack, laid_out, packing_once
 from .texels import TexelLayout, at_texel_density, with_tiny_findings
 
 Preset = Literal["paint", "tile", "bake"]
@@ -79,6 +79,7 @@ def preset_options(preset: Preset) -> Options:
     return _PRESETS[preset]
 
 
+@packing_once()
 def auto_unwrap(
     surface: Surface,
     cones: ArrayLike = (),

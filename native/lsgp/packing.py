@@ -3,7 +3,11 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from typing import Any, Literal, get_args
@@ -13,9 +17,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import arguments
 from .api import Progress, Result, Surface
-from .arguments import FloatArray
+from .arguments import FloatArray, IndexArray
 from .chart_packer import Square, find_xatlas
-from .errors import Elements, Finding, InputError
+from .errors import Cancelled, Elements, Finding, InputError
 from .layout_search import best_layout, islands_of
 from .stacking import find_stacks
 from .texels import MOST_TILES, TexelLayout, at_texel_density, outside_findings
@@ -28,6 +32,10 @@ SHELVES = "shelves"
 INSTALL = "pip install 'lsgp[pack]'"
 DEFAULT_MARGIN = 4 / 1024
 """Around each island, of the square's side."""
+
+
+# By digests of what was packed and how; None: they are not kept.
+_kept_layouts: ContextVar[dict[bytes, FloatArray] | None] = ContextVar("kept_layouts", default=None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +99,17 @@ def require_packer() -> None:
         raise InputError("PACKER_NOT_INSTALLED", f"Packing islands takes the package xatlas: {INSTALL}, and try again.")
 
 
+@contextmanager
+def packing_once() -> Iterator[None]:
+    """Within it, islands that were packed in the same way before are not packed again: maps are packed to be compared,
+    and the chosen one once more as the result."""
+    token = _kept_layouts.set({})
+    try:
+        yield
+    finally:
+        _kept_layouts.reset(token)
+
+
 def pack_islands(
     corner_uv: ArrayLike,
     island: ArrayLike,
@@ -137,14 +156,29 @@ def pack_islands(
     out = uv.copy()
     if not len(solved):
         return out
+    kept = _kept_layouts.get()
+    key = b"" if kept is None else _digest(uv, island, (square, may_turn, tiles))
+    if kept is not None and key in kept:
+        if progress is not None and progress(1.0) is False:
+            raise Cancelled("CANCELLED", "Stopped as asked; nothing was changed.")
+        return kept[key].copy()
     if tiles > 1:
         out[solved] = spread_over_tiles(uv[solved], island[solved], square.margin, tiles, may_turn, progress)
-        return out
-    islands = islands_of(uv[solved], island[solved])
-    found = best_layout(islands, square, may_turn, progress)
-    place = (found.place - found.low) / (found.side if square.fill else 1.0)
-    out[solved] = np.stack([place.real, place.imag], axis=-1)[islands.triangles] + square.margin
+    else:
+        islands = islands_of(uv[solved], island[solved])
+        found = best_layout(islands, square, may_turn, progress)
+        place = (found.place - found.low) / (found.side if square.fill else 1.0)
+        out[solved] = np.stack([place.real, place.imag], axis=-1)[islands.triangles] + square.margin
+    if kept is not None:
+        kept[key] = out.copy()
     return out
+
+
+def _digest(uv: FloatArray, island: IndexArray, how: tuple[object, ...]) -> bytes:
+    digest = hashlib.blake2b(repr((uv.shape, how)).encode())
+    digest.update(np.ascontiguousarray(uv))
+    digest.update(np.ascontiguousarray(island))
+    return digest.digest()
 
 
 def _tile_count(udim: int) -> int:

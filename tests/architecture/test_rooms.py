@@ -42,6 +42,19 @@ def test_no_header_includes_itself_by_way_of_others():
     assert sorted(pending) == [], "a circle of includes goes through some of these"
 
 
+def test_rooms_before_unfold_do_not_see_results():
+    (tree,) = (tree for tree in TREES if tree.pattern == "*.[ch]pp")
+    folder = ROOT / tree.folder
+    included = {path.relative_to(folder).as_posix(): tree.references(folder, path) for path in tree.files()}
+    sees = {"include/lsgp/result.hpp"}
+    while added := {name for name, headers in included.items() if headers & sees} - sees:
+        sees |= added
+    names = [room.name for room in tree.rooms]
+    before = set(names[: names.index("unfold")]) - {"public headers"}
+    assert len(before) == 8
+    assert {name for name in sees if tree.room_of(name).name in before} == set()
+
+
 def test_only_the_addon_imports_blender():
     found = [path for path in (ROOT / "native").rglob("*.py") if modules_named_in(path) & BLENDER]
     assert found == []

@@ -21,7 +21,7 @@ from ...core.identifiers import CONE_GROUP, IMPORTANCE_GROUP
 from ...mesh.region_read import Faces, Groups, read_region
 from ...mesh.uv_write import write_uv
 from ..layouts.densities import at_density
-from ..layouts.maps import final_layouts, packing_of_preset
+from ..layouts.maps import final_layouts, packing_of_preset, tiny_findings
 from ..tasks.cuts import cut_choice
 from ..tasks.directions import direction_choice
 from ..tasks.unwrapping import Unwrapped, UnwrapSettings, UnwrapTask, unwrap_all, unwrap_task
@@ -162,9 +162,8 @@ def _layouts(
     texels, findings = unwrap_options.texel_layout(args), []
     if texels is not None:
         layouts, findings = at_density(solved, layouts, texels, share=args.preset is not None)
-    tiny_findings = native.part("texels").tiny_findings
     for unwrapped, corner_uv in zip(solved, layouts, strict=True):
-        findings = [*findings, *tiny_findings(corner_uv, unwrapped.result.island)]
+        findings = [*findings, *tiny_findings(unwrapped, corner_uv)]
     return layouts, findings
 
 

@@ -137,8 +137,18 @@ def map_summary(unwrapped: Unwrapped, corner_uv: NDArray[np.float64]) -> str:
     """A map in one line, with the number of islands that lose their shape in single precision, in which Blender stores
     UVs.  corner_uv: (m, 3, 2), final."""
     summary = unwrap_summary(unwrapped)
-    count = len(native.part("texels").tiny_islands(corner_uv, unwrapped.result.island))
-    return f"{summary}; {counted(count, 'island')} too small for UV coordinates to keep in shape" if count else summary
+    tiny = tiny_findings(unwrapped, corner_uv)
+    if not tiny:
+        return summary
+    count = len(np.unique(unwrapped.result.island[tiny[0].elements.indices]))
+    return f"{summary}; {counted(count, 'island')} too small for UV coordinates to keep in shape"
+
+
+def tiny_findings(unwrapped: Unwrapped, corner_uv: NDArray[np.float64]) -> list[lsgp.Finding]:
+    """The warning of tiny islands in a final layout, (m, 3, 2), unless the map has it already, as from Auto Unwrap."""
+    if any(finding.code == "ISLANDS_TINY" for finding in unwrapped.result.warnings):
+        return []
+    return native.part("texels").tiny_findings(corner_uv, unwrapped.result.island)
 
 
 def report_on(unwrapped: Unwrapped) -> reports.Report:

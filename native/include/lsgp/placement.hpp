@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "lsgp/errors.hpp"
+#include "lsgp/linear_algebra.hpp"
 #include "lsgp/options.hpp"
-#include "lsgp/result.hpp"
 #include "lsgp/surface.hpp"
 
 namespace lsgp {

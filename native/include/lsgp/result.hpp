@@ -5,11 +5,11 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "lsgp/errors.hpp"
+#include "lsgp/linear_algebra.hpp"
+#include "lsgp/stage_seconds.hpp"
 #include "lsgp/surface.hpp"
 
 namespace lsgp {
@@ -29,8 +29,6 @@ struct SeamQuality {
   double rotation_residual = 0;     // angle between a cut edge's rotation and that of its cut, radians
   double translation_residual = 0;  // distance of a vertex to the image of its copy, relative to its islands' size
 };
-
-using StageSeconds = std::vector<std::pair<std::string, double>>;  // wall clock
 
 // The transition of a cut in a seamless layout, from its left side to its right one: z -> e^{2 pi i turns / q} z + t
 // with t = cell (translation[0] + translation[1] g), where g is i on square lattices and e^{i pi / 3} on triangular
@@ -63,12 +61,6 @@ struct SeamlessReport {
 struct RepairReport {
   Index flipped_before = 0, wrong_angle_sums_before = 0;  // of the first unfolding
   int iterations = 0;                                     // of Newton's method, low stretch included
-};
-
-// The linear algebra of a call.
-struct LinearAlgebra {
-  int factorizations = 0;      // of sparse matrices
-  int back_substitutions = 0;  // with their factors, one per right-hand side
 };
 
 struct CutPaths {

@@ -22,7 +22,7 @@ from ..io.polygons import Triangulation
 from ..io.safe_files import is_standard_stream, read_input, require_separate
 from ..io.side_files import cones_in, directions_in, load_importance, load_json, seam_edges_in
 from ..io.whole_files import write_output
-from ..packing import laid_out
+from ..packing import laid_out, packing_once
 from ..texels import TexelDensity, at_texel_density, texel_density, with_tiny_findings
 from ..triangles import uv_area
 from .unwrap_options import (
@@ -79,6 +79,7 @@ class Run:
         self.stage_seconds[name] = time.perf_counter() - begin
 
 
+@packing_once()
 def unwrap_file(
     args: argparse.Namespace,
     run: Run,

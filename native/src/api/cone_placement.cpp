@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <utility>
 
 #include "api/opened_component.hpp"
@@ -44,8 +43,8 @@ class PlacementWork {
   const PerComponent<Component>& components() const { return kept_.work().topology.components; }
   ProgressMonitor& monitor() { return monitor_; }
 
-  void keep_system(const Component& component, std::unique_ptr<ComponentSystem> system, const ComponentCones& cones) {
-    kept_.keep_system(static_cast<std::size_t>(&component - components().data()), std::move(system), cones);
+  void keep_system(const Component& component, KeptSystem system) {
+    kept_.keep_system(static_cast<std::size_t>(&component - components().data()), std::move(system));
   }
 
   // Calls visit(component, geometry, existing cones, allowed vertices, findings) for every component.
@@ -169,7 +168,7 @@ Placement place_cones_on(const KnownSurface& known, const Cones& existing, const
     if (!options.count && !found.reached) {
       shortfalls.add(found.mapped_l2, own, component.source_triangle);
     }
-    work.keep_system(component, std::move(found.system), found.cones);
+    work.keep_system(component, std::move(found.system));
   });
   shortfalls.report(out.warnings);
   report_shared(std::move(shared), out.warnings);

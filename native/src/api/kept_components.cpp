@@ -38,23 +38,11 @@ const Mirroring& KeptComponents::mirroring_of(std::size_t i) {
 
 ComponentSystem& KeptComponents::system_of(std::size_t i, Factorization factorization) {
   Kept& kept = *kept_[i];
-  const ComponentCones& cones = work_.tasks[i].cones;
-  if (!kept.system || !have_same_system(kept.cones, cones) || kept.factorization != factorization) {
-    Eigen::VectorXd memory = kept.system ? kept.system->take_memory() : Eigen::VectorXd();
-    kept.system = std::make_unique<ComponentSystem>(MetricMesh{work_.topology.components[i].mesh, kept.geometry}, cones,
-                                                    factorization, std::move(memory));
-    kept.cones = cones;
-    kept.factorization = factorization;
-  }
-  return *kept.system;
+  return kept.system.of({work_.topology.components[i].mesh, kept.geometry}, work_.tasks[i].cones, factorization);
 }
 
-void KeptComponents::keep_system(std::size_t i, std::unique_ptr<ComponentSystem> system, const ComponentCones& cones) {
-  if (!keeps_systems_ || !system) return;
-  Kept& kept = *kept_[i];
-  kept.system = std::move(system);
-  kept.cones = cones;
-  kept.factorization = Factorization::automatic;
+void KeptComponents::keep_system(std::size_t i, KeptSystem system) {
+  if (keeps_systems_ && system.get() != nullptr) kept_[i]->system = std::move(system);
 }
 
 }  // namespace lsgp

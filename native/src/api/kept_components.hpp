@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What calls on one surface have in common: its components, and of each the geometry and the factored systems.
+// Data shared by calls on one surface: its components, and the geometry and the factored systems of each.
 #pragma once
 
 #include <cstdint>
@@ -22,22 +22,22 @@ class KeptComponents {
   KeptComponents(const KeptComponents&) = delete;
   KeptComponents& operator=(const KeptComponents&) = delete;
 
-  // prepare: makes the work of a call from that of the one before. All that follows is of the new one.
+  // prepare: makes the work of a call from that of the previous one. Everything below refers to the new work.
   void update(const std::function<Work(Work)>& prepare);
   Work& work() { return work_; }
 
-  // Measures it first; findings are added to.
+  // Measured at the first call; appends to the findings.
   const Geometry& geometry_of(std::size_t i, std::vector<Finding>& findings);
   const Geometry& geometry(std::size_t i) const { return kept_[i]->geometry; }  // after that
   const Mirroring& mirroring_of(std::size_t i);
 
-  // That of the task's cones.
+  // The system of the task's cones.
   ComponentSystem& system_of(std::size_t i, Factorization factorization);
   ComponentSystem* system(std::size_t i) { return kept_[i]->system.get(); }  // after that
-  // Takes over one with automatic factorization, of these cones.
-  void keep_system(std::size_t i, std::unique_ptr<ComponentSystem> system, const ComponentCones& cones);
+  // Takes over the system of a component, if there is one.
+  void keep_system(std::size_t i, KeptSystem system);
   void release(std::size_t i) {
-    if (!keeps_systems_) kept_[i]->system->release();
+    if (!keeps_systems_) system(i)->release();
   }
 
  private:
@@ -45,9 +45,7 @@ class KeptComponents {
     Geometry geometry;
     std::optional<Mirroring> mirroring;  // where it was asked for
     std::vector<Finding> found;          // while it was built
-    ComponentCones cones;                // of the system
-    Factorization factorization = Factorization::automatic;
-    std::unique_ptr<ComponentSystem> system;
+    KeptSystem system;
   };
 
   const bool keeps_systems_;

@@ -6,7 +6,7 @@
 
 #include "base/checkpoint.hpp"
 #include "lsgp/progress.hpp"
-#include "lsgp/result.hpp"
+#include "lsgp/stage_seconds.hpp"
 
 namespace lsgp {
 

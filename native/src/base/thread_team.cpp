@@ -127,7 +127,7 @@ void ThreadTeam::run_each(int count, const std::function<void(int)>& work) {
   std::rethrow_exception(failure);
 }
 
-// What the other threads do.
+// The loop of the other threads.
 void ThreadTeam::serve(int thread) {
   const CheckpointVisitor visitor([this] { tell_caller(); });
   Lock lock(mutex_);
@@ -136,7 +136,7 @@ void ThreadTeam::serve(int thread) {
   }
 }
 
-// False where there is none. Loops first, for which a thread waits.
+// Returns whether there was any. Loops come first, because a thread waits for them.
 bool ThreadTeam::take_work(Lock& lock, int thread) {
   if (failure_) return false;
   const auto loop = std::find_if(loops_.begin(), loops_.end(), [](const Loop* l) { return l->next < l->count; });
@@ -149,7 +149,7 @@ bool ThreadTeam::take_work(Lock& lock, int thread) {
   return true;
 }
 
-// The first one that is ready: in their order, results for parents are short-lived.
+// Runs the first task that is ready: in the order of tasks, results for parents are short-lived.
 void ThreadTeam::run_task(Lock& lock, int thread) {
   Forest& forest = *forest_;
   std::pop_heap(forest.ready.begin(), forest.ready.end(), std::greater<>());
@@ -203,8 +203,8 @@ void ThreadTeam::tell_caller() {
   changed_.notify_all();
 }
 
-// Visits theirs, on the caller's thread; false where there are none, or where one has failed: what has stopped is not
-// asked again. Meanwhile others may have changed anything.
+// Makes the pending visits of the other threads on the caller's thread; false if there are none, or after a failure,
+// since a visitor that has thrown is not called again. The lock is released meanwhile, so anything may have changed.
 bool ThreadTeam::visit(Lock& lock) {
   if (visits_ == 0 || failure_ || std::this_thread::get_id() != caller_) return false;
   const int visits = std::exchange(visits_, 0);

@@ -18,8 +18,8 @@ constexpr int most_threads = 1024;
 
 class ThreadTeam;
 
-// While it lives, long work of this thread takes that many threads, itself included; 0: as many as LSGP_THREADS says,
-// or else as there are processors.
+// During its lifetime, long work of this thread uses that many threads, itself included; 0: the number in the
+// environment variable LSGP_THREADS, or else that of processors.
 class ThreadCount {
  public:
   explicit ThreadCount(int count);
@@ -38,15 +38,15 @@ class ThreadCount {
 
 int thread_count();
 
-// That of the innermost ThreadCount of this thread, which starts it when it is first asked for and keeps it. Where
-// there is none, as on the other threads of a team: this thread alone.
+// The team of the innermost ThreadCount of this thread, started at the first call and then kept. Without one, as on the
+// other threads of a team: this thread alone.
 ThreadTeam& team_of_this_call();
 
-// Calls work(begin, end) for ranges that make up 0 to count - 1, in any order and at the same time; a short one is not
-// divided.
+// Calls work(begin, end) for ranges that together cover 0 to count - 1, in any order and concurrently; a short range is
+// not divided.
 void run_in_ranges(std::ptrdiff_t count, const std::function<void(std::ptrdiff_t begin, std::ptrdiff_t end)>& work);
 
-// Calls visit(i) for 0 to count - 1 in such ranges. What one does must not depend on another.
+// Calls visit(i) for 0 to count - 1 in such ranges. The calls must not depend on each other.
 template <typename Integer, typename Visit>
 void for_each_at_once(Integer count, const Visit& visit) {
   run_in_ranges(count, [&visit](std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -54,11 +54,12 @@ void for_each_at_once(Integer count, const Visit& visit) {
   });
 }
 
-// The thread that makes it, and others, which end with it. What work throws ends the rest of it and is thrown to the
-// caller. Checkpoints that others reach are those of the caller, who visits them as soon as it has a moment.
+// The constructing thread and others, which end with the object. The first exception of the work cancels the rest of it
+// and is rethrown to the caller. The caller also visits the checkpoints that other threads reach, as soon as it is
+// free.
 class ThreadTeam {
  public:
-  explicit ThreadTeam(int count);  // fewer where the system has no more
+  explicit ThreadTeam(int count);  // fewer if the system provides no more
   ~ThreadTeam();
   ThreadTeam(const ThreadTeam&) = delete;
   ThreadTeam& operator=(const ThreadTeam&) = delete;
@@ -69,7 +70,7 @@ class ThreadTeam {
   // itself, or -1.  thread: 0 to size() - 1, one task at a time.
   void run_forest(const Array<int>& parent, const std::function<void(int task, int thread)>& work);
 
-  // Calls work(i) for 0 to count - 1 in any order and at the same time. Tasks of a forest may do so as well.
+  // Calls work(i) for 0 to count - 1 in any order and concurrently. Tasks of a forest may call this as well.
   void run_each(int count, const std::function<void(int i)>& work);
 
  private:
@@ -99,11 +100,11 @@ class ThreadTeam {
   const std::thread::id caller_ = std::this_thread::get_id();
   std::mutex mutex_;                  // of all that follows but the threads
   std::condition_variable new_work_;  // for threads without any
-  std::condition_variable changed_;   // for those that wait for others
+  std::condition_variable changed_;   // for threads that wait for others
   Forest* forest_ = nullptr;
   Array<Loop*> loops_;
   std::exception_ptr failure_;
-  int visits_ = 0;  // of checkpoints, that the caller has not heard of
+  int visits_ = 0;  // to checkpoints by other threads, not yet made by the caller
   bool is_over_ = false;
   Array<std::thread> others_;
 };

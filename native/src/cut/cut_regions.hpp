@@ -11,7 +11,7 @@ namespace lsgp {
 // through them stay valid while the cuts at their ends exist (Mehlhorn 1988; Uchoa and Werneck 2012).
 class CutRegions {
  public:
-  // below: what paths cost that are going to be looked for; dearer ones take longer.
+  // below: a bound on the cost of the paths to be found; more expensive ones take longer.
   CutRegions(const CutNetwork& network, double below);
 
   // The cheapest path between the two subtrees of the cuts after closing a path, with the regions of the path's

@@ -18,9 +18,9 @@ struct CutTask : MetricMesh {
 //
 // Symmetric cuts that leave one disk have at most one connected part in the plane, a trunk, and on each side trees that
 // meet it in one vertex each: two would enclose a piece with their mirror images. So the trees of one side are found
-// with the trunk as one network that costs nothing, and mirrored. If that is too dear, cuts meet the plane where
-// they like, and each piece that they enclose loses its dearest path on one side. Loops around handles are mirrored
-// only by chance.
+// with the trunk as one network that costs nothing, and mirrored. If that is too expensive, cuts may meet the plane
+// anywhere, and each piece that they enclose loses its most expensive path on one side. Loops around handles are
+// mirrored only by chance.
 // mirroring: of the mesh, or empty. Throws what connect_cones throws.
 CutGraph connect_symmetrically(const CutTask& task, const Mirroring& mirroring);
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/array.hpp"
-#include "lsgp/lsgp.hpp"
+#include "lsgp/surface.hpp"
 #include "mesh/topology.hpp"
 
 namespace lsgp {

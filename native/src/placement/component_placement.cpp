@@ -143,8 +143,8 @@ PlacedCones place_component(const PlacementTask& task, const PlacementOptions& o
   out.missing = missing_cones(chooser, choice.cones);
   out.cones = chooser.with_angles(choice.cones);
   out.system = placement.take_system(choice.cones);
-  const bool is_known = chooser.scale().is_factored() || !out.system;
-  const LogScale& scale = is_known ? chooser.scale() : out.system->log_scale();
+  ComponentSystem* const of_map = out.system.get();
+  const LogScale& scale = chooser.scale().is_factored() || !of_map ? chooser.scale() : of_map->log_scale();
   out.curvature = impose(scale, out.cones, choice.cones.curvature,
                          scale.evaluate_held(choice.cones.vertices, choice.cones.curvature), findings);
   // A map that was made has cuts to all cones.

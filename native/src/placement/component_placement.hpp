@@ -2,7 +2,6 @@
 // Cones placed automatically on one component.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -22,7 +21,7 @@ struct PlacedCones {
   int maps = 0;          // that were made
   std::optional<MissingCones> missing;
   bool reached = true;
-  std::unique_ptr<ComponentSystem> system;  // of the cones; none if the latest map was not theirs
+  KeptSystem system;  // of the cones; none if the latest map was not theirs
 };
 
 // findings are added to. Throws what require_feasible, require_possible and connect_cones throw, and SOLVER_FAILED

@@ -57,28 +57,13 @@ std::optional<ComponentMap> MapTrial::map(const ComponentCones& cones, Repairs r
   std::vector<Finding> unsaid;
   ++made_;
   try {
-    ComponentSystem& system = system_of(cones);
+    ComponentSystem& system = system_.of({mesh_, geometry_}, cones);
     return repairs == Repairs::easy ? attempt_component(system, task, options, unsaid, monitor_)
                                     : map_component(system, task, options, unsaid, monitor_);
   } catch (const Error& error) {
     if (error.code() == Code::cancelled || error.code() == Code::out_of_memory) throw;
     return std::nullopt;
   }
-}
-
-ComponentSystem& MapTrial::system_of(const ComponentCones& cones) {
-  if (!system_ || !have_same_system(cones_, cones)) {
-    Eigen::VectorXd memory = system_ ? system_->take_memory() : Eigen::VectorXd();
-    system_.reset();
-    system_ = std::make_unique<ComponentSystem>(MetricMesh{mesh_, geometry_}, cones, Factorization::automatic,
-                                                std::move(memory));
-    cones_ = cones;
-  }
-  return *system_;
-}
-
-std::unique_ptr<ComponentSystem> MapTrial::take_system(const ComponentCones& cones) {
-  return system_ && have_same_system(cones_, cones) ? std::move(system_) : nullptr;
 }
 
 TriedMap MapTrial::make(const ComponentCones& cones, Repairs repairs) {

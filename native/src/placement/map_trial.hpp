@@ -3,7 +3,6 @@
 #pragma once
 
 #include <limits>
-#include <memory>
 #include <optional>
 
 #include "base/progress_monitor.hpp"
@@ -46,20 +45,18 @@ class MapTrial {
 
   int made() const { return made_; }
   // The system of the latest map, if it is that of these cones; none otherwise, and none from then on.
-  std::unique_ptr<ComponentSystem> take_system(const ComponentCones& cones);
+  KeptSystem take_system(const ComponentCones& cones) { return system_.take(cones); }
 
  private:
   // None where it fails.
   std::optional<ComponentMap> map(const ComponentCones& cones, Repairs repairs);
-  ComponentSystem& system_of(const ComponentCones& cones);
   TriedMap measured(ComponentMap map, const ComponentCones& cones) const;
 
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
   ProgressMonitor& monitor_;
   int made_ = 0;
-  ComponentCones cones_;  // of the system
-  std::unique_ptr<ComponentSystem> system_;
+  KeptSystem system_;
 };
 
 }  // namespace lsgp

@@ -2,7 +2,6 @@
 // Automatic cones, verified on their maps.
 #pragma once
 
-#include <memory>
 #include <optional>
 
 #include "placement/map_trial.hpp"
@@ -38,9 +37,7 @@ class VerifiedPlacement {
   VerifiedChoice place();
   int maps() const { return trial_.made(); }
   // The system of the latest map, if it is that of these cones; none otherwise, and none from then on.
-  std::unique_ptr<ComponentSystem> take_system(const ConeChoice& choice) {
-    return trial_.take_system(chooser_.with_angles(choice));
-  }
+  KeptSystem take_system(const ConeChoice& choice) { return trial_.take_system(chooser_.with_angles(choice)); }
 
  private:
   // Of cones that are moved: within the bounds of the sites, or, where these are no better, those of least distortion.

@@ -17,10 +17,6 @@ Array<Index> inside_only(const HalfedgeMesh& mesh, const Array<Index>& vertices)
   return out;
 }
 
-bool have_same_system(const ComponentCones& a, const ComponentCones& b) {
-  return a.vertices == b.vertices && a.border == b.border && a.mirroring.image == b.mirroring.image;
-}
-
 ComponentSystem::ComponentSystem(const MetricMesh& surface, const ComponentCones& cones, Factorization factorization,
                                  Eigen::VectorXd memory)
     : surface_(surface),
@@ -97,6 +93,25 @@ void ComponentSystem::release() {
 const LogScale& ComponentSystem::log_scale() {
   if (!log_scale_) log_scale_.emplace(surface_, border_, cones_, factor());
   return *log_scale_;
+}
+
+ComponentSystem& KeptSystem::of(const MetricMesh& surface, const ComponentCones& cones, Factorization factorization) {
+  if (!has(cones) || factorization_ != factorization) {
+    Eigen::VectorXd memory = system_ ? system_->take_memory() : Eigen::VectorXd();
+    system_.reset();
+    system_ = std::make_unique<ComponentSystem>(surface, cones, factorization, std::move(memory));
+    cones_ = cones;
+    factorization_ = factorization;
+  }
+  return *system_;
+}
+
+KeptSystem KeptSystem::take(const ComponentCones& cones) { return has(cones) ? std::move(*this) : KeptSystem(); }
+
+// All of the cones but their angles has an effect on it.
+bool KeptSystem::has(const ComponentCones& cones) const {
+  return system_ && cones_.vertices == cones.vertices && cones_.border == cones.border &&
+         cones_.mirroring.image == cones.mirroring.image;
 }
 
 }  // namespace lsgp

@@ -2,6 +2,7 @@
 // The linear systems of one component, factored on first use and kept while its cones do not move.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "base/array.hpp"
@@ -67,8 +68,24 @@ class ComponentSystem {
   std::optional<StiffFactor> stiff_factor_;
 };
 
-// Whether these cones, on the same surface, have the same system: all but angles.
-bool have_same_system(const ComponentCones& a, const ComponentCones& b);
+// The latest system of one component, for as long as only the angles of its cones change.
+class KeptSystem {
+ public:
+  // The system of these cones. If they moved, it replaces the previous one and reuses its memory.
+  ComponentSystem& of(const MetricMesh& surface, const ComponentCones& cones,
+                      Factorization factorization = Factorization::automatic);
+
+  ComponentSystem* get() { return system_.get(); }  // null if there is none
+  // Passes it on if it is that of these cones; otherwise returns none, and keeps it.
+  KeptSystem take(const ComponentCones& cones);
+
+ private:
+  bool has(const ComponentCones& cones) const;
+
+  ComponentCones cones_;
+  Factorization factorization_ = Factorization::automatic;
+  std::unique_ptr<ComponentSystem> system_;
+};
 
 // The interior ones of the vertices.
 Array<Index> inside_only(const HalfedgeMesh& mesh, const Array<Index>& vertices);

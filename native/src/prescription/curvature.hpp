@@ -75,7 +75,8 @@ Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, Prescr
 Curvature impose(const LogScale& scale, const ComponentCones& asked, const Eigen::VectorXd& curvature,
                  Eigen::VectorXd log_scale, std::vector<Finding>& findings);
 
-// Refuses what no choice of the automatic angles can mend. Throws TOO_FEW_CONES, CONE_ANGLE_RANGE, GAUSS_BONNET.
+// Refuses tasks that no choice of the automatic angles can satisfy. Throws TOO_FEW_CONES, CONE_ANGLE_RANGE,
+// GAUSS_BONNET.
 void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, const BorderConditions& border);
 
 // The least and the most curvature that the cones without an angle can take up together.

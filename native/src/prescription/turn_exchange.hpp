@@ -15,7 +15,7 @@ struct TurnBounds {
 };
 
 bool is_torus(const HalfedgeMesh& mesh);
-// Whether no torus has cones of so many turns of 2 pi / rotation_order.
+// Whether no torus has cones with these multiples of the turn 2 pi / rotation_order.
 bool is_impossible_on_torus(const Eigen::VectorXi& turns, int rotation_order);
 
 // The quadratic form var(turns) and its exchanges.
@@ -29,7 +29,7 @@ class TurnExchange {
   // Single steps towards a sum of turns within the bounds, the cheapest first.
   void reach(int sum);
 
-  // Rounding may have led to what no torus has, and exchanges do not lead there: the cheapest one leads away.
+  // Rounding may have led to turns that no torus has. Exchanges never lead there, so the cheapest one leads away.
   void leave_impossible(bool keep_sum);
 
   // The best exchange of one turn between two cones, or where the sum is free between a cone and nothing, until none
@@ -40,16 +40,16 @@ class TurnExchange {
   // and held while the others follow.
   void search(bool keep_sum);
 
-  // The variance underrates what lies far out. Exchanges that cost least by it, and pairs of them, are tried by the
-  // predicted stretch.
+  // The variance underrates large scales. The exchanges with the least increase of the variance, and pairs of them, are
+  // judged by the predicted stretch.
   void refine(const LogScale& scale, bool keep_sum);
 
   const Eigen::VectorXi& turns() const { return turns_; }
   Eigen::VectorXd curvature() const { return turns_.cast<double>() * (2 * M_PI / rotation_order_); }
 
  private:
-  // Of the largest terms that the variance is a sum of: well above what rounding makes of them, so that no exchange
-  // and its reverse both seem to gain.
+  // Relative to the largest terms of the variance: well above their rounding error, so that an exchange and its reverse
+  // never both seem to gain.
   static constexpr double relative_gain = 1e-12;
   static constexpr double operations_of_exponential = 40;
   static constexpr std::size_t least_trials = 4, most_trials = 100;
@@ -63,17 +63,17 @@ class TurnExchange {
 
   // One turn more at a cone, and one less at another where the sum is kept.
   struct Swap {
-    double cost;  // what it changes the variance by
+    double cost;  // the change of the variance
     Index first, second;
     int step;
   };
 
   static Swap reversed(const Swap& swap) { return {-swap.cost, swap.first, swap.second, -swap.step}; }
 
-  // More than descents have ever needed: each cone some times there and back.
+  // A bound that no descent has reached: each cone is exchanged back and forth a few times.
   Eigen::Index most_exchanges() const { return 100 + 20 * turns_.size(); }
 
-  // From the turns alone, so that what is compared does not depend on the way to them.
+  // Computed from the turns alone, so that compared values do not depend on the sequence of exchanges.
   void evaluate();
 
   void apply(const Swap& swap);
@@ -92,8 +92,8 @@ class TurnExchange {
   Eigen::MatrixXd hessian_;
   Eigen::VectorXd slope_;     // half the derivative at no turns
   Eigen::VectorXd gradient_;  // the same at the present ones
-  double value_ = 0;          // what the variance exceeds that of no turns by
-  double least_gain_ = 0;     // that is told from rounding
+  double value_ = 0;          // the variance less that of no turns
+  double least_gain_ = 0;     // distinguishable from rounding
 };
 
 }  // namespace lsgp

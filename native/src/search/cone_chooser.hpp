@@ -45,14 +45,14 @@ class ConeChooser {
   ConeChooser(const ConeChooser&) = delete;
   ConeChooser& operator=(const ConeChooser&) = delete;
 
-  // So many cones, existing ones included, or as many as there is room for.
+  // This many cones, existing ones included, or as many as there is room for.
   ConeChoice choose(int count);
   // As many, one by one, with curvatures within this of the angle defects, in units of pi; see CurvatureBounds.
   ConeChoice choose_within(double reach, int count);
   // As many at the extrema of the log scale that is 0 at the cones so far (Ben-Chen et al. 2008), then exchanged: where
   // limbs have too few cones this sees better what is stretched most.
   ConeChoice choose_harmonically(int count);
-  // These cones and so many more where this is largest, (n), apart from each other.
+  // These cones and `more` others where `wanted`, (n), is largest, apart from each other.
   ConeChoice choose_more(const ConeChoice& present, const Eigen::VectorXd& wanted, int more);
   // The same cones with one that was not there before moved to another vertex; none if no cone may be there.
   std::optional<ConeChoice> choose_moved(const ConeChoice& present, Index from, Index to);
@@ -60,7 +60,7 @@ class ConeChooser {
   ConeChoice choice_with(const Array<Index>& vertices, const Eigen::VectorXd& curvature) const;
 
   // Whether sites have prices, since costs of cuts differ, and how much these weigh from now on; at first nothing.
-  // weight: of the dearest cones, as a share of the variance with which the target is just reached.
+  // weight: of the most expensive cones, as a share of the variance with which the target is just reached.
   bool has_prices() const { return (prices_.array() > 0).any(); }
   void weigh_prices(double weight);
   void forget_prices();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The log scale that curvatures make, as cones are chosen by it: on the surface itself, or, where that is large, on a
-// coarse triangulation of it.
+// The log scale caused by curvatures, for the choice of cones: on the surface itself or, if that is large, on a coarse
+// triangulation of it.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +16,7 @@ namespace lsgp {
 // L y = kappa - K at its nodes, as in LogScale.
 class LogScaleModel {
  public:
-  // sites: where there may be cones, which all are nodes.
+  // sites: where cones may be placed; all of them become nodes.
   LogScaleModel(LogScale& scale, const Array<Site>& sites);
   LogScaleModel(const LogScaleModel&) = delete;
   LogScaleModel& operator=(const LogScaleModel&) = delete;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What it costs to have a cone somewhere: every cone forces a cut that gets there.
+// The price of a cone at a site: every cone needs a cut that reaches it.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,8 +9,8 @@
 
 namespace lsgp {
 
-// From 0 at sites that cuts get to cheaply to 1 at those hardest to get to, (sites), of both cones of a site together;
-// the less, the less the costs of cuts differ, and 0 where cuts have none.
+// From 0 at sites that cuts reach cheaply to 1 at those that are hardest to reach, (sites), for both cones of a site
+// together; smaller if the costs of cuts differ less, and 0 if cuts have no costs.
 Eigen::VectorXd site_prices(const MetricMesh& surface, const Array<Site>& sites);
 
 }  // namespace lsgp

@@ -2,7 +2,7 @@
 // Counts factorizations and back-substitutions.
 #pragma once
 
-#include "lsgp/result.hpp"
+#include "lsgp/linear_algebra.hpp"
 
 namespace lsgp {
 

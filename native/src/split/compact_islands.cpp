@@ -91,8 +91,8 @@ class Compactor {
   Array<Index> cut_along(const Array<Line>& lines, const Array<Index>& island, double band);
   Array<Index> without_slivers(const Array<Index>& island, const Array<Index>& class_of);
   double length_between(const Array<Index>& faces, const Array<Index>& class_of);
-  // What an edge counts in the price of a division: dear edges, which a cut keeps clear of as far as it can, are no
-  // reason to leave an island as it is.
+  // The length with which an edge counts in the price of a division: expensive edges, which cuts avoid as far as they
+  // can, are no reason to leave an island undivided.
   double priced_length(const FaceGraph::Link& link) const {
     return std::min(graph_.unit * static_cast<double>(link.cost), geometry_.length[link.halfedge]);
   }

@@ -47,18 +47,18 @@ struct IslandCells {
   Index count() const { return static_cast<Index>(area.size()); }
 };
 
-// Weighs what divisions save of the square against what they cost.
+// Weighs the area of the square that divisions save against their cost.
 class DivisionSearch {
  public:
   explicit DivisionSearch(const SharedSquare& square);
 
-  // What islands of that hull take of the square.
+  // The area of the square that an island with this hull occupies.
   double demand(const Array<Complex>& hull) const;
 
-  // The least that has to be saved for a division to be worth it.
+  // The least saving that can be worth a division.
   double least_gain() const;
 
-  // Of a division into so many pieces, `length` being that of the cuts; 0 where it does not gain its price.
+  // The worth of a division into this many pieces by cuts of this length; 0 if the gain does not exceed the price.
   double worth(double gain, double length, std::size_t pieces) const;
 
   // The best division of an island.  along: a side of its smallest box.

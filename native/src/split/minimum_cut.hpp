@@ -29,7 +29,7 @@ class MinimumCutter {
   // first, second: faces of the scope to be separated. The cost is infinite if no cut can do that.
   MinimumCut cut(const Array<Index>& scope, const Array<Index>& first, const Array<Index>& second);
 
-  // Of a cut so long.
+  // Of a cut of this length.
   double cost(FaceGraph::Units length, double smaller_area) const;
 
  private:

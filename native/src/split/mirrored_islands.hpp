@@ -13,7 +13,7 @@
 
 namespace lsgp {
 
-// What is cut otherwise on the other side of a mirror plane, and layouts of which that is not so.
+// Finds cuts that differ on the two sides of a mirror plane, and makes layouts in which none do.
 class MirroredIslands {
  public:
   // mirroring: of the mesh, not empty.

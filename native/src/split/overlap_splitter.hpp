@@ -13,7 +13,7 @@ namespace lsgp {
 
 class OverlapSplitter {
  public:
-  // before_cut: called before every cut; what it throws ends the work.
+  // before_cut: called before every cut; its exceptions propagate.
   OverlapSplitter(Borrowed<const FaceGraph> graph, Borrowed<const OverlapPairs> pairs, MinimumCutter& cutter,
                   Borrowed<const std::function<void()>> before_cut);
 

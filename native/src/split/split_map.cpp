@@ -86,7 +86,7 @@ bool has_own_overlap(const HalfedgeMesh& mesh, const ComponentMap& map, const Ma
   return has_overlap_within(layout.island, std::move(layout.corners), twin);
 }
 
-// What the islands of a division take of the square.
+// The area of the square that the islands of a division occupy.
 double demand(const SharedSquare& square, const IslandLayout& layout) {
   PerPart<Array<Complex>> points(static_cast<std::size_t>(layout.count));
   for (Index h = 0; h < layout.corners.size(); ++h) {
@@ -100,7 +100,7 @@ double demand(const SharedSquare& square, const IslandLayout& layout) {
   return out;
 }
 
-// What a way of splitting may do, and what it costs.
+// The constraints on splitting a map, and the cost of a division.
 class SplitRules {
  public:
   SplitRules(const OpenedSurface& surface, const SplitTask& task, const ComponentMap& map)

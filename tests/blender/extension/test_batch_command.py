@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from installed import addon
 from mathutils import Matrix
-from scenes import UvMap, add_ball, add_cone_cube, add_cube, add_sphere, covered_twice, joined
+from scenes import UvMap, add_ball, add_cone_cube, add_cube, add_grid, add_sphere, covered_twice, joined
 
 command = addon.jobs.batch.command
 
@@ -149,15 +149,17 @@ def test_with_a_preset_all_objects_of_a_file_are_packed_together(library, tmp_pa
         assert covered_twice(maps) == 0
 
 
-def test_islands_that_single_precision_spoils_are_a_warning_which_strict_refuses(tmp_path):
-    speck = add_cube("Speck", cuts=0)
-    speck.data.transform(Matrix.Scale(1e-9, 4))
-    joined(speck, add_ball())
+@pytest.mark.parametrize("add_large", [add_sphere, add_ball], ids=["automatic cones", "marked cones"])
+def test_islands_that_single_precision_spoils_are_a_warning_which_strict_refuses(tmp_path, add_large):
+    speck = add_grid("Speck")  # without cuts, whose two sides would differ as well
+    triangles = 2 * len(speck.data.polygons)
+    speck.data.transform(Matrix.Scale(1e-7, 4))
+    joined(speck, add_large())
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "speck.blend"), copy=True)
     clear()
     (tmp_path / "list.txt").write_text("speck.blend\n")
     assert run(tmp_path / "list.txt", "--out", tmp_path / "out", "--no-pictures") == 0
-    assert lines_of(tmp_path / "out")[0]["warnings"]["ISLANDS_TINY"] == 12  # the triangles of the cube
+    assert lines_of(tmp_path / "out")[0]["warnings"] == {"ISLANDS_TINY": triangles}
     assert run(tmp_path / "list.txt", "--out", tmp_path / "strict", "--no-pictures", "--strict") == 3
     assert lines_of(tmp_path / "strict")[0]["code"] == "ISLANDS_TINY"
 

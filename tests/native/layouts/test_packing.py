@@ -13,8 +13,9 @@ import meshes
 import numpy as np
 import pytest
 from layout_check import coverage, moves, overlapping_islands, room
-from lsgp import TexelLayout
+from lsgp import TexelLayout, packing
 from lsgp.island_gaps import least_gap
+from lsgp.layout_search import best_layout
 from map_checks import codes, surface
 from other_process import in_another_process
 
@@ -179,6 +180,25 @@ def test_margins_that_leave_no_room_are_refused(packer) -> None:
     uv[3] = np.inf
     with pytest.raises(lsgp.InputError, match="triangle 3"):
         lsgp.pack_islands(uv, island)
+
+
+@pytest.mark.parametrize("preset", ["paint", "bake"])
+def test_the_chosen_map_is_not_packed_again(packer, monkeypatch: pytest.MonkeyPatch, preset: str) -> None:
+    packed = []
+
+    def counted(islands: object, *how: object) -> object:
+        packed.append(islands)
+        return best_layout(islands, *how)
+
+    monkeypatch.setattr(packing, "best_layout", counted)
+    given = surface(meshes.flower(3))
+    shelves = lsgp.auto_unwrap(given, preset=preset, pack="shelves")
+    compared = len(packed)
+    assert compared == 2  # with symmetric cones, and without
+    result = lsgp.auto_unwrap(given, preset=preset)
+    assert len(packed) == 2 * compared
+    assert (result.corner_uv == lsgp.pack_islands(shelves.corner_uv, shelves.island)).all()
+    assert len(packed) == 2 * compared + 1  # nothing is kept from one call to the next
 
 
 def test_progress_is_told_and_stops_it(packer) -> None:
