@@ -43,6 +43,7 @@ INFORMATION = frozenset(
         "DEGENERATE_FACES",
         "DUPLICATE_FACE",
         "FEATURES_OFF_LATTICE",
+        "FEATURES_RELEASED",
         "FLAT_CONES",
         "GRID_REFINED",
         "ISLANDS_STACKED",

@@ -31,6 +31,9 @@ GAIN_ATTRIBUTE = "uv_cone_gain"
 UP_ATTRIBUTE = "uv_cone_up"
 """Vector attribute on faces: the drawn upward direction of the texture, of unit length; (0, 0, 0) for none."""
 
+FEATURE_ATTRIBUTE = "uv_cone_feature"
+"""Boolean attribute on edges: those that are to run straight along u or v."""
+
 NEW_UV_LAYER = "UVMap"
 """UV layer created on a mesh that has none; Blender's own name for it."""
 

@@ -22,8 +22,8 @@ class Region:
     Vertex indices are those of the mesh, so that the library's errors name Blender's vertices.
 
     surface: all vertices (the library ignores those without a triangle), the triangles that Blender draws the faces
-        with, the edges of the faces, and the marked seams among them. In the shape that the object's transform gives
-        them, at the size of the mesh.
+        with, the edges of the faces, and the marked seams and features among them. In the shape that the object's
+        transform gives them, at the size of the mesh.
     triangle_loops: (m, 3) int32, mesh loop of each triangle corner.
     triangle_faces: (m,) int32, mesh face of each triangle.
     face_loop_start: (f,) int32, for all faces of the mesh.

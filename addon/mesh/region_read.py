@@ -104,6 +104,7 @@ def build_region(
             triangles,
             edges=mesh.edges[edge_used],
             seams=mesh.edges[edge_used & mesh.is_seam],
+            features=mesh.edges[edge_used & mesh.is_feature],
         ),
         triangle_loops=triangle_loops,
         triangle_faces=mesh.triangle_faces[inside],

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import versions
-from ..core.identifiers import UP_ATTRIBUTE
+from ..core.identifiers import FEATURE_ATTRIBUTE, UP_ATTRIBUTE
 from .arrays import read_array
 from .manifold_triangles import manifold_triangles
 from .mesh_reader import FloatArray, MeshReader, each_once, triangulated
@@ -47,6 +47,14 @@ class StoredMesh(MeshReader):
     def is_sharp(self) -> NDArray[np.bool_]:
         """(e,)"""
         return read_array(self._mesh.edges, "use_edge_sharp", bool)
+
+    @cached_property
+    def is_feature(self) -> NDArray[np.bool_]:
+        """(e,)"""
+        attribute = self._mesh.attributes.get(FEATURE_ATTRIBUTE)
+        if attribute is None or (attribute.domain, attribute.data_type) != ("EDGE", "BOOLEAN"):
+            return np.zeros(len(self.edges), bool)
+        return read_array(attribute.data, "value", bool)
 
     @cached_property
     def loop_start(self) -> NDArray[np.int32]:

@@ -41,18 +41,19 @@ Eigen::VectorXd to_vector_of_numbers(const FloatArray& array) {
   return Eigen::Map<const Eigen::VectorXd>(array.data(), array.size());
 }
 
-// Positions, triangles, edges, seams, importance, costs of cuts along the edges, borders, and directions.
+// Positions, triangles, edges, seams, importance, costs of cuts along the edges, borders, directions, and features.
 using SurfaceArrays = std::tuple<FloatArray, IndexArray, std::optional<IndexArray>, IndexArray, FloatArray, FloatArray,
-                                 IndexArray, FloatArray>;
+                                 IndexArray, FloatArray, IndexArray>;
 
 lsgp::Surface to_surface(const SurfaceArrays& arrays) {
-  const auto& [positions, triangles, edges, seams, importance, cut_costs, borders, directions] = arrays;
+  const auto& [positions, triangles, edges, seams, importance, cut_costs, borders, directions, features] = arrays;
   lsgp::Surface surface;
   surface.positions = to_matrix<lsgp::Positions>(positions);
   surface.triangles = to_matrix<lsgp::Triangles>(triangles);
   if (edges) surface.edges = to_matrix<lsgp::VertexPairs>(*edges);
   surface.seams = to_matrix<lsgp::VertexPairs>(seams);
   surface.borders = to_matrix<lsgp::VertexPairs>(borders);
+  surface.features = to_matrix<lsgp::VertexPairs>(features);
   surface.importance = to_vector_of_numbers(importance);
   surface.cut_costs = to_vector_of_numbers(cut_costs);
   surface.directions = to_matrix<lsgp::Positions>(directions);
@@ -312,6 +313,23 @@ py::list to_names(const std::vector<lsgp::CutPathKind>& kinds) {
   return out;
 }
 
+// The fields of lsgp.FeatureReport.
+py::dict to_dict(const lsgp::FeatureReport& report) {
+  constexpr std::array names{"curved", "contradiction", "stretch", "lattice", "unsupported"};
+  py::list released;
+  for (const lsgp::ReleasedFeature& feature : report.released) {
+    py::dict of;
+    of["path"] = to_array(feature.path);
+    of["reason"] = names[static_cast<std::size_t>(feature.reason)];
+    of["share"] = feature.share;
+    released.append(of);
+  }
+  py::dict out;
+  out["share"] = report.share;
+  out["released"] = released;
+  return out;
+}
+
 py::dict to_dict(const lsgp::Result& result) {
   py::array_t<bool> solved(static_cast<py::ssize_t>(result.island.size()));
   for (std::size_t f = 0; f < result.island.size(); ++f) solved.mutable_at(f) = result.island[f] >= 0;
@@ -340,6 +358,7 @@ py::dict to_dict(const lsgp::Result& result) {
       result.direction_errors.size() > 0 ? py::object(to_array(result.direction_errors)) : py::none();
   out["direction_error"] = result.direction_error;
   out["seamless"] = result.seamless ? py::object(to_dict(*result.seamless)) : py::none();
+  out["features"] = result.features ? py::object(to_dict(*result.features)) : py::none();
   out["warnings"] = to_findings(result.warnings);
   out["stage_seconds"] = seconds;
   out["factorizations"] = result.linear_algebra.factorizations;
@@ -436,11 +455,11 @@ py::array_t<Index> crease_borders(const SurfaceArrays& surface_arrays, const Ind
   return to_array(without_gil([&] { return lsgp::crease_borders(surface, marked, options, tell); }));
 }
 
-py::typing::Tuple<IndexArray, FloatArray> feature_cones(const SurfaceArrays& surface_arrays,
+py::typing::Tuple<IndexArray, FloatArray> feature_cones(const SurfaceArrays& surface_arrays, bool with_creases,
                                                         const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
   const lsgp::Progress tell = to_progress(progress);
-  const lsgp::Cones found = without_gil([&] { return lsgp::feature_cones(surface, tell); });
+  const lsgp::Cones found = without_gil([&] { return lsgp::feature_cones(surface, with_creases, tell); });
   std::vector<double> angles;
   for (const std::optional<double>& angle : found.angles) angles.push_back(*angle);
   return py::make_tuple(to_array(found.vertices), to_array(angles));
@@ -651,7 +670,7 @@ PYBIND11_MODULE(_lsgp, module) {
   module.def("find_cuts", &find_cuts, "surface"_a, "cones"_a, "options"_a, "progress"_a);
   module.def("split_into_paths", &split_into_paths, "edges"_a, "nodes"_a);
   module.def("crease_borders", &crease_borders, "surface"_a, "cones"_a, "options"_a, "progress"_a);
-  module.def("feature_cones", &feature_cones, "surface"_a, "progress"_a);
+  module.def("feature_cones", &feature_cones, "surface"_a, "with_creases"_a, "progress"_a);
   module.def("cut_costs", &cut_costs, "surface"_a, "preferences"_a, "progress"_a);
   module.def("prescribe_curvature", &prescribe_curvature, "surface"_a, "cones"_a, "options"_a, "progress"_a);
   module.def("build_ledger", &build_ledger, "surface"_a, "cones"_a, "options"_a, "gets_cones"_a);

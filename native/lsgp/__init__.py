@@ -35,11 +35,13 @@ from .api import (
     ConeGains,
     CutPaths,
     Distortion,
+    FeatureReport,
     Measurement,
     Options,
     Pins,
     Placement,
     Prescription,
+    ReleasedFeature,
     RepairReport,
     Result,
     Seamless,
@@ -69,6 +71,7 @@ from .errors import (
     SolverError,
     TopologyError,
 )
+from .features import feature_edges
 from .gutters import pad_image
 from .indexed_uv import index_uv
 from .io.mesh_files import MeshFile, read_mesh_file, write_mesh_file
@@ -91,6 +94,7 @@ __all__ = [
     "CutPaths",
     "Distortion",
     "Elements",
+    "FeatureReport",
     "Finding",
     "GrabbedCut",
     "InputError",
@@ -106,6 +110,7 @@ __all__ = [
     "QuadMesh",
     "QuadQuality",
     "QuadRemesh",
+    "ReleasedFeature",
     "RepairReport",
     "Result",
     "SeamQuality",
@@ -129,6 +134,7 @@ __all__ = [
     "crease_borders",
     "cut_costs",
     "extract_quads",
+    "feature_edges",
     "find_cuts",
     "find_stacks",
     "fit_placement",

@@ -14,7 +14,7 @@ _Floats = NDArray[np.float64]
 _Indices = NDArray[np.int32]
 _Places = NDArray[np.int64]
 _Flags = NDArray[np.bool_]
-_Surface = tuple[_Floats, _Indices, _Indices | None, _Indices, _Floats, _Floats, _Indices, _Floats]
+_Surface = tuple[_Floats, _Indices, _Indices | None, _Indices, _Floats, _Floats, _Indices, _Floats, _Indices]
 _Cones = tuple[_Indices, _Floats, _Flags]
 _Pins = tuple[_Indices, _Floats]
 _Progress = Callable[[float], bool | None] | None
@@ -57,7 +57,7 @@ def split_into_paths(edges: _Indices, nodes: _Indices) -> list[_Indices]: ...
 def crease_borders(
     surface: _Surface, cones: _Indices, options: tuple[float, _Indices, int], progress: _Progress
 ) -> _Indices: ...
-def feature_cones(surface: _Surface, progress: _Progress) -> tuple[_Indices, _Floats]: ...
+def feature_cones(surface: _Surface, with_creases: bool, progress: _Progress) -> tuple[_Indices, _Floats]: ...
 def cut_costs(
     surface: _Surface,
     preferences: tuple[tuple[float, float, float] | None, bool, _Indices, _Floats],

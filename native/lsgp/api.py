@@ -28,6 +28,7 @@ Overlaps = Literal["keep", "split"]
 Compactness = Literal["off", "sparing", "full"]
 Factorization = Literal["automatic", "cut", "sparse"]
 CutKind = Literal["seam", "required", "added"]
+ReleaseReason = Literal["curved", "contradiction", "stretch", "lattice", "unsupported"]
 
 Progress = Callable[[float], bool | None]
 
@@ -55,6 +56,8 @@ class Surface(EqualByContent, ShortRepr):
         the triangle's plane counts, with a weight given by its length, and (0, 0, 0) means none; or (3,), the same for
         all triangles; None: none. Islands are rotated accordingly, which does not change the map;
         `Result.direction_errors` has the deviations.
+    features: (f, 2) int32, edges, also of boundaries, that are to run straight along u or v; `feature_edges` finds
+        some. They have precedence over creases that are straightened anyway; `Result.features` has those that do not.
     """
 
     positions: FloatArray
@@ -65,6 +68,7 @@ class Surface(EqualByContent, ShortRepr):
     cut_costs: FloatArray | None = None
     borders: IndexArray | None = None
     directions: FloatArray | None = None
+    features: IndexArray | None = None
 
     if TYPE_CHECKING:  # what may be passed, which becomes what the fields are
 
@@ -78,6 +82,7 @@ class Surface(EqualByContent, ShortRepr):
             cut_costs: ArrayLike | None = None,
             borders: ArrayLike | None = None,
             directions: ArrayLike | None = None,
+            features: ArrayLike | None = None,
         ) -> None: ...
 
     def __post_init__(self) -> None:
@@ -85,7 +90,7 @@ class Surface(EqualByContent, ShortRepr):
         _set(self, "triangles", arguments.index_rows("triangles", self.triangles, 3))
         if self.edges is not None:
             _set(self, "edges", arguments.index_rows("edges", self.edges, 2))
-        for name in ("seams", "borders"):
+        for name in ("seams", "borders", "features"):
             marked = getattr(self, name)
             _set(self, name, arguments.index_rows(name, np.empty((0, 2), np.int32) if marked is None else marked, 2))
         if self.importance is not None:
@@ -349,6 +354,33 @@ class SeamlessReport(EqualByContent, ShortRepr):
     feature_share: float | None = None
 
 
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class ReleasedFeature(EqualByContent, ShortRepr):
+    """A marked feature, or a part of one, that does not run straight along u or v.
+
+    path: int32, its vertices. share: of the length of all marked features. reason: "curved", it turns away from both
+    axes where no corner or cone lets it; "contradiction", together with features that have precedence it would fold the
+    map or lose its length; "stretch", it would cost more than a tenth of L2 stretch; "lattice", no layout with tiles of
+    this size keeps it; "unsupported", no feature is aligned with these options.
+    """
+
+    path: IndexArray
+    reason: ReleaseReason
+    share: float
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class FeatureReport(EqualByContent, ShortRepr):
+    """What became of `Surface.features`.
+
+    share: of their length that runs straight along u or v exactly, as stored in float32, on both sides of a cut.
+    released: the others.
+    """
+
+    share: float
+    released: list[ReleasedFeature]
+
+
 @dataclass(frozen=True, slots=True)
 class RepairReport:
     """Defects of the first unfolding, and the iterations spent on repair and on lowering the stretch.
@@ -396,6 +428,7 @@ class Result(EqualByContent, ShortRepr):
         direction_error: their mean, weighted by area and by the directions' length; None if no triangle has one.
     seamless: the certificate of a seamless layout; None for other layouts. A seamless layout is not scaled into the
         unit square: one cell has the side `cell`.
+    features: what became of `Surface.features`; None without.
     warnings: findings that leave the result usable.
     stage_seconds: wall-clock seconds of each stage; not compared by equality.
     factorizations, back_substitutions: numbers of those of sparse matrices.
@@ -423,6 +456,7 @@ class Result(EqualByContent, ShortRepr):
     direction_errors: FloatArray | None
     direction_error: float | None
     seamless: SeamlessReport | None
+    features: FeatureReport | None
     warnings: list[Finding]
     stage_seconds: dict[str, float] = field(compare=False)
     factorizations: int
@@ -615,7 +649,12 @@ def _to_result(out: dict[str, Any], borders: IndexArray) -> Result:
     out["distortion"] = Distortion(**out["distortion"])
     out["seams"] = SeamQuality(**out["seams"])
     out["seamless"] = None if out["seamless"] is None else SeamlessReport(**out["seamless"])
+    out["features"] = None if out["features"] is None else _to_feature_report(out["features"])
     return Result(borders=borders, **out)
+
+
+def _to_feature_report(out: dict[str, Any]) -> FeatureReport:
+    return FeatureReport(out["share"], [ReleasedFeature(**feature) for feature in out["released"]])
 
 
 def find_cuts(
@@ -801,8 +840,11 @@ def surface_arrays(surface: Surface) -> tuple[Any, ...]:
     arguments.require_type("surface", surface, Surface)
     importance, cut_costs = (np.empty(0) if a is None else a for a in (surface.importance, surface.cut_costs))
     directions = np.empty((0, 3)) if surface.directions is None else surface.directions
-    seams, borders = surface.seams, surface.borders
-    return surface.positions, surface.triangles, surface.edges, seams, importance, cut_costs, borders, directions
+    seams, borders, features = surface.seams, surface.borders, surface.features
+    return (
+        *(surface.positions, surface.triangles, surface.edges, seams, importance, cut_costs),
+        *(borders, directions, features),
+    )
 
 
 def _given_cones(

@@ -280,16 +280,17 @@ def possible_cones(
 
 
 def follows_features(surface: Surface, options: Options) -> bool:
-    """Whether creases of hard surfaces are to run along the lattice."""
+    """Whether marked features or creases of hard surfaces are to run along the lattice."""
     is_square = options.seamless is not None and options.seamless.lattice == "square"
-    return is_square and options.straighten and options.prescription is None and not len(surface.seams)
+    has_features = options.straighten or len(surface.features) > 0
+    return is_square and has_features and options.prescription is None and not len(surface.seams)
 
 
 def feature_cones(solver: Solver, options: Options, progress: Progress | None = None) -> CompletedCones | None:
-    """Cones with which the creases of hard surfaces can run along the lattice, and those of `complete_cones` on other
-    components; None without hard surfaces, or if there are no such cones."""
+    """Cones with which marked features and, with `Options.straighten`, creases of hard surfaces can run along the
+    lattice, and those of `complete_cones` on other components; None without features, or if there are no such cones."""
     arrays = surface_arrays(solver.surface)
-    chosen = or_none(lambda: _lsgp.feature_cones(arrays, part_of(progress, 0.0, TRYING)))
+    chosen = or_none(lambda: _lsgp.feature_cones(arrays, options.straighten, part_of(progress, 0.0, TRYING)))
     if chosen is None or not len(chosen[0]):
         return None
     found = or_none(lambda: complete_cones(solver, *chosen, options, None, part_of(progress, TRYING, 1.0)))
@@ -348,7 +349,8 @@ def best_map(
         if along is not None and not runs_along_features(along):
             along = None
     # Creases along the lattice take time: they are tried with the cones that are chosen.
-    is_chosen = for_features is None or (along is None and not others)
+    # Marked ones that are released run along it through other cones, perhaps.
+    is_chosen = for_features is None or (along is None and not others) or _releases_marked(along)
     tried = options if is_chosen else replace(options, straighten=False)
     best = usual, _map_through(solver, usual, tried, pins, next(stages))
     for i, other in enumerate(others, start=2 + (for_features is not None)):
@@ -377,6 +379,10 @@ def best_map(
 def _may_free_cuts(alike: CompletedCones, usual: CompletedCones, options: Options) -> bool:
     """Whether a map through symmetric cones may have other cuts, and then is not the usual one."""
     return not options.mirrored_cuts and set(alike.cones.tolist()) != set(usual.cones.tolist())
+
+
+def _releases_marked(along: Result | None) -> bool:
+    return along is not None and along.features is not None and len(along.features.released) > 0
 
 
 def _map_through(

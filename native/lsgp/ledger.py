@@ -132,14 +132,14 @@ def part_surface(surface: Surface, part: LedgerPart) -> Surface:
 
 
 def surface_of_triangles(surface: Surface, triangles: NDArray[np.integer]) -> Surface:
-    """These triangles by themselves, with the edges, seams and borders on them; vertices keep their numbers."""
+    """These triangles by themselves, with what is marked on them; vertices keep their numbers."""
     kept = surface.triangles[triangles]
     keys = _edge_keys(surface, np.concatenate([kept[:, [0, 1]], kept[:, [1, 2]], kept[:, [2, 0]]]))
 
     def is_on_them(edges: IndexArray) -> NDArray[np.bool_]:
         return np.isin(_edge_keys(surface, edges), keys)
 
-    marked = {"seams": surface.seams, "borders": surface.borders}
+    marked = {"seams": surface.seams, "borders": surface.borders, "features": surface.features}
     own: dict[str, IndexArray | FloatArray] = {name: edges[is_on_them(edges)] for name, edges in marked.items()}
     if surface.edges is not None:
         followed = is_on_them(surface.edges)
@@ -159,5 +159,5 @@ def _edge_keys(surface: Surface, edges: IndexArray) -> NDArray[np.int64]:
 
 def _require_surface(surface: Surface) -> None:
     arguments.require_type("surface", surface, Surface)
-    for name in ("triangles", "seams", "borders"):
+    for name in ("triangles", "seams", "borders", "features"):
         arguments.require_indices(name, getattr(surface, name), len(surface.positions))

@@ -97,14 +97,23 @@ def saves_islands(free: Result, mirrored: Result, usual: Result) -> bool:
 
 
 def runs_along_features(result: Result) -> bool:
-    """Whether a seamless map has a quarter of the length of creases along its lattice."""
-    return result.seamless.feature_share is not None and result.seamless.feature_share >= _LEAST_FEATURES
+    """Whether a seamless map has a quarter of the length of marked features along its lattice, or of creases if none
+    are marked."""
+    return _feature_share(result) >= _LEAST_FEATURES
+
+
+def _feature_share(result: Result) -> float:
+    if result.features is not None:
+        return result.features.share
+    return result.seamless.feature_share or 0.0
 
 
 def may_replace_for_features(along: Result, usual: Result) -> bool:
-    """Whether a seamless map through cones for creases runs along them, at up to a tenth more of L2 stretch and without
-    further defects. Both as from `parameterize`.
+    """Whether a seamless map through cones for features runs along them, at up to a tenth more of L2 stretch and
+    without further defects; along marked ones at least as far as the usual one. Both as from `parameterize`.
     """
+    if usual.features is not None and _feature_share(usual) > _feature_share(along):
+        return False
     return (
         along.solved.tolist() == usual.solved.tolist()
         and _defects(along) <= _defects(usual)

@@ -161,6 +161,7 @@ API = (
     "cut_paths",
     "equality",
     "errors",
+    "features",
     "gutters",
     "indexed_uv",
     "island_gaps",

@@ -17,6 +17,7 @@ REPORT_KEYS = [
         "distortion",
         "seams",
         "seamless",
+        "features",
         "islands",
         "flipped",
         "wrong_angle_sums",

@@ -110,6 +110,7 @@ RULES: dict[str, tuple[int, Callable[[Choices, Sequence[str]], Step]]] = {
     "take mesh": (3, _mesh),
     "mark seams": (3, _of_kind("seams")),
     "end at borders": (2, _of_kind("borders")),
+    "mark features": (2, _of_kind("borders")),
     "weigh": (2, _of_kind("importance")),
     "direct": (2, _of_kind("directions")),
     "allow cuts": (1, _of_kind("cuttable")),

@@ -158,6 +158,13 @@ class World:
             self._change_surface(borders=found.value)
         return found.told, []
 
+    def _mark_features(self, step: Step) -> tuple[str, list[str]]:
+        if step["kind"] == "creases":
+            return self._change_surface(features=lsgp.feature_edges(self.surface, angle=0.5, borders=True))
+        return self._change_surface(
+            features=places.seams_of_kind(step["kind"], step["seed"], step["count"], self._triangles, self._total)
+        )
+
     def _weigh(self, step: Step) -> tuple[str, list[str]]:
         return self._change_surface(importance=places.importance_of_kind(step["kind"], step["seed"], self._total))
 

@@ -73,6 +73,7 @@ def surface(data: Data) -> lsgp.Surface:
         array(data, 2, seams),
         array(data, 1, np.ones(len(x))) if data.ConsumeBool() else None,
         borders=array(data, 2, triangles[:2, 1:]) if data.ConsumeBool() else None,
+        features=array(data, 2, triangles[:2, :2]) if data.ConsumeBool() else None,
         directions=array(data, 3, np.ones(triangles.shape)) if data.ConsumeBool() else None,
     )
 

@@ -90,6 +90,7 @@ lsgp::Surface make_surface(Bytes& bytes) {
   if (const int scale = bytes.byte(); scale > 250) surface.positions *= std::pow(10, 20 * (scale - 253));
   surface.seams = make_pairs(bytes, surface, bytes.below(16));
   if (bytes.once_in(8)) surface.borders = make_pairs(bytes, surface, bytes.below(16));
+  if (bytes.once_in(8)) surface.features = make_pairs(bytes, surface, bytes.below(16));
   if (bytes.once_in(8)) surface.edges = make_pairs(bytes, surface, bytes.below(64));
   if (bytes.once_in(8)) {
     surface.importance.setOnes(bytes.once_in(8) ? bytes.below(4) : surface.positions.rows());

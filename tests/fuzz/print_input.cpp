@@ -49,6 +49,7 @@ void print(const lsgp::Surface& surface) {
   print_rows("triangles", surface.triangles);
   print_rows("seams", surface.seams);
   print_rows("borders", surface.borders);
+  print_rows("features", surface.features);
   if (surface.edges) print_rows("edges", *surface.edges);
   if (surface.importance.size() > 0) print_rows("importance", surface.importance.transpose());
   if (surface.directions.size() > 0) print_rows("directions", surface.directions);

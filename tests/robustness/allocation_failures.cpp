@@ -392,6 +392,9 @@ std::deque<Case> make_cases() {
   pins.pins.positions.resize(3, 2);
   pins.pins.positions << 0, 0, 1, 0.2, 0.4, 1;
   add("seamless", parameterize, sphere).options.seamless.emplace();
+  Case& along = add("seamless with features", parameterize, sphere);
+  along.surface.features = along.surface.triangles.topLeftCorner(4, 2);
+  along.options.seamless.emplace();
   Case& lattice = add("seamless with a handle", parameterize, ring);
   lattice.cones = {};
   lattice.options.seamless.emplace();

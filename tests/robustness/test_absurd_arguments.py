@@ -42,6 +42,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             "importance": np.ones(len(BALL.positions)),
             "cut_costs": WHOLE.cut_costs,
             "borders": EDGES[:3],
+            "features": EDGES[:3],
             "directions": np.ones(BALL.triangles.shape),
         },
     ),
@@ -72,6 +73,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             **{"progress": None},
         },
     ),
+    "feature_edges": (lsgp.feature_edges, {"surface": WHOLE, "angle": 0.3, "seams": True, "borders": True}),
     "cut_costs": (
         lsgp.cut_costs,
         {

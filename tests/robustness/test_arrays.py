@@ -189,6 +189,7 @@ NATIVE = {
     "cut_costs": np.empty(0),
     "borders": np.empty((0, 2), np.int32),
     "directions": np.empty((0, 3)),
+    "features": np.empty((0, 2), np.int32),
     "cones": MESH.cones,
     "angles": np.zeros(6),
     "has_angle": np.zeros(6, bool),
@@ -215,8 +216,8 @@ ODD = {
 
 def _parameterize(arguments: dict[str, object]) -> dict[str, object]:
     """The native verb; it takes the arrays of the surface together, and those of the cones."""
-    of_surface = ("positions", "triangles", "edges", "seams", "importance", "cut_costs", "borders", "directions")
-    surface_arrays = tuple(arguments[name] for name in of_surface)
+    of_surface = ("positions", "triangles", "edges", "seams", "importance", "cut_costs", "borders")
+    surface_arrays = tuple(arguments[name] for name in (*of_surface, "directions", "features"))
     return _lsgp.parameterize(
         surface=surface_arrays,
         cones=tuple(arguments[name] for name in ("cones", "angles", "has_angle")),

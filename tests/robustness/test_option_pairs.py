@@ -46,6 +46,7 @@ CHOSEN = {
     "cones": ["own", "placed", "none", "random", "border"],
     "angles": ["automatic", "some", "prescribed", "near", "quarter turns"],
     "seams marked": ["none", "path", "around a part"],
+    "features": ["none", "loop", "creases"],
     "pins": ["none", "one", "many"],
     "importance": ["none", "random"],
     "directions": ["none", "up", "strokes"],
@@ -108,6 +109,7 @@ def entered(row: dict[str, Any], seed: int) -> World:
     steps = [
         {"do": "take mesh", "mesh": row["mesh"]},
         {"do": "mark seams", "kind": row["seams marked"], "count": 2, "seed": seed},
+        {"do": "mark features", "kind": row.get("features", "none"), "count": 2, "seed": seed},
         {"do": "allow cuts", "kind": row["edges"], "count": 2, "seed": seed},
         {"do": "weigh", "kind": row.get("importance", "none"), "count": 2, "seed": seed},
         {"do": "direct", "kind": row.get("directions", "none"), "count": 2, "seed": seed},

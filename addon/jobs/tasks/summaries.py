@@ -30,6 +30,8 @@ def unwrap_summary(unwrapped: Unwrapped) -> str:
         parts.append(f"{100 * result.overlap_area:.2g} % overlapping")
     if result.direction_error is not None and result.direction_error > NOTICEABLE:
         parts.append(f"texture up missed by {math.degrees(result.direction_error):.0f}° on average")
+    if result.features is not None:
+        parts.append(f"{100 * result.features.share:.0f} % of features straight")
     if result.seamless is not None:
         parts.append(_seam_summary(unwrapped))
     return ", ".join(parts)

@@ -25,6 +25,7 @@ from .solving import solve_all
 
 if TYPE_CHECKING:
     import lsgp
+    from lsgp.run.feature_options import FeatureKinds
 
     from ...core.cone_angles import ConeAngles
     from ...core.region import Region
@@ -42,7 +43,8 @@ class UnwrapSettings:
     cone_group: the vertex group of the cones. weight_group: that of the importance weights, None where all vertices
     count alike. weight_factor: what a weight of 1 adds to an importance of 1. subdivided: whether regions are read with
     the Subdivision Surface modifier. cuts: where cuts should run. direction: where the texture
-    should. The others as in the operator.
+    should. features: what runs straight along u or v besides edges with the attribute for it. The others as in the
+    operator.
     """
 
     options: lsgp.Options
@@ -54,6 +56,7 @@ class UnwrapSettings:
     correct_aspect: bool
     cuts: CutChoice
     direction: DirectionChoice = field(default_factory=DirectionChoice)
+    features: FeatureKinds | None = None
     subdivided: bool = False
 
 
@@ -122,7 +125,7 @@ class Unwrapped:
 def unwrap_task(region: Region, settings: UnwrapSettings) -> UnwrapTask:
     """What the map of the region is computed from.  Raises Refused."""
     options = _options_for(region, settings.options)
-    region = with_directions(region, settings.direction)
+    region = _with_features(with_directions(region, settings.direction), settings.features)
     if region.weights is not None and settings.weight_factor:
         weighted = replace(region.surface, importance=1.0 + settings.weight_factor * region.weights)
         region = replace(region, surface=weighted)
@@ -135,6 +138,13 @@ def unwrap_task(region: Region, settings: UnwrapSettings) -> UnwrapTask:
         aspect=region.image_aspect if settings.correct_aspect else 1.0,
         cuts=settings.cuts,
     )
+
+
+def _with_features(region: Region, kinds: FeatureKinds | None) -> Region:
+    if kinds is None:
+        return region
+    found = kinds.edges_of(region.surface, region.sharp)
+    return replace(region, surface=replace(region.surface, features=np.concatenate([region.surface.features, found])))
 
 
 def unwrap_all(

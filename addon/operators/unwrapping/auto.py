@@ -25,6 +25,7 @@ from ..shared.background import BackgroundOperator, Solved
 from ..shared.cut_choices import chosen_cuts
 from ..shared.properties import SEAMS, ConeGroupProperty, CutsProperty, SeamsProperty
 from .direction_choices import chosen_direction
+from .features import FeatureProperties
 from .seamless import TileSizeProperties
 from .sections import section
 
@@ -58,6 +59,7 @@ class UV_OT_cone_auto_unwrap(
     CutsProperty,
     FirstPressProperties,
     TileSizeProperties,
+    FeatureProperties,
     BackgroundOperator,
     bpy.types.Operator,
 ):
@@ -173,6 +175,7 @@ class UV_OT_cone_auto_unwrap(
             body.prop(self, "use_subsurf_data")
             body.prop(self, "mark")
             self.draw_vertex_group(body, context)
+        self.draw_features(layout, "cone_auto_unwrap_features")
 
     def plan(self) -> tuple[Groups, Callable[[bpy.types.Object, Region], UnwrapTask]]:
         self.adopt_density(bpy.context)
@@ -188,6 +191,7 @@ class UV_OT_cone_auto_unwrap(
             correct_aspect=options.seamless is None,
             cuts=chosen_cuts(self.cuts),
             direction=chosen_direction(self.direction, tiles=self.preset == "TILE"),
+            features=self.feature_kinds(),
         )
 
         def make_task(obj: bpy.types.Object, region: Region) -> UnwrapTask:

@@ -16,6 +16,7 @@ from ...jobs.tasks.unwrapping import Unwrapped, UnwrapTask, unwrap_task
 from ...mesh.region_read import Groups
 from ..shared.background import BackgroundOperator, Solved
 from ..shared.properties import BorderProperty, ConeGroupProperty, CutsProperty, SeamsProperty
+from .features import FeatureProperties
 from .low_stretch import LowStretchProperties
 from .properties import UnwrapProperties, pack_settings, unwrap_settings
 from .seamless import SeamlessProperties
@@ -32,6 +33,7 @@ class UV_OT_cone_unwrap(
     BorderProperty,
     LowStretchProperties,
     SeamlessProperties,
+    FeatureProperties,
     UnwrapProperties,
     BackgroundOperator,
     bpy.types.Operator,
@@ -60,6 +62,8 @@ class UV_OT_cone_unwrap(
             for name in ("cuts", "seams", "border", "prescription", "unfold", "repair", "use_subsurf_data"):
                 body.prop(self, name)
             self.draw_vertex_group(body, context)
+        if self.seamless or self.mode == "LOW_STRETCH":
+            self.draw_features(layout, "cone_unwrap_features")
         body = section(layout, "cone_unwrap_islands", "Islands")
         if body is not None:
             self.draw_placement(body)

@@ -11,6 +11,7 @@ from ...jobs.tasks.unwrapping import UnwrapSettings
 from ..shared.cut_choices import chosen_cuts
 from ..shared.properties import BORDERS, SEAMS
 from .direction_choices import chosen_direction
+from .features import FeatureProperties
 from .low_stretch import MODES
 from .seamless import SeamlessProperties
 
@@ -133,6 +134,7 @@ def unwrap_settings(chosen: bpy.types.OperatorProperties) -> UnwrapSettings:
         correct_aspect=chosen.correct_aspect and not chosen.seamless,
         cuts=chosen_cuts(chosen.cuts),
         direction=chosen_direction(chosen.direction, tiles=chosen.seamless),
+        features=FeatureProperties.feature_kinds(chosen),
         subdivided=chosen.use_subsurf_data,
     )
 

@@ -80,6 +80,7 @@ enum class Code {
   grid_refined,
   grid_distorts,
   features_off_lattice,
+  features_released,
   cones_merged,
   cones_not_snapped,
   angles_adjusted,

@@ -50,10 +50,10 @@ LSGP_API Eigen::VectorXd cut_costs(const Surface& surface, const CutPreferences&
 LSGP_API VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& cones = {},
                                     const CreaseOptions& options = {}, const Progress& progress = {});
 
-// Cones of a closed hard surface, with angles, with which its creases can run along the lines of a square lattice: at
-// corners of the creases, and inside the patches between them as far as Gauss-Bonnet requires. None on other
-// components, or where the patches admit none.
-LSGP_API Cones feature_cones(const Surface& surface, const Progress& progress = {});
+// Cones, with angles, with which features and, if asked for, creases of closed hard surfaces can run along the lines of
+// a square lattice: at their corners, and inside the patches between them as far as Gauss-Bonnet requires. None on
+// components with boundaries that are no features, or where the patches admit none.
+LSGP_API Cones feature_cones(const Surface& surface, bool with_creases = true, const Progress& progress = {});
 
 // The cone angles alone (section 5) and the scale they imply.
 LSGP_API Prescription prescribe_curvature(const Surface& surface, const Cones& cones, const Options& options = {},

@@ -57,6 +57,27 @@ struct SeamlessReport {
   std::optional<double> feature_share;
 };
 
+// Why a marked feature does not run straight along u or v.
+enum class ReleaseReason {
+  curved,         // it turns away from both axes, and no corner or cone lets it
+  contradiction,  // together with features that have precedence it would fold the map or lose its length
+  stretch,        // it would cost too much L2 stretch
+  lattice,        // no layout with tiles of this size keeps it
+  unsupported,    // with these options no feature is aligned
+};
+
+struct ReleasedFeature {
+  std::vector<Index> path;  // vertices
+  ReleaseReason reason;
+  double share;  // of the length of all marked features
+};
+
+// What became of the surface's features, as stored in float32.
+struct FeatureReport {
+  double share = 1;  // of their length that runs straight along u or v, on both sides of a cut
+  std::vector<ReleasedFeature> released;
+};
+
 // Defects of the first unfolding, and the work of repairing and relaxing the map.
 struct RepairReport {
   Index flipped_before = 0, wrong_angle_sums_before = 0;  // of the first unfolding
@@ -105,6 +126,7 @@ struct Result {
   Eigen::VectorXd direction_errors;
   std::optional<double> direction_error;  // their mean by area and length of the directions
   std::optional<SeamlessReport> seamless;
+  std::optional<FeatureReport> features;  // none without marked ones
   std::vector<Finding> warnings;
   StageSeconds stage_seconds;
   LinearAlgebra linear_algebra;

@@ -27,6 +27,7 @@ struct Surface {
   Eigen::VectorXd importance;        // (n) weights of stretch at vertices, or empty: equal weights
   Eigen::VectorXd cut_costs;         // (e) cost of a cut along each of `edges` per length, or empty: 1
   VertexPairs borders;               // (b, 2) edges where the surface ends, whatever the meaning of seams
+  VertexPairs features;              // (f, 2) edges that are to run straight along u or v
   Positions directions;              // (m, 3) desired direction of v at each triangle, weighted by length, or empty
 };
 

@@ -13,11 +13,12 @@ from typing import Any
 
 from .. import InputError, __version__
 from ..io.side_files import UsageError
+from ..run.feature_options import feature_kinds
 from ..run.unwrap_options import add_unwrap_options, library_options
 from .assets import Asset, picture_name
 
 # Options that name a file beside each mesh; "{}" in them stands for the mesh's own path without its suffix.
-SIDE_FILES = ("cones", "seam_edges", "directions", "importance", "cut_costs")
+SIDE_FILES = ("cones", "seam_edges", "directions", "importance", "cut_costs", "features")
 MESH = "{}"
 
 
@@ -72,8 +73,14 @@ class Settings:
         return hashlib.blake2b(content.encode(), digest_size=6).hexdigest()
 
 
+def _is_file(name: str, text: str) -> bool:
+    if name == "cones":
+        return text != "auto" and not text.startswith("auto:")
+    return name != "features" or feature_kinds(text) is None
+
+
 def _whole_path(name: str, text: str | None) -> str | None:
-    if text is None or (name == "cones" and (text == "auto" or text.startswith("auto:"))) or text.startswith(MESH):
+    if text is None or text.startswith(MESH) or not _is_file(name, text):
         return text
     path = os.path.abspath(text)
     if MESH not in path and not os.path.isfile(path):

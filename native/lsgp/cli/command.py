@@ -136,8 +136,8 @@ def _parser() -> _Parser:
         help="unwrap many meshes",
         description="Unwrap all meshes of a folder or a list, or a single one, each as `lsgp unwrap` does it. Every "
         "asset gets a line in DIR/journal.jsonl when it is done; DIR/summary.txt and DIR/contact-sheet.html are "
-        "written at the end. In the names of files for --cones, --seam-edges, --directions, --importance and "
-        "--cut-costs, {} stands for a mesh's path without its suffix.",
+        "written at the end. In the names of files for --cones, --seam-edges, --directions, --importance, "
+        "--features and --cut-costs, {} stands for a mesh's path without its suffix.",
         epilog=EXIT_CODES,
     )
     add_batch_options(batch)

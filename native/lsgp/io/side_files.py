@@ -70,11 +70,11 @@ def cones_in(content: Any, path: Path, prescription: str | None) -> tuple[NDArra
     return indices, angles.get("cone_angles") if prescription is None else None
 
 
-def seam_edges_in(content: Any, path: Path | None) -> NDArray[np.int32]:
-    """(s, 2) vertex pairs of a seam edges file.  Raises InputError."""
+def pairs_in(content: Any, path: Path | None, what: str) -> NDArray[np.int32]:
+    """(s, 2) vertex pairs of a file of edges.  what: one of their vertices.  Raises InputError."""
     if not _is_list_of(content, lambda pair: _is_list_of(pair, _is_integer) and len(pair) == 2):
         raise _unlike(path, "[[a, b], ...] with vertices counted from 0")
-    return _indices([vertex for pair in content for vertex in pair], "INDEX_OUT_OF_RANGE", "seam vertex").reshape(-1, 2)
+    return _indices([vertex for pair in content for vertex in pair], "INDEX_OUT_OF_RANGE", what).reshape(-1, 2)
 
 
 def directions_in(content: Any, path: Path, face_count: int) -> NDArray[np.float64]:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..api import Placement, Progress, place_cones
-from ..io.side_files import UsageError, cones_in, load_json, seam_edges_in
+from ..io.side_files import UsageError, cones_in, load_json, pairs_in
 from ..io.whole_files import write_output
 from .report import finite, placed_figures
 from .unwrap_file import Run, read_file, require_flawless
@@ -74,7 +74,7 @@ def place_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
     seams_json = [] if seams_path is None else load_json(seams_path)
     file = read_file(args.input, run, args.format)
     kept, angles = ((), None) if kept_json is None else cones_in(kept_json, Path(args.keep), None)
-    surface = file.surface(seam_edges_in(seams_json, seams_path))
+    surface = file.surface(pairs_in(seams_json, seams_path, "seam vertex"))
     with run.stage("cut_costs"):
         surface = replace(surface, cut_costs=cut_costs_of(args, surface))
     with run.stage("place_cones"):

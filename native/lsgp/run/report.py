@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..api import Measurement, Placement, Result
+from ..api import FeatureReport, Measurement, Placement, Result
 from ..certificate import certificate
 from ..errors import Elements, Finding, LsgpError
 from ..io.polygons import Triangulation
@@ -36,6 +36,7 @@ EMPTY: Report = {
     "distortion": None,
     "seams": None,
     "seamless": None,
+    "features": None,
     "islands": None,
     "flipped": None,
     "wrong_angle_sums": None,
@@ -99,6 +100,7 @@ def unwrap_report(result: Result, run: Run, texture_size: int) -> Report:
         "distortion": asdict(result.distortion),
         "seams": asdict(result.seams),
         "seamless": None if result.seamless is None else certificate(result.seamless, texture_size),
+        "features": None if result.features is None else _feature_figures(result.features),
         "islands": island_count(result.island),
         "flipped": len(result.flipped),
         "wrong_angle_sums": len(result.wrong_angle_sums),
@@ -110,6 +112,15 @@ def unwrap_report(result: Result, run: Run, texture_size: int) -> Report:
         "packing": None if run.packed is None else asdict(run.packed),
         "stage_seconds": dict(run.stage_seconds),
     }
+
+
+def _feature_figures(features: FeatureReport) -> Report:
+    """What became of marked features; paths of vertices."""
+    released = [
+        {"path": feature.path.tolist(), "reason": feature.reason, "share": feature.share}
+        for feature in features.released
+    ]
+    return {"share": features.share, "released": released}
 
 
 def placement_report(placement: Placement, triangulation: Triangulation, stage_seconds: Mapping[str, float]) -> Report:

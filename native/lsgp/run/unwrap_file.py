@@ -20,11 +20,12 @@ from ..io.mesh_files import MeshFile, format_mesh, parse_mesh, triangulated
 from ..io.mesh_formats import output_format
 from ..io.polygons import Triangulation
 from ..io.safe_files import is_standard_stream, read_input, require_separate
-from ..io.side_files import cones_in, directions_in, load_importance, load_json, seam_edges_in
+from ..io.side_files import cones_in, directions_in, load_importance, load_json, pairs_in
 from ..io.whole_files import write_output
 from ..packing import laid_out, packing_once
 from ..texels import TexelDensity, at_texel_density, texel_density, with_tiny_findings
 from ..triangles import uv_area
+from .feature_options import features_of
 from .unwrap_options import (
     cone_count,
     cones_file,
@@ -188,7 +189,8 @@ def _map(
         of_faces = directions_in(directions_json, directions_path, len(file.mesh.sizes))
         directions = of_faces[file.triangulation.polygon]
         run.directed_faces = np.flatnonzero(of_faces.any(axis=1))
-    surface = replace(file.surface(seam_edges_in(seams_json, seams_path), importance), directions=directions)
+    surface = replace(file.surface(pairs_in(seams_json, seams_path, "seam vertex"), importance), directions=directions)
+    surface = replace(surface, features=features_of(args.features, surface))
     with run.stage("cut_costs"):
         surface = run.surface = replace(surface, cut_costs=cut_costs_of(args, surface))
     given = ((), None) if cones_path is None else cones_in(cones_json, cones_path, args.prescription)

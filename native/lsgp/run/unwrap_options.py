@@ -21,6 +21,7 @@ from ..errors import InputError
 from ..io.side_files import CutCostFile, UsageError, load_cut_costs
 from ..packing import SHELVES, Pack, Packing, Stack
 from ..texels import DEFAULT_MARGIN, MOST_TILES, TexelLayout
+from .feature_options import add_features_option
 
 DEFAULT_TEXTURE_SIZE = 1024
 LARGEST_TEXTURE_SIZE = 65536
@@ -99,6 +100,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
         "(default: follow)",
     )
     add_cut_options(unwrap)
+    add_features_option(unwrap)
     _add_direction_options(unwrap)
     _add_preset_switches(unwrap)
     unwrap.add_argument(
@@ -526,6 +528,10 @@ def library_options(args: argparse.Namespace) -> Options:
             if getattr(args, name) is not None:
                 raise UsageError(f"--{name} is for maps of low stretch; add --mode low-stretch")
     seamless = _seamless(args, base.seamless)
+    if args.features is not None and seamless is None and mode != "low-stretch":
+        raise UsageError(
+            "--features is for seamless layouts and maps of low stretch; add --seamless or --mode low-stretch"
+        )
     return replace(
         base,
         prescription=args.prescription,

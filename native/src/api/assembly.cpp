@@ -37,6 +37,11 @@ double scale_to_surface(const MetricMesh& surface, const ComponentMap& map) {
   return std::isfinite(scale) ? scale : 1;
 }
 
+Complex nearest_quarter(Complex turn) {
+  if (std::abs(turn.real()) >= std::abs(turn.imag())) return turn.real() > 0 ? 1 : -1;
+  return {0, turn.imag() > 0 ? 1.0 : -1.0};
+}
+
 // The guarantees of seamless layouts hold for coordinates as stored in single precision.
 void add_flips_as_stored(const HalfedgeMesh& mesh, const CornerPositions& corners, Validity& validity) {
   const Eigen::VectorXcd stored = corners.unaryExpr([](Complex z) { return as_stored(z); });
@@ -89,8 +94,10 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
   }
   if (map.natural_l2 > 0) {
     const ProgressMonitor::Stage stage(monitor_, "relax");
+    const bool is_plain = !options_.straighten || component.mesh.closed();
     straighten_islands(
-        {component.mesh, geometry}, {options_.stretch, task.importance}, [this] { monitor_.advance(0); }, map);
+        {component.mesh, geometry}, is_plain ? SideKinds::marked : SideKinds::with_creases,
+        {options_.stretch, task.importance}, [this] { monitor_.advance(0); }, map);
   }
   defects_.pinned = defects_.pinned || map.pins.size() > 1;
   move_findings(component, findings, result_.warnings);
@@ -128,6 +135,7 @@ void Assembly::finish(const Cones& cones, const Array<std::pair<Index, Index>>& 
       check_in_layout(solved);
       collect_checks(*solved.component, solved.map);
       measure_directions(solved);
+      features_.add(*solved.component, solved.map, corners(solved), surface_.positions);
     }
   }
   {
@@ -144,6 +152,7 @@ void Assembly::finish(const Cones& cones, const Array<std::pair<Index, Index>>& 
   report_flat_cones();
   if (directed_ > 0) result_.direction_error = misalignment_ / directed_;
   added_cuts_.report(result_.warnings);
+  result_.features = features_.report(result_.warnings);
   result_.cut_edges = to_vertex_pairs(cut_edges_);
   result_.required_cuts = to_vertex_pairs(required_cuts_);
   for (const Index v : cones.vertices) {
@@ -267,6 +276,7 @@ void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
   Array<std::optional<Complex>> axes;
   // Closed components have no sides to be straightened, but those of cubes are straight.
   if (options_.straighten) axes = turns_to_axes(mesh, map.cut_mesh, map.position, solved.island);
+  const PerPart<char> has_axis = find_feature_axes(solved);
   for (Index i = 0; i < solved.island_count; ++i) {
     const Array<Index>& own = copies[i];
     Island island{Eigen::VectorXcd(own.size()), upward[i].turn(), std::nullopt, static_cast<Index>(solved_.size())};
@@ -277,8 +287,22 @@ void Assembly::add_islands(const Geometry& geometry, Solved& solved) {
       }
     }
     if (!axes.empty()) island.axes = axes[i];
+    if (has_axis[i]) island.turn = nearest_quarter(island.turn.value_or(1.0));
     islands_.push_back(std::move(island));
   }
+}
+
+PerPart<char> Assembly::find_feature_axes(const Solved& solved) {
+  const HalfedgeMesh& mesh = solved.component->mesh;
+  const CutMesh& cut_mesh = solved.map.cut_mesh;
+  PerPart<char> out(solved.island_count, 0);
+  for (Index h = 0; mesh.has_features() && h < mesh.halfedge_count(); ++h) {
+    if (!mesh.feature[h]) continue;
+    const Complex edge =
+        solved.map.position[cut_mesh.copy_of_corner[next(h)]] - solved.map.position[cut_mesh.copy_of_corner[h]];
+    if (edge.real() == 0 || edge.imag() == 0) out[solved.island[h / 3]] = 1;
+  }
+  return out;
 }
 
 void Assembly::add_opened_seams() {

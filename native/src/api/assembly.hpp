@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "api/added_cuts.hpp"
+#include "api/feature_report.hpp"
 #include "api/report_defects.hpp"
 #include "base/array.hpp"
 #include "pipeline/component_map.hpp"
@@ -62,6 +63,9 @@ class Assembly {
   // two sides coincide.
   void add_islands(const Geometry& geometry, Solved& solved);
 
+  // Which islands have marked features along an axis, and so are only rotated by quarter turns.
+  static PerPart<char> find_feature_axes(const Solved& solved);
+
   // Seams along which components without cones were opened count as cut, though their sides are boundaries.
   void add_opened_seams();
 
@@ -81,6 +85,7 @@ class Assembly {
   Array<Index> cut_edges_, required_cuts_;  // vertex pairs
   Defects defects_;
   AddedCuts added_cuts_;
+  MarkedFeatures features_;
   Array<Index> flat_cones_;
   Array<Solved> solved_;
   Array<Failure> failures_;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -15,19 +16,36 @@ namespace lsgp {
 
 namespace {
 
-// The features of closed components, as edges of the caller's surface.
-Array<Index> features_of(const Work& work, std::vector<Finding>& findings) {
-  Array<Index> out;
+struct SurfaceFeatures {
+  Array<Index> edges;         // as the caller's vertices
+  PerVertex<char> is_border;  // (n)
+};
+
+// Whether all boundaries are features, so that the angles along them are known.
+bool is_enclosed(const HalfedgeMesh& mesh, const PerHalfedge<char>& feature) {
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (mesh.twin[h] == none && feature[h] == no_feature) return false;
+  }
+  return true;
+}
+
+// Those of components that are closed, or end at features.
+SurfaceFeatures features_of(const Work& work, bool with_creases, std::vector<Finding>& findings) {
+  SurfaceFeatures out;
   for_each_component(work.topology.components, findings, [&](std::size_t i) {
     const Component& component = work.topology.components[i];
     const HalfedgeMesh& mesh = component.mesh;
-    if (!component.orientable || !mesh.closed()) return;
+    if (!component.orientable || !(mesh.closed() || mesh.has_features())) return;
     const Geometry geometry = require_geometry(component, findings);
-    const PerHalfedge<char> feature = find_features({mesh, geometry});
+    const PerHalfedge<char> feature = features_to_align({mesh, geometry}, with_creases && mesh.closed());
+    if (!is_enclosed(mesh, feature)) return;
     for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-      if (!feature[h] || mesh.twin[h] < h) continue;
-      out.push_back(component.source_vertex[mesh.origin(h)]);
-      out.push_back(component.source_vertex[mesh.target(h)]);
+      if (feature[h] == no_feature || mesh.twin[h] > h) continue;
+      const Index tail = component.source_vertex[mesh.origin(h)], head = component.source_vertex[mesh.target(h)];
+      out.edges.insert(out.edges.end(), {tail, head});
+      if (mesh.twin[h] != none) continue;
+      out.is_border.resize(std::max<std::size_t>(out.is_border.size(), std::max(tail, head) + std::size_t{1}), 0);
+      out.is_border[tail] = out.is_border[head] = 1;
     }
   });
   return out;
@@ -35,11 +53,13 @@ Array<Index> features_of(const Work& work, std::vector<Finding>& findings) {
 
 }  // namespace
 
-Cones feature_cones(const Surface& surface, const Progress& progress) try {
+Cones feature_cones(const Surface& surface, bool with_creases, const Progress& progress) try {
   StageSeconds seconds;
   ProgressMonitor monitor(progress, seconds);
   std::vector<Finding> findings;
-  const Array<Index> edges = features_of(prepare({surface, {}, Options{}}, findings), findings);
+  SurfaceFeatures features = features_of(prepare({surface, {}, Options{}}, findings), with_creases, findings);
+  const Array<Index>& edges = features.edges;
+  features.is_border.resize(static_cast<std::size_t>(surface.positions.rows()), 0);
   Cones out;
   if (edges.empty()) return out;
   Surface opened = surface;
@@ -65,7 +85,7 @@ Cones feature_cones(const Surface& surface, const Progress& progress) try {
   monitor.advance(1);
   if (!is_possible) return out;
   for (const auto& [v, quarters] : angle) {
-    if (quarters == 4) continue;
+    if (quarters == (features.is_border[v] ? 2 : 4)) continue;
     out.vertices.push_back(v);
     out.angles.emplace_back(quarters * M_PI / 2);
   }

@@ -59,6 +59,7 @@ const char* name(Code code) {
     case Code::grid_refined: return "GRID_REFINED";
     case Code::grid_distorts: return "GRID_DISTORTS";
     case Code::features_off_lattice: return "FEATURES_OFF_LATTICE";
+    case Code::features_released: return "FEATURES_RELEASED";
     case Code::cones_merged: return "CONES_MERGED";
     case Code::cones_not_snapped: return "CONES_NOT_SNAPPED";
     case Code::angles_adjusted: return "ANGLES_ADJUSTED";

@@ -38,4 +38,15 @@ PerHalfedge<char> find_features(const MetricMesh& surface) {
   return out;
 }
 
+PerHalfedge<char> features_to_align(const MetricMesh& surface, bool with_creases) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  PerHalfedge<char> out(mesh.halfedge_count(), no_feature);
+  if (with_creases) out = find_features(surface);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (out[h]) out[h] = crease_feature;
+    if (mesh.has_features() && mesh.feature[h]) out[h] = marked_feature;
+  }
+  return out;
+}
+
 }  // namespace lsgp

@@ -35,7 +35,13 @@ class CreaseCurvature {
   double all_squares_ = 0, squares_at_creases_ = 0;
 };
 
+// What makes an edge a feature; marked ones have precedence.
+enum FeatureKind : char { no_feature, crease_feature, marked_feature };
+
 // Marks both halfedges of the edges at which the surface bends by `crease_angle`; none if the surface is not hard.
 PerHalfedge<char> find_features(const MetricMesh& surface);
+
+// The FeatureKind of every halfedge: of marked edges and, if asked for, those that find_features finds.
+PerHalfedge<char> features_to_align(const MetricMesh& surface, bool with_creases);
 
 }  // namespace lsgp

@@ -168,6 +168,11 @@ void number_vertices(const Surface& surface, Component& component) {
     mesh.positions.row(v) = surface.positions.row(component.source_vertex[v]);
 }
 
+void mark_feature(Index h, HalfedgeMesh& mesh) {
+  if (mesh.feature.empty()) mesh.feature.assign(mesh.halfedge_count(), 0);
+  mesh.feature[h] = 1;
+}
+
 void measure_topology(HalfedgeMesh& mesh) {
   find_boundary_loops(mesh);
   Index paired = 0;
@@ -294,6 +299,8 @@ Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std
                                         "are marked as seams but are not edges. Mark edges of this mesh.");
   const PerEdge<char> border = mark_edges(edges, surface.borders, Code::edge_not_in_mesh,
                                           "are given as borders but are not edges. Pass edges of this mesh.");
+  const PerEdge<char> feature = mark_edges(edges, surface.features, Code::edge_not_in_mesh,
+                                           "are given as features but are not edges. Pass edges of this mesh.");
   const PerHalfedge<Index> twin =
       join_halfedges(edges, border, seam, open_seams, static_cast<Index>(3 * surface.triangles.rows()));
   const Orientation orientation = orient(surface, skip, twin);
@@ -328,6 +335,7 @@ Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std
         const Index edge = edges.edge_of(h), local = local_halfedge(h);
         mesh.cuttable[local] = cuttable[edge];
         mesh.seam[local] = seam[edge];
+        if (feature[edge]) mark_feature(local, mesh);
         if (!factor.empty()) mesh.cut_factor[local] = factor[edge];
         mesh.twin[local] = twin[h] == none ? none : local_halfedge(twin[h]);
       }

@@ -28,6 +28,7 @@ struct HalfedgeMesh {
   PerHalfedge<Index> twin;               // none on the boundary
   PerVertex<Index> outgoing;             // a halfedge leaving each vertex; on the boundary the one without a twin
   PerHalfedge<char> cuttable, seam;      // equal on both halfedges of an edge
+  PerHalfedge<char> feature;             // marked to run along an axis, on both halfedges, or empty: none
   PerHalfedge<double> cut_factor;        // cost per length of a cut along the edge, or empty: 1
   PerLoop<Array<Index>> boundary_loops;  // vertices, surface on the left
   PerVertex<Index> loop_of_vertex;       // none inside
@@ -40,6 +41,7 @@ struct HalfedgeMesh {
   Index origin(Index h) const { return triangles.data()[h]; }
   Index target(Index h) const { return triangles.data()[next(h)]; }
   bool closed() const { return boundary_loops.empty(); }
+  bool has_features() const { return !feature.empty(); }
 
   // The angle of a vertex without curvature: 2 pi in the interior, pi on the boundary.
   double flat_angle(Index v) const { return loop_of_vertex[v] == none ? 2 * M_PI : M_PI; }

@@ -30,8 +30,9 @@ struct ComponentMap {
   std::optional<Eigen::VectorXd> rotation;  // (cuts) imposed, radians; none without transitions
   Eigen::VectorXcd position;                // (copies) u + iv
   Array<Pin> pins;
-  double natural_l2 = 0;  // before sides were straightened; 0 if none may be
-  double uv_area = 0;     // signed
+  double natural_l2 = 0;                       // before sides were straightened; 0 if none may be
+  double uv_area = 0;                          // signed
+  PerHalfedge<ReleaseReason> release_reasons;  // of features off the axes; empty: with these options none is aligned
   SeamQuality seams;
   Array<Index> inexact_seams;  // halfedges
   Validity validity;

@@ -154,14 +154,16 @@ void ComponentRepair::relax(ComponentMap& map) {
 }
 
 bool ComponentRepair::may_straighten(const ComponentMap& map) const {
-  return options_.straighten && task_.cones.rotation_order == 0 && !mesh_.closed() && map.validity.defects() == 0 &&
-         map.rotation && map.pins.size() < 2 && aligned_edges(mesh_, task_.cones).empty();
+  const bool has_sides = (options_.straighten && !mesh_.closed()) || mesh_.has_features();
+  return has_sides && task_.cones.rotation_order == 0 && map.validity.defects() == 0 && map.rotation &&
+         map.pins.size() < 2 && aligned_edges(mesh_, task_.cones).empty();
 }
 
 std::optional<ComponentMap> ComponentRepair::straightened(const ComponentMap& map) {
   const ProgressMonitor::Stage stage(monitor_, "relax");
   const CutSurface surface = open(map);
-  std::optional<StraightSides> sides = sides_to_straighten(surface, map, false);
+  std::optional<StraightSides> sides = sides_to_straighten(
+      surface, map, options_.straighten && !mesh_.closed() ? SideKinds::with_sides : SideKinds::marked);
   if (!sides) return std::nullopt;
   return with_straight_sides({surface, connection_of(map), {options_.stretch, task_.importance}, counter()}, map,
                              std::move(*sides));

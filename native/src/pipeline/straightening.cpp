@@ -49,13 +49,14 @@ bool is_one_network(const CutSurface& surface) {
   return nodes.order.size() == nodes.vertex.size();
 }
 
-// Straightens all sides at once, or else as many as possible: halves that fail are divided again.
+// Straightens all sides at once, or else as many as possible: halves that fail are divided again. Marked features,
+// which may cost more, come first.
 class SideSearch {
  public:
   SideSearch(const StraighteningTask& task, const ComponentMap& map, StraightSides straight)
       : task_(task),
         map_(map),
-        border_(sort_by_cost(straight)),
+        order_(sort_by_cost(straight)),
         sides_(std::move(straight.sides)),
         straight_(std::move(straight)),
         most_l2_(largest_l2_straight(map.natural_l2)),
@@ -64,28 +65,56 @@ class SideSearch {
   }
 
   std::optional<ComponentMap> search() {
+    constexpr int for_marked = 40, for_others = 10;
+    if (order_.marked > 0) {
+      const double least_l2 = most_l2_;
+      most_l2_ = std::max(least_l2, most_growth_for_marked * map_.natural_l2);
+      left_ = for_marked;
+      add(0, order_.marked, false);
+      most_l2_ = least_l2;
+      if (best_) most_l2_ = std::max(least_l2, largest_l2_straight(l2_of(task_.surface, *best_)));
+    }
+    left_ = for_others;
     const std::ptrdiff_t all = ssize(sides_);
-    if (!tries(0, all)) {
-      const bool has_border = add(0, border_, border_ == all);
-      add(border_, all, has_border);
+    if (order_.marked < all && tries(order_.marked, all)) {
+      const bool has_border = add(order_.marked, order_.border, order_.border == all);
+      add(order_.border, all, has_border);
+    }
+    if (!straight_.reasons.empty()) {
+      if (!best_) best_ = map_;
+      best_->release_reasons = straight_.reasons;
     }
     return std::move(best_);
   }
 
  private:
+  static constexpr double most_growth_for_marked = 1.1;  // of the L2 stretch
+
   // Adds sides to those that are straight, as far as that succeeds.  is_known_to_fail: with all of them.  Returns
   // whether it did with all of them.
   bool add(std::ptrdiff_t begin, std::ptrdiff_t end, bool is_known_to_fail) {
     if (begin == end || left_ == 0) return false;
-    if (!is_known_to_fail && tries(begin, end)) return true;
-    const std::ptrdiff_t count = end - begin, smallest = std::max<std::ptrdiff_t>(1, ssize(sides_) / 16);
+    if (!is_known_to_fail) {
+      const std::optional<ReleaseReason> reason = tries(begin, end);
+      if (!reason) return true;
+      release(begin, end, *reason);
+    }
+    const std::ptrdiff_t count = end - begin;
+    const std::ptrdiff_t smallest = end <= order_.marked ? 1 : std::max<std::ptrdiff_t>(1, ssize(sides_) / 16);
     if (count <= smallest) return false;
     const bool has_first = add(begin, begin + count / 2, false);
     add(begin + count / 2, end, has_first);
     return false;
   }
 
-  bool tries(std::ptrdiff_t begin, std::ptrdiff_t end) {
+  void release(std::ptrdiff_t begin, std::ptrdiff_t end, ReleaseReason reason) {
+    for (std::ptrdiff_t i = begin; i < std::min(end, order_.marked); ++i) {
+      for (const Index h : sides_[i].halfedges) straight_.reasons[h] = reason;
+    }
+  }
+
+  // None if these sides are straight then, as well; otherwise why they are not.
+  std::optional<ReleaseReason> tries(std::ptrdiff_t begin, std::ptrdiff_t end) {
     --left_;
     StraightSides more = straight_;
     more.sides.insert(more.sides.end(), sides_.begin() + begin, sides_.begin() + end);
@@ -96,32 +125,34 @@ class SideSearch {
       check_positions(surface.mesh, tried);
     } catch (const Error& error) {
       if (error.code() != Code::solver_failed) throw;
-      return false;
+      return ReleaseReason::contradiction;
     }
-    if (tried.validity.defects() > 0 || l2_of(surface, tried) > most_l2_) return false;
-    if (!may_overlap_ && overlaps(surface, tried)) return false;
+    if (tried.validity.defects() > 0) return ReleaseReason::contradiction;
+    if (l2_of(surface, tried) > most_l2_) return ReleaseReason::stretch;
+    if (!may_overlap_ && overlaps(surface, tried)) return ReleaseReason::contradiction;
     straight_ = std::move(more);
     best_ = std::move(tried);
-    return true;
+    return std::nullopt;
   }
 
   const StraighteningTask& task_;
   const ComponentMap& map_;
-  const std::ptrdiff_t border_;      // the number of sides on it
+  const SideOrder order_;
   const Array<StraightSide> sides_;  // the cheapest first
   StraightSides straight_;           // with the sides that are straight
-  const double most_l2_;
+  double most_l2_;
   const bool may_overlap_;
-  int left_ = 10;  // attempts
+  int left_ = 0;  // attempts
   std::optional<ComponentMap> best_;
 };
 
 }  // namespace
 
-std::optional<StraightSides> sides_to_straighten(const CutSurface& surface, const ComponentMap& map,
-                                                 bool with_creases) {
+std::optional<StraightSides> sides_to_straighten(const CutSurface& surface, const ComponentMap& map, SideKinds kinds) {
   StraightSides straight =
-      find_straight_sides(surface, *map.rotation, map.position, {most_bend(map.natural_l2), with_creases});
+      find_straight_sides(surface, *map.rotation, map.position,
+                          {most_bend(map.natural_l2), kinds == SideKinds::with_creases, kinds == SideKinds::marked});
+  if (!straight.reasons.empty()) return straight;
   if (straight.sides.empty() || (!straight.is_bent() && !straight.has_axes)) return std::nullopt;
   return straight;
 }
@@ -131,11 +162,11 @@ std::optional<ComponentMap> with_straight_sides(const StraighteningTask& task, c
   return SideSearch(task, map, std::move(straight)).search();
 }
 
-void straighten_islands(const MetricMesh& surface, const StretchOptions& options, const StepHook& before_step,
-                        ComponentMap& map) {
+void straighten_islands(const MetricMesh& surface, SideKinds kinds, const StretchOptions& options,
+                        const StepHook& before_step, ComponentMap& map) {
   const CutSurface opened{surface, map.cut_graph, map.cut_mesh};
   if (map.natural_l2 == 0 || !is_one_network(opened)) return;
-  std::optional<StraightSides> sides = sides_to_straighten(opened, map, true);
+  std::optional<StraightSides> sides = sides_to_straighten(opened, map, kinds);
   if (!sides) return;
   const ParallelTransport connection = connection_of_map(opened, map.curvature, *map.rotation, map.position);
   std::optional<ComponentMap> straight =

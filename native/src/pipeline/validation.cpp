@@ -192,6 +192,7 @@ void require_connectivity(const Surface& surface) {
   require_cut_costs(surface);
   require_indices(surface.seams, n, "seams");
   require_indices(surface.borders, n, "borders");
+  require_indices(surface.features, n, "features");
 }
 
 void require_valid(const Surface& surface) {

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <tuple>
 
 #include "creases/features.hpp"
+#include "repair/feature_lines.hpp"
 
 namespace lsgp {
 
@@ -248,6 +250,38 @@ Array<FoundSide>::iterator along_axes_of(Complex turn, double most_bend, Array<F
   });
 }
 
+bool is_marked(const HalfedgeMesh& mesh, Index h) { return mesh.has_features() && mesh.feature[h]; }
+
+// The marked features, aligned with the axes, as sides of one direction each, and the reasons of those that cannot be.
+void add_marked_sides(const CutSurface& surface, const Eigen::VectorXd& rotation, const Eigen::VectorXcd& position,
+                      StraightSides& out) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  PerHalfedge<char> feature(mesh.halfedge_count(), no_feature);
+  PerVertex<char> ends(mesh.vertex_count(), 0);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    const Index cut = surface.cut_graph.cut_of[h];
+    const bool is_turned = cut != none && !is_quarter_turn(rotation[cut]);
+    if (is_turned) ends[mesh.origin(h)] = ends[mesh.target(h)] = 1;
+    if (mesh.feature[h] && !is_turned) feature[h] = marked_feature;
+  }
+  out.reasons.assign(mesh.halfedge_count(), ReleaseReason::contradiction);
+  if (std::count(feature.begin(), feature.end(), no_feature) == ssize(feature)) return;
+  out.turn = turn_to_features(surface, feature, position);
+  const FeatureLines lines = trace_features(surface, feature, ends, out.turn * position);
+  for (const Index h : lines.curved) out.reasons[h] = ReleaseReason::curved;
+  for (const FeatureLine& line : lines.straight) {
+    for (Index i = 0; i < ssize(line.halfedges); ++i) {
+      const Index h = line.halfedges[i];
+      if (i == 0 || line.directions[i] != out.sides.back().direction) {
+        out.sides.push_back({{}, line.directions[i], line.bend, 0, !is_open(mesh, surface.cut_mesh, h), true});
+      }
+      out.sides.back().halfedges.push_back(h);
+      out.sides.back().length += surface.geometry.length[h];
+    }
+  }
+  out.has_axes = !out.sides.empty();
+}
+
 }  // namespace
 
 bool StraightSides::is_bent() const {
@@ -260,11 +294,14 @@ StraightSides find_straight_sides(const CutSurface& surface, const Eigen::Vector
   const HalfedgeMesh& mesh = surface.mesh;
   const CutGraph& cut_graph = surface.cut_graph;
   const CutMesh& cut_mesh = surface.cut_mesh;
-  const auto [most_bend, with_creases] = limits;
+  const auto [most_bend, with_creases, only_marked] = limits;
   const auto may_be_straight = [&, &cut_graph = cut_graph](Index h) {
-    return cut_graph.cut_of[h] == none || is_quarter_turn(rotation[cut_graph.cut_of[h]]);
+    return !is_marked(mesh, h) && (cut_graph.cut_of[h] == none || is_quarter_turn(rotation[cut_graph.cut_of[h]]));
   };
   StraightSides out;
+  if (mesh.has_features()) add_marked_sides(surface, rotation, position, out);
+  const bool has_marked = !out.sides.empty();
+  if (only_marked) return out;
   const Array<Array<Index>> borders = open_boundaries(mesh, cut_mesh);
   Array<Polyline> loops;
   for (const Array<Index>& border : borders) loops.emplace_back(border, true, cut_mesh, position);
@@ -288,11 +325,12 @@ StraightSides find_straight_sides(const CutSurface& surface, const Eigen::Vector
       found.push_back({&crease, run, crease.chord(run), false});
     }
   }
-  out.turn = turn_to_axes(chords_of(found), most_bend);
+  if (!has_marked) out.turn = turn_to_axes(chords_of(found), most_bend);
   // First the sides along the axes of the layout, then those along other axes, at right angles to each other.
   for (Complex turn = out.turn; !found.empty(); turn = turn_to_axes(chords_of(found), most_bend)) {
     const bool is_first = turn == out.turn;
     const auto along = along_axes_of(turn, most_bend, found);
+    if (along == found.end() && is_first && has_marked) continue;  // which determine this turn
     if (along == found.end()) break;
     const bool is_alone = std::next(along) == found.end() && along->run.count == 1;  // already straight
     for (auto side = along; side != found.end(); ++side) {
@@ -312,7 +350,7 @@ StraightSides find_straight_sides(const CutSurface& surface, const Eigen::Vector
     }
     found.erase(along, found.end());
   }
-  out.has_axes = along_axes > telling * length;
+  out.has_axes = has_marked || along_axes > telling * length;
   return out;
 }
 
@@ -339,13 +377,18 @@ Array<std::optional<Complex>> turns_to_axes(const HalfedgeMesh& mesh, const CutM
   return out;
 }
 
-std::ptrdiff_t sort_by_cost(StraightSides& straight) {
-  const auto cost = [](const StraightSide& side) { return side.bend * side.bend * side.length; };
-  std::stable_sort(straight.sides.begin(), straight.sides.end(), [&](const StraightSide& a, const StraightSide& b) {
-    return std::pair(a.is_inside, cost(a)) < std::pair(b.is_inside, cost(b));
-  });
-  return std::count_if(straight.sides.begin(), straight.sides.end(),
-                       [](const StraightSide& side) { return !side.is_inside; });
+SideOrder sort_by_cost(StraightSides& straight) {
+  const auto rank = [](const StraightSide& side) {
+    return std::tuple(!side.is_marked, side.is_inside && !side.is_marked, side.bend * side.bend * side.length);
+  };
+  std::stable_sort(straight.sides.begin(), straight.sides.end(),
+                   [&](const StraightSide& a, const StraightSide& b) { return rank(a) < rank(b); });
+  SideOrder out{0, 0};
+  for (const StraightSide& side : straight.sides) {
+    out.marked += side.is_marked;
+    out.border += side.is_marked || !side.is_inside;
+  }
+  return out;
 }
 
 }  // namespace lsgp

@@ -8,6 +8,7 @@
 
 #include "base/array.hpp"
 #include "cut/cut_mesh.hpp"
+#include "lsgp/result.hpp"
 
 namespace lsgp {
 
@@ -17,24 +18,28 @@ struct StraightSide {
   Complex direction;       // of all of them, a unit vector; exactly along an axis if it nearly is
   double bend;             // the deviation from that direction, radians
   double length;
-  bool is_inside;  // of a crease
+  bool is_inside;          // of a crease
+  bool is_marked = false;  // a feature, or a part of one
 };
 
 struct StraightSides {
   Complex turn = 1;       // of the map: aligns the greatest length of sides with the axes; directions are after it
   bool has_axes = false;  // a considerable part of the boundary is along the axes
   Array<StraightSide> sides;
+  PerHalfedge<ReleaseReason> reasons{};  // why marked features are not among the sides; empty without
 
   // Whether any side deviates from its direction by more than rounding.
   bool is_bent() const;
 };
 
+// Marked features are along the axes nearest to them, after a rotation that aligns them, from corner to corner.
 // rotation: (cuts) of the map's transitions, radians. Cuts that do not turn by a multiple of a quarter have no straight
 // sides, since both could not be along the axes. No sides at all if they would be a small part of the boundary, as on
 // scans.
 struct SideLimits {
   double most_bend;   // radians
   bool with_creases;  // inside
+  bool only_marked;   // features, which may be bent as far as they are nearer to one axis than to the other
 };
 StraightSides find_straight_sides(const CutSurface& surface, const Eigen::VectorXd& rotation,
                                   const Eigen::VectorXcd& position, const SideLimits& limits);
@@ -44,8 +49,13 @@ StraightSides find_straight_sides(const CutSurface& surface, const Eigen::Vector
 Array<std::optional<Complex>> turns_to_axes(const HalfedgeMesh& mesh, const CutMesh& cut_mesh,
                                             const Eigen::VectorXcd& position, const PerTriangle<Index>& island);
 
-// Orders the sides by what they cost relative to their length, creases inside last. Returns the number of the others. A
-// side that is turned or bowed by an angle costs the square of the angle times the square of its length.
-std::ptrdiff_t sort_by_cost(StraightSides& straight);
+// The ends of what is tried first.
+struct SideOrder {
+  std::ptrdiff_t marked, border;
+};
+
+// Orders the sides by what they cost relative to their length, marked features first and creases inside last. A side
+// that is turned or bowed by an angle costs the square of the angle times the square of its length.
+SideOrder sort_by_cost(StraightSides& straight);
 
 }  // namespace lsgp

@@ -50,7 +50,10 @@ void set_coordinate(Index of, double value, Eigen::VectorXcd& position) {
 
 FeatureLayout::FeatureLayout(const FeatureTask& task, const PerHalfedge<char>& feature, const Eigen::VectorXcd& start,
                              double most_l2)
-    : task_(task), unaligned_(start), most_l2_(most_l2) {
+    : task_(task),
+      unaligned_(start),
+      most_l2_(most_l2),
+      reasons_(task.surface.mesh.halfedge_count(), ReleaseReason::contradiction) {
   const HalfedgeMesh& mesh = task_.surface.mesh;
   left_ = std::clamp(attempted_triangles / mesh.triangle_count(), 1, most_attempts);
   is_cone_.assign(mesh.vertex_count(), 0);
@@ -61,23 +64,32 @@ FeatureLayout::FeatureLayout(const FeatureTask& task, const PerHalfedge<char>& f
   held_ = free_all(mesh, task_.surface.cut_mesh, task_.lattice.reduction, PerVertex<char>(mesh.vertex_count(), 0));
   minimize(unaligned_);
   unaligned_ *= turn_to_features(task_.surface, feature, unaligned_);
-  const Array<FeatureLine> lines = trace_features(task_.surface, feature, is_cone_, unaligned_);
-  add(lines, 0, ssize(lines));
+  const FeatureLines traced = trace_features(task_.surface, feature, is_cone_, unaligned_);
+  for (const Index h : traced.curved) reasons_[h] = ReleaseReason::curved;
+  const Array<FeatureLine>& lines = traced.straight;
+  const std::ptrdiff_t marked =
+      std::count_if(lines.begin(), lines.end(), [](const FeatureLine& line) { return line.is_marked; });
+  if (marked > 0) add(lines, 0, marked);
+  add(lines, marked, ssize(lines));
   if (!aligned_.empty()) find_coordinates();
 }
 
 // All of them, or else as many as possible: halves that fail are divided again.
-bool FeatureLayout::add(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end) {
-  if (begin == end || left_ == 0) return false;
-  if (align(lines, begin, end)) return true;
-  if (end - begin <= std::max<std::ptrdiff_t>(1, ssize(lines) / most_parts)) return false;
+void FeatureLayout::add(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  if (begin == end || left_ == 0) return;
+  const std::optional<ReleaseReason> reason = align(lines, begin, end);
+  if (!reason) return;
+  for (std::ptrdiff_t i = begin; i < end; ++i) {
+    for (const Index h : lines[i].halfedges) reasons_[h] = *reason;
+  }
+  if (end - begin <= std::max<std::ptrdiff_t>(1, ssize(lines) / most_parts)) return;
   const std::ptrdiff_t middle = begin + (end - begin) / 2;
   add(lines, begin, middle);
   add(lines, middle, end);
-  return false;
 }
 
-bool FeatureLayout::align(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end) {
+std::optional<ReleaseReason> FeatureLayout::align(const Array<FeatureLine>& lines, std::ptrdiff_t begin,
+                                                  std::ptrdiff_t end) {
   --left_;
   Array<FeatureLine> more = aligned_;
   more.insert(more.end(), lines.begin() + begin, lines.begin() + end);
@@ -89,17 +101,17 @@ bool FeatureLayout::align(const Array<FeatureLine>& lines, std::ptrdiff_t begin,
     position = FreedomSystem(task_.surface, freedom).fit(jacobians);
   } catch (const Error& error) {
     if (error.code() != Code::solver_failed) throw;
-    return false;
+    return ReleaseReason::contradiction;
   }
   held_ = std::move(freedom);
-  if (!position.allFinite() || !minimize(position)) return false;
+  if (!position.allFinite() || !minimize(position)) return ReleaseReason::contradiction;
   if (l2_stretch(task_.surface.geometry, measure_jacobians(task_.surface, task_.surface.cut_mesh, position)) >
       most_l2_) {
-    return false;
+    return ReleaseReason::stretch;
   }
   aligned_ = std::move(more);
   start_ = std::move(position);
-  return true;
+  return std::nullopt;
 }
 
 DirectedEdges FeatureLayout::edges_of(const Array<FeatureLine>& lines) const {

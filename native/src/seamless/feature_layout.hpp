@@ -7,10 +7,11 @@
 #include <optional>
 
 #include "base/array.hpp"
+#include "lsgp/result.hpp"
 #include "prescription/curvature.hpp"
+#include "repair/feature_lines.hpp"
 #include "repair/line_constraints.hpp"
 #include "repair/newton.hpp"
-#include "seamless/feature_lines.hpp"
 #include "seamless/lattice_transitions.hpp"
 #include "seamless/whole_values.hpp"
 #include "solvers/cholesky.hpp"
@@ -28,8 +29,9 @@ struct FeatureTask {
 
 class FeatureLayout {
  public:
-  // start: (copies) a valid map of the surface's area, without a lattice.  most_l2: the largest stretch that features
-  // may cost. As many as possible run along the axes, those of least cost first.
+  // feature: the FeatureKind of halfedges.  start: (copies) a valid map of the surface's area, without a lattice.
+  // most_l2: the largest stretch that features may cost. As many as possible run along the axes, marked ones before
+  // others, those of least cost first.
   FeatureLayout(const FeatureTask& task, const PerHalfedge<char>& feature, const Eigen::VectorXcd& start,
                 double most_l2);
 
@@ -37,6 +39,8 @@ class FeatureLayout {
   bool is_aligned() const { return factor_.has_value(); }
   // The start with features along the axes.
   const Eigen::VectorXcd& start() const { return start_; }
+  // Why halfedges of features do not; of the others it has no meaning.
+  const PerHalfedge<ReleaseReason>& reasons() const { return reasons_; }
 
   // The layout with about `density` cells a unit of length, with cones and translations on the lattice. Features are on
   // lines of the lattice or, where cells are too large for that, at multiples of 1 / 256 of a cell. None where no such
@@ -56,8 +60,9 @@ class FeatureLayout {
     double cost;
   };
 
-  bool add(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end);
-  bool align(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end);
+  void add(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end);
+  // None if all of them run along axes then, otherwise why they do not.
+  std::optional<ReleaseReason> align(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end);
   DirectedEdges edges_of(const Array<FeatureLine>& lines) const;
   void find_coordinates();
   void find_lattice_coordinates();
@@ -72,6 +77,7 @@ class FeatureLayout {
   Eigen::VectorXcd unaligned_;  // relaxed, with features near the axes
   const double most_l2_;
   int left_ = 0;  // attempts
+  PerHalfedge<ReleaseReason> reasons_;
   Array<FeatureLine> aligned_;
   Eigen::VectorXcd start_;
   Array<Array<Index>> lines_;  // coordinates, 2 copy for u and 2 copy + 1 for v, that are the same

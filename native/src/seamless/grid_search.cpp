@@ -43,7 +43,7 @@ void report_growth(double growth, std::vector<Finding>& findings) {
 GridSearch::GridSearch(const Options& options, PointLattice lattice, Array<SeamlessComponent>& components,
                        ProgressMonitor& monitor)
     : parity_(options.seamless->parity),
-      features_(options.straighten),
+      creases_(options.straighten),
       lattice_(lattice),
       components_(components),
       monitor_(monitor),
@@ -176,7 +176,7 @@ std::optional<QuantizedLayout> GridSearch::quantize(std::size_t component, doubl
 
 void GridSearch::prepare(std::size_t component) {
   const SeamlessComponent& of = components_[component];
-  const LatticeDemands demands{lattice_, parity_, relaxed_[component], of.task->directions, features_};
+  const LatticeDemands demands{lattice_, parity_, relaxed_[component], of.task->directions, creases_};
   quantizers_[component] = std::make_unique<LayoutQuantizer>(*of.system, *of.map, demands, step_);
 }
 

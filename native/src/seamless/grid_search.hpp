@@ -32,6 +32,9 @@ class GridSearch {
   const Array<Index>& relaxed(std::size_t component) const { return relaxed_[component]; }
 
   double energy(std::size_t component, const Eigen::VectorXcd& position) const;
+  PerHalfedge<ReleaseReason> release_reasons(std::size_t component, const Grid& grid) const {
+    return quantizers_[component]->release_reasons(grid.layouts[component]);
+  }
 
   // The largest growth of a component's energy.
   double growth(const Grid& grid) const;
@@ -69,7 +72,7 @@ class GridSearch {
   // One of the cones takes up the curvature of both: the one whose own is nearer to that.
   bool merge(const ConePair& pair, const Options& options);
 
-  const bool parity_, features_;
+  const bool parity_, creases_;
   const PointLattice lattice_;
   Array<SeamlessComponent>& components_;
   ProgressMonitor& monitor_;

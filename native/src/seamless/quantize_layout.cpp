@@ -78,7 +78,7 @@ LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, Borrowed<const Compone
                         turns_of_cuts(rotation_, lattice_.rotation_order()), {lattice_, demands.parity, relaxed});
   motion_of_copies_ = motion_of_copies(mesh_, cut_graph_, cut_mesh_, rotation_);
   set_start(map);
-  if (demands.features && relaxed.empty() && lattice_.rotation_order() == 4) align_features();
+  if (relaxed.empty() && lattice_.square()) align_features();
   integers_ = integers_of(start_);
 
   const double integers = static_cast<double>(integers_.size());
@@ -125,17 +125,24 @@ void LayoutQuantizer::set_start(const ComponentMap& map) {
   strain_ = triangle_energies(1, jacobians);
 }
 
-// Leaves features_ empty on soft surfaces and where no feature can be aligned.
+// Leaves features_ empty on soft surfaces without marked features and where no feature can be aligned.
 void LayoutQuantizer::align_features() {
   constexpr double most_growth = 1.1;  // of the L2 stretch
-  const PerHalfedge<char> feature = find_features({mesh_, geometry_});
-  if (std::find(feature.begin(), feature.end(), 1) == feature.end()) return;
+  const PerHalfedge<char> feature =
+      features_to_align({mesh_, geometry_}, demands_.creases && lattice_.rotation_order() == 4);
+  if (std::count(feature.begin(), feature.end(), no_feature) == ssize(feature)) return;
   const double l2 = l2_stretch(geometry_, measure_jacobians({mesh_, geometry_}, cut_mesh_, start_));
   most_l2_ = most_growth * l2;
   features_ = std::make_unique<FeatureLayout>(FeatureTask{surface(), curvature_, rotation_, reduction_, before_step_},
                                               feature, start_, most_l2_);
+  release_reasons_ = features_->reasons();
   if (!features_->is_aligned()) return features_.reset();
   energy_ = std::max(energy_, measure_energy(features_->start()));
+}
+
+PerHalfedge<ReleaseReason> LayoutQuantizer::release_reasons(const QuantizedLayout& layout) const {
+  if (features_ == nullptr || layout.has_features) return release_reasons_;
+  return PerHalfedge<ReleaseReason>(mesh_.halfedge_count(), ReleaseReason::lattice);
 }
 
 std::optional<QuantizedLayout> LayoutQuantizer::quantize_with_features(double density,

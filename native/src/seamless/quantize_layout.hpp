@@ -48,7 +48,7 @@ struct LatticeDemands {
   bool parity;                          // translations lead from white cells to white ones
   const Array<Index>& relaxed;          // cones that need not lie on the lattice
   const TextureDirections& directions;  // what v is to run along
-  bool features;                        // are to run along lines of the lattice
+  bool creases;                         // run along lines of the lattice, as marked features do
 };
 
 // The layouts of one map on grids of any size. What does not depend on the size is computed once.
@@ -65,6 +65,8 @@ class LayoutQuantizer {
   double energy() const { return energy_; }
 
   bool has_features() const { return features_ != nullptr; }
+  // Why features of halfedges that do not run along an axis of a layout do not; empty: none does on this lattice.
+  PerHalfedge<ReleaseReason> release_reasons(const QuantizedLayout& layout) const;
 
   // The nearest first; closed surfaces.
   const Array<ConePair>& cone_pairs() const { return cone_pairs_; }
@@ -133,6 +135,7 @@ class LayoutQuantizer {
   Eigen::VectorXcd integers_;                      // (d) at the start
   std::unique_ptr<LatticeEnergy> lattice_energy_;  // of the Dirichlet form, stiffened around cones
   std::unique_ptr<FeatureLayout> features_;        // or null
+  PerHalfedge<ReleaseReason> release_reasons_;     // without a lattice, or empty
   double most_l2_ = 0;                             // stretch with features along the lattice
   Array<ConePair> cone_pairs_;
   std::optional<LatticeSearch> search_;

@@ -95,6 +95,7 @@ class FeatureReport {
       all_ += length;
       if (edge.real() == 0 || edge.imag() == 0) continue;
       off_ += length;
+      if (mesh.has_features() && mesh.feature[h]) continue;  // which are reported with all others that are marked
       most_ = std::max(most_, std::abs(std::remainder(std::arg(edge), M_PI / 2)));
       edges_.push_back(component.source_vertex[mesh.origin(h)]);
       edges_.push_back(component.source_vertex[mesh.target(h)]);
@@ -176,6 +177,7 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
     after += component.system->geometry().total_area *
              (std::isfinite(stored_energy) ? stored_energy : grid.layouts[i].energy);
     component.map->position *= seamless.cell;
+    component.map->release_reasons = search.release_reasons(i, grid);
   }
   report_cones_given_up(report, findings);
   if (!failures.empty()) leave_out(failures, components, findings);

@@ -171,7 +171,7 @@ def test_options_that_name_files_of_one_mesh_are_refused(library, tmp_path):
     assert run(library / "list.txt", "--out", out, "--cones", library / "cones.json") == 3
     (line,) = lines_of(out)
     assert (line["status"], line["code"]) == ("refused", "WRONG_USAGE")
-    assert "cones, seams and weights are those of the meshes" in line["message"]
+    assert "cones, seams, features and weights are those of the meshes" in line["message"]
 
 
 def density_in_world(obj, texture_size):

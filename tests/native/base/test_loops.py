@@ -239,9 +239,10 @@ REVIEWED = {
         ),
     ],
     "seamless/feature_layout.cpp": [("for (;;)", "each round rounds a coordinate, or ends it", OWN)],
-    "seamless/feature_lines.cpp": [
+    "repair/feature_lines.cpp": [
         ("for (Index at = next(h);; at = next(mesh_.twin[at]))", AROUND_A_VERTEX, SHORT),
         ("for (Index h = first; h != none && !is_traced_[h]; h = following(h))", ONCE_EACH, SHORT),
+        ("while (!is_border(prev(h)))", AROUND_A_VERTEX, SHORT),
     ],
     "seamless/whole_values.cpp": [
         ("for (;;)", "Euclid's algorithm: each round lowers the smallest coefficient, or ends it", OWN),

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Edges that are to run straight along u or v."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import arguments
+from .api import Surface
+from .arguments import FloatArray, IndexArray
+
+
+def feature_edges(
+    surface: Surface, *, angle: float | None = None, seams: bool = False, borders: bool = False
+) -> IndexArray:
+    """Edges for `Surface.features`, (f, 2) int32, the lower vertex first, sorted: those that are any of the following.
+
+    angle: edges at which the surface bends by at least this, radians, between the normals of two triangles, and which
+        are among `Surface.edges`; None: no such edges. seams: those of the surface. borders: edges of one triangle
+        alone, and `Surface.borders`.
+    Raises InputError.
+    """
+    arguments.require_type("surface", surface, Surface)
+    arguments.require_indices("triangles", surface.triangles, len(surface.positions))
+    found = [np.empty((0, 2), np.int32)]
+    sides = np.stack([surface.triangles, np.roll(surface.triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
+    keys = _keys(surface, sides)
+    order = np.argsort(keys, kind="stable")
+    _, begin, count = np.unique(keys[order], return_index=True, return_counts=True)
+    if angle is not None:
+        least = arguments.positive("angle", angle, "pass an angle above 0, at most pi")
+        first, second = (order[begin[count == 2] + i] for i in range(2))
+        bent = sides[first[_bends(surface, sides, first, second) >= least]]
+        if surface.edges is not None:
+            bent = bent[np.isin(_keys(surface, bent), _keys(surface, surface.edges))]
+        found.append(bent)
+    if arguments.flag("seams", seams):
+        found.append(surface.seams)
+    if arguments.flag("borders", borders):
+        found += [sides[order[begin[count == 1]]], surface.borders]
+    return np.unique(np.sort(np.concatenate(found), axis=1), axis=0).astype(np.int32)
+
+
+def _keys(surface: Surface, edges: IndexArray) -> NDArray[np.int64]:
+    """A number for each pair of vertices, whatever their order."""
+    ends = np.sort(edges, axis=1).astype(np.int64)
+    return ends[:, 0] * len(surface.positions) + ends[:, 1]
+
+
+def _bends(surface: Surface, sides: IndexArray, first: NDArray[np.intp], second: NDArray[np.intp]) -> FloatArray:
+    """Angles between the normals on both sides of edges, whatever the orientation of triangles; 0 beside triangles
+    without area. first, second: the edges' sides, three of each triangle."""
+    corners = surface.positions[surface.triangles]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    a, b = normal[first // 3], normal[second // 3]
+    b = np.where((sides[first] == sides[second]).all(axis=1, keepdims=True), -b, b)
+    return np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), (a * b).sum(axis=1))

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The option for edges that are to run straight along u or v."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..api import Surface
+from ..arguments import IndexArray
+from ..features import feature_edges
+from ..io.side_files import UsageError, load_json, pairs_in
+
+_CREASE, _SHARP, _SEAMS, _BORDERS = "crease", "sharp", "seams", "borders"
+
+
+@dataclass(frozen=True, slots=True)
+class FeatureKinds:
+    """Which edges are features. angle: least angle between the normals at a crease, radians; None for no creases."""
+
+    angle: float | None = None
+    sharp: bool = False
+    seams: bool = False
+    borders: bool = False
+
+    def edges_of(self, surface: Surface, sharp: IndexArray) -> IndexArray:
+        """For `Surface.features`.  sharp: (s, 2), the edges marked sharp.  Raises InputError."""
+        found = feature_edges(surface, angle=self.angle, seams=self.seams, borders=self.borders)
+        if not self.sharp:
+            return found
+        return np.unique(np.concatenate([found, np.sort(sharp, axis=1)]), axis=0).astype(np.int32)
+
+
+def add_features_option(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--features",
+        metavar="FILE.json|KIND,...",
+        type=_features_option,
+        help="edges that run straight along u or v, as far as they do not contradict each other and cost at most a "
+        "tenth of L2 stretch: [[a, b], ...], or by kind: crease:ANGLE, edges with that angle between the normals, in "
+        "degrees, or more; seams, those of --seam-edges; borders; and, in Blender's batches, sharp, those marked so "
+        "(default: none)",
+    )
+
+
+def feature_kinds(text: str | None) -> FeatureKinds | None:
+    """The kinds that the option names; None where it names a file, or is not given.  Raises ArgumentTypeError."""
+    names = [] if text is None else [part.partition(":") for part in text.split(",")]
+    if not names or any(name not in {_CREASE, _SHARP, _SEAMS, _BORDERS} for name, _, _ in names):
+        return None
+    given = {name: value for name, _, value in names}
+    for name, value in given.items():
+        if value and name != _CREASE:
+            raise argparse.ArgumentTypeError(f"'{name}:{value}': {name} has no value")
+    angle = None
+    if _CREASE in given:
+        angle = _degrees(given[_CREASE])
+    return FeatureKinds(angle, _SHARP in given, _SEAMS in given, _BORDERS in given)
+
+
+def features_file(text: str | None) -> Path | None:
+    """The file that the option names; None where it names kinds, or is not given."""
+    return None if text is None or feature_kinds(text) is not None else Path(text)
+
+
+def features_of(text: str | None, surface: Surface) -> IndexArray:
+    """What the option says of a mesh file, for `Surface.features`.  Raises OSError, UsageError, InputError."""
+    kinds = feature_kinds(text)
+    if kinds is None:
+        path = features_file(text)
+        return np.empty((0, 2), np.int32) if path is None else pairs_in(load_json(path), path, "feature vertex")
+    if kinds.sharp:
+        raise UsageError("--features sharp: files of this format mark no edges sharp; name the edges in a file")
+    return kinds.edges_of(surface, np.empty((0, 2), np.int32))
+
+
+def _features_option(text: str) -> str:
+    feature_kinds(text)
+    return text
+
+
+def _degrees(text: str) -> float:
+    """In radians."""
+    try:
+        angle = float(text)
+    except ValueError:
+        angle = math.nan
+    if not 0 < angle <= 180:
+        raise argparse.ArgumentTypeError(f"'crease:{text}': ANGLE is in degrees, above 0 and at most 180")
+    return math.radians(angle)

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What became of marked features.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "base/array.hpp"
+#include "pipeline/component_map.hpp"
+
+namespace lsgp {
+
+class MarkedFeatures {
+ public:
+  // The features of a component in the finished layout.  corners: (3m) positions u + iv.
+  void add(const Component& component, const ComponentMap& map, const CornerPositions& corners,
+           const Positions& positions);
+
+  // None without features. Names those that were released among the findings.
+  std::optional<FeatureReport> report(std::vector<Finding>& findings) const;
+
+ private:
+  static constexpr std::size_t reason_count = 5;
+
+  double length_of(const std::vector<Index>& path) const;
+
+  const Positions* positions_ = nullptr;
+  double length_ = 0;
+  std::array<Array<Index>, reason_count> released_;  // edges by reason
+};
+
+}  // namespace lsgp

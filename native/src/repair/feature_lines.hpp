@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Features in a layout, marked edges and creases of hard surfaces, and the axes along which they nearly run.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "base/array.hpp"
+#include "cut/cut_mesh.hpp"
+
+namespace lsgp {
+
+// Edges of a feature from one corner, junction or cone to the next.
+struct FeatureLine {
+  Array<Index> halfedges;     // one of each edge
+  Array<Complex> directions;  // the axis of each in the layout: 1, i, -1 or -i
+  double bend = 0;            // root mean square of the edges' angles to it, radians
+  double length = 0;          // on the surface
+  bool is_marked = false;
+};
+
+struct FeatureLines {
+  Array<FeatureLine> straight;  // edges are nearer to one axis than to the other; marked ones, then those of least cost
+                                // first, the square of the bend times the length
+  Array<Index> curved;          // halfedges of the others
+};
+
+// The rotation of a layout that aligns its features, marked ones if there are any, with the axes in the least squares
+// sense.  feature: the FeatureKind of halfedges.
+Complex turn_to_features(const CutSurface& surface, const PerHalfedge<char>& feature, const Eigen::VectorXcd& position);
+
+// ends: vertices at which lines end in addition, (n).
+FeatureLines trace_features(const CutSurface& surface, const PerHalfedge<char>& feature, const PerVertex<char>& ends,
+                            const Eigen::VectorXcd& position);
+
+}  // namespace lsgp

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Marked edges become straight lines along u or v of maps of low stretch, inside islands and at their borders."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import lsgp
+import meshes
+import numpy as np
+import pytest
+from map_checks import assert_angles_met, assert_exact_transitions, codes, surface
+from meshes import Mesh
+from numpy.typing import NDArray
+from zoo import closed
+
+PAINT = lsgp.preset_options("paint")
+LOW_STRETCH = lsgp.Options(mode="low-stretch")
+MOST_L2 = 1.1  # of the stretch without
+
+
+def edges_at(mesh: Mesh, is_on: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Edges both of whose ends are among these vertices."""
+    edges = meshes.edges_of(mesh.triangles)
+    return edges[is_on[edges].all(axis=1)]
+
+
+def off_axis(mesh: Mesh, result: lsgp.Result, edges: NDArray[np.integer]) -> float:
+    """The most that a side of these edges is off u and v, as stored in float32."""
+    uv = result.corner_uv.astype(np.float32).astype(float)
+    sides = np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
+    both = np.stack([uv, np.roll(uv, -1, axis=1)], axis=-2).reshape(-1, 2, 2)
+    keys, wanted = (np.sort(pairs, axis=1).astype(int) @ [len(mesh.positions), 1] for pairs in (sides, edges))
+    return float(np.abs(np.diff(both[np.isin(keys, wanted)], axis=1)).min(axis=-1).max())
+
+
+def dome(cells: int = 10) -> Mesh:
+    return meshes.grid(cells, cells, lambda x, y: np.sin(np.pi * x / cells) * np.sin(np.pi * y / cells))
+
+
+def test_a_path_across_a_dome_is_straight() -> None:
+    mesh = dome()
+    path = edges_at(mesh, np.isclose(mesh.positions[:, 0], 3))
+    marked = replace(surface(mesh), features=path)
+    plain, along = (lsgp.parameterize(each, (), options=LOW_STRETCH) for each in (surface(mesh), marked))
+    assert off_axis(mesh, plain, path) > 1e-3
+    assert off_axis(mesh, along, path) == 0
+    assert along.features == lsgp.FeatureReport(1.0, [])
+    assert along.distortion.l2_stretch <= MOST_L2 * plain.distortion.l2_stretch
+    assert_angles_met(mesh, along)
+
+
+def test_marked_borders_are_straight() -> None:
+    mesh = dome()
+    edges = lsgp.feature_edges(surface(mesh), borders=True)
+    marked = replace(surface(mesh), features=edges)
+    result = lsgp.parameterize(marked, (), options=LOW_STRETCH)
+    assert off_axis(mesh, result, edges) == 0 and result.features.share == 1
+
+
+def test_a_loop_around_a_closed_surface_with_cones_is_straight() -> None:
+    """In parts, one on each side of every cut that turns the texture."""
+    mesh = closed.box(5, (1, 1.37, 2.11))
+    loop = edges_at(mesh, np.isclose(mesh.positions[:, 2], np.unique(mesh.positions[:, 2])[2]))
+    marked = replace(surface(mesh), features=loop)
+    plain, along = (lsgp.auto_unwrap(each, preset="paint", options=PAINT) for each in (surface(mesh), marked))
+    assert along.features.share > 0.9
+    assert along.distortion.l2_stretch <= MOST_L2 * plain.distortion.l2_stretch
+    assert_exact_transitions(mesh, along)
+    assert_angles_met(mesh, along)
+
+
+def test_what_the_other_options_do_with_marked_edges() -> None:
+    mesh = dome(6)
+    path = edges_at(mesh, np.isclose(mesh.positions[:, 0], 3))
+    marked = replace(surface(mesh), features=path)
+    conformal = lsgp.parameterize(marked, ())
+    assert [feature.reason for feature in conformal.features.released] == ["unsupported"]
+    assert conformal.features.share == pytest.approx(0, abs=1e-12) and "FEATURES_RELEASED" in codes(conformal.warnings)
+    np.testing.assert_array_equal(conformal.corner_uv, lsgp.parameterize(surface(mesh), ()).corner_uv)
+    for options in (replace(LOW_STRETCH, straighten=True), replace(PAINT, compact="full")):
+        result = lsgp.parameterize(marked, (), options=options)
+        assert off_axis(mesh, result, path) == 0 and result.features.share == 1
