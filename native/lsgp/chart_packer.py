@@ -11,8 +11,10 @@ Places are complex numbers, u + iv.
 from __future__ import annotations
 
 import math
+import os
 import time
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -40,9 +42,11 @@ _NARROWED = 0.01
 _NO_AREA = 1e-5
 _LEAST_BOX = 0.01
 _MOST_AROUND = 2000
-# Seconds. When an atlas is freed, xatlas wakes its threads without their lock, and waits for ever for one that is just
-# falling asleep, as all are after the last chart. Nothing else can free it safely, or pack without threads.
-_SETTLING = 0.005
+# When an atlas is freed, xatlas wakes its threads without their lock, and waits for ever for one that is just falling
+# asleep, as all are after the last chart. Nothing else can free it safely, or pack without threads: they are waited for
+# where the system tells what threads do, up to so many seconds, and elsewhere for so many.
+_MOST_SETTLING, _SETTLING = 1.0, 0.005
+_TASKS = Path("/proc/self/task")
 _QUARTER_TURNS = np.array([1, 1j, -1, -1j])
 _TINY = np.finfo(float).tiny
 
@@ -234,6 +238,7 @@ class Packer:
 def _run(charts: Islands, inside: int, padding: int) -> ComplexArray | None:
     """(n,), where xatlas puts vertices, in texels; None if they do not fit into the square."""
     xatlas = find_xatlas()
+    others = _threads()
     atlas = xatlas.Atlas()
     positions = np.stack([charts.place.real, charts.place.imag], axis=1).astype(np.float32)
     # As if each island had a material of its own, or those with corners at the same place would be one.
@@ -250,8 +255,34 @@ def _run(charts: Islands, inside: int, padding: int) -> ComplexArray | None:
         vertices, _, uv = atlas[0]
         found = np.empty(len(charts.place), np.complex128)
         found[vertices] = uv[:, 0].astype(np.float64) * atlas.width + 1j * (uv[:, 1].astype(np.float64) * atlas.height)
-    time.sleep(_SETTLING)
+    _settle(others)
     return found
+
+
+def _threads() -> frozenset[str]:
+    """Of this process; empty where the system does not tell."""
+    try:
+        return frozenset(os.listdir(_TASKS))
+    except OSError:
+        return frozenset()
+
+
+def _settle(others: frozenset[str]) -> None:
+    """Wait until all threads but these sleep."""
+    if not others:
+        time.sleep(_SETTLING)
+        return
+    end = time.monotonic() + _MOST_SETTLING
+    while not all(map(_is_asleep, _threads() - others)) and time.monotonic() < end:
+        time.sleep(_SETTLING / 10)
+
+
+def _is_asleep(thread: str) -> bool:
+    try:
+        state = (_TASKS / thread / "stat").read_text()
+    except OSError:  # it has ended
+        return True
+    return state.rpartition(")")[2].split()[0] == "S"
 
 
 def find_xatlas() -> Any:

@@ -256,7 +256,8 @@ def _completed(task: UnwrapTask, cones: ConeAngles, pins: lsgp.Pins | None, prog
 
 def _with_one_stretch(result: lsgp.Result, task: UnwrapTask) -> list[lsgp.Finding]:
     """The warnings with the measured stretch instead of the predicted one, and with a remedy."""
-    others = [finding for finding in result.warnings if finding.code != HIGH_DISTORTION]
+    # Where faces are named, smaller tiles are the remedy.
+    others = [f for f in result.warnings if f.code != HIGH_DISTORTION or f.elements.kind == "triangles"]
     warned = len(others) < len(result.warnings)
     stretch = result.distortion.l2_stretch
     if not len(result.cones) and not stretch < NEEDS_CONES and not task.completes:

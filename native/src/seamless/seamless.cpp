@@ -7,6 +7,7 @@
 #include "base/text.hpp"
 #include "creases/features.hpp"
 #include "plane/layout.hpp"
+#include "plane/predicates.hpp"
 #include "seamless/exact_layout.hpp"
 #include "seamless/grid_search.hpp"
 #include "split/split_map.hpp"
@@ -124,6 +125,48 @@ class FeatureReport {
   Array<Index> edges_;                   // off the axes, as the caller's vertices
 };
 
+// Components that take up more of the layout than the size of the tiles says, as small ones do on a common grid.
+class OversizeReport {
+ public:
+  explicit OversizeReport(double density) : density_(density) {}
+
+  void add(const SeamlessComponent& component) {
+    const HalfedgeMesh& mesh = component.source->mesh;
+    const Eigen::VectorXcd& position = component.map->position;
+    const PerHalfedge<Index>& copy = component.map->cut_mesh.copy_of_corner;
+    double area = 0;  // cells
+    for (Index f = 0; f < mesh.triangle_count(); ++f) {
+      area += 0.5 * doubled_area(position[copy[3 * f]], position[copy[3 * f + 1]], position[copy[3 * f + 2]]);
+    }
+    const double scale = std::sqrt(std::abs(area) / component.system->geometry().total_area) / density_;
+    if (!(scale > most_scale)) return;
+    ++components_;
+    worst_ = std::max(worst_, scale);
+    const PerTriangle<Index>& triangles = component.source->source_triangle;
+    triangles_.insert(triangles_.end(), triangles.begin(), triangles.end());
+  }
+
+  void report(std::vector<Finding>& findings) {
+    if (components_ == 0) return;
+    std::sort(triangles_.begin(), triangles_.end());
+    findings.push_back(
+        {Code::high_distortion,
+         concat("Tiles are up to ", rounded(worst_, 3), " times smaller than elsewhere on ",
+                count(components_, "component", "components"),
+                ", which would be smaller than a tile otherwise. Use smaller tiles, or unwrap small components "
+                "separately."),
+         {ElementKind::triangles, std::move(triangles_)}});
+  }
+
+ private:
+  static constexpr double most_scale = 2;
+
+  const double density_;  // cells, of a unit of length
+  int components_ = 0;
+  double worst_ = 1;
+  Array<Index> triangles_;
+};
+
 SeamlessReport lay_out(const Options& options, double unit_scale, Array<SeamlessComponent>& components,
                        std::vector<Finding>& findings, ProgressMonitor& monitor) {
   const Seamless& seamless = *options.seamless;
@@ -151,6 +194,7 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
   report.cell = seamless.cell;
   double area = 0, before = 0, after = 0;
   FeatureReport features;
+  OversizeReport oversize(grid.density);
   Array<Failure> failures;
   for (std::size_t i = 0; i < components.size(); ++i) {
     const SeamlessComponent& component = components[i];
@@ -176,6 +220,7 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
     const double stored_energy = search.energy(i, component.map->position);
     after += component.system->geometry().total_area *
              (std::isfinite(stored_energy) ? stored_energy : grid.layouts[i].energy);
+    oversize.add(component);
     component.map->position *= seamless.cell;
     component.map->release_reasons = search.release_reasons(i, grid);
   }
@@ -183,6 +228,7 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
   if (!failures.empty()) leave_out(failures, components, findings);
   report.feature_share = features.aligned_share();
   features.report_off_lattice(findings);
+  oversize.report(findings);
   report.energy_before = before / area;
   report.energy_after = after / area;
   return report;

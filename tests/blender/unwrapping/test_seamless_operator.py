@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Seamless layouts as Blender stores them: both sides of every cut match to the last bit, also on moved islands."""
 
+import re
+
 import bpy
 import numpy as np
 import pytest
@@ -13,6 +15,7 @@ from scenes import (
     add_texture,
     changed,
     edit,
+    joined,
     pin,
     plain_copy,
     set_uv,
@@ -368,3 +371,13 @@ def test_one_failure_does_not_stop_the_others(pack):
     assert changed(before, snapshot(bad)) == set()
     assert UvMap(good).tile_error() == 0
     assert extent(good) > 10
+
+
+def test_a_part_that_is_smaller_than_a_tile_is_told(reports):
+    cube, small = add_cone_cube(), add_cone_cube("Small")
+    for vertex in small.data.vertices:
+        vertex.co *= 0.01
+    joined(cube, small)
+    reports()
+    unwrap(tiles=4.0)
+    assert re.search(r"Tiles are up to [\d.]+ times smaller than elsewhere on 1 component", reports())

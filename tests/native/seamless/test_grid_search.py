@@ -131,6 +131,28 @@ def test_a_grid_beyond_the_bound_says_so(scale: float) -> None:
         assert told and float(told[1]) == pytest.approx(growth, rel=0.02)
 
 
+@pytest.mark.parametrize("sides", [(1, 0.7), (1, 0.1), (1, 0.1, 0.01), (1, 1e-3, 2)])
+def test_parts_larger_than_their_tiles_say_are_named(sides: tuple[float, ...]) -> None:
+    """Cubes, each of whole tiles however small it is; 1 would be the scale of a layout in tiles."""
+    cubes = [meshes.cube(2)._replace(positions=meshes.cube(2).positions * side) for side in sides]
+    mesh = meshes.merge(cubes)
+    result = lsgp.parameterize(surface(mesh), mesh.cones, None, SQUARE)
+    part = np.repeat(np.arange(len(cubes)), len(cubes[0].triangles))
+    corners = mesh.positions[mesh.triangles]
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    z = result.corner_uv @ (1, 1j)
+    uv_area = np.imag((z[:, 1] - z[:, 0]).conj() * (z[:, 2] - z[:, 0]))
+    scale = np.sqrt(np.bincount(part, uv_area) / np.bincount(part, area)) * result.seamless.tile_size
+    assert scale.min() == pytest.approx(1, abs=0.3)
+    too_large = np.flatnonzero(np.isin(part, np.flatnonzero(scale > 2)))
+    if not len(too_large):
+        assert "HIGH_DISTORTION" not in codes(result.warnings)
+        return
+    warning = only(result.warnings, "HIGH_DISTORTION")
+    assert warning.elements.kind == "triangles" and warning.elements.indices.tolist() == too_large.tolist()
+    assert float(re.search(r"up to (\S+) times", warning.message)[1]) == pytest.approx(scale.max(), rel=0.01)
+
+
 # --- what single precision cannot hold --------------------------------------------------------------------------------
 
 
