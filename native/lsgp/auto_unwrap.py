@@ -27,7 +27,7 @@ from .api import (
 from .arguments import FloatArray, IndexArray
 from .errors import Cancelled, Finding, InputError, LsgpError
 from .ledger import LedgerPart, build_ledger, surface_of_triangles
-from .map_comparison import may_replace_for_features, may_replace_map, runs_along_features
+from .map_comparison import may_replace_for_features, may_replace_map, releases_features, runs_along_features
 from .packing import Pack, Packing, Stack, laid_out
 from .texels import TexelLayout, at_texel_density, tiny_findings
 
@@ -338,8 +338,8 @@ def best_map(
         if along is not None and not runs_along_features(along):
             along = None
     # Creases along the lattice take time: they are tried with the cones that are chosen.
-    # Marked ones that are released run along it through other cones, perhaps.
-    is_chosen = for_features is None or (along is None and not others) or _releases_marked(along)
+    # Those that are released run along it through other cones, perhaps.
+    is_chosen = for_features is None or (along is None and not others) or releases_features(along)
     tried = options if is_chosen else replace(options, straighten=False)
     best = usual, _map_through(solver, usual, tried, pins, next(stages))
     for i, other in enumerate(others, start=2 + (for_features is not None)):
@@ -352,10 +352,6 @@ def best_map(
     elif not is_chosen:
         best = best[0], _map_through(solver, best[0], options, pins, next(stages))
     return best[0], best[0].told(best[1], options)
-
-
-def _releases_marked(along: Result | None) -> bool:
-    return along is not None and along.features is not None and len(along.features.released) > 0
 
 
 def _map_through(
