@@ -31,6 +31,7 @@ from .map_comparison import (
     may_replace_for_features,
     may_replace_map,
     mirrored_cuts_cost_islands,
+    releases_features,
     runs_along_features,
     saves_islands,
 )
@@ -349,8 +350,8 @@ def best_map(
         if along is not None and not runs_along_features(along):
             along = None
     # Creases along the lattice take time: they are tried with the cones that are chosen.
-    # Marked ones that are released run along it through other cones, perhaps.
-    is_chosen = for_features is None or (along is None and not others) or _releases_marked(along)
+    # Those that are released run along it through other cones, perhaps.
+    is_chosen = for_features is None or (along is None and not others) or releases_features(along)
     tried = options if is_chosen else replace(options, straighten=False)
     best = usual, _map_through(solver, usual, tried, pins, next(stages))
     for i, other in enumerate(others, start=2 + (for_features is not None)):
@@ -379,10 +380,6 @@ def best_map(
 def _may_free_cuts(alike: CompletedCones, usual: CompletedCones, options: Options) -> bool:
     """Whether a map through symmetric cones may have other cuts, and then is not the usual one."""
     return not options.mirrored_cuts and set(alike.cones.tolist()) != set(usual.cones.tolist())
-
-
-def _releases_marked(along: Result | None) -> bool:
-    return along is not None and along.features is not None and len(along.features.released) > 0
 
 
 def _map_through(

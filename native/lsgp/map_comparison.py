@@ -37,6 +37,7 @@ _MOST_PACKED = 32
 # The same for creases along the lattice, and what share of their length has to lie there.
 _MOST_L2_FOR_FEATURES = 1.1
 _LEAST_FEATURES = 0.25
+_MOST_FEATURES = 0.95
 
 
 def may_replace_map(
@@ -102,6 +103,11 @@ def runs_along_features(result: Result) -> bool:
     return _feature_share(result) >= _LEAST_FEATURES
 
 
+def releases_features(result: Result | None) -> bool:
+    """Whether a seamless map has more than a twentieth of that length off its lattice."""
+    return result is not None and _feature_share(result) < _MOST_FEATURES
+
+
 def _feature_share(result: Result) -> float:
     if result.features is not None:
         return result.features.share
@@ -110,9 +116,9 @@ def _feature_share(result: Result) -> float:
 
 def may_replace_for_features(along: Result, usual: Result) -> bool:
     """Whether a seamless map through cones for features runs along them, at up to a tenth more of L2 stretch and
-    without further defects; along marked ones at least as far as the usual one. Both as from `parameterize`.
+    without further defects; at least as far as the usual one. Both as from `parameterize`.
     """
-    if usual.features is not None and _feature_share(usual) > _feature_share(along):
+    if _feature_share(usual) > _feature_share(along):
         return False
     return (
         along.solved.tolist() == usual.solved.tolist()

@@ -16,6 +16,7 @@ struct FeatureLine {
   double bend = 0;            // root mean square of the edges' angles to it, radians
   double length = 0;          // on the surface
   bool is_marked = false;
+  bool is_whole = true;  // none of its edges is released
 };
 
 struct FeatureLines {

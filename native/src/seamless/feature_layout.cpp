@@ -21,10 +21,15 @@ namespace {
 
 using Kind = DistortionEnergy::Kind;
 
-constexpr int most_attempts = 6;              // to align lines
-constexpr Index attempted_triangles = 40000;  // in all of them together, as far as there is more than one
-constexpr std::ptrdiff_t most_parts = 16;     // into which lines are divided for that
+constexpr int most_attempts = 24;             // to align lines
+constexpr Index attempted_triangles = 80000;  // in all of them together, as far as there is more than one
+constexpr int most_fits = 300;                // to find lines that contradict each other
+constexpr Index fitted_triangles = 400000;    // in all of them together
+constexpr double least_length = 0.1;          // of an edge, relative to the map without lines, that contradicts none
 constexpr double mendable_share = 0.1;        // of the triangles, flipped, that are repaired
+constexpr int most_trimmings = 3;             // of lines that fail at a few places
+constexpr std::ptrdiff_t most_defects = 48;   // vertices there
+constexpr double compatible_share = 0.01;     // that lines may flip which contradict none
 constexpr Index few = 8;                      // that are always
 constexpr int unfolding_steps = 8;
 constexpr int relaxing_steps = 30;
@@ -56,6 +61,7 @@ FeatureLayout::FeatureLayout(const FeatureTask& task, const PerHalfedge<char>& f
       reasons_(task.surface.mesh.halfedge_count(), ReleaseReason::contradiction) {
   const HalfedgeMesh& mesh = task_.surface.mesh;
   left_ = std::clamp(attempted_triangles / mesh.triangle_count(), 1, most_attempts);
+  fits_left_ = std::clamp(fitted_triangles / mesh.triangle_count(), 1, most_fits);
   is_cone_.assign(mesh.vertex_count(), 0);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     is_cone_[v] = mesh.loop_of_vertex[v] == none && task_.curvature.at_vertex[v] != 0;
@@ -66,7 +72,9 @@ FeatureLayout::FeatureLayout(const FeatureTask& task, const PerHalfedge<char>& f
   unaligned_ *= turn_to_features(task_.surface, feature, unaligned_);
   const FeatureLines traced = trace_features(task_.surface, feature, is_cone_, unaligned_);
   for (const Index h : traced.curved) reasons_[h] = ReleaseReason::curved;
-  const Array<FeatureLine>& lines = traced.straight;
+  jacobians_ = measure_jacobians(task_.surface, task_.surface.cut_mesh, unaligned_);
+  Array<FeatureLine> lines;
+  choose_compatible(traced.straight, 0, ssize(traced.straight), lines);
   const std::ptrdiff_t marked =
       std::count_if(lines.begin(), lines.end(), [](const FeatureLine& line) { return line.is_marked; });
   if (marked > 0) add(lines, 0, marked);
@@ -74,44 +82,146 @@ FeatureLayout::FeatureLayout(const FeatureTask& task, const PerHalfedge<char>& f
   if (!aligned_.empty()) find_coordinates();
 }
 
-// All of them, or else as many as possible: halves that fail are divided again.
-void FeatureLayout::add(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end) {
-  if (begin == end || left_ == 0) return;
-  const std::optional<ReleaseReason> reason = align(lines, begin, end);
+// Appends those that do not contradict each other, the first before the others: halves that do are divided again.
+// Judged by a linear fit, which takes a small part of the time of a map.
+void FeatureLayout::choose_compatible(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end,
+                                      Array<FeatureLine>& chosen) {
+  if (begin == end || fits_left_ == 0) return;
+  --fits_left_;
+  Array<FeatureLine> more = chosen;
+  more.insert(more.end(), lines.begin() + begin, lines.begin() + end);
+  const std::optional<Eigen::VectorXcd> position =
+      fit(free_along(task_.surface, task_.lattice.reduction, edges_of(more)));
+  if (position && keeps_lengths(more, *position) && flips_at_most(compatible_share, *position)) {
+    chosen = std::move(more);
+  } else if (end - begin > 1) {
+    const std::ptrdiff_t middle = begin + (end - begin) / 2;
+    choose_compatible(lines, begin, middle, chosen);
+    choose_compatible(lines, middle, end, chosen);
+  }
+}
+
+// The map nearest to the one without lines; none where lines leave too little freedom.
+std::optional<Eigen::VectorXcd> FeatureLayout::fit(const DegreesOfFreedom& freedom) const {
+  try {
+    task_.before_step();
+    Eigen::VectorXcd position = FreedomSystem(task_.surface, freedom).fit(jacobians_);
+    if (position.allFinite()) return position;
+  } catch (const Error& error) {
+    if (error.code() != Code::solver_failed) throw;
+  }
+  return std::nullopt;
+}
+
+// Whether no edge of a line has collapsed or been reversed.
+bool FeatureLayout::keeps_lengths(const Array<FeatureLine>& lines, const Eigen::VectorXcd& position) const {
+  const CutMesh& cut_mesh = task_.surface.cut_mesh;
+  for (const FeatureLine& line : lines) {
+    for (Index i = 0; i < ssize(line.halfedges); ++i) {
+      const Index tail = cut_mesh.copy_of_corner[line.halfedges[i]];
+      const Index head = cut_mesh.copy_of_corner[next(line.halfedges[i])];
+      const double along = std::real(std::conj(line.directions[i]) * (position[head] - position[tail]));
+      if (!(along > least_length * std::abs(unaligned_[head] - unaligned_[tail]))) return false;
+    }
+  }
+  return true;
+}
+
+// All of them, or else as many as possible: lines that fail at a few places are released there, and otherwise halves
+// that fail are divided again.
+void FeatureLayout::add(Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  std::optional<ReleaseReason> reason = ReleaseReason::contradiction;
+  for (int trimmings = 0; reason; ++trimmings) {
+    if (begin == end || left_ == 0) return;
+    Array<Index> defects;
+    reason = align(lines, begin, end, defects);
+    if (trimmings == most_trimmings || !trim(defects, lines, begin, end)) break;
+  }
   if (!reason) return;
   for (std::ptrdiff_t i = begin; i < end; ++i) {
     for (const Index h : lines[i].halfedges) reasons_[h] = *reason;
   }
-  if (end - begin <= std::max<std::ptrdiff_t>(1, ssize(lines) / most_parts)) return;
+  if (end - begin == 1) return;
   const std::ptrdiff_t middle = begin + (end - begin) / 2;
   add(lines, begin, middle);
   add(lines, middle, end);
 }
 
+// Releases the edges of lines at some vertices; whether there are any, and others left. No distance between cones
+// follows from what is left of a line.
+bool FeatureLayout::trim(const Array<Index>& vertices, Array<FeatureLine>& lines, std::ptrdiff_t begin,
+                         std::ptrdiff_t end) {
+  if (vertices.empty() || ssize(vertices) > most_defects) return false;
+  const HalfedgeMesh& mesh = task_.surface.mesh;
+  const auto is_listed = [&](Index v) { return std::find(vertices.begin(), vertices.end(), v) != vertices.end(); };
+  bool is_trimmed = false, has_others = false;
+  for (std::ptrdiff_t k = begin; k < end; ++k) {
+    FeatureLine kept = lines[k];
+    kept.halfedges.clear();
+    kept.directions.clear();
+    for (Index i = 0; i < ssize(lines[k].halfedges); ++i) {
+      const Index h = lines[k].halfedges[i];
+      if (is_listed(mesh.origin(h)) || is_listed(mesh.target(h))) continue;
+      kept.halfedges.push_back(h);
+      kept.directions.push_back(lines[k].directions[i]);
+    }
+    has_others = has_others || !kept.halfedges.empty();
+    if (kept.halfedges.size() == lines[k].halfedges.size()) continue;
+    is_trimmed = true;
+    kept.is_whole = false;
+    lines[k] = std::move(kept);
+  }
+  return is_trimmed && has_others;
+}
+
 std::optional<ReleaseReason> FeatureLayout::align(const Array<FeatureLine>& lines, std::ptrdiff_t begin,
-                                                  std::ptrdiff_t end) {
+                                                  std::ptrdiff_t end, Array<Index>& defects) {
   --left_;
   Array<FeatureLine> more = aligned_;
   more.insert(more.end(), lines.begin() + begin, lines.begin() + end);
   DegreesOfFreedom freedom = free_along(task_.surface, task_.lattice.reduction, edges_of(more));
-  const Jacobians jacobians = measure_jacobians(task_.surface, task_.surface.cut_mesh, unaligned_);
-  Eigen::VectorXcd position;
-  try {
-    task_.before_step();
-    position = FreedomSystem(task_.surface, freedom).fit(jacobians);
-  } catch (const Error& error) {
-    if (error.code() != Code::solver_failed) throw;
+  std::optional<Eigen::VectorXcd> position = fit(freedom);
+  if (!position) return ReleaseReason::contradiction;
+  held_ = std::move(freedom);
+  if (!minimize(*position)) {
+    defects = defects_of(*position);
     return ReleaseReason::contradiction;
   }
-  held_ = std::move(freedom);
-  if (!position.allFinite() || !minimize(position)) return ReleaseReason::contradiction;
-  if (l2_stretch(task_.surface.geometry, measure_jacobians(task_.surface, task_.surface.cut_mesh, position)) >
+  if (l2_stretch(task_.surface.geometry, measure_jacobians(task_.surface, task_.surface.cut_mesh, *position)) >
       most_l2_) {
     return ReleaseReason::stretch;
   }
   aligned_ = std::move(more);
-  start_ = std::move(position);
+  start_ = std::move(*position);
   return std::nullopt;
+}
+
+// The vertices of flipped triangles, and those with wrong angle sums.
+Array<Index> FeatureLayout::defects_of(const Eigen::VectorXcd& position) const {
+  const Validity validity = validity_of(position);
+  Array<Index> out = validity.wrong_angle_sums;
+  for (const Index f : validity.flipped) {
+    for (int c = 0; c < 3; ++c) out.push_back(task_.surface.mesh.triangles(f, c));
+  }
+  return out;
+}
+
+bool FeatureLayout::loosen() {
+  const std::size_t kept = 5 * aligned_.size() / 6;
+  if (kept == 0) return false;
+  Array<FeatureLine> released(aligned_.begin() + static_cast<std::ptrdiff_t>(kept), aligned_.end());
+  aligned_.resize(kept);
+  held_ = free_along(task_.surface, task_.lattice.reduction, edges_of(aligned_));
+  std::optional<Eigen::VectorXcd> position = fit(held_);
+  if (!position || !minimize(*position)) return false;
+  start_ = std::move(*position);
+  for (const FeatureLine& line : released) {
+    for (const Index h : line.halfedges) reasons_[h] = ReleaseReason::lattice;
+  }
+  lines_.clear();
+  rounded_.clear();
+  find_coordinates();
+  return true;
 }
 
 DirectedEdges FeatureLayout::edges_of(const Array<FeatureLine>& lines) const {
@@ -133,6 +243,7 @@ void FeatureLayout::find_lattice_coordinates() {
     integer.push_back({{sisters.right, 1.0}, {sisters.left, -std::polar(1.0, rotation[p])}});
   }
   for (const FeatureLine& line : aligned_) {
+    if (!line.is_whole) continue;
     const Index tail = surface.mesh.origin(line.halfedges.front()), head = surface.mesh.target(line.halfedges.back());
     if (!is_cone_[tail] || !is_cone_[head]) continue;
     CoordinateForm length;
@@ -338,15 +449,20 @@ void FeatureLayout::snap(double step, Eigen::VectorXcd& position) const {
   }
 }
 
-// Removes flips and relaxes stretch under the conditions, unless too much is flipped; whether the map is valid then.
-bool FeatureLayout::minimize(Eigen::VectorXcd& position) const {
+// A few triangles do not count.
+bool FeatureLayout::flips_at_most(double share, const Eigen::VectorXcd& position) const {
   const HalfedgeMesh& mesh = task_.surface.mesh;
   Index flipped = 0;
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
     const auto corner = [&](int c) { return position[task_.surface.cut_mesh.copy_of_corner[3 * f + c]]; };
     if (!(std::imag(std::conj(corner(1) - corner(0)) * (corner(2) - corner(0))) > 0)) ++flipped;
   }
-  if (flipped > few && flipped > mendable_share * mesh.triangle_count()) return false;
+  return flipped <= few || flipped <= share * mesh.triangle_count();
+}
+
+// Removes flips and relaxes stretch under the conditions, unless too much is flipped; whether the map is valid then.
+bool FeatureLayout::minimize(Eigen::VectorXcd& position) const {
+  if (!flips_at_most(mendable_share, position)) return false;
   relax(Eigen::VectorXd::Ones(task_.surface.mesh.triangle_count()), position);
   return is_valid(position);
 }
@@ -361,11 +477,12 @@ void FeatureLayout::relax(const Eigen::VectorXd& weights, Eigen::VectorXcd& posi
   }
 }
 
-bool FeatureLayout::is_valid(const Eigen::VectorXcd& position) const {
+Validity FeatureLayout::validity_of(const Eigen::VectorXcd& position) const {
   const CutSurface& surface = task_.surface;
   return check_map(surface.mesh, at_corners(surface.cut_mesh, position), task_.curvature.at_vertex,
-                   task_.curvature.is_free)
-             .defects() == 0;
+                   task_.curvature.is_free);
 }
+
+bool FeatureLayout::is_valid(const Eigen::VectorXcd& position) const { return validity_of(position).defects() == 0; }
 
 }  // namespace lsgp

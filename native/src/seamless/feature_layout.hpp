@@ -15,6 +15,7 @@
 #include "seamless/lattice_transitions.hpp"
 #include "seamless/whole_values.hpp"
 #include "solvers/cholesky.hpp"
+#include "unfold/distortion.hpp"
 
 namespace lsgp {
 
@@ -42,6 +43,10 @@ class FeatureLayout {
   // Why halfedges of features do not; of the others it has no meaning.
   const PerHalfedge<ReleaseReason>& reasons() const { return reasons_; }
 
+  // Releases a sixth of the lines, those of most cost, where no lattice keeps all; false if none would be left, or what
+  // is left has no valid map.
+  bool loosen();
+
   // The layout with about `density` cells a unit of length, with cones and translations on the lattice. Features are on
   // lines of the lattice or, where cells are too large for that, at multiples of 1 / 256 of a cell. None where no such
   // layout without flips is found.
@@ -60,9 +65,15 @@ class FeatureLayout {
     double cost;
   };
 
-  void add(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end);
-  // None if all of them run along axes then, otherwise why they do not.
-  std::optional<ReleaseReason> align(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end);
+  void choose_compatible(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end,
+                         Array<FeatureLine>& chosen);
+  std::optional<Eigen::VectorXcd> fit(const DegreesOfFreedom& freedom) const;
+  bool keeps_lengths(const Array<FeatureLine>& lines, const Eigen::VectorXcd& position) const;
+  void add(Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end);
+  bool trim(const Array<Index>& vertices, Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end);
+  // None if all of them run along axes then, otherwise why they do not.  defects: vertices where the map fails.
+  std::optional<ReleaseReason> align(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end,
+                                     Array<Index>& defects);
   DirectedEdges edges_of(const Array<FeatureLine>& lines) const;
   void find_coordinates();
   void find_lattice_coordinates();
@@ -70,13 +81,17 @@ class FeatureLayout {
   std::optional<Choice> choose(double density, bool is_fine) const;
   std::optional<Eigen::VectorXcd> lay_out(const Choice& choice, double step_of_lines) const;
   void snap(double step, Eigen::VectorXcd& position) const;
+  bool flips_at_most(double share, const Eigen::VectorXcd& position) const;
   bool minimize(Eigen::VectorXcd& position) const;
   bool is_valid(const Eigen::VectorXcd& position) const;
+  Validity validity_of(const Eigen::VectorXcd& position) const;
+  Array<Index> defects_of(const Eigen::VectorXcd& position) const;
 
   const FeatureTask task_;
   Eigen::VectorXcd unaligned_;  // relaxed, with features near the axes
   const double most_l2_;
-  int left_ = 0;  // attempts
+  Jacobians jacobians_;           // of it
+  int left_ = 0, fits_left_ = 0;  // attempts, and fits before them
   PerHalfedge<ReleaseReason> reasons_;
   Array<FeatureLine> aligned_;
   Eigen::VectorXcd start_;

@@ -16,6 +16,7 @@ constexpr double coarsest_tiles = 4;  // tried for an automatic grid
 using Features = LayoutEffort::Features;
 
 constexpr double finest_with_features = 128;  // tried for an automatic grid
+constexpr int most_loosenings = 8;            // of features that find no place on it
 constexpr double acceptable_growth = 1.1;     // of the energy by an automatic grid
 constexpr double acceptable_turn = 0.02;      // radians, of directions by an automatic grid
 constexpr double near_finest = 1.02;          // of the growth that the finest grid has where that is more
@@ -92,8 +93,9 @@ std::optional<Grid> GridSearch::refine(double tiles, const LayoutEffort& effort)
 std::optional<Grid> GridSearch::find_coarsest() {
   const bool has_features = std::any_of(quantizers_.begin(), quantizers_.end(),
                                         [](const auto& quantizer) { return quantizer->has_features(); });
-  if (has_features) {
+  for (int loosenings = 0; has_features && loosenings <= most_loosenings; ++loosenings) {
     if (auto grid = refine(coarsest_tiles, {acceptable_growth, acceptable_turn, true, Features::required})) return grid;
+    if (!quantizers_[failed_]->loosen_features()) break;
   }
   if (auto grid = refine(coarsest_tiles, {acceptable_growth, acceptable_turn, true, Features::ignored})) return grid;
   // Layouts that need more repair take longer: bisects the sizes, since finer grids cost less.

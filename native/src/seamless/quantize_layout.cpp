@@ -140,6 +140,13 @@ void LayoutQuantizer::align_features() {
   energy_ = std::max(energy_, measure_energy(features_->start()));
 }
 
+bool LayoutQuantizer::loosen_features() {
+  if (features_ == nullptr || !features_->loosen()) return false;
+  release_reasons_ = features_->reasons();
+  energy_ = std::max(energy_, measure_energy(features_->start()));
+  return true;
+}
+
 PerHalfedge<ReleaseReason> LayoutQuantizer::release_reasons(const QuantizedLayout& layout) const {
   if (features_ == nullptr || layout.has_features) return release_reasons_;
   return PerHalfedge<ReleaseReason>(mesh_.halfedge_count(), ReleaseReason::lattice);

@@ -238,7 +238,10 @@ REVIEWED = {
             SHORT,
         ),
     ],
-    "seamless/feature_layout.cpp": [("for (;;)", "each round rounds a coordinate, or ends it", OWN)],
+    "seamless/feature_layout.cpp": [
+        ("for (int trimmings = 0; reason; ++trimmings)", "up to three trimmings of lines", WITHIN),
+        ("for (;;)", "each round rounds a coordinate, or ends it", OWN),
+    ],
     "repair/feature_lines.cpp": [
         ("for (Index at = next(h);; at = next(mesh_.twin[at]))", AROUND_A_VERTEX, SHORT),
         ("for (Index h = first; h != none && !is_traced_[h]; h = following(h))", ONCE_EACH, SHORT),
