@@ -25,6 +25,8 @@ namespace {
 // angles up to 2 pi that has no flips has the right angles too.
 constexpr AngleRange angle_ranges[]{widest_angles, {M_PI / 2, 2.5 * M_PI}, {M_PI / 2, 2 * M_PI, false}};
 
+constexpr double same_angle = 1e-9;  // radians
+
 // Of triangles made fatter, see `mollified`; in the end hardly any edge is longer than others.
 constexpr double fat_margins[]{0.2, 1};
 
@@ -84,8 +86,10 @@ class Mapping {
  private:
   // Tries angles and geometries, local repairs first; returns the map with the fewest defects.
   FoundMap find_valid_map(const ComponentTask& task);
-  // The map with these cones, repaired as far as the effort goes.
-  FoundMap attempt(ComponentSystem& system, const ComponentTask& task, Effort effort);
+  // The map with these cones, repaired as far as the effort goes. None if their curvatures are among those tried, which
+  // they join otherwise: ranges of angles differ only where they bound one.
+  std::optional<FoundMap> attempt(ComponentSystem& system, const ComponentTask& task, Effort effort,
+                                  Array<Eigen::VectorXd>& tried);
   void prescribe_angles(ComponentSystem& system, const ComponentTask& task, FoundMap& found);
   void cut(ComponentSystem& system, const ComponentTask& task, ComponentMap& map);
   void unfold_and_repair(ComponentSystem& system, const ComponentTask& task, Effort effort, FoundMap& found);
@@ -138,7 +142,8 @@ ComponentMap Mapping::best(std::vector<Finding>& findings) {
 }
 
 ComponentMap Mapping::first(std::vector<Finding>& findings) {
-  FoundMap found = attempt(system_, task_, Effort::local);
+  Array<Eigen::VectorXd> untried;
+  FoundMap found = std::move(*attempt(system_, task_, Effort::local, untried));
   found.map.repair = report_.value_or(RepairReport{});
   findings.insert(findings.end(), found.findings.begin(), found.findings.end());
   return std::move(found.map);
@@ -160,19 +165,21 @@ FoundMap Mapping::find_valid_map(const ComponentTask& task) {
         fat = mollified(mesh, geometry, fat_margins[0]);
         fat_system.emplace(MetricMesh{mesh, *fat}, task.cones, options_.factorization);
       }
+      Array<Eigen::VectorXd> tried;
       for (std::size_t i = 0; i < (is_free ? std::size(angle_ranges) : 1); ++i) {
         ComponentTask ranged = task;
         if (is_free) ranged.cones.range = angle_ranges[i];
-        FoundMap found;
+        std::optional<FoundMap> found;
         try {
-          found = attempt(is_fat ? *fat_system : system_, ranged, effort);
+          found = attempt(is_fat ? *fat_system : system_, ranged, effort, tried);
         } catch (const Error& error) {
           if (!best || error.code() != Code::solver_failed) throw;
           continue;
         }
-        if (!best || found.defects() < best->defects()) {
-          if (is_fat && found.defects() == 0) repair_on(system_, task).smooth(found.map);
-          best = std::move(found);
+        if (!found) continue;
+        if (!best || found->defects() < best->defects()) {
+          if (is_fat && found->defects() == 0) repair_on(system_, task).smooth(found->map);
+          best = std::move(*found);
         }
         if (best->defects() == 0) return std::move(*best);
         // A valid map would have been proof that its angles are possible.
@@ -186,9 +193,15 @@ FoundMap Mapping::find_valid_map(const ComponentTask& task) {
   return std::move(*best);
 }
 
-FoundMap Mapping::attempt(ComponentSystem& system, const ComponentTask& task, Effort effort) {
+std::optional<FoundMap> Mapping::attempt(ComponentSystem& system, const ComponentTask& task, Effort effort,
+                                         Array<Eigen::VectorXd>& tried) {
   FoundMap found;
   prescribe_angles(system, task, found);
+  const Eigen::VectorXd curvature = found.map.curvature.at_vertex(task.cones.vertices);
+  for (const Eigen::VectorXd& other : tried) {
+    if ((curvature - other).cwiseAbs().sum() <= same_angle) return std::nullopt;
+  }
+  tried.push_back(curvature);
   cut(system, task, found.map);
   unfold_and_repair(system, task, effort, found);
   return found;

@@ -104,6 +104,9 @@ NewtonMinimizer::NewtonMinimizer(const CutSurface& surface, const RestShapes& re
       before_step_(std::move(before_step)),
       position_(position),
       hessian_(first_row_.back()) {
+  for (Index copy = 0; copy < displacement_.copy_count(); ++copy) {
+    if (displacement_.begin[copy] < displacement_.begin[copy + 1]) moving_.push_back(copy);
+  }
   const HalfedgeMesh& mesh = surface.mesh;
   const Geometry& geometry = surface.geometry;
   const Eigen::VectorXd& log_scale = rest.log_scale;
@@ -307,13 +310,18 @@ std::optional<Eigen::VectorXcd> NewtonMinimizer::newton_direction(const Distorti
 
 bool NewtonMinimizer::search(const DistortionEnergy& energy, const Eigen::VectorXcd& direction, double longest,
                              double before, double& after) {
-  const Eigen::VectorXcd start = position_, displaced = expand(displacement_, direction);
+  const Eigen::VectorXcd start = position_(moving_);
+  Eigen::VectorXcd displaced = Eigen::VectorXcd::Zero(start.size());
+  for (Eigen::Index i = 0; i < displaced.size(); ++i) {
+    displacement_.for_each_term(moving_[i],
+                                [&](const Term& term) { displaced[i] += term.coefficient * direction[term.unknown]; });
+  }
   for (double length = longest; length > 1e-8; length /= 2) {
-    position_ = start + length * displaced;
+    position_(moving_) = start + length * displaced;
     after = total(energy);
     if (after < before) return true;
   }
-  position_ = start;
+  position_(moving_) = start;
   after = before;
   return false;
 }

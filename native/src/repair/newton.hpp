@@ -120,6 +120,7 @@ class NewtonMinimizer {
 
   const Array<Index> first_row_;  // (unknowns + 1) of the Hessian
   const Reduction displacement_;
+  Array<Index> moving_;  // the copies that are displaced, few in local repairs
   const StepHook before_step_;
   Eigen::VectorXcd& position_;
   Array<Shape> shapes_;
