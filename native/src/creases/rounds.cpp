@@ -12,14 +12,15 @@ namespace lsgp {
 
 namespace {
 
-constexpr double is_flat = 0.01;      // radians between triangles of one face
-constexpr double flat_share = 0.125;  // of the bend at an edge of a face: what a face that is not quite flat has inside
-constexpr double most_bend = 1.27;    // radians at an edge of something round: of a tube with five sides
-constexpr double most_bends = 1.45;   // of one edge to the next: less than for rims of frustums that bend by most_bend
-constexpr double most_widths = 2.5;   // of a face to the next
-constexpr double least_round = 0.5;   // of the curvature
-constexpr int most_triangles = 32;    // of a face that are crossed
-constexpr double rounding = 1e-9;     // of a direction: it may not decide on which side a path through a vertex goes on
+constexpr double is_flat = 0.01;  // radians between triangles of one face
+// Of the bend at an edge of a face: what a face that is not quite flat has inside, and quads of coarse balls.
+constexpr double flat_share = 0.125, flat_share_of_shapes = 0.25;
+constexpr double most_bend = 1.27;   // radians at an edge of something round: of a tube with five sides
+constexpr double most_bends = 1.45;  // of one edge to the next: less than for rims of frustums that bend by most_bend
+constexpr double most_widths = 2.5;  // of a face to the next
+constexpr double least_round = 0.5;  // of the curvature
+constexpr int most_triangles = 32;   // of a face that are crossed
+constexpr double rounding = 1e-9;    // of a direction: it may not decide on which side a path through a vertex goes on
 
 double ratio(double a, double b) { return std::max(a, b) / std::min(a, b); }
 
@@ -36,13 +37,13 @@ struct Crossing {
 
 // The edge of a face that is met from the middle of another one at right angles; none at borders and on large fans.
 // Edges that hardly bend beside the first one are inside a face, as diagonals of quads are that noise has twisted.
-std::optional<Crossing> cross(const HalfedgeMesh& mesh, const Eigen::VectorXd& bend, Index first) {
+std::optional<Crossing> cross(const HalfedgeMesh& mesh, const Eigen::VectorXd& bend, Index first, double share) {
   using Vector = Eigen::Vector3d;
   const auto position = [&](Index h) -> Vector { return mesh.positions.row(mesh.origin(h)); };
   const Vector normal = area_normal(mesh.positions, mesh.triangles, first / 3).stableNormalized();
   const Vector middle = (position(first) + position(next(first))) / 2;
   const Vector across = normal.cross(position(next(first)) - position(first)).stableNormalized();
-  const double inside = std::max(is_flat, flat_share * bend[first]);
+  const double inside = std::max(is_flat, share * bend[first]);
   Index h = first;
   for (int i = 0; i < most_triangles; ++i) {
     const Vector to_apex = position(prev(h)) - middle;
@@ -60,9 +61,9 @@ std::optional<Crossing> cross(const HalfedgeMesh& mesh, const Eigen::VectorXd& b
 }
 
 // On how many sides of an edge the surface goes on bending as it does there, after faces of about one width.
-int sides_bent_alike(const HalfedgeMesh& mesh, const Eigen::VectorXd& bend, Index h) {
+int sides_bent_alike(const HalfedgeMesh& mesh, const Eigen::VectorXd& bend, Index h, double share) {
   if (bend[h] > most_bend) return 0;
-  const std::optional<Crossing> here = cross(mesh, bend, h), there = cross(mesh, bend, mesh.twin[h]);
+  const std::optional<Crossing> here = cross(mesh, bend, h, share), there = cross(mesh, bend, mesh.twin[h], share);
   if (!here || !there || !(ratio(here->width, there->width) <= most_widths)) return 0;
   const bool is_convex_here = is_convex(mesh, h);
   const auto goes_on = [&](Index edge) {
@@ -82,7 +83,7 @@ Eigen::VectorXd bends(const HalfedgeMesh& mesh) {
 }
 
 bool is_round(const HalfedgeMesh& mesh, const Eigen::VectorXd& bend, Index h) {
-  return sides_bent_alike(mesh, bend, h) == 2;
+  return sides_bent_alike(mesh, bend, h, flat_share) == 2;
 }
 
 bool has_round_shape(const MetricMesh& surface) {
@@ -92,7 +93,7 @@ bool has_round_shape(const MetricMesh& surface) {
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (mesh.twin[h] < h || bend[h] < is_flat) continue;
     // Beside a pole it bends alike on one side only.
-    PerVertex<double>& sum = sides_bent_alike(mesh, bend, h) > 0 ? round : sharp;
+    PerVertex<double>& sum = sides_bent_alike(mesh, bend, h, flat_share_of_shapes) > 0 ? round : sharp;
     sum[mesh.origin(h)] += bend[h];
     sum[mesh.target(h)] += bend[h];
   }

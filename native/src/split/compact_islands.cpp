@@ -23,6 +23,7 @@ namespace {
 constexpr double least_island = 0.02;
 constexpr int cells_across = 40;
 constexpr double rounding = 1e-9;  // of what divisions are worth
+constexpr double is_sharp = 1.27;  // radians: beyond what edges of coarse round shapes bend by
 
 // The same lines, seen from their other sides.
 Array<Line> reversed(Array<Line> lines) {
@@ -35,7 +36,8 @@ class Compactor {
   // graph: of the surface.  position: at the corners, on the scale of the surface.
   Compactor(const OpenedSurface& surface, const FaceGraph& graph, const Eigen::VectorXcd& position,
             const SharedSquare& square)
-      : geometry_(surface.geometry),
+      : mesh_(surface.mesh),
+        geometry_(surface.geometry),
         graph_(graph),
         position_(position),
         area_(square.area),
@@ -96,6 +98,7 @@ class Compactor {
   double priced_length(const FaceGraph::Link& link) const {
     return std::min(graph_.unit * static_cast<double>(link.cost), geometry_.length[link.halfedge]);
   }
+  bool is_smooth(const FaceGraph::Link& link) const { return bend_at(mesh_, link.halfedge) < is_sharp; }
   void set_places(const Array<Index>& faces) {
     for (std::size_t i = 0; i < faces.size(); ++i) place_[faces[i]] = static_cast<Index>(i);
   }
@@ -103,6 +106,7 @@ class Compactor {
     for (const Index face : faces) place_[face] = none;
   }
 
+  const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
   const FaceGraph& graph_;
   const Eigen::VectorXcd& position_;
@@ -172,13 +176,14 @@ IslandCells Compactor::cells_of(const Array<Index>& island, Complex along) {
       center += graph_.area[face] * center_[face];
     }
     cells.area.push_back(area);
+    cells.faces.push_back(static_cast<Index>(pieces[cell].size()));
     cells.center.push_back(area > 0 ? center / area : center_[pieces[cell].front()]);
     cells.hull.push_back(hull_of(pieces[cell]));
   }
   for (const Index face : island) {
     graph_.for_each_link(face, [&](Index other, const FaceGraph::Link& link) {
       if (place_[other] == none || place_[other] <= place_[face]) return;
-      cells.links.push_back({{place_[face], place_[other]}, priced_length(link)});
+      cells.links.push_back({{place_[face], place_[other]}, priced_length(link), is_smooth(link)});
     });
   }
   clear_places(island);
@@ -226,16 +231,18 @@ Array<Index> Compactor::without_slivers(const Array<Index>& island, const Array<
     for (const Index face : pieces[i]) place_[face] = static_cast<Index>(i);
   }
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    double area = 0;
+    Piece piece{0, static_cast<Index>(pieces[i].size()), false};
     Array<double> border(pieces.size(), 0);
     for (const Index face : pieces[i]) {
-      area += graph_.area[face];
+      piece.area += graph_.area[face];
       graph_.for_each_link(face, [&](Index other, const FaceGraph::Link& link) {
         const Index beside = place_[other];
-        if (beside != none && beside != place_[face]) border[beside] += static_cast<double>(link.cost);
+        if (beside == none || beside == place_[face]) return;
+        border[beside] += static_cast<double>(link.cost);
+        piece.ends_smoothly = piece.ends_smoothly || is_smooth(link);
       });
     }
-    if (pieces.size() < 2 || area >= least_piece * area_) continue;
+    if (pieces.size() < 2 || search_.may_be_cut_off(piece)) continue;
     const auto longest = std::max_element(border.begin(), border.end());
     for (const Index face : pieces[i]) place_[face] = static_cast<Index>(longest - border.begin());
   }

@@ -15,6 +15,10 @@ namespace lsgp {
 
 namespace {
 
+// As a fraction of the area of all islands: smaller pieces are not cut off, nor are larger ones of few faces from
+// smooth surfaces.
+constexpr double smallest_piece = 0.01, smallest_of_few = 0.06;
+constexpr Index few_faces = 4;
 // Least saving, as a fraction of the area of all islands: for a cut as long as the square root of that area, and for
 // each additional island.
 constexpr double price_of_cut = 0.15, price_of_island = 0.01;
@@ -33,6 +37,11 @@ DivisionSearch::DivisionSearch(const SharedSquare& square)
     : area_(square.area), price_factor_(square.filling == Compactness::sparing ? sparing_factor : 1) {}
 
 double DivisionSearch::least_gain() const { return price_factor_ * price_of_island * area_; }
+
+bool DivisionSearch::may_be_cut_off(const Piece& piece) const {
+  const bool is_scrap = piece.faces <= few_faces && piece.ends_smoothly;
+  return piece.area >= (is_scrap ? smallest_of_few : smallest_piece) * area_;
+}
 
 double DivisionSearch::demand(const Array<Complex>& hull) const {
   constexpr int turns = 45;  // of a quarter
@@ -62,26 +71,28 @@ double DivisionSearch::worth(const IslandCells& cells, const Array<Index>& class
     else
       length += link.length;
   }
-  Array<Index> roots, number(cells.count(), none);
-  Array<double> area;
-  Array<Index> points;
+  Array<Index> number(cells.count(), none), points;
+  Array<Piece> pieces;
   for (Index cell = 0; cell < cells.count(); ++cell) {
     const Index root = sets.find(cell);
     if (root == cell) {
-      number[cell] = static_cast<Index>(roots.size());
-      roots.push_back(root);
-      area.push_back(0);
+      number[cell] = static_cast<Index>(pieces.size());
+      pieces.emplace_back();
       points.push_back(0);
     }
     number[cell] = number[root];
-    area[number[cell]] += cells.area[cell];
+    pieces[number[cell]].area += cells.area[cell];
+    pieces[number[cell]].faces += cells.faces[cell];
     points[number[cell]] += static_cast<Index>(cells.hull[cell].size());
   }
-  if (roots.size() < 2 || static_cast<Index>(roots.size()) > most_pieces ||
-      *std::min_element(area.begin(), area.end()) < least_piece * area_)
-    return 0;
+  if (pieces.size() < 2 || static_cast<Index>(pieces.size()) > most_pieces) return 0;
+  for (const IslandCells::Link& link : cells.links) {
+    const Index here = number[link.cells[0]], there = number[link.cells[1]];
+    if (here != there && link.is_smooth) pieces[here].ends_smoothly = pieces[there].ends_smoothly = true;
+  }
+  if (!std::all_of(pieces.begin(), pieces.end(), [&](const Piece& piece) { return may_be_cut_off(piece); })) return 0;
   double after = 0;
-  for (std::size_t piece = 0; piece < roots.size(); ++piece) {
+  for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
     Eigen::VectorXcd corners(points[piece]);
     Eigen::Index next = 0;
     for (Index cell = 0; cell < cells.count(); ++cell) {
@@ -90,7 +101,7 @@ double DivisionSearch::worth(const IslandCells& cells, const Array<Index>& class
     }
     after += demand(convex_hull(corners));
   }
-  return worth(demand_before - after, length, roots.size());
+  return worth(demand_before - after, length, pieces.size());
 }
 
 IslandDivision DivisionSearch::find_division(const IslandCells& cells, const Array<Complex>& hull,

@@ -17,8 +17,6 @@ struct SharedSquare {
   Compactness filling;
 };
 
-// As a fraction of the area of all islands: smaller pieces are not cut off.
-constexpr double least_piece = 0.01;
 constexpr int division_positions = 12;  // that are tried across an island
 
 struct Line {
@@ -39,12 +37,21 @@ struct IslandCells {
   struct Link {
     Index cells[2];
     double length;
+    bool is_smooth;  // where the surface hardly bends or may be round
   };
   Array<Complex> center;
   Array<double> area;
+  Array<Index> faces;  // their number
   Array<Array<Complex>> hull;
   Array<Link> links;
   Index count() const { return static_cast<Index>(area.size()); }
+};
+
+// A part of a divided island.
+struct Piece {
+  double area = 0;
+  Index faces = 0;
+  bool ends_smoothly = false;  // at some of its cuts
 };
 
 // Weighs the area of the square that divisions save against their cost.
@@ -54,6 +61,10 @@ class DivisionSearch {
 
   // The area of the square that an island with this hull occupies.
   double demand(const Array<Complex>& hull) const;
+
+  // Whether a piece is large enough, and no scrap of few faces: of those only the ones of hard surfaces, cut off along
+  // sharp edges alone, may be as small as others.
+  bool may_be_cut_off(const Piece& piece) const;
 
   // The least saving that can be worth a division.
   double least_gain() const;

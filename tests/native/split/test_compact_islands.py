@@ -16,6 +16,7 @@ from meshes import Mesh
 from result_check import undeclared_faults
 from scipy.spatial import ConvexHull
 from test_overlaps import quads_of
+from zoo import closed
 
 COMPACT = lsgp.Options(compact="full")
 FILL = 0.62  # of the square, what packed islands usually take
@@ -148,6 +149,30 @@ WHOLE = {
 def test_compact_islands_stay_whole(name: str) -> None:
     mesh = WHOLE[name]
     assert unwrap(mesh, COMPACT).corner_uv.tobytes() == unwrap(mesh, lsgp.Options()).corner_uv.tobytes()
+
+
+def coarse_ball(around: int, rings: int) -> Mesh:
+    polar = np.linspace(np.pi, 0, rings + 1)
+    return closed.lathe(np.sin(polar).round(12), np.cos(polar), around, caps=(False, False))
+
+
+COARSE = {
+    "icosphere": meshes.icosphere(1),
+    "ball of 8 by 6": coarse_ball(8, 6),
+    "ball of 7 by 5": coarse_ball(7, 5),
+    "square ring": meshes.torus(8, 4, 1.0, 0.4),
+    "ring of 9 by 5": meshes.torus(9, 5, 1.0, 0.4),
+}
+
+
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("name", COARSE)
+def test_no_scraps_are_cut_off_coarse_round_shapes(name: str, seed: int) -> None:
+    mesh = meshes.transform(COARSE[name], seed)
+    result = lsgp.auto_unwrap(lsgp.Surface(mesh.positions, mesh.triangles), preset="bake")
+    a, b, c = mesh.positions[mesh.triangles].transpose(1, 0, 2)
+    area = np.bincount(result.island, np.linalg.norm(np.cross(b - a, c - a), axis=1))
+    assert (area / area.sum() >= np.where(np.bincount(result.island) > 4, 0.01, 0.06)).all()
 
 
 def test_cuts_run_along_sharp_edges() -> None:
