@@ -22,7 +22,7 @@ namespace {
 
 // Cost of every island, additional cost of a sliver, and cost of cuts as long as the square root of the surface's area;
 // what is added for those without a mirror image where cuts are symmetric.
-constexpr double cost_of_island = 0.5, cost_of_sliver = 2, cost_of_cut = 1, cost_of_one_side = 4;
+constexpr double cost_of_island = 0.8, cost_of_sliver = 2, cost_of_cut = 1, cost_of_one_side = 4;
 constexpr double sliver = 0.005;  // of the area
 // Of what islands cut to fill a square take of it: what those alike on both sides may take.
 constexpr double most_demand = 1.05;
