@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Literal, TypeVar, get_args
@@ -80,7 +80,6 @@ def preset_options(preset: Preset) -> Options:
     return _PRESETS[preset]
 
 
-@packing_once()
 def auto_unwrap(
     surface: Surface,
     cones: ArrayLike = (),
@@ -141,14 +140,15 @@ def auto_unwrap(
     if udim is not None:
         chosen = replace(chosen, square_share=float(udim))
     packs = _may_pack(packing, chosen, pins, texels)
-    placing, mapping = part_of(progress, 0.0, PLACING), part_of(progress, PLACING, PACKING if packs else 1.0)
+    placing, mapping = share_of(progress, 0.0, PLACING), share_of(progress, PLACING, PACKING if packs else 1.0)
     is_free = arguments.flag("symmetric", symmetric) and count is None
     solver = Solver(surface)
     choices = possible_cones(solver, cones, angles, chosen, count, is_free, placing)
-    _, result = best_map(solver, choices, chosen, pins, mapping)
-    if packs:
-        result = laid_out(surface, result, packing, texels, part_of(progress, PACKING, 1.0)).result
-    elif texels is not None:
+    with packing_once():
+        _, result = best_map(solver, choices, chosen, pins, mapping)
+        if packs:
+            result = laid_out(surface, result, packing, texels, share_of(progress, PACKING, 1.0)).result
+    if not packs and texels is not None:
         result = at_texel_density(surface, result, texels)
     return with_tiny_findings(result)
 
@@ -275,8 +275,10 @@ def possible_cones(
     is_free = count is None and not len(arguments.index_vector("cones", cones))
     if not (is_free and follows_features(solver.surface, options)):
         return _symmetric_cones(solver, cones, angles, options, count, symmetric, progress)
-    found = _symmetric_cones(solver, cones, angles, options, count, symmetric, part_of(progress, 0.0, _BEFORE_FEATURES))
-    for_features = feature_cones(solver, options, part_of(progress, _BEFORE_FEATURES, 1.0))
+    found = _symmetric_cones(
+        solver, cones, angles, options, count, symmetric, share_of(progress, 0.0, _BEFORE_FEATURES)
+    )
+    for_features = feature_cones(solver, options, share_of(progress, _BEFORE_FEATURES, 1.0))
     return found if for_features is None else [*found, for_features]
 
 
@@ -291,10 +293,10 @@ def feature_cones(solver: Solver, options: Options, progress: Progress | None = 
     """Cones with which marked features and, with `Options.straighten`, creases of hard surfaces can run along the
     lattice, and those of `complete_cones` on other components; None without features, or if there are no such cones."""
     arrays = surface_arrays(solver.surface)
-    chosen = or_none(lambda: _lsgp.feature_cones(arrays, options.straighten, part_of(progress, 0.0, TRYING)))
+    chosen = or_none(lambda: _lsgp.feature_cones(arrays, options.straighten, share_of(progress, 0.0, TRYING)))
     if chosen is None or not len(chosen[0]):
         return None
-    found = or_none(lambda: complete_cones(solver, *chosen, options, None, part_of(progress, TRYING, 1.0)))
+    found = or_none(lambda: complete_cones(solver, *chosen, options, None, share_of(progress, TRYING, 1.0)))
     return None if found is None else replace(found, for_features=True)
 
 
@@ -312,7 +314,7 @@ def _symmetric_cones(
     if not symmetric or len(arguments.index_vector("cones", cones)):
         return [complete_cones(solver, cones, angles, options, count, progress)]
     alike = or_none(
-        lambda: complete_cones(solver, cones, angles, options, count, part_of(progress, 0.0, TRYING), symmetric=True)
+        lambda: complete_cones(solver, cones, angles, options, count, share_of(progress, 0.0, TRYING), symmetric=True)
     )
     if alike is not None:
         odd = [finding for finding in alike.placement.warnings if finding.code == _ODD]
@@ -321,7 +323,7 @@ def _symmetric_cones(
         if sum(len(finding.elements.indices) for finding in odd) == len(solver.surface.triangles):
             return [alike]
         alike = replace(alike, is_symmetric=True)
-    usual = complete_cones(solver, cones, angles, options, count, part_of(progress, TRYING, 1.0))
+    usual = complete_cones(solver, cones, angles, options, count, share_of(progress, TRYING, 1.0))
     if alike is None:
         return [usual]
     is_same = set(alike.cones.tolist()) == set(usual.cones.tolist())
@@ -343,7 +345,7 @@ def best_map(
     usual, *others = [choice for choice in choices if not choice.for_features]
     for_features = next((choice for choice in choices if choice.for_features), None)
     share = 1.0 / (len(choices) + (for_features is not None))
-    stages = iter([part_of(progress, i * share, (i + 1) * share) for i in range(round(1 / share))])
+    stages = iter([share_of(progress, i * share, (i + 1) * share) for i in range(round(1 / share))])
     along = None
     if for_features is not None:
         along = or_none(partial(_map_through, solver, for_features, options, pins, next(stages)))
@@ -353,23 +355,19 @@ def best_map(
     # Those that are released run along it through other cones, perhaps.
     is_chosen = for_features is None or (along is None and not others) or releases_features(along)
     tried = options if is_chosen else replace(options, straighten=False)
-    best = usual, _map_through(solver, usual, tried, pins, next(stages))
+    plain = _map_through(solver, usual, tried, pins, next(stages))
+    best = usual, plain
     for i, other in enumerate(others, start=2 + (for_features is not None)):
-        result = or_none(partial(_map_through, solver, other, tried, pins, next(stages)))
         # Comparing, and the map with other cuts, which few models need, have no time of their own.
-        still = part_of(progress, i * share, i * share)
+        mapping, still = next(stages), share_of(progress, i * share, i * share)
         may_replace = partial(may_replace_map, square_share=options.square_share, progress=still)
-        plain = best[1]
-        if result is not None and may_replace(result, plain):
-            best = other, result
-        if not _may_free_cuts(other, usual, options) or result is None or not mirrored_cuts_cost_islands(result, plain):
-            continue
-        freed = replace(other, is_symmetric=False)
-        free = or_none(partial(_map_through, solver, freed, tried, pins, still))
-        if free is None or not saves_islands(free, result, plain):
-            continue
-        if may_replace(free, plain) and (best[1] is plain or may_replace(free, best[1])):
-            best = freed, free
+        map_through = partial(_map_through, solver, options=tried, pins=pins)
+        for candidate in _symmetric_maps(
+            map_through, other, (usual, plain), not options.mirrored_cuts, (mapping, still)
+        ):
+            result = candidate[1]
+            if may_replace(result, plain) and (best[1] is plain or may_replace(result, best[1])):
+                best = candidate
     if along is not None and may_replace_for_features(along, best[1]):
         best = for_features, along
     elif not is_chosen:
@@ -377,9 +375,30 @@ def best_map(
     return best[0], best[0].told(best[1], options)
 
 
-def _may_free_cuts(alike: CompletedCones, usual: CompletedCones, options: Options) -> bool:
-    """Whether a map through symmetric cones may have other cuts, and then is not the usual one."""
-    return not options.mirrored_cuts and set(alike.cones.tolist()) != set(usual.cones.tolist())
+def _symmetric_maps(
+    map_through: Callable[..., Result],
+    symmetric: CompletedCones,
+    usual: tuple[CompletedCones, Result],
+    frees_cuts: bool,
+    progress: tuple[Progress | None, Progress | None],
+) -> Iterator[tuple[CompletedCones, Result]]:
+    """The map through symmetric cones, and where its symmetric cuts cost islands, one with other cuts that save them.
+
+    map_through: the map of CompletedCones, with `progress`. usual: the cones and the map that may be replaced.
+    frees_cuts: whether cuts need not be symmetric. progress: of both maps.
+    """
+    usual_cones, plain = usual
+    mirrored = or_none(lambda: map_through(symmetric, progress=progress[0]))
+    if mirrored is None:
+        return
+    yield symmetric, mirrored
+    has_other_cones = set(symmetric.cones.tolist()) != set(usual_cones.cones.tolist())
+    if not (frees_cuts and has_other_cones and mirrored_cuts_cost_islands(mirrored, plain)):
+        return
+    freed = replace(symmetric, is_symmetric=False)
+    free = or_none(lambda: map_through(freed, progress=progress[1]))
+    if free is not None and saves_islands(free, mirrored, plain):
+        yield freed, free
 
 
 def _map_through(
@@ -405,8 +424,8 @@ def or_none(attempt: Callable[[], T]) -> T | None:
         return None
 
 
-def part_of(progress: Progress | None, begin: float, end: float) -> Progress | None:
-    """Maps progress of one stage to the range from begin to end."""
+def share_of(progress: Progress | None, begin: float, end: float) -> Progress | None:
+    """The progress of one stage, as the share of the whole from begin to end."""
     return None if progress is None else lambda done: progress(begin + (end - begin) * done)
 
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from . import _lsgp, arguments
 from .api import Options, Progress, Result, Seamless, Solver, Surface, surface_arrays
 from .arguments import FloatArray, IndexArray
-from .auto_unwrap import CompletedCones, complete_cones, feature_cones, or_none, part_of
+from .auto_unwrap import CompletedCones, complete_cones, feature_cones, or_none, share_of
 from .equality import EqualByContent
 from .errors import Finding, InputError, SolverError
 from .map_comparison import may_replace_for_features, runs_along_features
@@ -152,19 +152,19 @@ def remesh_to_quads(
     _lsgp.require_closed(surface_arrays(surface))
     side = _side(surface, target, size)
     chosen = replace(chosen, seamless=replace(chosen.seamless, tile_size=side))
-    placing, laying_out = part_of(progress, 0.0, _PLACED), part_of(progress, _PLACED, _LAID_OUT)
+    placing, laying_out = share_of(progress, 0.0, _PLACED), share_of(progress, _PLACED, _LAID_OUT)
     is_free = count is None and not len(arguments.index_vector("cones", cones))
     solver, along = Solver(surface), None
     if is_free and chosen.straighten:
-        along = feature_cones(solver, chosen, part_of(placing, 0.0, _FOR_FEATURES))
-    completed = _wide_cones(solver, cones, angles, chosen, count, part_of(placing, _FOR_FEATURES, 1.0))
+        along = feature_cones(solver, chosen, share_of(placing, 0.0, _FOR_FEATURES))
+    completed = _wide_cones(solver, cones, angles, chosen, count, share_of(placing, _FOR_FEATURES, 1.0))
     if along is None:
         layouts = _Layouts(surface, completed, chosen)
         layout = layouts.nearest(target, laying_out)
     else:
         layouts, layout = _along_features((surface, target, chosen), (along, completed), laying_out)
     asked = 0.0 if side is None else _area(surface) / side**2
-    mesh, layout = layouts.extracted(layout, asked, part_of(progress, _LAID_OUT, 1.0))
+    mesh, layout = layouts.extracted(layout, asked, share_of(progress, _LAID_OUT, 1.0))
     warnings = [finding for finding in layout.warnings if finding.code not in _OF_LAYOUTS_ALONE]
     return QuadRemesh(mesh, layout, warnings)
 
@@ -242,7 +242,7 @@ def _wide_cones(
 ) -> CompletedCones:
     """Those of `complete_cones`, but where it places one of 90 degrees that is held at 180, and others are placed
     besides."""
-    completed = complete_cones(solver, cones, angles, options, count, part_of(progress, 0.0, 0.5))
+    completed = complete_cones(solver, cones, angles, options, count, share_of(progress, 0.0, 0.5))
     given = arguments.index_vector("cones", cones)
     held, done = np.empty(0, np.int32), 0.5
     for _ in range(_MOST_HOLDS):
@@ -253,7 +253,7 @@ def _wide_cones(
         held = np.union1d(held, narrow).astype(np.int32)
         fixed = [*arguments.cone_angles("angles", angles, len(given)), *[math.pi] * len(held)]
         begin, done = done, (1 + done) / 2
-        part = part_of(progress, begin, done)
+        part = share_of(progress, begin, done)
         again = complete_cones(solver, np.concatenate([given, held]), fixed, options, count, part)
         if again.placement is None:
             break  # there is no other place: what the narrow cones are refused for is said of them
@@ -274,13 +274,13 @@ class _Layouts:
     def nearest(self, target: int | None, progress: Progress | None) -> Result:
         """On the first grid, or on one of another size where rounding has taken that away from its target."""
         side = self._options.seamless.tile_size
-        layout = self._lay_out(side, part_of(progress, 0.0, 0.5))
+        layout = self._lay_out(side, share_of(progress, 0.0, 0.5))
         if target is None or any(finding.code == "GRID_REFINED" for finding in layout.warnings):
             return layout
         quads = _quad_count(layout)
         if abs(quads - target) <= _NEAR * target:
             return layout
-        second = self._lay_out(side * math.sqrt(quads / target), part_of(progress, 0.5, 1.0))
+        second = self._lay_out(side * math.sqrt(quads / target), share_of(progress, 0.5, 1.0))
         return min(layout, second, key=lambda found: abs(_quad_count(found) - target))
 
     def extracted(self, layout: Result, asked: float, progress: Progress | None) -> tuple[QuadMesh, Result]:
@@ -292,14 +292,14 @@ class _Layouts:
         for _ in range(_MOST_REFINEMENTS):
             half = (1 + done) / 2
             try:
-                return self._extract(layout, asked, part_of(progress, done, half)), layout
+                return self._extract(layout, asked, share_of(progress, done, half)), layout
             except SolverError as error:
                 if error.code != "GRID_TOO_COARSE":
                     raise
             done = (1 + half) / 2
-            layout = self._lay_out(_FINER * layout.seamless.tile_size, part_of(progress, half, done))
+            layout = self._lay_out(_FINER * layout.seamless.tile_size, share_of(progress, half, done))
             layout = replace(layout, warnings=[*layout.warnings, _refined(layout)])
-        return self._extract(layout, asked, part_of(progress, done, 1.0)), layout
+        return self._extract(layout, asked, share_of(progress, done, 1.0)), layout
 
     def _extract(self, layout: Result, asked: float, progress: Progress | None) -> QuadMesh:
         _refuse_far_above(asked, layout)
@@ -324,13 +324,13 @@ def _along_features(
     surface, target, options = asked
     for_features, usual = cones
     layouts = _Layouts(surface, for_features, options)
-    layout = or_none(lambda: layouts.nearest(target, part_of(progress, 0.0, _ALONG)))
+    layout = or_none(lambda: layouts.nearest(target, share_of(progress, 0.0, _ALONG)))
     if layout is not None and runs_along_features(layout):
         plain = _Layouts(surface, usual, replace(options, straighten=False))
-        if may_replace_for_features(layout, plain.nearest(target, part_of(progress, _ALONG, _PLAIN))):
+        if may_replace_for_features(layout, plain.nearest(target, share_of(progress, _ALONG, _PLAIN))):
             return layouts, layout
     layouts = _Layouts(surface, usual, options)
-    return layouts, layouts.nearest(target, part_of(progress, _PLAIN, 1.0))
+    return layouts, layouts.nearest(target, share_of(progress, _PLAIN, 1.0))
 
 
 def _refined(layout: Result) -> Finding:

@@ -243,8 +243,8 @@ class ConeSession(MapSession):
 
 def _parts(surface: lsgp.Surface) -> NDArray[np.int32]:
     """(n,) the connected part of each vertex, -1 for those without a triangle."""
-    part_of = np.full(len(surface.positions), -1, np.int32)
+    share_of = np.full(len(surface.positions), -1, np.int32)
     options = native.lsgp.Options(seams="ignore")
     for number, part in enumerate(native.lsgp.build_ledger(surface, [], None, options)):
-        part_of[surface.triangles[part.triangles]] = number
-    return part_of
+        share_of[surface.triangles[part.triangles]] = number
+    return share_of

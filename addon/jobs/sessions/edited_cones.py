@@ -28,15 +28,15 @@ class ConesState:
 class EditedCones:
     """active: the cone that angles are given to; None for none."""
 
-    def __init__(self, marked: ConeAngles, part_of: NDArray[np.int32]) -> None:
-        """marked: the cones to start with. part_of: (n,) the connected part of each vertex, -1 for none."""
+    def __init__(self, marked: ConeAngles, share_of: NDArray[np.int32]) -> None:
+        """marked: the cones to start with. share_of: (n,) the connected part of each vertex, -1 for none."""
         self.active: int | None = None
         self._before = {
             vertex: (angle, kind)
             for vertex, angle, kind in zip(marked.cones.tolist(), marked.angles, marked.kinds, strict=True)
         }
         self._cones = dict(self._before)
-        self._part_of = part_of
+        self._part_of = share_of
         self._touched: set[int] = set()
 
     def __contains__(self, vertex: int) -> bool:

@@ -161,13 +161,13 @@ def unwrap_all(
     tasks, solve = _sharing_the_square(tasks), solve or unwrap
     if len(tasks) < 2 or not all(_has_automatic_tiles(task) for task in tasks):
         return solve_all(tasks, solve, progress)
-    part_of = native.part("auto_unwrap").part_of
-    outcomes = solve_all(tasks, solve, part_of(progress, 0.0, 0.5))
+    share_of = native.part("auto_unwrap").share_of
+    outcomes = solve_all(tasks, solve, share_of(progress, 0.0, 0.5))
     smallest = min((_tile_size(found) for found in outcomes if isinstance(found, Unwrapped)), default=0.0)
     larger = [
         i for i, found in enumerate(outcomes) if isinstance(found, Unwrapped) and _tile_size(found) > smallest > 0
     ]
-    redone = solve_all([_with_tile_size(tasks[i], smallest) for i in larger], solve, part_of(progress, 0.5, 1.0))
+    redone = solve_all([_with_tile_size(tasks[i], smallest) for i in larger], solve, share_of(progress, 0.5, 1.0))
     for i, found in zip(larger, redone, strict=True):
         outcomes[i] = found
     return outcomes

@@ -125,16 +125,16 @@ def _joined(document: Document, with_uv: bool) -> PolygonMesh:
     primitives = list(_primitives(document))
     positions, corners, first = [np.empty((0, 3))], [np.empty(0, np.int64)], 0
     for mesh in sorted({primitive.mesh for primitive in primitives}):
-        parts = [primitive for primitive in primitives if primitive.mesh == mesh]
-        points = [_points(document, part) for part in parts]
+        own = [primitive for primitive in primitives if primitive.mesh == mesh]
+        points = [_points(document, primitive) for primitive in own]
         offsets = np.cumsum([0, *map(len, points)])
-        used = np.concatenate([part.vertices + offset for part, offset in zip(parts, offsets, strict=False)])
+        used = np.concatenate([primitive.vertices + offset for primitive, offset in zip(own, offsets, strict=False)])
         places, index = weld(np.concatenate(points)[used])
         positions.append(_placed(places, transforms.get(mesh, np.eye(4))))
         corners.append(index + first)
         first += len(places)
     faces = np.concatenate(corners).astype(np.int32)
-    uv = [np.empty((0, 2)), *(_old_uv(document, part) for part in primitives)] if with_uv else None
+    uv = [np.empty((0, 2)), *(_old_uv(document, primitive) for primitive in primitives)] if with_uv else None
     return PolygonMesh(
         np.concatenate(positions),
         faces,

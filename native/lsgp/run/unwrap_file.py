@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..api import Options, Placement, Progress, Result, Solver, Surface, parameterize
-from ..auto_unwrap import PACKING, PLACING, best_map, part_of, possible_cones, with_crease_borders
+from ..auto_unwrap import PACKING, PLACING, best_map, possible_cones, share_of, with_crease_borders
 from ..errors import Finding, InputError, LsgpError
 from ..io.mesh_files import MeshFile, format_mesh, parse_mesh, triangulated
 from ..io.mesh_formats import output_format
@@ -103,11 +103,11 @@ def unwrap_file(
     require_separate(args.input, args.output, in_place=args.in_place)
     packing, layout = packing_of(args), texel_layout(args)
     is_tight = packing is not None and packing.is_tight
-    mapping = part_of(progress, 0.0, PACKING) if is_tight else progress
+    mapping = share_of(progress, 0.0, PACKING) if is_tight else progress
     file, result = _map(args, options, run, mapping, given_format)
     if packing is not None:
         with run.stage("pack"):
-            laid = laid_out(run.surface, result, packing, layout, part_of(progress, PACKING, 1.0))
+            laid = laid_out(run.surface, result, packing, layout, share_of(progress, PACKING, 1.0))
         result, seen = laid.result, laid.result.solved & ~laid.stacked
         tiles = 1 if packing.udim is None else _tiles_in_use(result.corner_uv[seen])
         run.packed = Packed(laid.packer, uv_area(result.corner_uv[seen]) / tiles, tiles)
@@ -201,7 +201,7 @@ def _map(
         result = parameterize(surface, *given, options, progress=progress)
         run.stage_seconds.update(result.stage_seconds)
         return file, result
-    placing, mapping = part_of(progress, 0.0, PLACING), part_of(progress, PLACING, 1.0)
+    placing, mapping = share_of(progress, 0.0, PLACING), share_of(progress, PLACING, 1.0)
     with run.stage("place_cones"):
         solver = Solver(surface)
         choices = possible_cones(solver, *given, options, cone_count(args), tries_symmetry(args), placing)
