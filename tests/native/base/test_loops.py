@@ -178,7 +178,7 @@ REVIEWED = {
         ),
         ("while (!suspects_.empty())", "a budget of flips", OWN),
         ("while (h != outgoing_[v])", AROUND_A_VERTEX, SHORT),
-        ("while (++degree <= most_around && h != outgoing_[v])", AROUND_A_VERTEX, SHORT),
+        ("while (++degree <= most_degree && h != outgoing_[v])", AROUND_A_VERTEX, SHORT),
         ("while (h != outgoing_[v])", AROUND_A_VERTEX, SHORT),
     ],
     "sites/cone_sites.cpp": [
