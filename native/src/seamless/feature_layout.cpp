@@ -426,8 +426,18 @@ std::optional<Eigen::VectorXcd> FeatureLayout::lay_out(const Choice& choice, dou
   Eigen::VectorXcd position = choice.scale * start_ + system_->expand(factor_->solve(forces));
   if (!minimize(position)) return std::nullopt;
   snap(step_of_lines, position);
-  if (!is_valid(position)) return std::nullopt;
+  if (!is_valid(position) || !is_on_lattice(position)) return std::nullopt;
   return position;
+}
+
+// Whether cones and translations are. Where all cuts go around holes, shifts change all translations and cost nothing:
+// the compliance is unbounded then, and which coordinates follow from others is lost to rounding errors.
+bool FeatureLayout::is_on_lattice(const Eigen::VectorXcd& position) const {
+  for (std::ptrdiff_t i = length_count_; i < lattice_count_; ++i) {
+    const double value = value_of(rounded_[i], position);
+    if (!(std::abs(value - std::round(value)) <= whole)) return false;
+  }
+  return true;
 }
 
 // Removes what rounding errors leave of the deviations of lines.

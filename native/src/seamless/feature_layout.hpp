@@ -84,6 +84,7 @@ class FeatureLayout {
   bool flips_at_most(double share, const Eigen::VectorXcd& position) const;
   bool minimize(Eigen::VectorXcd& position) const;
   bool is_valid(const Eigen::VectorXcd& position) const;
+  bool is_on_lattice(const Eigen::VectorXcd& position) const;
   Validity validity_of(const Eigen::VectorXcd& position) const;
   Array<Index> defects_of(const Eigen::VectorXcd& position) const;
 
