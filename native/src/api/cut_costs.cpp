@@ -97,7 +97,11 @@ Eigen::VectorXd cut_costs(const Surface& surface, const CutPreferences& preferen
   const VertexPairs& edges = *surface.edges;
   Eigen::VectorXd out = Eigen::VectorXd::Ones(edges.rows());
   if (preferences.front) {
-    out = visible_share(surface, edges, *preferences.front).array() + least_visible;
+    Positions middle(edges.rows(), 3);
+    for (Index row = 0; row < edges.rows(); ++row) {
+      middle.row(row) = (surface.positions.row(edges(row, 0)) + surface.positions.row(edges(row, 1))) / 2;
+    }
+    out = visible_share(surface, middle, *preferences.front).array() + least_visible;
   }
   if (preferences.creases || preferences.sharp.rows() > 0) {
     out.array() *= crease_factors(surface, preferences).array();

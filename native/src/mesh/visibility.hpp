@@ -7,10 +7,10 @@
 
 namespace lsgp {
 
-// The share of the views around a direction that see each edge, 0 to 1, (e): orthographic views from the half space in
-// front, weighted by the cosine to `front`, with depth buffers. Approximate: limited by pixels of some thousandths of
-// the extent, and by the number of views. edges: of the surface, seen in the middle or, where they are no longer than
-// two pixels, on average at both ends. front: from the surface to the viewer, not zero.
-Eigen::VectorXd visible_share(const Surface& surface, const VertexPairs& edges, const Eigen::Vector3d& front);
+// The share of the views around a direction that see each point on the surface, 0 to 1, (p): orthographic views from
+// the half space in front, weighted by the cosine to `front`, with depth buffers. Approximate: limited by pixels of
+// some thousandths of the extent, and by the number of views.
+// points: (p, 3) on the surface.  front: from the surface to the viewer, not zero.
+Eigen::VectorXd visible_share(const Surface& surface, const Positions& points, const Eigen::Vector3d& front);
 
 }  // namespace lsgp
