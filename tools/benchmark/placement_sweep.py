@@ -173,7 +173,7 @@ def is_off(one: Ending) -> bool:
 
 def table(found: list[tuple[str, str, Ending]]) -> str:
     lines = [
-        "| run | valid | named | refused | silent | crash | slow | as predicted | as told | at most 1.05 | codes |"
+        "| run | valid | named | refused | silent | crash | slow | as predicted | as reported | at most 1.05 | codes |"
     ]
     lines.append("|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|")
     for run in dict.fromkeys(one[0] for one in found):
