@@ -63,6 +63,7 @@ def examples() -> list[object]:
     whole = surface(BALL, seams=BALL.triangles[:3, :2])
     result = lsgp.parameterize(whole, BALL.cones, None, lsgp.Options(seamless=lsgp.Seamless()))
     (part,) = lsgp.build_ledger(whole, BALL.cones)
+    released = lsgp.ReleasedFeature(np.array([0, 1, 2], np.int32), "curved", 0.5)
     return [
         whole,
         lsgp.Pins([0, 4], [[0, 0], [1, np.nan]]),
@@ -78,6 +79,7 @@ def examples() -> list[object]:
         lsgp.find_stacks(result.corner_uv, result.island),
         lsgp.MovedCut(np.array([0, 1], np.int32), np.array([2], np.int32), np.zeros((1, 3, 2))),
         part,
+        released,
         lsgp.Elements("triangles", np.array([3, 4], np.int32)),
         lsgp.Finding("CODE", "message", lsgp.Elements("triangles", np.array([3, 4], np.int32))),
         PolygonMesh(whole.positions, whole.triangles.ravel(), np.full(len(whole.triangles), 3)),
@@ -117,9 +119,10 @@ def test_every_public_dataclass_is_among_them_or_holds_no_array() -> None:
     kinds = {kind for kind in vars(lsgp).values() if isinstance(kind, type) and is_dataclass(kind)}
     without = kinds - {type(value) for value in EXAMPLES}
     numbers = {lsgp.Options, lsgp.Seamless, lsgp.Distortion, lsgp.SeamQuality, lsgp.RepairReport, lsgp.Transition}
+    features = {lsgp.FeatureReport}  # a list of features that are among them
     texels = {lsgp.TexelDensity, lsgp.TexelLayout}
     quads = {lsgp.QuadQuality, lsgp.QuadRemesh}  # the latter has a mesh and a layout, which are compared
-    assert without == numbers | texels | quads | {lsgp.MeshFile}
+    assert without == numbers | texels | quads | features | {lsgp.MeshFile}
     assert lsgp.MeshFile.__eq__ is object.__eq__  # a file is itself alone
 
 

@@ -77,17 +77,22 @@ def test_every_property_is_drawn_once_with_the_options_it_has_a_say_in():
     everything = {prop.identifier for prop in our_properties()}
     low_stretch = {"stretch", "use_weights"}
     weights = {"weight_group", "weight_factor"}
+    straight = {"straight_sharp", "straight_seams", "straight_borders", "straight_creases"}
     margins = {"margin_method", "margin"}
-    assert plain.keys() == everything - low_stretch - weights - SEAMLESS_ONLY
+    assert plain.keys() == everything - low_stretch - weights - straight - {"straight_angle"} - SEAMLESS_ONLY
     assert margins <= plain.keys()
-    assert panel(mode="LOW_STRETCH").keys() - plain.keys() == low_stretch
-    assert panel(mode="LOW_STRETCH", use_weights=True).keys() - plain.keys() == low_stretch | weights
+    assert panel(mode="LOW_STRETCH").keys() - plain.keys() == low_stretch | straight
+    assert panel(mode="LOW_STRETCH", use_weights=True).keys() - plain.keys() == low_stretch | straight | weights
+    with_creases = panel(mode="LOW_STRETCH", straight_creases=True)
+    assert with_creases.keys() - plain.keys() == low_stretch | straight | {"straight_angle"}
     assert panel(use_weights=True).keys() == plain.keys()
 
 
 def test_options_of_seamless_layouts_are_drawn_only_with_it():
     plain, seamless = panel(), panel(seamless=True)
-    assert seamless.keys() - plain.keys() == {"lattice", "tile_fit", "coarse_grid", "parity", "mip_safe"}
+    straight = {"straight_sharp", "straight_seams", "straight_borders", "straight_creases"}
+    of_grid = {"lattice", "tile_fit", "coarse_grid", "parity", "mip_safe"}
+    assert seamless.keys() - plain.keys() == of_grid | straight
     assert plain.keys() - seamless.keys() == {"correct_aspect", "margin_method", "margin"}
     assert panel(seamless=True, tile_fit="TILES").keys() - seamless.keys() == {"tiles"}
     assert panel(seamless=True, tile_fit="SIZE").keys() - seamless.keys() == {"tile_size"}
