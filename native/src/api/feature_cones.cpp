@@ -44,7 +44,8 @@ SurfaceFeatures features_of(const Work& work, bool with_creases, std::vector<Fin
       const Index tail = component.source_vertex[mesh.origin(h)], head = component.source_vertex[mesh.target(h)];
       out.edges.insert(out.edges.end(), {tail, head});
       if (mesh.twin[h] != none) continue;
-      out.is_border.resize(std::max<std::size_t>(out.is_border.size(), std::max(tail, head) + std::size_t{1}), 0);
+      const auto least_size = static_cast<std::size_t>(std::max(tail, head)) + 1;
+      out.is_border.resize(std::max(out.is_border.size(), least_size), 0);
       out.is_border[tail] = out.is_border[head] = 1;
     }
   });

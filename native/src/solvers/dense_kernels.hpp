@@ -49,5 +49,9 @@ struct DenseKernels {
 
 template <typename Scalar>
 const DenseKernels<Scalar>& dense_kernels();
+template <>
+const DenseKernels<double>& dense_kernels();
+template <>
+const DenseKernels<std::complex<double>>& dense_kernels();
 
 }  // namespace lsgp
