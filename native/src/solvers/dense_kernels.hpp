@@ -3,6 +3,7 @@
 // machine has is taken at run time.
 #pragma once
 
+#include <complex>
 #include <cstddef>
 
 namespace lsgp {
