@@ -148,8 +148,8 @@ def auto_unwrap(
         _, result = best_map(solver, choices, chosen, pins, mapping)
         if packs:
             result = laid_out(surface, result, packing, texels, share_of(progress, PACKING, 1.0)).result
-    if not packs and texels is not None:
-        result = at_texel_density(surface, result, texels)
+        elif texels is not None:
+            result = at_texel_density(surface, result, texels)
     return with_tiny_findings(result)
 
 

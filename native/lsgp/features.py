@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from . import arguments
 from .api import Surface
 from .arguments import FloatArray, IndexArray
+from .edge_keys import edge_keys
 
 
 def feature_edges(
@@ -25,27 +26,22 @@ def feature_edges(
     arguments.require_indices("triangles", surface.triangles, len(surface.positions))
     found = [np.empty((0, 2), np.int32)]
     sides = np.stack([surface.triangles, np.roll(surface.triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
-    keys = _keys(surface, sides)
+    vertex_count = len(surface.positions)
+    keys = edge_keys(sides[:, 0], sides[:, 1], vertex_count)
     order = np.argsort(keys, kind="stable")
     _, begin, count = np.unique(keys[order], return_index=True, return_counts=True)
     if angle is not None:
         least = arguments.positive("angle", angle, "pass an angle above 0, at most pi")
         first, second = (order[begin[count == 2] + i] for i in range(2))
-        bent = sides[first[_bends(surface, sides, first, second) >= least]]
+        bent = first[_bends(surface, sides, first, second) >= least]
         if surface.edges is not None:
-            bent = bent[np.isin(_keys(surface, bent), _keys(surface, surface.edges))]
-        found.append(bent)
+            bent = bent[np.isin(keys[bent], edge_keys(surface.edges[:, 0], surface.edges[:, 1], vertex_count))]
+        found.append(sides[bent])
     if arguments.flag("seams", seams):
         found.append(surface.seams)
     if arguments.flag("borders", borders):
         found += [sides[order[begin[count == 1]]], surface.borders]
     return np.unique(np.sort(np.concatenate(found), axis=1), axis=0).astype(np.int32)
-
-
-def _keys(surface: Surface, edges: IndexArray) -> NDArray[np.int64]:
-    """A number for each pair of vertices, whatever their order."""
-    ends = np.sort(edges, axis=1).astype(np.int64)
-    return ends[:, 0] * len(surface.positions) + ends[:, 1]
 
 
 def _bends(surface: Surface, sides: IndexArray, first: NDArray[np.intp], second: NDArray[np.intp]) -> FloatArray:

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _lsgp, arguments
 from .api import FloatArray, IndexArray, Options, Surface, cone_arrays, surface_arrays
+from .edge_keys import edge_keys
 from .equality import EqualByContent
 from .short_repr import ShortRepr
 
@@ -134,10 +135,10 @@ def part_surface(surface: Surface, part: LedgerPart) -> Surface:
 def surface_of_triangles(surface: Surface, triangles: NDArray[np.integer]) -> Surface:
     """These triangles by themselves, with what is marked on them; vertices keep their numbers."""
     kept = surface.triangles[triangles]
-    keys = _edge_keys(surface, np.concatenate([kept[:, [0, 1]], kept[:, [1, 2]], kept[:, [2, 0]]]))
+    keys = edge_keys(kept, np.roll(kept, -1, axis=1), len(surface.positions))
 
     def is_on_them(edges: IndexArray) -> NDArray[np.bool_]:
-        return np.isin(_edge_keys(surface, edges), keys)
+        return np.isin(edge_keys(edges[:, 0], edges[:, 1], len(surface.positions)), keys)
 
     marked = {"seams": surface.seams, "borders": surface.borders, "features": surface.features}
     own: dict[str, IndexArray | FloatArray] = {name: edges[is_on_them(edges)] for name, edges in marked.items()}
@@ -149,12 +150,6 @@ def surface_of_triangles(surface: Surface, triangles: NDArray[np.integer]) -> Su
     if surface.directions is not None:
         own["directions"] = surface.directions[triangles]
     return replace(surface, triangles=kept, **own)
-
-
-def _edge_keys(surface: Surface, edges: IndexArray) -> NDArray[np.int64]:
-    """A number for each pair of vertices, whatever their order."""
-    ends = np.sort(edges, axis=1).astype(np.int64)
-    return ends[:, 0] * len(surface.positions) + ends[:, 1]
 
 
 def _require_surface(surface: Surface) -> None:

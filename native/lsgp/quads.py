@@ -18,7 +18,7 @@ from .equality import EqualByContent
 from .errors import Finding, InputError, SolverError
 from .map_comparison import may_replace_for_features, runs_along_features
 from .short_repr import ShortRepr
-from .triangles import uv_area
+from .triangles import triangle_areas, uv_area
 
 # Of the time that a remesh takes, where placing the cones and where the layouts end.
 _PLACED, _LAID_OUT = 0.6, 0.95
@@ -226,10 +226,8 @@ def _side(surface: Surface, target: int | None, size: float | None) -> float | N
 
 
 def _area(surface: Surface) -> float:
-    corners = surface.positions[surface.triangles]
     with np.errstate(over="ignore", invalid="ignore"):  # the verbs refuse such a surface by name
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        return 0.5 * float(np.linalg.norm(normals, axis=1).sum())
+        return float(triangle_areas(surface).sum())
 
 
 def _wide_cones(
@@ -253,8 +251,8 @@ def _wide_cones(
         held = np.union1d(held, narrow).astype(np.int32)
         fixed = [*arguments.cone_angles("angles", angles, len(given)), *[math.pi] * len(held)]
         begin, done = done, (1 + done) / 2
-        part = share_of(progress, begin, done)
-        again = complete_cones(solver, np.concatenate([given, held]), fixed, options, count, part)
+        share = share_of(progress, begin, done)
+        again = complete_cones(solver, np.concatenate([given, held]), fixed, options, count, share)
         if again.placement is None:
             break  # there is no other place: what the narrow cones are refused for is said of them
         completed = again

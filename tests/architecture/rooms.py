@@ -159,6 +159,7 @@ API = (
     "chart_packer",
     "cut_moving",
     "cut_paths",
+    "edge_keys",
     "equality",
     "errors",
     "features",

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _lsgp
+from ..edge_keys import edge_keys
 from ..equality import EqualByContent
 from ..errors import Elements, InputError
 from ..short_repr import ShortRepr
@@ -172,9 +173,9 @@ def separate_diagonals(mesh: PolygonMesh, corner: NDArray[np.int64], edges: NDAr
     following = np.roll(corner, -1, axis=1)
     step = following - corner
     diagonal = (step > 1) & (step < np.repeat(mesh.sizes, counts)[:, None] - 1)
-    keys = _pair_keys(mesh.corners[corner[diagonal]], mesh.corners[following[diagonal]], n)
-    edge_keys = _pair_keys(edges[:, 0], edges[:, 1], n)
-    ordered = np.sort(np.concatenate([edge_keys, keys]))
+    keys = edge_keys(mesh.corners[corner[diagonal]], mesh.corners[following[diagonal]], n)
+    of_edges = edge_keys(edges[:, 0], edges[:, 1], n)
+    ordered = np.sort(np.concatenate([of_edges, keys]))
     doubled = np.isin(keys, ordered[1:][ordered[1:] == ordered[:-1]])
     if not doubled.any():
         return
@@ -184,7 +185,7 @@ def separate_diagonals(mesh: PolygonMesh, corner: NDArray[np.int64], edges: NDAr
     # Only edges and diagonals between vertices of these polygons can be in their way.
     near = np.zeros(n, bool)
     near[mesh.corners[ranges(mesh.starts[redo], mesh.sizes[redo])]] = True
-    joined = np.concatenate([edge_keys, keys[~np.isin(owner, redo)]])
+    joined = np.concatenate([of_edges, keys[~np.isin(owner, redo)]])
     joined = set(joined[near[joined // n] & near[joined % n]].tolist())
     starts = mesh.starts
     for chosen in redo.tolist():
@@ -199,7 +200,7 @@ def separate_diagonals(mesh: PolygonMesh, corner: NDArray[np.int64], edges: NDAr
         local = clip_ears_of_one(_in_plane(mesh.positions[mesh.corners[row]][None])[0], is_taken)
         corner[firsts[chosen] : firsts[chosen] + count - 2] = row[local]
         vertices = mesh.corners[row[local]]
-        joined.update(_pair_keys(vertices, np.roll(vertices, -1, axis=1), n).ravel().tolist())
+        joined.update(edge_keys(vertices, np.roll(vertices, -1, axis=1), n).ravel().tolist())
 
 
 def _faces(faces: NDArray[np.int64], place: Callable[[int], str]) -> str:
@@ -355,10 +356,6 @@ def _occupied(
 def _polygon_edges(mesh: PolygonMesh) -> NDArray[np.int32]:
     """Every polygon edge once, the smaller vertex first, in order."""
     return _lsgp.polygon_edges(mesh.corners, mesh.sizes, len(mesh.positions))
-
-
-def _pair_keys(a: NDArray[np.int32], b: NDArray[np.int32], vertex_count: int) -> NDArray[np.int64]:
-    return np.minimum(a, b).astype(np.int64) * vertex_count + np.maximum(a, b)
 
 
 def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:

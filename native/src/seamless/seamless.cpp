@@ -83,7 +83,7 @@ void split_layouts(const GridSearch& search, Complex shift, const Grid& grid, Ar
 }
 
 // The features of hard surfaces, and which of them run exactly along the axes.
-class FeatureReport {
+class LatticeFeatures {
  public:
   void add(const Component& component, const CutSurface& surface, const Eigen::VectorXcd& position) {
     const HalfedgeMesh& mesh = component.mesh;
@@ -193,7 +193,7 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
   report.tile_size = 1 / (grid.density * unit_scale);
   report.cell = seamless.cell;
   double area = 0, before = 0, after = 0;
-  FeatureReport features;
+  LatticeFeatures features;
   OversizeReport oversize(grid.density);
   Array<Failure> failures;
   for (std::size_t i = 0; i < components.size(); ++i) {
