@@ -16,6 +16,7 @@ from typing import Any
 import lsgp
 import numpy as np
 from lsgp.cli import main
+from lsgp.texels import tiny_findings
 from numpy.typing import NDArray
 
 from .steps import Step
@@ -32,7 +33,9 @@ def command_faults(
     step: Step,
 ) -> tuple[str, list[str]]:
     """What the command has no option for is left at its default, in the call it is compared with as well."""
-    options = replace(options, loop_turning={}, factorization="automatic", square_share=1.0, threads=0)
+    options = replace(
+        options, loop_turning={}, factorization="automatic", square_share=1.0, straighten=False, threads=0
+    )
     surface = replace(surface, edges=None, cut_costs=None, borders=None)
     if options.mode != "low-stretch":
         options = replace(options, stretch=1.0)
@@ -40,6 +43,9 @@ def command_faults(
         surface = replace(surface, directions=None)
     if options.mode != "low-stretch" or step["command"] == "cones":
         surface = replace(surface, importance=None)
+    takes_features = options.seamless is not None or options.mode == "low-stretch"
+    if not takes_features or step["command"] == "cones":
+        surface = replace(surface, features=None)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         arguments = _files_and_arguments(folder, surface, cones, angles, options, step)
@@ -89,6 +95,9 @@ def _files_and_arguments(
         strokes = [[f, *direction] for f, direction in enumerate(surface.directions.tolist())]
         (folder / "directions.json").write_text(json.dumps(strokes))
         arguments += ["--directions", "directions.json"]
+    if len(surface.features):
+        (folder / "features.json").write_text(json.dumps(surface.features.tolist()))
+        arguments += ["--features", "features.json"]
     if options.mode == "low-stretch":
         arguments += ["--stretch", repr(options.stretch)]
         if surface.importance is not None:
@@ -147,8 +156,9 @@ def _compared(
     written = corner_uv_of(folder / "out.obj")
     if written.shape != expected.corner_uv.shape or not np.array_equal(written, expected.corner_uv, equal_nan=True):
         return ["the coordinates that were written are not those of the call"]
-    # Before these it has those of placing the cones.
-    told, codes = [warning["code"] for warning in report["warnings"]], [warning.code for warning in expected.warnings]
+    # Before these it has those of placing the cones, after them that of tiny islands.
+    findings = [*expected.warnings, *tiny_findings(expected.corner_uv, expected.island)]
+    told, codes = [warning["code"] for warning in report["warnings"]], [finding.code for finding in findings]
     if told[len(told) - len(codes) :] != codes or (step["cones"] == "given" and told != codes):
         return [f"the report warns of {told}, the call of {codes}"]
     return []
