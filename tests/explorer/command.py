@@ -34,7 +34,13 @@ def command_faults(
 ) -> tuple[str, list[str]]:
     """What the command has no option for is left at its default, in the call it is compared with as well."""
     options = replace(
-        options, loop_turning={}, factorization="automatic", square_share=1.0, straighten=False, threads=0
+        options,
+        loop_turning={},
+        factorization="automatic",
+        square_share=1.0,
+        straighten=False,
+        mirrored_cuts=False,
+        threads=0,
     )
     surface = replace(surface, edges=None, cut_costs=None, borders=None)
     if options.mode != "low-stretch":
