@@ -198,8 +198,7 @@ class CompletedCones:
 
     cones: (k,) int32, given ones first. angles: one each for `parameterize`, None = automatic. placement: on the
     components that needed or were tried for cones; None if there are none. by_target: whether the number was determined
-    by a target stretch. is_symmetric: whether they mirror each other, so that cuts may as well. for_features: whether
-    they were chosen so that creases can run along the lattice.
+    by a target stretch. is_symmetric: whether they mirror each other, so that cuts may as well.
     """
 
     cones: IndexArray
@@ -207,7 +206,6 @@ class CompletedCones:
     placement: Placement | None
     by_target: bool = True
     is_symmetric: bool = False
-    for_features: bool = False
 
     def options_of_map(self, options: Options) -> Options:
         """Those of a map through these cones."""
@@ -259,6 +257,19 @@ def complete_cones(
     return _completed(given, held, options, count, placed)
 
 
+@dataclass(frozen=True, slots=True)
+class ConeChoices:
+    """Cones among which `best_map` chooses, each as of `complete_cones`.
+
+    usual: symmetric ones if all components are symmetric. symmetric: those that differ from the usual ones, or have
+    other cuts; None without. for_features: those with which creases can run along the lattice; None without.
+    """
+
+    usual: CompletedCones
+    symmetric: CompletedCones | None = None
+    for_features: CompletedCones | None = None
+
+
 def possible_cones(
     solver: Solver,
     cones: ArrayLike,
@@ -267,8 +278,8 @@ def possible_cones(
     count: int | None,
     symmetric: bool,
     progress: Progress | None = None,
-) -> list[CompletedCones]:
-    """Those of `complete_cones`, and after them symmetric ones and those for creases, where there are such.
+) -> ConeChoices:
+    """Those of `complete_cones`, and symmetric ones and those for creases, where there are such.
 
     symmetric: whether to try, where no cones are given. Errors as of `complete_cones`.
     """
@@ -278,8 +289,7 @@ def possible_cones(
     found = _symmetric_cones(
         solver, cones, angles, options, count, symmetric, share_of(progress, 0.0, _BEFORE_FEATURES)
     )
-    for_features = feature_cones(solver, options, share_of(progress, _BEFORE_FEATURES, 1.0))
-    return found if for_features is None else [*found, for_features]
+    return replace(found, for_features=feature_cones(solver, options, share_of(progress, _BEFORE_FEATURES, 1.0)))
 
 
 def follows_features(surface: Surface, options: Options) -> bool:
@@ -296,8 +306,7 @@ def feature_cones(solver: Solver, options: Options, progress: Progress | None = 
     chosen = or_none(lambda: _lsgp.feature_cones(arrays, options.straighten, share_of(progress, 0.0, TRYING)))
     if chosen is None or not len(chosen[0]):
         return None
-    found = or_none(lambda: complete_cones(solver, *chosen, options, None, share_of(progress, TRYING, 1.0)))
-    return None if found is None else replace(found, for_features=True)
+    return or_none(lambda: complete_cones(solver, *chosen, options, None, share_of(progress, TRYING, 1.0)))
 
 
 def _symmetric_cones(
@@ -308,11 +317,11 @@ def _symmetric_cones(
     count: int | None,
     symmetric: bool,
     progress: Progress | None,
-) -> list[CompletedCones]:
-    """Those of `complete_cones`, and after them, where a component is symmetric, symmetric ones; if these are the same,
-    their cuts may still be others."""
+) -> ConeChoices:
+    """Those of `complete_cones` and, where a component is symmetric, symmetric ones; if these are the same, their cuts
+    may still be others."""
     if not symmetric or len(arguments.index_vector("cones", cones)):
-        return [complete_cones(solver, cones, angles, options, count, progress)]
+        return ConeChoices(complete_cones(solver, cones, angles, options, count, progress))
     alike = or_none(
         lambda: complete_cones(solver, cones, angles, options, count, share_of(progress, 0.0, TRYING), symmetric=True)
     )
@@ -321,18 +330,18 @@ def _symmetric_cones(
         others = [finding for finding in alike.placement.warnings if finding.code != _ODD]
         alike = replace(alike, placement=replace(alike.placement, warnings=others))
         if sum(len(finding.elements.indices) for finding in odd) == len(solver.surface.triangles):
-            return [alike]
+            return ConeChoices(alike)
         alike = replace(alike, is_symmetric=True)
     usual = complete_cones(solver, cones, angles, options, count, share_of(progress, TRYING, 1.0))
     if alike is None:
-        return [usual]
+        return ConeChoices(usual)
     is_same = set(alike.cones.tolist()) == set(usual.cones.tolist())
-    return [usual, replace(usual, is_symmetric=True) if is_same else alike]
+    return ConeChoices(usual, replace(usual, is_symmetric=True) if is_same else alike)
 
 
 def best_map(
     solver: Solver,
-    choices: Sequence[CompletedCones],
+    choices: ConeChoices,
     options: Options,
     pins: Pins | None = None,
     progress: Progress | None = None,
@@ -342,9 +351,8 @@ def best_map(
     Where symmetric cuts cost islands, the symmetric cones are tried with other cuts as well.
     pins, progress, errors: as for `parameterize`.
     """
-    usual, *others = [choice for choice in choices if not choice.for_features]
-    for_features = next((choice for choice in choices if choice.for_features), None)
-    share = 1.0 / (len(choices) + (for_features is not None))
+    usual, symmetric, for_features = choices.usual, choices.symmetric, choices.for_features
+    share = 1.0 / (1 + (symmetric is not None) + 2 * (for_features is not None))
     stages = iter([share_of(progress, i * share, (i + 1) * share) for i in range(round(1 / share))])
     along = None
     if for_features is not None:
@@ -353,17 +361,18 @@ def best_map(
             along = None
     # Creases along the lattice take time: they are tried with the cones that are chosen.
     # Those that are released run along it through other cones, perhaps.
-    is_chosen = for_features is None or (along is None and not others) or releases_features(along)
+    is_chosen = for_features is None or (along is None and symmetric is None) or releases_features(along)
     tried = options if is_chosen else replace(options, straighten=False)
     plain = _map_through(solver, usual, tried, pins, next(stages))
     best = usual, plain
-    for i, other in enumerate(others, start=2 + (for_features is not None)):
+    if symmetric is not None:
         # Comparing, and the map with other cuts, which few models need, have no time of their own.
-        mapping, still = next(stages), share_of(progress, i * share, i * share)
+        end = (2 + (for_features is not None)) * share
+        mapping, still = next(stages), share_of(progress, end, end)
         may_replace = partial(may_replace_map, square_share=options.square_share, progress=still)
         map_through = partial(_map_through, solver, options=tried, pins=pins)
         for candidate in _symmetric_maps(
-            map_through, other, (usual, plain), not options.mirrored_cuts, (mapping, still)
+            map_through, symmetric, (usual, plain), not options.mirrored_cuts, (mapping, still)
         ):
             result = candidate[1]
             if may_replace(result, plain) and (best[1] is plain or may_replace(result, best[1])):

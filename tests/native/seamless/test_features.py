@@ -151,7 +151,7 @@ def test_the_usual_layout_is_made_once_where_cones_for_creases_admit_none(monkey
     solver = lsgp.Solver(box)
     usual = unwrapping.complete_cones(solver, (), None, TILE)
     # Gauss-Bonnet requires more than one cone of half a turn.
-    refused = unwrapping.CompletedCones(usual.cones[:1], [np.pi], None, for_features=True)
+    refused = unwrapping.CompletedCones(usual.cones[:1], [np.pi], None)
     tried = []
 
     def parameterize(self: lsgp.Solver, cones: NDArray[np.int32], *others: Any) -> lsgp.Result:
@@ -160,7 +160,7 @@ def test_the_usual_layout_is_made_once_where_cones_for_creases_admit_none(monkey
 
     whole = lsgp.Solver.parameterize
     monkeypatch.setattr(lsgp.Solver, "parameterize", parameterize)
-    chosen, result = unwrapping.best_map(solver, [usual, refused], TILE)
+    chosen, result = unwrapping.best_map(solver, unwrapping.ConeChoices(usual, for_features=refused), TILE)
     assert tried == [1, len(usual.cones)]
     assert chosen == usual
     np.testing.assert_array_equal(result.corner_uv, lsgp.parameterize(box, usual.cones, usual.angles, TILE).corner_uv)
