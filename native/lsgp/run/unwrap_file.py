@@ -80,7 +80,6 @@ class Run:
         self.stage_seconds[name] = time.perf_counter() - begin
 
 
-@packing_once()
 def unwrap_file(
     args: argparse.Namespace,
     run: Run,
@@ -104,10 +103,12 @@ def unwrap_file(
     packing, layout = packing_of(args), texel_layout(args)
     is_tight = packing is not None and packing.is_tight
     mapping = share_of(progress, 0.0, PACKING) if is_tight else progress
-    file, result = _map(args, options, run, mapping, given_format)
+    with packing_once():
+        file, result = _map(args, options, run, mapping, given_format)
+        if packing is not None:
+            with run.stage("pack"):
+                laid = laid_out(run.surface, result, packing, layout, share_of(progress, PACKING, 1.0))
     if packing is not None:
-        with run.stage("pack"):
-            laid = laid_out(run.surface, result, packing, layout, share_of(progress, PACKING, 1.0))
         result, seen = laid.result, laid.result.solved & ~laid.stacked
         tiles = 1 if packing.udim is None else _tiles_in_use(result.corner_uv[seen])
         run.packed = Packed(laid.packer, uv_area(result.corner_uv[seen]) / tiles, tiles)
