@@ -46,7 +46,7 @@ T = TypeVar("T")
 TARGET = 1.05
 # Fraction of an unwrap's time that placing cones takes.
 PLACING = 0.6
-# And with making the map, where islands are packed afterwards.
+# And with making the map, where islands are packed afterward.
 PACKING = 0.9
 # Of the time of placing cones: where those for creases are placed.
 _BEFORE_FEATURES = 0.9

@@ -9,7 +9,7 @@ BPY_PYTHON. The first table has medians; with --each, one for each method has th
 --picture, that folder gets MODEL.png with all layouts beside each other. Needs scipy, xatlas, the lsgp wheel and, for
 pictures, matplotlib.
 
-- covered: fraction of the texels of a texture of 1024 by 1024 whose centres an island covers;
+- covered: fraction of the texels of a texture of 1024 by 1024 whose centers an island covers;
 - L2: the stretch of the whole surface;
 - cuts: their length, in square roots of the surface's area;
 - overlap: the area that triangles share, in percent of the layout's area;

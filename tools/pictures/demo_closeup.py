@@ -20,7 +20,7 @@ PIXELS, LENS = 173, 85
 TILES_SEEN = 5.0  # from side to side of a close-up
 TILT = (np.radians(12), 0.0, np.radians(15))  # of the model, so that it is not seen flat from the front
 LAMPS = (("key", (-5, -7, 6), 4, 700), ("fill", (8, -8, 1), 8, 250))
-BEAD, BEAD_STEP, BEAD_COLOUR = 0.023, 0.24, (0.93, 0.05, 0.52)
+BEAD, BEAD_STEP, BEAD_COLOR = 0.023, 0.24, (0.93, 0.05, 0.52)
 
 
 @dataclass(frozen=True)
@@ -145,7 +145,7 @@ def render_view(model: bpy.types.Object, view: View, path: Path, samples: int) -
         shown.hide_render = False
         shown.matrix_world = Matrix(turn.tolist()).to_4x4() @ Matrix.Translation((-view.focus).tolist())
         bpy.context.collection.objects.link(shown)
-        demo_picture.add_balls(places_along(line, BEAD_STEP), BEAD_COLOUR, BEAD)
+        demo_picture.add_balls(places_along(line, BEAD_STEP), BEAD_COLOR, BEAD)
         demo_picture.add_light(0.6, LAMPS)
         demo_picture.add_camera(LENS, frame * LENS / 36)
         bpy.context.scene.render.film_transparent = True

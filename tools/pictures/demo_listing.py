@@ -59,8 +59,8 @@ def add_model() -> bpy.types.Object:
 def look_at_the_model() -> None:
     """Turns the camera of the picture to its left half alone."""
     camera = bpy.context.scene.camera
-    camera.location.x, _, camera.location.z = demo_picture.MODEL_CENTRE
-    distance = demo_picture.MODEL_CENTRE[1] - camera.location.y
+    camera.location.x, _, camera.location.z = demo_picture.MODEL_CENTER
+    distance = demo_picture.MODEL_CENTER[1] - camera.location.y
     camera.data.lens = camera.data.sensor_width * distance / ICON_WIDTH
 
 

@@ -102,7 +102,7 @@ def add_fan() -> bpy.types.Object:
 
 
 def figures(measured, uv: np.ndarray, texture: np.ndarray) -> tuple[float, ...]:
-    """Those of COLUMNS.  uv: both sides of every cut edge; colours are compared at nine points of each."""
+    """Those of COLUMNS.  uv: both sides of every cut edge; colors are compared at nine points of each."""
     part = np.linspace(0, 1, 9)[:, None]
     places = uv[:, :, :1] * (1 - part) + uv[:, :, 1:] * part
     left, right = (demo_texture.bilinear(texture, side.reshape(-1, 2)) for side in places.transpose(1, 0, 2, 3))

@@ -165,7 +165,7 @@ def _parser() -> _Parser:
         allow_abbrev=False,
         help="fill the gutters of a texture",
         description="Fill the texels beside the islands of a texture with the content beyond the cuts, so that "
-        "filtered lookups match there. Texels whose centre is in an island do not change.",
+        "filtered lookups match there. Texels whose center is in an island do not change.",
     )
     add_pad_options(pad)
     pad.set_defaults(run=_reported, make=_pad, report=None)

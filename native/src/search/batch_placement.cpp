@@ -23,7 +23,7 @@ constexpr std::size_t probes = 8;        // sites at which the spread is measure
 // Rings that can be left free around each of so many cones.
 int rings_for(int cones, Index vertices) {
   int rings = free_rings;
-  const auto vertices_within = [&] { return 1.0 + 3 * rings * (rings + 1); };  // where all have six neighbours
+  const auto vertices_within = [&] { return 1.0 + 3 * rings * (rings + 1); };  // where all have six neighbors
   while (rings > 0 && cones * vertices_within() > vertices) --rings;
   return rings;
 }

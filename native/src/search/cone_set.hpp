@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cones at some sites with the curvatures that minimise the variance of the log scale, the gain of another cone, and
+// Cones at some sites with the curvatures that minimize the variance of the log scale, the gain of another cone, and
 // the cost of removing one.
 #pragma once
 
@@ -26,7 +26,7 @@ struct PlacementProblem {
   double mean_price(const Array<int>& sites) const;
 };
 
-// The curvatures of cones at some sites that minimise the variance, and their bounds.
+// The curvatures of cones at some sites that minimize the variance, and their bounds.
 struct CurvatureFit {
   Eigen::VectorXd low, high, curvature;  // (k)
   double used_reach = 0;                 // of the bounds: widened where Gauss-Bonnet wants more

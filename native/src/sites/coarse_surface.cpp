@@ -47,7 +47,7 @@ class CoarseSurface::Triangulation {
     restore_delaunay();
   }
 
-  // In passes, no two neighbours in one, which coarsens evenly and keeps degrees small.
+  // In passes, no two neighbors in one, which coarsens evenly and keeps degrees small.
   Array<Removal> remove(Index most) {
     Array<Removal> removals;
     Array<Index> stuck;
@@ -77,7 +77,7 @@ class CoarseSurface::Triangulation {
       if (place[h] == none) continue;
       mesh.triangles.data()[place[h]] = node[origin(h)];
       mesh.twin[place[h]] = twin(h) == none ? none : place[twin(h)];
-      // A vertex that could not be removed may have been left on the line between two neighbours.
+      // A vertex that could not be removed may have been left on the line between two neighbors.
       const double least = no_area * (square(h) + square(next(h)) + square(prev(h)));
       geometry.half_cotangent[place[h]] = dot_opposite(h) / (2 * std::max(area_[h / 3], least));
     }
@@ -174,7 +174,7 @@ class CoarseSurface::Triangulation {
     Index best = none, h = outgoing_[v];
     Flipped to{};
     double best_shape = least_area;
-    bool is_tie = true;  // v gets to the line between two neighbours; what that leaves at v is dissolved soon
+    bool is_tie = true;  // v gets to the line between two neighbors; what that leaves at v is dissolved soon
     do {
       if (may_flip(h)) {
         const Flipped tried = flipped(h);
@@ -193,7 +193,7 @@ class CoarseSurface::Triangulation {
     return {best, to};
   }
 
-  // Whether it was possible. Neighbours are marked as touched in this pass.
+  // Whether it was possible. Neighbors are marked as touched in this pass.
   bool remove(Index v, int pass, Array<Removal>& removals) {
     int degree = 0;
     Index h = outgoing_[v];

@@ -49,7 +49,7 @@ bool side_by_side(const HalfedgeMesh& mesh, Index a, Index b) {
   return std::find(reached.begin(), reached.end(), b) != reached.end();
 }
 
-// Around so many sites of all candidates, where vertices have six neighbours: fewer leave too many.
+// Around so many sites of all candidates, where vertices have six neighbors: fewer leave too many.
 int least_rings(std::ptrdiff_t candidates, int most) {
   int rings = 1;
   const auto vertices_within = [&] { return 1.0 + 3 * rings * (rings + 1); };

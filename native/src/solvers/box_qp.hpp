@@ -11,7 +11,7 @@
 
 namespace lsgp {
 
-// Minimises  gradient . d + d . hessian d / 2  over  low <= d <= high  and, with keep_sum, sum d = 0.
+// Minimizes  gradient . d + d . hessian d / 2  over  low <= d <= high  and, with keep_sum, sum d = 0.
 // A primal active-set method: every iterate is feasible and the objective never rises. Which variables are at their
 // bounds is remembered from one program to the next, and a factorization is kept while that does not change.
 // Large programs change the sides of many variables at once (block principal pivoting, Judice and Pires 1994) and fall

@@ -106,7 +106,7 @@ void Cholesky<Scalar>::Factor::fill(const Eigen::SparseMatrix<Scalar>& lower, in
     Scalar* column = panel + product(c, rows);
     column[c] += lower.valuePtr()[lower.outerIndexPtr()[row]];
     for (int k = adjacency.begin[row]; k < adjacency.begin[row + 1]; ++k) {
-      const int other = adjacency.neighbour[k], at = plan.position[other];
+      const int other = adjacency.neighbor[k], at = plan.position[other];
       if (at < first + c) continue;
       const Scalar value = lower.valuePtr()[adjacency.entry[k]];
       column[local[at]] += other > row ? value : Eigen::numext::conj(value);

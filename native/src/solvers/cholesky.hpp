@@ -19,7 +19,7 @@ class Cholesky {
   // elimination of the others makes of them is their Schur complement.  memory: of a factor that is no longer needed.
   // Throws SolverFailure where the eliminated part is not positive definite.
   explicit Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retained = 0, Vector memory = {});
-  // Gives up the factor's memory; the factor cannot be used afterwards.
+  // Gives up the factor's memory; the factor cannot be used afterward.
   Vector take_memory();
   // Factors another matrix whose entries are in the same places; a part of the work is saved.
   void refactor(const Eigen::SparseMatrix<Scalar>& lower);

@@ -24,13 +24,13 @@ Adjacency adjacency_of_lower(int size, const int* outer, const int* inner) {
     ++out.begin[row + 1];
   });
   std::partial_sum(out.begin.begin(), out.begin.end(), out.begin.begin());
-  out.neighbour.resize(out.begin.back());
+  out.neighbor.resize(out.begin.back());
   out.entry.resize(out.begin.back());
   Array<int> cursor(out.begin.begin(), out.begin.end() - 1);
   for_each_off_diagonal([&](int column, int row, int k) {
-    out.neighbour[cursor[column]] = row;
+    out.neighbor[cursor[column]] = row;
     out.entry[cursor[column]++] = k;
-    out.neighbour[cursor[row]] = column;
+    out.neighbor[cursor[row]] = column;
     out.entry[cursor[row]++] = k;
   });
   return out;
@@ -70,23 +70,23 @@ class Ordering {
 
  private:
   template <typename Visit>
-  void for_each_neighbour(int at, Visit visit) const {
+  void for_each_neighbor(int at, Visit visit) const {
     const int row = out_.row_at[at];
     for (int k = adjacency_.begin[row]; k < adjacency_.begin[row + 1]; ++k) {
-      visit(out_.position[adjacency_.neighbour[k]]);
+      visit(out_.position[adjacency_.neighbor[k]]);
     }
   }
 
   template <typename Visit>
   void for_each_earlier(int at, Visit visit) const {
-    for_each_neighbour(at, [&](int other) {
+    for_each_neighbor(at, [&](int other) {
       if (other < at && other < eliminated_) visit(other);
     });
   }
 
   template <typename Visit>
   void for_each_later(int at, Visit visit) const {
-    for_each_neighbour(at, [&](int other) {
+    for_each_neighbor(at, [&](int other) {
       if (other > at) visit(other);
     });
   }
@@ -97,7 +97,7 @@ class Ordering {
     int count = 0;
     for (int row = 0; row < eliminated_; ++row) {
       for (int k = adjacency_.begin[row]; k < adjacency_.begin[row + 1]; ++k)
-        count += adjacency_.neighbour[k] < eliminated_;
+        count += adjacency_.neighbor[k] < eliminated_;
     }
     pattern.resizeNonZeros(count + eliminated_);
     std::fill_n(pattern.valuePtr(), pattern.nonZeros(), Pattern::Scalar(1));
@@ -106,7 +106,7 @@ class Ordering {
       pattern.outerIndexPtr()[row] = filled;
       pattern.innerIndexPtr()[filled++] = row;
       for (int k = adjacency_.begin[row]; k < adjacency_.begin[row + 1]; ++k) {
-        if (adjacency_.neighbour[k] < eliminated_) pattern.innerIndexPtr()[filled++] = adjacency_.neighbour[k];
+        if (adjacency_.neighbor[k] < eliminated_) pattern.innerIndexPtr()[filled++] = adjacency_.neighbor[k];
       }
     }
     pattern.outerIndexPtr()[eliminated_] = filled;

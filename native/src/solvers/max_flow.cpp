@@ -71,7 +71,7 @@ bool FlowNetwork::find_distances(int source, int sink) {
   return distance_[source] >= 0;
 }
 
-// A blocking flow: walks towards the sink, sends the walk's capacity, continues from the saturated arc.
+// A blocking flow: walks toward the sink, sends the walk's capacity, continues from the saturated arc.
 FlowNetwork::Units FlowNetwork::send_along_shortest(int source, int sink) {
   current_ = first_;
   Array<int> walk;  // arcs from the source

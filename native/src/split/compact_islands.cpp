@@ -224,7 +224,7 @@ Array<Index> Compactor::cut_along(const Array<Line>& lines, const Array<Index>& 
   return class_of;
 }
 
-// Pieces too small to be islands join the neighbour with the longest common boundary.
+// Pieces too small to be islands join the neighbor with the longest common boundary.
 Array<Index> Compactor::without_slivers(const Array<Index>& island, const Array<Index>& class_of) {
   const Array<Array<Index>> pieces = pieces_of(island, class_of);
   for (std::size_t i = 0; i < pieces.size(); ++i) {

@@ -25,7 +25,7 @@ class OverlapSplitter {
     Array<Index> first, second;  // faces
   };
 
-  // Neighbouring pairs of faces of one part that lie on each other.
+  // Neighboring pairs of faces of one part that lie on each other.
   struct Conflict {
     Array<Index> entries;  // the least first
     double area = 0;
@@ -45,7 +45,7 @@ class OverlapSplitter {
   bool is_conflict_in(Index part, Index entry) const {
     return parts_.of_face[pairs_.of[entry]] == part && parts_.of_face[pairs_.partner[entry]] == part;
   }
-  // Calls visit for the pairs of a part next to one: of the same faces or their neighbours.
+  // Calls visit for the pairs of a part next to one: of the same faces or their neighbors.
   template <typename Visit>
   void for_each_beside(Index part, Index entry, Visit visit) const {
     const auto look_up = [&](Index face, Index partner) {
