@@ -10,12 +10,14 @@ these types.
 
 from __future__ import annotations
 
-import os
 import sys
-import traceback
+from pathlib import Path
 
 import bpy
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from bpy_program import run_as_program
 
 SCALE, DETAIL = 2.0, 2.0
 
@@ -83,12 +85,4 @@ def main(source: str, size: str, margin: str, target: str) -> None:
 
 
 if __name__ == "__main__":
-    code = 0
-    try:
-        main(*sys.argv[1:])
-    except Exception:
-        traceback.print_exc()
-        code = 1
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(code)  # bpy as a module may hang at a regular exit
+    run_as_program(lambda: main(*sys.argv[1:]))

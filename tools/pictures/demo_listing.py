@@ -13,9 +13,11 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parent))
 import demo_picture
 import demo_scene
+from bpy_program import run_as_program
 
 MODEL = Path(__file__).resolve().parents[2] / "examples" / "model.obj"
 LENGTH = 2.6  # of the model in the picture, in its units
@@ -65,4 +67,4 @@ def look_at_the_model() -> None:
 
 
 if __name__ == "__main__":
-    demo_scene.run_as_program(main)
+    run_as_program(main)

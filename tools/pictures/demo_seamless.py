@@ -16,11 +16,13 @@ from pathlib import Path
 import bpy
 import numpy as np
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parent))
 import demo_closeup
 import demo_picture
 import demo_scene
 import demo_texture
+from bpy_program import run_as_program
 from demo_table import MISMATCH, STRETCH, Column, table
 
 MESHES = Path(__file__).resolve().parents[3] / "shared" / "meshes"
@@ -122,4 +124,4 @@ GENERATED = (
 
 
 if __name__ == "__main__":
-    demo_scene.run_as_program(main)
+    run_as_program(main)

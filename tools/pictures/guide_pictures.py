@@ -16,9 +16,11 @@ import numpy as np
 from mathutils import Euler
 from numpy.typing import NDArray
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parent))
 import demo_picture
 import demo_scene
+from bpy_program import run_as_program
 
 FloatArray = NDArray[np.float64]
 
@@ -310,4 +312,4 @@ def add_sheet(
 
 
 if __name__ == "__main__":
-    demo_scene.run_as_program(main)
+    run_as_program(main)
