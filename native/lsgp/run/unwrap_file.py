@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..api import Options, Placement, Progress, Result, Solver, Surface, parameterize
-from ..auto_unwrap import PACKING, PLACING, best_map, possible_cones, share_of, with_crease_borders
+from ..auto_unwrap import PACKING, PLACING, GivenCones, best_map, possible_cones, share_of, with_crease_borders
 from ..errors import Finding, InputError, LsgpError
 from ..io.mesh_files import MeshFile, format_mesh, parse_mesh, triangulated
 from ..io.mesh_formats import output_format
@@ -205,7 +205,8 @@ def _map(
     placing, mapping = share_of(progress, 0.0, PLACING), share_of(progress, PLACING, 1.0)
     with run.stage("place_cones"):
         solver = Solver(surface)
-        choices = possible_cones(solver, *given, options, cone_count(args), tries_symmetry(args), placing)
+        cones = GivenCones.of(*given, cone_count(args))
+        choices = possible_cones(solver, cones, options, tries_symmetry(args), placing)
     completed, result = best_map(solver, choices, options, progress=mapping)
     run.placement = completed.placement
     run.stage_seconds.update(result.stage_seconds)

@@ -149,7 +149,7 @@ def test_the_usual_layout_is_made_once_where_cones_for_creases_admit_none(monkey
     unwrapping = sys.modules["lsgp.auto_unwrap"]
     box = surface(HARD["box"])
     solver = lsgp.Solver(box)
-    usual = unwrapping.complete_cones(solver, (), None, TILE)
+    usual = unwrapping.complete_cones(solver, unwrapping.GivenCones.of(), TILE)
     # Gauss-Bonnet requires more than one cone of half a turn.
     refused = unwrapping.CompletedCones(usual.cones[:1], [np.pi], None)
     tried = []
