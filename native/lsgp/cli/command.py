@@ -260,8 +260,7 @@ def _measure(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
     total = len(triangulation.triangles)
     text = f"{args.input}: {total - len(without)} of {total} triangles measured\n"
     text += reports.quality_table(measurement, texels)
-    stages = run.stage_seconds
-    return reports.measure_report(measurement, warnings, triangulation, stages, args.texture_size, texels), text
+    return reports.measure_report(measurement, warnings, run, args.texture_size, texels), text
 
 
 def _pad(args: argparse.Namespace, run: Run) -> tuple[None, str]:
