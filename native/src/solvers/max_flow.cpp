@@ -10,7 +10,7 @@ namespace lsgp {
 
 namespace {
 
-constexpr double arc_visits = 10;  // of a blocking flow, each as long as so many multiplications
+constexpr double arc_visits = 10;  // multiplications that visiting an arc in a blocking flow costs
 
 }  // namespace
 
