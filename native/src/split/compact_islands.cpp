@@ -278,7 +278,7 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& island) {
   const double band = extent_along(hull, along).width() / division_positions;
   Array<Array<Index>> best;
   double most_worth = 0;
-  // Of cuts that are equally short, one hugs one end of the band, and one the other.
+  // Of equally short cuts, one hugs one end of the band and one the other.
   for (const Array<Line>& lines : {division.lines, reversed(division.lines)}) {
     const Array<Index> class_of = without_slivers(island, cut_along(lines, island, band));
     Array<Array<Index>> pieces = pieces_of(island, class_of);

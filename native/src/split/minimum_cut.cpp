@@ -14,10 +14,10 @@ namespace {
 
 using Units = FaceGraph::Units;
 
-constexpr double enough_area = 0.02;  // of the surface: parts of this size need not be larger
+constexpr double enough_area = 0.02;  // of the surface, from which on parts need not be larger
 constexpr double least_area = 1e-16;  // of the surface: smaller areas are lost in the sum
 constexpr Index most_cells = 10000;   // among which a cut is searched before its neighborhood is
-constexpr double cell_detour = 1.5;   // by which a cut between cells may be longer than it has to be
+constexpr double cell_detour = 1.5;   // by which a cut between cells may be longer than the shortest one
 
 constexpr Index first_cell = 0, second_cell = 1;  // the cells to be separated
 
@@ -110,7 +110,7 @@ struct MinimumCutter::Cells {
     return merged;
   }
 
-  // Which cells are nearer to either of the first two, the nearest first.
+  // The cells nearer to each of the first two, the nearest first.
   std::array<Array<Index>, 2> by_distance() const {
     struct Reached {
       double distance;

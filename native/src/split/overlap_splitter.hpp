@@ -29,7 +29,7 @@ class OverlapSplitter {
   struct Conflict {
     Array<Index> entries;  // the least first
     double area = 0;
-    bool is_two_sided = true;  // no face is on both sides
+    bool is_two_sided = true;  // whether no face is on both sides
     bool is_larger_than(const Conflict& other) const {
       return area > other.area || (area == other.area && entries.front() < other.entries.front());
     }
@@ -41,7 +41,7 @@ class OverlapSplitter {
     Array<Conflict> conflicts;
   };
 
-  // Both faces are of this part, which a cut can divide only by itself.
+  // Whether both faces belong to this part.
   bool is_conflict_in(Index part, Index entry) const {
     return parts_.of_face[pairs_.of[entry]] == part && parts_.of_face[pairs_.partner[entry]] == part;
   }
