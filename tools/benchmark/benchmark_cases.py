@@ -24,7 +24,7 @@ SIZES = ((50_000, 1, (100, 500)), (200_000, 2, (100, 500)), (1_000_000, 3, ()))
 class Case:
     """positions: (n, 3) float64. triangles: (m, 3) int32. cones: (k,) int32 vertices.
 
-    is_random: cones anywhere, not where they distort least.
+    is_random: cones at random, not where they distort least.
     """
 
     name: str
@@ -59,7 +59,7 @@ def bumpy_sphere(level: int) -> Case:
 
 
 def resized(case: Case, triangles: int, subdivisions: int = 0) -> Case:
-    """Decimated, then smoothly subdivided (Loop) to about so many triangles; cones go to the nearest vertices."""
+    """Decimated, then subdivided (Loop) to about so many triangles; cones are moved to the nearest vertices."""
     coarse = triangles >> 2 * subdivisions
     positions, faces, _, _ = igl.decimate(case.positions, case.triangles.astype(np.int64), coarse)
     nearest = [int(np.argmin(np.linalg.norm(positions - cone, axis=1))) for cone in case.positions[case.cones]]

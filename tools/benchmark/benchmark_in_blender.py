@@ -65,7 +65,7 @@ def main(source: str, method: str, target: str | None = None) -> None:
     arrays = np.load(source)
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     add_mesh(np.eye(3), np.array([[0, 1, 2]]), np.empty((0, 2), int))
-    unwrap(method)  # the first one of a process takes longer
+    unwrap(method)  # the first one in a process takes longer
     surface = add_mesh(arrays["positions"], arrays["triangles"], arrays["seams"])
     for _ in sys.stdin:
         seconds = unwrap(method)

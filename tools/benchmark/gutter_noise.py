@@ -58,7 +58,7 @@ def compared(whole: lsgp.Surface, size: int, arguments: argparse.Namespace) -> d
     uv = lsgp.auto_unwrap(whole, preset="bake", pack="tight", margin=arguments.margin / size).corner_uv
     baked = bake(whole, uv, size, arguments)
     empty, covered = baked["empty"].astype(np.float64), baked["covered"]
-    # On edges, what a baker covers may differ by a texel from what the library does: it gets what has a margin already.
+    # On edges the texels that a baker covers may differ from the library's by one: it is given those with a margin.
     extended = baked["extend"].astype(np.float64)
     wide = [arguments.margin / 2**level for level in range(LEVELS)]
     pyramids = {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What lookups at both sides of cuts differ by, for gutters of several kinds, as a Markdown table.
+"""By how much lookups on the two sides of cuts differ, for gutters of several kinds, as a Markdown table.
 
     PYTHONPATH=tests python tools/benchmark/gutter_table.py [--size PIXELS] [--margin PIXELS] [--picture FOLDER]
 

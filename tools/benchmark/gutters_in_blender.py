@@ -36,7 +36,7 @@ def add_surface(positions: np.ndarray, triangles: np.ndarray, corner_uv: np.ndar
 
 
 def add_noise(material: bpy.types.Material, size: int) -> bpy.types.Image:
-    """Let the material show noise in space; returns the image that it is baked to."""
+    """Give the material a solid noise texture; returns the image that it is baked to."""
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
     nodes.clear()
@@ -62,7 +62,7 @@ def bake(image: bpy.types.Image, margin: int, kind: str, *, clear: bool = True) 
 
 
 def main(source: str, size: str, margin: str, target: str) -> None:
-    import addon_utils  # bpy brings it
+    import addon_utils  # installed with bpy
 
     arrays = np.load(source)
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)

@@ -55,7 +55,7 @@ def empty_stage() -> Iterator[None]:
 
 
 def compose(model: bpy.types.Object, cut_edges: np.ndarray, cones: np.ndarray) -> None:
-    """Build the scene round a copy of `model`, which has its checker.
+    """Build the scene around a copy of `model`, which has its checker.
 
     cut_edges: (c, 2) vertex pairs where the layout is open. cones: (k,) vertices.
     """
@@ -89,7 +89,7 @@ def compose(model: bpy.types.Object, cut_edges: np.ndarray, cones: np.ndarray) -
 
 
 def add_checker(model: bpy.types.Object) -> None:
-    """Give the model a checker as its only material, squares of one size whatever the size of the layout."""
+    """Give the model a checker as its only material, with squares of one size, regardless of the size of the layout."""
     mesh = model.data
     mesh.materials.clear()
     mesh.materials.append(checker_material(length_of_uv_unit(mesh, read_uv(mesh)) / SQUARE))
@@ -119,7 +119,7 @@ def layout_places(uv: np.ndarray) -> np.ndarray:
 
 
 class Sides:
-    """Which loops lie on the two sides of every edge and round every vertex."""
+    """Which loops lie on the two sides of every edge and around every vertex."""
 
     def __init__(self, mesh: bpy.types.Mesh) -> None:
         self.corners: dict[int, list[tuple[int, int, int]]] = {}
@@ -144,11 +144,11 @@ class Sides:
         return sides
 
     def places(self, vertex: int, uv: np.ndarray) -> list[int]:
-        """One loop for every place a vertex has in the layout."""
+        """One loop for every position of a vertex in the layout."""
         return list({tuple(uv[loop].round(6)): loop for _, loop, _ in self.corners[vertex]}.values())
 
     def curvature(self, vertex: int, uv: np.ndarray) -> float:
-        """Full turn less the angles the layout has round a vertex, radians."""
+        """A full turn minus the angles of the layout around a vertex, radians."""
         before, here, after = uv[np.array(self.corners[vertex])].transpose(1, 0, 2)
         ahead, back = after - here, before - here
         cross = ahead[:, 0] * back[:, 1] - ahead[:, 1] * back[:, 0]
@@ -156,21 +156,21 @@ class Sides:
 
 
 def cut_color(number: int) -> tuple[float, float, float]:
-    """The colors in turn, every other time round as tints."""
+    """The colors in turn, every second cycle as tints."""
     turn, place = divmod(number, len(CUT_COLORS))
     full = np.array([int(CUT_COLORS[place][k : k + 2], 16) / 255 for k in (1, 3, 5)])
     return tuple(1 - (0.55 if turn % 2 else 1.0) * (1 - full))
 
 
 def cone_color(curvature: float) -> tuple[float, float, float]:
-    """From near white at no curvature to full color at half a turn, warm where positive, cold where negative."""
+    """From nearly white without curvature to full color at half a turn: warm if positive, cold if negative."""
     full = np.array(POSITIVE_CONE if curvature > 0 else NEGATIVE_CONE)
     share = min(1.0, 0.45 + 0.55 * abs(curvature) / np.pi)
     return tuple(1 - share * (1 - full))
 
 
 def linear(color: tuple[float, float, float]) -> tuple[float, float, float, float]:
-    """A display color as Cycles wants it."""
+    """A display color in linear light, as Cycles expects it."""
     return (*(c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in color), 1.0)
 
 
@@ -291,9 +291,9 @@ def render(path: Path, samples: int, width: int, height: int) -> None:
     try:
         scene.cycles.use_denoising = True
         scene.cycles.denoiser = "OPENIMAGEDENOISE"
-    except TypeError:  # built without the denoiser: more samples instead
+    except TypeError:  # this build has no denoiser: more samples instead
         scene.cycles.use_denoising, scene.cycles.samples = False, 4 * samples
-    scene.render.dither_intensity = 0  # flat tones stay flat, which halves the file
+    scene.render.dither_intensity = 0  # flat areas stay flat, which halves the file
     scene.view_settings.view_transform = "Standard"
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = width, height, 100
     scene.render.image_settings.file_format = "PNG"

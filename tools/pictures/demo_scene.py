@@ -61,7 +61,7 @@ def main() -> None:
 
 
 def say(step: str) -> None:
-    """Print what is done next; tools/demo repeats it while it takes."""
+    """Print the next step, which tools/demo shows until the following one."""
     print(f"   {step}", flush=True)
 
 
@@ -141,7 +141,7 @@ def measure(lsgp, obj: bpy.types.Object):
 
 
 def unwrapped_by_blender(lsgp, obj: bpy.types.Object, cut_edges: np.ndarray, method: str) -> tuple[float, ...]:
-    """The figures of what Blender makes of the mesh with seams on the given cuts."""
+    """The figures of Blender's unwrap of the mesh with seams on the given cuts."""
     copy = add_copy_unwrapped_by_blender(obj, cut_edges, method)
     found = figures(measure(lsgp, copy)[1], copy)
     bpy.data.meshes.remove(copy.data)

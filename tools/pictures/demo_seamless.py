@@ -85,13 +85,13 @@ def add(shape: Shape, material: bpy.types.Material) -> bpy.types.Object:
 
 
 def add_mesh(name: str) -> bpy.types.Object:
-    """One of the collection beside the checkout."""
+    """A mesh of the shared collection next to the checkout."""
     bpy.ops.wm.obj_import(filepath=str(MESHES / f"{name}.obj"), forward_axis="Y", up_axis="Z")
     return bpy.context.object
 
 
 def add_fan() -> bpy.types.Object:
-    """A sector of a fan's disk: a hub, a blade that gets thinner outwards, sharp edges all round."""
+    """A sector of a fan's disk: a hub, a blade that gets thinner outwards, with sharp edges all around."""
     bpy.ops.mesh.primitive_cube_add(size=2.0)
     fan = bpy.context.object
     demo_scene.run_in_edit_mode(fan, bpy.ops.mesh.subdivide, number_cuts=23)

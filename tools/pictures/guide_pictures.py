@@ -73,7 +73,7 @@ def main() -> None:
 
 
 def take_picture(lsgp: ModuleType, obj: bpy.types.Object, path: Path, samples: int) -> None:
-    """Of an object and its map."""
+    """Render an object and its map."""
     _, measured = demo_scene.measure(lsgp, obj)
     distortion = measured.distortion
     print(f"{path.stem}: L2 {distortion.l2_stretch:.3f}, QC {distortion.quasi_conformal:.3f}", flush=True)
@@ -211,7 +211,7 @@ def add_vase() -> bpy.types.Object:
 
 
 def brick_material() -> bpy.types.Material:
-    """Four courses of bricks a unit of texture."""
+    """Four courses of bricks per unit of texture."""
     material = bpy.data.materials.new("bricks")
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
@@ -243,7 +243,7 @@ def dart() -> None:
 
 
 def inset() -> None:
-    """A sheet that is slit and a quarter to be sewn in, flat and as a saddle of 450 degrees."""
+    """A sheet that is slit and a quarter to be inserted, flat and as a saddle of 450 degrees."""
     angle, curvature = 2.5 * np.pi, -0.5 * np.pi
     around = np.linspace(0, 2 * np.pi, 4001)
 
