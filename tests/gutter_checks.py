@@ -34,7 +34,7 @@ def smooth(places: FloatArray) -> FloatArray:
 
 
 def bake(whole: lsgp.Surface, corner_uv: FloatArray, size: int) -> tuple[FloatArray, NDArray[np.bool_]]:
-    """The function at the texels with their centre in a triangle, 0 elsewhere; and which these are. Both (size, size).
+    """The function at the texels with their center in a triangle, 0 elsewhere; and which these are. Both (size, size).
 
     One triangle after the other, by barycentric coordinates.
     """
@@ -114,7 +114,7 @@ def difference_across_cuts(whole: lsgp.Surface, corner_uv: FloatArray, image: Fl
     ]
 
 
-def difference_of_neighbours(image: FloatArray, covered: NDArray[np.bool_]) -> float:
+def difference_of_neighbors(image: FloatArray, covered: NDArray[np.bool_]) -> float:
     """Mean difference of covered texels beside and above each other."""
     pairs = [(image[:, 1:], image[:, :-1], covered[:, 1:] & covered[:, :-1])]
     pairs.append((image[1:], image[:-1], covered[1:] & covered[:-1]))

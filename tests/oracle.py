@@ -2,7 +2,7 @@
 """The pipeline derived a second time, in numpy and scipy, for the tests to compare the library with.
 
 Nothing here follows the library's route where another one exists: transitions are constraint rows of a KKT system, one
-per cut edge, instead of eliminated unknowns; the prescription is left to a general optimiser; the spectral map comes
+per cut edge, instead of eliminated unknowns; the prescription is left to a general optimizer; the spectral map comes
 from a subspace iteration (or a dense eigenproblem on a null space) instead of a Lanczos process; measures come from
 singular value decompositions and from corner coordinates alone.
 
@@ -410,7 +410,7 @@ def _pin(count: int) -> sp.csr_matrix:
 def poisson_unfold(
     p: FloatArray, t: IntArray, opened: OpenedMesh, rotations: FloatArray, y: FloatArray
 ) -> ComplexArray:
-    """Minimise sum A (|f_z - T|^2 + |f_zbar|^2) under the transition rows; (m, 3) corner coordinates u + iv."""
+    """Minimize sum A (|f_z - T|^2 + |f_zbar|^2) under the transition rows; (m, 3) corner coordinates u + iv."""
     gz, _, area = complex_gradients(p, t, opened)
     target, _ = cone_metric_frames(p, t, opened, y)
     _, dirichlet = energies(p, t, opened)

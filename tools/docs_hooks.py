@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files of the repository that pages link to, as part of the site. MkDocs calls these functions (mkdocs.yml)."""
+"""Makes files of the repository that pages link to part of the site. MkDocs calls these functions (mkdocs.yml)."""
 
 from pathlib import Path
 

@@ -32,7 +32,7 @@ def documents() -> dict[Path, str]:
 
 
 def parts() -> Iterator[str]:
-    """What the documents have parts on."""
+    """The generated parts of the documents."""
     for path in sorted(DOCS.rglob("*.md")):
         yield from (what for _, what, _ in PART.findall(path.read_text(encoding="utf-8")))
 

@@ -9,12 +9,12 @@ installed in Blender instead.
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Iterable
 from pathlib import Path
 
 import bpy
+from bpy_program import run_as_program
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "reference" / "operators.md"
@@ -88,10 +88,7 @@ def main() -> None:
     addon.register()
     operators = [cls for cls in addon.registration.CLASSES if issubclass(cls, bpy.types.Operator)]
     PAGE.write_text(page(operators), encoding="utf-8", newline="\n")
-    sys.stdout.flush()
-    # The bpy module hangs at exit while classes of an add-on are registered.
-    os._exit(0)
 
 
 if __name__ == "__main__":
-    main()
+    run_as_program(main)

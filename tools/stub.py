@@ -100,13 +100,13 @@ def _definition(name: str, value: Any, aliases: dict[str, str]) -> str:
 
 
 def _aliases(parameters: Iterable[tuple[str, str]]) -> dict[str, str]:
-    """Names, by the types, of those that are written out in several signatures: as of the parameters."""
+    """Names for the types that several signatures contain, by type; named after the parameters."""
     uses = Counter((name, kind) for name, kind in parameters if "," in kind and not kind.startswith("dict"))
     return {kind: f"_{name.title()}" for (name, kind), count in uses.items() if count > 1}
 
 
 def _signature(function: Any) -> tuple[list[tuple[str, str]], str]:
-    """The parameters, each a name and a type, and the type that is returned."""
+    """The parameters, as names and types, and the returned type."""
     line = function.__doc__.splitlines()[0]
     assert "*args" not in line, "overloaded: the stub needs typing.overload"
     for pattern, spelling in SPELLINGS:
@@ -118,7 +118,7 @@ def _signature(function: Any) -> tuple[list[tuple[str, str]], str]:
 
 
 def split_outside_brackets(text: str) -> list[str]:
-    """At commas."""
+    """Split a text at its commas."""
     found, depth = [""], 0
     for letter in text:
         depth += (letter in "([{") - (letter in ")]}")

@@ -270,7 +270,7 @@ class StoredMesh(MeshReader):
 class FrozenMesh(StoredMesh):
     """A mesh in edit mode of which nothing changes but the UVs, which are set as ``uv``; hidden faces are left out.
 
-    copy: of the mesh, out of edit mode; it may be removed afterwards.
+    copy: of the mesh, out of edit mode; it may be removed afterward.
     """
 
     def __init__(self, copy: bpy.types.Mesh) -> None:

@@ -8,13 +8,32 @@ import bpy
 from ..core.length_units import length_unit
 from .image_aspect import active_image
 
-IMAGE_DESCRIPTION = "Take the size of the image in the material of the active face, if there is one"
-SIZE_DESCRIPTION = "Side of the texture in pixels, where it is not taken from an image"
 WEIGHT_DESCRIPTION = (
     "How many times the texel density of other objects this one gets where several are unwrapped together or a density "
     "is asked for: 2 for what is seen from near, 0.5 for what is seen from afar"
 )
 DENSITY_DESCRIPTION = "Pixels of the texture along a unit of length, which is that of the scene's unit settings"
+
+
+def image_property(**options: object) -> bool:
+    return bpy.props.BoolProperty(
+        name="Size from Image",
+        description="Take the size of the image in the material of the active face, if there is one",
+        default=True,
+        **options,
+    )
+
+
+def size_property(**options: object) -> int:
+    return bpy.props.IntProperty(
+        name="Texture Size",
+        description="Side of the texture in pixels, where it is not taken from an image",
+        default=1024,
+        min=1,
+        soft_max=16384,
+        subtype="PIXEL",
+        **options,
+    )
 
 
 class ConeUnwrapTexels(bpy.types.PropertyGroup):
@@ -23,15 +42,8 @@ class ConeUnwrapTexels(bpy.types.PropertyGroup):
     density: bpy.props.FloatProperty(
         name="Density", description=DENSITY_DESCRIPTION, default=1024.0, min=1e-6, soft_max=1e5, precision=2
     )
-    use_image: bpy.props.BoolProperty(name="Size from Image", description=IMAGE_DESCRIPTION, default=True)
-    texture_size: bpy.props.IntProperty(
-        name="Texture Size",
-        description=SIZE_DESCRIPTION,
-        default=1024,
-        min=1,
-        soft_max=16384,
-        subtype="PIXEL",
-    )
+    use_image: image_property()
+    texture_size: size_property()
 
 
 def texel_settings(scene: bpy.types.Scene) -> ConeUnwrapTexels:

@@ -94,8 +94,11 @@ def rectangle(left: float, low: float, right: float, high: float) -> FloatArray:
     return points[[[0, 1, 2], [0, 2, 3]]]
 
 
-def draw_scale_texts(scale: Scale, left: float, low: float, pixel: float, size: int, color: Sequence[float]) -> None:
-    """Write what the colors of the bar at this place mean, above and below it."""
+def draw_scale_texts(
+    scale: Scale, corner: tuple[float, float], pixel: float, size: int, color: Sequence[float]
+) -> None:
+    """Write what the colors of the bar with this lower left corner mean, above and below it."""
+    left, low = corner
     blf.size(FONT, size)
     blf.color(FONT, *color)
     blf.enable(FONT, blf.SHADOW)

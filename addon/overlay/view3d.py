@@ -229,7 +229,7 @@ def _draw_scale(context: bpy.types.Context, measure: str) -> None:
     corners = np.concatenate([labels.rectangle(a, low, b, high) for a, b in pairwise(edges)])
     bar = shaders.triangle_batch(corners, np.repeat(scale.colors_of(values), 2, axis=0))
     bar.draw(shaders.triangles())
-    labels.draw_scale_texts(scale, left, low, pixel, size, look.text)
+    labels.draw_scale_texts(scale, (left, low), pixel, size, look.text)
 
 
 @contextmanager

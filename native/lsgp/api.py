@@ -147,7 +147,7 @@ class Seamless:
     """A layout in which a tileable texture shows no seam (the paper's section 8).
 
     Cone angles become multiples of the lattice's rotation, and translations across cuts map lattice points to lattice
-    points. Coordinates are exact in float32: afterwards scale them only by powers of two.
+    points. Coordinates are exact in float32: afterward scale them only by powers of two.
 
     lattice: "square": quarter turns of unit squares; "stripe": half turns of unit squares; "translation": unit squares
         without rotation; "triangle": third turns of triangles of side 1; "hexagon": sixth turns of them.
@@ -285,7 +285,7 @@ class Distortion(ShortRepr):
     quasi_conformal: mean of sigma_1 / sigma_2 over triangles; 1 is conformal.
     quasi_conformal_area_weighted: the same, weighted by 3D area.
     area: mean of (share of the 3D area) / (share of the UV area) over triangles; area_p10, area_p90 its percentiles.
-    l2_stretch: L2 stretch of Sander et al. 2001, normalised; 1 is isometric.
+    l2_stretch: L2 stretch of Sander et al. 2001, normalized; 1 is isometric.
     """
 
     quasi_conformal: float
@@ -662,7 +662,7 @@ def find_cuts(
 ) -> CutPaths:
     """Cuts that join all cones and boundary loops and open every handle, as short as a local search finds them.
 
-    If the surface has cut costs, these are minimised instead. A map may need fewer cuts: holes about which the metric
+    If the surface has cut costs, these are minimized instead. A map may need fewer cuts: holes about which the metric
     turns once are not cut.
 
     progress: as for `parameterize`.  Raises InputError, TopologyError, Cancelled.
@@ -686,7 +686,7 @@ def crease_borders(
     The regions between creases are patches. Patches are unfolded together across shared boundary segments that are
     straight and not short, and a tube is opened from end to end: a cylinder becomes a rectangle and two disks.
     Narrow bevels that turn the surface by `angle` are creases along their middle; edges of coarse round shapes, of less
-    than 1.27 radians and like their neighbours, are none. Components with cones or marked seams, and those with more
+    than 1.27 radians and like their neighbors, are none. Components with cones or marked seams, and those with more
     than a fifth of their curvature off the creases, or 2 % off creases and bevels, have no such edges; half of it may
     be at one or two apexes, which remain for cones.
     angle: least angle between the normals at a crease, radians.

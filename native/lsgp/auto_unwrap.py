@@ -46,7 +46,7 @@ T = TypeVar("T")
 TARGET = 1.05
 # Fraction of an unwrap's time that placing cones takes.
 PLACING = 0.6
-# And with making the map, where islands are packed afterwards.
+# And with making the map, where islands are packed afterward.
 PACKING = 0.9
 # Of the time of placing cones: where those for creases are placed.
 _BEFORE_FEATURES = 0.9
@@ -143,7 +143,7 @@ def auto_unwrap(
     placing, mapping = share_of(progress, 0.0, PLACING), share_of(progress, PLACING, PACKING if packs else 1.0)
     is_free = arguments.flag("symmetric", symmetric) and count is None
     solver = Solver(surface)
-    choices = possible_cones(solver, cones, angles, chosen, count, is_free, placing)
+    choices = possible_cones(solver, GivenCones.of(cones, angles, count), chosen, is_free, placing)
     with packing_once():
         _, result = best_map(solver, choices, chosen, pins, mapping)
         if packs:
@@ -193,13 +193,40 @@ def with_crease_borders(
 
 
 @dataclass(frozen=True, slots=True)
+class GivenCones:
+    """Cones that are to be completed.
+
+    cones: (k,) int32. angles: one each, None = automatic. count: the number on each component, as of `place_cones`.
+    """
+
+    cones: IndexArray
+    angles: list[float | None]
+    count: int | None = None
+
+    @classmethod
+    def of(
+        cls,
+        cones: ArrayLike = (),
+        angles: Sequence[float | None] | FloatArray | None = None,
+        count: int | None = None,
+    ) -> GivenCones:
+        """cones, angles, count: as of `place_cones`.  Raises InputError where there are not as many angles as cones."""
+        given = arguments.index_vector("cones", cones)
+        return cls(given, list(arguments.cone_angles("angles", angles, len(given))), count)
+
+    @property
+    def is_free(self) -> bool:
+        """Whether neither cones nor their number are given."""
+        return self.count is None and not len(self.cones)
+
+
+@dataclass(frozen=True, slots=True)
 class CompletedCones:
     """Given cones and those placed in addition.
 
     cones: (k,) int32, given ones first. angles: one each for `parameterize`, None = automatic. placement: on the
     components that needed or were tried for cones; None if there are none. by_target: whether the number was determined
-    by a target stretch. is_symmetric: whether they mirror each other, so that cuts may as well. for_features: whether
-    they were chosen so that creases can run along the lattice.
+    by a target stretch. is_symmetric: whether they mirror each other, so that cuts may as well.
     """
 
     cones: IndexArray
@@ -207,7 +234,6 @@ class CompletedCones:
     placement: Placement | None
     by_target: bool = True
     is_symmetric: bool = False
-    for_features: bool = False
 
     def options_of_map(self, options: Options) -> Options:
         """Those of a map through these cones."""
@@ -226,10 +252,8 @@ class CompletedCones:
 
 def complete_cones(
     solver: Solver,
-    cones: ArrayLike,
-    angles: Sequence[float | None] | FloatArray | None,
+    given: GivenCones,
     options: Options,
-    count: int | None = None,
     progress: Progress | None = None,
     *,
     symmetric: bool = False,
@@ -237,49 +261,49 @@ def complete_cones(
     """Cones for a map with these options: the given ones, and automatic ones where they do not suffice.
 
     Components without cones get some as far as they need them, and so do those whose ledger does not close.
-    cones, angles, count, progress and errors as of `place_cones`, symmetric as well if no cones are given.
+    progress and errors as of `place_cones`, symmetric as well if no cones are given.
     """
-    given = arguments.index_vector("cones", cones)
-    held = list(arguments.cone_angles("angles", angles, len(given)))
-    if not len(given):
-        placed = _place(solver, given, held, options, count, progress, symmetric)
-        return _completed(given, held, options, count, placed)
-    ledger = build_ledger(solver.surface, given, held, options, gets_cones=True)
+    if not len(given.cones):
+        return _completed(given, options, _place(solver, given, options, progress, symmetric))
+    ledger = build_ledger(solver.surface, given.cones, given.angles, options, gets_cones=True)
     lacking = [component for component in ledger if _lacks(component)]
     if not lacking:
-        return CompletedCones(given, held, None)
+        return CompletedCones(given.cones, given.angles, None)
     triangles = np.sort(np.concatenate([component.triangles for component in lacking]))
     present = np.unique(np.concatenate([component.cones for component in lacking]))
     own = Solver(surface_of_triangles(solver.surface, triangles))
-    placed = or_none(lambda: _place(own, given[present], [held[i] for i in present], options, count, progress))
+    part = GivenCones(given.cones[present], [given.angles[i] for i in present], given.count)
+    placed = or_none(lambda: _place(own, part, options, progress))
     if placed is None:
         # The other components can still be mapped; mapping reports the defect of these.
-        return CompletedCones(given, held, None)
-    placed = replace(placed, warnings=_renumbered(placed.warnings, triangles))
-    return _completed(given, held, options, count, placed)
+        return CompletedCones(given.cones, given.angles, None)
+    return _completed(given, options, replace(placed, warnings=_renumbered(placed.warnings, triangles)))
+
+
+@dataclass(frozen=True, slots=True)
+class ConeChoices:
+    """Cones among which `best_map` chooses, each as of `complete_cones`.
+
+    usual: symmetric ones if all components are symmetric. symmetric: those that differ from the usual ones, or have
+    other cuts; None without. for_features: those with which creases can run along the lattice; None without.
+    """
+
+    usual: CompletedCones
+    symmetric: CompletedCones | None = None
+    for_features: CompletedCones | None = None
 
 
 def possible_cones(
-    solver: Solver,
-    cones: ArrayLike,
-    angles: Sequence[float | None] | None,
-    options: Options,
-    count: int | None,
-    symmetric: bool,
-    progress: Progress | None = None,
-) -> list[CompletedCones]:
-    """Those of `complete_cones`, and after them symmetric ones and those for creases, where there are such.
+    solver: Solver, given: GivenCones, options: Options, symmetric: bool, progress: Progress | None = None
+) -> ConeChoices:
+    """Those of `complete_cones`, and symmetric ones and those for creases, where there are such.
 
     symmetric: whether to try, where no cones are given. Errors as of `complete_cones`.
     """
-    is_free = count is None and not len(arguments.index_vector("cones", cones))
-    if not (is_free and follows_features(solver.surface, options)):
-        return _symmetric_cones(solver, cones, angles, options, count, symmetric, progress)
-    found = _symmetric_cones(
-        solver, cones, angles, options, count, symmetric, share_of(progress, 0.0, _BEFORE_FEATURES)
-    )
-    for_features = feature_cones(solver, options, share_of(progress, _BEFORE_FEATURES, 1.0))
-    return found if for_features is None else [*found, for_features]
+    if not (given.is_free and follows_features(solver.surface, options)):
+        return _symmetric_cones(solver, given, options, symmetric, progress)
+    found = _symmetric_cones(solver, given, options, symmetric, share_of(progress, 0.0, _BEFORE_FEATURES))
+    return replace(found, for_features=feature_cones(solver, options, share_of(progress, _BEFORE_FEATURES, 1.0)))
 
 
 def follows_features(surface: Surface, options: Options) -> bool:
@@ -296,43 +320,34 @@ def feature_cones(solver: Solver, options: Options, progress: Progress | None = 
     chosen = or_none(lambda: _lsgp.feature_cones(arrays, options.straighten, share_of(progress, 0.0, TRYING)))
     if chosen is None or not len(chosen[0]):
         return None
-    found = or_none(lambda: complete_cones(solver, *chosen, options, None, share_of(progress, TRYING, 1.0)))
-    return None if found is None else replace(found, for_features=True)
+    return or_none(lambda: complete_cones(solver, GivenCones.of(*chosen), options, share_of(progress, TRYING, 1.0)))
 
 
 def _symmetric_cones(
-    solver: Solver,
-    cones: ArrayLike,
-    angles: Sequence[float | None] | None,
-    options: Options,
-    count: int | None,
-    symmetric: bool,
-    progress: Progress | None,
-) -> list[CompletedCones]:
-    """Those of `complete_cones`, and after them, where a component is symmetric, symmetric ones; if these are the same,
-    their cuts may still be others."""
-    if not symmetric or len(arguments.index_vector("cones", cones)):
-        return [complete_cones(solver, cones, angles, options, count, progress)]
-    alike = or_none(
-        lambda: complete_cones(solver, cones, angles, options, count, share_of(progress, 0.0, TRYING), symmetric=True)
-    )
+    solver: Solver, given: GivenCones, options: Options, symmetric: bool, progress: Progress | None
+) -> ConeChoices:
+    """Those of `complete_cones` and, where a component is symmetric, symmetric ones; if these are the same, their cuts
+    may still be others."""
+    if not symmetric or len(given.cones):
+        return ConeChoices(complete_cones(solver, given, options, progress))
+    alike = or_none(lambda: complete_cones(solver, given, options, share_of(progress, 0.0, TRYING), symmetric=True))
     if alike is not None:
         odd = [finding for finding in alike.placement.warnings if finding.code == _ODD]
         others = [finding for finding in alike.placement.warnings if finding.code != _ODD]
         alike = replace(alike, placement=replace(alike.placement, warnings=others))
         if sum(len(finding.elements.indices) for finding in odd) == len(solver.surface.triangles):
-            return [alike]
+            return ConeChoices(alike)
         alike = replace(alike, is_symmetric=True)
-    usual = complete_cones(solver, cones, angles, options, count, share_of(progress, TRYING, 1.0))
+    usual = complete_cones(solver, given, options, share_of(progress, TRYING, 1.0))
     if alike is None:
-        return [usual]
+        return ConeChoices(usual)
     is_same = set(alike.cones.tolist()) == set(usual.cones.tolist())
-    return [usual, replace(usual, is_symmetric=True) if is_same else alike]
+    return ConeChoices(usual, replace(usual, is_symmetric=True) if is_same else alike)
 
 
 def best_map(
     solver: Solver,
-    choices: Sequence[CompletedCones],
+    choices: ConeChoices,
     options: Options,
     pins: Pins | None = None,
     progress: Progress | None = None,
@@ -342,9 +357,8 @@ def best_map(
     Where symmetric cuts cost islands, the symmetric cones are tried with other cuts as well.
     pins, progress, errors: as for `parameterize`.
     """
-    usual, *others = [choice for choice in choices if not choice.for_features]
-    for_features = next((choice for choice in choices if choice.for_features), None)
-    share = 1.0 / (len(choices) + (for_features is not None))
+    usual, symmetric, for_features = choices.usual, choices.symmetric, choices.for_features
+    share = 1.0 / (1 + (symmetric is not None) + 2 * (for_features is not None))
     stages = iter([share_of(progress, i * share, (i + 1) * share) for i in range(round(1 / share))])
     along = None
     if for_features is not None:
@@ -353,17 +367,18 @@ def best_map(
             along = None
     # Creases along the lattice take time: they are tried with the cones that are chosen.
     # Those that are released run along it through other cones, perhaps.
-    is_chosen = for_features is None or (along is None and not others) or releases_features(along)
+    is_chosen = for_features is None or (along is None and symmetric is None) or releases_features(along)
     tried = options if is_chosen else replace(options, straighten=False)
     plain = _map_through(solver, usual, tried, pins, next(stages))
     best = usual, plain
-    for i, other in enumerate(others, start=2 + (for_features is not None)):
+    if symmetric is not None:
         # Comparing, and the map with other cuts, which few models need, have no time of their own.
-        mapping, still = next(stages), share_of(progress, i * share, i * share)
+        end = (2 + (for_features is not None)) * share
+        mapping, still = next(stages), share_of(progress, end, end)
         may_replace = partial(may_replace_map, square_share=options.square_share, progress=still)
         map_through = partial(_map_through, solver, options=tried, pins=pins)
         for candidate in _symmetric_maps(
-            map_through, other, (usual, plain), not options.mirrored_cuts, (mapping, still)
+            map_through, symmetric, (usual, plain), not options.mirrored_cuts, (mapping, still)
         ):
             result = candidate[1]
             if may_replace(result, plain) and (best[1] is plain or may_replace(result, best[1])):
@@ -430,19 +445,13 @@ def share_of(progress: Progress | None, begin: float, end: float) -> Progress | 
 
 
 def _place(
-    solver: Solver,
-    cones: IndexArray,
-    angles: list[float | None],
-    options: Options,
-    count: int | None,
-    progress: Progress | None,
-    symmetric: bool = False,
+    solver: Solver, given: GivenCones, options: Options, progress: Progress | None, symmetric: bool = False
 ) -> Placement:
     lattice = None if options.seamless is None else options.seamless.lattice
     return solver.place_cones(
-        cones,
-        angles,
-        count=count,
+        given.cones,
+        given.angles,
+        count=given.count,
         target=TARGET,
         lattice=lattice,
         symmetric=symmetric,
@@ -452,16 +461,14 @@ def _place(
     )
 
 
-def _completed(
-    given: IndexArray, held: list[float | None], options: Options, count: int | None, placed: Placement
-) -> CompletedCones:
+def _completed(given: GivenCones, options: Options, placed: Placement) -> CompletedCones:
     # The angles are for free borders, and for rules that keep them.
     as_placed = options.prescription is None and options.border == "free"
     angle_at = dict(zip(placed.cones.tolist(), placed.cone_angles.tolist(), strict=True)) if as_placed else {}
-    new = placed.cones[~np.isin(placed.cones, given)]
-    angles = [angle_at.get(cone, angle) for cone, angle in zip(given.tolist(), held, strict=True)]
+    new = placed.cones[~np.isin(placed.cones, given.cones)]
+    angles = [angle_at.get(cone, angle) for cone, angle in zip(given.cones.tolist(), given.angles, strict=True)]
     angles += [angle_at.get(cone) for cone in new.tolist()]
-    return CompletedCones(np.concatenate([given, new]), angles, placed, by_target=count is None)
+    return CompletedCones(np.concatenate([given.cones, new]), angles, placed, by_target=given.count is None)
 
 
 def _renumbered(findings: Sequence[Finding], triangles: NDArray[np.integer]) -> list[Finding]:

@@ -87,7 +87,7 @@ def _texels(report: SeamlessReport, texture_size: int) -> float:
 
 
 def _basis(rotation_order: int) -> list[list[float]]:
-    """The vectors between neighbouring lattice points: of unit squares, or of triangles of side 1."""
+    """The vectors between neighboring lattice points: of unit squares, or of triangles of side 1."""
     return [[1.0, 0.0], [0.5, math.sqrt(3) / 2] if rotation_order in (3, 6) else [0.0, 1.0]]
 
 

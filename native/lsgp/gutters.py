@@ -18,7 +18,7 @@ from .texel_raster import (
     Indices,
     Shape,
     as_rows,
-    centres,
+    centers,
     covering_triangles,
     nearest_covered,
     nearest_points,
@@ -49,7 +49,7 @@ def pad_image(
     normal_map: the first two channels are a direction in the tangent plane, to the right and up, with 0 at half the
             range of integers, at 1/2 in floating point; it is rotated with the map.
 
-    A texel whose centre is in no triangle gets the value of the surface beyond the nearest boundary of the island,
+    A texel whose center is in no triangle gets the value of the surface beyond the nearest boundary of the island,
     found by unfolding triangles across all edges on the way; the sample is bilinear, from covered texels and from
     gutters that are known. Across
     cuts of this library's maps its position is exact; in other maps, sides of different length are matched by a
@@ -82,13 +82,13 @@ def pad_image(
 def _beyond_borders(
     surface: Surface, corners: ComplexArray, covered: NDArray[np.bool_], margin: float, shape: Shape
 ) -> tuple[Indices, Walked]:
-    """The texels of gutters, and where the centres of each lie beyond the nearest border."""
+    """The texels of gutters, and where the centers of each lie beyond the nearest border."""
     seams = find_seams(surface.triangles, corners)
     borders = np.flatnonzero(seams.is_border)
     segments = np.stack([corners.ravel(), corners[:, [1, 2, 0]].ravel()], axis=1)[borders]
     nearest = nearest_segments(segments, margin, ~covered, shape)
     texels = np.flatnonzero(nearest >= 0)
-    places, chosen = centres(texels, shape[1]), nearest[texels]
+    places, chosen = centers(texels, shape[1]), nearest[texels]
     return texels, walk(seams, borders[chosen], nearest_points(segments[chosen], places), places)
 
 

@@ -216,7 +216,7 @@ def _rows_of(name: str, values: ArrayLike, width: int) -> FloatArray:
 
 
 def _second_vector(rotation_order: int) -> tuple[float, float]:
-    """From a lattice point to its neighbour in the next row, in cells; in its own row the neighbour is at (1, 0)."""
+    """From a lattice point to its neighbor in the next row, in cells; in its own row the neighbor is at (1, 0)."""
     return (0.5, math.sqrt(3) / 2) if rotation_order in (3, 6) else (0.0, 1.0)
 
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from . import _lsgp, arguments
 from .api import Options, Progress, Result, Seamless, Solver, Surface, surface_arrays
 from .arguments import FloatArray, IndexArray
-from .auto_unwrap import CompletedCones, complete_cones, feature_cones, or_none, share_of
+from .auto_unwrap import CompletedCones, GivenCones, complete_cones, feature_cones, or_none, share_of
 from .equality import EqualByContent
 from .errors import Finding, InputError, SolverError
 from .map_comparison import may_replace_for_features, runs_along_features
@@ -153,11 +153,11 @@ def remesh_to_quads(
     side = _side(surface, target, size)
     chosen = replace(chosen, seamless=replace(chosen.seamless, tile_size=side))
     placing, laying_out = share_of(progress, 0.0, _PLACED), share_of(progress, _PLACED, _LAID_OUT)
-    is_free = count is None and not len(arguments.index_vector("cones", cones))
+    given = GivenCones.of(cones, angles, count)
     solver, along = Solver(surface), None
-    if is_free and chosen.straighten:
+    if given.is_free and chosen.straighten:
         along = feature_cones(solver, chosen, share_of(placing, 0.0, _FOR_FEATURES))
-    completed = _wide_cones(solver, cones, angles, chosen, count, share_of(placing, _FOR_FEATURES, 1.0))
+    completed = _wide_cones(solver, given, chosen, share_of(placing, _FOR_FEATURES, 1.0))
     if along is None:
         layouts = _Layouts(surface, completed, chosen)
         layout = layouts.nearest(target, laying_out)
@@ -230,29 +230,20 @@ def _area(surface: Surface) -> float:
         return float(triangle_areas(surface).sum())
 
 
-def _wide_cones(
-    solver: Solver,
-    cones: ArrayLike,
-    angles: Sequence[float | None] | FloatArray | None,
-    options: Options,
-    count: int | None,
-    progress: Progress | None,
-) -> CompletedCones:
+def _wide_cones(solver: Solver, given: GivenCones, options: Options, progress: Progress | None) -> CompletedCones:
     """Those of `complete_cones`, but where it places one of 90 degrees that is held at 180, and others are placed
     besides."""
-    completed = complete_cones(solver, cones, angles, options, count, share_of(progress, 0.0, 0.5))
-    given = arguments.index_vector("cones", cones)
+    completed = complete_cones(solver, given, options, share_of(progress, 0.0, 0.5))
     held, done = np.empty(0, np.int32), 0.5
     for _ in range(_MOST_HOLDS):
         is_narrow = [angle is not None and angle < _NARROW for angle in completed.angles]
-        narrow = np.setdiff1d(completed.cones[np.array(is_narrow, bool)], given)
+        narrow = np.setdiff1d(completed.cones[np.array(is_narrow, bool)], given.cones)
         if not len(narrow):
             break
         held = np.union1d(held, narrow).astype(np.int32)
-        fixed = [*arguments.cone_angles("angles", angles, len(given)), *[math.pi] * len(held)]
+        fixed = GivenCones(np.concatenate([given.cones, held]), [*given.angles, *[math.pi] * len(held)], given.count)
         begin, done = done, (1 + done) / 2
-        share = share_of(progress, begin, done)
-        again = complete_cones(solver, np.concatenate([given, held]), fixed, options, count, share)
+        again = complete_cones(solver, fixed, options, share_of(progress, begin, done))
         if again.placement is None:
             break  # there is no other place: what the narrow cones are refused for is said of them
         completed = again

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Texels of an image: which triangle covers each, which border is nearest, which covered texel is nearest.
 
-Places in an image are complex numbers in pixels, x to the right and y down: the centre of the texel in row i and column
+Places in an image are complex numbers in pixels, x to the right and y down: the center of the texel in row i and column
 j is (j + 1/2) + (i + 1/2) 1j, and (u, v) lies at u width + (1 - v) height 1j.
 """
 
@@ -32,7 +32,7 @@ def to_pixels(corner_uv: FloatArray, shape: Shape) -> ComplexArray:
     return corner_uv[..., 0] * width + 1j * ((1 - corner_uv[..., 1]) * height)
 
 
-def centres(texels: Indices, width: int) -> ComplexArray:
+def centers(texels: Indices, width: int) -> ComplexArray:
     """Places of texels that are numbered row by row."""
     return texels % width + 0.5 + 1j * (texels // width + 0.5)
 
@@ -53,7 +53,7 @@ def edge_distances(corners: ComplexArray, places: ComplexArray) -> FloatArray:
 
 
 def covering_triangles(corners: ComplexArray, shape: Shape) -> Indices:
-    """(height * width,), the first triangle that the centre of each texel is in; -1: it is in none.
+    """(height * width,), the first triangle that the center of each texel is in; -1: it is in none.
 
     corners: (m, 3); triangles that are not finite or have no area cover nothing.
     """
@@ -61,7 +61,7 @@ def covering_triangles(corners: ComplexArray, shape: Shape) -> Indices:
     usable = np.flatnonzero(has_area(corners))
     for rows, texels in _pairs(corners[usable], 0.0, shape):
         triangles = usable[rows]
-        inside = (edge_distances(corners[triangles], centres(texels, shape[1])) >= -ON_EDGE).all(axis=1)
+        inside = (edge_distances(corners[triangles], centers(texels, shape[1])) >= -ON_EDGE).all(axis=1)
         triangles, texels = triangles[inside], texels[inside]
         free = owner[texels] < 0
         # Of several values for one texel the last stays.
@@ -77,7 +77,7 @@ def has_area(corners: ComplexArray) -> NDArray[np.bool_]:
 
 
 def nearest_segments(segments: ComplexArray, margin: float, empty: NDArray[np.bool_], shape: Shape) -> Indices:
-    """(height * width,), the segment nearest to the centre of each empty texel, no farther than margin; -1: none.
+    """(height * width,), the segment nearest to the center of each empty texel, no farther than margin; -1: none.
 
     segments: (k, 2). empty: (height * width,).
     """
@@ -86,7 +86,7 @@ def nearest_segments(segments: ComplexArray, margin: float, empty: NDArray[np.bo
     for rows, texels in _pairs(segments, margin, shape):
         wanted = empty[texels]
         rows, texels = rows[wanted], texels[wanted]
-        places = centres(texels, shape[1])
+        places = centers(texels, shape[1])
         distance = np.abs(places - nearest_points(segments[rows], places))
         before = least[texels]
         np.minimum.at(least, texels, distance)
@@ -133,7 +133,7 @@ def _nearest_in_columns(covered: NDArray[np.bool_]) -> NDArray[np.int32]:
 
 
 def _pairs(points: ComplexArray, margin: float, shape: Shape) -> Iterator[tuple[Indices, Indices]]:
-    """Rows of points, (k, c), and texels whose centres are within the margin of the rows' bounding boxes; in the order
+    """Rows of points, (k, c), and texels whose centers are within the margin of the rows' bounding boxes; in the order
     of rows, a limited number at once."""
     first_x, count_x = _range(points.real, margin, shape[1])
     first_y, count_y = _range(points.imag, margin, shape[0])
@@ -145,7 +145,7 @@ def _pairs(points: ComplexArray, margin: float, shape: Shape) -> Iterator[tuple[
 
 
 def _range(values: FloatArray, margin: float, size: int) -> tuple[Indices, Indices]:
-    """(k,) the first texel and how many, along one axis, with centres within the margin of values, (k, c)."""
+    """(k,) the first texel and how many, along one axis, with centers within the margin of values, (k, c)."""
     first = np.clip(np.ceil(values.min(axis=1, initial=np.inf) - margin - 0.5 - ON_EDGE), 0, size)
     last = np.clip(np.floor(values.max(axis=1, initial=-np.inf) + margin - 0.5 + ON_EDGE), -1, size - 1)
     return first.astype(np.int64), np.maximum(last - first + 1, 0).astype(np.int64)

@@ -129,7 +129,7 @@ def at_texel_density(surface: Surface, result: Result, layout: TexelLayout) -> R
     if not 0 <= margin < size / 2:
         arguments.refuse("margin", layout.margin, "pass texels around each island, less than half a tile")
     boxes = island_boxes(uv, result.island)
-    shifts = _tile_places(boxes, result.island, tiles, margin, size, density)
+    shifts = _tile_places(boxes, result.island, TexelLayout(density, size, tiles, margin))
     solved = result.island >= 0
     uv[solved] += shifts[result.island[solved], None]
     return replace(result, corner_uv=uv)
@@ -169,16 +169,15 @@ def outside_findings(uv: FloatArray, island: IndexArray) -> list[Finding]:
     return [Finding("ISLANDS_OUTSIDE", message, _triangles_of(np.flatnonzero(outside), island))]
 
 
-def _tile_places(
-    boxes: FloatArray, island: IndexArray, tiles: int, margin: float, texture_size: int, density: float
-) -> FloatArray:
+def _tile_places(boxes: FloatArray, island: IndexArray, layout: TexelLayout) -> FloatArray:
     """(islands, 2), moves of islands into rows in UDIM tiles, the highest first.  Raises InputError."""
+    texture_size, margin = layout.texture_size, layout.margin
     free = margin / texture_size
     sizes = boxes[:, 2:] - boxes[:, :2] + 2 * free
     large = np.flatnonzero((sizes > 1 + _ROUNDING).any(axis=1))
     if len(large):
         width, height = sizes[large[np.argmax(sizes[large].max(axis=1))]] * texture_size
-        most = density * (texture_size - 2 * margin) / (max(width, height) - 2 * margin)
+        most = layout.density * (texture_size - 2 * margin) / (max(width, height) - 2 * margin)
         raise InputError(
             "ISLAND_TOO_LARGE",
             f"{_of_islands(len(large), len(boxes))} larger than a tile: the largest is {width:.0f} x {height:.0f} "
@@ -188,6 +187,7 @@ def _tile_places(
         )
     places, tile_of = _rows_in_tiles(sizes)
     needed = int(tile_of.max(initial=-1)) + 1
+    tiles = layout.udim
     if needed > tiles:
         raise InputError(
             "TOO_FEW_TILES",

@@ -26,8 +26,8 @@ def pixels_of(data: bytes) -> np.ndarray:
         chunks[kind] = content
         at += 12 + length
     assert list(chunks) == [b"IHDR", b"IDAT", b"IEND"]
-    width, height, depth, colour, *rest = struct.unpack(">IIBBBBB", chunks[b"IHDR"])
-    assert (depth, colour, *rest) == (8, 2, 0, 0, 0)
+    width, height, depth, color, *rest = struct.unpack(">IIBBBBB", chunks[b"IHDR"])
+    assert (depth, color, *rest) == (8, 2, 0, 0, 0)
     rows = np.frombuffer(zlib.decompress(chunks[b"IDAT"]), np.uint8).reshape(height, 1 + 3 * width)
     assert not rows[:, 0].any()
     return rows[:, 1:].reshape(height, width, 3)
@@ -55,11 +55,11 @@ def test_a_flat_square_is_laid_out_without_distortion() -> None:
     _, layout = halves(surface, result)
     inked = (layout != 255).any(axis=2)
     assert inked.sum() == pytest.approx((SIDE - 2 * MARGIN) ** 2, rel=0.05)
-    colours = np.unique(layout[inked], axis=0)
-    assert (np.ptp(colours, axis=1) < 40).all()  # greys: neither larger nor smaller
+    colors = np.unique(layout[inked], axis=0)
+    assert (np.ptp(colors, axis=1) < 40).all()  # grays: neither larger nor smaller
 
 
-def test_a_checker_of_two_colours_covers_the_surface() -> None:
+def test_a_checker_of_two_colors_covers_the_surface() -> None:
     surface, result = unwrapped(cube(6))
     model, _ = halves(surface, result)
     inked = model[(model != 255).any(axis=2)]
@@ -73,7 +73,7 @@ def test_the_back_does_not_shine_through() -> None:
     mesh = icosphere(4)
     surface, result = unwrapped(Mesh(mesh.positions, mesh.triangles, np.array([0, 3, 7, 11], np.int32)))
     ahead = (surface.positions @ VIEW[2])[surface.triangles].mean(axis=1) > 0
-    # The front lies in one square of the checker, the back in another one of the other colour.
+    # The front lies in one square of the checker, the back in another one of the other color.
     uv = np.where(ahead[:, None, None], [0.0, 0.0], [17.99, 16.99]) + 0.01 * np.array([[0, 0], [1, 0], [0, 1]])
     model, _ = halves(surface, replace(result, corner_uv=uv))
     row, column = np.indices((SIDE, SIDE))
@@ -92,8 +92,8 @@ def test_triangles_are_red_where_large_blue_where_small_magenta_where_flipped() 
     # Of a layout of ten parts nine are the right half's, which was half of the surface, and one the left one's.
     red = np.log2(0.9 / 0.5) / 2
     blue = min(1.0, -np.log2(0.1 / 0.5) / 2)
-    for share, colour in ((red, LARGER), (blue, SMALLER)):
-        wanted = EQUAL + share * (colour - EQUAL)
+    for share, color in ((red, LARGER), (blue, SMALLER)):
+        wanted = EQUAL + share * (color - EQUAL)
         assert (np.abs(layout - wanted).max(axis=2) <= 0.5 * 255 / LEVELS + 1).sum() > 100
     flipped = replace(result, flipped=np.flatnonzero(right).astype(np.int32))
     _, layout = halves(surface, flipped)

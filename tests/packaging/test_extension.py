@@ -36,17 +36,17 @@ def packer(archive):
     return found
 
 
-def test_zip_holds_the_addon_the_manifest_the_licence_and_two_wheels(archive, wheel, packer):
+def test_zip_holds_the_addon_the_manifest_the_license_and_two_wheels(archive, wheel, packer):
     sources = {path.relative_to(ROOT / "addon").as_posix() for path in (ROOT / "addon").rglob("*.py")}
     expected = sources | {"blender_manifest.toml", "LICENSE", f"wheels/{wheel.name}", f"wheels/{packer}"}
     assert set(archive.namelist()) == expected
 
 
-def test_the_packer_brings_its_licence(archive, packer, tmp_path):
+def test_the_packer_brings_its_license(archive, packer, tmp_path):
     archive.extract(f"wheels/{packer}", tmp_path)
     with zipfile.ZipFile(tmp_path / "wheels" / packer) as opened:
-        (licence,) = (name for name in opened.namelist() if name.endswith("/LICENSE"))
-        assert opened.read(licence).startswith(b"MIT License")
+        (license,) = (name for name in opened.namelist() if name.endswith("/LICENSE"))
+        assert opened.read(license).startswith(b"MIT License")
 
 
 def test_manifest_lists_the_wheels_their_platform_and_their_blenders_and_keeps_everything_else(archive, wheel, packer):

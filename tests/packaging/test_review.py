@@ -74,7 +74,7 @@ def test_everything_that_names_the_version_names_this_one():
     assert (ROOT / "docs" / "releases" / f"{version}.md").is_file()
 
 
-def test_licence_is_part_of_the_sources_and_named_in_every_module():
+def test_license_is_part_of_the_sources_and_named_in_every_module():
     assert "GNU GENERAL PUBLIC LICENSE" in (ROOT / "LICENSE").read_text(encoding="utf-8")
     for path in MODULES:
         first = (ROOT / path).read_text(encoding="utf-8").partition("\n")[0]

@@ -181,11 +181,11 @@ def test_infinite_coordinates_as_blender_keeps_them(name: str, count: int) -> No
     assert np.array_equal(caught.value.elements.indices, np.sort(far))
 
 
-@pytest.mark.parametrize("neighbours", [False, True])
-def test_far_vertices_of_one_triangle(neighbours: bool) -> None:
+@pytest.mark.parametrize("neighbors", [False, True])
+def test_far_vertices_of_one_triangle(neighbors: bool) -> None:
     mesh = FINE["sphere"]._replace(positions=FINE["sphere"].positions.copy())
     far = np.sort(mesh.triangles[7])
-    mesh.positions[far, 0] = 3.4e38 * np.array([1, 1 if neighbours else -1, 1])
+    mesh.positions[far, 0] = 3.4e38 * np.array([1, 1 if neighbors else -1, 1])
     with pytest.raises(lsgp.InputError) as caught:
         lsgp.parameterize(surface(mesh), mesh.cones)
     assert caught.value.code == "SCALE_RANGE" and np.array_equal(caught.value.elements.indices, far)

@@ -248,7 +248,7 @@ def test_unsound_seamless_layouts_are_noticed(name: str, lattice: str) -> None:
 
 
 def test_a_layout_of_other_parity_is_noticed() -> None:
-    """Cones on corners of cells instead of centres, and translations that lead from black to white."""
+    """Cones on corners of cells instead of centers, and translations that lead from black to white."""
     plain = lsgp.Options(seamless=lsgp.Seamless(tiles=20))
     result = unwrap(MESH, seamless=plain.seamless)
     assert undeclared_faults(SURFACE, result, plain) == []

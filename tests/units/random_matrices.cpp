@@ -16,10 +16,10 @@ std::complex<double> random_scalar<std::complex<double>>(Random& random) {
 }
 
 template <typename Scalar>
-Eigen::SparseMatrix<Scalar> random_definite(Random& random, int size, int neighbours) {
+Eigen::SparseMatrix<Scalar> random_definite(Random& random, int size, int neighbors) {
   std::vector<Eigen::Triplet<Scalar>> entries;
   Eigen::VectorXd sum = Eigen::VectorXd::Constant(size, 0.1);
-  for (int k = 0; k < size * neighbours / 2; ++k) {
+  for (int k = 0; k < size * neighbors / 2; ++k) {
     const int i = below(random, size), j = below(random, size);
     if (i == j) continue;
     const Scalar value = random_scalar<Scalar>(random);

@@ -25,9 +25,9 @@ Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> random_matrix(Random& rand
   return out;
 }
 
-// The lower triangle of a Hermitian positive definite matrix with about `neighbours` entries a row off the diagonal.
+// The lower triangle of a Hermitian positive definite matrix with about `neighbors` entries a row off the diagonal.
 template <typename Scalar>
-Eigen::SparseMatrix<Scalar> random_definite(Random& random, int size, int neighbours);
+Eigen::SparseMatrix<Scalar> random_definite(Random& random, int size, int neighbors);
 
 template <typename Scalar>
 Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> full(const Eigen::SparseMatrix<Scalar>& lower) {

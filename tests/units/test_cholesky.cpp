@@ -53,12 +53,12 @@ constexpr int thread_counts[]{2, 3, 8, 64};
 TEST_CASE_TEMPLATE("a factor solves", Scalar, double, std::complex<double>) {
   Random random(1);
   for (const int size : sizes) {
-    for (const int neighbours : {0, 2, 6, 20}) {
+    for (const int neighbors : {0, 2, 6, 20}) {
       for (const int sides : {1, 2, 3, 8, 19}) {
         CAPTURE(size);
-        CAPTURE(neighbours);
+        CAPTURE(neighbors);
         CAPTURE(sides);
-        const auto lower = random_definite<Scalar>(random, size, neighbours);
+        const auto lower = random_definite<Scalar>(random, size, neighbors);
         const auto right = random_matrix<Scalar>(random, size, sides);
         const lsgp::Cholesky<Scalar> factor(lower);
         REQUIRE(factor.size() == size);

@@ -110,11 +110,11 @@ TEST_CASE("a coarse triangulation solves for the log scale of a surface") {
   dipole[cones[1]] = -1;
   const BorderConditions border = free_border(built.mesh, {});
   const LogScale exact(surface, border), model(coarse.surface(), coarse.at_nodes(border));
-  const auto centred = [&](Eigen::VectorXd y) -> Eigen::VectorXd {
+  const auto centerd = [&](Eigen::VectorXd y) -> Eigen::VectorXd {
     return y.array() - built.geometry.vertex_area.dot(y) / built.geometry.total_area;
   };
-  const Eigen::VectorXd fine = centred(exact.solve(dipole));
-  const Eigen::VectorXd rough = centred(coarse.at_vertices(model.solve(coarse.at_nodes(dipole))));
+  const Eigen::VectorXd fine = centerd(exact.solve(dipole));
+  const Eigen::VectorXd rough = centerd(coarse.at_vertices(model.solve(coarse.at_nodes(dipole))));
   const auto variance = [&](const Eigen::VectorXd& y) { return built.geometry.vertex_area.dot(y.cwiseAbs2()); };
   CHECK(variance(rough - fine) < 0.02 * 0.02 * variance(fine));
 }

@@ -7,7 +7,7 @@
 
 #include "random_matrices.hpp"
 
-TEST_CASE_TEMPLATE("a form is minimised under equations", Scalar, double, std::complex<double>) {
+TEST_CASE_TEMPLATE("a form is minimized under equations", Scalar, double, std::complex<double>) {
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
   using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
   Random random(1);

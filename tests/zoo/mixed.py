@@ -88,7 +88,7 @@ def _weld(mesh: Mesh, rng: Random) -> Mesh:
 
 
 def _collapse(mesh: Mesh, rng: Random) -> Mesh:
-    """Some vertices at the places of their neighbours."""
+    """Some vertices at the places of their neighbors."""
     positions = mesh.positions.copy()
     for a, b, _ in mesh.triangles[rng.integers(len(mesh.triangles), size=3)]:
         positions[a] = positions[b]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A trial of `lsgp batch` on 500 meshes: 460 made and decimated from the shared ones, 40 malformed from ../shared/bad.
+"""A trial of `lsgp batch` on 500 meshes: 460 generated or decimated shared ones, 40 malformed ones.
 
 Every asset has to end with a result or a named refusal, results have to have the bytes of single runs, a run that is
 killed in the middle has to go on without doing any twice.  Then it prints what the batch costs beside the work itself,
@@ -113,7 +113,7 @@ def make_library(folder: Path) -> None:
 
 
 def good_meshes() -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
-    """Decimated shared meshes of many sizes, and between them made ones, without an end."""
+    """Decimated shared meshes of many sizes, and generated ones between them, endlessly."""
     originals = {}
     for name in DECIMATED:
         mesh = read_mesh(SHARED / "meshes" / f"{name}.obj")
@@ -158,7 +158,7 @@ def write_off(path: Path, positions: list, faces: list) -> None:
 
 @dataclass
 class Measured:
-    """seconds: of the run by the clock. cpu: of it and its workers. assets_cpu: of workers on assets. assets_seconds:
+    """seconds: wall time of the run. cpu: of it and its workers. assets_cpu: of workers on assets. assets_seconds:
     the same by the clock."""
 
     jobs: int
@@ -234,7 +234,7 @@ def require_whole(out: Path, names: list[str], singles: dict[str, bytes]) -> Non
 
 
 def killed(library: Path, out: Path, jobs: int, names: list[str], singles: dict[str, bytes]) -> None:
-    """Kill a run after half of its lines, and let it go on."""
+    """Kill a run after half of its lines, and resume it."""
     process = subprocess.Popen(batch_command(library, out, jobs, "--no-pictures"), stdout=subprocess.DEVNULL)
     journal = out / "journal.jsonl"
     while not journal.exists() or journal.read_bytes().count(b"\n") < COUNT // 2:

@@ -24,7 +24,7 @@ SIZES = ((50_000, 1, (100, 500)), (200_000, 2, (100, 500)), (1_000_000, 3, ()))
 class Case:
     """positions: (n, 3) float64. triangles: (m, 3) int32. cones: (k,) int32 vertices.
 
-    is_random: cones anywhere, not where they distort least.
+    is_random: cones at random, not where they distort least.
     """
 
     name: str
@@ -59,7 +59,7 @@ def bumpy_sphere(level: int) -> Case:
 
 
 def resized(case: Case, triangles: int, subdivisions: int = 0) -> Case:
-    """Decimated, then smoothly subdivided (Loop) to about so many triangles; cones go to the nearest vertices."""
+    """Decimated, then subdivided (Loop) to about so many triangles; cones are moved to the nearest vertices."""
     coarse = triangles >> 2 * subdivisions
     positions, faces, _, _ = igl.decimate(case.positions, case.triangles.astype(np.int64), coarse)
     nearest = [int(np.argmin(np.linalg.norm(positions - cone, axis=1))) for cone in case.positions[case.cones]]
@@ -103,7 +103,7 @@ def growing_cases(largest: int) -> Iterator[Case]:
 def cut_open(case: Case, cut_edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Positions and triangles of the surface opened along its cuts, which must leave one disk.
 
-    Corners stay one vertex where a triangle's neighbour across an uncut edge shares them.
+    Corners stay one vertex where a triangle's neighbor across an uncut edge shares them.
     """
     count = len(case.triangles)
     corner = np.arange(3 * count).reshape(count, 3)
@@ -112,7 +112,7 @@ def cut_open(case: Case, cut_edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     vertices = len(case.positions)
     low, high = np.minimum(vertex[start], vertex[end]), np.maximum(vertex[start], vertex[end])
     is_cut = np.isin(low * vertices + high, np.sort(cut_edges, axis=1).astype(np.int64) @ [vertices, 1])
-    # An edge and its neighbour's run in opposite directions, so each one's start meets the other's end.
+    # An edge and its neighbor's run in opposite directions, so each one's start meets the other's end.
     order = np.lexsort((high, low))
     order = order[~is_cut[order]]
     twin = (low[order][:-1] == low[order][1:]) & (high[order][:-1] == high[order][1:])

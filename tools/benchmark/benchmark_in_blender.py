@@ -11,13 +11,15 @@ SMART_PROJECT, which takes no seams. For every line "run" on the standard input 
 from __future__ import annotations
 
 import json
-import os
 import sys
 import time
-import traceback
+from pathlib import Path
 
 import bpy
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from bpy_program import run_as_program
 
 ITERATIONS = 10
 
@@ -63,7 +65,7 @@ def main(source: str, method: str, target: str | None = None) -> None:
     arrays = np.load(source)
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     add_mesh(np.eye(3), np.array([[0, 1, 2]]), np.empty((0, 2), int))
-    unwrap(method)  # the first one of a process takes longer
+    unwrap(method)  # the first one in a process takes longer
     surface = add_mesh(arrays["positions"], arrays["triangles"], arrays["seams"])
     for _ in sys.stdin:
         seconds = unwrap(method)
@@ -73,12 +75,4 @@ def main(source: str, method: str, target: str | None = None) -> None:
 
 
 if __name__ == "__main__":
-    code = 0
-    try:
-        main(*sys.argv[1:])
-    except Exception:
-        traceback.print_exc()
-        code = 1
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(code)  # bpy as a module may hang at a regular exit
+    run_as_program(lambda: main(*sys.argv[1:]))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The whole map's time and memory on growing meshes, beside what others take; a part of `benchmark.py`."""
+"""The whole map's time and memory on growing meshes, compared with other methods; a part of `benchmark.py`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import numpy as np
 from benchmark_cases import Case, cut_open
 from benchmark_workers import Worker, blender_worker, laplacian_worker, lsgp_worker, python_worker, read_cut
 
-# Blender's methods, and up to how many triangles they are worth waiting for.
+# Blender's methods, and the largest numbers of triangles for which they take acceptable time.
 BLENDER = {"ANGLE_BASED": 60_000, "CONFORMAL": 250_000, "MINIMUM_STRETCH": 60_000}
 NAMES = {
     "lsgp": "lsgp",
@@ -30,7 +30,7 @@ NAMES = {
 }
 OWN = ("lsgp", "edit", "move")
 FLOORS = ("eigen", "cholmod")
-FROM_TRIANGLES = 12_000  # the growth is that from there on: below, what does not grow counts
+FROM_TRIANGLES = 12_000  # the growth is measured from there on: below, constant costs dominate
 UNWARMED_TRIANGLES = 500_000
 
 

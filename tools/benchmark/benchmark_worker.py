@@ -30,7 +30,7 @@ def prepare_lsgp(arrays: Mapping[str, np.ndarray]) -> Callable[[], object]:
 
 
 def prepare_edit(arrays: Mapping[str, np.ndarray]) -> Callable[[], object]:
-    """A twentieth of a turn goes from one cone to another, and back."""
+    """A twentieth of a turn is moved from one cone to another, and back."""
     import lsgp
 
     solver = lsgp.Solver(lsgp.Surface(arrays["positions"], arrays["triangles"]))
@@ -42,7 +42,7 @@ def prepare_edit(arrays: Mapping[str, np.ndarray]) -> Callable[[], object]:
 
 
 def prepare_move(arrays: Mapping[str, np.ndarray]) -> Callable[[], object]:
-    """One cone goes to a vertex beside it, and back; angles of least distortion."""
+    """One cone is moved to a neighboring vertex, and back; angles of least distortion."""
     import lsgp
 
     triangles, cones = arrays["triangles"], arrays["cones"]
@@ -69,7 +69,7 @@ PREPARE = {"lsgp": prepare_lsgp, "edit": prepare_edit, "move": prepare_move, "ls
 
 
 def peak_mb() -> float | None:
-    """Of this process alone: what getrusage tells begins with the parent's."""
+    """Of this process alone: the maximum of getrusage includes the parent's."""
     status = Path("/proc/self/status")
     if not status.is_file():
         return None

@@ -36,7 +36,7 @@ class Worker:
         )
 
     def run(self) -> dict[str, object] | None:
-        """What it measured; None where it did not survive, or took too long and was ended."""
+        """What it measured; None if it crashed, or was killed after too long a time."""
         watch = threading.Timer(RUN_SECONDS, self._process.kill)
         watch.start()
         try:
@@ -54,7 +54,7 @@ class Worker:
     def close(self) -> None:
         self._process.kill()
         self._process.wait()
-        with suppress(BrokenPipeError):  # of one that died before it read its last line
+        with suppress(BrokenPipeError):  # of one that ended before it read its last line
             self._process.stdin.close()
         self._process.stdout.close()
 
@@ -72,7 +72,7 @@ def lsgp_worker(method: str, case: Case, folder: Path) -> Worker:
 
 
 def read_cut(folder: Path) -> np.ndarray:
-    """Of the worker of lsgp."""
+    """The cut that the worker of lsgp wrote."""
     return np.load(folder / "cut.npy")
 
 

@@ -64,7 +64,7 @@ class Stopwatch:
         self.frames.append(defaultdict(float, begun=True))
 
     def medians(self) -> dict[str, float]:
-        """Of the frames that count and have ended."""
+        """Of the counted frames that have ended."""
         counted = self.frames[FIRST:-1]
         return {name: float(np.median([frame[name] for frame in counted])) for name in {*counted[0], *COLUMNS}}
 
@@ -99,7 +99,7 @@ def watch_tool(watch: Stopwatch) -> None:
 
 
 def frames(watch: Stopwatch, move: Callable[[int], None], drawn: list[float], until: str = "begun") -> Iterator[float]:
-    """Move once for each frame of the 3D view, until there are enough; yields seconds to wait.
+    """Move once per frame of the 3D view, until enough frames are drawn; yields seconds to wait.
 
     until: a frame is one that is drawn after what has this name.
     """

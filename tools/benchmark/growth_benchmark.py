@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How time and memory grow with what could make them explode: a Markdown table; --write makes docs/reference/growth.md.
+"""How time and memory grow with cones, holes, needles and components; --write makes docs/reference/growth.md.
 
 Each case runs at n, 2n and 4n in processes of their own: CPU seconds of all threads, and the peak of memory above what
 the process had before. Needs numpy beside lsgp.
@@ -67,7 +67,7 @@ def holes(count: int) -> Run:
 
 
 def needles(count: int) -> Run:
-    """Thin triangles around one vertex: an outline of as many corners, and one vertex with all triangles."""
+    """Thin triangles around one vertex: a boundary of as many corners, and one vertex with all triangles."""
     turn = np.arange(count) / count * 2 * np.pi
     positions = np.concatenate([np.zeros((1, 3)), np.stack([np.cos(turn), np.sin(turn), 0 * turn], 1)])
     corner = np.arange(count)

@@ -18,7 +18,7 @@ from pathlib import Path
 import lsgp
 import meshes
 import numpy as np
-from gutter_checks import both_sides, difference_of_neighbours, lookup, mips, smeared
+from gutter_checks import both_sides, difference_of_neighbors, lookup, mips, smeared
 from map_checks import surface
 
 FloatArray = np.ndarray
@@ -58,7 +58,7 @@ def compared(whole: lsgp.Surface, size: int, arguments: argparse.Namespace) -> d
     uv = lsgp.auto_unwrap(whole, preset="bake", pack="tight", margin=arguments.margin / size).corner_uv
     baked = bake(whole, uv, size, arguments)
     empty, covered = baked["empty"].astype(np.float64), baked["covered"]
-    # On edges, what a baker covers may differ by a texel from what the library does: it gets what has a margin already.
+    # On edges the texels that a baker covers may differ from the library's by one: it is given those with a margin.
     extended = baked["extend"].astype(np.float64)
     wide = [arguments.margin / 2**level for level in range(LEVELS)]
     pyramids = {
@@ -70,14 +70,14 @@ def compared(whole: lsgp.Surface, size: int, arguments: argparse.Namespace) -> d
         "the same, each level": lsgp.pad_mip_levels(extended, whole, uv, wide),
     }
     inside = [
-        difference_of_neighbours(level, share == 1)
+        difference_of_neighbors(level, share == 1)
         for level, share in zip(boxes(empty), boxes(covered.astype(float)), strict=True)
     ]
     left, right, _ = both_sides(whole, uv, 1 / size)
     return {
         kind: [
-            float(np.abs(lookup(level, left) - lookup(level, right)).mean()) / neighbours
-            for level, neighbours in zip(levels, inside, strict=True)
+            float(np.abs(lookup(level, left) - lookup(level, right)).mean()) / neighbors
+            for level, neighbors in zip(levels, inside, strict=True)
         ]
         for kind, levels in pyramids.items()
     }

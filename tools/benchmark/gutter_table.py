@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What lookups at both sides of cuts differ by, for gutters of several kinds, as a Markdown table.
+"""By how much lookups on the two sides of cuts differ, for gutters of several kinds, as a Markdown table.
 
     PYTHONPATH=tests python tools/benchmark/gutter_table.py [--size PIXELS] [--margin PIXELS] [--picture FOLDER]
 
 A smooth function of space is baked onto generated meshes; the table has mean differences in units of 1e-4 at the mip
-levels 0 to 3, and of neighbouring texels inside islands. With --picture, FOLDER gets MESH-KIND.png of each image. Needs
+levels 0 to 3, and of neighboring texels inside islands. With --picture, FOLDER gets MESH-KIND.png of each image. Needs
 the lsgp wheel, scipy, and OpenCV for pictures.
 """
 
@@ -16,7 +16,7 @@ from pathlib import Path
 import lsgp
 import meshes
 import numpy as np
-from gutter_checks import bake, difference_across_cuts, difference_of_neighbours, inset, smeared, unwrapped
+from gutter_checks import bake, difference_across_cuts, difference_of_neighbors, inset, smeared, unwrapped
 from numpy.typing import NDArray
 
 MESHES = {
@@ -33,7 +33,7 @@ def main() -> None:
     parser.add_argument("--margin", type=int, default=16, help="of the gutters (default: 16)")
     parser.add_argument("--picture", metavar="FOLDER", type=Path, help="write the images into this folder")
     arguments = parser.parse_args()
-    print(f"| mesh | gutters | {' | '.join(map(str, range(LEVELS)))} | neighbours |")
+    print(f"| mesh | gutters | {' | '.join(map(str, range(LEVELS)))} | neighbors |")
     print(f"|---|---|{'--:|' * (LEVELS + 1)}")
     for name, mesh in MESHES.items():
         whole, uv = unwrapped(mesh)
@@ -44,11 +44,11 @@ def main() -> None:
             "nearest texel": smeared(image, covered, arguments.margin),
             "beyond the cut": lsgp.pad_image(image, whole, uv, arguments.margin),
         }
-        neighbours = in_units(difference_of_neighbours(image, covered))
+        neighbors = in_units(difference_of_neighbors(image, covered))
         for kind, pixels in padded.items():
             found = map(in_units, difference_across_cuts(whole, uv, pixels, LEVELS))
             first = kind == "empty"
-            print(f"| {f'`{name}`' if first else ''} | {kind} | {' | '.join(found)} | {neighbours if first else ''} |")
+            print(f"| {f'`{name}`' if first else ''} | {kind} | {' | '.join(found)} | {neighbors if first else ''} |")
             if arguments.picture is not None:
                 save(arguments.picture / f"{name}-{kind}.png".replace("()", ""), pixels)
 

@@ -10,12 +10,14 @@ these types.
 
 from __future__ import annotations
 
-import os
 import sys
-import traceback
+from pathlib import Path
 
 import bpy
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from bpy_program import run_as_program
 
 SCALE, DETAIL = 2.0, 2.0
 
@@ -34,7 +36,7 @@ def add_surface(positions: np.ndarray, triangles: np.ndarray, corner_uv: np.ndar
 
 
 def add_noise(material: bpy.types.Material, size: int) -> bpy.types.Image:
-    """Let the material show noise in space; returns the image that it is baked to."""
+    """Give the material a solid noise texture; returns the image that it is baked to."""
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
     nodes.clear()
@@ -60,7 +62,7 @@ def bake(image: bpy.types.Image, margin: int, kind: str, *, clear: bool = True) 
 
 
 def main(source: str, size: str, margin: str, target: str) -> None:
-    import addon_utils  # bpy brings it
+    import addon_utils  # installed with bpy
 
     arrays = np.load(source)
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
@@ -83,12 +85,4 @@ def main(source: str, size: str, margin: str, target: str) -> None:
 
 
 if __name__ == "__main__":
-    code = 0
-    try:
-        main(*sys.argv[1:])
-    except Exception:
-        traceback.print_exc()
-        code = 1
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(code)  # bpy as a module may hang at a regular exit
+    run_as_program(lambda: main(*sys.argv[1:]))

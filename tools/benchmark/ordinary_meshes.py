@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Unwraps a thousand meshes with automatic cones and lets the tests' own checks judge every answer:
+"""Unwraps a thousand meshes with automatic cones and checks every result as the tests do:
 PYTHONPATH=tests python tools/benchmark/ordinary_meshes.py [COUNT]
 
 The shared meshes where they are there, the small members of the zoo, then random mixtures up to COUNT. Prints how many

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What automatic cones promise and what their maps keep, as a Markdown table.
+"""The predicted stretch of automatic cones and the stretch of their maps, as a Markdown table.
 
     PYTHONPATH=tests python tools/benchmark/placement_quality.py [--zoo N] [--limit SECONDS] [FOLDER ...]
     PYTHONPATH=tests python tools/benchmark/placement_quality.py --plates G [G ...]

@@ -42,7 +42,7 @@ TARGET = 1.05
 LARGEST, LARGEST_SHARED = 8000, 20000  # triangles
 AS_PREDICTED, SAME = 0.03, 1e-3
 BAD_ENDS = ("silent", "crash", "slow")
-# What a map with a stretch above the target has to say.
+# What a map with a stretch above the target has to report.
 MISSED = {"PLACEMENT_NOT_REACHED", "COMPONENT_SKIPPED"}
 
 Read = Callable[[], lsgp.Surface]

@@ -9,7 +9,7 @@ BPY_PYTHON. The first table has medians; with --each, one for each method has th
 --picture, that folder gets MODEL.png with all layouts beside each other. Needs scipy, xatlas, the lsgp wheel and, for
 pictures, matplotlib.
 
-- covered: fraction of the texels of a texture of 1024 by 1024 whose centres an island covers;
+- covered: fraction of the texels of a texture of 1024 by 1024 whose centers an island covers;
 - L2: the stretch of the whole surface;
 - cuts: their length, in square roots of the surface's area;
 - overlap: the area that triangles share, in percent of the layout's area;
@@ -41,7 +41,7 @@ from zoo import closed, swept
 FloatArray = NDArray[np.float64]
 
 SIZE = 1024  # of the texture
-REACH = 64  # texels; margins that are wider count as this
+REACH = 64  # texels; wider margins count as this
 FILES = (
     "bird.obj",
     "hand-5k.obj",
@@ -117,7 +117,7 @@ def layouts_of(surface: lsgp.Surface) -> Iterator[tuple[str, FloatArray]]:
 
 
 def by_xatlas(surface: lsgp.Surface) -> FloatArray:
-    """Charts of xatlas in its rectangle, which is made no wider than 1."""
+    """Charts of xatlas in its rectangle, scaled so that it is no wider than 1."""
     atlas = xatlas.Atlas()
     atlas.add_mesh(surface.positions.astype(np.float32), surface.triangles.astype(np.uint32))
     atlas.generate()

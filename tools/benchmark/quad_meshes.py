@@ -59,12 +59,12 @@ def quadriflow(python: str) -> Callable[[lsgp.Surface, int], Quads]:
 
 
 def irregular(quads: Quads) -> int:
-    """Vertices without four quads."""
+    """The number of vertices not in four quads."""
     return int((np.bincount(quads.faces.ravel(), minlength=len(quads.positions))[np.unique(quads.faces)] != 4).sum())
 
 
 def sampled(quads: Quads) -> tuple[Points, Points]:
-    """Points all over the quads, as bilinear patches, and the unit normals there."""
+    """Points distributed over the quads, as bilinear patches, and the unit normals there."""
     s, t = (part.ravel() for part in np.meshgrid(*[(np.arange(SAMPLES) + 0.5) / SAMPLES] * 2))
     a, b, c, d = (quads.positions[quads.faces[:, k], None] for k in range(4))
     s, t = s[:, None], t[:, None]
@@ -75,7 +75,7 @@ def sampled(quads: Quads) -> tuple[Points, Points]:
 
 
 def distances(surface: lsgp.Surface, quads: Quads) -> Points:
-    """From points drawn evenly on the surface to the quads."""
+    """From points distributed evenly over the surface to the quads."""
     corners = surface.positions[surface.triangles]
     area = oracle.triangle_areas(surface.positions, surface.triangles)
     rng = np.random.default_rng(1)
@@ -115,7 +115,7 @@ def kept_share(surface: lsgp.Surface, quads: Quads) -> float:
     points = (begin[:, None] + (np.arange(3) + 0.5)[:, None] / 3 * crease[:, None]).reshape(-1, 3)
     weight = np.repeat(np.linalg.norm(crease, axis=1), 3)
     kept = np.zeros(len(points), bool)
-    away, nearest = cKDTree(samples).query(points, k=8)  # those of a crossing edge may be nearer
+    away, nearest = cKDTree(samples).query(points, k=8)  # points of a crossing edge may be nearer
     for k in range(away.shape[1]):
         along = edge[nearest[:, k] // len(steps)]
         cosine = np.abs((along * np.repeat(crease, 3, axis=0)).sum(axis=1))

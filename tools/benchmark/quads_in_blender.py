@@ -11,9 +11,13 @@ from __future__ import annotations
 
 import sys
 import time
+from pathlib import Path
 
 import bpy
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from bpy_program import run_as_program
 
 
 def remesh(positions: np.ndarray, triangles: np.ndarray, quads: int) -> tuple[bpy.types.Mesh, float]:
@@ -41,4 +45,4 @@ def main(source: str, quads: str, target: str) -> None:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    run_as_program(lambda: main(*sys.argv[1:]))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Print the quality of our maps beside the paper's Table 1, as Markdown.
+"""Print the quality of our maps compared with the paper's Table 1, as Markdown.
 
     python tools/benchmark/quality.py [FOLDER]
 

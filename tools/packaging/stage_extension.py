@@ -75,13 +75,13 @@ def accepted_tags(wheel: Path) -> list[str]:
     tags = wheel.stem.split("-")[-1].split(".")
     if "linux" not in tags[0]:
         return tags
-    # Blender 4.2 and later run on a C library of 2.28 or newer; wheels for older ones go there as well.
+    # Blender 4.2 and later require glibc 2.28 or newer; wheels for older versions run there as well.
     machine = re.search(r"linux(?:_\d+_\d+|\d+)?_(.+)", tags[0])[1]
     return [*(f"manylinux_2_{minor}_{machine}" for minor in range(28, 16, -1)), f"manylinux2014_{machine}"]
 
 
 def download_packer(wheel: Path, folder: Path) -> None:
-    """Put the packer's wheel for the Python and the platform of this one into the folder; says where there is none."""
+    """Download the packer's wheel for the Python and platform of this one; prints a line if there is none."""
     python = wheel.stem.split("-")[-3].removeprefix("cp")
     pip = [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps", "--only-binary=:all:", f"--dest={folder}"]
     target = [f"--python-version={python}", *(f"--platform={tag}" for tag in accepted_tags(wheel))]
@@ -92,7 +92,7 @@ def download_packer(wheel: Path, folder: Path) -> None:
 
 
 def staged_manifest(wheels: list[Path], blenders: Blenders | None) -> str:
-    """The manifest with what the wheels decide: their list, the platforms, and the versions of Blender."""
+    """The manifest with the entries that follow from the wheels: the list, platforms, and versions of Blender."""
     manifest = (ROOT / "blender_manifest.toml").read_text(encoding="utf-8")
     added = {
         "platforms": sorted({platform(wheel) for wheel in wheels}),

@@ -31,7 +31,7 @@ TEST_SECONDS = 900
 
 @dataclass(frozen=True)
 class Command:
-    """A program as a list of arguments, and what its environment needs beside ours."""
+    """A program as a list of arguments, and the variables that its environment needs in addition to ours."""
 
     arguments: list[str]
     environment: dict[str, str]
@@ -119,7 +119,7 @@ def main() -> None:
         inside = [str(REAL_BLENDER), "run", str(arguments.chroot)]
         environment = {"BLENDER_EXE": "python3"}
         if "SSL_CERT_FILE" in os.environ:
-            # The certificates we are told to trust are not in the chroot; the output folder is.
+            # The certificates that ours trusts are not in the chroot; the output folder is.
             environment["SSL_CERT_FILE"] = str(shutil.copy(os.environ["SSL_CERT_FILE"], out / "certificates.pem"))
         python, blender = Command(inside, environment), Command(inside, {})
     else:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What programs that work in Blender's window share: its areas, and going on by steps between which Blender draws."""
+"""Helpers of programs in Blender's window: its areas, and steps between which Blender draws."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def region_of(area: bpy.types.Area) -> bpy.types.Region:
 
 
 def inside(area: bpy.types.Area):
-    """The context of an area, which Blender's timers do not have."""
+    """The context of an area, which timers lack."""
     return bpy.context.temp_override(window=window(), area=area, region=region_of(area))
 
 
@@ -46,7 +46,7 @@ def arrange(uv_share: float) -> Iterator[float]:
 
 
 def run(steps: Iterator[float]) -> None:
-    """Go on by these steps, which yield seconds to wait, and end Blender after the last."""
+    """Run these steps, which yield seconds to wait, and quit Blender after the last one."""
 
     def step() -> float:
         status = 0

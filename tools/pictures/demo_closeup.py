@@ -20,12 +20,12 @@ PIXELS, LENS = 173, 85
 TILES_SEEN = 5.0  # from side to side of a close-up
 TILT = (np.radians(12), 0.0, np.radians(15))  # of the model, so that it is not seen flat from the front
 LAMPS = (("key", (-5, -7, 6), 4, 700), ("fill", (8, -8, 1), 8, 250))
-BEAD, BEAD_STEP, BEAD_COLOUR = 0.023, 0.24, (0.93, 0.05, 0.52)
+BEAD, BEAD_STEP, BEAD_COLOR = 0.023, 0.24, (0.93, 0.05, 0.52)
 
 
 @dataclass(frozen=True)
 class View:
-    """What to look at from where.
+    """The position and size of a close-up.
 
     focus: (3,) a place on the model. rotation: (3, 3) from the model's axes to the picture's. width: of the frame, in
     units of the model. path: vertices of the cut that is pointed out. vertex: the one of them at the focus.
@@ -41,7 +41,7 @@ class View:
 
 
 def choose_view(model: bpy.types.Object, cut_edges: np.ndarray, cones: np.ndarray) -> View:
-    """Where a cut with a turn runs through an even part of the surface, away from other cuts and from its own ends."""
+    """At a rotated cut through an even part of the surface, away from other cuts and from its own ends."""
     import lsgp  # comes with the extension
 
     mesh = model.data
@@ -85,7 +85,7 @@ def whole(model: bpy.types.Object, view: View) -> View:
 
 
 def facing(toward: FloatArray, up: FloatArray) -> FloatArray:
-    """The rotation that turns `toward` to the camera and `up`, or its opposite, upwards; what is higher stays so."""
+    """The rotation that turns `toward` to the camera and `up`, or its opposite, upwards; higher points stay higher."""
     up = up - toward * (up @ toward)
     up *= np.copysign(1, up[2]) / np.linalg.norm(up)
     return np.array([np.cross(up, toward), -toward, up])
@@ -105,7 +105,7 @@ def sister_loops(mesh: bpy.types.Mesh, edges: np.ndarray) -> NDArray[np.integer]
 
 
 def lay_alike(layout: bpy.types.Object, model: bpy.types.Object, view: View) -> None:
-    """Move, turn and scale a layout as a whole: texels as large as the model's, and where those are left of the cut."""
+    """Move, turn and scale a layout as a whole to the size of the model's texels, and to those left of the cut."""
     mesh = layout.data
     uv, wanted = (demo_picture.read_uv(obj.data) @ (1, 1j) for obj in (layout, model))
     at = view.path.tolist().index(view.vertex)
@@ -120,7 +120,7 @@ def lay_alike(layout: bpy.types.Object, model: bpy.types.Object, view: View) -> 
 
 
 def texture_material(texture: FloatArray) -> bpy.types.Material:
-    """The texture, one tile a unit of texture coordinates."""
+    """The texture, one tile per unit of texture coordinates."""
     size = len(texture)
     pixels = np.ones((size, size, 4), np.float32)
     pixels[..., :3] = texture
@@ -136,7 +136,7 @@ def texture_material(texture: FloatArray) -> bpy.types.Material:
 
 
 def render_view(model: bpy.types.Object, view: View, path: Path, samples: int) -> None:
-    """Write a picture of the model alone, its background clear, beads along the cut; nothing is left in the scene."""
+    """Write a picture of the model alone, without background, with beads along the cut; leaves the scene as it was."""
     frame = view.size[0] / PIXELS
     turn = frame / view.width * np.array(Euler(TILT).to_matrix()) @ view.rotation
     line = (vectors(model.data.vertices, "co")[view.path] - view.focus) @ turn.T
@@ -145,7 +145,7 @@ def render_view(model: bpy.types.Object, view: View, path: Path, samples: int) -
         shown.hide_render = False
         shown.matrix_world = Matrix(turn.tolist()).to_4x4() @ Matrix.Translation((-view.focus).tolist())
         bpy.context.collection.objects.link(shown)
-        demo_picture.add_balls(places_along(line, BEAD_STEP), BEAD_COLOUR, BEAD)
+        demo_picture.add_balls(places_along(line, BEAD_STEP), BEAD_COLOR, BEAD)
         demo_picture.add_light(0.6, LAMPS)
         demo_picture.add_camera(LENS, frame * LENS / 36)
         bpy.context.scene.render.film_transparent = True

@@ -13,15 +13,17 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parent))
 import demo_picture
 import demo_scene
+from bpy_program import run_as_program
 
 MODEL = Path(__file__).resolve().parents[2] / "examples" / "model.obj"
 LENGTH = 2.6  # of the model in the picture, in its units
 FEATURED = (1920, 1080)  # pixels, as the platform wants them
 ICON = (256, 256)
-ICON_WIDTH = 3.2  # of what the icon shows, in units of the picture
+ICON_WIDTH = 3.2  # of the part that the icon shows, in units of the picture
 
 
 def main() -> None:
@@ -42,7 +44,7 @@ def main() -> None:
 
 
 def add_model() -> bpy.types.Object:
-    """The duck, smooth, about the origin, in the size and from the side in which the picture shows it well."""
+    """The duck with smooth shading, centered, scaled and turned for the picture."""
     bpy.ops.wm.obj_import(filepath=str(MODEL))
     duck = bpy.context.object
     bpy.ops.object.transform_apply()
@@ -57,12 +59,12 @@ def add_model() -> bpy.types.Object:
 
 
 def look_at_the_model() -> None:
-    """Turns the camera of the picture to its left half alone."""
+    """Points the camera at the left half of the picture."""
     camera = bpy.context.scene.camera
-    camera.location.x, _, camera.location.z = demo_picture.MODEL_CENTRE
-    distance = demo_picture.MODEL_CENTRE[1] - camera.location.y
+    camera.location.x, _, camera.location.z = demo_picture.MODEL_CENTER
+    distance = demo_picture.MODEL_CENTER[1] - camera.location.y
     camera.data.lens = camera.data.sensor_width * distance / ICON_WIDTH
 
 
 if __name__ == "__main__":
-    demo_scene.run_as_program(main)
+    run_as_program(main)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A picture of an unwrapped mesh: the checkered model and its UV layout side by side, rendered with Cycles.
 
-The layout is built as a flat mesh with the model's own material, so texture, light and the colours of the cuts agree
+The layout is built as a flat mesh with the model's own material, so texture, light and the colors of the cuts agree
 between the two halves by themselves. Runs inside Blender.
 """
 
@@ -18,8 +18,8 @@ from mathutils import Euler
 
 WIDTH = 2000  # pixels of the picture; half as high
 # The picture plane is x-z, 8 x 4 units, the camera looks along +y; each half is 4 x 4 units.
-MODEL_CENTRE, MODEL_TURN, MODEL_SIZE = (-1.82, -2.6, 0.07), (np.radians(2), 0.0, np.radians(22)), 1.2
-LAYOUT_CENTRE, LAYOUT_SIZE = (2.02, 0.0, 0.0), (3.72, 3.6)
+MODEL_CENTER, MODEL_TURN, MODEL_SIZE = (-1.82, -2.6, 0.07), (np.radians(2), 0.0, np.radians(22)), 1.2
+LAYOUT_CENTER, LAYOUT_SIZE = (2.02, 0.0, 0.0), (3.72, 3.6)
 WALL_DEPTH = 0.09
 SQUARE = 0.11  # side of a checker square on the model, in units of the model
 TUBE, BORDER_TUBE, CONE_BALL = 0.018, 0.010, 0.046
@@ -27,8 +27,8 @@ TUBE, BORDER_TUBE, CONE_BALL = 0.018, 0.010, 0.046
 PAPER = (0.965, 0.955, 0.935)
 LIGHT_SQUARE, DARK_SQUARE = (0.94, 0.92, 0.87), (0.47, 0.58, 0.66)
 LIGHT_LINE, DARK_LINE = (0.84, 0.82, 0.77), (0.55, 0.655, 0.73)
-BORDER_COLOUR = (0.16, 0.18, 0.22)
-CUT_COLOURS = ("#d6336c", "#2b9348", "#7b4fc9", "#e3b505", "#12a0a0", "#c23fb5", "#87991a", "#3c9be0", "#8a5a3c")
+BORDER_COLOR = (0.16, 0.18, 0.22)
+CUT_COLORS = ("#d6336c", "#2b9348", "#7b4fc9", "#e3b505", "#12a0a0", "#c23fb5", "#87991a", "#3c9be0", "#8a5a3c")
 POSITIVE_CONE, NEGATIVE_CONE = (0.93, 0.33, 0.10), (0.10, 0.30, 0.85)
 
 
@@ -43,7 +43,7 @@ def render_picture(
 
 @contextmanager
 def empty_stage() -> Iterator[None]:
-    """Hides all objects from the renderer; afterwards they are as they were, and those added since are gone."""
+    """Hides all objects from the renderer; afterward they are as they were, and those added since are gone."""
     hidden = {obj: obj.hide_render for obj in bpy.data.objects}
     for obj in hidden:
         obj.hide_render = True
@@ -55,7 +55,7 @@ def empty_stage() -> Iterator[None]:
 
 
 def compose(model: bpy.types.Object, cut_edges: np.ndarray, cones: np.ndarray) -> None:
-    """Build the scene round a copy of `model`, which has its checker.
+    """Build the scene around a copy of `model`, which has its checker.
 
     cut_edges: (c, 2) vertex pairs where the layout is open. cones: (k,) vertices.
     """
@@ -68,28 +68,28 @@ def compose(model: bpy.types.Object, cut_edges: np.ndarray, cones: np.ndarray) -
     shown.data = mesh.copy()
     shown.data.shade_smooth()
     shown.hide_render = False
-    shown.location, shown.rotation_euler, shown.scale = MODEL_CENTRE, MODEL_TURN, (MODEL_SIZE,) * 3
+    shown.location, shown.rotation_euler, shown.scale = MODEL_CENTER, MODEL_TURN, (MODEL_SIZE,) * 3
     bpy.context.collection.objects.link(shown)
     turn = MODEL_SIZE * np.array(Euler(MODEL_TURN).to_matrix())
-    positions = np.array([vertex.co for vertex in mesh.vertices]) @ turn.T + MODEL_CENTRE
+    positions = np.array([vertex.co for vertex in mesh.vertices]) @ turn.T + MODEL_CENTER
 
     add_layout(mesh, uv, board)
     sides = Sides(mesh)
     for number, cut in enumerate(lsgp.split_into_paths(cut_edges, cones)):
         lines = [positions[cut], *(board[loops] for loops in sides.of_path(cut))]
-        add_tubes(f"cut {number}", lines, TUBE, cut_colour(number))
+        add_tubes(f"cut {number}", lines, TUBE, cut_color(number))
     borders = lsgp.split_into_paths(sides.border_edges(), cut_edges.ravel())
     lines = [positions[border] for border in borders]
     lines += [board[loops] for border in borders for loops in sides.of_path(border)]
-    add_tubes("borders", lines, BORDER_TUBE, BORDER_COLOUR)
+    add_tubes("borders", lines, BORDER_TUBE, BORDER_COLOR)
     for cone in cones.tolist():
         places = np.vstack([positions[cone], board[sides.places(cone, uv)]])
-        add_balls(places, cone_colour(sides.curvature(cone, uv)))
+        add_balls(places, cone_color(sides.curvature(cone, uv)))
     add_studio()
 
 
 def add_checker(model: bpy.types.Object) -> None:
-    """Give the model a checker as its only material, squares of one size whatever the size of the layout."""
+    """Give the model a checker as its only material, with squares of one size, regardless of the size of the layout."""
     mesh = model.data
     mesh.materials.clear()
     mesh.materials.append(checker_material(length_of_uv_unit(mesh, read_uv(mesh)) / SQUARE))
@@ -115,11 +115,11 @@ def layout_places(uv: np.ndarray) -> np.ndarray:
     """(loops, 3) where the corners of the layout lie in the picture."""
     low, high = uv.min(axis=0), uv.max(axis=0)
     flat = (uv - (low + high) / 2) * (np.array(LAYOUT_SIZE) / (high - low)).min()
-    return np.column_stack([flat[:, 0], np.zeros(len(flat)), flat[:, 1]]) + LAYOUT_CENTRE
+    return np.column_stack([flat[:, 0], np.zeros(len(flat)), flat[:, 1]]) + LAYOUT_CENTER
 
 
 class Sides:
-    """Which loops lie on the two sides of every edge and round every vertex."""
+    """Which loops lie on the two sides of every edge and around every vertex."""
 
     def __init__(self, mesh: bpy.types.Mesh) -> None:
         self.corners: dict[int, list[tuple[int, int, int]]] = {}
@@ -144,41 +144,41 @@ class Sides:
         return sides
 
     def places(self, vertex: int, uv: np.ndarray) -> list[int]:
-        """One loop for every place a vertex has in the layout."""
+        """One loop for every position of a vertex in the layout."""
         return list({tuple(uv[loop].round(6)): loop for _, loop, _ in self.corners[vertex]}.values())
 
     def curvature(self, vertex: int, uv: np.ndarray) -> float:
-        """Full turn less the angles the layout has round a vertex, radians."""
+        """A full turn minus the angles of the layout around a vertex, radians."""
         before, here, after = uv[np.array(self.corners[vertex])].transpose(1, 0, 2)
         ahead, back = after - here, before - here
         cross = ahead[:, 0] * back[:, 1] - ahead[:, 1] * back[:, 0]
         return float(2 * np.pi - np.arctan2(cross, (ahead * back).sum(axis=1)).sum())
 
 
-def cut_colour(number: int) -> tuple[float, float, float]:
-    """The colours in turn, every other time round as tints."""
-    turn, place = divmod(number, len(CUT_COLOURS))
-    full = np.array([int(CUT_COLOURS[place][k : k + 2], 16) / 255 for k in (1, 3, 5)])
+def cut_color(number: int) -> tuple[float, float, float]:
+    """The colors in turn, every second cycle as tints."""
+    turn, place = divmod(number, len(CUT_COLORS))
+    full = np.array([int(CUT_COLORS[place][k : k + 2], 16) / 255 for k in (1, 3, 5)])
     return tuple(1 - (0.55 if turn % 2 else 1.0) * (1 - full))
 
 
-def cone_colour(curvature: float) -> tuple[float, float, float]:
-    """From near white at no curvature to full colour at half a turn, warm where positive, cold where negative."""
+def cone_color(curvature: float) -> tuple[float, float, float]:
+    """From nearly white without curvature to full color at half a turn: warm if positive, cold if negative."""
     full = np.array(POSITIVE_CONE if curvature > 0 else NEGATIVE_CONE)
     share = min(1.0, 0.45 + 0.55 * abs(curvature) / np.pi)
     return tuple(1 - share * (1 - full))
 
 
-def linear(colour: tuple[float, float, float]) -> tuple[float, float, float, float]:
-    """A display colour as Cycles wants it."""
-    return (*(c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in colour), 1.0)
+def linear(color: tuple[float, float, float]) -> tuple[float, float, float, float]:
+    """A display color in linear light, as Cycles expects it."""
+    return (*(c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in color), 1.0)
 
 
-def plain_material(name: str, colour: tuple[float, float, float], roughness: float = 0.5) -> bpy.types.Material:
+def plain_material(name: str, color: tuple[float, float, float], roughness: float = 0.5) -> bpy.types.Material:
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     shader = material.node_tree.nodes["Principled BSDF"]
-    shader.inputs["Base Color"].default_value = linear(colour)
+    shader.inputs["Base Color"].default_value = linear(color)
     shader.inputs["Roughness"].default_value = roughness
     return material
 
@@ -232,19 +232,19 @@ def add_layout(mesh: bpy.types.Mesh, uv: np.ndarray, board: np.ndarray) -> None:
     add_object("layout shadow", layout).location.y = WALL_DEPTH / 4
 
 
-def add_tubes(name: str, lines: list[np.ndarray], radius: float, colour: tuple[float, float, float]) -> None:
+def add_tubes(name: str, lines: list[np.ndarray], radius: float, color: tuple[float, float, float]) -> None:
     curve = bpy.data.curves.new(name, "CURVE")
     curve.dimensions, curve.bevel_depth, curve.bevel_resolution, curve.use_fill_caps = "3D", radius, 3, True
     for line in lines:
         spline = curve.splines.new("POLY")
         spline.points.add(len(line) - 1)
         spline.points.foreach_set("co", np.column_stack([line, np.ones(len(line))]).astype(np.float32).ravel())
-    curve.materials.append(plain_material(name, colour))
+    curve.materials.append(plain_material(name, color))
     add_object(name, curve)
 
 
-def add_balls(places: np.ndarray, colour: tuple[float, float, float], radius: float = CONE_BALL) -> None:
-    material = plain_material("cone", colour, roughness=0.25)
+def add_balls(places: np.ndarray, color: tuple[float, float, float], radius: float = CONE_BALL) -> None:
+    material = plain_material("cone", color, roughness=0.25)
     for place in places:
         bpy.ops.mesh.primitive_uv_sphere_add(radius=radius, location=place, segments=32, ring_count=16)
         bpy.ops.object.shade_smooth()
@@ -291,9 +291,9 @@ def render(path: Path, samples: int, width: int, height: int) -> None:
     try:
         scene.cycles.use_denoising = True
         scene.cycles.denoiser = "OPENIMAGEDENOISE"
-    except TypeError:  # built without the denoiser: more samples instead
+    except TypeError:  # this build has no denoiser: more samples instead
         scene.cycles.use_denoising, scene.cycles.samples = False, 4 * samples
-    scene.render.dither_intensity = 0  # flat tones stay flat, which halves the file
+    scene.render.dither_intensity = 0  # flat areas stay flat, which halves the file
     scene.view_settings.view_transform = "Standard"
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = width, height, 100
     scene.render.image_settings.file_format = "PNG"

@@ -11,15 +11,15 @@ import argparse
 import importlib
 import os
 import sys
-import traceback
-from collections.abc import Callable
 from pathlib import Path
 
 import bpy
 import numpy as np
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parent))
 import demo_picture
+from bpy_program import run_as_program
 from demo_table import ANGLES, AREA, CUT_LENGTH, FLIPPED, ISLANDS, MISMATCH, OVERLAPPING, STRETCH, table
 
 ADDON = "bl_ext.user_default.cone_unwrap"
@@ -61,7 +61,7 @@ def main() -> None:
 
 
 def say(step: str) -> None:
-    """Print what is done next; tools/demo repeats it while it takes."""
+    """Print the next step, which tools/demo shows until the following one."""
     print(f"   {step}", flush=True)
 
 
@@ -141,7 +141,7 @@ def measure(lsgp, obj: bpy.types.Object):
 
 
 def unwrapped_by_blender(lsgp, obj: bpy.types.Object, cut_edges: np.ndarray, method: str) -> tuple[float, ...]:
-    """The figures of what Blender makes of the mesh with seams on the given cuts."""
+    """The figures of Blender's unwrap of the mesh with seams on the given cuts."""
     copy = add_copy_unwrapped_by_blender(obj, cut_edges, method)
     found = figures(measure(lsgp, copy)[1], copy)
     bpy.data.meshes.remove(copy.data)
@@ -185,24 +185,6 @@ def overlapping_faces(obj: bpy.types.Object) -> int:
     run_in_edit_mode(obj, bpy.ops.uv.select_overlap)
     settings.use_uv_select_sync = was_synchronized
     return sum(polygon.select for polygon in obj.data.polygons)
-
-
-def run_as_program(job: Callable[[], None]) -> None:
-    """Run the job and end the process with its exit code."""
-    status = 0
-    try:
-        job()
-    except SystemExit as ending:
-        status = ending.code if isinstance(ending.code, int) else 1
-        if isinstance(ending.code, str):
-            print(ending.code, file=sys.stderr)
-    except Exception:
-        traceback.print_exc()
-        status = 1
-    sys.stdout.flush()
-    sys.stderr.flush()
-    # The bpy module hangs at exit while classes of an add-on are registered.
-    os._exit(status)
 
 
 if __name__ == "__main__":

@@ -16,11 +16,13 @@ from pathlib import Path
 import bpy
 import numpy as np
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parent))
 import demo_closeup
 import demo_picture
 import demo_scene
 import demo_texture
+from bpy_program import run_as_program
 from demo_table import MISMATCH, STRETCH, Column, table
 
 MESHES = Path(__file__).resolve().parents[3] / "shared" / "meshes"
@@ -83,13 +85,13 @@ def add(shape: Shape, material: bpy.types.Material) -> bpy.types.Object:
 
 
 def add_mesh(name: str) -> bpy.types.Object:
-    """One of the collection beside the checkout."""
+    """A mesh of the shared collection next to the checkout."""
     bpy.ops.wm.obj_import(filepath=str(MESHES / f"{name}.obj"), forward_axis="Y", up_axis="Z")
     return bpy.context.object
 
 
 def add_fan() -> bpy.types.Object:
-    """A sector of a fan's disk: a hub, a blade that gets thinner outwards, sharp edges all round."""
+    """A sector of a fan's disk: a hub, a blade that gets thinner outwards, with sharp edges all around."""
     bpy.ops.mesh.primitive_cube_add(size=2.0)
     fan = bpy.context.object
     demo_scene.run_in_edit_mode(fan, bpy.ops.mesh.subdivide, number_cuts=23)
@@ -102,7 +104,7 @@ def add_fan() -> bpy.types.Object:
 
 
 def figures(measured, uv: np.ndarray, texture: np.ndarray) -> tuple[float, ...]:
-    """Those of COLUMNS.  uv: both sides of every cut edge; colours are compared at nine points of each."""
+    """Those of COLUMNS.  uv: both sides of every cut edge; colors are compared at nine points of each."""
     part = np.linspace(0, 1, 9)[:, None]
     places = uv[:, :, :1] * (1 - part) + uv[:, :, 1:] * part
     left, right = (demo_texture.bilinear(texture, side.reshape(-1, 2)) for side in places.transpose(1, 0, 2, 3))
@@ -122,4 +124,4 @@ GENERATED = (
 
 
 if __name__ == "__main__":
-    demo_scene.run_as_program(main)
+    run_as_program(main)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Puts the pictures of a row beside each other on paper: python demo_sheet.py OUT.png HEADING ... PICTURE.png ...
+"""Joins pictures into one row with headings: python demo_sheet.py OUT.png HEADING ... PICTURE.png ...
 
 As many in a row as there are headings, one above each column; pictures of a column have the same size.
 """

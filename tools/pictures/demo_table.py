@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The tables that the demos print: every column says what its figure ideally is and which way is better.
+"""The tables that the demos print: every column states its ideal value and which direction is better.
 
 Knows nothing of Blender.
 """

@@ -13,20 +13,20 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 
 SAMPLES = 4  # a texel's side
-TWISTS = ((0.5, 2.4), (0.0, 1.2))  # u and v of a centre in the tile, radians
+TWISTS = ((0.5, 2.4), (0.0, 1.2))  # u and v of a center in the tile, radians
 RIBBON, OUTLINE, LINE = (0.0, 0.022), (0.022, 0.034), (0.046, 0.054)  # distances from the nearest edge of a vane
 VEIN = 0.005
 CREAM, BLUE, INK, RUST = (0.95, 0.93, 0.87), (0.25, 0.48, 0.58), (0.07, 0.14, 0.22), (0.85, 0.36, 0.16)
 
 
 def pinwheels(size: int) -> FloatArray:
-    """One tile, (size, size, 3) display colours from 0 to 1, the lowest row first; size is even.
+    """One tile, (size, size, 3) display colors from 0 to 1, the lowest row first; size is even.
 
     A quarter turn of the tile gives the same numbers, to the last bit.
     """
     steps = (np.arange(size // 2 * SAMPLES) + 0.5) / (size * SAMPLES)
-    colour = _colour(*np.meshgrid(steps, steps))
-    quadrant = colour.reshape(size // 2, SAMPLES, size // 2, SAMPLES, 3).mean(axis=(1, 3))
+    color = _color(*np.meshgrid(steps, steps))
+    quadrant = color.reshape(size // 2, SAMPLES, size // 2, SAMPLES, 3).mean(axis=(1, 3))
     # Rows go up and columns right: turned once to the left the lower left quadrant is the lower right one.
     turned = [np.rot90(quadrant, -turns) for turns in range(4)]
     return np.concatenate(
@@ -35,7 +35,7 @@ def pinwheels(size: int) -> FloatArray:
 
 
 def bilinear(texture: FloatArray, uv: FloatArray) -> FloatArray:
-    """Colours at texture coordinates, (n, 2) to (n, 3), the texture repeated, as renderers filter it."""
+    """Colors at texture coordinates, (n, 2) to (n, 3), the texture repeated, as renderers filter it."""
     size = len(texture)
     place = uv * size - 0.5
     first = np.floor(place)
@@ -48,22 +48,22 @@ def bilinear(texture: FloatArray, uv: FloatArray) -> FloatArray:
     return (1 - y) * low + y * high
 
 
-def _colour(u: FloatArray, v: FloatArray) -> FloatArray:
-    """Colours at places of the tile, exact: a vane in each quarter of a tile that is twisted about its fixed points."""
-    for centre, angle in TWISTS:
-        u, v = _twisted(u, v, centre, angle)
+def _color(u: FloatArray, v: FloatArray) -> FloatArray:
+    """Colors at places of the tile, exact: a vane in each quarter of a tile that is twisted about its fixed points."""
+    for center, angle in TWISTS:
+        u, v = _twisted(u, v, center, angle)
     x, y = _in_one_vane(u, v)
     edge = np.minimum.reduce([x, y, 0.5 - x, 0.5 - y])
-    colour = np.where((x < 0.25)[..., None], BLUE, CREAM)
-    colour[np.abs(x - 0.25) < VEIN] = INK
+    color = np.where((x < 0.25)[..., None], BLUE, CREAM)
+    color[np.abs(x - 0.25) < VEIN] = INK
     for (least, most), ink in ((LINE, INK), (OUTLINE, INK), (RIBBON, RUST)):
-        colour[(least <= edge) & (edge < most)] = ink
-    return colour
+        color[(least <= edge) & (edge < most)] = ink
+    return color
 
 
-def _twisted(u: FloatArray, v: FloatArray, centre: float, angle: float) -> tuple[FloatArray, FloatArray]:
-    """Turned about (centre, centre) in every tile, by `angle` there and less and less up to half a tile away."""
-    x, y = ((place - centre + 0.5) % 1 - 0.5 for place in (u, v))
+def _twisted(u: FloatArray, v: FloatArray, center: float, angle: float) -> tuple[FloatArray, FloatArray]:
+    """Turned about (center, center) in every tile, by `angle` there and less and less up to half a tile away."""
+    x, y = ((place - center + 0.5) % 1 - 0.5 for place in (u, v))
     near = np.clip(1 - 2 * np.hypot(x, y), 0, 1)
     turn = angle * near**2 * (3 - 2 * near)
     return u - x + np.cos(turn) * x - np.sin(turn) * y, v - y + np.sin(turn) * x + np.cos(turn) * y

@@ -77,13 +77,13 @@ class Row:
     outside: float
 
     def is_good(self) -> bool:
-        """Whether it is as Auto Unwrap promises."""
+        """Whether it has no flips and, unless tiled, no overlaps and fits in the square."""
         packed = self.method == "TILE" or (self.doubly == 0 and self.outside == 0)
         return packed and self.flipped == 0
 
 
 def press(method: str) -> None:
-    """What an artist does with the objects selected; may go on in the background."""
+    """Press the button with the objects selected, as an artist would; the unwrap may continue in the background."""
     if method in PRESETS:
         bpy.ops.uv.cone_auto_unwrap("INVOKE_DEFAULT", True, preset=method)
         return

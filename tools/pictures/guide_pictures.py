@@ -16,19 +16,21 @@ import numpy as np
 from mathutils import Euler
 from numpy.typing import NDArray
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parent))
 import demo_picture
 import demo_scene
+from bpy_program import run_as_program
 
 FloatArray = NDArray[np.float64]
 
 WIDTH = 1000  # pixels of a picture; half as high
 RINGS, STEPS = 30, 240
 RADIUS, SQUARES = 1.35, 7.0  # of a sheet of paper, and checker squares along it
-FLAT_PLACE, FLAT_TILT = (-2.1, -2.0, 0.0), np.radians(62)  # towards the camera
+FLAT_PLACE, FLAT_TILT = (-2.1, -2.0, 0.0), np.radians(62)  # toward the camera
 BENT_PLACE, BENT_TILT = (1.8, -2.0, 0.3), np.radians(32)
 SEEN_FROM_A_CORNER = (Euler((np.radians(25), 0, 0)).to_matrix() @ Euler((0, 0, np.radians(20))).to_matrix()).to_4x4()
-EDGE_COLOUR = "#d6336c"
+EDGE_COLOR = "#d6336c"
 TEETH = 12
 GEAR = ((0.4, -0.25), (1.3, -0.25), (1.3, 0.25), (0.4, 0.25))  # profiles: radius and height
 FLANGE = ((0.35, -0.6), (1.2, -0.6), (1.2, -0.35), (0.6, -0.35), (0.6, 0.8), (0.35, 0.8))
@@ -71,7 +73,7 @@ def main() -> None:
 
 
 def take_picture(lsgp: ModuleType, obj: bpy.types.Object, path: Path, samples: int) -> None:
-    """Of an object and its map."""
+    """Render an object and its map."""
     _, measured = demo_scene.measure(lsgp, obj)
     distortion = measured.distortion
     print(f"{path.stem}: L2 {distortion.l2_stretch:.3f}, QC {distortion.quasi_conformal:.3f}", flush=True)
@@ -209,14 +211,14 @@ def add_vase() -> bpy.types.Object:
 
 
 def brick_material() -> bpy.types.Material:
-    """Four courses of bricks a unit of texture."""
+    """Four courses of bricks per unit of texture."""
     material = bpy.data.materials.new("bricks")
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
     courses = nodes.new("ShaderNodeTexBrick")
     sizes = {"Scale": 1.0, "Brick Width": 0.5, "Row Height": 0.25, "Mortar Size": 0.015}
-    colours = {"Color1": (0.5, 0.12, 0.06, 1), "Color2": (0.35, 0.08, 0.04, 1), "Mortar": (0.7, 0.68, 0.6, 1)}
-    for name, value in (sizes | colours).items():
+    colors = {"Color1": (0.5, 0.12, 0.06, 1), "Color2": (0.35, 0.08, 0.04, 1), "Mortar": (0.7, 0.68, 0.6, 1)}
+    for name, value in (sizes | colors).items():
         courses.inputs[name].default_value = value
     links.new(nodes.new("ShaderNodeUVMap").outputs["UV"], courses.inputs["Vector"])
     links.new(courses.outputs["Color"], nodes["Principled BSDF"].inputs["Base Color"])
@@ -241,7 +243,7 @@ def dart() -> None:
 
 
 def inset() -> None:
-    """A sheet that is slit and a quarter to be sewn in, flat and as a saddle of 450 degrees."""
+    """A sheet that is slit and a quarter to be inserted, flat and as a saddle of 450 degrees."""
     angle, curvature = 2.5 * np.pi, -0.5 * np.pi
     around = np.linspace(0, 2 * np.pi, 4001)
 
@@ -282,7 +284,7 @@ def add_sheet(
     turn: float,
     curvature: float,
 ) -> None:
-    """A sector of a disk with a checker, bent without stretching it, its two straight edges coloured.
+    """A sector of a disk with a checker, bent without stretching it, its two straight edges colored.
 
     bend: radius and angle in the sheet, (n,) each, to (n, 3). turn: about the sheet's upright axis. tilt: of that axis
     to the camera.
@@ -303,11 +305,11 @@ def add_sheet(
     mesh.materials.append(demo_picture.checker_material(1.0))
     demo_picture.add_object(name, mesh)
     mesh.shade_smooth()
-    edge = tuple(int(EDGE_COLOUR[k : k + 2], 16) / 255 for k in (1, 3, 5))
+    edge = tuple(int(EDGE_COLOR[k : k + 2], 16) / 255 for k in (1, 3, 5))
     demo_picture.add_tubes(f"{name} edges", [places[index[0]], places[index[-1]]], demo_picture.TUBE, edge)
     apex = places[index[0, 0]]
-    demo_picture.add_balls(apex[None], demo_picture.cone_colour(curvature))
+    demo_picture.add_balls(apex[None], demo_picture.cone_color(curvature))
 
 
 if __name__ == "__main__":
-    demo_scene.run_as_program(main)
+    run_as_program(main)

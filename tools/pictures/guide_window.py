@@ -26,7 +26,7 @@ OPEN = ("VIEW3D_PT_cone_angles", "VIEW3D_PT_cone_unwrap_quality")
 
 
 def open_panels() -> None:
-    """Have the panels that the page speaks of open, as after a click on each."""
+    """Open the panels that the page describes, as a click on each would."""
     for name in OPEN:
         panel = getattr(bpy.types, name)
         bpy.utils.unregister_class(panel)
@@ -51,7 +51,7 @@ def show(out: Path) -> Iterator[float]:
         cube.vertex_groups.new(name=demo_scene.CONE_GROUP).add(corners, 1.0, "REPLACE")
         demo_scene.run_in_edit_mode(cube, bpy.ops.uv.cone_unwrap)
         bpy.ops.object.mode_set(mode="EDIT")
-        # So that the UV editor shows what is not selected.
+        # So that the UV editor also shows faces that are not selected.
         bpy.context.tool_settings.use_uv_select_sync = True
     for space in view.spaces:
         space.show_region_ui, space.show_region_toolbar, space.overlay.show_floor = True, False, False

@@ -14,7 +14,7 @@ import subprocess
 from pathlib import Path
 
 SYSTEM = "api-ms-win-crt-math-l1-1-0.dll"
-OURS = "complex-functions-for-wine.dll"  # of the same length: it takes the other's place
+OURS = "complex-functions-for-wine.dll"  # of the same length, since it replaces the other name
 PREFIX = "x86_64-w64-mingw32-"
 COMPLEX = re.compile(r"(creal|cimag|cabs|carg|cexp|clog|cpow|c(?:sqrt|sinh|cosh|tanh|sin|cos|tan))([fl]?)")
 

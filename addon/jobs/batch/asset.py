@@ -98,7 +98,7 @@ def _require_fitting(args: argparse.Namespace) -> None:
     """Raise UsageError where options name files with vertices or edges, which can only belong to a single mesh, and
     where they are for another way to place islands."""
     cones = native.part("run.unwrap_options").cones_file(args)
-    features = native.part("run.feature_options").features_file(args.features)
+    features = args.features if isinstance(args.features, str) else None
     others = ("seam_edges", "directions", "importance", "cut_costs")
     for name, value in (
         {"cones": cones, "features": features} | {name.replace("_", "-"): getattr(args, name) for name in others}
@@ -133,7 +133,7 @@ def _unwrap_task(obj: bpy.types.Object, args: argparse.Namespace) -> UnwrapTask:
         correct_aspect=options.seamless is None,
         cuts=cut_choice(args),
         direction=direction_choice(args),
-        features=native.part("run.feature_options").feature_kinds(args.features),
+        features=args.features,
     )
     region = read_region(obj, Faces.ALL, Groups(settings.cone_group, settings.weight_group))
     task = unwrap_task(region, settings)

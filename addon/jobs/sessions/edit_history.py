@@ -15,7 +15,7 @@ class EditHistory(Generic[T]):
     """Names of steps with the state before each; steps after which the state was equal are none."""
 
     def __init__(self, take: Callable[[], T], put: Callable[[T], None]) -> None:
-        """take: returns the current state, which nothing changes afterwards. put: goes to such a state."""
+        """take: returns the current state, which nothing changes afterward. put: goes to such a state."""
         self._take, self._put = take, put
         self._done: list[tuple[str, T]] = []
         self._undone: list[tuple[str, T]] = []

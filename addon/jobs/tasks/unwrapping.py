@@ -249,7 +249,7 @@ def _completed(task: UnwrapTask, cones: ConeAngles, pins: lsgp.Pins | None, prog
         creases=task.creases_of is not None and not task.region.is_rounded,
         sharp=task.region.sharp,
         pins=pins,
-        pack="shelves",  # the islands of all objects are packed together, afterwards
+        pack="shelves",  # the islands of all objects are packed together, afterward
         progress=progress,
     )
 

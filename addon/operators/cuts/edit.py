@@ -117,7 +117,7 @@ class MESH_OT_cone_edit_cuts(ModalEdit, bpy.types.Operator):
         if overlapping:
             texts.append(f"{counted(overlapping, 'face')} on others in the UV map")
         if any(session.leaves_tile for session in sessions):
-            texts.append("The UV map leaves its tile; pack it afterwards")
+            texts.append("The UV map leaves its tile; pack it afterward")
         texts += [f"{name}: {findings.explain(error)}" for name, error in self._objects.failures.items()]
         return "  |  ".join(text for text in (*texts, self._refusal) if text)
 

@@ -9,12 +9,7 @@ from ...core.errors import Refused
 from ...jobs.uv_maps.texels import Texels, measure_texels
 from ...mesh.region_read import Faces, read_chosen, require_editable
 from ...mesh.targets import selects_by_uv
-from ...mesh.texel_settings import (
-    IMAGE_DESCRIPTION,
-    SIZE_DESCRIPTION,
-    texel_settings,
-    texture_size,
-)
+from ...mesh.texel_settings import image_property, size_property, texel_settings, texture_size
 from ..shared.polling import ComputingOperator
 
 NOTHING_SELECTED = "No face is selected; select some first"
@@ -23,18 +18,8 @@ NOTHING_SELECTED = "No face is selected; select some first"
 class TexelOperator(ComputingOperator):
     """Mix-in: an operator that takes the scene's settings where it is not told otherwise."""
 
-    use_image: bpy.props.BoolProperty(
-        name="Size from Image", description=IMAGE_DESCRIPTION, default=True, options={"SKIP_SAVE"}
-    )
-    texture_size: bpy.props.IntProperty(
-        name="Texture Size",
-        description=SIZE_DESCRIPTION,
-        default=1024,
-        min=1,
-        soft_max=16384,
-        subtype="PIXEL",
-        options={"SKIP_SAVE"},
-    )
+    use_image: image_property(options={"SKIP_SAVE"})
+    texture_size: size_property(options={"SKIP_SAVE"})
 
     def adopt_settings(self, context: bpy.types.Context) -> None:
         """Take from the scene's settings what the caller has not set; the redo panel shows it as set."""

@@ -11,7 +11,7 @@ namespace lsgp {
 
 // How the automatic cone angles are chosen.
 enum class PrescriptionRule {
-  least_distortion,  // minimises the predicted L2 stretch within bounds
+  least_distortion,  // minimizes the predicted L2 stretch within bounds
   harmonic,          // log scale zero at the cones (Ben-Chen et al. 2008)
   straightness,      // the paper's section 5
   manual,            // angles as given; cones without one take up the rest with least distortion

@@ -20,7 +20,7 @@ struct Distortion {
   double quasi_conformal_area_weighted = 0;  // the same, weighted by 3D area
   double area = 0;                           // mean of (share of 3D area) / (share of UV area) over triangles
   double area_p10 = 0, area_p90 = 0;         // its percentiles
-  double l2_stretch = 0;                     // Sander et al. 2001, normalised: 1 is isometric
+  double l2_stretch = 0;                     // Sander et al. 2001, normalized: 1 is isometric
 };
 
 // How exactly the two sides of every cut are related by one rotation and one translation, in the returned coordinates.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A small picture of a result: on the left the surface under a checker, on the right its layout.
 
-The checker shows where texels are large, small, turned or torn; the colours of the layout show the scale: red
+The checker shows where texels are large, small, turned or torn; the colors of the layout show the scale: red
 where the layout is larger than the surface, blue where it is smaller, by up to twice in length, magenta where it is
 flipped.  Drawn by points spread over the triangles: that is quick, and exact enough for a picture of this size.
 
@@ -31,7 +31,7 @@ SQUARES = 18
 SLACK = 2.0  # pixels of depth in which points are seen beside each other
 VIEW = np.array([[0.8, 0.0, -0.6], [-0.2572, 0.9035, -0.3429], [0.5421, 0.4286, 0.7228]])  # rows: right, up, to the eye
 GROUND = 255
-LEVELS = 31  # of each colour above none; more are hardly seen, but make files half as large again
+LEVELS = 31  # of each color above none; more are hardly seen, but make files half as large again
 SMALLER, EQUAL, LARGER = np.array([[40, 90, 200], [225, 225, 215], [205, 50, 30]], np.float32)
 FLIPPED = np.array([220, 0, 220], np.float32)
 LIGHT_SQUARE, DARK_SQUARE = np.array([[245, 240, 225], [70, 90, 120]], np.float32)
@@ -93,8 +93,8 @@ def _layout_picture(normal: Floats, uv: Floats, flipped: NDArray[np.bool_]) -> N
         larger = 0.5 * np.log2(uv_area / uv_area.sum() * area.sum() / area)
     larger = np.clip(np.nan_to_num(larger, nan=0.0), -1, 1)[points.triangle]
     most = np.where(larger > 0, (LARGER - EQUAL)[:, None], (SMALLER - EQUAL)[:, None])
-    colour = EQUAL[:, None] + np.abs(larger) * most
-    return _mixed(points.pixel, np.where(flipped[points.triangle], FLIPPED[:, None], colour))
+    color = EQUAL[:, None] + np.abs(larger) * most
+    return _mixed(points.pixel, np.where(flipped[points.triangle], FLIPPED[:, None], color))
 
 
 @dataclass(frozen=True)
@@ -163,9 +163,9 @@ def _length(vectors: Floats) -> Floats:
     return np.sqrt(x * x + y * y + z * z)
 
 
-def _mixed(pixel: NDArray[np.intp], colour: Floats) -> NDArray[np.uint8]:
-    """The mean colour (3, p) of the points in each pixel; an empty pixel among full ones takes the mean of theirs."""
-    sums = np.stack([np.bincount(pixel, weights, SIDE * SIDE) for weights in (None, *colour)])
+def _mixed(pixel: NDArray[np.intp], color: Floats) -> NDArray[np.uint8]:
+    """The mean color (3, p) of the points in each pixel; an empty pixel among full ones takes the mean of theirs."""
+    sums = np.stack([np.bincount(pixel, weights, SIDE * SIDE) for weights in (None, *color)])
     empty = np.flatnonzero(sums[0] == 0)
     holes = empty[np.count_nonzero(_around(sums[0], empty), axis=0) >= 3]
     sums[:, holes] = _around(sums, holes).sum(axis=1)

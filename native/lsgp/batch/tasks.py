@@ -7,13 +7,13 @@ import argparse
 import hashlib
 import json
 import os
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from .. import InputError, __version__
 from ..io.side_files import UsageError
-from ..run.feature_options import feature_kinds
+from ..run.feature_options import FeatureKinds
 from ..run.unwrap_options import add_unwrap_options, library_options
 from .assets import Asset, picture_name
 
@@ -58,13 +58,19 @@ class Settings:
         except InputError as error:
             raise UsageError(f"{error} ({error.code})") from error
         for name in SIDE_FILES:
-            options[name] = _whole_path(name, options[name])
+            if isinstance(options[name], str):
+                options[name] = _whole_path(name, options[name])
+        if isinstance(options["features"], FeatureKinds):
+            options["features"] = asdict(options["features"])
         return cls(options, args.pictures, args.reports, args.memory_limit)
 
     def options_for(self, task: Task) -> dict[str, Any]:
-        """The options with the files of this asset."""
+        """The values of the options, as parsed, with the files of this asset."""
         mesh = os.path.splitext(task.input)[0]
-        own = {name: self.options[name].replace(MESH, mesh) for name in SIDE_FILES if self.options[name] is not None}
+        own = {name: text.replace(MESH, mesh) for name in SIDE_FILES if isinstance(text := self.options[name], str)}
+        features = self.options["features"]
+        if isinstance(features, dict):
+            own["features"] = FeatureKinds(**features)
         return self.options | own
 
     def digest(self) -> str:
@@ -73,14 +79,9 @@ class Settings:
         return hashlib.blake2b(content.encode(), digest_size=6).hexdigest()
 
 
-def _is_file(name: str, text: str) -> bool:
-    if name == "cones":
-        return text != "auto" and not text.startswith("auto:")
-    return name != "features" or feature_kinds(text) is None
-
-
-def _whole_path(name: str, text: str | None) -> str | None:
-    if text is None or text.startswith(MESH) or not _is_file(name, text):
+def _whole_path(name: str, text: str) -> str:
+    is_file = name != "cones" or not (text == "auto" or text.startswith("auto:"))
+    if text.startswith(MESH) or not is_file:
         return text
     path = os.path.abspath(text)
     if MESH not in path and not os.path.isfile(path):

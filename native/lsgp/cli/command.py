@@ -165,7 +165,7 @@ def _parser() -> _Parser:
         allow_abbrev=False,
         help="fill the gutters of a texture",
         description="Fill the texels beside the islands of a texture with the content beyond the cuts, so that "
-        "filtered lookups match there. Texels whose centre is in an island do not change.",
+        "filtered lookups match there. Texels whose center is in an island do not change.",
     )
     add_pad_options(pad)
     pad.set_defaults(run=_reported, make=_pad, report=None)
@@ -260,8 +260,7 @@ def _measure(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
     total = len(triangulation.triangles)
     text = f"{args.input}: {total - len(without)} of {total} triangles measured\n"
     text += reports.quality_table(measurement, texels)
-    stages = run.stage_seconds
-    return reports.measure_report(measurement, warnings, triangulation, stages, args.texture_size, texels), text
+    return reports.measure_report(measurement, warnings, run, args.texture_size, texels), text
 
 
 def _pad(args: argparse.Namespace, run: Run) -> tuple[None, str]:

@@ -31,7 +31,7 @@ def read_obj(data: bytes, with_uv: bool) -> PolygonMesh:
     corners = _from_zero(indices, faces, vertices)
     require_polygons(len(positions), corners, faces.counts, lambda face: f" (line {faces.lines[face]})")
     corner_uv = _corner_uv(texture, faces) if with_uv else None
-    extras += ("vertex colours",) if (vertices.counts >= 6).any() else ()
+    extras += ("vertex colors",) if (vertices.counts >= 6).any() else ()
     return PolygonMesh(positions, corners.astype(np.int32), faces.counts, corner_uv, extras)
 
 

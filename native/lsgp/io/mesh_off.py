@@ -41,14 +41,14 @@ def read_off(data: bytes) -> PolygonMesh:
     require_polygons(vertex_count, corners, sizes, lambda face: f" (line {faces.lines[face]})")
     extras = _extras(rows.token(0)) if vertex_count else ()
     if (faces.counts > sizes + 1).any():
-        extras += ("face colours",)
+        extras += ("face colors",)
     return PolygonMesh(positions, corners.astype(np.int32), sizes, extras=extras)
 
 
 def _extras(keyword: bytes) -> tuple[str, ...]:
     """The data of vertices besides their position, according to the header."""
     header = HEADER.match(keyword)[0]
-    letters = {b"ST": "texture coordinates", b"C": "vertex colours", b"N": "normals"}
+    letters = {b"ST": "texture coordinates", b"C": "vertex colors", b"N": "normals"}
     return tuple(name for letter, name in letters.items() if letter in header)
 
 

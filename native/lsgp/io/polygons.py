@@ -311,7 +311,7 @@ def _clip_ears(points: NDArray[np.float64]) -> NDArray[np.int64]:
             made[row] = n - 2
         row, tip = rows[~stuck], tip[~stuck]
         p, q = before[row, tip], after[row, tip]
-        blocked = _occupied(points, alive, row, p, tip, q, leniency[row])
+        blocked = _occupied(points, alive, row, (p, tip, q), leniency[row])
         cost[row[blocked], tip[blocked]] = np.inf
         row, p, tip, q = row[~blocked], p[~blocked], tip[~blocked], q[~blocked]
         triangles[row, made[row]] = np.stack([p, tip, q], axis=1)
@@ -330,14 +330,15 @@ def _occupied(
     points: NDArray[np.float64],
     alive: NDArray[np.bool_],
     row: NDArray[np.int64],
-    p: NDArray[np.int64],
-    tip: NDArray[np.int64],
-    q: NDArray[np.int64],
+    ear: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]],
     leniency: NDArray[np.int64],
 ) -> NDArray[np.bool_]:
-    """Whether another corner lies in the ear p, tip, q of each given polygon, or on its diagonal."""
+    """Whether another corner lies in the ear of each given polygon, or on its diagonal.
+
+    ear: the corner before the tip, the tip, and the one after it.
+    """
     others = points[row]
-    a, b, c = (points[row, corner][:, None] for corner in (p, tip, q))
+    a, b, c = (points[row, corner][:, None] for corner in ear)
     diagonal = np.sqrt(_dot(a - c, a - c))
     height = _cross(b - a, c - b) / np.maximum(diagonal, TINY)
     close = np.maximum(np.minimum(NEARLY_TOUCHING, TOUCHING_SHARE * height), ROUNDING)

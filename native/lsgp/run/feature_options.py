@@ -47,11 +47,23 @@ def add_features_option(command: argparse.ArgumentParser) -> None:
     )
 
 
-def feature_kinds(text: str | None) -> FeatureKinds | None:
-    """The kinds that the option names; None where it names a file, or is not given.  Raises ArgumentTypeError."""
-    names = [] if text is None else [part.partition(":") for part in text.split(",")]
-    if not names or any(name not in {_CREASE, _SHARP, _SEAMS, _BORDERS} for name, _, _ in names):
-        return None
+def features_of(option: FeatureKinds | str | None, surface: Surface) -> IndexArray:
+    """What the option says of a mesh file, for `Surface.features`.  Raises OSError, UsageError, InputError."""
+    if option is None:
+        return np.empty((0, 2), np.int32)
+    if isinstance(option, str):
+        path = Path(option)
+        return pairs_in(load_json(path), path, "feature vertex")
+    if option.sharp:
+        raise UsageError("--features sharp: files of this format mark no edges sharp; name the edges in a file")
+    return option.edges_of(surface, np.empty((0, 2), np.int32))
+
+
+def _features_option(text: str) -> FeatureKinds | str:
+    """The kinds, or the name of the file as it stands."""
+    names = [part.partition(":") for part in text.split(",")]
+    if any(name not in {_CREASE, _SHARP, _SEAMS, _BORDERS} for name, _, _ in names):
+        return text
     given = {name: value for name, _, value in names}
     for name, value in given.items():
         if value and name != _CREASE:
@@ -60,27 +72,6 @@ def feature_kinds(text: str | None) -> FeatureKinds | None:
     if _CREASE in given:
         angle = _degrees(given[_CREASE])
     return FeatureKinds(angle, _SHARP in given, _SEAMS in given, _BORDERS in given)
-
-
-def features_file(text: str | None) -> Path | None:
-    """The file that the option names; None where it names kinds, or is not given."""
-    return None if text is None or feature_kinds(text) is not None else Path(text)
-
-
-def features_of(text: str | None, surface: Surface) -> IndexArray:
-    """What the option says of a mesh file, for `Surface.features`.  Raises OSError, UsageError, InputError."""
-    kinds = feature_kinds(text)
-    if kinds is None:
-        path = features_file(text)
-        return np.empty((0, 2), np.int32) if path is None else pairs_in(load_json(path), path, "feature vertex")
-    if kinds.sharp:
-        raise UsageError("--features sharp: files of this format mark no edges sharp; name the edges in a file")
-    return kinds.edges_of(surface, np.empty((0, 2), np.int32))
-
-
-def _features_option(text: str) -> str:
-    feature_kinds(text)
-    return text
 
 
 def _degrees(text: str) -> float:

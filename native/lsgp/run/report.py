@@ -160,21 +160,20 @@ def quads_report(remesh: QuadRemesh, quality: QuadQuality, run: Run) -> Report:
 def measure_report(
     measurement: Measurement,
     warnings: Iterable[Finding],
-    triangulation: Triangulation,
-    stage_seconds: Mapping[str, float],
+    run: Run,
     texture_size: int | None = None,
     texels: TexelDensity | None = None,
 ) -> Report:
     """The report on given texture coordinates, which tell nothing of cones or the angles they should have."""
     return EMPTY | {
-        "warnings": _warnings(warnings, triangulation),
-        "triangles": len(triangulation.triangles),
+        "warnings": _warnings(warnings, run.triangulation),
+        "triangles": len(run.triangulation.triangles),
         "distortion": asdict(measurement.distortion),
         "seams": asdict(measurement.seams),
         "islands": island_count(measurement.island),
         "flipped": len(measurement.flipped),
         "texel_density": _texel_figures(texels, texture_size),
-        "stage_seconds": dict(stage_seconds),
+        "stage_seconds": dict(run.stage_seconds),
     }
 
 

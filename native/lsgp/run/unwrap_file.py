@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..api import Options, Placement, Progress, Result, Solver, Surface, parameterize
-from ..auto_unwrap import PACKING, PLACING, best_map, possible_cones, share_of, with_crease_borders
+from ..auto_unwrap import PACKING, PLACING, GivenCones, best_map, possible_cones, share_of, with_crease_borders
 from ..errors import Finding, InputError, LsgpError
 from ..io.mesh_files import MeshFile, format_mesh, parse_mesh, triangulated
 from ..io.mesh_formats import output_format
@@ -80,7 +80,6 @@ class Run:
         self.stage_seconds[name] = time.perf_counter() - begin
 
 
-@packing_once()
 def unwrap_file(
     args: argparse.Namespace,
     run: Run,
@@ -104,10 +103,12 @@ def unwrap_file(
     packing, layout = packing_of(args), texel_layout(args)
     is_tight = packing is not None and packing.is_tight
     mapping = share_of(progress, 0.0, PACKING) if is_tight else progress
-    file, result = _map(args, options, run, mapping, given_format)
+    with packing_once():
+        file, result = _map(args, options, run, mapping, given_format)
+        if packing is not None:
+            with run.stage("pack"):
+                laid = laid_out(run.surface, result, packing, layout, share_of(progress, PACKING, 1.0))
     if packing is not None:
-        with run.stage("pack"):
-            laid = laid_out(run.surface, result, packing, layout, share_of(progress, PACKING, 1.0))
         result, seen = laid.result, laid.result.solved & ~laid.stacked
         tiles = 1 if packing.udim is None else _tiles_in_use(result.corner_uv[seen])
         run.packed = Packed(laid.packer, uv_area(result.corner_uv[seen]) / tiles, tiles)
@@ -204,7 +205,8 @@ def _map(
     placing, mapping = share_of(progress, 0.0, PLACING), share_of(progress, PLACING, 1.0)
     with run.stage("place_cones"):
         solver = Solver(surface)
-        choices = possible_cones(solver, *given, options, cone_count(args), tries_symmetry(args), placing)
+        cones = GivenCones.of(*given, cone_count(args))
+        choices = possible_cones(solver, cones, options, tries_symmetry(args), placing)
     completed, result = best_map(solver, choices, options, progress=mapping)
     run.placement = completed.placement
     run.stage_seconds.update(result.stage_seconds)

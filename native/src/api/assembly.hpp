@@ -20,7 +20,7 @@ class Assembly {
   Assembly(const Surface& surface, const PerComponent<Component>& components, const Options& options,
            ProgressMonitor& monitor, Result& result);
 
-  // task: has to stay until the end.  A component whose map cannot be split is left out, with the findings about its
+  // task: must outlive this object.  A component whose map cannot be split is left out, with the findings about its
   // map.
   void add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, ComponentMap map,
            std::vector<Finding> findings);

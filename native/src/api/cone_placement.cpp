@@ -60,7 +60,7 @@ class PlacementWork {
                                                static_cast<double>(triangles_before) / static_cast<double>(triangles_));
       monitor_.advance(0);
       const Geometry& geometry = kept_.geometry_of(i, findings_);
-      // A vertex shared by components cannot have an angle on each.
+      // A vertex shared by components cannot have a different angle on each.
       PerVertex<char> allowed;
       for (const Index v : component.source_vertex) allowed.push_back(copies_[v] == 1);
       std::vector<Finding> found;
@@ -87,7 +87,7 @@ std::optional<MirrorPlane> mirror_plane(const PlacementOptions& options, double 
   return plane;
 }
 
-// What the cones of all components are placed by.
+// What the placements on all components share.
 struct PlacementRules {
   const Surface& surface;
   const PlacementOptions& options;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `place_cones` on a surface of which much is known.
+// `place_cones` with data kept from earlier calls on the surface.
 #pragma once
 
 #include "api/kept_components.hpp"
@@ -14,7 +14,7 @@ struct KnownSurface {
   KeptComponents& components;
 };
 
-// Keeps the systems of the cones that it places, as far as their maps were made.
+// Keeps the systems of the placed cones whose maps were computed.
 Placement place_cones_on(const KnownSurface& known, const Cones& existing, const PlacementOptions& options,
                          const Progress& progress);
 

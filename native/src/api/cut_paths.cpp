@@ -76,7 +76,7 @@ class PathTracer {
   const Array<Edge>& edges_;
   Array<char> is_left_;  // edges on no path yet
   Array<Index> vertices_;
-  Array<Array<std::size_t>> edges_at_;  // by the places of vertices, and so are nodes
+  Array<Array<std::size_t>> edges_at_;  // by the indices of vertices, as nodes are
   Array<char> is_node_;
 };
 

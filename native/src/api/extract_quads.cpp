@@ -68,7 +68,7 @@ Topology build_closed_topology(const Surface& surface) {
   return topology;
 }
 
-// Multiplications that take about as long as collecting a vertex or a quad.
+// The cost of collecting a vertex or a quad, in multiplications.
 constexpr double operations_an_element = 100;
 
 // The mesh of all components.

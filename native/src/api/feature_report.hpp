@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What became of marked features.
+// Which marked features run along an axis, and why the others do not.
 #pragma once
 
 #include <array>

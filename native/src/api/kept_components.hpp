@@ -43,8 +43,8 @@ class KeptComponents {
  private:
   struct Kept {
     Geometry geometry;
-    std::optional<Mirroring> mirroring;  // where it was asked for
-    std::vector<Finding> found;          // while it was built
+    std::optional<Mirroring> mirroring;  // where requested
+    std::vector<Finding> found;          // during its construction
     KeptSystem system;
   };
 

@@ -33,7 +33,7 @@ constexpr double operations_an_entry = 100;  // of a queue
 
 bool is_inside(const HalfedgeMesh& mesh, Index v) { return mesh.loop_of_vertex[v] == none; }
 
-// The patch of every triangle, the smallest ones added to the neighbour they meet along the longest and flattest
+// The patch of every triangle, the smallest ones added to the neighbor they meet along the longest and flattest
 // border.
 PerTriangle<Index> find_patches(const MetricMesh& surface, const PerHalfedge<char>& crease,
                                 const Eigen::VectorXd& bend) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Edges of coarsely modelled round surfaces, which bend as much as creases do: rings of a torus with six or eight
+// Edges of coarsely modeled round surfaces, which bend as much as creases do: rings of a torus with six or eight
 // sides.
 #pragma once
 

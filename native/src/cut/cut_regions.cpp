@@ -54,7 +54,7 @@ void CutRegions::grow(double below) {
   bridges_ = cheapest_of_pairs(find_bridges(mesh, network_.edges, reached_, separates), mesh.vertex_count());
 }
 
-// Distributes the regions of the interior vertices of a closed path over the neighbouring ones, up to a cost.
+// Distributes the regions of the interior vertices of a closed path over the neighboring ones, up to a cost.
 void CutRegions::redo(const CutPath& closed, double below) {
   const HalfedgeMesh& mesh = network_.mesh;
   ++round_;

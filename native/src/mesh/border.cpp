@@ -7,7 +7,7 @@ namespace lsgp {
 
 namespace {
 
-// A border vertex with one triangle whose neighbours have more; h is the border halfedge that leads to it.
+// A border vertex with one triangle whose neighbors have more; h is the border halfedge that leads to it.
 bool is_tooth(const HalfedgeMesh& mesh, const PerVertex<char>& is_corner, Index h) {
   const auto single = [&](Index v) { return mesh.rotate(mesh.outgoing[v]) == none; };
   const Index tip = mesh.target(h);

@@ -21,7 +21,7 @@ struct BorderConditions {
 BorderConditions free_border(const HalfedgeMesh& mesh, const Array<Index>& corners);
 
 // Boundaries are straight between corners. A boundary vertex with a single triangle cannot lie on a straight line: it
-// keeps its shape, a tooth on the straight line through its neighbours.
+// keeps its shape, a tooth on the straight line through its neighbors.
 BorderConditions straight_border(const MetricMesh& surface, const Array<Index>& corners);
 
 // The boundary edges on both sides of each corner: imposing their directions makes the corners of a free boundary

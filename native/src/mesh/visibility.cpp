@@ -40,7 +40,7 @@ class DepthBuffer {
     std::fill(depth_.begin(), depth_.end(), -std::numeric_limits<float>::infinity());
   }
 
-  // Columns and rows of pixels, and depth in pixels, larger towards the viewer.
+  // Columns and rows of pixels, and depth in pixels, larger toward the viewer.
   Eigen::RowVector3d project(const Eigen::RowVector3d& point) const {
     Eigen::RowVector3d out = scale_ * (point - center_) * axes_;
     out.head<2>().array() += 0.5 * size_;

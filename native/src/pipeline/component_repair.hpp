@@ -43,7 +43,7 @@ class ComponentRepair {
   // Smooths the map with the conformal barrier energy after a fit with other weights or another metric.
   void smooth(ComponentMap& map);
 
-  // Replaces the map by one continued from a valid map with the same holes closed, towards its own angles, with the
+  // Replaces the map by one continued from a valid map with the same holes closed, toward its own angles, with the
   // cuts of that map. If they cannot be reached, takes the nearest angles reached and reports that; rounded angles are
   // never changed.  metric: of this surface; either map may be of other triangles. Returns how far it came, 1 being all
   // the way.
@@ -66,7 +66,7 @@ class ComponentRepair {
   void twist_gradually(const ParallelTransportChoice& connections, const PerVertex<char>& fixed, ComponentMap& map);
   void report_adjusted(const ComponentMap& map, const Continuation& end, std::vector<Finding>& findings) const;
   CutSurface open(const ComponentMap& map) const;
-  // The connection that a valid map realises: the metric's if its rotations match, but rotations about handles may be
+  // The connection that a valid map realizes: the metric's if its rotations match, but rotations about handles may be
   // those of another geometry.
   ParallelTransport connection_of(const ComponentMap& map) const;
   // Vertices that a repair must not move.

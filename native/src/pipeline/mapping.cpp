@@ -21,7 +21,7 @@ namespace lsgp {
 
 namespace {
 
-// Ranges of the automatic angles: wide ones distort least but may leave turns with neighbouring vertices; a map of
+// Ranges of the automatic angles: wide ones distort least but may leave turns with neighboring vertices; a map of
 // angles up to 2 pi that has no flips has the right angles too.
 constexpr AngleRange angle_ranges[]{widest_angles, {M_PI / 2, 2.5 * M_PI}, {M_PI / 2, 2 * M_PI, false}};
 

@@ -20,7 +20,7 @@ std::optional<StraightSides> sides_to_straighten(const CutSurface& surface, cons
 // A map of low stretch that is to be changed.
 struct StraighteningTask {
   const CutSurface& surface;
-  const ParallelTransport& connection;  // that the map realises
+  const ParallelTransport& connection;  // that the map realizes
   StretchOptions options;
   StepHook before_step;
 };

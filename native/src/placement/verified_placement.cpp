@@ -289,7 +289,7 @@ VerifiedChoice VerifiedPlacement::place_count(int count) {
   return best;
 }
 
-// Moves one cone after another to a neighbour or to where the map is stretched most, as long as that improves it, until
+// Moves one cone after another to a neighbor or to where the map is stretched most, as long as that improves it, until
 // it is as predicted. What is predicted with angles beyond the bounds is no promise: that before the moves is.
 void VerifiedPlacement::move_cones(MovedAngles angles, VerifiedChoice& best) {
   if (!chooses_angles() || !best.map.is_valid()) return;
@@ -326,7 +326,7 @@ bool VerifiedPlacement::move_cone(VerifiedChoice& best, std::size_t cone, MovedA
   return false;
 }
 
-// Where the map is stretched most, at corners of the surface and anywhere, and the neighbours of a cone.
+// Where the map is stretched most, at corners of the surface and anywhere, and the neighbors of a cone.
 Array<Index> VerifiedPlacement::places_near(const VerifiedChoice& choice, Index cone) const {
   const HalfedgeMesh& mesh = chooser_.task().mesh;
   Array<Index> out(2);

@@ -26,7 +26,7 @@ class CoverageRaster {
   double shared(Complex tail, Complex head) const;
 
  private:
-  double row_of(double y) const { return (y - frame_.bottom) / cell_ - 0.5; }  // rows run through cell centres
+  double row_of(double y) const { return (y - frame_.bottom) / cell_ - 0.5; }  // rows run through cell centers
 
   // Calls visit(row, cells to the left of where the edge crosses it, 1 upwards or -1 downwards).
   template <typename Visit>

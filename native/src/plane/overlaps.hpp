@@ -17,7 +17,7 @@ struct Overlap {
 };
 
 // All such pairs of a layout, sorted.  position: (3m) u + iv at the corners, NaN for triangles to leave out. Pairs
-// that share less of the smaller one than rounding explains are neighbours and do not count.
+// that share less of the smaller one than rounding explains are neighbors and do not count.
 Array<Overlap> find_overlaps(const Eigen::VectorXcd& position);
 
 // The same for a layout without flipped triangles, faster: only where the winding number of its boundary is 2 or more.

@@ -71,7 +71,7 @@ Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& columns, const Eigen::Vecto
   return sum;
 }
 
-// What the prescription minimises, log mean e^{2y} + log mean e^{-2y}, as a function of the cone curvatures.
+// What the prescription minimizes, log mean e^{2y} + log mean e^{-2y}, as a function of the cone curvatures.
 class Stretch {
  public:
   Stretch(const Eigen::VectorXd& weight, const Eigen::MatrixXd& green) : weight_(weight), green_(green) {}

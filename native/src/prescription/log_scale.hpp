@@ -63,7 +63,7 @@ class LogScale {
                                              Eigen::VectorXd start) const;
 
   // The L2 stretch of the map, (area-weighted mean e^{2y} mean e^{-2y})^{1/2}: with y at the midpoints of edges, which
-  // is most accurate, and lumped at the vertices, which is faster and minimised by the prescription.
+  // is most accurate, and lumped at the vertices, which is faster and minimized by the prescription.
   double predicted_l2(const Eigen::VectorXd& log_scale) const;
   double lumped_l2(const Eigen::VectorXd& log_scale) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parallel transport of a map's frames across triangles and cuts: the flat connection that it realises.
+// Parallel transport of a map's frames across triangles and cuts: the flat connection that it realizes.
 #pragma once
 
 #include <Eigen/Core>
@@ -42,7 +42,7 @@ struct MapTarget {
   const Curvature& curvature;
 };
 
-// The connection that a map without flips realises: its rotations, and the rotations of its triangles as frames.
+// The connection that a map without flips realizes: its rotations, and the rotations of its triangles as frames.
 ParallelTransport connection_of_map(const CutSurface& surface, const Curvature& curvature,
                                     const Eigen::VectorXd& rotation, const Eigen::VectorXcd& position);
 

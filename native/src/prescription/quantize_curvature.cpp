@@ -14,7 +14,7 @@ namespace lsgp {
 
 namespace {
 
-// Angles that maps can be expected to realise: from a quarter turn to one and a half turns, or to two if that distorts
+// Angles that maps can be expected to realize: from a quarter turn to one and a half turns, or to two if that distorts
 // less, as far as the triangles around the cone can share them.
 constexpr double smallest_angle = M_PI / 2;
 constexpr double largest_angles[] = {3 * M_PI, 4 * M_PI};

@@ -26,7 +26,7 @@ class TurnExchange {
 
   bool allowed(Index i, int step) const;
 
-  // Single steps towards a sum of turns within the bounds, the cheapest first.
+  // Single steps toward a sum of turns within the bounds, the cheapest first.
   void reach(int sum);
 
   // Rounding may have led to turns that no torus has. Exchanges never lead there, so the cheapest one leads away.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double tolerance = 1e-3;              // cells, by which two sides of an edge may differ
 constexpr double most_cells = double(1 << 28);  // so that edges can be numbered
-constexpr int product_bits = 30;                // of differences, see grid_point.hpp
+constexpr int product_bits = 30;                // of differences; see grid_point.hpp
 constexpr int fewest_bits = 10;                 // no coarser than the tolerance
 constexpr double farthest = 1e9;                // cells from the origin
 

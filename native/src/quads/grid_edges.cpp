@@ -9,7 +9,7 @@ namespace lsgp {
 
 namespace {
 
-// Multiplications that take about as long as one of these.
+// Costs in multiplications.
 constexpr double operations_a_triangle = 50, operations_a_start = 100, operations_a_port = 50;
 
 // A straight line of the grid traced through the triangles, in the chart of the current one.

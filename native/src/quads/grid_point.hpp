@@ -37,7 +37,7 @@ inline GridPoint turned(GridPoint p, int turns) {
 // The directions of the grid are numbered 0 to 3, counter-clockwise from x.
 inline GridPoint axis(int direction) { return turned({1, 0}, direction); }
 
-// From the chart of one triangle to that of its neighbour: p -> i^turns p + shift.
+// From the chart of one triangle to that of its neighbor: p -> i^turns p + shift.
 struct GridTransition {
   int turns = 0;
   GridPoint shift{};  // whole cells

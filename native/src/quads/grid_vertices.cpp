@@ -11,7 +11,7 @@ namespace lsgp {
 
 namespace {
 
-// Multiplications that a point of a row takes about as long as.
+// The cost of a point of a row, in multiplications.
 constexpr double operations_a_point = 50;
 
 // Quotient rounded down; b > 0.

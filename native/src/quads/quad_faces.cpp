@@ -15,7 +15,7 @@ namespace {
   throw Error(Code::solver_failed, "The grid's cells do not close over the surface. Please report this mesh.");
 }
 
-// Multiplications that a corner of cells and its sides take about as long as.
+// The cost of a corner of cells and its sides, in multiplications.
 constexpr double operations_a_neighborhood = 200, operations_a_cell = 200;
 
 // Vertices that occur twice in a cell, and the lower ones of pairs joined by more than one side.

@@ -15,9 +15,9 @@ namespace {
 
 using Kind = DistortionEnergy::Kind;
 
-constexpr std::array<int, 3> neighbourhoods{2, 5, 10};  // rings of vertices around flipped triangles
-constexpr double hopeless_share = 0.005;                // of the triangles flipped: the defect is global, not local
-// Iterations of Newton's method, which needs few for small defects, and of smoothing afterwards.
+constexpr std::array<int, 3> neighborhoods{2, 5, 10};  // rings of vertices around flipped triangles
+constexpr double hopeless_share = 0.005;               // of the triangles flipped: the defect is global, not local
+// Iterations of Newton's method, which needs few for small defects, and of smoothing afterward.
 struct Steps {
   int unfolding, smoothing;
 };
@@ -82,7 +82,7 @@ Eigen::VectorXcd untangle(const CutSurface& surface, const MapTarget& target, co
   };
   const Kind second = options.first == Kind::foldover_free ? Kind::framed_foldover_free : Kind::foldover_free;
   if (static_cast<double>(left.flipped.size()) <= hopeless_share * mesh.triangle_count()) {
-    for (const int rings : neighbourhoods) {
+    for (const int rings : neighborhoods) {
       for (const Kind energy : {options.first, second}) try_out(free_around(rings), energy, local_steps);
     }
   }

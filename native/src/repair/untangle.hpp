@@ -14,13 +14,13 @@
 namespace lsgp {
 
 enum class Effort {
-  local,   // growing neighbourhoods of flipped triangles; cones and translations are fixed
+  local,   // growing neighborhoods of flipped triangles; cones and translations are fixed
   global,  // and if these do not suffice, everything at once, at the cost of some whole unfoldings
 };
 
 struct UntangleOptions {
   Effort effort = Effort::local;
-  // The energy tried first on neighbourhoods: the plain one perturbs an almost valid map less, the framed one stays
+  // The energy tried first on neighborhoods: the plain one perturbs an almost valid map less, the framed one stays
   // close to the frames.
   DistortionEnergy::Kind first = DistortionEnergy::Kind::framed_foldover_free;
 };

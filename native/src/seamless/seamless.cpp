@@ -49,7 +49,7 @@ void report_cones_given_up(const SeamlessReport& report, std::vector<Finding>& f
   if (!report.relaxed_cones.empty()) {
     findings.push_back({Code::cones_not_snapped,
                         concat(count(report.relaxed_cones.size(), "cone found", "cones found"),
-                               " no place on the grid; cuts towards it show a seam of up to ", rounded(report.error, 2),
+                               " no place on the grid; cuts toward it show a seam of up to ", rounded(report.error, 2),
                                " tiles. Use smaller tiles, or merge cones."),
                         {ElementKind::vertices, report.relaxed_cones}});
   }
@@ -174,7 +174,7 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
   GridSearch search(options, lattice, components, monitor);
   Grid grid = find_grid(options, unit_scale, search, findings);
   if (options.mode == Mode::low_stretch && options.stretch > 0) search.lower_stretch(options.stretch, grid);
-  // With parity cones are at the centres of cells: around a corner of cells an odd number of them may meet.
+  // With parity cones are at the centers of cells: around a corner of cells an odd number of them may meet.
   const Complex shift = seamless.parity ? Complex(0.5, 0.5) : Complex(0, 0);
   if (options.overlaps == Overlaps::split) {
     split_layouts(search, shift, grid, components, monitor);

@@ -14,16 +14,16 @@ namespace lsgp {
 
 namespace {
 
-constexpr int batches_to_double = 6;     // with larger batches, cones of a batch interfere
+constexpr int batches_to_double = 6;     // in larger batches cones interfere with each other
 constexpr int exchanged_share = 10;      // one in so many
 constexpr double worth_a_round = 0.998;  // of the variance: less is not worth a further round
-constexpr double blocks = 6;             // of H at once: the fit's form, its factor, and one to go back to
+constexpr double blocks = 6;             // of H in memory: the fit's form, its factor, and a copy to return to
 constexpr std::size_t probes = 8;        // sites at which the spread is measured
 
-// Rings that can be left free around each of so many cones.
+// The rings that can be left free around each cone if there are so many.
 int rings_for(int cones, Index vertices) {
   int rings = free_rings;
-  const auto vertices_within = [&] { return 1.0 + 3 * rings * (rings + 1); };  // where all have six neighbours
+  const auto vertices_within = [&] { return 1.0 + 3 * rings * (rings + 1); };  // where all have six neighbors
   while (rings > 0 && cones * vertices_within() > vertices) --rings;
   return rings;
 }

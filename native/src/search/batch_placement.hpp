@@ -13,7 +13,8 @@
 
 namespace lsgp {
 
-// A cone for cone search needs the columns of H at all sites and a fit a cone. Here a batch of cones is chosen at
+// Choosing cones one by one needs the columns of H at all sites and a fit for each cone. Here a batch of cones is
+// chosen at
 // once, apart from each other, and one fit of all curvatures follows: two back-substitutions a cone, some 20 fits from
 // 60 cones to 1,000, and memory for their own block of H.
 class BatchPlacement {

@@ -19,7 +19,7 @@ constexpr double hopeless_l2 = 1.3;  // the variance does not see stretch beyond
 constexpr int most_relocations = 3;
 constexpr double trusted_reach = 1.15;
 constexpr double low_l2 = 1.03;             // an L2 stretch that stronger cones need not lower
-constexpr double worth_strong_cones = 0.9;  // of the stretch above 1 that weaker ones leave
+constexpr double worth_strong_cones = 0.9;  // of the stretch above 1 with weaker ones
 constexpr int batch_reaches = 2;            // tried for more, of which few carry much
 constexpr Index large = 60000;              // vertices
 constexpr double unlimited = std::numeric_limits<double>::infinity();
@@ -171,7 +171,7 @@ ConeChoice ConeChooser::choice_of(const Set& set) const {
 ConeChoice ConeChooser::choose(int count) {
   const int most = std::max(count, sites_.existing);
   if (most > most_one_by_one) return choose_in_batches(most);
-  // If so few cones have high stretch, stronger ones have less.
+  // If the stretch is high with so few cones, it is lower with stronger ones.
   std::optional<ConeChoice> best;
   for (const double reach : reaches) {
     if (reach > trusted_reach && best->predicted_l2 <= hopeless_l2) break;
@@ -246,7 +246,7 @@ ConeChoice ConeChooser::choose_harmonically(int count) {
     set.add(best);
     monitor_.tick();
   }
-  // The variance hardly sees spikes: their cones may be moved elsewhere, which stretches them much.
+  // Spikes hardly affect the variance: their cones may be moved elsewhere, which stretches them much.
   ConeChoice best = choice_of(set);
   for (int sweep = 0; sweep < effort_.sweeps; ++sweep) {
     search_.exchange(set, 1);

@@ -19,7 +19,7 @@ struct ConeChoice {
   Array<Index> vertices;
   Eigen::VectorXd curvature;
   double predicted_l2 = 1;  // infinite where these cones cannot take up the curvature
-  Index left_flat = 0;      // by rounding, and given up
+  Index left_flat = 0;      // cones that rounding made flat, which were given up
 
   bool is_possible() const { return predicted_l2 < std::numeric_limits<double>::infinity(); }
 };
@@ -30,7 +30,7 @@ struct PlacementEffort {
 };
 PlacementEffort effort_for(Index vertices);
 
-constexpr double isometric_l2 = 1.001;                                        // an L2 stretch that every cone is worth
+constexpr double isometric_l2 = 1.001;                                        // L2 stretch at which no cone is dropped
 constexpr int cone_stages[] = {4, 6, 8, 10, 12, 15, 19, 24, 30, 37, 46, 57};  // cones at which sets are exchanged
 // Within which cones are chosen. Beyond the second, maps begin to miss their prediction; beyond the fourth, many do.
 constexpr double reaches[] = {usual_reach, wider_reach, 1.0, 1.15, 1.6};
@@ -59,22 +59,22 @@ class ConeChooser {
   // The same cones with these curvatures, one for each.
   ConeChoice choice_with(const Array<Index>& vertices, const Eigen::VectorXd& curvature) const;
 
-  // Whether sites have prices, since costs of cuts differ, and how much these weigh from now on; at first nothing.
-  // weight: of the most expensive cones, as a share of the variance with which the target is just reached.
+  // Sites have prices if the costs of cuts differ; their weight is 0 at first. weight: of the most expensive cones, as
+  // a share of the variance with which the target is just reached.
   bool has_prices() const { return (prices_.array() > 0).any(); }
   void weigh_prices(double weight);
   void forget_prices();
 
-  // What sets of cones are made of.
+  // The parts of which sets of cones are made.
   ConeSet existing(double reach) const;
   BatchPlacement batches(double reach) { return {task_.geometry, search_, reach, monitor_}; }
   const ConeSearch& search() const { return search_; }
   const Array<Site>& sites() const { return kernel_.sites(); }
-  Index place_count() const;  // of single cones, at all sites
+  Index place_count() const;  // single cones at all sites
   bool reaches_all() const { return sites_.reaches_all; }
   int existing_count() const;  // cones, with those that mirror them
 
-  // What becomes of a set, a ConeSet or a BatchPlacement, its angles rounded where a lattice is given.
+  // The choice that a ConeSet or a BatchPlacement leads to, with rounded angles if a lattice is given.
   template <typename Set>
   ConeChoice settled(const Set& set);
   template <typename Set>

@@ -12,7 +12,7 @@ namespace {
 constexpr double stage_growth = 1.25;    // beyond the stages
 constexpr double usual_turn = M_PI / 2;  // of a cone where Gauss-Bonnet asks for many
 constexpr std::size_t usual_reaches = 2;
-constexpr double poor_l2 = 1.15;  // an L2 stretch that stronger cones are tried against
+constexpr double poor_l2 = 1.15;  // L2 stretch above which stronger cones are tried
 
 }  // namespace
 
@@ -85,7 +85,7 @@ void ConeGrowth::keep_better(ConeChoice choice) {
   }
 }
 
-// worth_all: a stretch so low is worth all cones.
+// worth_all: no cone is dropped at a stretch this low or lower.
 void ConeGrowth::drop_unneeded(ConeSet& set, double target, double worth_all) const {
   const ConeSearch& search = chooser_.search();
   while (search.can_drop(set) && chooser_.predicted_l2(set) > worth_all) {

@@ -41,12 +41,12 @@ class AutomaticCones {
   explicit AutomaticCones(ConeChooser& chooser) : chooser_(chooser) {}
   ConeChoice reach(double target);
   ConeChoice shrink_to(double target) const;  // the latest ones
-  bool is_exhausted(double target) const;     // asked for before, it was not reached
+  bool is_exhausted(double target) const;     // whether it was requested before and not reached
 
  private:
   ConeChooser& chooser_;
   Array<ConeGrowth> growths_;  // within the first reaches
-  std::size_t latest_ = 0;     // which of them the target was reached within
+  std::size_t latest_ = 0;     // the one that reached the target
   double missed_ = 1;          // the largest target that was not reached
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int tries = 2;                     // of new sites for a cone that is exchanged
 constexpr double worth_an_exchange = 0.998;  // of the variance: less is not worth an exchange
-constexpr double sharp_price = 1.25;         // the factor of variance that it may cost
+constexpr double sharp_price = 1.25;         // the factor by which the variance may grow for it
 
 }  // namespace
 

@@ -31,7 +31,7 @@ class ConeSearch {
   void drop(ConeSet& set) const;
   bool can_drop(const ConeSet& set) const { return static_cast<int>(set.sites().size()) > kept_; }
 
-  // The weight of a gain there.
+  // The weight of a gain at a site.
   double preference(int site) const { return prefers_sharp_ && is_sharp(site) ? 1 / sharp_share : 1; }
 
   // Places in a set that may change, the least needed one first.  losses: (k) of variance without each site.
@@ -41,7 +41,7 @@ class ConeSearch {
   Array<char> open_sites(const Array<int>& used, int rings = free_rings) const;
 
  private:
-  static constexpr double sharp_share = 0.5;  // of the largest gain that a sharp corner has to have to be preferred
+  static constexpr double sharp_share = 0.5;  // of the largest gain, which a sharp corner needs to be preferred
 
   std::optional<int> best_site(const Eigen::VectorXd& gains, const Array<char>& open) const;
   bool exchange_one(ConeSet& set, const ConeSet::Explained& explained, int site) const;

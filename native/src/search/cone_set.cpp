@@ -48,7 +48,7 @@ CurvatureFit fit_curvature(const PlacementProblem& problem, const Array<int>& si
     if (out.used_reach <= widest_reach) {
       widen(out.used_reach + spare_reach);
       out.used_reach = std::min(out.used_reach, widest_reach);
-    } else if (count > 0) {  // too few to unwrap with, but others may be added
+    } else if (count > 0) {  // too few for a map, but more may be added
       out.low = out.low.cwiseMin(sum / count);
       out.high = out.high.cwiseMax(sum / count);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cones at some sites with the curvatures that minimise the variance of the log scale, the gain of another cone, and
+// Cones at some sites with the curvatures that minimize the variance of the log scale, the gain of another cone, and
 // the cost of removing one.
 #pragma once
 
@@ -26,7 +26,7 @@ struct PlacementProblem {
   double mean_price(const Array<int>& sites) const;
 };
 
-// The curvatures of cones at some sites that minimise the variance, and their bounds.
+// The curvatures of cones at some sites that minimize the variance, and their bounds.
 struct CurvatureFit {
   Eigen::VectorXd low, high, curvature;  // (k)
   double used_reach = 0;                 // of the bounds: widened where Gauss-Bonnet wants more
@@ -70,17 +70,17 @@ class ConeSet {
   // The same with the explained part of the diagonal of H, (sites), given.
   Eigen::VectorXd gains(const Eigen::VectorXd& explained) const;
 
-  // The part of the diagonal of H explained by all cones: they partly compensate a curvature added anywhere.
+  // The part of the diagonal of H explained by all cones: they partly compensate curvature that is added anywhere.
   struct Explained {
     Eigen::VectorXd by_all;     // (sites)
     Array<int> free;            // places whose curvatures are at no bound
-    Eigen::MatrixXd responses;  // (sites, free) what these do, negative
-    Eigen::VectorXd inverse;    // (free) diagonal of the inverse that this comes from
+    Eigen::MatrixXd responses;  // (sites, free) the negated responses to these
+    Eigen::VectorXd inverse;    // (free) diagonal of the inverse that it is computed from
     // The part explained by the others without one.
     Eigen::VectorXd without(int place) const;
   };
   Explained explain() const;
-  Eigen::VectorXd explained() const;  // what it has by all cones, without memory for the rest
+  Eigen::VectorXd explained() const;  // `by_all` alone, which takes less memory
 
   // The increase of the variance, to first order, without each of the cones, (k).
   Eigen::VectorXd losses() const;

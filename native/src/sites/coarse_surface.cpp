@@ -14,7 +14,7 @@ namespace lsgp {
 namespace {
 
 // Doubled areas relative to the longest squared side.
-constexpr double least_area = 1e-3;  // of triangles that flips on the way to a removal may leave
+constexpr double least_area = 1e-3;  // of triangles between the flips of a removal
 constexpr double no_area = 1e-9;
 // Sine of the angle by which an edge fails to be Delaunay before it is flipped; less is a tie.
 constexpr double delaunay_tie = 1e-10;
@@ -25,7 +25,7 @@ constexpr std::int64_t flips_an_edge = 20;    // that keep it Delaunay, at most,
 
 }  // namespace
 
-// By squared lengths. No triangle gets twice to the same vertex.
+// By squared lengths. No triangle has a vertex twice.
 class CoarseSurface::Triangulation {
  public:
   Triangulation(const MetricMesh& surface, const PerVertex<char>& kept)
@@ -47,7 +47,7 @@ class CoarseSurface::Triangulation {
     restore_delaunay();
   }
 
-  // In passes, no two neighbours in one, which coarsens evenly and keeps degrees small.
+  // In passes, each without two neighbors, which coarsens evenly and keeps degrees small.
   Array<Removal> remove(Index most) {
     Array<Removal> removals;
     Array<Index> stuck;
@@ -77,7 +77,7 @@ class CoarseSurface::Triangulation {
       if (place[h] == none) continue;
       mesh.triangles.data()[place[h]] = node[origin(h)];
       mesh.twin[place[h]] = twin(h) == none ? none : place[twin(h)];
-      // A vertex that could not be removed may have been left on the line between two neighbours.
+      // A vertex that could not be removed may have been left on the line between two neighbors.
       const double least = no_area * (square(h) + square(next(h)) + square(prev(h)));
       geometry.half_cotangent[place[h]] = dot_opposite(h) / (2 * std::max(area_[h / 3], least));
     }
@@ -92,7 +92,8 @@ class CoarseSurface::Triangulation {
     Index twin;     // none on a boundary
     double square;  // of its length
   };
-  // What a flip makes: the square of the new edge, and doubled areas on the side of the old one's origin and target.
+  // The result of a flip: the squared length of the new edge, and the doubled areas on the sides of the old one's
+  // origin and target.
   struct Flipped {
     double square, at_origin, at_target;
     double shape_at_origin, shape_at_target;  // areas relative to the longest squared side
@@ -126,7 +127,7 @@ class CoarseSurface::Triangulation {
     return t != none && h / 3 != t / 3 && origin(prev(h)) != origin(prev(t));
   }
 
-  // Writes a halfedge that is no longer used where it was into another place.
+  // Moves a halfedge from a place that is no longer used to this one.
   void put(Index h, const Halfedge& from) {
     halfedges_[h] = from;
     if (from.twin != none) halfedges_[from.twin].twin = h;
@@ -169,12 +170,13 @@ class CoarseSurface::Triangulation {
     }
   }
 
-  // The edge at v to flip next so that v has fewer: what leaves the best triangles; none if there is none.
+  // The edge at v to flip next to lower its degree: the one that leaves the best triangles; none if none can be
+  // flipped.
   std::pair<Index, Flipped> best_flip(Index v) const {
     Index best = none, h = outgoing_[v];
     Flipped to{};
     double best_shape = least_area;
-    bool is_tie = true;  // v gets to the line between two neighbours; what that leaves at v is dissolved soon
+    bool is_tie = true;  // v comes to lie on the line between two neighbors; what is left at v is dissolved soon
     do {
       if (may_flip(h)) {
         const Flipped tried = flipped(h);
@@ -193,7 +195,7 @@ class CoarseSurface::Triangulation {
     return {best, to};
   }
 
-  // Whether it was possible. Neighbours are marked as touched in this pass.
+  // Returns whether it was possible. Marks the neighbors as touched in this pass.
   bool remove(Index v, int pass, Array<Removal>& removals) {
     int degree = 0;
     Index h = outgoing_[v];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A coarse intrinsic triangulation of a surface, for what varies slowly over it.
+// A coarse intrinsic triangulation of a surface, for functions that vary slowly over it.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,12 +10,12 @@
 
 namespace lsgp {
 
-// Vertices are removed by flips of edges until few are left (Liu et al. 2023); what is flat stays isometric, and a
-// curved vertex that is removed changes the metric within its three last triangles alone.
+// Vertices are removed by edge flips until few are left (Liu et al. 2023). Flat regions stay isometric; removing a
+// curved vertex changes the metric only within its last three triangles.
 class CoarseSurface {
  public:
-  // kept: (n) vertices that stay; those of boundaries do as well.  nodes: how many vertices are to be left, about; more
-  // are where they cannot be removed.
+  // kept: (n) vertices that stay; those of boundaries do as well.  nodes: about how many vertices are left; more if
+  // they cannot be removed.
   CoarseSurface(const MetricMesh& surface, const PerVertex<char>& kept, Index nodes);
 
   Index node_count() const { return node_count_; }

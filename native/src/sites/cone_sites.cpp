@@ -11,7 +11,7 @@ namespace lsgp {
 namespace {
 
 constexpr int rings_between_images = 2;  // cones side by side cancel each other
-constexpr int most_around = 64;          // triangles: vertices around a hub of more are not near each other
+constexpr int most_around = 64;          // triangles; the vertices around a hub of more are not close to each other
 
 // Vertices that cuts can connect to all boundaries and existing cones: those of the largest network if there are
 // none, or if these are not connected.
@@ -49,7 +49,8 @@ bool side_by_side(const HalfedgeMesh& mesh, Index a, Index b) {
   return std::find(reached.begin(), reached.end(), b) != reached.end();
 }
 
-// Around so many sites of all candidates, where vertices have six neighbours: fewer leave too many.
+// The fewest rings without other sites around each one that leave at most so many sites, if all vertices have six
+// neighbors.
 int least_rings(std::ptrdiff_t candidates, int most) {
   int rings = 1;
   const auto vertices_within = [&] { return 1.0 + 3 * rings * (rings + 1); };

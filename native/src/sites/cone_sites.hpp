@@ -33,7 +33,7 @@ struct ConeSites {
 };
 
 // Existing cones, then the sites of others: allowed interior vertices that cuts can reach, all of them or, if there are
-// more than `most`, evenly distributed ones, each the sharpest of its neighbourhood.
+// more than `most`, evenly distributed ones, each the sharpest of its neighborhood.
 ConeSites find_cone_sites(const PlacementTask& task, int most);
 
 // Marks a vertex and the rings around it, which end at a vertex of more than 64 triangles.

@@ -15,7 +15,7 @@ class CurvatureBounds {
   CurvatureBounds(const MetricMesh& surface, const Array<Site>& sites, const Eigen::VectorXd& given);
 
   // Bounds of a site's curvature, both of its cones together.  reach: how far a cone's curvature may be from the angle
-  // defect that its vertex has anyway, in units of pi. From 1 up the bounds of its angle widen as well.
+  // defect that its vertex has anyway, in units of pi. From 1 on the bounds of its angle widen as well.
   double low(int site, double reach) const;
   double high(int site, double reach) const;
 

@@ -9,9 +9,9 @@ namespace lsgp {
 
 namespace {
 
-constexpr double worth_while = 2;  // vertices to a node, from which on the surface is coarsened
+constexpr double worth_while = 2;  // vertices per node, from which on the surface is coarsened
 constexpr double nodes_a_site = 2, least_nodes = 20000;
-// A spike stretches what is next to it, which the variance has to see.
+// A spike stretches its surroundings, which the variance has to include.
 constexpr int rings_around_sharp = 3;
 
 std::optional<CoarseSurface> coarsened(const LogScale& scale, const Array<Site>& sites) {

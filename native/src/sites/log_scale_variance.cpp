@@ -32,7 +32,7 @@ class Signs {
 LogScaleVariance::LogScaleVariance(Borrowed<const LogScaleModel> model, Array<Site> sites, int probes,
                                    ProgressMonitor& monitor)
     : model_(model), elsewhere_(model_.elsewhere()), weight_(model_.weight()), sites_(std::move(sites)) {
-  // What the probes and some columns of the model at a time take.
+  // The memory for the probes and for some columns of the model at a time.
   require_matrix_memory(static_cast<double>(site_count()), 2.0 * probes);
   require_matrix_memory(static_cast<double>(weight_.size()), 6.0 * solved_at_once);
   const Eigen::MatrixXd y = caused_by(elsewhere_);

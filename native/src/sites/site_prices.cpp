@@ -62,7 +62,7 @@ Eigen::VectorXd vertex_prices(const MetricMesh& surface) {
     if (at.distance < unlimited) farthest = std::max(farthest, at.distance);
   }
   if (farthest == 0) return out;
-  // Costs that hardly differ are hardly a reason.
+  // Costs that hardly differ have hardly any weight.
   const double contrast = 1 - cheap / dearest;
   for (Index v = 0; v < out.size(); ++v) out[v] = contrast * std::min(reached[v].distance / farthest, 1.0);
   return out;

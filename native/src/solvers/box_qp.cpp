@@ -13,7 +13,7 @@ constexpr double at_bound = 1e-12;
 constexpr int most_pivoted_singly = 64;      // variables
 constexpr int most_rounds = 100;             // of block pivoting, a factorization each; some 5 to 10 is usual
 constexpr int most_changes_when_large = 30;  // of single sides, a factorization each
-constexpr int spare_rounds = 3;              // in which no fewer variables than before may be wrong
+constexpr int spare_rounds = 3;              // without a decrease in the number of infeasible variables
 
 }  // namespace
 
@@ -67,8 +67,8 @@ bool BoxProgram::factorize_block(const Array<int>& free) {
 }
 
 // Solves for the free variables with the others at their bounds, and changes the side of all infeasible ones: free ones
-// out of bounds, bounded ones that the objective pulls inwards. If their number has not fallen for a while, only the
-// last one is changed until it does, which prevents cycles.
+// out of bounds, bounded ones whose multiplier has the wrong sign. If their number does not decrease for some rounds,
+// only the last one is changed until it does, which prevents cycles.
 std::optional<Eigen::VectorXd> BoxProgram::pivot_blocks(const Eigen::VectorXd& gradient, const Eigen::VectorXd& low,
                                                         const Eigen::VectorXd& high) {
   const int size = static_cast<int>(gradient.size());
@@ -157,7 +157,7 @@ Eigen::VectorXd BoxProgram::minimize(const Eigen::VectorXd& gradient, const Eige
     } else if (keep_sum_ && !free.empty()) {
       multiplier = -slope[free[0]];
     }
-    // At the minimum over the free variables: release the bound that pulls inwards most.
+    // At the minimum over the free variables: release the bound with the largest multiplier of the wrong sign.
     const Eigen::VectorXd reduced = (gradient + hessian_ * d).array() + multiplier;
     int released = -1;
     double pull = 1e-12 * (1 + gradient.cwiseAbs().maxCoeff());

@@ -11,11 +11,11 @@
 
 namespace lsgp {
 
-// Minimises  gradient . d + d . hessian d / 2  over  low <= d <= high  and, with keep_sum, sum d = 0.
-// A primal active-set method: every iterate is feasible and the objective never rises. Which variables are at their
-// bounds is remembered from one program to the next, and a factorization is kept while that does not change.
+// Minimizes  gradient . d + d . hessian d / 2  over  low <= d <= high  and, with keep_sum, sum d = 0.
+// A primal active-set method: every iterate is feasible and the objective never rises. The active set is kept from one
+// program to the next, and the factorization for as long as the set does not change.
 // Large programs change the sides of many variables at once (block principal pivoting, Judice and Pires 1994) and fall
-// back on the other method, cut short, where that leads nowhere.
+// back on a limited number of steps of the active-set method where that does not converge.
 class BoxProgram {
  public:
   explicit BoxProgram(bool keep_sum) : keep_sum_(keep_sum) {}
@@ -50,8 +50,8 @@ class BoxProgram {
   Eigen::VectorXd block_ones_;  // the block's inverse times ones
 };
 
-// The point low <= x <= high with the given sum that differs from the wanted one by a common shift, as far as the
-// bounds let it; the nearest one where no point has that sum.
+// The point low <= x <= high of the given sum that differs from the wanted point by a common shift, up to the bounds;
+// the nearest one if no point has that sum.
 Eigen::VectorXd nearest_with_sum(const Eigen::VectorXd& low, const Eigen::VectorXd& high, const Eigen::VectorXd& wanted,
                                  double sum);
 

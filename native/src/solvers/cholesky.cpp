@@ -18,18 +18,18 @@ namespace lsgp {
 
 namespace {
 
-// Of numbers that are not negative, beyond the range of int.
+// The product of two nonnegative numbers, which may exceed the range of int.
 std::size_t product(int a, int b) { return static_cast<std::size_t>(a) * static_cast<std::size_t>(b); }
 
-// Numbers of outer products that are computed before they are added, and columns of the Schur complement that a thread
-// adds them to.
+// How many numbers of outer products are computed before they are added, and to how many columns of the Schur
+// complement one thread adds them.
 constexpr std::size_t outer_at_once = 1 << 18;
 constexpr int schur_columns = 64;
 
-// Whether tasks may be worked on at once.  bytes: that a factorization takes with updates of that size.
+// Whether memory suffices for several tasks at once.  bytes: of a factorization with updates of that size.
 template <typename Bytes>
 bool has_room(const Elimination& plan, int threads, const Bytes& bytes) {
-  constexpr double of_a_thread = 80 << 20;  // its stack and its heap, as far as the system sets them aside
+  constexpr double of_a_thread = 80 << 20;  // of its stack and heap, as the system reserves them
   if (threads == 1 || plan.task_count() < 2) return false;
   const double most = bytes(plan.most_kept + plan.stack_size * static_cast<std::size_t>(threads));
   return most + threads * of_a_thread <= memory_left();
@@ -53,12 +53,12 @@ struct Cholesky<Scalar>::Factor {
             plan.retained_rows[i], nullptr};
   }
 
-  // What a thread works with.
+  // The scratch memory of a thread.
   struct Workspace {
     Vector stack;                   // of updates
     Array<std::size_t> update_end;  // of the updates on it
-    Array<int> waiting;             // the fronts they are of
-    Array<int> local;               // (size) the place of every row of the front under way
+    Array<int> waiting;             // the fronts that these belong to
+    Array<int> local;               // (size) the index of every row in the current front
   };
 
   bool has_room_for_threads = false;
@@ -106,7 +106,7 @@ void Cholesky<Scalar>::Factor::fill(const Eigen::SparseMatrix<Scalar>& lower, in
     Scalar* column = panel + product(c, rows);
     column[c] += lower.valuePtr()[lower.outerIndexPtr()[row]];
     for (int k = adjacency.begin[row]; k < adjacency.begin[row + 1]; ++k) {
-      const int other = adjacency.neighbour[k], at = plan.position[other];
+      const int other = adjacency.neighbor[k], at = plan.position[other];
       if (at < first + c) continue;
       const Scalar value = lower.valuePtr()[adjacency.entry[k]];
       column[local[at]] += other > row ? value : Eigen::numext::conj(value);
@@ -114,7 +114,7 @@ void Cholesky<Scalar>::Factor::fill(const Eigen::SparseMatrix<Scalar>& lower, in
   }
 }
 
-// Of a thread that has a task for the first time.
+// Allocates the memory of a thread before its first task.
 template <typename Scalar>
 void Cholesky<Scalar>::Factor::prepare(Workspace& work) const {
   if (ssize(work.local) == size()) return;
@@ -180,8 +180,8 @@ void Cholesky<Scalar>::Factor::take_in(int child, const Scalar* update, const Fr
   }
 }
 
-// Subtracts the outer products of all fronts from the Schur complement, one front after the other at each of its
-// numbers. They are computed for some fronts at once.
+// Subtracts the outer products of all fronts from the Schur complement, in the order of the fronts at each entry. Those
+// of several fronts are computed at once.
 template <typename Scalar>
 void Cholesky<Scalar>::Factor::complete_schur(ThreadTeam& team) {
   Vector outer(static_cast<Eigen::Index>(outer_size()));
@@ -223,7 +223,7 @@ void Cholesky<Scalar>::Factor::complete_schur(ThreadTeam& team) {
   }
 }
 
-// Adds what a front's outer product has for a block of columns.
+// Adds the part of a front's outer product in a block of columns.
 template <typename Scalar>
 void Cholesky<Scalar>::Factor::add_outer(int front, const Scalar* outer, int block) {
   const int count = plan.retained_rows[front], first = plan.eliminated + block * schur_columns;
@@ -263,7 +263,7 @@ void Cholesky<Scalar>::Factor::factorize(const Eigen::SparseMatrix<Scalar>& lowe
 }
 
 // Calls work(task) for the tasks that have no children, at the same time where there is room. They hold most of the
-// numbers of a factor; those above them are few, and one half solve has little to do in each.
+// factor; the tasks above them are few, and half a solve has little to do in each.
 template <typename Scalar>
 template <typename Work>
 void Cholesky<Scalar>::Factor::run_leaves(const Work& work) const {
@@ -276,7 +276,8 @@ void Cholesky<Scalar>::Factor::run_leaves(const Work& work) const {
   team.run_each(static_cast<int>(leaves.size()), [&](int i) { work(leaves[i]); });
 }
 
-// others: receives what the rows below lose. False where there is nothing: impulses reach the fronts above them alone.
+// others: receives what is subtracted from the rows below. False if that is zero: sparse right-hand sides affect only
+// the fronts above their entries.
 template <typename Scalar>
 bool Cholesky<Scalar>::Factor::eliminate_front(int front, int width, Scalar* x, Array<Scalar>& others) const {
   const Front<Scalar> own = this->front(front);
@@ -361,7 +362,7 @@ Cholesky<Scalar>::Cholesky(const Eigen::SparseMatrix<Scalar>& lower, int retaine
   const int size = static_cast<int>(lower.rows());
   factor_->adjacency = adjacency_of_lower(size, lower.outerIndexPtr(), lower.innerIndexPtr());
   factor_->plan = order_elimination(factor_->adjacency, retained);
-  // The dense problems that are made of the Schur complement take up to five times as much as itself.
+  // The dense problems derived from the Schur complement take up to five times its memory.
   const std::size_t dense = 6 * product(retained, retained);
   const std::size_t numbers = factor_->plan.panel_begin.back();
   const bool fits = numbers <= static_cast<std::size_t>(memory.size());

@@ -18,7 +18,7 @@ class DenseCholesky {
   // None where it is not positive definite.
   static std::optional<DenseCholesky> factored(Matrix lower);
 
-  // One right side a column.
+  // One right-hand side per column.
   Matrix solve(const Eigen::Ref<const Matrix>& right_sides) const;
 
  private:

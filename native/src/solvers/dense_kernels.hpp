@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The dense work of factorizations and prescription, compiled for several instruction sets; the best one that the
-// machine has is taken at run time.
+// The dense kernels of factorizations and prescription, compiled for several instruction sets; the best available one
+// is selected at run time.
 #pragma once
 
 #include <complex>
@@ -18,7 +18,7 @@ struct Front {
   Scalar* update;  // (below, below - retained) what is subtracted from the columns of the rows below, lower trapezoid
 };
 
-// Vectors are rows of `width` numbers: one of each right side.
+// Vectors have rows of `width` numbers, one of each right-hand side.
 template <typename Scalar>
 struct DenseKernels {
   // Factors the panel and subtracts its outer product from the update. False where a pivot is not positive.
@@ -27,8 +27,8 @@ struct DenseKernels {
   // retained).
   void (*subtract_outer)(const Front<Scalar>& front, Scalar* outer);
 
-  // The steps of both for a front of which blocks are worked on one by one. Blocks are column-major, their columns
-  // `stride` numbers apart.
+  // The steps of both, for fronts that are processed block by block. Blocks are column-major, their columns `stride`
+  // numbers apart.
   // square = its Cholesky factor, lower triangle, (size, size). False where a pivot is not positive.
   bool (*factor_square)(Scalar* square, int size, std::ptrdiff_t stride);
   // block = block * factor^-H, (rows, size).

@@ -3,8 +3,8 @@
 // namespace likewise (-DEigen=Eigen_avx2), since inline functions of one name that several files define are linked
 // once: code for a newer instruction set would run on machines without it. The renaming does not depend on the version
 // of Eigen: the preprocessor replaces the identifier, never the path in #include <Eigen/...>, and this file shares no
-// Eigen types with others. Where a new Eigen defies it, this file does not compile. With Eigen 3.4 and 5.0 optimized
-// objects have no inline functions outside the renamed namespace: `nm -C` lists none as W.
+// Eigen types with others. If a new version of Eigen prevents it, this file does not compile. With Eigen 3.4 and 5.0
+// optimized objects have no inline functions outside the renamed namespace: `nm -C` lists none as W.
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ using Block = Eigen::Map<Dense<Scalar>, 0, Eigen::OuterStride<>>;
 template <typename Scalar>
 using ConstBlock = Eigen::Map<const Dense<Scalar>, 0, Eigen::OuterStride<>>;
 
-// Up to here plain loops are faster than kernels that pack their operands.
+// Below these sizes plain loops are faster than kernels that pack their operands.
 constexpr int narrow_columns = 16;
 constexpr int short_below = 48;
 
@@ -33,8 +33,8 @@ inline std::complex<double> conjugate(const std::complex<double>& x) { return {x
 inline double real_part(double x) { return x; }
 inline double real_part(const std::complex<double>& x) { return x.real(); }
 
-// Kernels of more than five parameters get their operands one by one, as in the BLAS: from structs the compiler makes
-// code that rounds otherwise.
+// Kernels of more than five parameters take their operands one by one, as in the BLAS: with structs the compiler
+// generates code that rounds differently.
 
 // out (count) -= sum over columns of factor * column, four columns at a time.
 template <typename Scalar>
@@ -175,7 +175,7 @@ void subtract_outer(const Front<Scalar>& front, Scalar* outer) {
   }
 }
 
-// One number of each right side.
+// One number of each right-hand side.
 template <typename Scalar, int width>
 using Sides = Eigen::Array<Scalar, width, 1>;
 template <typename Scalar, int width>
@@ -187,8 +187,8 @@ inline Eigen::Map<const Sides<Scalar, width>> sides(const Scalar* first, int row
   return Eigen::Map<const Sides<Scalar, width>>(first + static_cast<std::ptrdiff_t>(row) * width);
 }
 
-// Columns are taken four at a time, so that what they act on is read and written once for all of them; in variables of
-// their own, so that they stay in registers.
+// Columns are taken four at a time, so that their operand is read and written once for all four, and in separate
+// variables, so that they stay in registers.
 template <typename Scalar, int width>
 void forward_four(const Front<Scalar>& front, int j, Scalar* own, Scalar* others) {
   const std::ptrdiff_t rows = front.columns + front.below;

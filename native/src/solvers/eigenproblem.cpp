@@ -18,14 +18,15 @@ namespace {
 using Complex = std::complex<double>;
 using ComplexSparse = Eigen::SparseMatrix<Complex>;
 
-// The eigenvalues of a conformal form relative to its Dirichlet form are shares of 1; a millionth of a millionth does
-// not move the eigenvector, and makes the form of an exactly unfolding surface definite.
+// The eigenvalues of a conformal form relative to its Dirichlet form lie between 0 and 1; a shift of 1e-12 does not
+// change the eigenvector, and makes the form of a surface that unfolds exactly definite.
 constexpr double shift = 1e-12;
 constexpr double tolerance = 1e-13;
 constexpr int krylov_dimension = 24;
 constexpr int most_restarts = 400;
 
-// Spectra 1.0 knows real symmetric operators only: a complex vector travels as its real and then its imaginary parts.
+// Spectra 1.0 supports real symmetric operators only: a complex vector is passed as its real parts followed by its
+// imaginary parts.
 Eigen::VectorXcd to_complex(const double* x, Eigen::Index n) {
   Eigen::VectorXcd out(n);
   out.real() = Eigen::Map<const Eigen::VectorXd>(x, n);

@@ -24,13 +24,13 @@ Adjacency adjacency_of_lower(int size, const int* outer, const int* inner) {
     ++out.begin[row + 1];
   });
   std::partial_sum(out.begin.begin(), out.begin.end(), out.begin.begin());
-  out.neighbour.resize(out.begin.back());
+  out.neighbor.resize(out.begin.back());
   out.entry.resize(out.begin.back());
   Array<int> cursor(out.begin.begin(), out.begin.end() - 1);
   for_each_off_diagonal([&](int column, int row, int k) {
-    out.neighbour[cursor[column]] = row;
+    out.neighbor[cursor[column]] = row;
     out.entry[cursor[column]++] = k;
-    out.neighbour[cursor[row]] = column;
+    out.neighbor[cursor[row]] = column;
     out.entry[cursor[row]++] = k;
   });
   return out;
@@ -38,7 +38,7 @@ Adjacency adjacency_of_lower(int size, const int* outer, const int* inner) {
 
 namespace {
 
-// Fronts of up to so many columns may hold this share of zeros.
+// The share of zeros that a front may have, by its number of columns.
 struct Merging {
   int columns;
   double zeros;
@@ -70,23 +70,23 @@ class Ordering {
 
  private:
   template <typename Visit>
-  void for_each_neighbour(int at, Visit visit) const {
+  void for_each_neighbor(int at, Visit visit) const {
     const int row = out_.row_at[at];
     for (int k = adjacency_.begin[row]; k < adjacency_.begin[row + 1]; ++k) {
-      visit(out_.position[adjacency_.neighbour[k]]);
+      visit(out_.position[adjacency_.neighbor[k]]);
     }
   }
 
   template <typename Visit>
   void for_each_earlier(int at, Visit visit) const {
-    for_each_neighbour(at, [&](int other) {
+    for_each_neighbor(at, [&](int other) {
       if (other < at && other < eliminated_) visit(other);
     });
   }
 
   template <typename Visit>
   void for_each_later(int at, Visit visit) const {
-    for_each_neighbour(at, [&](int other) {
+    for_each_neighbor(at, [&](int other) {
       if (other > at) visit(other);
     });
   }
@@ -97,7 +97,7 @@ class Ordering {
     int count = 0;
     for (int row = 0; row < eliminated_; ++row) {
       for (int k = adjacency_.begin[row]; k < adjacency_.begin[row + 1]; ++k)
-        count += adjacency_.neighbour[k] < eliminated_;
+        count += adjacency_.neighbor[k] < eliminated_;
     }
     pattern.resizeNonZeros(count + eliminated_);
     std::fill_n(pattern.valuePtr(), pattern.nonZeros(), Pattern::Scalar(1));
@@ -106,12 +106,12 @@ class Ordering {
       pattern.outerIndexPtr()[row] = filled;
       pattern.innerIndexPtr()[filled++] = row;
       for (int k = adjacency_.begin[row]; k < adjacency_.begin[row + 1]; ++k) {
-        if (adjacency_.neighbour[k] < eliminated_) pattern.innerIndexPtr()[filled++] = adjacency_.neighbour[k];
+        if (adjacency_.neighbor[k] < eliminated_) pattern.innerIndexPtr()[filled++] = adjacency_.neighbor[k];
       }
     }
     pattern.outerIndexPtr()[eliminated_] = filled;
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
-    // As one whole of which both triangles are given: otherwise the pattern is sorted anew, which takes 3 % of a map.
+    // With both triangles in one matrix: otherwise Eigen sorts the pattern again, which takes 3 % of a map.
     if (eliminated_ > 0) Eigen::AMDOrdering<int>()(pattern.selfadjointView<Eigen::Lower | Eigen::Upper>(), order);
     out_.eliminated = eliminated_;
     out_.row_at.resize(size_);
@@ -176,7 +176,8 @@ class Ordering {
   }
 
   // Rows below the diagonal of every column (Gilbert, Ng and Peyton 1994): a row's entries span a subtree of the
-  // elimination tree, which is counted where it has a leaf, less where its leaves' paths meet and above its root.
+  // elimination tree, which is counted by adding one at its leaves and subtracting one where their paths meet and above
+  // its root.
   void count_rows() {
     Array<int> first(eliminated_, -1);  // descendant of each column
     count_.resize(eliminated_);
@@ -185,7 +186,7 @@ class Ordering {
       for (int node = at; node != size_ && first[node] == -1; node = parent_[node]) first[node] = at;
     }
     Array<int> ancestor(parent_), newest_first(size_, -1), newest_leaf(size_, -1);
-    const auto meet_above = [&](int leaf, int at) {  // the first on the way up that is not before `at`
+    const auto meet_above = [&](int leaf, int at) {  // the first ancestor that is not before `at`
       int root = leaf;
       while (root < at && ancestor[root] != size_) root = ancestor[root];
       while (leaf < root) leaf = std::exchange(ancestor[leaf], root);
@@ -270,7 +271,7 @@ class Ordering {
     }
   }
 
-  // Below a size all fronts are one task.
+  // A small matrix is one task.
   void find_tasks() {
     const int fronts = out_.front_count();
     Array<double> work(fronts, 0.0);  // of the subtree below each front, itself included

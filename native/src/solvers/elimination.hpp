@@ -8,11 +8,11 @@
 
 namespace lsgp {
 
-// The pattern of a symmetric matrix: the neighbours of every row, and the stored entry for each.
+// The pattern of a symmetric matrix: the neighbors of every row, and the stored entry for each.
 struct Adjacency {
-  Array<int> begin;      // (n + 1)
-  Array<int> neighbour;  // without the row itself
-  Array<int> entry;      // in the lower triangle as it was given
+  Array<int> begin;     // (n + 1)
+  Array<int> neighbor;  // without the row itself
+  Array<int> entry;     // in the lower triangle as it was given
 };
 // outer, inner: the lower triangle by columns.
 Adjacency adjacency_of_lower(int size, const int* outer, const int* inner);

@@ -10,7 +10,7 @@ namespace lsgp {
 
 namespace {
 
-constexpr double arc_visits = 10;  // of a blocking flow, each as long as so many multiplications
+constexpr double arc_visits = 10;  // multiplications that visiting an arc in a blocking flow costs
 
 }  // namespace
 
@@ -71,7 +71,7 @@ bool FlowNetwork::find_distances(int source, int sink) {
   return distance_[source] >= 0;
 }
 
-// A blocking flow: walks towards the sink, sends the walk's capacity, continues from the saturated arc.
+// A blocking flow: walks toward the sink, sends the walk's capacity, continues from the saturated arc.
 FlowNetwork::Units FlowNetwork::send_along_shortest(int source, int sink) {
   current_ = first_;
   Array<int> walk;  // arcs from the source

@@ -15,7 +15,7 @@ class FlowNetwork {
 
   explicit FlowNetwork(int node_count);
 
-  // An arc and the one back; returns its number.
+  // Adds an arc and its reverse; returns the number of the arc.
   int add_arc(int from, int to, Units capacity, Units capacity_back = 0);
 
   // Augments the flow to a maximum; returns the increase.
@@ -30,10 +30,10 @@ class FlowNetwork {
   bool find_distances(int source, int sink);
   Units send_along_shortest(int source, int sink);
 
-  // Arc a and the one back, a ^ 1, lie side by side. The arcs of a node are a chain.
-  Array<int> first_, next_, to_;      // (nodes), (arcs), (arcs) -1 at a chain's end
-  Array<Units> residual_, capacity_;  // (arcs) what they can still carry, and could at first
-  Array<int> distance_, current_;     // (nodes) arcs to the sink, -1 without a way; the arc to try next
+  // Arc a and its reverse, a ^ 1, are adjacent. The arcs of a node are a linked list.
+  Array<int> first_, next_, to_;      // (nodes), (arcs), (arcs) -1 at the end of a list
+  Array<Units> residual_, capacity_;  // (arcs) the remaining and the initial capacity
+  Array<int> distance_, current_;     // (nodes) arcs to the sink, -1 without a path; the arc to try next
 };
 
 }  // namespace lsgp

@@ -43,7 +43,7 @@ Eigen::Matrix<Scalar, Eigen::Dynamic, 1> minimize_under(const Eigen::SparseMatri
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<Scalar>, Eigen::Lower> factor(assembly.build());
   if (factor.info() != Eigen::Success) throw SolverFailure(SolverFailure::Cause::dependent_constraints);
 
-  // Refinement against the equations without regularisation.
+  // Refinement against the equations without regularization.
   Vector solution = Vector::Zero(n + r);
   const double size = std::max(right_side.norm() / scale, values.norm());
   for (int round = 0; round < most_refinements; ++round) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Quadratic forms minimised under linear equations.
+// Quadratic forms minimized under linear equations.
 #pragma once
 
 #include <Eigen/SparseCore>
 
 namespace lsgp {
 
-// Minimises  x^H form x / 2 - Re(x^H right_side)  subject to  rows x = values.
+// Minimizes  x^H form x / 2 - Re(x^H right_side)  subject to  rows x = values.
 // form: lower triangle, Hermitian positive definite, (n, n); rows: (r, n), dependent ones allowed where consistent.
 // Consistent equations are satisfied to rounding; the caller checks whether they may contradict each other.
 // Throws SolverFailure.

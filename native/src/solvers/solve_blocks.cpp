@@ -13,7 +13,7 @@ namespace lsgp {
 namespace {
 
 constexpr Eigen::Index least_numbers =
-    1 << 18;  // of all right sides: some milliseconds, since threads take time to start
+    1 << 18;  // of all right-hand sides: some milliseconds, since threads take time to start
 
 bool has_room(Eigen::Index blocks, Eigen::Index numbers) {
   const auto at_once = static_cast<double>(std::min<Eigen::Index>(blocks, thread_count()));

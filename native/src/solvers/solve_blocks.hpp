@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Right sides of a linear system in blocks that a solve takes at once, on several threads.
+// The right-hand sides of a linear system in blocks that are solved at once, on several threads.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,13 +8,13 @@
 namespace lsgp {
 
 struct SolveBlock {
-  Eigen::Index begin;  // its first right side
-  Eigen::Index used;   // how many there are
+  Eigen::Index begin;  // its first right-hand side
+  Eigen::Index used;   // the number of them
   Eigen::Index width;  // with padding, see Cholesky
 };
 
-// Calls work for all blocks, in any order and at the same time where there is memory for that.  rows: numbers of a
-// right side. Each block needs numbers of its own, rows times width of them, complex at most.
+// Calls work for all blocks, in any order and at the same time where there is memory for that.  rows: of a right-hand
+// side. Each block allocates rows times width numbers, which may be complex.
 void for_each_block(Eigen::Index sides, Eigen::Index rows, const std::function<void(const SolveBlock&)>& work);
 
 }  // namespace lsgp

@@ -24,7 +24,7 @@ class LowerAssembly {
   }
 
   // Two counting sorts, by row and then by column, leave every column in order of its rows; equal entries are added.
-  // slot: where given, receives the place of every entry, in the order of their adding, among the matrix's values.
+  // slot: if given, receives the index of every entry among the matrix's values, in the order in which they were added.
   Eigen::SparseMatrix<Scalar> build(Array<int>* slot = nullptr) const {
     const Array<int> by_row = sorted({}, [](const Entry& entry) { return entry.row; });
     const Array<int> by_column = sorted(by_row, [](const Entry& entry) { return entry.column; });
@@ -72,7 +72,7 @@ class LowerAssembly {
   Array<Entry> entries_;
 };
 
-// A matrix that is summed up again and again from entries at the same places in the same order.
+// A matrix that is assembled repeatedly from entries at the same positions in the same order.
 template <typename Scalar>
 class RepeatedAssembly {
  public:

@@ -224,7 +224,7 @@ Array<Index> Compactor::cut_along(const Array<Line>& lines, const Array<Index>& 
   return class_of;
 }
 
-// Pieces too small to be islands join the neighbour with the longest common boundary.
+// Pieces too small to be islands join the neighbor with the longest common boundary.
 Array<Index> Compactor::without_slivers(const Array<Index>& island, const Array<Index>& class_of) {
   const Array<Array<Index>> pieces = pieces_of(island, class_of);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -278,7 +278,7 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& island) {
   const double band = extent_along(hull, along).width() / division_positions;
   Array<Array<Index>> best;
   double most_worth = 0;
-  // Of cuts that are equally short, one hugs one end of the band, and one the other.
+  // Of equally short cuts, one hugs one end of the band and one the other.
   for (const Array<Line>& lines : {division.lines, reversed(division.lines)}) {
     const Array<Index> class_of = without_slivers(island, cut_along(lines, island, band));
     Array<Array<Index>> pieces = pieces_of(island, class_of);

@@ -15,8 +15,8 @@ namespace lsgp {
 
 namespace {
 
-// As a fraction of the area of all islands: smaller pieces are not cut off, nor are larger ones of few faces from
-// smooth surfaces.
+// As a fraction of the area of all islands: smaller pieces are not cut off, nor are larger ones of few faces of smooth
+// surfaces.
 constexpr double smallest_piece = 0.01, smallest_of_few = 0.06;
 constexpr Index few_faces = 4;
 // Least saving, as a fraction of the area of all islands: for a cut as long as the square root of that area, and for

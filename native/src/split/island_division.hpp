@@ -32,12 +32,12 @@ struct IslandDivision {
   double worth = 0;
 };
 
-// The faces of an island taken together to cells, to try divisions quickly.
+// The faces of an island merged into cells, to try divisions quickly.
 struct IslandCells {
   struct Link {
     Index cells[2];
     double length;
-    bool is_smooth;  // where the surface hardly bends or may be round
+    bool is_smooth;  // where the surface hardly bends, or bends as round shapes do
   };
   Array<Complex> center;
   Array<double> area;
@@ -62,8 +62,8 @@ class DivisionSearch {
   // The area of the square that an island with this hull occupies.
   double demand(const Array<Complex>& hull) const;
 
-  // Whether a piece is large enough, and no scrap of few faces: of those only the ones of hard surfaces, cut off along
-  // sharp edges alone, may be as small as others.
+  // Whether a piece is large enough and not a scrap of few faces. Pieces of few faces may be as small as others only on
+  // hard surfaces, where all their cuts follow sharp edges.
   bool may_be_cut_off(const Piece& piece) const;
 
   // The least saving that can be worth a division.

@@ -27,7 +27,7 @@ class IslandMerger {
 
  private:
   struct Border : PartBorder {
-    Array<Index> tried;  // its groups and their states when they could not be merged
+    Array<Index> tried;  // the two groups and their states when they could not be merged
   };
 
   bool merge_next();

@@ -14,10 +14,10 @@ namespace {
 
 using Units = FaceGraph::Units;
 
-constexpr double enough_area = 0.02;  // of the surface: parts of this size need not be larger
+constexpr double enough_area = 0.02;  // of the surface, from which on parts need not be larger
 constexpr double least_area = 1e-16;  // of the surface: smaller areas are lost in the sum
-constexpr Index most_cells = 10000;   // among which a cut is searched before its neighbourhood is
-constexpr double cell_detour = 1.5;   // by which a cut between cells may be longer than it has to be
+constexpr Index most_cells = 10000;   // among which a cut is searched before its neighborhood is
+constexpr double cell_detour = 1.5;   // by which a cut between cells may be longer than the shortest one
 
 constexpr Index first_cell = 0, second_cell = 1;  // the cells to be separated
 
@@ -31,7 +31,7 @@ struct Edge {
 // Cells of faces. The first two are to be separated.
 struct MinimumCutter::Cells {
   Array<double> area;
-  Array<Edge> edges;  // one between any two neighbours, sorted
+  Array<Edge> edges;  // one between any two neighbors, sorted
 
   Index count() const { return static_cast<Index>(area.size()); }
 
@@ -73,7 +73,7 @@ struct MinimumCutter::Cells {
     return {std::move(begin), std::move(list)};
   }
 
-  // Merges pairs of neighbours, preferring those with the longest common boundary for their size. Returns the new cell
+  // Merges pairs of neighbors, preferring those with the longest common boundary for their size. Returns the new cell
   // of every cell.
   Array<Index> coarsen() {
     const auto [begin, list] = by_cell();
@@ -110,7 +110,7 @@ struct MinimumCutter::Cells {
     return merged;
   }
 
-  // Which cells are nearer to either of the first two, the nearest first.
+  // The cells nearer to each of the first two, the nearest first.
   std::array<Array<Index>, 2> by_distance() const {
     struct Reached {
       double distance;

@@ -17,7 +17,7 @@ namespace lsgp {
 namespace {
 
 constexpr double corridor = 3;  // mean edge lengths to either side of a path's image
-constexpr double straying = 5;  // what the square of the distance from it costs, in these lengths
+constexpr double straying = 5;  // the cost of the squared distance from it, in these lengths
 constexpr double operations_a_search = 500;
 
 // The cheapest path near the mirror image of another.
@@ -185,7 +185,7 @@ Array<Index> MirroredIslands::in_plane(const Cut& path) const {
   return ImagePath(surface_, points, edge_).find(path.tail, path.head);
 }
 
-// Joins all parts that can be, except along some edges, and closes what then fits.
+// Merges all parts that can be merged, except across some edges, and closes the edges that then fit.
 void MirroredIslands::join(const ComponentMap& map, const PerHalfedge<char>& kept, MapParts& parts) const {
   const double size = size_of(at_corners(map.cut_mesh, map.position));
   const Array<PartBorder> borders = find_part_borders(surface_, map, kept, parts);

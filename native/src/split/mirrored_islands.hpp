@@ -28,11 +28,11 @@ class MirroredIslands {
   // map: with transitions, without seams.  open: on both halfedges, with all cones on it.  side: not `plane`.
   MapParts along_side(const ComponentMap& map, const PerHalfedge<char>& open, MirrorSide side) const;
 
-  // The same where it is on either side.
+  // The same for either side.
   MapParts along_both(const ComponentMap& map, const PerHalfedge<char>& open) const;
 
-  // The same after cuts of one side that run from the plane to the plane are led along it instead, since they would
-  // enclose a piece with their images; none without such cuts.
+  // The same after cuts of one side that start and end on the plane are rerouted along it, since they would enclose a
+  // piece together with their images; none without such cuts.
   std::optional<MapParts> along_plane(const ComponentMap& map, const PerHalfedge<char>& open) const;
 
  private:

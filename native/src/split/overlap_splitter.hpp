@@ -25,11 +25,11 @@ class OverlapSplitter {
     Array<Index> first, second;  // faces
   };
 
-  // Neighbouring pairs of faces of one part that lie on each other.
+  // Neighboring pairs of faces of one part that lie on each other.
   struct Conflict {
     Array<Index> entries;  // the least first
     double area = 0;
-    bool is_two_sided = true;  // no face is on both sides
+    bool is_two_sided = true;  // whether no face is on both sides
     bool is_larger_than(const Conflict& other) const {
       return area > other.area || (area == other.area && entries.front() < other.entries.front());
     }
@@ -41,11 +41,11 @@ class OverlapSplitter {
     Array<Conflict> conflicts;
   };
 
-  // Both faces are of this part, which a cut can divide only by itself.
+  // Whether both faces belong to this part.
   bool is_conflict_in(Index part, Index entry) const {
     return parts_.of_face[pairs_.of[entry]] == part && parts_.of_face[pairs_.partner[entry]] == part;
   }
-  // Calls visit for the pairs of a part next to one: of the same faces or their neighbours.
+  // Calls visit for the pairs of a part next to one: of the same faces or their neighbors.
   template <typename Visit>
   void for_each_beside(Index part, Index entry, Visit visit) const {
     const auto look_up = [&](Index face, Index partner) {

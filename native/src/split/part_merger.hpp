@@ -24,7 +24,7 @@ class PartMerger {
   // Closes cuts between two parts that do not overlap, the longest first.
   void merge_back();
 
-  // Chooses the cuts between neighbours again.
+  // Chooses the cuts between neighbors again.
   void improve();
 
   // See straight_cuts.hpp.
@@ -36,7 +36,7 @@ class PartMerger {
 
   PartLengths measure_borders() const;           // of what was opened between any two parts
   PerPart<Array<Index>> faces_of_parts() const;  // sorted
-  // Optimises the cut between two neighbours, all others fixed. Returns whether there was a better one.
+  // Optimizes the cut between two neighbors, all others fixed. Returns whether there was a better one.
   // scope: the faces of both, sorted.
   bool improve(Index a, Index b, const Array<Index>& scope, FaceGraph::Units length);
 

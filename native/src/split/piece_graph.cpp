@@ -35,7 +35,7 @@ class PieceMerger {
     }
   }
 
-  // The smallest first, with the neighbour of the longest shared border. Paths inside pieces leave the network.
+  // The smallest first, with the neighbor of the longest shared border. Paths inside pieces leave the network.
   void merge_small() {
     for (Index smallest = find_smallest(); smallest != none; smallest = find_smallest()) {
       checkpoint(operations_a_border * static_cast<double>(borders_.size()));

@@ -21,10 +21,10 @@ namespace lsgp {
 namespace {
 
 // Cost of every island, additional cost of a sliver, and cost of cuts as long as the square root of the surface's area;
-// what is added for those without a mirror image where cuts are symmetric.
+// additional cost of such cuts without a mirror image where cuts are symmetric.
 constexpr double cost_of_island = 0.8, cost_of_sliver = 2, cost_of_cut = 1, cost_of_one_side = 4;
 constexpr double sliver = 0.005;  // of the area
-// Of what islands cut to fill a square take of it: what those alike on both sides may take.
+// The share of a square that islands alike on both sides may take, relative to that of islands cut only to fill it.
 constexpr double most_demand = 1.05;
 
 // factor: as from relative_cut_factors.
@@ -122,7 +122,7 @@ class SplitRules {
     return least_cost(ends) + cost_of_one_side * one_sided / std::sqrt(surface_.geometry.total_area);
   }
 
-  // The divisions that are alike on both sides of the mirror plane, if there is one, and like one on either side.
+  // The symmetric divisions made from either side of one, if there is a mirror plane.
   Array<MapParts> mirror(const ComponentMap& map, const PerHalfedge<char>& open) const {
     Array<MapParts> out;
     if (!mirrored_) return out;
@@ -132,8 +132,8 @@ class SplitRules {
     return out;
   }
 
-  // A division of a map, or one that is like it on one side of the mirror plane or both.
-  // may_replace: whether it may.
+  // A division of a map, or a symmetric one made from one of its sides or both.
+  // may_replace: whether a symmetric division may replace the other one.
   Division cheapest(const ComponentMap& map, MapParts parts,
                     const std::function<bool(const MapParts&)>& may_replace) const {
     Array<MapParts> mirrored = mirror(map, parts.open);

@@ -18,7 +18,7 @@ struct SplitTask {
 
 // Exchanges the cuts for others (recut.hpp), unless some are kept, straight or pinned, adds cuts (split_overlaps.hpp)
 // and merges the parts across others (merge_islands.hpp) until no island overlaps itself. Transitions change only by
-// the motions of the parts. Flipped triangles necessarily overlap their neighbours and are ignored.
+// the motions of the parts. Flipped triangles necessarily overlap their neighbors and are ignored.
 // surface: its open edges, besides the cuts.
 // Returns whether anything changed.
 bool split_map(const OpenedSurface& surface, const SplitTask& task, ProgressMonitor& monitor, ComponentMap& map);

@@ -13,7 +13,7 @@ namespace lsgp {
 
 namespace {
 
-constexpr double cost_of_turning = 0.25;   // by a radian, squared, of the length of the edges before and after
+constexpr double cost_of_turning = 0.25;   // times the squared turn and the mean length of the two edges
 constexpr double operations_a_step = 200;  // of a search for a path
 constexpr int band_width = 8;              // faces on either side in which a cut may move
 constexpr double infinity = std::numeric_limits<double>::infinity();

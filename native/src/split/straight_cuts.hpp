@@ -13,7 +13,7 @@ namespace lsgp {
 using IsHeld = std::function<bool(Index face, Index other)>;
 
 // Replaces each cut between two parts by one nearby that turns less, if it is hardly longer; its ends may slide along
-// what bounds the parts.
+// the boundaries of the parts.
 // part: connected.
 void straighten_cuts(const OpenedSurface& surface, const FaceGraph& graph, const IsHeld& is_held, PerFace<Index>& part);
 

@@ -15,7 +15,7 @@ namespace {
 // Areas of triangles are compared relative to the square of their longest side.
 constexpr double strictly_convex = 1e-12;
 // A triangle at a vertex that is about to be removed may have no area: if the vertex lies on the line between two
-// neighbours, the removal dissolves it.
+// neighbors, the removal dissolves it.
 constexpr double no_area = 1e-9;
 // Sine of the angle by which an edge fails to be Delaunay before it is flipped; less is a tie.
 constexpr double delaunay_tie = 1e-10;
@@ -122,7 +122,7 @@ class IntrinsicTriangulation {
     for (Index v = 0; v < static_cast<Index>(is_cone_.size()); ++v) {
       if (!is_cone_[v]) left.push_back(v);
     }
-    // No two neighbours in one pass, which coarsens evenly and keeps degrees small.
+    // No two neighbors in one pass, which coarsens evenly and keeps degrees small.
     for (int pass = 1; !left.empty(); ++pass) {
       stuck.clear();
       for (const Index v : left) {
@@ -279,7 +279,7 @@ class IntrinsicTriangulation {
     return best != none ? best : best_tie;
   }
 
-  // Whether it was possible. Neighbours are marked as touched in this pass.
+  // Whether it was possible. Neighbors are marked as touched in this pass.
   bool remove(Index v, int pass) {
     Index h = outgoing_[v];
     do {

@@ -20,7 +20,7 @@ struct NodeGraph {
   PerNode<Index> vertex;      // none for a boundary loop
   PerNode<Index> loop;        // none for a vertex
   PerCut<Index> tail, head;   // nodes
-  PerNode<Index> parent_cut;  // the cut towards the root, none at the root
+  PerNode<Index> parent_cut;  // the cut toward the root, none at the root
   Array<Index> order;         // nodes from the root outwards
   PerCut<char> in_tree;       // the others close a loop about a handle
 };

@@ -15,7 +15,7 @@ void add_scaled(Expression& sum, Complex factor, const Expression& terms) {
 
 // If a loop around a node rotates by at least this much (|1 - e^{i curvature}|), the node's own position is eliminated:
 // a local expression in the translations of its cuts. Below it this would divide by almost zero, and the translation
-// towards the root, whose coefficient has modulus 1, is eliminated instead.
+// toward the root, whose coefficient has modulus 1, is eliminated instead.
 constexpr double clear_turn = 0.01;
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace lsgp {
 
 enum class Eliminate {
   positions,     // of nodes with clear rotation: local expressions, small coefficients
-  translations,  // towards the root, with unit coefficients: the remaining unknowns are independent lattice points
+  translations,  // toward the root, with unit coefficients: the remaining unknowns are independent lattice points
 };
 
 // Unknowns have ids: the vertices' positions, and after them the cuts' translations.

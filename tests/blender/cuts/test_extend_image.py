@@ -32,7 +32,7 @@ def pixels(image):
 
 
 def bake(obj, image):
-    """A function of space at the texels with their centre in a triangle, 0 elsewhere; returns which these are."""
+    """A function of space at the texels with their center in a triangle, 0 elsewhere; returns which these are."""
     uv_map = UvMap(obj)
     values, covered = pixels(image) * 0, np.zeros((SIZE, SIZE), bool)
     for loops in uv_map.triangles:
@@ -86,9 +86,9 @@ def test_lookups_at_both_sides_of_cuts_agree_and_islands_stay(is_float, in_edit_
     different = (after != before).any(axis=2)
     assert f'Extended "New": {different.sum()} pixels' in told
     assert not is_float or different[1:-1, 1:-1].sum() > 1000
-    neighbours = np.abs(np.diff(before, axis=1))[covered[:, 1:] & covered[:, :-1]].mean()
-    assert difference_across_cuts(ball, after) < neighbours + (0 if is_float else 1 / 255)
-    assert difference_across_cuts(ball, before) > 20 * neighbours
+    neighbors = np.abs(np.diff(before, axis=1))[covered[:, 1:] & covered[:, :-1]].mean()
+    assert difference_across_cuts(ball, after) < neighbors + (0 if is_float else 1 / 255)
+    assert difference_across_cuts(ball, before) > 20 * neighbors
     uv = f"attribute {ball.data.uv_layers.active.name}"
     assert all(uv in key or "select" in key for key in changed(mesh, snapshot(ball)))
     # A second time there is nothing left to do.

@@ -364,10 +364,10 @@ def test_a_click_on_a_row_turns_the_view_to_a_cone_that_is_out_of_sight():
             before = view.view_rotation.copy()
             assert bpy.ops.mesh.cone_select_one(vertex=vertex) == {"FINISHED"}
             yield 0.1
-            towards = view.view_rotation @ Vector((0, 0, 1))
+            toward = view.view_rotation @ Vector((0, 0, 1))
             outward = Vector(np.sign(corner_places(cube)[vertex]))
             was_seen = outward.dot(before @ Vector((0, 0, 1))) > 0
-            assert outward.dot(towards) > 0 and (view.view_rotation == before) == was_seen
+            assert outward.dot(toward) > 0 and (view.view_rotation == before) == was_seen
 
 
 def corner_places(cube):

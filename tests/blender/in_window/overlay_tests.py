@@ -145,7 +145,7 @@ def test_flipped_and_overlapping_faces_are_drawn():
     for picture, name in ((seen[name], name) for name in seen):
         tinted = np.abs(picture - plain).max(axis=2) > 0.1
         assert tinted.mean() > 0.05, name
-        # Towards the color of the preferences.
+        # Toward the color of the preferences.
         toward = np.linalg.norm(picture[tinted] - np.array(getattr(look(), name)[:3]), axis=1)
         assert (toward < np.linalg.norm(plain[tinted] - np.array(getattr(look(), name)[:3]), axis=1)).mean() > 0.95
 

@@ -22,7 +22,7 @@ SEAMLESS_ONLY = {
 
 
 class RecordingLayout:
-    """Stands for the redo panel and keeps which properties were drawn, and whether they were greyed out."""
+    """Stands for the redo panel and keeps which properties were drawn, and whether they were grayed out."""
 
     def __init__(self, drawn, active=True, is_open=True):
         self.drawn, self.active, self.is_open = drawn, active, is_open

@@ -12,8 +12,8 @@ from scenes import ANGLES, UV_ROUNDING, UvMap, add_ball, changed, edit, mark, se
 def ball_with_angle(turns):
     """A ball with one more cone of so many whole turns, and the vertex that is."""
     ball = add_ball(cuts=4)
-    towards = [v.co.normalized().dot((0.2, 1.0, -0.3)) for v in ball.data.vertices]
-    cone = int(np.argmax(towards))
+    toward = [v.co.normalized().dot((0.2, 1.0, -0.3)) for v in ball.data.vertices]
+    cone = int(np.argmax(toward))
     mark(ball, [cone])
     ball.data.attributes.new(ANGLES, "FLOAT", "POINT").data[cone].value = turns * 2 * np.pi
     edit(ball)

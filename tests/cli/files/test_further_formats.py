@@ -189,8 +189,8 @@ def test_what_a_format_takes_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyP
     ("name", "data", "said"),
     [
         ("a.ply", ply_bytes(*patch(), extras=True), ["vertex red", "vertex quality", "face flags", "element camera"]),
-        ("a.off", off_text(*patch()).replace("OFF", "COFF", 1).encode(), ["vertex colours"]),
-        ("b.off", (off_text(*patch()).rstrip() + " 255 0 0\n").encode(), ["face colours"]),
+        ("a.off", off_text(*patch()).replace("OFF", "COFF", 1).encode(), ["vertex colors"]),
+        ("b.off", (off_text(*patch()).rstrip() + " 255 0 0\n").encode(), ["face colors"]),
     ],
 )
 def test_what_an_obj_cannot_hold_is_said(tmp_path: Path, lsgp, name: str, data: bytes, said: list[str]) -> None:

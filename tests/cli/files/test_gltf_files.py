@@ -28,7 +28,7 @@ def soup(n: int = 3) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def scene(*, with_uv: bool = False) -> Builder:
     """Two meshes, the first of two primitives with materials, under nodes that turn, scale, move and mirror it; with an
-    animation, a camera, colours, a morph target, extensions, and keys of no version of the format."""
+    animation, a camera, colors, a morph target, extensions, and keys of no version of the format."""
     corners, normals, _ = soup()
     half = len(corners) // 2
     b = Builder()

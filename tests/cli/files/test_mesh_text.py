@@ -32,7 +32,7 @@ def parsed_by_python(token: bytes, kind: type) -> float | int | None:
 
 
 def numbers_of_all_sizes(count: int) -> np.ndarray:
-    """Doubles of random bits, of few decimals, powers of ten, and their neighbours."""
+    """Doubles of random bits, of few decimals, powers of ten, and their neighbors."""
     generator = np.random.default_rng(7)
     bits = generator.integers(0, 2**64, count, np.uint64).view(np.float64)
     decimals = generator.integers(-(10**9), 10**9, count) / 10.0 ** generator.integers(0, 12, count)

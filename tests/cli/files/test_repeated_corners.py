@@ -30,7 +30,7 @@ PLACES = np.random.default_rng(1).random((8, 3))
         ([0, 1, 1, 2, 3, 1], None),
     ],
 )
-def test_neighbours_that_are_one_vertex_become_one_corner_and_other_faces_go(face: list, kept: list | None) -> None:
+def test_neighbors_that_are_one_vertex_become_one_corner_and_other_faces_go(face: list, kept: list | None) -> None:
     usable = without_repeated_corners(polygon_mesh(PLACES, [[5, 6, 7], face]))
     assert faces_of(usable.mesh) == [[5, 6, 7]] + ([kept] if kept else [])
     codes = [finding.code for finding in usable.findings]

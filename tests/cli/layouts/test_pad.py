@@ -20,8 +20,8 @@ def folder(lsgp, ball_files: Path) -> Path:
     assert lsgp("unwrap", "ball.obj", "-o", "mapped.obj", "--preset", "bake").code == 0
     noise = np.random.default_rng(4).random((SIZE, SIZE, 4))
     for name, kind, channels in [
-        *[("grey8.png", "uint8", 1), ("rgb8.png", "uint8", 3), ("rgba16.png", "uint16", 4), ("rgb16.png", "uint16", 3)],
-        *[("grey16.tif", "uint16", 1), ("rgb32.tif", "float32", 3), ("grey64.tiff", "float64", 1)],
+        *[("gray8.png", "uint8", 1), ("rgb8.png", "uint8", 3), ("rgba16.png", "uint16", 4), ("rgb16.png", "uint16", 3)],
+        *[("gray16.tif", "uint16", 1), ("rgb32.tif", "float32", 3), ("gray64.tiff", "float64", 1)],
     ]:
         scale = np.iinfo(kind).max if kind[0] == "u" else 1
         pixels = (noise[..., :channels] * scale).astype(kind)
@@ -38,7 +38,7 @@ def padded(folder: Path, name: str, margin: float, *, normal_map: bool = False) 
 
 
 @pytest.mark.parametrize(
-    "name", ["grey8.png", "rgb8.png", "rgba16.png", "rgb16.png", "grey16.tif", "rgb32.tif", "grey64.tiff"]
+    "name", ["gray8.png", "rgb8.png", "rgba16.png", "rgb16.png", "gray16.tif", "rgb32.tif", "gray64.tiff"]
 )
 def test_the_file_is_what_the_library_makes(lsgp, folder: Path, name: str) -> None:
     output = f"out{Path(name).suffix}"
@@ -81,7 +81,7 @@ def test_mip_levels_are_those_of_the_library_beside_the_output(lsgp, folder: Pat
         (("rgb8.png", "--uv", "mapped.obj", "--margin", -1, "-o", "out.png"), 2, "--margin -1 is no width"),
         (("rgb8.png", "--uv", "mapped.obj", "--margin", "nan", "-o", "out.png"), 2, "--margin nan is no width"),
         (("rgb32.tif", "--uv", "mapped.obj", "--margin", 4, "-o", "out.png"), 3, "PNG has no float32"),
-        (("grey8.png", "--uv", "mapped.obj", "--margin", 4, "--normal-map", "-o", "out.png"), 3, "WRONG_SHAPE"),
+        (("gray8.png", "--uv", "mapped.obj", "--margin", 4, "--normal-map", "-o", "out.png"), 3, "WRONG_SHAPE"),
         (("text.png", "--uv", "mapped.obj", "--margin", 4, "-o", "out.png"), 3, "MALFORMED_FILE: 'text.png'"),
         (("empty.png", "--uv", "mapped.obj", "--margin", 4, "-o", "out.png"), 3, "MALFORMED_FILE: 'empty.png'"),
         (("rgb8.png", "--uv", "tiled.obj", "--margin", 4, "-o", "out.png"), 3, "ISLANDS_OUTSIDE"),

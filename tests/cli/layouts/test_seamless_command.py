@@ -115,10 +115,10 @@ def test_checker_matches_with_parity(lsgp, ball_files: Path) -> None:
         left, right = crossings.sides[a, b], crossings.sides[b, a][::-1]
         for part in np.linspace(0.05, 0.95, 19):
             places = [(1 - part) * ends[0] + part * ends[1] for ends in (left, right)]
-            # Away from the border of a square; there both colours are right.
+            # Away from the border of a square; there both colors are right.
             if min(abs(x - round(x)) for z in places for x in (z.real, z.imag)) > 1e-3:
-                colours = {int(np.floor(z.real) + np.floor(z.imag)) % 2 for z in places}
-                assert len(colours) == 1
+                colors = {int(np.floor(z.real) + np.floor(z.imag)) % 2 for z in places}
+                assert len(colors) == 1
                 compared += 1
     assert compared > 100
 

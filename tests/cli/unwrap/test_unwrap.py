@@ -263,18 +263,18 @@ def _conformal_energy(path: Path) -> float:
 def test_cuts_are_drawn_to_seam_edges(lsgp, cube_files: Path) -> None:
     corners = set(json.loads((cube_files / "corners.json").read_text())["cones"])
     mesh = read_mesh(cube_files / "cube.obj")
-    neighbours: dict[int, set[int]] = {}
+    neighbors: dict[int, set[int]] = {}
     for face in faces_of(mesh):
         for i in range(4):
-            neighbours.setdefault(face[i], set()).update((face[i - 1], face[(i + 1) % 4]))
+            neighbors.setdefault(face[i], set()).update((face[i - 1], face[(i + 1) % 4]))
     # The twelve edges of the cube: straight walks from corner to corner.
     walks = []
     for corner in sorted(corners):
-        for following in sorted(neighbours[corner]):
+        for following in sorted(neighbors[corner]):
             walk = [corner, following]
             while walk[-1] not in corners:
                 straight = 2 * mesh.positions[walk[-1]] - mesh.positions[walk[-2]]
-                walk.append(min(neighbours[walk[-1]], key=lambda v: float(((mesh.positions[v] - straight) ** 2).sum())))
+                walk.append(min(neighbors[walk[-1]], key=lambda v: float(((mesh.positions[v] - straight) ** 2).sum())))
             walks.append({tuple(sorted(pair)) for pair in pairwise(walk)})
     assert lsgp("unwrap", "cube.obj", "-o", "free.obj", "--cones", "corners.json").code == 0
     free = cut_edges(cube_files / "free.obj")

@@ -10,7 +10,7 @@ import meshes
 import numpy as np
 import pytest
 from lsgp import Surface, auto_unwrap
-from lsgp.auto_unwrap import TARGET, complete_cones
+from lsgp.auto_unwrap import TARGET, GivenCones, complete_cones
 from map_checks import codes, only
 from meshes import Mesh
 from result_check import undeclared_faults
@@ -100,7 +100,7 @@ def test_what_is_said_of_a_part_names_elements_of_the_whole_surface() -> None:
     count = len(ball.triangles)
     broken = meshes.with_zero_area(ball, 7)
     whole = surface(meshes.merge([ball, broken]))
-    completed = complete_cones(lsgp.Solver(whole), ball.cones, None, lsgp.Options())
+    completed = complete_cones(lsgp.Solver(whole), GivenCones.of(ball.cones), lsgp.Options())
     (alone,) = only(lsgp.place_cones(surface(broken)).warnings, "DEGENERATE_FACES").elements.indices
     assert only(completed.placement.warnings, "DEGENERATE_FACES").elements.indices.tolist() == [count + alone]
     # Vertices of the other part are not in the one that cones are placed on, and yet no isolated ones.
@@ -133,7 +133,7 @@ def test_a_target_that_only_the_conformal_map_misses_is_not_reported() -> None:
     paint = lsgp.preset_options("paint")
 
     def told(options: lsgp.Options, l2_stretch: float, count: int | None = None) -> list[str]:
-        completed = complete_cones(lsgp.Solver(given), (), None, options, count)
+        completed = complete_cones(lsgp.Solver(given), GivenCones.of(count=count), options)
         completed = replace(completed, placement=replace(completed.placement, warnings=[missed]))
         result = lsgp.parameterize(given, completed.cones, completed.angles, options)
         measured = replace(result, distortion=replace(result.distortion, l2_stretch=l2_stretch))

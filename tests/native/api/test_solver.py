@@ -159,8 +159,8 @@ def test_moved_cone_is_that_of_a_fresh_start() -> None:
     solver = lsgp.Solver(surface_of(mesh))
     solver.parameterize(mesh.cones, options=RAW)
     moved = mesh.cones.copy()
-    neighbours = np.unique(mesh.triangles[(mesh.triangles == moved[0]).any(axis=1)])
-    moved[0] = np.setdiff1d(neighbours, moved)[0]
+    neighbors = np.unique(mesh.triangles[(mesh.triangles == moved[0]).any(axis=1)])
+    moved[0] = np.setdiff1d(neighbors, moved)[0]
     result = solver.parameterize(moved, options=RAW)
     assert result.factorizations == 1
     assert_same(result, lsgp.parameterize(surface_of(mesh), moved, options=RAW))

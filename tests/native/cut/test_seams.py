@@ -137,9 +137,9 @@ def capped_cylinder(around: int = 16, along: int = 6) -> tuple[meshes.Mesh, np.n
     tube = meshes.cylinder(around, along, taper=0)
     positions, triangles, rims = [tube.positions], [tube.triangles], []
     for loop in oracle.boundary_loops(tube.triangles):
-        after, centre = np.roll(loop, -1), sum(map(len, positions))
+        after, center = np.roll(loop, -1), sum(map(len, positions))
         positions.append(tube.positions[loop].mean(axis=0)[None])
-        triangles.append(np.stack([after, loop, np.full(len(loop), centre)], axis=1))
+        triangles.append(np.stack([after, loop, np.full(len(loop), center)], axis=1))
         rims.append(np.stack([loop, after], axis=1))
     mesh = meshes.make(np.concatenate(positions), np.concatenate(triangles))
     edges = meshes.edges_of(tube.triangles)

@@ -11,7 +11,7 @@ from gutter_checks import (
     bake,
     both_sides,
     difference_across_cuts,
-    difference_of_neighbours,
+    difference_of_neighbors,
     inset,
     lookup,
     smeared,
@@ -43,10 +43,10 @@ def test_lookups_at_both_sides_of_cuts_agree(name: str) -> None:
     uv = inset(uv, MARGIN / SIZE)
     image, covered = bake(whole, uv, SIZE)
     padded = lsgp.pad_image(image, whole, uv, MARGIN)
-    neighbours = difference_of_neighbours(image, covered)
+    neighbors = difference_of_neighbors(image, covered)
     ours = difference_across_cuts(whole, uv, padded, 2)
     other = difference_across_cuts(whole, uv, smeared(image, covered, MARGIN), 2)
-    assert max(ours) <= 1.2 * neighbours
+    assert max(ours) <= 1.2 * neighbors
     assert ours[0] < other[0] / 2 and ours[1] < other[1] / 4
 
 
@@ -60,7 +60,7 @@ def test_maps_whose_cuts_have_edges_of_two_lengths_gain_as_well(name: str) -> No
     padded = lsgp.pad_image(image, whole, uv, MARGIN)
     ours = difference_across_cuts(whole, uv, padded, 2)
     other = difference_across_cuts(whole, uv, smeared(image, covered, MARGIN), 2)
-    assert max(ours) <= 1.2 * difference_of_neighbours(image, covered)
+    assert max(ours) <= 1.2 * difference_of_neighbors(image, covered)
     assert ours[0] < other[0] / 2 and ours[1] < other[1] / 3
 
 
@@ -250,7 +250,7 @@ def _flat(whole: lsgp.Surface) -> np.ndarray:
 
 
 def _distance_to_edges(uv: np.ndarray) -> np.ndarray:
-    """(SIZE, SIZE), pixels from the centre of each texel to the nearest of many points on edges."""
+    """(SIZE, SIZE), pixels from the center of each texel to the nearest of many points on edges."""
     share = np.linspace(0, 1, 200)[:, None]
     ends = np.roll(uv, -1, axis=1).reshape(-1, 1, 2)
     points = (uv.reshape(-1, 1, 2) * (1 - share) + ends * share).reshape(-1, 2) * SIZE

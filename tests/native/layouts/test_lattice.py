@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Moves of islands by whole cells: they lead to lattice points, and both sides of a cut match exactly afterwards."""
+"""Moves of islands by whole cells: they lead to lattice points, and both sides of a cut match exactly afterward."""
 
 from __future__ import annotations
 
@@ -72,13 +72,13 @@ def test_boxes_of_islands():
 
 
 class Fan:
-    """Triangles all around a cone of three quarter turns at `centre`, cut along one ray from it to the border.
+    """Triangles all around a cone of three quarter turns at `center`, cut along one ray from it to the border.
 
     The two sides of the cut are related by a quarter turn about the cone. The other vertices lie on a grid that float32
     resolves only near the origin.
     """
 
-    def __init__(self, centre: complex, rings: int = 5) -> None:
+    def __init__(self, center: complex, rings: int = 5) -> None:
         rng = np.random.default_rng(7)
         rays = 3 * rings  # steps of 270 degrees; the last ray is the first one's other side
         step = 2.0**-20
@@ -100,17 +100,17 @@ class Fan:
                 for corners in ((a, b, c), (a, c, d)):
                     triangles.append([number(*corner) for corner in corners])
                     uv.append([place[corner] for corner in corners])
-        z = np.array(uv) + centre
+        z = np.array(uv) + center
         self.triangles = np.array(triangles, np.int32)
         self.uv = np.stack([z.real, z.imag], axis=-1)
         chain = [0] + [number(ring, 0) for ring in range(rings)]
         self.cut = np.stack([chain[:-1], chain[1:]], axis=1).astype(np.int32)
         self.island = np.zeros(len(triangles), np.int32)
-        self.centre = centre
+        self.center = center
 
-    def mismatch(self, uv: np.ndarray, centre: complex) -> float:
-        """Largest distance of a vertex of the cut, as float32 stores it, from its sister turned about the centre."""
-        z = uv.astype(np.float32).astype(np.float64) @ (1, 1j) - centre
+    def mismatch(self, uv: np.ndarray, center: complex) -> float:
+        """Largest distance of a vertex of the cut, as float32 stores it, from its sister turned about the center."""
+        z = uv.astype(np.float32).astype(np.float64) @ (1, 1j) - center
         worst = 0.0
         for vertex in np.unique(self.cut):
             copies = np.unique(z[self.triangles == vertex])
@@ -123,9 +123,9 @@ class Fan:
 @pytest.mark.parametrize("shift", [(0, 0), (3, -2), (40, 11), (-700, 5000)])
 def test_both_sides_of_a_cut_match_exactly_wherever_an_island_goes(shift):
     fan = Fan(3 + 3j)
-    assert fan.mismatch(fan.uv, fan.centre) == 0
+    assert fan.mismatch(fan.uv, fan.center) == 0
     moved = lattice.shift_islands(fan.triangles, fan.uv, fan.island, fan.cut, np.array([shift], float))
-    assert fan.mismatch(moved, fan.centre + complex(*shift)) == 0
+    assert fan.mismatch(moved, fan.center + complex(*shift)) == 0
     assert (moved == moved.astype(np.float32)).all()
     # Rounding of a place that float32 can only half or quarter resolve.
     assert np.abs(moved - fan.uv - shift).max() <= np.spacing(np.float32(2 * np.abs(moved).max()))
@@ -133,7 +133,7 @@ def test_both_sides_of_a_cut_match_exactly_wherever_an_island_goes(shift):
 
 def test_a_plain_shift_of_what_is_far_away_would_not_match():
     fan = Fan(3 + 3j)
-    assert fan.mismatch(fan.uv + np.array([-700, 5000]), fan.centre + (-700 + 5000j)) > 0
+    assert fan.mismatch(fan.uv + np.array([-700, 5000]), fan.center + (-700 + 5000j)) > 0
 
 
 def test_islands_that_stay_keep_their_bytes_and_faces_without_a_map_stay_without():
@@ -150,4 +150,4 @@ def test_triangles_turned_the_other_way_count_as_sides(turned):
     fan.triangles[turned::3] = fan.triangles[turned::3, ::-1]
     fan.uv[turned::3] = fan.uv[turned::3, ::-1]
     moved = lattice.shift_islands(fan.triangles, fan.uv, fan.island, fan.cut, np.array([[-700.0, 5000.0]]))
-    assert fan.mismatch(moved, fan.centre + (-700 + 5000j)) == 0
+    assert fan.mismatch(moved, fan.center + (-700 + 5000j)) == 0

@@ -268,10 +268,10 @@ def test_symmetric_cones_get_other_cuts_where_that_saves_two_islands(
     unwrapping = sys.modules["lsgp.auto_unwrap"]
     result = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
     maps = MapsByCuts(*(with_rectangles(result, count) for count in (usual, mirrored, free)))
-    choices = [
+    choices = unwrapping.ConeChoices(
         unwrapping.CompletedCones(np.array([], np.int32), [], None),
         unwrapping.CompletedCones(np.array([3, 5], np.int32), [None, None], None, is_symmetric=True),
-    ]
+    )
     _, best = unwrapping.best_map(maps, choices, lsgp.preset_options("paint"))
     assert maps.made == ["usual", "mirrored", "free"][: 2 + tried]
     assert best == getattr(maps, chosen)

@@ -30,7 +30,7 @@ MODES = ("follow", "boundary", "ignore")
 CUBE = meshes.cube(2)
 
 
-def neighbours(mesh: Mesh) -> list[NDArray[np.integer]]:
+def neighbors(mesh: Mesh) -> list[NDArray[np.integer]]:
     edges = meshes.edges_of(mesh.triangles)
     both = np.concatenate([edges, edges[:, ::-1]])
     return [both[both[:, 0] == v, 1] for v in range(len(mesh.positions))]
@@ -38,7 +38,7 @@ def neighbours(mesh: Mesh) -> list[NDArray[np.integer]]:
 
 def path_of(mesh: Mesh, length: int, rng: np.random.Generator) -> list[tuple[int, int]]:
     """A walk along edges that meets no vertex twice."""
-    around = neighbours(mesh)
+    around = neighbors(mesh)
     walk = [int(rng.integers(len(mesh.positions)))]
     while len(walk) <= length:
         onward = np.setdiff1d(around[walk[-1]], walk)
@@ -50,9 +50,9 @@ def path_of(mesh: Mesh, length: int, rng: np.random.Generator) -> list[tuple[int
 
 def loop_of(mesh: Mesh, rng: np.random.Generator) -> list[tuple[int, int]]:
     """The edges around a patch of triangles, which close it off."""
-    centre = mesh.positions[rng.integers(len(mesh.positions))]
+    center = mesh.positions[rng.integers(len(mesh.positions))]
     middles = mesh.positions[mesh.triangles].mean(axis=1)
-    patch = np.argsort(np.linalg.norm(middles - centre, axis=1), kind="stable")[: rng.integers(3, 20)]
+    patch = np.argsort(np.linalg.norm(middles - center, axis=1), kind="stable")[: rng.integers(3, 20)]
     of_patch = np.sort(mesh.triangles[patch][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     edges, counts = np.unique(of_patch, axis=0, return_counts=True)
     return [tuple(edge) for edge in edges[counts == 1].tolist()]

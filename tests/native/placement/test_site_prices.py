@@ -28,7 +28,7 @@ def hidden(mesh: Mesh, front: tuple[float, float, float]) -> lsgp.Surface:
     return replace(plain, cut_costs=lsgp.cut_costs(plain, front, creases=False))
 
 
-def towards(mesh: Mesh, front: tuple[float, float, float], vertices: NDArray[np.integer]) -> NDArray[np.float64]:
+def toward(mesh: Mesh, front: tuple[float, float, float], vertices: NDArray[np.integer]) -> NDArray[np.float64]:
     """How far at the front some vertices are, 1 being the foremost vertex."""
     along = mesh.positions @ np.array(front)
     return along[vertices] / along.max()
@@ -65,7 +65,7 @@ def test_costs_that_are_the_same_everywhere_are_none(cost: float, options: dict[
 def test_no_cone_is_in_the_middle_of_what_is_seen(mesh: Mesh, target: float, front: tuple[float, float, float]) -> None:
     placed = lsgp.place_cones(hidden(mesh, front), target=target)
     assert placed.reached and len(placed.cones) >= 4
-    assert towards(mesh, front, placed.cones).max() < np.cos(np.pi / 4)
+    assert toward(mesh, front, placed.cones).max() < np.cos(np.pi / 4)
 
 
 @pytest.mark.parametrize("front", FRONTS)
@@ -108,7 +108,7 @@ def test_one_more_cone_is_where_cuts_get_cheaply_and_it_gains_half_as_much_as_an
     cones = lsgp.place_cones(costly, count=6).cones
     alone, priced = (lsgp.cone_gains(on, cones) for on in (replace(costly, cut_costs=None), costly))
     assert priced.predicted_l2.tobytes() == alone.predicted_l2.tobytes()
-    assert towards(MESHES[name], FRONTS[0], priced.best) < towards(MESHES[name], FRONTS[0], alone.best)
+    assert toward(MESHES[name], FRONTS[0], priced.best) < toward(MESHES[name], FRONTS[0], alone.best)
     # The L2 stretch is e^(2 variance) to leading order.
     gain, most = (np.log(alone.present_l2 / alone.predicted_l2[best]) for best in (priced.best, alone.best))
     assert 0.5 * most <= gain < most

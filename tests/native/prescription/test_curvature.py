@@ -81,7 +81,7 @@ def test_log_scale_is_the_one_the_angles_imply(name: str, rule: str) -> None:
 
 
 @pytest.mark.parametrize("name", [*CLOSED, *BOUNDED, "hill", "two holes"])
-def test_least_distortion_is_not_beaten_by_a_general_optimiser(name: str) -> None:
+def test_least_distortion_is_not_beaten_by_a_general_optimizer(name: str) -> None:
     mesh = {**CLOSED, **BOUNDED, **OPEN}[name]
     found = prescribe(mesh)
     _, best = oracle.least_distortion_angles(*mesh)
@@ -191,7 +191,7 @@ def test_a_sum_that_is_off_is_refused(off: float) -> None:
 
 
 @pytest.mark.parametrize("off", [1e-9, -1e-9, 9e-7, -9e-7])
-def test_a_sum_that_is_off_by_rounding_is_renormalised(off: float) -> None:
+def test_a_sum_that_is_off_by_rounding_is_renormalized(off: float) -> None:
     mesh = meshes.cube(2)
     given = np.array([1.5 * PI] * 7 + [1.5 * PI + off])
     found = prescribe(mesh, given.tolist())

@@ -82,7 +82,7 @@ def test_four_triangles_may_carry_almost_two_turns() -> None:
     [(OCTAHEDRON, 0, 2, 3.3), (ICOSAHEDRON, 0, 11, 4.2)],
     ids=["valence 4", "valence 5"],
 )
-def test_neighbours_share_two_triangles(mesh: Mesh, one: int, other: int, angle: float) -> None:
+def test_neighbors_share_two_triangles(mesh: Mesh, one: int, other: int, angle: float) -> None:
     """Each could have its angle alone, but together they have two triangles fewer."""
     both = (mesh.triangles == one).any(axis=1) | (mesh.triangles == other).any(axis=1)
     assert angle < valence(mesh, one) and 2 * angle > both.sum() == valence(mesh, one) + valence(mesh, other) - 2

@@ -46,7 +46,7 @@ def turns_of(found: lsgp.Prescription, rotation_order: int) -> np.ndarray:
 
 
 def lumped_l2(mesh: Mesh, found: lsgp.Prescription) -> float:
-    """The L2 stretch with the log scale lumped at the vertices, which the prescription minimises."""
+    """The L2 stretch with the log scale lumped at the vertices, which the prescription minimizes."""
     return oracle.predicted_l2(found.log_scale, oracle.vertex_shares(mesh.positions, mesh.triangles))
 
 

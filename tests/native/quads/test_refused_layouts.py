@@ -24,7 +24,7 @@ def lay_out(mesh: meshes.Mesh, **seamless: object) -> lsgp.Result:
 
 
 def flipped(uv: NDArray[np.float64]) -> NDArray[np.float64]:
-    """One inner vertex moved far across its neighbours."""
+    """One inner vertex moved far across its neighbors."""
     out = uv.copy()
     out[BALL.triangles == 100] += 5.3
     return out

@@ -137,7 +137,7 @@ def own_cones(name: str) -> lsgp.Result:
 
 @pytest.mark.many_solves
 def test_conformality_is_that_of_spectral_maps() -> None:
-    """On average over the closed meshes; a spectral map minimises conformal energy and nothing else."""
+    """On average over the closed meshes; a spectral map minimizes conformal energy and nothing else."""
     repaired = [own_cones(name).distortion.quasi_conformal for name in CLOSED]
     spectral = [
         unwrap(shared_mesh(name), unfold="spectral", repair=False).distortion.quasi_conformal for name in CLOSED

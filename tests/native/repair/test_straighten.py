@@ -87,7 +87,7 @@ def test_straight_sides_cost_hardly_any_stretch_and_keep_the_map_valid(name: str
     assert natural.distortion.l2_stretch < stretched < natural.distortion.l2_stretch + 0.002
 
 
-def test_a_rectangle_has_the_least_energy_among_its_neighbours() -> None:
+def test_a_rectangle_has_the_least_energy_among_its_neighbors() -> None:
     """Vertices may slide along their side, sides may move, and nothing that they can do lowers the energy."""
     mesh, result = NEARLY_RECTANGLES["panel"], of("panel")
     uv = np.zeros((len(mesh.positions), 2))

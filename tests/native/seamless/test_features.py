@@ -149,9 +149,9 @@ def test_the_usual_layout_is_made_once_where_cones_for_creases_admit_none(monkey
     unwrapping = sys.modules["lsgp.auto_unwrap"]
     box = surface(HARD["box"])
     solver = lsgp.Solver(box)
-    usual = unwrapping.complete_cones(solver, (), None, TILE)
+    usual = unwrapping.complete_cones(solver, unwrapping.GivenCones.of(), TILE)
     # Gauss-Bonnet requires more than one cone of half a turn.
-    refused = unwrapping.CompletedCones(usual.cones[:1], [np.pi], None, for_features=True)
+    refused = unwrapping.CompletedCones(usual.cones[:1], [np.pi], None)
     tried = []
 
     def parameterize(self: lsgp.Solver, cones: NDArray[np.int32], *others: Any) -> lsgp.Result:
@@ -160,7 +160,7 @@ def test_the_usual_layout_is_made_once_where_cones_for_creases_admit_none(monkey
 
     whole = lsgp.Solver.parameterize
     monkeypatch.setattr(lsgp.Solver, "parameterize", parameterize)
-    chosen, result = unwrapping.best_map(solver, [usual, refused], TILE)
+    chosen, result = unwrapping.best_map(solver, unwrapping.ConeChoices(usual, for_features=refused), TILE)
     assert tried == [1, len(usual.cones)]
     assert chosen == usual
     np.testing.assert_array_equal(result.corner_uv, lsgp.parameterize(box, usual.cones, usual.angles, TILE).corner_uv)

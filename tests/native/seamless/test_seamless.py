@@ -292,7 +292,7 @@ def test_a_part_without_a_layout_is_left_out_and_named() -> None:
 # --- parity -----------------------------------------------------------------------------------------------------------
 
 
-def colour_changes(mesh: Mesh, result: lsgp.Result) -> tuple[int, int]:
+def color_changes(mesh: Mesh, result: lsgp.Result) -> tuple[int, int]:
     """At how many points on cuts black is beside white, and the number of points looked at, all well inside cells."""
     opened = oracle.cut_open(mesh.triangles, result.cut_edges)
     z = np.empty(opened.count, complex)
@@ -301,27 +301,27 @@ def colour_changes(mesh: Mesh, result: lsgp.Result) -> tuple[int, int]:
     sides = [(1 - along) * z[ends[:, :1]] + along * z[ends[:, 1:]] for ends in (opened.left, opened.right)]
     off = np.stack([np.abs(part - np.round(part)) for side in sides for part in (side.real, side.imag)])
     inside = (off > 1e-3).all(axis=0)
-    colours = [(np.floor(side.real) + np.floor(side.imag)) % 2 for side in sides]
-    return int((colours[0] != colours[1])[inside].sum()), int(inside.sum())
+    colors = [(np.floor(side.real) + np.floor(side.imag)) % 2 for side in sides]
+    return int((colors[0] != colors[1])[inside].sum()), int(inside.sum())
 
 
 @pytest.mark.parametrize("name", ["cube", "bumpy sphere", "many cones", *HANDLES, "annulus with cones", "three holes"])
 def test_checkers_match_with_parity(name: str) -> None:
     mesh = EVERYTHING[name]
-    changes, points = colour_changes(mesh, checked(mesh, parity=True))
+    changes, points = color_changes(mesh, checked(mesh, parity=True))
     assert changes == 0 and points > 200
 
 
 @pytest.mark.parametrize("name", ["cube", "bumpy sphere", "double torus"])
 def test_checkers_do_not_match_without(name: str) -> None:
     mesh = EVERYTHING[name]
-    changes, points = colour_changes(mesh, checked(mesh))
+    changes, points = color_changes(mesh, checked(mesh))
     assert changes > points / 10
 
 
 @pytest.mark.parametrize("tiles", [8, 64, 200])
 def test_parity_on_other_grids(tiles: int) -> None:
-    assert colour_changes(BALL, checked(BALL, parity=True, tiles=tiles))[0] == 0
+    assert color_changes(BALL, checked(BALL, parity=True, tiles=tiles))[0] == 0
 
 
 # --- options and refusals ---------------------------------------------------------------------------------------------

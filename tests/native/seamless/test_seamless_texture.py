@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is seen of seamless layouts: along every cut a texture has the same colours on both sides, as it is filtered.
+"""What is seen of seamless layouts: along every cut a texture has the same colors on both sides, as it is filtered.
 
 Judged from the coordinates alone, in the single precision in which programs store them.
 """
@@ -25,7 +25,7 @@ Texture = Callable[[FloatArray], FloatArray]
 SIZE = 256  # texels of a tile
 OFFSET = 1 / 64  # texels from the cut
 ROUNDING = 1e-12
-SEEN = 0.1  # mean difference of colours from 0 to 1 across cuts that show
+SEEN = 0.1  # mean difference of colors from 0 to 1 across cuts that show
 # Along an edge, exact in floating point.
 PARTS = np.arange(1, 16)[:, None] / 16
 
@@ -113,7 +113,7 @@ def checker_texture(uv: FloatArray) -> FloatArray:
 
 
 def steepest(texels: FloatArray) -> float:
-    """The largest slope of the filtered texture, in colours a texel: that of a plane through three texels."""
+    """The largest slope of the filtered texture, in colors a texel: that of a plane through three texels."""
     across, up = (np.abs(np.roll(texels, 1, axis) - texels).max() for axis in (0, 1))
     return float(np.hypot(across, up))
 

@@ -63,7 +63,7 @@ def faults(mesh: Mesh, result: lsgp.Result, options: lsgp.Options) -> list[str]:
     return undeclared_faults(lsgp.Surface(mesh.positions, mesh.triangles), result, options)
 
 
-def neighbours(mesh: Mesh, result: lsgp.Result) -> np.ndarray:
+def neighbors(mesh: Mesh, result: lsgp.Result) -> np.ndarray:
     """(m, 3) triangles beyond the three sides; their own where the layout ends."""
     tail, head, twin = oracle.halfedges(mesh.triangles)
     cut = pairs(result.cut_edges)
@@ -74,7 +74,7 @@ def neighbours(mesh: Mesh, result: lsgp.Result) -> np.ndarray:
 
 def islands(mesh: Mesh, result: lsgp.Result) -> np.ndarray:
     """Triangles joined across uncut edges share a number, (m,)."""
-    beyond = neighbours(mesh, result)
+    beyond = neighbors(mesh, result)
     rows = np.repeat(np.arange(len(beyond)), 3)
     graph = coo_matrix((np.ones(beyond.size, bool), (rows, beyond.ravel())), (len(beyond),) * 2)
     return csgraph.connected_components(graph, directed=False)[1]
@@ -82,14 +82,14 @@ def islands(mesh: Mesh, result: lsgp.Result) -> np.ndarray:
 
 def regions(mesh: Mesh, result: lsgp.Result) -> int:
     """In how many places a layout lies on itself: pairs of triangles belong together if they share one and the others
-    are neighbours."""
+    are neighbors."""
     m = len(mesh.triangles)
     found, area = overlaps(oracle.as_complex(result.corner_uv))
     found = found[area > 1e-9 * np.abs(oracle.signed_areas(result.corner_uv))[found].min(axis=1)]
     both = np.concatenate([found, found[:, ::-1]])
     keys = np.sort(both[:, 0] * m + both[:, 1])
     a, b = keys // m, keys % m
-    beyond = neighbours(mesh, result)
+    beyond = neighbors(mesh, result)
     links = []
     for moved in [beyond[a, side] * m + b for side in range(3)] + [a * m + beyond[b, side] for side in range(3)]:
         at = np.searchsorted(keys, moved).clip(max=len(keys) - 1)

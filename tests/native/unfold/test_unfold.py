@@ -153,8 +153,8 @@ def test_a_flat_cone_between_two_cuts() -> None:
 def test_a_cone_of_two_turns() -> None:
     """4 pi, the same rotation as a flat vertex: only the metric tells them apart, so the Poisson map must."""
     mesh = meshes.icosphere(3)
-    centre = mesh.positions[mesh.triangles[mesh.triangles.min(axis=1) > 100][0]].mean(axis=0)
-    saddle = int(np.argmin(np.linalg.norm(mesh.positions - centre, axis=1)))
+    center = mesh.positions[mesh.triangles[mesh.triangles.min(axis=1) > 100][0]].mean(axis=0)
+    saddle = int(np.argmin(np.linalg.norm(mesh.positions - center, axis=1)))
     mesh = mesh._replace(cones=np.append(mesh.cones, saddle).astype(np.int32))
     result = unwrap(mesh, [1.5 * PI] * 12 + [4 * PI])
     assert_exact_transitions(mesh, result)
@@ -184,8 +184,8 @@ def test_every_vertex_a_cone() -> None:
 
 def test_cones_one_edge_apart() -> None:
     mesh = meshes.bumpy_sphere(2)
-    neighbours = np.unique(mesh.triangles[(mesh.triangles == 0).any(axis=1)])[:2]
-    mesh = mesh._replace(cones=np.unique(np.append(mesh.cones, neighbours)).astype(np.int32))
+    neighbors = np.unique(mesh.triangles[(mesh.triangles == 0).any(axis=1)])[:2]
+    mesh = mesh._replace(cones=np.unique(np.append(mesh.cones, neighbors)).astype(np.int32))
     result = unwrap(mesh)
     assert_exact_transitions(mesh, result)
 
@@ -200,7 +200,7 @@ def test_spectral_on_a_boundary_says_that_it_is_not_and_solves() -> None:
     assert oracle.metric_gap(result.corner_uv, unwrap(mesh).corner_uv) <= 1e-9
 
 
-def test_dirichlet_normalised_lambdas_are_shares_of_non_conformality() -> None:
+def test_dirichlet_normalized_lambdas_are_shares_of_non_conformality() -> None:
     """The oracle's own two eigensolvers agree, and the library's map has the smallest share there is."""
     mesh = meshes.bumpy_sphere(2)
     result = unwrap(mesh, unfold="spectral")

@@ -25,7 +25,7 @@ def moved_vertex(mesh: meshes.Mesh, uv: np.ndarray, vertex: int, place: tuple[fl
 
 def test_a_hand_made_flip_is_found() -> None:
     mesh = meshes.grid(4, 4)
-    uv = moved_vertex(mesh, flat_uv(mesh), 12, (0.5, 2.0))  # the middle pushed past its left neighbour
+    uv = moved_vertex(mesh, flat_uv(mesh), 12, (0.5, 2.0))  # the middle pushed past its left neighbor
     expected = np.flatnonzero(oracle.signed_areas(uv) <= 0)
     assert len(expected) > 0
     assert lsgp.measure_distortion(surface(mesh), uv).flipped.tolist() == expected.tolist()
@@ -114,7 +114,7 @@ def test_cone_angle_error_is_the_largest_deviation_at_a_cone() -> None:
 
 
 def test_high_distortion_is_foretold() -> None:
-    """All curvature of a sphere in three neighbouring points: nothing sensible can come of it."""
+    """All curvature of a sphere in three neighboring points: nothing sensible can come of it."""
     mesh = meshes.icosphere(3)
     mesh = mesh._replace(cones=np.sort(mesh.triangles[0]).astype(np.int32))
     found = lsgp.prescribe_curvature(surface(mesh), mesh.cones)
