@@ -16,5 +16,5 @@ def interruptible() -> Iterator[None]:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """What runs a whole suite inside a Blender takes minutes: it begins first, so that no worker waits for it at the end."""
+    """Suites inside Blenders are single tests of minutes: they begin first, so that no worker waits for one in the end."""
     items.sort(key=lambda item: item.path.name != "test_in_blender.py")
