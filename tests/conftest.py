@@ -16,5 +16,5 @@ def interruptible() -> Iterator[None]:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Suites inside Blenders are single tests of minutes: they begin first, so that no worker waits for one in the end."""
+    """Suites inside Blenders are single tests of minutes: they begin first, so that none is waited for at the end."""
     items.sort(key=lambda item: item.path.name != "test_in_blender.py")
