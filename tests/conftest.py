@@ -13,3 +13,8 @@ def interruptible() -> Iterator[None]:
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Suites inside Blenders are single tests of minutes: they begin first, so that none is waited for at the end."""
+    items.sort(key=lambda item: item.path.name != "test_in_blender.py")

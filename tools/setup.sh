@@ -6,6 +6,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK=1
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 venv=$root/build/venv
 at_once=(-n auto --maxprocesses 8)  # arguments of pytest-xdist
+slowest=(--durations=25 --durations-min=5)  # of pytest: where the time goes is printed at the end
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/cone-unwrap
 
 say() { printf '\n== %(%T)T %s\n' -1 "$*"; }

@@ -4,7 +4,8 @@
 The blocks of a document run one after the other in one folder, which has examples/model.obj to begin with, and a folder
 library with a small ball; Python blocks share their variables and find `positions` and `triangles` of the model.
 Blocks for Blender's Python are run by tests/blender/extension/test_documented_scripts.py; those that import a package
-that is not installed are left out, and the test of their document then counts as skipped.
+that is not installed, or say in a line that they take it, are left out, and the test of their document then counts as
+skipped.
 """
 
 import contextlib
@@ -51,7 +52,7 @@ def test_blocks_run_and_print_what_is_shown(document, tmp_path):
     printed: str | None = ""
     missing: set[str] = set()
     for block in blocks_of(document):
-        if block.language == "python" and block.runs and not block.in_blender and (needed := not_installed(block)):
+        if block.runs and not block.in_blender and (needed := not_installed(block)):
             missing |= needed
             printed = None
         elif block.language == "text" and printed is None:
@@ -69,8 +70,9 @@ def test_blocks_run_and_print_what_is_shown(document, tmp_path):
 
 
 def not_installed(block: Block) -> set[str]:
-    """The packages that the block imports and that are not there."""
-    names = re.findall(r"^import (\w+)", block.text, re.MULTILINE)
+    """The packages that the block imports, or says it takes, and that are not there."""
+    names = re.findall(r"^import (\w+)", block.text, re.MULTILINE) if block.language == "python" else []
+    names += re.findall(r"^# takes the package (\w+)$", block.text, re.MULTILINE)
     return {name for name in names if find_spec(name) is None}
 
 

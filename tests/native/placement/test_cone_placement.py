@@ -186,7 +186,13 @@ def test_a_target_out_of_reach_is_told() -> None:
 
 
 @pytest.mark.parametrize(
-    ("across", "along", "options"), [(5, 4, {}), (5, 4, {"lattice": "square"}), (10, 5, {}), (20, 10, {})]
+    ("across", "along", "options"),
+    [
+        (5, 4, {}),
+        (5, 4, {"lattice": "square"}),
+        (10, 5, {}),
+        pytest.param(20, 10, {}, marks=pytest.mark.many_solves),
+    ],
 )
 def test_the_number_of_cones_follows_the_genus(across: int, along: int, options: dict[str, str]) -> None:
     mesh = tunnelled_plate(across, along, 1)

@@ -17,6 +17,9 @@ from scipy.sparse.linalg import spsolve
 
 MESH = meshes.bumpy_sphere(4)
 COUNTS = (60, 61, 125, 250, 500, 1000)  # from 61 on in batches
+every_count = pytest.mark.parametrize(
+    "count", [pytest.param(count, marks=[pytest.mark.many_solves] if count > 250 else []) for count in COUNTS]
+)
 
 
 @cache
@@ -24,7 +27,7 @@ def placed(count: int) -> lsgp.Placement:
     return place(MESH, count=count)
 
 
-@pytest.mark.parametrize("count", COUNTS)
+@every_count
 def test_there_are_as_many_as_asked_for(count: int) -> None:
     cones = placed(count).cones
     assert len(cones) == len(set(cones.tolist())) == count
@@ -32,12 +35,12 @@ def test_there_are_as_many_as_asked_for(count: int) -> None:
     assert_curvature_adds_up(MESH, cones, placed(count).cone_angles)
 
 
-@pytest.mark.parametrize("count", COUNTS)
+@every_count
 def test_the_log_scale_is_that_of_the_angles(count: int) -> None:
     assert placed(count).log_scale == pytest.approx(imposed_scale(MESH, placed(count)), abs=1e-8)
 
 
-@pytest.mark.parametrize("count", COUNTS)
+@every_count
 def test_curvatures_are_the_best_for_their_places(count: int) -> None:
     """The variance falls with no exchange of curvature between cones that are at no bound."""
     cones, share = placed(count).cones, oracle.vertex_shares(MESH.positions, MESH.triangles)
@@ -49,6 +52,7 @@ def test_curvatures_are_the_best_for_their_places(count: int) -> None:
     assert np.ptp(slope[cones[free]]) <= 1e-6 * np.ptp(slope)
 
 
+@pytest.mark.many_solves
 def test_a_batch_is_about_as_good_as_one_by_one() -> None:
     excess = [placed(count).predicted_l2 - 1 for count in COUNTS]
     assert excess[1] <= 1.1 * excess[0]
@@ -57,6 +61,7 @@ def test_a_batch_is_about_as_good_as_one_by_one() -> None:
         assert after <= 0.5 * before, excess
 
 
+@pytest.mark.many_solves
 def test_back_substitutions_grow_with_the_cones() -> None:
     spent = np.array([placed(count).back_substitutions for count in COUNTS[1:]])
     a_cone = np.diff(spent) / np.diff(COUNTS[1:])

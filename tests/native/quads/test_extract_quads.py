@@ -147,7 +147,14 @@ def test_layouts_of_fewer_turns_are_traced_as_well(lattice: str) -> None:
     require_quads_of(mesh, layout.corner_uv, lsgp.extract_quads(surface(mesh), layout.corner_uv))
 
 
-@pytest.mark.parametrize("name", ["cube-768", "eight-genus2", "kitten-genus1"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "cube-768",
+        pytest.param("eight-genus2", marks=pytest.mark.many_solves),
+        pytest.param("kitten-genus1", marks=pytest.mark.many_solves),
+    ],
+)
 def test_quads_of_real_meshes(name: str) -> None:
     mesh = shared_mesh(name)
     remesh = lsgp.remesh_to_quads(surface(mesh), target=500)
