@@ -105,8 +105,8 @@ def cone() -> list[bpy.types.Object]:
     return [bpy.context.object]
 
 
-def bevelled_block() -> list[bpy.types.Object]:
-    """A block with a hole that a Boolean modifier cut, and all edges bevelled."""
+def beveled_block() -> list[bpy.types.Object]:
+    """A block with a hole that a Boolean modifier cut, and all edges beveled."""
     bpy.ops.mesh.primitive_cylinder_add(radius=0.5, depth=4)
     drill = bpy.context.object
     bpy.ops.mesh.primitive_cube_add()
@@ -206,7 +206,7 @@ MODELS = (
     torus,
     cylinder,
     cone,
-    bevelled_block,
+    beveled_block,
     scan,
     man,
     kit,
