@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Angles of cones: where they are kept, the table and its ledger, and the operators that change them."""
+"""Angles of cones: where they are stored, the table and its ledger, and the operators that change them."""
 
 import re
 from dataclasses import replace

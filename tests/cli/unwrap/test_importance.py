@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`lsgp unwrap --mode low-stretch --importance`: how the file is read and what is said where it is wrong."""
+"""`lsgp unwrap --mode low-stretch --importance`: how the file is read, and the errors of invalid files."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Islands that are cut so that they fill a square: what that changes, what it leaves, and where it is left alone."""
+"""Islands that are cut so that they fill a square: what that changes, what it preserves, and when it is not done."""
 
 from __future__ import annotations
 
