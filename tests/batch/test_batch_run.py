@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A run from the list to the summary: the bytes of single runs, a line an asset, exit codes, shards, side files."""
+"""A run from the list to the summary: the bytes of single runs, a line per asset, exit codes, shards, side files."""
 
 from __future__ import annotations
 
@@ -182,7 +182,7 @@ def test_reports_are_those_of_single_runs(batch, library: Path) -> None:
 
 
 class Sheet(HTMLParser):
-    """What a contact sheet points to, and its text."""
+    """The links and the text of a contact sheet."""
 
     def __init__(self, page: str) -> None:
         super().__init__()

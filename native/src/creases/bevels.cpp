@@ -19,10 +19,10 @@ constexpr double least_bend = 0.1;         // radians between faces of a bevel
 constexpr double most_bevel_bend = 1.1;    // the same: a chamfer has two edges, each with about half the turn
 constexpr double largest_radius = 0.05;    // of a bevel, in square roots of the component's area
 constexpr double most_area = 0.4;          // of the component
-constexpr double unit_of_turns = 1e-6;     // radians: whole numbers of them tie where rounding would decide
+constexpr double unit_of_turns = 1e-6;     // radians; turns are summed in whole units, so that equal ones tie
 constexpr double operations_a_side = 100;  // of a queue
 
-// Halfedges of edges that this is true of.
+// The halfedges whose edges satisfy the predicate.
 template <typename Is>
 PerHalfedge<char> marked(const HalfedgeMesh& mesh, Is is) {
   PerHalfedge<char> out(mesh.halfedge_count(), 0);

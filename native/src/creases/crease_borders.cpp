@@ -28,13 +28,12 @@ constexpr double least_on_bevels = 0.98;     // and creases: what is round every
 constexpr double is_curved = 0.06;           // radians at a vertex
 constexpr double is_bent = 0.25;             // radians along a border that two patches share
 constexpr double least_shared = 0.08;        // of the smaller patch's perimeter, to be unfolded with it
-constexpr double is_no_hole = 0.35;          // radians that a border's turning is off that of a hole in the plane
+constexpr double is_no_hole = 0.35;          // radians between a border's turning and that of a hole in the plane
 constexpr double operations_an_entry = 100;  // of a queue
 
 bool is_inside(const HalfedgeMesh& mesh, Index v) { return mesh.loop_of_vertex[v] == none; }
 
-// The patch of every triangle, the smallest ones added to the neighbor they meet along the longest and flattest
-// border.
+// The patch of every triangle; the smallest ones are merged with the neighbor across the longest and flattest border.
 PerTriangle<Index> find_patches(const MetricMesh& surface, const PerHalfedge<char>& crease,
                                 const Eigen::VectorXd& bend) {
   const HalfedgeMesh& mesh = surface.mesh;
@@ -50,7 +49,7 @@ PerTriangle<Index> find_patches(const MetricMesh& surface, const PerHalfedge<cha
     if (here != there) shared[here][there] += geometry.length[h] * std::cos(bend[h] / 2);
   }
   UnionFind joined(count);
-  PerPart<Index> home(count);  // of the patch that a set has become
+  PerPart<Index> home(count);  // the patch that stands for a merged set
   for (Index p = 0; p < count; ++p) home[p] = p;
   using Entry = std::pair<double, Index>;
   std::priority_queue<Entry, Array<Entry>, std::greater<>> smallest;
@@ -118,7 +117,7 @@ class Patches {
     return found.is_carried(least_beside_apexes) && found.vertex_count_elsewhere() <= most_apexes;
   }
 
-  // Where patches end that are unfolded together, the longest shares of a perimeter first.
+  // The borders that are left when patches are unfolded together, those with the largest share of a perimeter first.
   PerHalfedge<char> unfold_together() const {
     Array<SharedBorder> borders = trace();
     const auto share = [&](const SharedBorder& border) {
@@ -245,7 +244,7 @@ Array<Index> cheapest_path_across(const MetricMesh& surface, const Loops& loops,
                                   const Array<Index>& corners) {
   const HalfedgeMesh& mesh = surface.mesh;
   std::map<Index, double> distance;                // of vertices inside
-  std::map<Index, Index> from;                     // the halfedge by which
+  std::map<Index, Index> from;                     // the halfedge that leads there
   using Entry = std::tuple<double, Index, Index>;  // distance, vertex, and the halfedge where it is on another loop
   std::priority_queue<Entry, Array<Entry>, std::greater<>> queue;
   const auto step = [&](double before, Index h) {
@@ -303,8 +302,8 @@ void open_tubes(const MetricMesh& surface, PerHalfedge<char>& open) {
   }
 }
 
-// The patches of a hard surface, which end in the middle of its bevels, or else at all its creases, those beside narrow
-// strips included; none if it is none.
+// The patches of a hard surface, which end in the middle of its bevels, or else at all its creases, including those
+// beside narrow strips; none if the surface is not hard.
 std::optional<Patches> find_hard_patches(const MetricMesh& surface, const PerHalfedge<char>& crease,
                                          const Eigen::VectorXd& bend, const CreaseOptions& options) {
   const HalfedgeMesh& mesh = surface.mesh;

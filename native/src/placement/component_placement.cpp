@@ -15,7 +15,7 @@ namespace lsgp {
 
 namespace {
 
-constexpr double cheap_share = 0.5;  // of the largest gain that a place has to have that cuts get to more cheaply
+constexpr double cheap_share = 0.5;  // of the largest gain, required of a site that cuts reach more cheaply
 
 // Refuses too few cones if cuts cannot reach further sites.
 void require_reachable(const ConeChooser& chooser, const ConeChoice& choice) {
@@ -95,7 +95,7 @@ std::optional<MissingCones> missing_cones(const ConeChooser& chooser, const Cone
   return MissingCones{placed, why};
 }
 
-// The open site that gains most by its price, of those that gain nearly as much as any.
+// Among the open sites that gain nearly the most, the one with the largest gain for its price.
 Index best_place(const ConeChooser& chooser, const Eigen::VectorXd& gains, const Array<char>& open) {
   constexpr double unlimited = std::numeric_limits<double>::infinity();
   double largest = -unlimited, most = -unlimited;

@@ -13,7 +13,7 @@ namespace {
 constexpr Index small = 2000;         // triangles: all repairs of such a surface cost little
 constexpr int most_hard_repairs = 2;  // of a larger one
 constexpr Index very_large = 20000;   // triangles: too many for repairs without hope of low stretch
-constexpr int fewer_defects = 2;      // times fewer than in a map that was repaired with high stretch
+constexpr int fewer_defects = 2;      // factor, compared with a map whose repair left high stretch
 constexpr double hopeless_l2 = 2;     // as predicted: lower targets are out of reach
 constexpr double as_predicted = 1.03;
 constexpr double same_angles = 1e-9;  // of all of them
@@ -32,10 +32,10 @@ constexpr double worth_moving = 0.99;
 // no more than this of the stretch above 1.
 constexpr double more_cones = 1.25, still_worthwhile = 0.9;
 constexpr int most_enlargements = 6;
-constexpr double usual_l2 = 1.05;   // of a map that is not worth more than the stages
-constexpr double much_fewer = 0.8;  // cones, that prices are not worth
+constexpr double usual_l2 = 1.05;   // of a map that does not justify more cones than the stages have
+constexpr double much_fewer = 0.8;  // of those at cheap sites: so few at any sites are preferred
 
-// Whether one choice is nearer to a usable map.
+// Whether the first choice is nearer to a usable map.
 bool is_better(const TriedMap& a, const TriedMap& b) {
   const auto rank = [](const TriedMap& map) { return map.is_off() ? 2 : map.is_valid() ? 0 : 1; };
   return rank(a) != rank(b) ? rank(a) < rank(b) : a.is_valid() ? a.l2 < b.l2 : a.defects() < b.defects();

@@ -17,7 +17,7 @@ namespace lsgp {
 constexpr double most_tiles = 16384;  // beyond, float32 has too few digits left within a cell
 
 struct Grid {
-  double tiles, density;  // cells along the layout's longer side, and a unit of length
+  double tiles, density;  // cells along the layout's longer side, and per unit of length
   Array<QuantizedLayout> layouts;
 };
 

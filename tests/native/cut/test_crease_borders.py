@@ -24,7 +24,7 @@ SOLIDS = {
     "cube": meshes.cube(3),
     "pipe": swept.pipe(24, 8, 0.0, True),
     "hollow pipe": swept.hollow_pipe(40, 4, 0.3),
-    "plate with tunnels": tunnels.tunnelled_plate(4, 3, 1),
+    "plate with tunnels": tunnels.tunneled_plate(4, 3, 1),
     "slab of genus 2": meshes.double_torus(),
 }
 
