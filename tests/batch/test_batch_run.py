@@ -27,7 +27,14 @@ def files_in(folder: Path, suffix: str) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob(f"*{suffix}")}
 
 
-@pytest.mark.parametrize("options", [[], ["--seamless", "--tiles", "6", "--cones", "auto:8"]])
+@pytest.mark.parametrize(
+    "options",
+    [
+        [],
+        ["--seamless", "--tiles", "6", "--cones", "auto:8"],
+        ["--seamless", "--tiles", "6", "--features", "crease:60,borders"],
+    ],
+)
 def test_same_bytes_as_single_runs_and_a_line_an_asset(batch, lines_in, library: Path, options: list[str]) -> None:
     done = batch("library", "--out", "out", "--jobs", 2, *options)
     assert (done.returncode, done.stderr) == (4, "")

@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
-#include <queue>
 #include <tuple>
 
 #include "base/checkpoint.hpp"
+#include "base/least_first.hpp"
 
 namespace lsgp {
 
@@ -72,7 +71,7 @@ PerTriangle<Side> find_sides(const HalfedgeMesh& mesh, const PerTriangle<char>& 
       face);
   PerTriangle<Side> out(mesh.triangle_count());
   using Entry = std::tuple<std::int64_t, Index, Index>;  // turn, face, triangle
-  std::priority_queue<Entry, Array<Entry>, std::greater<>> queue;
+  LeastFirst<Entry> queue;
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
     if (!is_rounded[f]) queue.emplace(0, face[f], f);
   }

@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
-#include <queue>
 #include <tuple>
 #include <utility>
 
 #include "base/checkpoint.hpp"
+#include "base/least_first.hpp"
 #include "base/union_find.hpp"
 #include "creases/bevels.hpp"
 #include "creases/features.hpp"
@@ -52,7 +51,7 @@ PerTriangle<Index> find_patches(const MetricMesh& surface, const PerHalfedge<cha
   PerPart<Index> home(count);  // the patch that stands for a merged set
   for (Index p = 0; p < count; ++p) home[p] = p;
   using Entry = std::pair<double, Index>;
-  std::priority_queue<Entry, Array<Entry>, std::greater<>> smallest;
+  LeastFirst<Entry> smallest;
   for (Index p = 0; p < count; ++p) smallest.emplace(area[p], p);
   while (!smallest.empty() && smallest.top().first < least_patch * geometry.total_area) {
     checkpoint(operations_an_entry);
@@ -246,7 +245,7 @@ Array<Index> cheapest_path_across(const MetricMesh& surface, const Loops& loops,
   std::map<Index, double> distance;                // of vertices inside
   std::map<Index, Index> from;                     // the halfedge that leads there
   using Entry = std::tuple<double, Index, Index>;  // distance, vertex, and the halfedge where it is on another loop
-  std::priority_queue<Entry, Array<Entry>, std::greater<>> queue;
+  LeastFirst<Entry> queue;
   const auto step = [&](double before, Index h) {
     if (!may_cut(mesh, h)) return;
     const double after = before + cut_cost(surface, h);
