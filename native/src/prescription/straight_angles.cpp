@@ -25,6 +25,11 @@ constexpr Index most_trees = 128;
 constexpr double most_triangles = 6e5;  // of all trees together
 constexpr Index patience = 16;          // trees without progress, after which the search begins anew
 constexpr double operations_a_vertex = 100;
+// Angles beyond these leave flips, whose repair stretches, unless those of least distortion are beyond as well.
+constexpr double smallest_angle = widest_angles.smallest;
+constexpr double largest_share_of_valence = 0.75;  // of pi per triangle
+// What such an angle adds to the predicted L2 stretch: any other choice is better.
+constexpr double strained = 1e3;
 
 // Smooth random fields over the surface: sums of a few bumps.
 class RandomField {
@@ -63,6 +68,7 @@ class TreeSearch {
       : system_(system),
         cones_(cones),
         scale_(system.log_scale()),
+        least_(least),
         log_scale_(scale_.evaluate_held(least)),
         enough_l2_(enough * scale_.predicted_l2(log_scale_)),
         varied_(system.mesh()) {}
@@ -73,12 +79,13 @@ class TreeSearch {
   struct Angles {
     Eigen::VectorXd curvature;
     double at_junctions = 0;
-    double l2 = std::numeric_limits<double>::infinity();  // predicted, if usable
+    double l2 = std::numeric_limits<double>::infinity();  // predicted, with what strained angles add; if usable
     std::string failure;
   };
 
   // Whether a tree's angles are good enough; the best are kept.
   bool suffices(const CutGraph& cuts, const CutSurface& surface);
+  int count_strained(const Eigen::VectorXd& curvature) const;
   StraightenedLayout lay_out(const CutSurface& surface, bool is_conformal) const;
   Angles read(const StraightenedLayout& layout) const;
   bool search_other_trees();
@@ -89,6 +96,7 @@ class TreeSearch {
   ComponentSystem& system_;
   const ComponentCones& cones_;
   const LogScale& scale_;
+  const Eigen::VectorXd& least_;
   const Eigen::VectorXd log_scale_;
   const double enough_l2_;
   HalfedgeMesh varied_;  // with other costs of cuts
@@ -113,7 +121,19 @@ TreeSearch::Angles TreeSearch::read(const StraightenedLayout& layout) const {
     if (is_possible(mesh, cones_.vertices[i], out.curvature[i])) continue;
     out.failure = concat("a cone would keep an angle of ", degrees(2 * M_PI - out.curvature[i]));
   }
-  if (out.failure.empty()) out.l2 = scale_.predicted_l2(scale_.evaluate_held(out.curvature));
+  if (out.failure.empty()) {
+    out.l2 = scale_.predicted_l2(scale_.evaluate_held(out.curvature)) + strained * count_strained(out.curvature);
+  }
+  return out;
+}
+
+int TreeSearch::count_strained(const Eigen::VectorXd& curvature) const {
+  int out = 0;
+  for (Eigen::Index i = 0; i < curvature.size(); ++i) {
+    const double angle = 2 * M_PI - curvature[i], least_angle = 2 * M_PI - least_[i];
+    const double most = largest_share_of_valence * M_PI * valence(system_.mesh(), cones_.vertices[i]);
+    out += angle < std::min(smallest_angle, least_angle) || angle > std::max(most, least_angle);
+  }
   return out;
 }
 

@@ -154,6 +154,13 @@ def test_straightness_on_octa_flower_keeps_the_sum_and_nearly_the_best_stretch()
     assert result.distortion.l2_stretch <= 1.01 * default_map("octa-flower").distortion.l2_stretch
 
 
+@pytest.mark.parametrize("name", ["cube-768", "fandisk", "igea-16k", "max-planck-25k"])
+def test_straightness_stretches_little_more_than_least_distortion(name: str) -> None:
+    result = unwrap(shared_mesh(name), prescription="straightness")
+    assert "STRAIGHTNESS_FAILED" not in codes(result.warnings)
+    assert result.distortion.l2_stretch <= 1.5 * default_map(name).distortion.l2_stretch
+
+
 @pytest.mark.parametrize("name", ["bird", "hand-5k"])
 def test_straightness_finds_a_tree_of_cuts_that_can_be_straight(name: str) -> None:
     """Where the sides of the usual cuts would cross."""
