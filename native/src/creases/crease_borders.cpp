@@ -24,6 +24,7 @@ constexpr double least_patch = 0.0002;       // of the area: smaller ones are no
 constexpr double least_beside_apexes = 0.5;  // of the curvature, where the others carry the rest
 constexpr double most_apexes = 2;            // few enough to be cones
 constexpr double least_on_bevels = 0.98;     // and creases: what is round everywhere has as much on what is narrow
+constexpr double most_dead_ends = 0.1;       // of the vertices at creases: those of what is round and coarse fade out
 constexpr double is_curved = 0.06;           // radians at a vertex
 constexpr double is_bent = 0.25;             // radians along a border that two patches share
 constexpr double least_shared = 0.08;        // of the smaller patch's perimeter, to be unfolded with it
@@ -301,6 +302,23 @@ void open_tubes(const MetricMesh& surface, PerHalfedge<char>& open) {
   }
 }
 
+// Whether the creases of a surface end at other creases or at its borders. Where faces are large, smooth shapes bend by
+// as much here and there, along lines that begin and end anywhere. Creases that are marked may end where they like.
+bool meet_others(const HalfedgeMesh& mesh, const PerHalfedge<char>& crease, const Eigen::VectorXd& bend, double angle) {
+  PerVertex<Index> degree(mesh.vertex_count(), 0), bent(mesh.vertex_count(), 0);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (!crease[h]) continue;
+    ++degree[mesh.origin(h)];
+    bent[mesh.origin(h)] += bend[h] >= angle;
+  }
+  Index all = 0, dead_ends = 0;
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    all += degree[v] > 0;
+    dead_ends += degree[v] == 1 && bent[v] == 1 && is_inside(mesh, v);
+  }
+  return dead_ends <= most_dead_ends * all;
+}
+
 // The patches of a hard surface, which end in the middle of its bevels, or else at all its creases, including those
 // beside narrow strips; none if the surface is not hard.
 std::optional<Patches> find_hard_patches(const MetricMesh& surface, const PerHalfedge<char>& crease,
@@ -315,6 +333,7 @@ std::optional<Patches> find_hard_patches(const MetricMesh& surface, const PerHal
     out.emplace(surface, find_patches(surface, bevels->crease, bend));
     if (out->carry_curvature(least_on_bevels, bevels->is_rounded, options.most_corners)) return out;
   }
+  if (!meet_others(mesh, crease, bend, options.angle)) return std::nullopt;
   out.emplace(surface, find_patches(surface, crease, bend));
   const PerVertex<char> nowhere(mesh.vertex_count(), 0);
   if (!out->carry_curvature(CreaseCurvature::least_share, nowhere, options.most_corners)) out.reset();
