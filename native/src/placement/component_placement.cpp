@@ -56,6 +56,19 @@ void require_right(const VerifiedChoice& choice, bool has_marked) {
       {ElementKind::vertices, choice.cones.vertices});
 }
 
+// Repairing the map of a large rough surface takes a minute, and fails.
+void require_hope(const VerifiedPlacement& placement, const VerifiedChoice& choice, const PlacementTask& task) {
+  if (!task.existing.vertices.empty() || !placement.is_hopeless(choice)) return;
+  throw Error(
+      Code::solver_failed,
+      concat("This component is too rough to be flattened: with ", count(choice.cones.vertices.size(), "cone", "cones"),
+             " an L2 stretch of ", rounded(choice.cones.predicted_l2), " is predicted, and ", choice.map.defects(),
+             " of ", count(task.mesh.triangle_count(), "triangle", "triangles"),
+             " are flipped or have wrong angles. Smooth it, unwrap a version without the details, or cut it "
+             "into smaller components along seams."),
+      {ElementKind::vertices, choice.cones.vertices});
+}
+
 // If the map with the requested number of cones is unusable: says how many cones are placed without a given number, and
 // how good their map is. Empty if that map is unusable, too.
 std::string told_of_automatic(const PlacementTask& task, PlacementOptions options, ProgressMonitor& monitor,
@@ -140,6 +153,7 @@ PlacedCones place_component(const PlacementTask& task, const PlacementOptions& o
     require_room(choice.cones);
   });
   require_possible(task, out.cones);
+  if (!options.count) require_hope(placement, choice, task);
   out.missing = missing_cones(chooser, choice.cones);
   out.cones = chooser.with_angles(choice.cones);
   out.system = placement.take_system(choice.cones);

@@ -15,6 +15,7 @@ constexpr int most_hard_repairs = 2;  // of a larger one
 constexpr Index very_large = 20000;   // triangles: too many for repairs without hope of low stretch
 constexpr int fewer_defects = 2;      // factor, compared with a map whose repair left high stretch
 constexpr double hopeless_l2 = 2;     // as predicted: lower targets are out of reach
+constexpr int tangled_share = 4;      // one triangle of so many with a defect: only the final choice is repaired
 constexpr double as_predicted = 1.03;
 constexpr double same_angles = 1e-9;  // of all of them
 // Lower targets, and by how much of the stretch above 1.
@@ -90,10 +91,12 @@ VerifiedChoice VerifiedPlacement::verified(ConeChoice cones) {
   return out;
 }
 
-// Repairs take long; a map with about as many defects as one that they left with high stretch will not be better.
+// Repairs take long; a map with about as many defects as one that they left with high stretch will not be better, and
+// one that is tangled all over, as on rough surfaces, gets high stretch at best.
 bool VerifiedPlacement::is_worth_repairing(const VerifiedChoice& choice) const {
   if (!is_worth_trying(choice.cones)) return false;
   if (is_small()) return true;
+  if (is_tangled(choice.map)) return false;
   const bool promises_more =
       hopeless_defects_ == 0 || choice.map.failed || fewer_defects * choice.map.defects() < hopeless_defects_;
   return hard_repairs_ < most_hard_repairs && promises_more;
@@ -256,6 +259,15 @@ void VerifiedPlacement::take_fewer(const AutomaticCones& automatic, double misse
 }
 
 bool VerifiedPlacement::is_small() const { return chooser_.task().mesh.triangle_count() <= small; }
+
+bool VerifiedPlacement::is_tangled(const TriedMap& map) const {
+  return tangled_share * map.defects() > chooser_.task().mesh.triangle_count();
+}
+
+bool VerifiedPlacement::is_hopeless(const VerifiedChoice& choice) const {
+  const TriedMap& map = choice.map;
+  return !map.is_valid() && !map.is_repaired && is_tangled(map) && choice.cones.predicted_l2 > hopeless_l2;
+}
 
 bool VerifiedPlacement::has_many() const {
   return std::max(chooser_.options().count.value_or(0), chooser_.existing_count()) > most_one_by_one;

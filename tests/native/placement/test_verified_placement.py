@@ -238,6 +238,25 @@ def test_a_map_without_hope_of_low_stretch_is_repaired_before_it_is_told() -> No
     assert placed.mapped_l2 == pytest.approx(unwrapped(mesh, placed).distortion.l2_stretch, rel=1e-6)
 
 
+def rough_ground(cells: int, height: float) -> Mesh:
+    """A grid of unit cells, each vertex lifted at random by about this height."""
+    flat = meshes.grid(cells, cells)
+    noise = np.random.default_rng(3).normal(size=len(flat.positions))
+    return flat._replace(positions=flat.positions + np.outer(height * noise, [0, 0, 1]))
+
+
+def test_large_ground_that_is_rough_all_over_is_refused_without_repairs() -> None:
+    mesh = rough_ground(105, 4)
+    with pytest.raises(lsgp.LsgpError, match="too rough") as refused:
+        place(mesh)
+    assert refused.value.code == "SOLVER_FAILED"
+
+
+def test_smaller_rough_ground_gets_a_map() -> None:
+    mesh = rough_ground(32, 1.5)
+    assert_keeps_its_word(mesh, place(mesh))
+
+
 # --- what is told ---------------------------------------------------------------------------------------------------
 
 
