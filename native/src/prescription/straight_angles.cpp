@@ -26,8 +26,8 @@ constexpr double most_triangles = 6e5;  // of all trees together
 constexpr Index patience = 16;          // trees without progress, after which the search begins anew
 constexpr double operations_a_vertex = 100;
 // Angles beyond these leave flips, whose repair stretches, unless those of least distortion are beyond as well.
-constexpr double smallest_angle = widest_angles.smallest;
-constexpr double largest_share_of_valence = 0.75;  // of pi per triangle
+constexpr double least_straight_angle = widest_angles.smallest;
+constexpr double largest_straight_share = 0.75;  // of pi per triangle
 // What such an angle adds to the predicted L2 stretch: any other choice is better.
 constexpr double strained = 1e3;
 
@@ -40,10 +40,10 @@ class RandomField {
 
   void add_to(PerVertex<double>& field) {
     for (int bump = 0; bump < bumps; ++bump) {
-      const Index centre = static_cast<Index>(uniform() * mesh_.vertex_count());
+      const Index center = static_cast<Index>(uniform() * mesh_.vertex_count());
       const double most = height * (2 * uniform() - 1);
       for (Index v = 0; v < mesh_.vertex_count(); ++v) {
-        const double far = (mesh_.positions.row(v) - mesh_.positions.row(centre)).norm() / radius_;
+        const double far = (mesh_.positions.row(v) - mesh_.positions.row(center)).norm() / radius_;
         field[v] += most * std::exp(-far * far);
       }
       checkpoint(operations_a_vertex * mesh_.vertex_count());
@@ -131,8 +131,8 @@ int TreeSearch::count_strained(const Eigen::VectorXd& curvature) const {
   int out = 0;
   for (Eigen::Index i = 0; i < curvature.size(); ++i) {
     const double angle = 2 * M_PI - curvature[i], least_angle = 2 * M_PI - least_[i];
-    const double most = largest_share_of_valence * M_PI * valence(system_.mesh(), cones_.vertices[i]);
-    out += angle < std::min(smallest_angle, least_angle) || angle > std::max(most, least_angle);
+    const double most = largest_straight_share * M_PI * valence(system_.mesh(), cones_.vertices[i]);
+    out += angle < std::min(least_straight_angle, least_angle) || angle > std::max(most, least_angle);
   }
   return out;
 }
