@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The code blocks of the documentation, as the tests that run them need them.
+"""The code blocks of the documentation, for the tests that run them.
 
 Fences say what a block is: ```sh for the shell, ```python, ```text for what the block before prints, in excerpts;
 ```cpp, ```cmake and ```mermaid are not run. A block whose first line is "# not run by the tests: WHY" is left alone; a

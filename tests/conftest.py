@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What all tests need of the process they run in."""
+"""The process state that all tests need."""
 
 import signal
 from collections.abc import Iterator

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Textures baked from a function of space, padded in several ways, and what lookups at both sides of cuts see of it."""
+"""Textures baked from a function of space, padded in several ways, and the lookups on both sides of cuts."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a packed layout has to keep, from its corners alone: how far islands are apart, and how each was moved.
+"""Checks of packed layouts from their corners alone: distances between islands, and how each was moved.
 
 Nothing here is shared with the library.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What every finished map has to keep, stated once: exact transitions, imposed angles, honest lists of what failed."""
+"""Checks that every finished map has to pass: exact transitions, imposed angles, complete lists of defects."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces made from formulas, and their broken twins, for all tests.
+"""Surfaces generated from formulas, and broken variants, for all tests.
 
 Every function is deterministic.  Triangles are counter-clockwise seen from outside (from +z on open patches), and
 "generic" surfaces have no two equal path lengths, so that shortest paths and spanning trees on them are unique.

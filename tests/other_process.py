@@ -9,7 +9,7 @@ import sys
 
 
 def in_another_process(script: str, *arguments: object, **environment: str) -> str:
-    """What a script prints, which has to end well.  environment: variables besides those of this process."""
+    """The output of a script, which has to succeed.  environment: variables besides those of this process."""
     done = subprocess.run(
         [sys.executable, "-c", script, *map(str, arguments)],
         env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))} | environment,

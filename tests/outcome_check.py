@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether what a verb answers keeps its contract, on any surface: a result, or an error of the library.
+"""Whether the outcome of a verb fulfills its contract, on any surface: a result, or an error of the library.
 
 `result_check` judges a map by itself; added here are its place in the texture, what is left of it in single precision,
 and what errors, placements, gains, cuts and measurements have to be.

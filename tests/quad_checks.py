@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What every mesh of quads has to be, found out by means of its own."""
+"""Checks that every mesh of quads has to pass, independent of the library."""
 
 from __future__ import annotations
 

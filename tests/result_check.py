@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether a result keeps what it promises, judged from its coordinates alone, on any surface however messy.
+"""Whether a result fulfills its guarantees, judged from its coordinates alone, on any surface however messy.
 
 `map_checks` states what a map of a clean surface has to be; this module asks less and of more: whatever is wrong with
 a map must be said by a warning that names the elements.  Nothing here is shared with the library or the oracle.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What systems lack that tests ask for."""
+"""Features that some systems lack."""
 
 from __future__ import annotations
 

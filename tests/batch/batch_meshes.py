@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files of the made surfaces for the tests of batches."""
+"""Files of generated surfaces for the tests of batches."""
 
 from __future__ import annotations
 

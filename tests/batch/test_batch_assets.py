@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which assets a run has, what they are called, which shard they are in, and in which order they are handed out."""
+"""The assets of a run, their names and shards, and the order in which they are distributed to workers."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Crashes, time-outs and a lack of memory cost the asset they happen on, and no other."""
+"""Crashes, time-outs and a lack of memory only affect the asset on which they occur."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ def test_workers_end_with_the_run(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("stopped", ["killed", "interrupted"])
 def test_workers_of_a_run_that_is_stopped_end_too(tmp_path: Path, stopped: str) -> None:
-    """Also in the middle of an asset: nobody waits for it any more."""
+    """Also in the middle of an asset, whose result is not needed any more."""
     if stopped == "interrupted" and os.name == "nt":
         pytest.skip("Windows sends Ctrl-C to all processes of a console")
     for name in ("hang 1", "hang 2"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A batch writes over its assets only where that was asked for."""
+"""A batch overwrites its assets only if that was requested."""
 
 from __future__ import annotations
 

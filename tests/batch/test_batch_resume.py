@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A run that is killed goes on where it was: nothing that has ended is done again, nothing is lost."""
+"""A killed run is resumed where it ended: nothing finished is repeated, and nothing is lost."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def many(tmp_path: Path) -> Path:
 
 
 def results(out: Path) -> dict[str, tuple[int, bytes]]:
-    """Of every result when it was written, and its content."""
+    """The time of writing and the content of every result."""
     return {path.name: (path.stat().st_mtime_ns, path.read_bytes()) for path in out.glob("*.obj")}
 
 

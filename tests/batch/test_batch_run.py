@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A run from the list to the summary: the bytes of single runs, a line an asset, exit codes, shards, side files."""
+"""A run from the list to the summary: the bytes of single runs, a line per asset, exit codes, shards, side files."""
 
 from __future__ import annotations
 
@@ -27,7 +27,14 @@ def files_in(folder: Path, suffix: str) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob(f"*{suffix}")}
 
 
-@pytest.mark.parametrize("options", [[], ["--seamless", "--tiles", "6", "--cones", "auto:8"]])
+@pytest.mark.parametrize(
+    "options",
+    [
+        [],
+        ["--seamless", "--tiles", "6", "--cones", "auto:8"],
+        ["--seamless", "--tiles", "6", "--features", "crease:60,borders"],
+    ],
+)
 def test_same_bytes_as_single_runs_and_a_line_an_asset(batch, lines_in, library: Path, options: list[str]) -> None:
     done = batch("library", "--out", "out", "--jobs", 2, *options)
     assert (done.returncode, done.stderr) == (4, "")
@@ -182,7 +189,7 @@ def test_reports_are_those_of_single_runs(batch, library: Path) -> None:
 
 
 class Sheet(HTMLParser):
-    """What a contact sheet points to, and its text."""
+    """The links and the text of a contact sheet."""
 
     def __init__(self, page: str) -> None:
         super().__init__()

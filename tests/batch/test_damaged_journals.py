@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whatever is in a journal, a run goes on: a line that is damaged counts as not done, and that is said."""
+"""Any journal can be resumed: a damaged line counts as not done, which is reported."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A batch on a Dask cluster that talks TLS only: with its certificates it works, without them it is refused."""
+"""A batch on a Dask cluster that accepts TLS only: it works with the certificates and is refused without them."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The templates for farms: accepted by the validator, and a dry run of the tasks they make."""
+"""The templates for farms: accepted by the validator, and a dry run of their tasks."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ HOSTILE = [
 
 @pytest.fixture(params=HOSTILE)
 def hostile(request: pytest.FixtureRequest, tmp_path: Path, library: Path) -> tuple[Path, Path]:
-    """A library and a folder of results that have such names; a single mesh is enough."""
+    """A library and a folder of results with such names; a single mesh suffices."""
     if os.name == "nt" and set('"\n\\') & set(request.param):
         pytest.skip("Windows has no such names")
     source = tmp_path / f"in {request.param}"

@@ -62,7 +62,7 @@ def test_a_run_reads_all_journals_and_a_shard_its_own(tmp_path: Path) -> None:
 
 
 def test_a_journal_is_read_while_it_is_written(tmp_path: Path) -> None:
-    """Windows lets nobody read what is locked."""
+    """Windows does not allow locked regions to be read."""
     with Journal(tmp_path, None, keep=False) as journal:
         for name in "ab":
             journal.write(record(name))

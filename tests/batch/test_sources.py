@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a batch takes for its assets, and what it says of the rest: single meshes, lists that are none, kinds of files
+"""What a batch accepts as assets, and what it reports about the rest: single meshes, invalid lists, kinds of files
 that are not read, pipes, and output that nobody takes."""
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a worker process tells of its end and of its memory."""
+"""What a worker process reports about its exit and its memory."""
 
 from __future__ import annotations
 

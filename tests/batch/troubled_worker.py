@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A worker that comes to grief on assets by their names; on others it does its work."""
+"""A worker that fails on assets with certain names and works normally on others."""
 
 from __future__ import annotations
 

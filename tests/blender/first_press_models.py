@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What artists press Auto Unwrap on first, made from Blender's own primitives and modifiers."""
+"""Typical first models for Auto Unwrap, made from Blender's own primitives and modifiers."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def screw() -> list[bpy.types.Object]:
 
 
 def man() -> list[bpy.types.Object]:
-    """A figure by the Skin modifier, with Subdivision Surface still on it."""
+    """A figure made by the Skin modifier, with Subdivision Surface still on it."""
     mesh = bpy.data.meshes.new("Man")
     half = [(0.5, 0, 0), (0.3, 0, 1), (0.2, 0, 2), (0.9, 0, 3.1), (1.6, 0, 3.0)]
     places = [(0, 0, 2.1), (0, 0, 3.2), (0, 0, 3.5), (0, 0, 4.1)]
@@ -105,8 +105,8 @@ def cone() -> list[bpy.types.Object]:
     return [bpy.context.object]
 
 
-def bevelled_block() -> list[bpy.types.Object]:
-    """A block with a hole that a Boolean modifier cut, and all edges bevelled."""
+def beveled_block() -> list[bpy.types.Object]:
+    """A block with a hole that a Boolean modifier cut, and all edges beveled."""
     bpy.ops.mesh.primitive_cylinder_add(radius=0.5, depth=4)
     drill = bpy.context.object
     bpy.ops.mesh.primitive_cube_add()
@@ -206,7 +206,7 @@ MODELS = (
     torus,
     cylinder,
     cone,
-    bevelled_block,
+    beveled_block,
     scan,
     man,
     kit,

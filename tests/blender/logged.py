@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Codes of errors and warnings, which are in the add-on's log and not in what it reports."""
+"""Codes of errors and warnings, which the add-on logs but does not report."""
 
 import logging
 from collections.abc import Iterator

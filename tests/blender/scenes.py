@@ -79,7 +79,7 @@ def add_sphere(name: str = "Sphere") -> bpy.types.Object:
 
 
 def add_ball(name: str = "Ball", cuts: int = 3) -> bpy.types.Object:
-    """A bumpy ball of quads, its former cube corners as cones: closed, no two places alike."""
+    """A bumpy ball of quads, its former cube corners as cones: closed, without symmetry."""
     ball = add_cone_cube(name, cuts)
     for vertex in ball.data.vertices:
         x, y, z = vertex.co.normalized()
@@ -455,7 +455,7 @@ class UvMap:
         return np.array(found)
 
     def crossings(self, rotation_order: int = 4) -> list[tuple[complex, complex, float]]:
-        """For each split edge the turn and the shift that lead from one side to the other, and what they miss it by.
+        """For each split edge the turn and the shift that lead from one side to the other, and the deviation from them.
 
         The turn is the nearest one of a lattice; all is exact where that is a quarter turn.
         """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the tests of the command line share: a run that has ended, and what is in the files it wrote."""
+"""Helpers of the tests of the command line: finished runs and the content of their files."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Links of the documentation lead somewhere, and files of the repository that it names are there."""
+"""The targets of links in the documentation exist, as do the files of the repository that it names."""
 
 import re
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The model of the examples is what its script makes, and is fit for every example."""
+"""The model of the examples is the output of its script, and suitable for every example."""
 
 import importlib.util
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The reference in docs/ is complete and says what the code says."""
+"""The reference in docs/ is complete and agrees with the code."""
 
 import inspect
 import re

@@ -10,7 +10,7 @@ SUFFIXES = {".py", ".pyi", ".cpp", ".hpp", ".md", ".txt", ".toml", ".yml", ".js"
 # "Cancelled", as in Python's CancelledError, is the spelling of the error, and so of the word.
 BRITISH = re.compile(
     r"colour|behaviour|neighbour|favour|honour|\bgrey|centre|centring|\bmetres?\b|licence|catalogue|artefact|judgement"
-    r"|\b(label|model|travel|signal)l(ed|ing)\b|\bfulfils?\b|\b(to|after)wards\b"
+    r"|(label|model|travel|signal|bevel|tunnel|channel|level)l(ed|ing|er)(?![a-z])|\bfulfils?\b|\b(to|after)wards\b"
     r"|(minim|maxim|optim|normal|real|regular|organ|recogn|factor|initial|serial|equal|util"
     r"|summar|general|visual|parameter|synchron)is(e|ed|es|er|ers|ing|ation|ations)\b",
     re.IGNORECASE,

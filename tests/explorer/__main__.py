@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Explore, go on exploring, or replay what was found; exit code 1 where anything is wrong."""
+"""Explore, resume exploring, or replay a failure; exit code 1 if anything is wrong."""
 
 from __future__ import annotations
 

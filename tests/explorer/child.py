@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The child process: a step a line comes in as JSON, how it ended goes out as a line of JSON."""
+"""The child process: reads one step per line as JSON, and writes its outcome as a line of JSON."""
 
 from __future__ import annotations
 

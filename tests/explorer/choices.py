@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the choices of a random step come from: a seed, or Hypothesis, which can shrink them."""
+"""The source of the choices of random steps: a seed, or Hypothesis, which can shrink them."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A command line with the files for what a session has chosen, judged by what it prints, writes and answers."""
+"""A command line with the files of a session's choices, judged by its output, files and exit code."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sessions from plain seeds, one after the other, with a journal that tells which are done and what they found."""
+"""Sessions from seeds, one after the other, with a journal of finished sessions and their failures."""
 
 from __future__ import annotations
 

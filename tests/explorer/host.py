@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Keeps the child process in which steps are performed, so that a crash or a hang is an end of a step like others."""
+"""Manages the child process in which steps are performed, so that a crash or a hang is the outcome of a step."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a step of some kind and seed is on the mesh at hand: seams, cones, angles, pins, importance, coordinates."""
+"""The input of a step of a kind and seed on the current mesh: seams, cones, angles, pins, importance, coordinates."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a session with the library has at hand, and the steps that change it or call a verb and judge the answer."""
+"""The state of a session with the library, and the steps that change it, or call a verb and check its result."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The oracle and the made surfaces, held against what is known of them without any library."""
+"""The oracle and the generated surfaces, compared with their known properties."""
 
 from __future__ import annotations
 

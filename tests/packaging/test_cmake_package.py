@@ -13,7 +13,8 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 CONSUMER = Path(__file__).parent / "consumer"
-BUILD = ROOT / "build" / "units"  # that of the C++ tests, and kept: compiling the library takes minutes
+CPP_TESTS = ROOT / "build" / "unit_tests"  # where tools/test has compiled the library, which takes minutes
+BUILD = CPP_TESTS if (CPP_TESTS / "CMakeCache.txt").exists() else ROOT / "build" / "library"
 PATH = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Workflows that cannot run here: what they call exists, actions of others are pinned, and they may only read."""
+"""Workflows that cannot run here: what they call exists, actions are pinned, and tokens may only read."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ MESHES = [
     "cylinder-around=12-along=5-length=6-caps=0",
     "pipe-around=8-along=10-bend=1.5-caps=True",
     "ring-around=14-along=8-major=2",
-    "tunnelled-plate-across=2-along=1-thickness=1",
+    "tunneled-plate-across=2-along=1-thickness=1",
     "mixed-parts-count=5-spread=2-seed=0",
     "scale-shape=ball-exponent=-6",
     "finer-shape=holes-levels=1",

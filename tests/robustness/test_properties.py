@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What does not change the shape does not change the map: numbering, motion, scale, mirroring, company.
+"""Changes that preserve the shape preserve the map: numbering, motion, scale, mirroring, company.
 
 Cones and angles are given, so that ties in their choice cannot matter.  Where a surface has two shortest cuts the
 layouts need not be similar figures, but the maps are the same if all triangles are: that is what is compared, and the

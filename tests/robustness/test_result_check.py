@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The check of results finds what it is there to find: sound maps pass, and every way to spoil one is noticed."""
+"""The check of results works: sound maps pass, and every kind of corruption is detected."""
 
 from __future__ import annotations
 

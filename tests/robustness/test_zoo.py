@@ -70,7 +70,7 @@ def test_there_are_hundreds() -> None:
 
 def test_the_largest_are_what_they_are_for() -> None:
     """Genus 200, 3,000 holes, 2,000 parts, a vertex of 50,000 triangles, an aspect of 1e12, scales of 1e-30 to 1e30."""
-    plate = zoo.member("tunnelled-plate-across=20-along=10-thickness=1").mesh().triangles
+    plate = zoo.member("tunneled-plate-across=20-along=10-thickness=1").mesh().triangles
     assert oracle.euler_of(plate) == 2 - 2 * 200
     assert len(oracle.boundary_loops(zoo.member("holed-plate-across=60-along=50-bend=0").mesh().triangles)) == 1 + 3000
     parts = zoo.member("mixed-parts-count=2000-spread=1-seed=5").mesh().triangles

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces that are none: fins, bow ties, faces twice or turned, no area, one side only, loose vertices."""
+"""Invalid surfaces: fins, bow ties, duplicate or flipped faces, no area, one-sided ones, loose vertices."""
 
 from __future__ import annotations
 

@@ -80,7 +80,7 @@ def gear(teeth: int, depth: float, layers: int) -> Mesh:
     return body._replace(positions=body.positions * np.stack([tooth, tooth, np.ones_like(tooth)], 1))
 
 
-def bevelled_box(cells: int, bevel: float, size: tuple[float, float, float]) -> Mesh:
+def beveled_box(cells: int, bevel: float, size: tuple[float, float, float]) -> Mesh:
     """A box whose edges are rounded by a bevel that is narrow against its faces."""
     box = cube(cells)
     x = 2 * box.positions - 1
@@ -159,8 +159,8 @@ def members() -> Iterator[Member]:
         "gear", gear, each(teeth=(6, 12), depth=(0.15, 0.4), layers=(1, 3)), [{"teeth": 80, "depth": 0.1, "layers": 10}]
     )
     yield from family(
-        "bevelled-box",
-        bevelled_box,
+        "beveled-box",
+        beveled_box,
         each(cells=(4, 6), bevel=(0.05, 0.3), size=((1, 1, 1), (1, 4, 0.5))),
         [{"cells": 40, "bevel": 0.1, "size": (1, 2, 3)}],
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a member of the zoo is, and how families of them are told."""
+"""Members of the zoo, and how families of them are declared."""
 
 from __future__ import annotations
 

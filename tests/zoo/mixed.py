@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mixtures: a few meshes of the other families as parts of one, with noise, sizes and damage at random, by a seed."""
+"""Mixtures: a few meshes of other families as parts of one, with random noise, sizes and damage by a seed."""
 
 from __future__ import annotations
 

@@ -11,16 +11,16 @@ from meshes import Mesh, bumpy_sphere, cube, make, subdivide, voxels
 from .member import Member, each, family
 
 
-def tunnelled_plate(across: int, along: int, thickness: int) -> Mesh:
+def tunneled_plate(across: int, along: int, thickness: int) -> Mesh:
     """A block of cells with across x along straight tunnels through it: as many handles."""
     filled = np.ones((2 * across + 1, 2 * along + 1, thickness), bool)
     filled[1::2, 1::2] = False
     return voxels(filled)
 
 
-def smooth_tunnelled_plate(across: int, along: int) -> Mesh:
+def smooth_tunneled_plate(across: int, along: int) -> Mesh:
     """The same with finer triangles and a gentle bend."""
-    mesh = subdivide(tunnelled_plate(across, along, 1))
+    mesh = subdivide(tunneled_plate(across, along, 1))
     x, y, z = mesh.positions.T
     return mesh._replace(positions=np.stack([x, y, z + 0.1 * np.sin(0.6 * x) * np.cos(0.5 * y)], 1))
 
@@ -74,8 +74,8 @@ def box_with_handles(cells: int, handles: int, seed: int) -> Mesh:
 
 def members() -> Iterator[Member]:
     yield from family(
-        "tunnelled-plate",
-        tunnelled_plate,
+        "tunneled-plate",
+        tunneled_plate,
         each(across=(1, 2, 4), along=(1, 3), thickness=(1, 3)),
         [
             {"across": 10, "along": 5, "thickness": 1},
@@ -84,7 +84,7 @@ def members() -> Iterator[Member]:
         ],
     )
     yield from family(
-        "bent-tunnelled-plate", smooth_tunnelled_plate, each(across=(1, 2), along=(1, 2)), [{"across": 10, "along": 10}]
+        "bent-tunneled-plate", smooth_tunneled_plate, each(across=(1, 2), along=(1, 2)), [{"across": 10, "along": 10}]
     )
     yield from family("sponge", sponge, each(cells=(1, 2)), each(cells=(4, 5)))
     yield from family(

@@ -24,7 +24,7 @@ import lsgp
 import zoo
 from lsgp.io.mesh_files import parse_mesh
 from lsgp.io.polygons import triangulate
-from zoo.tunnels import smooth_tunnelled_plate
+from zoo.tunnels import smooth_tunneled_plate
 
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "meshes"
 COLUMNS = ("mesh", "triangles", "cones", "predicted L2", "map L2", "defects", "maps", "place s", "told")
@@ -56,7 +56,7 @@ def of_folders(folders: list[Path]) -> Iterator[tuple[str, Callable[[], lsgp.Sur
 def of_plates(tunnels: list[int]) -> Iterator[tuple[str, Callable[[], lsgp.Surface]]]:
     for count in tunnels:
         across = max(n for n in range(1, math.isqrt(count) + 1) if count % n == 0)
-        plate = smooth_tunnelled_plate(across, count // across)
+        plate = smooth_tunneled_plate(across, count // across)
         yield f"plate of genus {count}", lambda plate=plate: lsgp.Surface(plate.positions, plate.triangles)
 
 

@@ -57,7 +57,7 @@ FILES = (
 )
 GENERATED = {
     "box": lambda: closed.box(4, (1, 1.5, 2)),
-    "bevelled block": lambda: closed.bevelled_box(8, 0.1, (1, 1.5, 2)),
+    "beveled block": lambda: closed.beveled_box(8, 0.1, (1, 1.5, 2)),
     "gear": lambda: closed.gear(12, 0.3, 2),
     "spring": lambda: swept.spring(4, 10, True),
     "knot": lambda: swept.knot(2, 3, 10),

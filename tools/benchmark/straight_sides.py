@@ -37,7 +37,7 @@ def barrel(around: int, along: int) -> Mesh:
 
 
 GENERATED = {
-    "bevelled block": closed.bevelled_box(8, 0.1, (1, 1.5, 2)),
+    "beveled block": closed.beveled_box(8, 0.1, (1, 1.5, 2)),
     "barrel": barrel(48, 8),
     "hollow pipe": swept.pipe(24, 8, 0.0, True),
     "gear": closed.gear(12, 0.3, 2),

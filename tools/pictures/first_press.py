@@ -44,7 +44,7 @@ MODELS = (
     models.text,
     models.screw,
     models.torus,
-    models.bevelled_block,
+    models.beveled_block,
     models.kit,
     models.cylinder,
     models.cone,

@@ -14,6 +14,7 @@
 #include "base/thread_team.hpp"
 #include "pipeline/straightening.hpp"
 #include "plane/overlaps.hpp"
+#include "plane/predicates.hpp"
 #include "repair/straight_sides.hpp"
 #include "seamless/exact_layout.hpp"
 #include "split/compact_islands.hpp"
@@ -300,7 +301,7 @@ PerPart<char> Assembly::find_feature_axes(const Solved& solved) {
     if (!mesh.feature[h]) continue;
     const Complex edge =
         solved.map.position[cut_mesh.copy_of_corner[next(h)]] - solved.map.position[cut_mesh.copy_of_corner[h]];
-    if (edge.real() == 0 || edge.imag() == 0) out[solved.island[h / 3]] = 1;
+    if (is_along_axis(edge)) out[solved.island[h / 3]] = 1;
   }
   return out;
 }
@@ -326,7 +327,7 @@ void Assembly::add_opened_seams() {
 
 void Assembly::report_flat_cones() {
   const auto is_cone = [&](Index v) { return !std::isnan(cone_angle_[v]); };
-  sort_unique(flat_cones_);  // a vertex shared by components is one of each
+  sort_unique(flat_cones_);  // a vertex shared by components is listed by each
   flat_cones_.erase(std::remove_if(flat_cones_.begin(), flat_cones_.end(), is_cone), flat_cones_.end());
   if (flat_cones_.empty()) return;
   result_.seamless->flat_cones = flat_cones_;  // angles are rounded for seamless layouts alone

@@ -7,6 +7,7 @@
 #include "base/array.hpp"
 #include "base/progress_monitor.hpp"
 #include "base/text.hpp"
+#include "cut/cut_cost.hpp"
 #include "lsgp/lsgp.hpp"
 #include "mesh/edge_table.hpp"
 #include "mesh/geometry.hpp"
@@ -18,10 +19,10 @@ namespace lsgp {
 
 namespace {
 
-// The factor of a crease: 1 up to the smaller angle, the least from the larger one on.
+// The factor of a crease: 1 where the surface is smooth, the least from the largest angle on.
 double crease_factor(double angle) {
-  constexpr double smallest = 30 * M_PI / 180, largest = 50 * M_PI / 180, least = 0.12;
-  const double bend = std::clamp((angle - smallest) / (largest - smallest), 0.0, 1.0);
+  constexpr double largest = 50 * M_PI / 180, least = 0.12;
+  const double bend = std::clamp((angle - smooth_bend) / (largest - smooth_bend), 0.0, 1.0);
   return 1 - (1 - least) * bend * bend * (3 - 2 * bend);
 }
 

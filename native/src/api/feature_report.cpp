@@ -6,16 +6,15 @@
 #include "api/vertex_pairs.hpp"
 #include "base/text.hpp"
 #include "lsgp/lsgp.hpp"
+#include "plane/predicates.hpp"
 #include "seamless/exact_layout.hpp"
 
 namespace lsgp {
 
 namespace {
 
-// As stored, the two ends have one coordinate in common.
-bool is_along_axis(const CornerPositions& corners, Index h) {
-  const Complex edge = as_stored(corners[next(h)]) - as_stored(corners[h]);
-  return (edge.real() == 0) != (edge.imag() == 0);
+bool is_stored_along_axis(const CornerPositions& corners, Index h) {
+  return is_along_axis(as_stored(corners[next(h)]) - as_stored(corners[h]));
 }
 
 const char* words_of(ReleaseReason reason) {
@@ -41,7 +40,7 @@ void MarkedFeatures::add(const Component& component, const ComponentMap& map, co
     if (!mesh.feature[h] || (twin != none && twin < h)) continue;
     const Index tail = component.source_vertex[mesh.origin(h)], head = component.source_vertex[mesh.target(h)];
     length_ += (positions.row(head) - positions.row(tail)).norm();
-    if (is_along_axis(corners, h) && (twin == none || is_along_axis(corners, twin))) continue;
+    if (is_stored_along_axis(corners, h) && (twin == none || is_stored_along_axis(corners, twin))) continue;
     const ReleaseReason reason = map.release_reasons.empty() ? ReleaseReason::unsupported : map.release_reasons[h];
     Array<Index>& edges = released_[static_cast<std::size_t>(reason)];
     edges.insert(edges.end(), {tail, head});

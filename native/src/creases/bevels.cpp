@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
-#include <queue>
 #include <tuple>
 
 #include "base/checkpoint.hpp"
+#include "base/least_first.hpp"
 
 namespace lsgp {
 
@@ -19,10 +18,10 @@ constexpr double least_bend = 0.1;         // radians between faces of a bevel
 constexpr double most_bevel_bend = 1.1;    // the same: a chamfer has two edges, each with about half the turn
 constexpr double largest_radius = 0.05;    // of a bevel, in square roots of the component's area
 constexpr double most_area = 0.4;          // of the component
-constexpr double unit_of_turns = 1e-6;     // radians: whole numbers of them tie where rounding would decide
+constexpr double unit_of_turns = 1e-6;     // radians; turns are summed in whole units, so that equal ones tie
 constexpr double operations_a_side = 100;  // of a queue
 
-// Halfedges of edges that this is true of.
+// The halfedges whose edges satisfy the predicate.
 template <typename Is>
 PerHalfedge<char> marked(const HalfedgeMesh& mesh, Is is) {
   PerHalfedge<char> out(mesh.halfedge_count(), 0);
@@ -72,7 +71,7 @@ PerTriangle<Side> find_sides(const HalfedgeMesh& mesh, const PerTriangle<char>& 
       face);
   PerTriangle<Side> out(mesh.triangle_count());
   using Entry = std::tuple<std::int64_t, Index, Index>;  // turn, face, triangle
-  std::priority_queue<Entry, Array<Entry>, std::greater<>> queue;
+  LeastFirst<Entry> queue;
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
     if (!is_rounded[f]) queue.emplace(0, face[f], f);
   }

@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
-#include <queue>
 #include <tuple>
 #include <utility>
 
 #include "base/checkpoint.hpp"
+#include "base/least_first.hpp"
 #include "base/union_find.hpp"
 #include "creases/bevels.hpp"
 #include "creases/features.hpp"
@@ -25,16 +24,16 @@ constexpr double least_patch = 0.0002;       // of the area: smaller ones are no
 constexpr double least_beside_apexes = 0.5;  // of the curvature, where the others carry the rest
 constexpr double most_apexes = 2;            // few enough to be cones
 constexpr double least_on_bevels = 0.98;     // and creases: what is round everywhere has as much on what is narrow
+constexpr double most_dead_ends = 0.1;       // of the vertices at creases: those of what is round and coarse fade out
 constexpr double is_curved = 0.06;           // radians at a vertex
 constexpr double is_bent = 0.25;             // radians along a border that two patches share
 constexpr double least_shared = 0.08;        // of the smaller patch's perimeter, to be unfolded with it
-constexpr double is_no_hole = 0.35;          // radians that a border's turning is off that of a hole in the plane
+constexpr double is_no_hole = 0.35;          // radians between a border's turning and that of a hole in the plane
 constexpr double operations_an_entry = 100;  // of a queue
 
 bool is_inside(const HalfedgeMesh& mesh, Index v) { return mesh.loop_of_vertex[v] == none; }
 
-// The patch of every triangle, the smallest ones added to the neighbor they meet along the longest and flattest
-// border.
+// The patch of every triangle; the smallest ones are merged with the neighbor across the longest and flattest border.
 PerTriangle<Index> find_patches(const MetricMesh& surface, const PerHalfedge<char>& crease,
                                 const Eigen::VectorXd& bend) {
   const HalfedgeMesh& mesh = surface.mesh;
@@ -50,10 +49,10 @@ PerTriangle<Index> find_patches(const MetricMesh& surface, const PerHalfedge<cha
     if (here != there) shared[here][there] += geometry.length[h] * std::cos(bend[h] / 2);
   }
   UnionFind joined(count);
-  PerPart<Index> home(count);  // of the patch that a set has become
+  PerPart<Index> home(count);  // the patch that stands for a merged set
   for (Index p = 0; p < count; ++p) home[p] = p;
   using Entry = std::pair<double, Index>;
-  std::priority_queue<Entry, Array<Entry>, std::greater<>> smallest;
+  LeastFirst<Entry> smallest;
   for (Index p = 0; p < count; ++p) smallest.emplace(area[p], p);
   while (!smallest.empty() && smallest.top().first < least_patch * geometry.total_area) {
     checkpoint(operations_an_entry);
@@ -118,7 +117,7 @@ class Patches {
     return found.is_carried(least_beside_apexes) && found.vertex_count_elsewhere() <= most_apexes;
   }
 
-  // Where patches end that are unfolded together, the longest shares of a perimeter first.
+  // The borders that are left when patches are unfolded together, those with the largest share of a perimeter first.
   PerHalfedge<char> unfold_together() const {
     Array<SharedBorder> borders = trace();
     const auto share = [&](const SharedBorder& border) {
@@ -245,9 +244,9 @@ Array<Index> cheapest_path_across(const MetricMesh& surface, const Loops& loops,
                                   const Array<Index>& corners) {
   const HalfedgeMesh& mesh = surface.mesh;
   std::map<Index, double> distance;                // of vertices inside
-  std::map<Index, Index> from;                     // the halfedge by which
+  std::map<Index, Index> from;                     // the halfedge that leads there
   using Entry = std::tuple<double, Index, Index>;  // distance, vertex, and the halfedge where it is on another loop
-  std::priority_queue<Entry, Array<Entry>, std::greater<>> queue;
+  LeastFirst<Entry> queue;
   const auto step = [&](double before, Index h) {
     if (!may_cut(mesh, h)) return;
     const double after = before + cut_cost(surface, h);
@@ -303,8 +302,25 @@ void open_tubes(const MetricMesh& surface, PerHalfedge<char>& open) {
   }
 }
 
-// The patches of a hard surface, which end in the middle of its bevels, or else at all its creases, those beside narrow
-// strips included; none if it is none.
+// Whether the creases of a surface end at other creases or at its borders. Where faces are large, smooth shapes bend by
+// as much here and there, along lines that begin and end anywhere. Creases that are marked may end where they like.
+bool meet_others(const HalfedgeMesh& mesh, const PerHalfedge<char>& crease, const Eigen::VectorXd& bend, double angle) {
+  PerVertex<Index> degree(mesh.vertex_count(), 0), bent(mesh.vertex_count(), 0);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (!crease[h]) continue;
+    ++degree[mesh.origin(h)];
+    bent[mesh.origin(h)] += bend[h] >= angle;
+  }
+  Index all = 0, dead_ends = 0;
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    all += degree[v] > 0;
+    dead_ends += degree[v] == 1 && bent[v] == 1 && is_inside(mesh, v);
+  }
+  return dead_ends <= most_dead_ends * all;
+}
+
+// The patches of a hard surface, which end in the middle of its bevels, or else at all its creases, including those
+// beside narrow strips; none if the surface is not hard.
 std::optional<Patches> find_hard_patches(const MetricMesh& surface, const PerHalfedge<char>& crease,
                                          const Eigen::VectorXd& bend, const CreaseOptions& options) {
   const HalfedgeMesh& mesh = surface.mesh;
@@ -317,6 +333,7 @@ std::optional<Patches> find_hard_patches(const MetricMesh& surface, const PerHal
     out.emplace(surface, find_patches(surface, bevels->crease, bend));
     if (out->carry_curvature(least_on_bevels, bevels->is_rounded, options.most_corners)) return out;
   }
+  if (!meet_others(mesh, crease, bend, options.angle)) return std::nullopt;
   out.emplace(surface, find_patches(surface, crease, bend));
   const PerVertex<char> nowhere(mesh.vertex_count(), 0);
   if (!out->carry_curvature(CreaseCurvature::least_share, nowhere, options.most_corners)) out.reset();

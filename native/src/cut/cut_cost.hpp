@@ -2,10 +2,15 @@
 // The cost of a cut: permitted edges and their weighted lengths.
 #pragma once
 
+#include <cmath>
+
 #include "mesh/geometry.hpp"
 #include "mesh/topology.hpp"
 
 namespace lsgp {
+
+// Cuts are cheaper along edges at which the normals turn by more than this, radians.
+constexpr double smooth_bend = 30 * M_PI / 180;
 
 // A cut edge is an interior edge of the original mesh.
 inline bool may_cut(const HalfedgeMesh& mesh, Index h) { return mesh.twin[h] != none && mesh.cuttable[h]; }

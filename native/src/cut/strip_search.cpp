@@ -2,12 +2,11 @@
 #include "cut/strip_search.hpp"
 
 #include <algorithm>
-#include <functional>
-#include <queue>
 #include <utility>
 #include <vector>
 
 #include "base/checkpoint.hpp"
+#include "base/least_first.hpp"
 
 namespace lsgp {
 
@@ -80,7 +79,7 @@ CutPath StripSearch::cross(const Side& from, const Side& to, const Array<Index>&
   constexpr double operations_a_vertex = 100;
   const HalfedgeMesh& mesh = network_.mesh;
   using Entry = std::pair<double, Index>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  LeastFirst<Entry> queue;
   const Index search = ++searches_;
   const auto is_inside = [&](Index v) {
     return network_.degree[v] == 0 && !network_.is_on_border(v) && v != from.lone;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mesh/nearest_distance.hpp"
 
-#include <functional>
 #include <limits>
-#include <queue>
 #include <utility>
+
+#include "base/least_first.hpp"
 
 namespace lsgp {
 
@@ -15,7 +15,7 @@ NearestDistance::NearestDistance(const MetricMesh& surface)
 
 void NearestDistance::add(const Array<Index>& vertices) {
   using Reached = std::pair<double, Index>;
-  std::priority_queue<Reached, Array<Reached>, std::greater<>> reached;
+  LeastFirst<Reached> reached;
   const auto reach = [&](Index v, double distance) {
     if (!(distance < far_[v])) return;
     far_[v] = distance;

@@ -254,58 +254,56 @@ void report_turned(const Orientation& orientation, std::vector<Finding>& finding
        {ElementKind::triangles, turned}});
 }
 
-}  // namespace
-
-Index label_parts(const HalfedgeMesh& mesh, const PerHalfedge<char>& open, PerTriangle<Index>& part) {
-  UnionFind parts(mesh.triangle_count());
-  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
-    if (!open[h] && h < mesh.twin[h]) parts.unite(h / 3, mesh.twin[h] / 3);
+// Takes triangles that coincide with an earlier one out of `edges` and marks them in `skip`.
+Array<std::pair<Index, Index>> leave_out_duplicates(const Surface& surface, PerTriangle<char>& skip, EdgeTable& edges,
+                                                    std::vector<Finding>& findings) {
+  Array<std::pair<Index, Index>> duplicates = find_duplicates(surface, edges);
+  if (duplicates.empty()) return duplicates;
+  Array<Index> doubled;
+  for (const auto& [f, original] : duplicates) {
+    skip[f] = 1;
+    doubled.push_back(f);
   }
-  part.resize(mesh.triangle_count());
-  Index count = 0;
-  for (Index f = 0; f < mesh.triangle_count(); ++f) {
-    const Index lowest = parts.find(f);
-    part[f] = lowest == f ? count++ : part[lowest];
-  }
-  return count;
+  edges = EdgeTable(surface, skip);
+  findings.push_back({Code::duplicate_face,
+                      concat(count(doubled.size(), "triangle coincides", "triangles coincide"),
+                             " with another one and got its coordinates. Delete duplicate faces to avoid this note."),
+                      {ElementKind::triangles, doubled}});
+  return duplicates;
 }
 
-Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std::vector<Finding>& findings) {
-  // Halfedges, edges while they are sorted, and the geometry that follows.
-  constexpr double bytes_a_triangle = 250;
-  require_memory(bytes_a_triangle * static_cast<double>(surface.triangles.rows()));
-  Topology topology;
-  PerTriangle<char> skip(surface.triangles.rows(), 0);
-  EdgeTable edges(surface, skip);
-  topology.duplicates = find_duplicates(surface, edges);
-  if (!topology.duplicates.empty()) {
-    Array<Index> doubled;
-    for (const auto& [f, original] : topology.duplicates) {
-      skip[f] = 1;
-      doubled.push_back(f);
-    }
-    edges = EdgeTable(surface, skip);
-    findings.push_back({Code::duplicate_face,
-                        concat(count(doubled.size(), "triangle coincides", "triangles coincide"),
-                               " with another one and got its coordinates. Delete duplicate faces to avoid this note."),
-                        {ElementKind::triangles, doubled}});
-  }
-  const PerEdge<char> cuttable =
-      surface.edges ? mark_edges(edges, *surface.edges, Code::edge_not_in_mesh,
-                                 "are not edges of a triangle. Pass edges of this mesh as cuttable edges.")
-                    : PerEdge<char>(edges.count(), 1);
-  const PerEdge<double> factor = cut_factors(edges, surface);
-  const PerEdge<char> seam = mark_edges(edges, surface.seams, Code::seam_not_an_edge,
-                                        "are marked as seams but are not edges. Mark edges of this mesh.");
-  const PerEdge<char> border = mark_edges(edges, surface.borders, Code::edge_not_in_mesh,
-                                          "are given as borders but are not edges. Pass edges of this mesh.");
-  const PerEdge<char> feature = mark_edges(edges, surface.features, Code::edge_not_in_mesh,
-                                           "are given as features but are not edges. Pass edges of this mesh.");
-  const PerHalfedge<Index> twin =
-      join_halfedges(edges, border, seam, open_seams, static_cast<Index>(3 * surface.triangles.rows()));
-  const Orientation orientation = orient(surface, skip, twin);
+// What the caller says of edges.
+struct EdgeMarks {
+  PerEdge<char> cuttable, seam, border, feature;
+  PerEdge<double> factor;  // empty: 1
+};
 
-  PerComponent<Component>& components = topology.components;
+EdgeMarks marks_of(const Surface& surface, const EdgeTable& edges) {
+  return {surface.edges ? mark_edges(edges, *surface.edges, Code::edge_not_in_mesh,
+                                     "are not edges of a triangle. Pass edges of this mesh as cuttable edges.")
+                        : PerEdge<char>(edges.count(), 1),
+          mark_edges(edges, surface.seams, Code::seam_not_an_edge,
+                     "are marked as seams but are not edges. Mark edges of this mesh."),
+          mark_edges(edges, surface.borders, Code::edge_not_in_mesh,
+                     "are given as borders but are not edges. Pass edges of this mesh."),
+          mark_edges(edges, surface.features, Code::edge_not_in_mesh,
+                     "are given as features but are not edges. Pass edges of this mesh."),
+          cut_factors(edges, surface)};
+}
+
+// A surface's edges, how its triangles are joined across them, and which of these are turned over.
+struct JoinedTriangles {
+  const EdgeTable& edges;
+  const EdgeMarks& marks;
+  const PerHalfedge<Index>& twin;
+  const Orientation& orientation;
+};
+
+// Components with their halfedge meshes, those that are not orientable without.
+PerComponent<Component> build_components(const Surface& surface, const JoinedTriangles& joined) {
+  const Orientation& orientation = joined.orientation;
+  const EdgeMarks& marks = joined.marks;
+  PerComponent<Component> components;
   components.resize(orientation.orientable.size());
   PerTriangle<Index> local_triangle(surface.triangles.rows());
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
@@ -329,22 +327,54 @@ Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std
     mesh.twin.resize(mesh.halfedge_count());
     mesh.cuttable.resize(mesh.halfedge_count());
     mesh.seam.resize(mesh.halfedge_count());
-    if (!factor.empty()) mesh.cut_factor.resize(mesh.halfedge_count());
+    if (!marks.factor.empty()) mesh.cut_factor.resize(mesh.halfedge_count());
     for (const Index f : component.source_triangle) {
       for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-        const Index edge = edges.edge_of(h), local = local_halfedge(h);
-        mesh.cuttable[local] = cuttable[edge];
-        mesh.seam[local] = seam[edge];
-        if (feature[edge]) mark_feature(local, mesh);
-        if (!factor.empty()) mesh.cut_factor[local] = factor[edge];
-        mesh.twin[local] = twin[h] == none ? none : local_halfedge(twin[h]);
+        const Index edge = joined.edges.edge_of(h), local = local_halfedge(h);
+        mesh.cuttable[local] = marks.cuttable[edge];
+        mesh.seam[local] = marks.seam[edge];
+        if (marks.feature[edge]) mark_feature(local, mesh);
+        if (!marks.factor.empty()) mesh.cut_factor[local] = marks.factor[edge];
+        mesh.twin[local] = joined.twin[h] == none ? none : local_halfedge(joined.twin[h]);
       }
     }
     number_vertices(surface, component);
     measure_topology(mesh);
   }
+  return components;
+}
+
+}  // namespace
+
+Index label_parts(const HalfedgeMesh& mesh, const PerHalfedge<char>& open, PerTriangle<Index>& part) {
+  UnionFind parts(mesh.triangle_count());
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (!open[h] && h < mesh.twin[h]) parts.unite(h / 3, mesh.twin[h] / 3);
+  }
+  part.resize(mesh.triangle_count());
+  Index count = 0;
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    const Index lowest = parts.find(f);
+    part[f] = lowest == f ? count++ : part[lowest];
+  }
+  return count;
+}
+
+Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std::vector<Finding>& findings) {
+  // Halfedges, edges while they are sorted, and the geometry that follows.
+  constexpr double bytes_a_triangle = 250;
+  require_memory(bytes_a_triangle * static_cast<double>(surface.triangles.rows()));
+  Topology topology;
+  PerTriangle<char> skip(surface.triangles.rows(), 0);
+  EdgeTable edges(surface, skip);
+  topology.duplicates = leave_out_duplicates(surface, skip, edges, findings);
+  const EdgeMarks marks = marks_of(surface, edges);
+  const PerHalfedge<Index> twin =
+      join_halfedges(edges, marks.border, marks.seam, open_seams, static_cast<Index>(3 * surface.triangles.rows()));
+  const Orientation orientation = orient(surface, skip, twin);
+  topology.components = build_components(surface, {edges, marks, twin, orientation});
   report_crowded_edges(surface, edges, findings);
-  report_fans(components, mark_opened(surface, edges, twin, orientation), findings);
+  report_fans(topology.components, mark_opened(surface, edges, twin, orientation), findings);
   report_turned(orientation, findings);
   return topology;
 }

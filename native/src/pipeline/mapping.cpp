@@ -222,15 +222,14 @@ void Mapping::cut(ComponentSystem& system, const ComponentTask& task, ComponentM
     const bool flat = task.cones.rotation_order > 0 && map.curvature.at_vertex[v] == 0;
     (flat ? map.flat_cones : map.cones).push_back(v);
   }
+  map.has_straight_cuts = options_.prescription == PrescriptionRule::straightness;
   if (closes_holes(map)) {
     map.cut_graph = system.connect(map.cones, map.curvature.needs_no_cut);
-  } else if (map.flat_cones.empty()) {
-    map.cut_graph = system.all_cuts();
   } else {
-    map.cut_graph = keep_cones(mesh, system.all_cuts(), map.cones);
+    const CutGraph& cuts = map.has_straight_cuts ? system.straight_cuts() : system.all_cuts();
+    map.cut_graph = map.flat_cones.empty() ? cuts : keep_cones(mesh, cuts, map.cones);
   }
   map.required_cuts = halfedges_of(map.cut_graph);
-  map.has_straight_cuts = options_.prescription == PrescriptionRule::straightness;
   map.cut_mesh = cut_open(mesh, map.cut_graph);
   map.pins = pins_of_copies(map.cut_mesh, task.pinned_corners);
 }

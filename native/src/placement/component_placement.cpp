@@ -15,7 +15,7 @@ namespace lsgp {
 
 namespace {
 
-constexpr double cheap_share = 0.5;  // of the largest gain that a place has to have that cuts get to more cheaply
+constexpr double cheap_share = 0.5;  // of the largest gain, required of a site that cuts reach more cheaply
 
 // Refuses too few cones if cuts cannot reach further sites.
 void require_reachable(const ConeChooser& chooser, const ConeChoice& choice) {
@@ -53,6 +53,19 @@ void require_right(const VerifiedChoice& choice, bool has_marked) {
       concat("No cones were found with correct angles and seams on this component: with ",
              count(choice.cones.vertices.size(), "cone", "cones"), ", ", told(map),
              ". Place more, mark cones at tips and branches, or cut the component into simpler ones along seams."),
+      {ElementKind::vertices, choice.cones.vertices});
+}
+
+// Repairing the map of a large rough surface takes a minute, and fails.
+void require_hope(const VerifiedPlacement& placement, const VerifiedChoice& choice, const PlacementTask& task) {
+  if (!task.existing.vertices.empty() || !placement.is_hopeless(choice)) return;
+  throw Error(
+      Code::solver_failed,
+      concat("This component is too rough to be flattened: with ", count(choice.cones.vertices.size(), "cone", "cones"),
+             " an L2 stretch of ", rounded(choice.cones.predicted_l2), " is predicted, and ", choice.map.defects(),
+             " of ", count(task.mesh.triangle_count(), "triangle", "triangles"),
+             " are flipped or have wrong angles. Smooth it, unwrap a version without the details, or cut it "
+             "into smaller components along seams."),
       {ElementKind::vertices, choice.cones.vertices});
 }
 
@@ -95,7 +108,7 @@ std::optional<MissingCones> missing_cones(const ConeChooser& chooser, const Cone
   return MissingCones{placed, why};
 }
 
-// The open site that gains most by its price, of those that gain nearly as much as any.
+// Among the open sites that gain nearly the most, the one with the largest gain for its price.
 Index best_place(const ConeChooser& chooser, const Eigen::VectorXd& gains, const Array<char>& open) {
   constexpr double unlimited = std::numeric_limits<double>::infinity();
   double largest = -unlimited, most = -unlimited;
@@ -140,6 +153,7 @@ PlacedCones place_component(const PlacementTask& task, const PlacementOptions& o
     require_room(choice.cones);
   });
   require_possible(task, out.cones);
+  if (!options.count) require_hope(placement, choice, task);
   out.missing = missing_cones(chooser, choice.cones);
   out.cones = chooser.with_angles(choice.cones);
   out.system = placement.take_system(choice.cones);

@@ -13,8 +13,8 @@ namespace lsgp {
 
 namespace {
 
-constexpr double most_stretch = 1.2;  // that straight courses are worth
-constexpr double most_missed = 0.12;  // radians, by courses that are taken for straight
+constexpr double most_stretch = 1.2;  // that is accepted for straight courses
+constexpr double most_missed = 0.12;  // radians, of courses that count as straight
 constexpr double least_gain = 0.05;   // radians
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace lsgp {
 namespace {
 
 constexpr double quarter = M_PI / 2;
-constexpr double ambiguous = 15 * M_PI / 180;  // off a multiple of quarter turns, from which another may be chosen
+constexpr double ambiguous = 15 * M_PI / 180;  // from a multiple of quarter turns: others may be chosen beyond
 constexpr Index most_candidates = 200;         // examined at once
 constexpr int most_refinements = 4;            // of the places of cones
 constexpr Index most_curvature = 2;            // of a cone inside, in quarter turns
@@ -40,7 +40,7 @@ class PatchRounding {
       missing_ -= 2 - at_border_[v];
       right[v] += (2 - at_border_[v]) * quarter;
     }
-    // What is missing is spread out until it is in cones.
+    // Missing curvature is distributed evenly until it is in cones.
     right += missing_ * quarter / geometry_.total_area * geometry_.vertex_area;
     rest_ = centered(solver_->solve(Eigen::MatrixXd(right)));
   }
@@ -77,7 +77,7 @@ class PatchRounding {
     return values;
   }
 
-  // Vertices inside, and corners of the boundary whose angle could as well be rounded differently.
+  // Vertices inside, and corners of the boundary whose angle may also be rounded differently.
   Array<Index> all_candidates() const {
     Array<Index> out;
     for (Index v = 0; v < mesh_.vertex_count(); ++v) {

@@ -16,8 +16,8 @@ struct TriedMap {
   Index flipped = 0;                                    // triangles
   Index wrong_angles = 0;                               // vertices whose angles do not add up to what was imposed
   Index inexact_seams = 0;                              // cut edges, where sides disagree visibly
-  bool failed = true;                                   // there is none
-  bool is_repaired = false;                             // as far as it can be
+  bool failed = true;                                   // there is no map
+  bool is_repaired = false;                             // as far as possible
   Eigen::VectorXd curvature;                            // (cones) that it has, in their order; empty where it failed
 
   Eigen::VectorXd stretch;  // (n) the triangles' around each vertex, by area and less 1; empty where it is not valid

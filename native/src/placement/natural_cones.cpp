@@ -16,7 +16,7 @@ constexpr double angle_of_flat = 1e-5;             // radians of defect: a verte
 constexpr double angle_of_corner = M_PI / 18;      // radians of defect: less is a bend of a smooth surface
 constexpr std::size_t most_natural = 32;           // cones
 constexpr std::size_t most_natural_on_fine = 64;   // where at most half of the vertices have one
-constexpr std::size_t most_natural_on_round = 12;  // of an icosahedron: round shapes do with as few others
+constexpr std::size_t most_natural_on_round = 12;  // those of an icosahedron: round shapes need no more of other cones
 
 // Vertices where existing or other cones may be.
 PerVertex<char> find_possible(const ConeChooser& chooser) {

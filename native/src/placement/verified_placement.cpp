@@ -13,8 +13,9 @@ namespace {
 constexpr Index small = 2000;         // triangles: all repairs of such a surface cost little
 constexpr int most_hard_repairs = 2;  // of a larger one
 constexpr Index very_large = 20000;   // triangles: too many for repairs without hope of low stretch
-constexpr int fewer_defects = 2;      // times fewer than in a map that was repaired with high stretch
+constexpr int fewer_defects = 2;      // factor, compared with a map whose repair left high stretch
 constexpr double hopeless_l2 = 2;     // as predicted: lower targets are out of reach
+constexpr int tangled_share = 4;      // one triangle of so many with a defect: only the final choice is repaired
 constexpr double as_predicted = 1.03;
 constexpr double same_angles = 1e-9;  // of all of them
 // Lower targets, and by how much of the stretch above 1.
@@ -32,10 +33,10 @@ constexpr double worth_moving = 0.99;
 // no more than this of the stretch above 1.
 constexpr double more_cones = 1.25, still_worthwhile = 0.9;
 constexpr int most_enlargements = 6;
-constexpr double usual_l2 = 1.05;   // of a map that is not worth more than the stages
-constexpr double much_fewer = 0.8;  // cones, that prices are not worth
+constexpr double usual_l2 = 1.05;   // of a map that does not justify more cones than the stages have
+constexpr double much_fewer = 0.8;  // of those at cheap sites: so few at any sites are preferred
 
-// Whether one choice is nearer to a usable map.
+// Whether the first choice is nearer to a usable map.
 bool is_better(const TriedMap& a, const TriedMap& b) {
   const auto rank = [](const TriedMap& map) { return map.is_off() ? 2 : map.is_valid() ? 0 : 1; };
   return rank(a) != rank(b) ? rank(a) < rank(b) : a.is_valid() ? a.l2 < b.l2 : a.defects() < b.defects();
@@ -90,10 +91,12 @@ VerifiedChoice VerifiedPlacement::verified(ConeChoice cones) {
   return out;
 }
 
-// Repairs take long; a map with about as many defects as one that they left with high stretch will not be better.
+// Repairs take long; a map with about as many defects as one that they left with high stretch will not be better, and
+// one that is tangled all over, as on rough surfaces, gets high stretch at best.
 bool VerifiedPlacement::is_worth_repairing(const VerifiedChoice& choice) const {
   if (!is_worth_trying(choice.cones)) return false;
   if (is_small()) return true;
+  if (is_tangled(choice.map)) return false;
   const bool promises_more =
       hopeless_defects_ == 0 || choice.map.failed || fewer_defects * choice.map.defects() < hopeless_defects_;
   return hard_repairs_ < most_hard_repairs && promises_more;
@@ -256,6 +259,15 @@ void VerifiedPlacement::take_fewer(const AutomaticCones& automatic, double misse
 }
 
 bool VerifiedPlacement::is_small() const { return chooser_.task().mesh.triangle_count() <= small; }
+
+bool VerifiedPlacement::is_tangled(const TriedMap& map) const {
+  return tangled_share * map.defects() > chooser_.task().mesh.triangle_count();
+}
+
+bool VerifiedPlacement::is_hopeless(const VerifiedChoice& choice) const {
+  const TriedMap& map = choice.map;
+  return !map.is_valid() && !map.is_repaired && is_tangled(map) && choice.cones.predicted_l2 > hopeless_l2;
+}
 
 bool VerifiedPlacement::has_many() const {
   return std::max(chooser_.options().count.value_or(0), chooser_.existing_count()) > most_one_by_one;

@@ -29,12 +29,14 @@ struct VerifiedChoice {
 // At most some ten maps are computed, most of them with local repairs only, and more to move cones, hundreds of small
 // surfaces; one or two if the prediction is hopeless or there are more cones, existing or requested, than are chosen
 // one by one. The map of the result is repaired as far as it can be, unless it is one of many cones or of a very large
-// surface.
+// surface; others are not if a large share of their triangles have defects.
 class VerifiedPlacement {
  public:
   VerifiedPlacement(ConeChooser& chooser, ProgressMonitor& monitor);
 
   VerifiedChoice place();
+  // Whether repairs, which were not made, cannot help either: the surface is rough all over.
+  bool is_hopeless(const VerifiedChoice& choice) const;
   int maps() const { return trial_.made(); }
   // The system of the latest map, if it is that of these cones; none otherwise, and none from then on.
   KeptSystem take_system(const ConeChoice& choice) { return trial_.take_system(chooser_.with_angles(choice)); }
@@ -61,7 +63,8 @@ class VerifiedPlacement {
   void take_fewer(const AutomaticCones& automatic, double missed, double reached, VerifiedChoice& best);
   void take_many(VerifiedChoice& best);
   bool is_small() const;
-  bool has_many() const;  // cones there or asked for
+  bool is_tangled(const TriedMap& map) const;  // defects all over
+  bool has_many() const;                       // cones there or asked for
   bool is_worth_trying(const ConeChoice& cones) const;
   bool chooses_angles() const;
   bool is_short(const VerifiedChoice& choice) const;  // of the target, and not hopelessly

@@ -16,6 +16,9 @@ inline double cross(Complex a, Complex b) { return a.real() * b.imag() - a.imag(
 // Twice the signed area of a triangle, positive if it is counter-clockwise.
 inline double doubled_area(Complex a, Complex b, Complex c) { return cross(b - a, c - a); }
 
+// Whether a vector is along u or along v, exactly.
+inline bool is_along_axis(Complex a) { return (a.real() == 0) != (a.imag() == 0); }
+
 // The side of the line from a to b on which c lies: 1 left, -1 right, 0 if rounding leaves it undecided (Shewchuk
 // 1997).
 inline int side(Complex a, Complex b, Complex c) {

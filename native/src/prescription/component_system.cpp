@@ -33,6 +33,15 @@ const CutGraph& ComponentSystem::all_cuts() {
   return *all_cuts_;
 }
 
+const StraightAngles& ComponentSystem::straight_angles(const ComponentCones& cones, const Eigen::VectorXd& least) {
+  if (!straight_angles_) straight_angles_ = find_straight_angles(*this, cones, least);
+  return *straight_angles_;
+}
+
+const CutGraph& ComponentSystem::straight_cuts() {
+  return straight_angles_ && straight_angles_->cuts ? *straight_angles_->cuts : all_cuts();
+}
+
 CutGraph ComponentSystem::connect(const Array<Index>& interior_cones, const PerLoop<char>& uncut) const {
   return connect_symmetrically({surface_, interior_cones, uncut}, mirroring_);
 }

@@ -8,6 +8,7 @@
 #include "base/array.hpp"
 #include "lsgp/options.hpp"
 #include "prescription/curvature.hpp"
+#include "prescription/straight_angles.hpp"
 #include "systems/cut_factor.hpp"
 #include "unfold/frames.hpp"
 
@@ -28,6 +29,10 @@ class ComponentSystem {
 
   // Cuts through all interior cones and to all boundaries.
   const CutGraph& all_cuts();
+  // Angles of straight cuts, found at the first call. cones: those of the system.  least: of least distortion.
+  const StraightAngles& straight_angles(const ComponentCones& cones, const Eigen::VectorXd& least);
+  // The cuts that these straightened, `all_cuts` otherwise.
+  const CutGraph& straight_cuts();
   // Cuts to these interior cones, and to the boundary loops that `uncut` does not mark.
   CutGraph connect(const Array<Index>& interior_cones, const PerLoop<char>& uncut) const;
   // The factor shared by prescription and unfolding, or null if separate solves are cheaper.
@@ -66,6 +71,7 @@ class ComponentSystem {
   std::optional<LogScale> log_scale_;
   std::optional<FrameTree> frame_tree_;
   std::optional<StiffFactor> stiff_factor_;
+  std::optional<StraightAngles> straight_angles_;
 };
 
 // The latest system of one component, for as long as only the angles of its cones change.

@@ -8,12 +8,11 @@
 #include <utility>
 
 #include "base/text.hpp"
-#include "cut/cut_mesh.hpp"
 #include "prescription/angle_flow.hpp"
 #include "prescription/border_turning.hpp"
 #include "prescription/component_system.hpp"
 #include "prescription/quantize_curvature.hpp"
-#include "prescription/straightness.hpp"
+#include "prescription/straight_angles.hpp"
 #include "solvers/box_qp.hpp"
 #include "systems/quadratic_forms.hpp"
 
@@ -98,16 +97,11 @@ std::string expected_stretch(double l2) {
   return l2 < telling ? concat("an L2 stretch of ", rounded(l2), " is expected, 1 being none, and ") : "";
 }
 
-bool possible(const HalfedgeMesh& mesh, Index vertex, double curvature) {
-  const double angle = mesh.flat_angle(vertex) - curvature;
-  return angle >= impossible_angle && angle < M_PI * valence(mesh, vertex);
-}
-
 Eigen::VectorXd harmonic(const HalfedgeMesh& mesh, const ComponentCones& cones, const LogScale& scale) {
   const Eigen::VectorXd curvature = scale.harmonic_curvature();
   Array<Index> impossible;
   for (Eigen::Index i = 0; i < curvature.size(); ++i) {
-    if (!possible(mesh, cones.vertices[i], curvature[i])) impossible.push_back(cones.vertices[i]);
+    if (!is_possible(mesh, cones.vertices[i], curvature[i])) impossible.push_back(cones.vertices[i]);
   }
   if (!impossible.empty()) {
     throw Error(Code::cone_angle_range,
@@ -118,59 +112,20 @@ Eigen::VectorXd harmonic(const HalfedgeMesh& mesh, const ComponentCones& cones, 
   return curvature;
 }
 
-// The paper's rule; angles read at junctions of the cut are distributed equally over the cones.
-std::optional<Eigen::VectorXd> straightness(ComponentSystem& system, const ComponentCones& cones,
-                                            std::vector<Finding>& findings) {
-  const HalfedgeMesh& mesh = system.mesh();
-  if (!mesh.closed()) {
-    // With a free boundary the straightened layout is one of many, and so are its angles.
-    findings.push_back(
-        {Code::straightness_failed,
-         "Straight cuts give usable cone angles only on closed surfaces, and this one has a boundary. The "
-         "least-distortion angles were used instead.",
-         {ElementKind::vertices, cones.vertices}});
-    return std::nullopt;
-  }
-  const CutMesh cut_mesh = cut_open(mesh, system.all_cuts());
-  const StraightenedLayout layout = straighten(system.open(system.all_cuts(), cut_mesh));
-  const Index k = static_cast<Index>(cones.vertices.size());
-  Eigen::VectorXd curvature(k);
-  for (Index i = 0; i < k; ++i) curvature[i] = layout.curvature[cones.vertices[i]];
-  const double junctions = layout.curvature.sum() - curvature.sum();
-  curvature.array() += junctions / k;
-
-  std::string failure = layout.failure;
-  for (Index i = 0; i < k && failure.empty(); ++i) {
-    if (!possible(mesh, cones.vertices[i], curvature[i])) {
-      failure = concat("a cone would keep an angle of ", degrees(2 * M_PI - curvature[i]));
-    }
-  }
-  if (!failure.empty()) {
-    findings.push_back({Code::straightness_failed,
-                        concat("Straight cuts give no usable cone angles here: ", failure,
-                               ". The least-distortion angles were used instead."),
-                        {ElementKind::vertices, cones.vertices}});
-    return std::nullopt;
-  }
-  Array<Index> junction_vertices;
-  for (const Cut& cut : system.all_cuts().cuts) {
-    for (const Index v : {cut.tail, cut.head}) {
-      const bool is_cone = std::find(cones.vertices.begin(), cones.vertices.end(), v) != cones.vertices.end();
-      const bool listed = std::find(junction_vertices.begin(), junction_vertices.end(), v) != junction_vertices.end();
-      if (!is_cone && !listed) junction_vertices.push_back(v);
-    }
-  }
-  if (!junction_vertices.empty()) {
-    findings.push_back({Code::junction_share,
-                        concat("Straight cuts left a curvature of ", degrees(junctions), " at ",
-                               count(junction_vertices.size(), "junction", "junctions"),
-                               " of the cut; it was distributed evenly over the cones."),
-                        {ElementKind::vertices, junction_vertices}});
-  }
-  return curvature;
+// Of straight cuts, which the system then keeps, or those of least distortion.
+Eigen::VectorXd straightness(ComponentSystem& system, const ComponentCones& cones, Eigen::VectorXd least,
+                             std::vector<Finding>& findings) {
+  const StraightAngles& straight = system.straight_angles(cones, least);
+  findings.insert(findings.end(), straight.findings.begin(), straight.findings.end());
+  return straight.curvature.size() > 0 ? straight.curvature : std::move(least);
 }
 
 }  // namespace
+
+bool is_possible(const HalfedgeMesh& mesh, Index vertex, double curvature) {
+  const double angle = mesh.flat_angle(vertex) - curvature;
+  return angle >= impossible_angle && angle < M_PI * valence(mesh, vertex);
+}
 
 std::pair<double, double> room_of_automatic(const HalfedgeMesh& mesh, const ComponentCones& cones) {
   const Bounds bounds = widest_bounds(mesh, cones);
@@ -275,7 +230,6 @@ Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, Prescr
   const LogScale& scale = system.log_scale();
 
   Eigen::VectorXd curvature(asked.vertices.size());
-  std::optional<Eigen::VectorXd> straight;
   if (asked.vertices.empty()) {
     // A closed torus or a surface with boundary: flat everywhere.
   } else if (all_fixed(asked)) {
@@ -284,10 +238,9 @@ Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, Prescr
     }
   } else if (rule == PrescriptionRule::harmonic) {
     curvature = harmonic(mesh, asked, scale);
-  } else if (rule == PrescriptionRule::straightness && (straight = straightness(system, asked, findings))) {
-    curvature = *straight;
   } else {
     curvature = least_distortion(mesh, asked, scale);
+    if (rule == PrescriptionRule::straightness) curvature = straightness(system, asked, std::move(curvature), findings);
   }
   if (asked.rotation_order > 0) {
     curvature = quantize_curvature(mesh, asked, scale, curvature, asked.rotation_order);

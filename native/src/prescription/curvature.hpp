@@ -85,6 +85,9 @@ std::pair<double, double> room_of_automatic(const HalfedgeMesh& mesh, const Comp
 // Throws ANGLES_IMPOSSIBLE for given angles that no map has, whatever the automatic ones are.
 void require_possible(const MetricMesh& surface, const ComponentCones& cones);
 
+// Whether a map can have this curvature at a vertex.
+bool is_possible(const HalfedgeMesh& mesh, Index vertex, double curvature);
+
 // The number of triangles around a vertex.
 int valence(const HalfedgeMesh& mesh, Index vertex);
 

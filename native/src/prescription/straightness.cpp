@@ -7,6 +7,9 @@
 #include "base/checkpoint.hpp"
 #include "base/text.hpp"
 #include "plane/predicates.hpp"
+#include "systems/poisson_system.hpp"
+#include "unfold/frames.hpp"
+#include "unfold/jacobians.hpp"
 #include "unfold/spectral.hpp"
 
 namespace lsgp {
@@ -166,26 +169,22 @@ double read_angle(const CutSurface& surface, const Eigen::VectorXcd& position, c
   return angle > 0 ? angle : angle + 2 * M_PI;
 }
 
-}  // namespace
-
-StraightenedLayout straighten(const CutSurface& surface) {
+// Swaps until no swap leaves fewer crossings, and reads the angles.
+StraightenedLayout untangle_and_read(const CutSurface& surface, StraightBoundary boundary) {
   const HalfedgeMesh& mesh = surface.mesh;
   const CutGraph& cut_graph = surface.cut_graph;
   const CutMesh& cut_mesh = surface.cut_mesh;
-  StraightSides sides = straighten_sides(surface, cut_graph, cut_mesh);
-  StraightBoundary boundary(std::move(sides.segments), unfold_spectral(surface, sides.reduction));
-
   StraightenedLayout layout;
   // Each swap lowers the number of crossings.
   while (boundary.count_crossings() > 0 && boundary.swap_worst()) {
   }
-  const int left_over = boundary.count_crossings();
+  layout.crossings = boundary.count_crossings();
 
   layout.curvature = Eigen::VectorXd::Zero(mesh.vertex_count());
   PerVertex<char> read(mesh.vertex_count(), 0);
   for (const Cut& cut : cut_graph.cuts) {
     for (const Index v : {cut.tail, cut.head}) {
-      if (read[v]) continue;
+      if (read[v] || mesh.loop_of_vertex[v] != none) continue;
       read[v] = 1;
       const auto all = sectors(mesh, cut_graph, cut_mesh, v);
       layout.curvature[v] = 2 * M_PI;
@@ -196,13 +195,29 @@ StraightenedLayout straighten(const CutSurface& surface) {
     }
   }
   const double total = layout.curvature.sum(), required = 2 * M_PI * mesh.euler;
-  if (left_over > 0) {
-    layout.failure = concat(count(left_over, "pair of them crosses", "pairs of them cross"), " in the plane");
-  } else if (std::abs(total - required) > turn_tolerance) {
+  if (layout.crossings > 0) {
+    layout.failure = concat(count(layout.crossings, "pair of them crosses", "pairs of them cross"), " in the plane");
+  } else if (mesh.closed() && std::abs(total - required) > turn_tolerance) {
     layout.failure = concat("the angles between the straight cuts leave a curvature of ", degrees(total),
                             " where the surface requires ", degrees(required));
   }
   return layout;
+}
+
+}  // namespace
+
+StraightenedLayout straighten(const CutSurface& surface) {
+  StraightSides sides = straighten_sides(surface, surface.cut_graph, surface.cut_mesh);
+  Eigen::VectorXcd position = unfold_spectral(surface, sides.reduction);
+  return untangle_and_read(surface, {std::move(sides.segments), std::move(position)});
+}
+
+StraightenedLayout straighten_beside(const CutSurface& surface, const Eigen::VectorXd& log_scale) {
+  StraightSides sides = straighten_sides(surface, surface.cut_graph, surface.cut_mesh);
+  const Eigen::VectorXd frames = FrameTree(surface, surface.cut_graph).integrate(log_scale);
+  const RelativeFit fit(surface, prescribed_jacobians(surface.mesh, log_scale, frames));
+  Eigen::VectorXcd position = PoissonSystem(fit.surface(), sides.reduction).fit(fit.jacobians());
+  return untangle_and_read(surface, {std::move(sides.segments), std::move(position)});
 }
 
 }  // namespace lsgp

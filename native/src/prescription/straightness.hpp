@@ -12,6 +12,7 @@ namespace lsgp {
 
 struct StraightenedLayout {
   Eigen::VectorXd curvature;  // (n) read at every node of the cut graph, 0 elsewhere
+  int crossings = 0;          // pairs of sides of cuts that cross
   std::string failure;        // why the angles are unusable, or empty
 };
 
@@ -19,5 +20,9 @@ struct StraightenedLayout {
 // crossing cuts by swapping the positions of their ends (the paper's Figure 6), and measures each node's angle between
 // its cuts.
 StraightenedLayout straighten(const CutSurface& surface);
+
+// The same with the layout nearest to the metric of a log scale instead of that of least conformal distortion, also on
+// surfaces with boundary, whose vertices keep no angle.
+StraightenedLayout straighten_beside(const CutSurface& surface, const Eigen::VectorXd& log_scale);
 
 }  // namespace lsgp

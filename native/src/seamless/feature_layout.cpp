@@ -22,7 +22,7 @@ namespace {
 using Kind = DistortionEnergy::Kind;
 
 constexpr int most_attempts = 24;             // to align lines
-constexpr Index attempted_triangles = 80000;  // in all of them together, as far as there is more than one
+constexpr Index attempted_triangles = 80000;  // in all attempts together; the first is always made
 constexpr int most_fits = 300;                // to find lines that contradict each other
 constexpr Index fitted_triangles = 400000;    // in all of them together
 constexpr double least_length = 0.1;          // of an edge, relative to the map without lines, that contradicts none
@@ -66,7 +66,7 @@ FeatureLayout::FeatureLayout(const FeatureTask& task, const PerHalfedge<char>& f
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     is_cone_[v] = mesh.loop_of_vertex[v] == none && task_.curvature.at_vertex[v] != 0;
   }
-  // Close to an isometry lines have about the directions that they have in the end.
+  // Close to an isometry, lines have nearly their final directions.
   held_ = free_all(mesh, task_.surface.cut_mesh, task_.lattice.reduction, PerVertex<char>(mesh.vertex_count(), 0));
   minimize(unaligned_);
   unaligned_ *= turn_to_features(task_.surface, feature, unaligned_);
@@ -82,8 +82,8 @@ FeatureLayout::FeatureLayout(const FeatureTask& task, const PerHalfedge<char>& f
   if (!aligned_.empty()) find_coordinates();
 }
 
-// Appends those that do not contradict each other, the first before the others: halves that do are divided again.
-// Judged by a linear fit, which takes a small part of the time of a map.
+// Appends those that do not contradict each other, giving precedence to the first: halves with contradictions are
+// divided again. A linear fit decides, which takes a small part of the time of a map.
 void FeatureLayout::choose_compatible(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end,
                                       Array<FeatureLine>& chosen) {
   if (begin == end || fits_left_ == 0) return;

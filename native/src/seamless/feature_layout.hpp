@@ -40,19 +40,19 @@ class FeatureLayout {
   bool is_aligned() const { return factor_.has_value(); }
   // The start with features along the axes.
   const Eigen::VectorXcd& start() const { return start_; }
-  // Why halfedges of features do not; of the others it has no meaning.
+  // Why halfedges of features do not run along an axis; meaningless for others.
   const PerHalfedge<ReleaseReason>& reasons() const { return reasons_; }
 
-  // Releases a sixth of the lines, those of most cost, where no lattice keeps all; false if none would be left, or what
-  // is left has no valid map.
+  // Releases the most expensive sixth of the lines if no lattice admits all of them; false if none would be left, or if
+  // the rest has no valid map.
   bool loosen();
 
-  // The layout with about `density` cells a unit of length, with cones and translations on the lattice. Features are on
-  // lines of the lattice or, where cells are too large for that, at multiples of 1 / 256 of a cell. None where no such
-  // layout without flips is found.
+  // The layout with about `density` cells per unit of length, with cones and translations on the lattice. Features are
+  // on lines of the lattice or, where cells are too large for that, at multiples of 1 / 256 of a cell. None where no
+  // such layout without flips is found.
   std::optional<Eigen::VectorXcd> quantize(double density) const;
 
-  // Moves what lies between features and cones to where it stretches least.  weights: (m) of triangles.
+  // Moves all points but those of features and cones to where they stretch least.  weights: (m) of triangles.
   void relax(const Eigen::VectorXd& weights, Eigen::VectorXcd& position) const;
 
  private:

@@ -90,13 +90,27 @@ std::optional<Grid> GridSearch::refine(double tiles, const LayoutEffort& effort)
   return std::nullopt;
 }
 
-std::optional<Grid> GridSearch::find_coarsest() {
+template <typename LayOut>
+std::optional<Grid> GridSearch::loosen(const LayOut& lay_out_features) {
   const bool has_features = std::any_of(quantizers_.begin(), quantizers_.end(),
                                         [](const auto& quantizer) { return quantizer->has_features(); });
   for (int loosenings = 0; has_features && loosenings <= most_loosenings; ++loosenings) {
-    if (auto grid = refine(coarsest_tiles, {acceptable_growth, acceptable_turn, true, Features::required})) return grid;
+    if (auto grid = lay_out_features()) return grid;
     if (!quantizers_[failed_]->loosen_features()) break;
   }
+  return std::nullopt;
+}
+
+std::optional<Grid> GridSearch::lay_out_given(double tiles) {
+  LayoutEffort with_features;
+  with_features.features = Features::required;
+  if (auto grid = loosen([&] { return lay_out(tiles, with_features); })) return grid;
+  return lay_out(tiles, {});
+}
+
+std::optional<Grid> GridSearch::find_coarsest() {
+  const LayoutEffort with_features{acceptable_growth, acceptable_turn, true, Features::required};
+  if (auto grid = loosen([&] { return refine(coarsest_tiles, with_features); })) return grid;
   if (auto grid = refine(coarsest_tiles, {acceptable_growth, acceptable_turn, true, Features::ignored})) return grid;
   // Layouts that need more repair take longer: bisects the sizes, since finer grids cost less.
   Array<double> sizes;
@@ -232,7 +246,7 @@ Grid find_grid(const Options& options, double unit_scale, GridSearch& search, st
                   concat("The grid would have ", asked, " cells along the layout; up to ", most_tiles,
                          " can be stored exactly. Choose another number or size of tiles."));
     }
-    auto grid = search.lay_out(asked, {});
+    auto grid = search.lay_out_given(asked);
     const auto give_up_cones = [&] {
       switch (seamless.coarse_grid) {
         case CoarseGrid::merge: return search.merge_nearest(asked, options);
@@ -240,7 +254,7 @@ Grid find_grid(const Options& options, double unit_scale, GridSearch& search, st
         default: return false;
       }
     };
-    while (!grid && give_up_cones()) grid = search.lay_out(asked, {});
+    while (!grid && give_up_cones()) grid = search.lay_out_given(asked);
     if (grid) return std::move(*grid);
     search.restore_relaxed();
     if (auto finer = search.refine(next_size(std::max(1.0, asked)), {})) {

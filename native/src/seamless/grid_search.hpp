@@ -17,7 +17,7 @@ namespace lsgp {
 constexpr double most_tiles = 16384;  // beyond, float32 has too few digits left within a cell
 
 struct Grid {
-  double tiles, density;  // cells along the layout's longer side, and a unit of length
+  double tiles, density;  // cells along the layout's longer side, and per unit of length
   Array<QuantizedLayout> layouts;
 };
 
@@ -41,6 +41,9 @@ class GridSearch {
 
   // None if a component has no valid layout, or only one with too much distortion.
   std::optional<Grid> lay_out(double tiles, const LayoutEffort& effort);
+
+  // With as many features as this grid keeps. None as of lay_out without limits.
+  std::optional<Grid> lay_out_given(double tiles);
 
   // The first of the sizes from `tiles` on that can be laid out.
   std::optional<Grid> refine(double tiles, const LayoutEffort& effort);
@@ -68,6 +71,10 @@ class GridSearch {
   std::optional<QuantizedLayout> quantize(std::size_t component, double density, const LayoutEffort& effort) const;
 
   void prepare(std::size_t component);
+
+  // Releases features until there is a grid; none if releasing a few times does not help, or there are no features.
+  template <typename LayOut>
+  std::optional<Grid> loosen(const LayOut& lay_out_features);
 
   // One of the cones takes up the curvature of both: the one whose own is nearer to that.
   bool merge(const ConePair& pair, const Options& options);

@@ -13,13 +13,13 @@ namespace lsgp {
 
 namespace {
 
-constexpr double lovasz = 0.85;  // of a vector's length that an exchange has to leave
+constexpr double lovasz = 0.85;  // an exchange has to shorten a vector to this share
 // Exchanges in reducing a basis, by the square of its size: without rounding their number would be below this, as each
 // shrinks one of the products of squared lengths, none of which can lose more than the form's range of 1 / ridge.
 constexpr int most_exchanges = 200;
 // Limit of the steps in improving a choice, by its size; never reached in practice.
 constexpr int most_steps = 100;
-constexpr double ridge = 1e-12;  // of the diagonal: the layout's place may be free
+constexpr double ridge = 1e-12;  // of the diagonal: translations of the layout may cost nothing
 // Weights of missing areas, of the form's median diagonal.
 constexpr std::array<double, 6> penalties{0.25, 1, 4, 16, 1e3, 1e6};
 

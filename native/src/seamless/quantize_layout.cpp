@@ -28,7 +28,7 @@ constexpr double lattice_blocks = 8;
 // Choices of lattice points.
 constexpr int tried_angles = 16;          // of the layout, within one turn of the lattice
 constexpr int few_angles = 4;             // of those that are searched from on an automatic grid
-constexpr std::size_t tried_targets = 4;  // that are worth a repair
+constexpr std::size_t tried_targets = 4;  // that are repaired
 constexpr std::size_t few_targets = 2;    // that are worth following, and all that are tried on an automatic grid
 // An initial map that is smoothed first.
 constexpr double poor_energy = 1.5;  // 1 for an isometry
@@ -40,7 +40,7 @@ PerCut<int> turns_of_cuts(const Eigen::VectorXd& rotation, int rotation_order) {
   return out;
 }
 
-// Roots for which all cones are on the lattice: the nearer 1 - e^{i curvature} is to a unit, the better.
+// Candidate roots for which all cones lie on the lattice: the nearer 1 - e^{i curvature} is to a unit, the better.
 double rank_of_root(double curvature) {
   const double gap = std::abs(1.0 - std::polar(1.0, curvature));
   return gap < 1e-6 ? 0 : 1 / (1 + gap);

@@ -28,11 +28,11 @@ struct QuantizedLayout {
   bool has_features = false;  // along lines of the lattice
 };
 
-// What a layout on some grid is worth.
+// Which layouts on a grid are acceptable.
 struct LayoutEffort {
   double most_growth = std::numeric_limits<double>::infinity();  // of the energy by rounding
   double most_turned = std::numeric_limits<double>::infinity();  // radians, of directions by rounding, on average
-  bool quick = false;  // only layouts are wanted that need little repair; otherwise they are also followed in steps
+  bool quick = false;  // accept only layouts that need little repair; otherwise continuation in steps is tried, too
   enum class Features { if_possible, required, ignored } features = Features::if_possible;
 };
 
@@ -73,14 +73,14 @@ class LayoutQuantizer {
   // The nearest first; closed surfaces.
   const Array<ConePair>& cone_pairs() const { return cone_pairs_; }
 
-  // The layout with `density` cells a unit of length, rounded to lattice points: by the displacement of least Dirichlet
-  // energy, then repaired. None where no choice of points keeps it valid and its energy within bounds.
+  // The layout with `density` cells per unit of length, rounded to lattice points: by the displacement of least
+  // Dirichlet energy, then repaired. None where no choice of points keeps it valid and its energy within bounds.
   std::optional<QuantizedLayout> quantize(double density, const LayoutEffort& effort) const;
 
   // Symmetric Dirichlet energy of positions of the copies.
   double measure_energy(const Eigen::VectorXcd& position) const;
 
-  // Moves what lies between the lattice points to where it stretches least; see low_stretch.hpp.
+  // Moves all points but the lattice points to where they stretch least; see low_stretch.hpp.
   void lower_stretch(double stretch, const Eigen::VectorXd& importance, QuantizedLayout& layout) const;
 
  private:

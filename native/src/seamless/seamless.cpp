@@ -94,7 +94,7 @@ class LatticeFeatures {
                            as_stored(position[surface.cut_mesh.copy_of_corner[h]]);
       const double length = surface.geometry.length[h];
       all_ += length;
-      if (edge.real() == 0 || edge.imag() == 0) continue;
+      if (is_along_axis(edge)) continue;
       off_ += length;
       if (mesh.has_features() && mesh.feature[h]) continue;  // which are reported with all others that are marked
       most_ = std::max(most_, std::abs(std::remainder(std::arg(edge), M_PI / 2)));
@@ -125,7 +125,7 @@ class LatticeFeatures {
   Array<Index> edges_;                   // off the axes, as the caller's vertices
 };
 
-// Components that take up more of the layout than the size of the tiles says, as small ones do on a common grid.
+// Components that are larger in the layout than the size of the tiles implies, as small ones are on a common grid.
 class OversizeReport {
  public:
   explicit OversizeReport(double density) : density_(density) {}
@@ -161,7 +161,7 @@ class OversizeReport {
  private:
   static constexpr double most_scale = 2;
 
-  const double density_;  // cells, of a unit of length
+  const double density_;  // cells per unit of length
   int components_ = 0;
   double worst_ = 1;
   Array<Index> triangles_;

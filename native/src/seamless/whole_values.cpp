@@ -32,7 +32,7 @@ double common_divisor(const Eigen::RowVectorXd& coefficients) {
   return out;
 }
 
-// There are none where no coordinate is free; Eigen has no largest element of those.
+// Without a free coordinate it is empty, and Eigen has no largest element of that.
 bool are_exact(const Eigen::Ref<const Eigen::MatrixXd>& values) {
   return values.size() == 0 || values.cwiseAbs().maxCoeff() < most_exact;
 }
@@ -77,7 +77,7 @@ std::optional<WholeValues> WholeValues::among(const Eigen::MatrixXd& compliance)
   out.columns_ = Eigen::MatrixXd::Zero(count, rank);
   out.free_ = rank;
   for (Eigen::Index k = 0; k < rank; ++k) out.columns_(pivots[k], k) = 1;
-  // Those of the pivots with which each of the others is whole, too.
+  // The values of the pivots for which the others are whole as well.
   for (Eigen::Index i = 0; i < count; ++i) {
     if (is_pivot[i]) continue;
     checkpoint(static_cast<double>(count * rank));

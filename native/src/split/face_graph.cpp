@@ -6,18 +6,19 @@
 #include <limits>
 #include <numeric>
 
+#include "cut/cut_cost.hpp"
+
 namespace lsgp {
 
 namespace {
 
 constexpr double seam_factor = 0.2, sharp_factor = 0.5;
-const double sharp_angle = M_PI / 6;
 // Of what the surface's median edge costs as a cut: none is cheaper than a seam, none keeps cuts away at any length.
 constexpr double least_factor = seam_factor, largest_factor = 10;
 constexpr double units_of_mean_edge = 1e4;
 
 double sharpness_factor(const HalfedgeMesh& mesh, Index h) {
-  return bend_at(mesh, h) > sharp_angle ? sharp_factor : 1.0;
+  return bend_at(mesh, h) > smooth_bend ? sharp_factor : 1.0;
 }
 
 }  // namespace

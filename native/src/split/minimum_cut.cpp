@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <numeric>
-#include <queue>
+
+#include "base/least_first.hpp"
 
 namespace lsgp {
 
@@ -122,7 +122,7 @@ struct MinimumCutter::Cells {
     const auto [begin, list] = by_cell();
     Array<double> distance(count(), std::numeric_limits<double>::infinity());
     Array<char> is_done(count(), 0);
-    std::priority_queue<Reached, Array<Reached>, std::greater<>> queue;
+    LeastFirst<Reached> queue;
     for (const Index side : {first_cell, second_cell}) {
       distance[side] = 0;
       queue.push({0, side, side});

@@ -2,14 +2,13 @@
 #include "split/mirrored_islands.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <map>
 #include <numeric>
-#include <queue>
 #include <utility>
 
 #include "base/checkpoint.hpp"
+#include "base/least_first.hpp"
 #include "cut/cut_cost.hpp"
 
 namespace lsgp {
@@ -55,7 +54,7 @@ class ImagePath {
 
 Array<Index> ImagePath::find(Index from, Index to) {
   using Entry = std::pair<double, Index>;
-  std::priority_queue<Entry, Array<Entry>, std::greater<>> queue;
+  LeastFirst<Entry> queue;
   at(from).distance = 0;
   queue.emplace(0, from);
   while (!queue.empty() && queue.top().second != to) {

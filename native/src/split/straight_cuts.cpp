@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <queue>
 
 #include "base/checkpoint.hpp"
+#include "base/least_first.hpp"
 
 namespace lsgp {
 
@@ -208,7 +207,7 @@ bool Straightener::straighten(const Path& path) {
 
 Path Straightener::find_path(const Array<Index>& starts) {
   using Entry = std::pair<double, Index>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  LeastFirst<Entry> queue;
   Array<Index> reached;
   const auto reach = [&](Index h, double through, Index from) {
     if (!may_follow(h) || through >= distance_[h]) return;

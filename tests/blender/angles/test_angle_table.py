@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Angles of cones: where they are kept, the table and its ledger, and the operators that change them."""
+"""Angles of cones: where they are stored, the table and its ledger, and the operators that change them."""
 
 import re
 from dataclasses import replace
@@ -101,7 +101,7 @@ def test_angles_survive_a_file_a_copy_and_joining(tmp_path):
     assert stored(cube) == before | {vertex + half: value for vertex, value in before.items()}
 
 
-def test_subdividing_and_bevelling_leave_angles_to_the_cones_that_had_them():
+def test_subdividing_and_beveling_leave_angles_to_the_cones_that_had_them():
     cube = add_cone_cube(cuts=0)
     mark(cube, [])
     first = corners(cube)[0]

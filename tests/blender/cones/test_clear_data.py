@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Clear Cone Data: nothing of ours is left on a mesh, and nothing else is touched."""
+"""Clear Cone Data: removes all data of the add-on from a mesh, and nothing else."""
 
 import bpy
 import pytest

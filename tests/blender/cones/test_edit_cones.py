@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sessions of Edit Cones: picking, editing, what follows, and putting all of it back."""
+"""Sessions of Edit Cones: picking, editing, the updated map, and restoring everything."""
 
 import math
 import time
@@ -84,7 +84,7 @@ def cone_at(session, x, y, radius):
 
 
 def from_above():
-    """A parallel view along -z of what lies within 2 of the origin in x and y."""
+    """An orthographic view along -z of the region within 2 of the origin in x and y."""
     return screens.Screen(np.diag([0.5, 0.5, -0.1, 1.0]), SIZE, SIZE)
 
 
@@ -590,7 +590,7 @@ def two_cubes(place):
 
 
 def overlap_after(place, placing):
-    """How much of the map of two cubes lies on itself once one of them is edited; and the map."""
+    """The overlapping share of the map of two cubes after one of them is edited; and the map."""
     cube = two_cubes(place)
     session = begin(cube)
     near = [cone for cone in session.cones.vertices if cube.data.vertices[cone].co.x < 2]
@@ -623,7 +623,7 @@ def test_islands_that_came_to_lie_on_others_are_packed():
 
 
 def test_islands_that_lay_on_each_other_stay_so():
-    """Both are in the middle of the square, where edited ones have room."""
+    """Both are in the middle of the square, where edited islands would be placed."""
     overlap, uv_map = overlap_after(placed((0.5, 0.5), (0.5, 0.5)), PACKED)
     assert overlap > 0
     assert np.abs(uv_map.uv - 0.5).max() < 0.3

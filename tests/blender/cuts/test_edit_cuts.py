@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sessions of Edit Cuts: dragging, undoing, putting back, and what is kept of a map that was edited."""
+"""Sessions of Edit Cuts: dragging, undoing, restoring, and what is preserved of an edited map."""
 
 from itertools import pairwise
 

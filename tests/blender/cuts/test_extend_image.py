@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Extend Image across Cuts: lookups at both sides of cuts agree, pixels of islands stay, and what is refused."""
+"""Extend Image across Cuts: lookups on both sides of cuts agree, island pixels stay, and what is refused."""
 
 import bpy
 import lsgp

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The installed extension: names, options, menus, preferences, and that it leaves without trace."""
+"""The installed extension: names, options, menus, preferences, and complete removal."""
 
 import os
 import sys

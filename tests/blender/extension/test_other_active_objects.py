@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every operator where meshes are selected and the active object is none of them: it runs, or says why it does not."""
+"""Every operator where meshes are selected and the active object is none of them: it runs, or reports why it cannot."""
 
 import bpy
 import pytest

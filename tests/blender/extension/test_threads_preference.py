@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The number of threads in the preferences: every computation takes it, and the UV map is the same for any."""
+"""The number of threads in the preferences: every computation uses it, and all numbers give the same UV map."""
 
 import threading
 from dataclasses import dataclass, replace
@@ -25,7 +25,7 @@ def preferences():
 
 @pytest.fixture
 def threads_taken(monkeypatch):
-    """By each call of the library, as it is told."""
+    """The number passed in each call of the library."""
     told = []
 
     def record(name, threads_of):

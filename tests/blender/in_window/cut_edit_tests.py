@@ -38,7 +38,7 @@ def begin():
 
 
 def on_a_cut():
-    """A vertex inside a cut and one beside it that is on no cut, both in front."""
+    """A vertex inside a cut and a neighboring one that is on no cut, both in front."""
     paths = reports.find(ball().data).paths
     inside = {vertex for path in paths for vertex in path[1:-1]}
     taken = {vertex for path in paths for vertex in path}

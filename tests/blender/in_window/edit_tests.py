@@ -42,7 +42,7 @@ def ball():
 
 
 def in_front(obj, accept):
-    """Vertices whose normals look at the eye, the most so first."""
+    """Vertices whose normals face the viewer, sorted by how directly they do."""
     seen = area().spaces.active.region_3d
     toward = seen.view_matrix.inverted().translation.normalized()
     facing = [(vertex.normal @ toward, vertex.index) for vertex in obj.data.vertices]
@@ -160,7 +160,7 @@ def test_opening_a_file_ends_the_tool():
 
 
 def behind(over, accept):
-    """A vertex that is seen by the view, were it not for what lies over it; and its place."""
+    """A vertex inside the view that other geometry occludes, and its place."""
     for vertex in in_front(ball(), accept):
         x, y = place_of(ball(), vertex)
         if 20 < x - over.x < over.width - 20 and 20 < y - over.y < over.height - 20:

@@ -18,7 +18,7 @@ from windows import STEP, press, region, running, until
 
 @contextmanager
 def slowed(seconds, verb="parameterize"):
-    """The library takes so much longer, and tells its progress meanwhile; maps made before are forgotten."""
+    """The library takes so much longer and reports progress meanwhile; earlier maps are forgotten."""
     addon.jobs.layouts.remembered.forget()
     lsgp = addon.core.native.lsgp
     work = getattr(lsgp, verb)

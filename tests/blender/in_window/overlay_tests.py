@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is drawn over meshes, looked at in the pixels of a real window.  Run by run_in_window.py; no pytest."""
+"""What is drawn over meshes, judged by the pixels of a real window.  Run by run_in_window.py; no pytest."""
 
 from dataclasses import replace
 

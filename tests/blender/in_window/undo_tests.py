@@ -46,7 +46,7 @@ def told(names):
 
 
 def run_undo_redo(names, call):
-    """One round, after which nothing may be as it should not be.  Returns whether the run changed anything."""
+    """One round, which must leave everything in its expected state.  Returns whether the run changed anything."""
     before, told_before = state(names), told(names)
     assert call() == {"FINISHED"}
     after, told_after = state(names), told(names)

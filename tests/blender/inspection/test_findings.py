@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is said of errors and warnings: true, once, in degrees, by severity, and with the codes in the log alone."""
+"""Reports of errors and warnings: true, once each, in degrees, by severity, with codes in the log alone."""
 
 import re
 

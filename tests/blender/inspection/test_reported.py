@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Select Reported Elements: what errors and warnings named can be seen."""
+"""Select Reported Elements: selects the elements that errors and warnings name."""
 
 import bmesh
 import bpy

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an unwrap ended with is kept with the mesh, and only told of the UV map it is about."""
+"""The report of an unwrap is kept with the mesh and shown only for the UV map that it is about."""
 
 import base64
 import zlib

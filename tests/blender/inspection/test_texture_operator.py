@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Show Texture: a texture in place of all materials, which come back as they were."""
+"""Show Texture: a texture in place of all materials, which are restored afterward."""
 
 import bpy
 import numpy as np

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Remesh to Quads: the new object's mesh, what is carried over to it, and that the original is left alone."""
+"""Remesh to Quads: the new object's mesh, the attributes copied to it, and the unchanged original."""
 
 import math
 from collections import Counter
@@ -41,7 +41,7 @@ def valences(obj):
 
 
 def assert_closed(obj, euler):
-    """Every edge is once in each direction in a quad, which tells the Euler characteristic."""
+    """Every edge occurs once in each direction in a quad; also checks the Euler characteristic."""
     quads = quads_of(obj)
     sides = Counter((int(a), int(b)) for quad in quads for a, b in zip(quad, np.roll(quad, -1), strict=True))
     assert set(sides.values()) == {1}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Auto Unwrap and Unwrap from Cones at a texel density: what is measured in the maps, and what does not fit."""
+"""Auto Unwrap and Unwrap from Cones at a texel density: the measured density, and layouts that do not fit."""
 
 import math
 

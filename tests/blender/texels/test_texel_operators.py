@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Texel density got, set, selected and shown, against areas from the lengths of sides in the world."""
+"""Texel density: get, set, select and show, compared with areas by Heron's formula in world space."""
 
 import math
 from dataclasses import replace

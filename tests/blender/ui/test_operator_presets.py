@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The presets that the extension brings: where Blender lists them, and that each says all there is to say."""
+"""The presets of the extension: where Blender lists them, and that each sets all properties."""
 
 import re
 from pathlib import Path

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The operator's panel: short, because what has no say is left out."""
+"""The operator's panel: options without effect are left out."""
 
 import inspect
 

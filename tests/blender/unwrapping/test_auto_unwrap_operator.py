@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Auto Unwrap: what one press makes of objects, what it keeps and what it leaves alone."""
+"""Auto Unwrap: the result of one press, and what it preserves."""
 
 from itertools import pairwise
 
@@ -392,7 +392,7 @@ def test_the_sides_of_a_domed_panel_are_made_straight(straighten, preset):
 
 @pytest.mark.parametrize(("creases", "islands"), [(True, 3), (False, 1)])
 def test_a_cylinder_ends_at_its_rims(creases, islands):
-    """A rectangle and two disks without stretch; to run on over the rims takes a cone at each vertex there."""
+    """A rectangle and two disks without stretch; continuing across the rims would take a cone at each vertex there."""
     bpy.ops.mesh.primitive_cylinder_add(vertices=32)
     cylinder = bpy.context.active_object
     unwrap(creases=creases, mark=True, compact=False)

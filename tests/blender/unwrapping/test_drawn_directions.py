@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draw Texture Up and Mark Texture Up: what strokes leave on a mesh, and what unwrapping makes of it."""
+"""Draw Texture Up and Mark Texture Up: what strokes store on a mesh, and how unwrapping uses it."""
 
 import bmesh
 import bpy

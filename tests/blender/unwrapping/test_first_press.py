@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Auto Unwrap with its defaults on what artists begin with: even in density, nothing overlaps, one line is said."""
+"""Auto Unwrap with defaults on typical first models: even density, no overlaps, a report of one line."""
 
 import bpy
 import numpy as np
@@ -12,7 +12,7 @@ Faces, Groups = addon.mesh.region_read.Faces, addon.mesh.region_read.Groups
 
 
 def unwrapped(model, preset, reports):
-    """The objects, their maps, one for each mesh, and what was said."""
+    """The objects, their maps, one for each mesh, and the report."""
     objects = model()
     bpy.context.view_layer.update()
     reports()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Islands that lie on themselves: told of, shown, and split as asked."""
+"""Islands that overlap themselves: reported, shown, and split if requested."""
 
 import re
 

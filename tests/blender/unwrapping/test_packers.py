@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Auto Unwrap packs with xatlas where the extension has it, and with Blender's packer where it has not."""
+"""Auto Unwrap packs with xatlas if the extension includes it, otherwise with Blender's packer."""
 
 import bpy
 import numpy as np
@@ -15,7 +15,7 @@ HAS_XATLAS = lsgp.packer_name() is not None
 
 @pytest.fixture(params=["xatlas", "Blender"] if HAS_XATLAS else ["Blender"])
 def packer(request, monkeypatch):
-    """The one whose turn it is: as if xatlas were not there, or as the extension was installed."""
+    """Each packer in turn: with xatlas hidden, or as the extension was installed."""
     if request.param == "Blender":
         monkeypatch.setattr(lsgp, "packer_name", lambda: None)
     return request.param

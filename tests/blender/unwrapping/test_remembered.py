@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Maps that were made a moment ago are not made again, and anything that decides a map makes it new."""
+"""The latest maps are cached, and anything that affects a map invalidates its entry."""
 
 import bmesh
 import bpy

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Repair Flips, and cone angles that no map has: told, shown, and put right as far as can be."""
+"""Repair Flips, and cone angles that no map has: reported, shown, and corrected as far as possible."""
 
 import bmesh
 import bpy

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Unwrap from Cones: what the UVs it writes are like, measured from the mesh alone."""
+"""Unwrap from Cones: the quality of the UVs it writes, measured from the mesh alone."""
 
 import math
 from itertools import pairwise

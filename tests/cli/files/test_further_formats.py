@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What other packages read and write for lsgp, PLY with texture coordinates and STL; and what is said without them."""
+"""Formats that need other packages, PLY with texture coordinates and STL; and the errors without these packages."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files of all kinds with random damage, through the commands: each ends with a documented exit code and says why.
+"""Files of all kinds with random damage, through the commands: each ends with a documented exit code and a reason.
 
 Damage goes from single bits to lines and numbers that are put in, left out, doubled and exchanged; a seed names it.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`--pack`: what is written with each of its values, what the report says, and what does not go together."""
+"""`--pack`: the output and report for each of its values, and incompatible options."""
 
 from __future__ import annotations
 

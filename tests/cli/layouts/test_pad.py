@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`lsgp pad`: what it writes is what the library makes of the file, and what it refuses leaves nothing behind."""
+"""`lsgp pad`: it writes the result of the library, and leaves nothing behind when it refuses."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`lsgp quads`: a file of quads, and what is told of it."""
+"""`lsgp quads`: a file of quads, and its report."""
 
 from __future__ import annotations
 

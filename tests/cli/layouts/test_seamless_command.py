@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`lsgp unwrap --seamless`: what is written is seamless in single precision, as the certificate in the report says."""
+"""`lsgp unwrap --seamless`: the output is seamless in single precision, as certified in the report."""
 
 from __future__ import annotations
 

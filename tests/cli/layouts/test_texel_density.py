@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`--texel-density` and `--udim`: the coordinates that are written, reports, and what does not go together."""
+"""`--texel-density` and `--udim`: the written coordinates, reports, and incompatible options."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Exit codes: 0 for a result, 2 for wrong usage and files that are not there, 3 for input that is refused."""
+"""Exit codes: 0 for a result, 2 for wrong usage and missing files, 3 for refused input."""
 
 from __future__ import annotations
 

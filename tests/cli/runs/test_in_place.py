@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The input is written over only where that was asked for, and is never lost then."""
+"""The input is overwritten only if requested, and is never lost then."""
 
 from __future__ import annotations
 

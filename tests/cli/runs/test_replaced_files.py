@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files that are replaced while others have them open, or that may not be: as on Windows."""
+"""Files that are replaced while other programs have them open, or that cannot be replaced, as on Windows."""
 
 from __future__ import annotations
 

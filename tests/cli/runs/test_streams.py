@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Standard input and output, and streams that are closed, full, gone or endless: one plain message, and an end."""
+"""Standard input and output, and closed, full, missing or endless streams: one plain message and an exit."""
 
 from __future__ import annotations
 

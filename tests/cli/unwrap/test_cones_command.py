@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`lsgp cones`: cones and their angles in a file that an unwrap carries out."""
+"""`lsgp cones`: cones and their angles in a file that `lsgp unwrap` accepts."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`lsgp unwrap --cut-costs`: costs of edges and paint on vertices, and what is said where the file is wrong."""
+"""`lsgp unwrap --cut-costs`: costs of edges and paint on vertices, and the errors of invalid files."""
 
 from __future__ import annotations
 

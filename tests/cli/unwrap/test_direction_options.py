@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`lsgp unwrap --up` and `--directions`: which way the texture runs, and how far it is off."""
+"""`lsgp unwrap --up` and `--directions`: the direction of the texture and its deviation."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`lsgp unwrap --mode low-stretch --importance`: how the file is read and what is said where it is wrong."""
+"""`lsgp unwrap --mode low-stretch --importance`: how the file is read, and the errors of invalid files."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_refusals_say_what_is_wrong(lsgp, ball_files: Path) -> None:
 def test_text_and_json_are_the_same(lsgp, ball_files: Path) -> None:
     weights = np.linspace(0, 3, COUNT).tolist()
     texts = {
-        "lines.txt": "# from a modeller\n" + "\n".join(map(repr, weights)) + "\n",
+        "lines.txt": "# from a modeler\n" + "\n".join(map(repr, weights)) + "\n",
         "one-line.txt": " ".join(map(repr, weights)),
         "list.json": "\n " + json.dumps(weights, indent=1),
     }

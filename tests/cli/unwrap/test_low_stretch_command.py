@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`lsgp unwrap --mode low-stretch`, `--no-repair` and `--overlaps`: what each does to the map that is written."""
+"""`lsgp unwrap --mode low-stretch`, `--no-repair` and `--overlaps`: the effect of each on the written map."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`lsgp unwrap --preset`: what each preset makes, and that options given besides win."""
+"""`lsgp unwrap --preset`: the result of each preset, and that additional options take precedence."""
 
 from __future__ import annotations
 

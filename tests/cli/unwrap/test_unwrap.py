@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`lsgp unwrap`: what is written, how cones and angles are chosen, what the options do."""
+"""`lsgp unwrap`: its output, the choice of cones and angles, and the effect of options."""
 
 from __future__ import annotations
 

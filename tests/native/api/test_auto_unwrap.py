@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Unwrapping in one call: what presets promise, and where cones are added to those that are given."""
+"""Unwrapping in one call: the guarantees of presets, and where cones are added to given ones."""
 
 from __future__ import annotations
 

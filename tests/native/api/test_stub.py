@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""_lsgp.pyi says what the compiled module has: its functions and classes, their parameters and types."""
+"""_lsgp.pyi agrees with the compiled module: its functions and classes, their parameters and types."""
 
 import ast
 import re

@@ -212,6 +212,9 @@ REVIEWED = {
     ],
     "prescription/border_turning.cpp": [("while (true)", "each round lets go of a border, or ends it", WITHIN)],
     "prescription/log_scale.cpp": [("for (; length > 1e-6; length /= 2)", "20 halvings", SHORT)],
+    "prescription/straight_angles.cpp": [
+        ("for (Index waited = 0; trees_ < most; ++waited)", "each round counts a tree", WITHIN),
+    ],
     "prescription/straightness.cpp": [
         ("while (boundary.count_crossings() > 0 && boundary.swap_worst())", "each swap lowers the crossings", OWN),
     ],

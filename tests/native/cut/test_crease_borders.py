@@ -24,7 +24,7 @@ SOLIDS = {
     "cube": meshes.cube(3),
     "pipe": swept.pipe(24, 8, 0.0, True),
     "hollow pipe": swept.hollow_pipe(40, 4, 0.3),
-    "plate with tunnels": tunnels.tunnelled_plate(4, 3, 1),
+    "plate with tunnels": tunnels.tunneled_plate(4, 3, 1),
     "slab of genus 2": meshes.double_torus(),
 }
 
@@ -112,6 +112,27 @@ def test_tubes_are_opened_out_of_sight(front: tuple[int, int, int]) -> None:
 )
 def test_smooth_and_flat_surfaces_have_none(mesh: Mesh) -> None:
     assert len(lsgp.crease_borders(surface(mesh))) == 0
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_folds_that_fade_out_are_no_creases(seed: int) -> None:
+    """Large faces bend by a crease's angle in many places, and nearly all curvature is beside one of these."""
+    ball = meshes.icosphere(2)
+    radii = 1 + 0.2 * np.random.default_rng(seed).uniform(-1, 1, len(ball.positions))
+    mesh = meshes.make(ball.positions * radii[:, None], ball.triangles)
+    edges = meshes.edges_of(mesh.triangles)
+    folded = edges[angle_between_normals(mesh, edges) >= np.radians(40)]
+    degree = np.bincount(folded.ravel(), minlength=len(mesh.positions))
+    assert (degree == 1).sum() > 0.1 * (degree > 0).sum()
+    assert len(lsgp.crease_borders(surface(mesh))) == 0
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_noise_does_not_hide_creases(seed: int) -> None:
+    mesh = SOLIDS["gear"]
+    noise = 0.005 * np.random.default_rng(seed).normal(size=mesh.positions.shape)
+    borders = lsgp.crease_borders(surface(meshes.make(mesh.positions + noise, mesh.triangles)))
+    assert len(borders) >= 0.9 * len(lsgp.crease_borders(surface(mesh)))
 
 
 @pytest.mark.parametrize("preset", ["paint", "bake"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Texture coordinates as a list and indices: nothing twice, nothing lost."""
+"""Texture coordinates as a list and indices: no duplicates, no losses."""
 
 from __future__ import annotations
 

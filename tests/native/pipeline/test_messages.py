@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What messages say: degrees, numbers of a few digits that are true, nothing infinite."""
+"""Messages: degrees, true numbers of a few digits, nothing infinite."""
 
 from __future__ import annotations
 

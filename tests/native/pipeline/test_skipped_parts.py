@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A part that fails leaves the others as they are alone, and nothing of itself but the reason."""
+"""A failed component does not affect the others, and its reason is reported."""
 
 from __future__ import annotations
 

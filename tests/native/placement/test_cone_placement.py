@@ -24,7 +24,7 @@ from placement_checks import (
     place,
     strength,
 )
-from zoo.tunnels import tunnelled_plate
+from zoo.tunnels import tunneled_plate
 
 PI = np.pi
 MESHES = {
@@ -195,7 +195,7 @@ def test_a_target_out_of_reach_is_told() -> None:
     ],
 )
 def test_the_number_of_cones_follows_the_genus(across: int, along: int, options: dict[str, str]) -> None:
-    mesh = tunnelled_plate(across, along, 1)
+    mesh = tunneled_plate(across, along, 1)
     placed = place(mesh, **options)
     assert placed.reached and placed.predicted_l2 <= 1.05 and not placed.warnings
     assert_curvature_adds_up(mesh, placed.cones, placed.cone_angles)
@@ -207,7 +207,7 @@ def test_the_number_of_cones_follows_the_genus(across: int, along: int, options:
 
 def test_a_number_that_the_handles_cannot_do_with_is_refused_with_that_number() -> None:
     with pytest.raises(lsgp.TopologyError, match=r"8 cones cannot take up .* curvature of -13680 degrees") as caught:
-        place(tunnelled_plate(5, 4, 1), count=8)
+        place(tunneled_plate(5, 4, 1), count=8)
     assert caught.value.code == "TOO_FEW_CONES" and len(caught.value.elements.indices) == 8
 
 

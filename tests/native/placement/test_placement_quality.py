@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Automatic cones on real meshes: as few as promised, as little stretch as predicted, nothing else to be set."""
+"""Automatic cones on real meshes: as few as promised, as little stretch as predicted, without any settings."""
 
 from __future__ import annotations
 

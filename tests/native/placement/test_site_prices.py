@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where cuts have costs, cones go where cuts get to cheaply, as far as the stretch allows."""
+"""Where cuts have costs, cones are placed where cuts reach them cheaply, as far as the stretch permits."""
 
 from __future__ import annotations
 

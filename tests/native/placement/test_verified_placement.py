@@ -118,10 +118,10 @@ COARSE = {
     "screw": swept.screw(5, 12, 0.3),
     "gear": closed.gear(12, 0.15, 1),
     "star": closed.star(8, 0.3, 2.0),
-    "bevelled box": closed.bevelled_box(6, 0.3, (1, 4, 0.5)),
+    "beveled box": closed.beveled_box(6, 0.3, (1, 4, 0.5)),
     "handles": tunnels.box_with_handles(6, 3, 0),
-    "plate": tunnels.tunnelled_plate(2, 3, 1),
-    "bent plate": tunnels.smooth_tunnelled_plate(2, 2),
+    "plate": tunnels.tunneled_plate(2, 3, 1),
+    "bent plate": tunnels.smooth_tunneled_plate(2, 2),
     "sponge": tunnels.sponge(2),
 }
 
@@ -162,7 +162,7 @@ def test_spiky_balls_say_what_they_miss(name: str) -> None:
 
 
 @pytest.mark.parametrize("count", [4, 6, 8, 12])
-@pytest.mark.parametrize("name", ["flower", "pipe", "bevelled box", "flat ellipsoid"])
+@pytest.mark.parametrize("name", ["flower", "pipe", "beveled box", "flat ellipsoid"])
 def test_a_number_of_cones_stays_and_its_map_is_measured(name: str, count: int) -> None:
     placed = place(COARSE[name], count=count)
     assert len(placed.cones) == count
@@ -172,7 +172,11 @@ def test_a_number_of_cones_stays_and_its_map_is_measured(name: str, count: int) 
 
 
 @pytest.mark.parametrize(
-    "name", ["beam", "pyramid", "pipe", "joint", "spool", "anchor", "couplingdown", "pinion", "femur", "oblong"]
+    "name",
+    [
+        *("beam", "pyramid", "pipe", "joint", "spool", "oblong"),
+        *(pytest.param(name, marks=pytest.mark.many_solves) for name in ("anchor", "couplingdown", "pinion", "femur")),
+    ],
 )
 def test_meshes_whose_maps_were_stretched_more_than_predicted(name: str) -> None:
     mesh = hard_mesh(name)
@@ -184,8 +188,8 @@ def test_meshes_whose_maps_were_stretched_more_than_predicted(name: str) -> None
 # --- a given number of cones ----------------------------------------------------------------------------------------
 
 COARSE_HANDLES = {
-    "three tunnels": tunnels.tunnelled_plate(1, 3, 3),
-    "four tunnels": tunnels.tunnelled_plate(4, 1, 3),
+    "three tunnels": tunnels.tunneled_plate(1, 3, 3),
+    "four tunnels": tunnels.tunneled_plate(4, 1, 3),
     "three handles": tunnels.box_with_handles(5, 3, 0),
 }
 
@@ -201,8 +205,8 @@ def test_cones_are_moved_until_the_map_is_as_predicted(name: str) -> None:
 
 # With the stretch of the maps of eight cones that are moved within the bounds of their angles.
 BEYOND_BOUNDS = {
-    "two tunnels": (tunnels.tunnelled_plate(2, 1, 3), 1.187),
-    "three tunnels": (tunnels.tunnelled_plate(1, 3, 1), 1.464),
+    "two tunnels": (tunnels.tunneled_plate(2, 1, 3), 1.187),
+    "three tunnels": (tunnels.tunneled_plate(1, 3, 1), 1.464),
     "sponge": (tunnels.sponge(1), 1.587),
     "spring": (swept.spring(3, 6, True), 1.197),
     "pipe": (swept.pipe(8, 10, 1.5, True), 1.199),
@@ -232,6 +236,25 @@ def test_a_map_without_hope_of_low_stretch_is_repaired_before_it_is_told() -> No
     placed = place(mesh, count=8)
     assert placed.predicted_l2 > 2 and np.isfinite(placed.mapped_l2)
     assert placed.mapped_l2 == pytest.approx(unwrapped(mesh, placed).distortion.l2_stretch, rel=1e-6)
+
+
+def rough_ground(cells: int, height: float) -> Mesh:
+    """A grid of unit cells, each vertex lifted at random by about this height."""
+    flat = meshes.grid(cells, cells)
+    noise = np.random.default_rng(3).normal(size=len(flat.positions))
+    return flat._replace(positions=flat.positions + np.outer(height * noise, [0, 0, 1]))
+
+
+def test_large_ground_that_is_rough_all_over_is_refused_without_repairs() -> None:
+    mesh = rough_ground(105, 4)
+    with pytest.raises(lsgp.LsgpError, match="too rough") as refused:
+        place(mesh)
+    assert refused.value.code == "SOLVER_FAILED"
+
+
+def test_smaller_rough_ground_gets_a_map() -> None:
+    mesh = rough_ground(32, 1.5)
+    assert_keeps_its_word(mesh, place(mesh))
 
 
 # --- what is told ---------------------------------------------------------------------------------------------------

@@ -9,8 +9,10 @@ import numpy as np
 import oracle
 import pytest
 import scipy.optimize
+import zoo
 from map_checks import assert_curvature_adds_up, codes, inner_vertices, only, prescribe, surface, unwrap
 from placement_checks import middle_l2
+from shared_meshes import shared_mesh
 
 PI, TURN = np.pi, 2 * np.pi
 CLOSED = {
@@ -255,9 +257,31 @@ def test_straightness_on_a_flower_is_near_the_best() -> None:
 
 
 def test_straightness_that_cannot_be_kept_says_so_and_falls_back() -> None:
-    mesh = meshes.bumpy_sphere(3, 0.15)._replace(cones=np.arange(3, 642, 4, dtype=np.int32))
+    mesh = zoo.member("sponge-cells=1").mesh()  # five tunnels through a small cube
+    mesh = mesh._replace(cones=lsgp.place_cones(surface(mesh)).cones)
     found = prescribe(mesh, prescription="straightness")
     finding = only(found.warnings, "STRAIGHTNESS_FAILED")
-    assert "cross" in finding.message
+    assert "cross" in finding.message and "other trees" in finding.message
     assert_curvature_adds_up(mesh, found.cones, found.cone_angles)
     assert found.cone_angles == pytest.approx(prescribe(mesh).cone_angles, abs=1e-9)
+
+
+@pytest.mark.parametrize(("first", "step"), [(3, 4), (1, 3)])
+def test_straight_cuts_are_found_among_other_trees(first: int, step: int) -> None:
+    """Those of the usual tree cross."""
+    mesh = meshes.bumpy_sphere(3, 0.15)._replace(cones=np.arange(first, 642, step, dtype=np.int32))
+    found = prescribe(mesh, prescription="straightness")
+    assert codes(found.warnings) == ["JUNCTION_SHARE"]
+    assert "trees of cuts" in found.warnings[0].message
+    assert_curvature_adds_up(mesh, found.cones, found.cone_angles)
+    assert found.predicted_l2 <= 1.5 * prescribe(mesh).predicted_l2
+
+
+def test_cuts_to_a_free_boundary_can_be_straight() -> None:
+    for name in ("camel-head-disk", "julius"):
+        mesh = shared_mesh(name)
+        found = prescribe(mesh, prescription="straightness")
+        assert "STRAIGHTNESS_FAILED" not in codes(found.warnings)
+        least = prescribe(mesh)
+        assert np.abs(found.cone_angles - least.cone_angles).max() > 1e-6
+        assert found.predicted_l2 <= 1.5 * least.predicted_l2

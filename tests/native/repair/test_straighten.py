@@ -136,7 +136,7 @@ def test_round_borders_stay_as_they_are() -> None:
 
 
 def test_sides_that_would_overlap_are_not_straightened() -> None:
-    box = closed.bevelled_box(4, 0.15, (1, 1.5, 2))  # a net of faces with narrow gaps between them
+    box = closed.beveled_box(4, 0.15, (1, 1.5, 2))  # a net of faces with narrow gaps between them
     result = lsgp.auto_unwrap(surface(box), preset="bake", pack="shelves")
     assert len(result.overlapping) == 0 and len(result.flipped) == 0
 

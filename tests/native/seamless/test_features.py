@@ -118,6 +118,18 @@ def test_creases_off_the_lattice_are_named() -> None:
     assert result.seamless.feature_share == pytest.approx(length[~off].sum() / length.sum(), abs=1e-12)
 
 
+def test_tiles_of_a_given_size_keep_what_they_can() -> None:
+    """Not all creases of this gear find a place on 32 tiles; before some were released, none did."""
+    mesh = closed.gear(4, 0.3, 2)
+    options = replace(TILE, seamless=replace(TILE.seamless, tiles=32))
+    result = lsgp.auto_unwrap(surface(mesh), preset="tile", options=options)
+    both = ends(result, creases(mesh))
+    assert result.seamless.tiles == 32
+    assert 0.25 < result.seamless.feature_share < 1
+    assert (both[:, 0] == both[:, 1]).any(axis=1).mean() > 0.25
+    assert undeclared_faults(surface(mesh), result, options) == []
+
+
 def test_a_rim_along_the_lattice_does_not_turn() -> None:
     """A disk whose rim is straight has its whole turn in cones of the disk and in corners of the rim."""
     mesh, result = HARD["cylinder"], of("cylinder")

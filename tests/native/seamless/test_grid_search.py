@@ -76,7 +76,7 @@ def test_automatic_grids_keep_their_bound_where_maps_are_strained(shape: str, se
     assert "GRID_DISTORTS" not in codes(result.warnings)
 
 
-@pytest.mark.parametrize("name", ["pipe", "pinion", "joint"])
+@pytest.mark.parametrize("name", ["pipe", "joint", pytest.param("pinion", marks=pytest.mark.many_solves)])
 def test_automatic_grids_keep_their_bound_on_hard_meshes(name: str) -> None:
     mesh = hard_mesh(name)
     placed = lsgp.place_cones(surface(mesh), lattice="square")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Islands that are cut so that they fill a square: what that changes, what it leaves, and where it is left alone."""
+"""Islands that are cut so that they fill a square: what that changes, what it preserves, and when it is not done."""
 
 from __future__ import annotations
 
@@ -210,7 +210,7 @@ def test_faces_of_polygons_are_not_cut() -> None:
         "gear-teeth=6-depth=0.15-layers=1",
         "pipe-around=8-along=10-bend=1.5-caps=True",
         "ring-around=14-along=8-major=2",
-        "tunnelled-plate-across=2-along=1-thickness=1",
+        "tunneled-plate-across=2-along=1-thickness=1",
         "mixed-parts-count=5-spread=2-seed=0",
         "scale-shape=ball-exponent=-6",
         "bumpy-ball-levels=1-height=0.25",

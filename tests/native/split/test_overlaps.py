@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Layouts that lie on themselves: what of them is reported, and what splitting them makes of them."""
+"""Layouts that overlap themselves: the reported overlaps, and the result of splitting."""
 
 from __future__ import annotations
 
