@@ -37,7 +37,8 @@ Geometry mollified(const HalfedgeMesh& mesh, Geometry geometry, double margin);
 // The normal of a triangle in space; its length is twice the area.
 Eigen::Vector3d area_normal(const Positions& positions, const Triangles& triangles, Index f);
 
-// The same, but of what a triangle without a usable area lies beside, across its longest edge.
+// The same, but for a triangle without a usable area that of its neighbor: in the same face, or across its longest
+// edge.
 Eigen::Vector3d surface_normal(const HalfedgeMesh& mesh, Index f);
 
 // The angle between two directions, radians; 0 if one is zero.
