@@ -30,6 +30,9 @@ TOUCHING_SHARE = 0.5
 NEEDLE_PENALTY = 16.0
 TAKEN_PENALTY = 64.0
 
+# The cost of an ear of which two corners coincide, above that of all others: without it no ear is left at such corners.
+FLAT_EAR_COST = 128.0
+
 # Levels of strictness, in turn: no corner close to the diagonal, no corner inside, anything.
 STRICT, ALLOWS_TOUCHING, ALLOWS_ANY = range(3)
 
@@ -43,8 +46,9 @@ def clip_ears_of_one(
     """Triangles (n - 2, 3), local corners, of a counter-clockwise polygon (n, 2) of the size of 1.
 
     is_taken: whether a diagonal between two corners is to be avoided.
-    The cheapest ear is tried first, and put aside if another corner lies in it. Where ears run out, corners close to
-    the diagonal are allowed, then corners inside, then the rest becomes a fan. After an ear the test is strict again.
+    The cheapest ear is tried first, those of which two corners coincide last, and put aside if another corner lies in
+    it. Where ears run out, corners close to the diagonal are allowed, then corners inside, then the rest becomes a fan.
+    After an ear the test is strict again.
     """
     n = len(points)
     if not np.isfinite(points).all():
@@ -132,7 +136,10 @@ class _Ring:
         ax, ay, bx, by, cx, cy = x[p], y[p], x[tip], y[tip], x[q], y[q]
         abx, aby, bcx, bcy, cax, cay = bx - ax, by - ay, cx - bx, cy - by, ax - cx, ay - cy
         diagonal = math.sqrt(cax * cax + cay * cay)
-        height = (abx * bcy - aby * bcx) / max(diagonal, TINY)
+        area = abx * bcy - aby * bcx
+        if not area > ROUNDING:
+            return False
+        height = area / max(diagonal, TINY)
         margin = ROUNDING if allows_touching else max(min(NEARLY_TOUCHING, TOUCHING_SHARE * height), ROUNDING)
         beyond = -margin * diagonal
         # A corner at the same place as one of the ear's own touches it only: the two sides of a keyhole.
@@ -163,11 +170,14 @@ class _Ring:
         p, q = self._before[tip], self._after[tip]
         back_x, back_y, ahead_x, ahead_y = x[tip] - x[p], y[tip] - y[p], x[q] - x[tip], y[q] - y[tip]
         area = back_x * ahead_y - back_y * ahead_x
+        cost = (back_x + ahead_x) ** 2 + (back_y + ahead_y) ** 2
+        back, ahead = back_x * back_x + back_y * back_y, ahead_x * ahead_x + ahead_y * ahead_y
+        if min(cost, back, ahead) <= ROUNDING**2:
+            heapq.heappush(self._queue, (FLAT_EAR_COST, tip, self._version[tip]))
+            return
         if not area > ROUNDING:
             return
-        cost = (back_x + ahead_x) ** 2 + (back_y + ahead_y) ** 2
-        lengths = (back_x * back_x + back_y * back_y) * (ahead_x * ahead_x + ahead_y * ahead_y)
-        if area <= NEARLY_STRAIGHT * math.sqrt(lengths):
+        if area <= NEARLY_STRAIGHT * math.sqrt(back * ahead):
             cost += NEEDLE_PENALTY
         if self._is_taken is not None and self._is_taken(p, q):
             cost += TAKEN_PENALTY

@@ -16,6 +16,7 @@ from ..errors import Elements, InputError
 from ..short_repr import ShortRepr
 from .ear_clipping import (
     ALLOWS_ANY,
+    FLAT_EAR_COST,
     NEARLY_STRAIGHT,
     NEARLY_TOUCHING,
     NEEDLE_PENALTY,
@@ -272,9 +273,9 @@ def _in_plane(points: NDArray[np.float64]) -> NDArray[np.float64]:
 def _clip_ears(points: NDArray[np.float64]) -> NDArray[np.int64]:
     """Triangles (k, n - 2, 3), local corners, of k polygons (k, n, 2) at once, one ear of each polygon at a time.
 
-    A polygon tries its cheapest ear; if another corner lies in it, the ear is put aside. A polygon that runs out of
-    ears becomes less strict by a step: corners close to the diagonal are allowed, then corners inside, then the rest
-    becomes a fan. After an ear it is strict again.
+    A polygon tries its cheapest ear, those of which two corners coincide last; if another corner lies in it, the ear is
+    put aside. A polygon that runs out of ears becomes less strict by a step: corners close to the diagonal are allowed,
+    then corners inside, then the rest becomes a fan. After an ear it is strict again.
     """
     k, n, _ = points.shape
     if n >= LARGE:
@@ -288,14 +289,15 @@ def _clip_ears(points: NDArray[np.float64]) -> NDArray[np.int64]:
     triangles = np.empty((k, n - 2, 3), np.int64)
 
     def ear_cost(row: NDArray[np.int64], tip: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Squared length of the diagonal and penalties; infinite where the corner is no ear."""
+        """Squared length of the diagonal and penalties, FLAT_EAR_COST without extent; infinite where it is no ear."""
         p, q = before[row, tip], after[row, tip]
         back, ahead = points[row, tip] - points[row, p], points[row, q] - points[row, tip]
-        diagonal = back + ahead
+        lengths = [_dot(side, side) for side in (back, ahead, back + ahead)]
         area = _cross(back, ahead)
-        needle = area <= NEARLY_STRAIGHT * np.sqrt(_dot(back, back) * _dot(ahead, ahead))
-        cost = _dot(diagonal, diagonal) + NEEDLE_PENALTY * needle
-        return np.where(alive[row, tip] & (area > ROUNDING), cost, np.inf)
+        needle = area <= NEARLY_STRAIGHT * np.sqrt(lengths[0] * lengths[1])
+        cost = np.where(area > ROUNDING, lengths[2] + NEEDLE_PENALTY * needle, np.inf)
+        cost = np.where(np.min(lengths, axis=0) <= ROUNDING**2, FLAT_EAR_COST, cost)
+        return np.where(alive[row, tip], cost, np.inf)
 
     cost = ear_cost(np.arange(k)[:, None], every[None])
     rows = np.arange(k)
@@ -340,7 +342,8 @@ def _occupied(
     others = points[row]
     a, b, c = (points[row, corner][:, None] for corner in ear)
     diagonal = np.sqrt(_dot(a - c, a - c))
-    height = _cross(b - a, c - b) / np.maximum(diagonal, TINY)
+    area = _cross(b - a, c - b)
+    height = area / np.maximum(diagonal, TINY)
     close = np.maximum(np.minimum(NEARLY_TOUCHING, TOUCHING_SHARE * height), ROUNDING)
     margin = np.where((leniency == STRICT)[:, None], close, ROUNDING)
     inside = (
@@ -351,7 +354,7 @@ def _occupied(
     # A corner at the same place as one of the ear's own touches it only: the two sides of a keyhole.
     for own in (a, b, c):
         inside &= (others != own).any(axis=2)
-    return (inside & alive[row]).any(axis=1) & (leniency < ALLOWS_ANY)
+    return (inside & alive[row]).any(axis=1) & (leniency < ALLOWS_ANY) & (area[:, 0] > ROUNDING)
 
 
 def _polygon_edges(mesh: PolygonMesh) -> NDArray[np.int32]:

@@ -2,17 +2,53 @@
 #include "creases/features.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "base/union_find.hpp"
 
 namespace lsgp {
 
+namespace {
+
+// Sets of vertices that lie on each other, next to the size of the triangles there: intersections of solids leave them,
+// and single ones have angles that say nothing.
+UnionFind coincident_vertices(const HalfedgeMesh& mesh) {
+  constexpr double least_length = 1e-4;  // of the triangle's longest edge
+  UnionFind out(mesh.vertex_count());
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    std::array<double, 3> length;
+    for (Index c = 0; c < 3; ++c) {
+      const Index h = 3 * f + c;
+      length[c] = (mesh.positions.row(mesh.target(h)) - mesh.positions.row(mesh.origin(h))).norm();
+    }
+    const double least = least_length * *std::max_element(length.begin(), length.end());
+    for (Index c = 0; c < 3; ++c) {
+      if (length[c] < least) out.unite(mesh.origin(3 * f + c), mesh.target(3 * f + c));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
 CreaseCurvature::CreaseCurvature(const MetricMesh& surface, const PerVertex<char>& is_at_crease) {
-  for (Index v = 0; v < surface.mesh.vertex_count(); ++v) {
-    if (surface.mesh.loop_of_vertex[v] != none) continue;
-    const double curvature = std::abs(surface.geometry.angle_defect[v]);
+  const HalfedgeMesh& mesh = surface.mesh;
+  UnionFind point = coincident_vertices(mesh);
+  PerVertex<double> defect(mesh.vertex_count(), 0);
+  PerVertex<char> is_inside(mesh.vertex_count(), 1), is_crease(mesh.vertex_count(), 0);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    const Index at = point.find(v);
+    defect[at] += surface.geometry.angle_defect[v];
+    if (mesh.loop_of_vertex[v] != none) is_inside[at] = 0;
+    if (is_at_crease[v]) is_crease[at] = 1;
+  }
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (point.find(v) != v || !is_inside[v]) continue;
+    const double curvature = std::abs(defect[v]);
     all_ += curvature;
     all_squares_ += curvature * curvature;
-    if (!is_at_crease[v]) continue;
+    if (!is_crease[v]) continue;
     at_creases_ += curvature;
     squares_at_creases_ += curvature * curvature;
   }

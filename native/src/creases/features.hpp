@@ -11,7 +11,8 @@ namespace lsgp {
 // Least angle between the normals at a crease, radians: that of CreaseOptions unless they have another.
 inline constexpr double crease_angle = CreaseOptions::usual_angle;
 
-// The angle defects of vertices inside, without signs: of all, and of those at creases.
+// The angle defects of points inside, without signs: of all, and of those at creases. Vertices that coincide are one
+// point.
 class CreaseCurvature {
  public:
   CreaseCurvature(const MetricMesh& surface, const PerVertex<char>& is_at_crease);

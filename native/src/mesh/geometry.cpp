@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/thread_team.hpp"
 
@@ -124,9 +125,32 @@ double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
+Eigen::Vector3d surface_normal(const HalfedgeMesh& mesh, Index f) {
+  constexpr double least_height = 1e-4;  // of the longest edge
+  constexpr int most_steps = 16;
+  const auto squared_length = [&mesh](Index h) {
+    return (mesh.positions.row(mesh.target(h)) - mesh.positions.row(mesh.origin(h))).squaredNorm();
+  };
+  Index entered = none;
+  for (int step = 0;; ++step) {
+    const Eigen::Vector3d normal = area_normal(mesh.positions, mesh.triangles, f);
+    double longest = 0;
+    Index across = none;
+    for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+      longest = std::max(longest, squared_length(h));
+      if (h == entered || mesh.twin[h] == none) continue;
+      const auto order = [&](Index g) { return std::make_pair(!mesh.cuttable[g], squared_length(g)); };
+      if (across == none || order(h) > order(across)) across = h;
+    }
+    const bool is_narrow = !(normal.norm() > least_height * longest);
+    if (!is_narrow || step == most_steps || across == none) return normal;
+    entered = mesh.twin[across];
+    f = entered / 3;
+  }
+}
+
 double bend_at(const HalfedgeMesh& mesh, Index h) {
-  const auto normal = [&](Index f) { return area_normal(mesh.positions, mesh.triangles, f); };
-  return angle_between(normal(h / 3), normal(mesh.twin[h] / 3));
+  return angle_between(surface_normal(mesh, h / 3), surface_normal(mesh, mesh.twin[h] / 3));
 }
 
 }  // namespace lsgp

@@ -37,10 +37,14 @@ Geometry mollified(const HalfedgeMesh& mesh, Geometry geometry, double margin);
 // The normal of a triangle in space; its length is twice the area.
 Eigen::Vector3d area_normal(const Positions& positions, const Triangles& triangles, Index f);
 
+// The same, but for a triangle without a usable area that of its neighbor: in the same face, or across its longest
+// edge.
+Eigen::Vector3d surface_normal(const HalfedgeMesh& mesh, Index f);
+
 // The angle between two directions, radians; 0 if one is zero.
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
-// The angle between the normals of the triangles on both sides of an inner edge, radians.
+// The angle between the surface normals of the triangles on both sides of an inner edge, radians.
 double bend_at(const HalfedgeMesh& mesh, Index h);
 
 // The edge vector of halfedge h in its triangle's own frame, in which the triangle's first halfedge is real.

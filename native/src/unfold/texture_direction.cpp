@@ -134,6 +134,7 @@ void UpwardTurn::add(Complex image) {
   const double angle = std::arg(image / upwards);
   once_ += std::polar(weight, angle);
   twice_ += std::polar(weight, 2 * angle);
+  by_quarter_ += std::polar(weight, 4 * angle);
   by_rotation_ += std::polar(weight, rotation_order_ * angle);
   weight_ += weight;
 }
@@ -144,6 +145,15 @@ bool UpwardTurn::remains(Complex sum) const {
 }
 
 std::optional<Complex> UpwardTurn::turn() const {
+  constexpr double least_share = 0.9;  // angles of 6 degrees
+  const std::optional<Complex> fitted = fitted_turn();
+  if (!fitted || !(std::abs(by_quarter_) > least_share * weight_)) return fitted;
+  const Complex frame = std::polar(1.0, -std::arg(by_quarter_) / 4);
+  const double quarters = std::round(std::arg(*fitted / frame) / (M_PI / 2));
+  return frame * std::polar(1.0, quarters * M_PI / 2);
+}
+
+std::optional<Complex> UpwardTurn::fitted_turn() const {
   if (std::abs(once_) >= std::abs(twice_)) {
     if (!remains(once_)) return std::nullopt;
     return std::polar(1.0, -std::arg(once_));

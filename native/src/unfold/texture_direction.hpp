@@ -38,8 +38,9 @@ class UpwardTurn {
   explicit UpwardTurn(int rotation_order = 1) : rotation_order_(rotation_order) {}
   void add(Complex image);
 
-  // The least squares fit to v, or, if many images are opposite to others, to v or its opposite. None without images,
-  // or if they cancel.
+  // The least squares fit to v, or, if many images are opposite to others, to v or its opposite; if they all are along
+  // the axes of one frame, as on an unfolded box, the nearest turn of that frame. None without images, or if they
+  // cancel.
   std::optional<Complex> turn() const;
   // The same modulo rotations by 2 pi / rotation_order, and then the best of these, in multiples of that.
   std::optional<Complex> turn_to_lattice() const;
@@ -47,9 +48,11 @@ class UpwardTurn {
 
  private:
   bool remains(Complex sum) const;
+  std::optional<Complex> fitted_turn() const;
 
   int rotation_order_;
-  Complex once_ = 0, twice_ = 0, by_rotation_ = 0;  // sums of e^{i k angle} over the angles from v, by weight
+  // Sums of e^{i k angle} over the angles from v, by weight.
+  Complex once_ = 0, twice_ = 0, by_quarter_ = 0, by_rotation_ = 0;
   double weight_ = 0;
 };
 UpwardTurn upward_turn(const TextureDirections& directions, const CornerPositions& position, int rotation_order);

@@ -73,6 +73,22 @@ def test_concave_polygons_are_covered_exactly(points: np.ndarray) -> None:
     assert areas.sum() == pytest.approx(whole, rel=1e-9)
 
 
+@pytest.mark.parametrize("by_itself", [False, True], ids=["many at once", "one"])
+@settings(max_examples=150, deadline=None)
+@given(star_shaped(), st.lists(st.integers(1, 3), min_size=28, max_size=28))
+def test_concave_polygons_with_repeated_corners_are_covered(
+    by_itself: bool, points: np.ndarray, times: list[int]
+) -> None:
+    repeated = np.repeat(points, times[: len(points)], axis=0)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("lsgp.io.polygons.LARGE", 3 if by_itself else 1024)
+        mesh, triangulation = one_polygon(repeated)
+    areas = triangle_areas(mesh, triangulation)
+    (whole,) = polygon_areas(mesh)
+    assert areas.min() > -1e-12 * whole
+    assert areas.sum() == pytest.approx(whole, rel=1e-9)
+
+
 def spiral(turns: float, n: int) -> np.ndarray:
     """A corridor that winds round itself."""
     t = np.linspace(0.5, turns, n)
