@@ -113,11 +113,11 @@ Eigen::VectorXd harmonic(const HalfedgeMesh& mesh, const ComponentCones& cones, 
 }
 
 // Of straight cuts, which the system then keeps, or those of least distortion.
-Eigen::VectorXd straightness(ComponentSystem& system, const ComponentCones& cones, Eigen::VectorXd least,
+Eigen::VectorXd straightness(ComponentSystem& system, const ComponentCones& cones, const Eigen::VectorXd& least,
                              std::vector<Finding>& findings) {
   const StraightAngles& straight = system.straight_angles(cones, least);
   findings.insert(findings.end(), straight.findings.begin(), straight.findings.end());
-  return straight.curvature.size() > 0 ? straight.curvature : std::move(least);
+  return straight.curvature.size() > 0 ? straight.curvature : least;
 }
 
 }  // namespace
@@ -240,7 +240,7 @@ Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, Prescr
     curvature = harmonic(mesh, asked, scale);
   } else {
     curvature = least_distortion(mesh, asked, scale);
-    if (rule == PrescriptionRule::straightness) curvature = straightness(system, asked, std::move(curvature), findings);
+    if (rule == PrescriptionRule::straightness) curvature = straightness(system, asked, curvature, findings);
   }
   if (asked.rotation_order > 0) {
     curvature = quantize_curvature(mesh, asked, scale, curvature, asked.rotation_order);
