@@ -131,22 +131,23 @@ Eigen::Vector3d surface_normal(const HalfedgeMesh& mesh, Index f) {
   const auto squared_length = [&mesh](Index h) {
     return (mesh.positions.row(mesh.target(h)) - mesh.positions.row(mesh.origin(h))).squaredNorm();
   };
+  const auto is_narrow = [&](Index g) {
+    const double longest = std::max({squared_length(3 * g), squared_length(3 * g + 1), squared_length(3 * g + 2)});
+    return !(area_normal(mesh.positions, mesh.triangles, g).norm() > least_height * longest);
+  };
   Index entered = none;
-  for (int step = 0;; ++step) {
-    const Eigen::Vector3d normal = area_normal(mesh.positions, mesh.triangles, f);
-    double longest = 0;
+  for (int step = 0; step < most_steps && is_narrow(f); ++step) {
+    const auto order = [&](Index h) { return std::make_pair(!mesh.cuttable[h], squared_length(h)); };
     Index across = none;
     for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-      longest = std::max(longest, squared_length(h));
       if (h == entered || mesh.twin[h] == none) continue;
-      const auto order = [&](Index g) { return std::make_pair(!mesh.cuttable[g], squared_length(g)); };
       if (across == none || order(h) > order(across)) across = h;
     }
-    const bool is_narrow = !(normal.norm() > least_height * longest);
-    if (!is_narrow || step == most_steps || across == none) return normal;
+    if (across == none) break;
     entered = mesh.twin[across];
     f = entered / 3;
   }
+  return area_normal(mesh.positions, mesh.triangles, f);
 }
 
 double bend_at(const HalfedgeMesh& mesh, Index h) {
