@@ -47,6 +47,24 @@ def angle_between_normals(mesh: Mesh, edges: np.ndarray) -> np.ndarray:
     return np.array(out)
 
 
+def with_slivers(mesh: Mesh, count: int, gap: float, seed: int) -> Mesh:
+    """Edges divided so close to one end that the triangles beside the short half have no area, as booleans leave them.
+
+    gap: of the edge's length."""
+    positions, triangles = list(mesh.positions), [tuple(t) for t in mesh.triangles.tolist()]
+    rng = np.random.default_rng(seed)
+    for _ in range(count):
+        f, c = rng.integers(len(triangles)), rng.integers(3)
+        a, b, tip = (triangles[f][(c + i) % 3] for i in range(3))
+        (g,) = [i for i, t in enumerate(triangles) if i != f and {a, b} <= set(t)]
+        (beyond,) = set(triangles[g]) - {a, b}
+        new = len(positions)
+        positions.append((1 - gap) * positions[a] + gap * positions[b])
+        triangles[f], triangles[g] = (a, new, tip), (new, a, beyond)
+        triangles += [(new, b, tip), (b, new, beyond)]
+    return meshes.make(np.array(positions), np.array(triangles))
+
+
 def chamfered_box(size: tuple[float, float, float], chamfer: float) -> Mesh:
     """A box whose edges and corners are cut off by one face each."""
     signs = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3), axis=-1).reshape(-1, 3)
@@ -318,3 +336,13 @@ def test_what_is_round_itself_has_no_bevels() -> None:
     scan = meshes.make(ball.positions * (1 + 0.03 * noise), ball.triangles)
     for mesh in (rounded_box((1.0, 1.5, 2.0), 0.45), meshes.icosphere(2), meshes.bumpy_sphere(3), scan):
         assert len(lsgp.crease_borders(surface(mesh))) == 0
+
+
+@pytest.mark.parametrize("gap", [0.0, 1e-7])
+@pytest.mark.parametrize("name", ["star", "cube", "plate with tunnels", "slab of genus 2"])
+def test_triangles_without_area_hide_no_creases(name: str, gap: float) -> None:
+    for seed in range(3):
+        mesh = with_slivers(SOLIDS[name], 6, gap, seed)
+        result = lsgp.auto_unwrap(surface(mesh), preset="bake", pack="shelves")
+        assert len(result.cones) == 0
+        assert result.distortion.l2_stretch <= 1.001

@@ -84,6 +84,20 @@ def test_one_stroke_on_an_island_runs_along_v(name: str, mode: str) -> None:
         assert not undeclared_faults(surface, result, options)
 
 
+@pytest.mark.parametrize("depth", [0.3, 0.8])
+def test_walls_at_right_angles_are_not_turned_in_between(depth: float) -> None:
+    # A floor with two walls that hang from neighboring sides, of depth 1 and less: v is up on the larger one.
+    floor = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+    walls = [(0, 0, -1), (1, 0, -1), (1, 0, -depth), (1, 1, -depth)]
+    triangles = [(0, 1, 2), (0, 2, 3), (4, 5, 1), (4, 1, 0), (1, 6, 7), (1, 7, 2)]
+    directions = np.tile(UP, (len(triangles), 1))
+    surface = lsgp.Surface(np.array(floor + walls, float), np.array(triangles), directions=directions)
+    result = lsgp.parameterize(surface, [])
+    image = images(surface, result)
+    assert off_v(image[2:4]).max() <= EXACT
+    assert np.abs(off_v(image[4:]) - np.pi / 2).max() <= EXACT
+
+
 def test_every_island_has_its_own_turn() -> None:
     mesh = meshes.merge([meshes.hill(6), meshes.saddle(6), meshes.hill(5)])
     component = oracle.face_components(mesh.triangles)
