@@ -52,7 +52,9 @@ def test_edges_with_the_attribute_are_straight(preset: str, in_edit_mode: bool) 
         edit(box)
     assert bpy.ops.uv.cone_auto_unwrap(preset=preset, straighten=False) == {"FINISHED"}
     bpy.ops.object.mode_set(mode="OBJECT")
-    assert off_axis(box, loop) == 0
+    # Blender's packer moves and scales islands in single precision.
+    rounding = 0 if preset == "TILE" else np.spacing(np.float32(1))
+    assert off_axis(box, loop) <= rounding
 
 
 def test_without_marks_they_are_not() -> None:
