@@ -2,8 +2,8 @@
 #include "creases/features.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iterator>
 
 #include "base/union_find.hpp"
 
@@ -17,13 +17,13 @@ UnionFind coincident_vertices(const HalfedgeMesh& mesh) {
   constexpr double least_length = 1e-4;  // of the triangle's longest edge
   UnionFind out(mesh.vertex_count());
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
-    std::array<double, 3> length;
-    for (Index c = 0; c < 3; ++c) {
+    double length[3];
+    for (int c = 0; c < 3; ++c) {
       const Index h = 3 * f + c;
       length[c] = (mesh.positions.row(mesh.target(h)) - mesh.positions.row(mesh.origin(h))).norm();
     }
-    const double least = least_length * *std::max_element(length.begin(), length.end());
-    for (Index c = 0; c < 3; ++c) {
+    const double least = least_length * *std::max_element(std::begin(length), std::end(length));
+    for (int c = 0; c < 3; ++c) {
       if (length[c] < least) out.unite(mesh.origin(3 * f + c), mesh.target(3 * f + c));
     }
   }
