@@ -131,12 +131,13 @@ Eigen::Vector3d surface_normal(const HalfedgeMesh& mesh, Index f) {
   const auto squared_length = [&mesh](Index h) {
     return (mesh.positions.row(mesh.target(h)) - mesh.positions.row(mesh.origin(h))).squaredNorm();
   };
-  const auto is_narrow = [&](Index g) {
-    const double longest = std::max({squared_length(3 * g), squared_length(3 * g + 1), squared_length(3 * g + 2)});
-    return !(area_normal(mesh.positions, mesh.triangles, g).norm() > least_height * longest);
+  Eigen::Vector3d normal = area_normal(mesh.positions, mesh.triangles, f);
+  const auto is_narrow = [&] {
+    const double longest = std::max({squared_length(3 * f), squared_length(3 * f + 1), squared_length(3 * f + 2)});
+    return !(normal.norm() > least_height * longest);
   };
   Index entered = none;
-  for (int step = 0; step < most_steps && is_narrow(f); ++step) {
+  for (int step = 0; step < most_steps && is_narrow(); ++step) {
     const auto order = [&](Index h) { return std::make_pair(!mesh.cuttable[h], squared_length(h)); };
     Index across = none;
     for (Index h = 3 * f; h < 3 * f + 3; ++h) {
@@ -146,8 +147,9 @@ Eigen::Vector3d surface_normal(const HalfedgeMesh& mesh, Index f) {
     if (across == none) break;
     entered = mesh.twin[across];
     f = entered / 3;
+    normal = area_normal(mesh.positions, mesh.triangles, f);
   }
-  return area_normal(mesh.positions, mesh.triangles, f);
+  return normal;
 }
 
 double bend_at(const HalfedgeMesh& mesh, Index h) {
