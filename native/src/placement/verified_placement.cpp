@@ -64,6 +64,8 @@ VerifiedChoice VerifiedPlacement::place() {
     choose_other_angles(weaker);
     if (is_better(weaker.map, out.map)) out = std::move(weaker);
   }
+  const bool is_automatic = !chooser_.options().count;
+  if (is_automatic && is_small() && out.cones.predicted_l2 <= hopeless_l2) move_cones(MovedAngles::bounded, out);
   // Unwrapping would repair it anyway.
   const bool is_left = !out.map.is_valid() && !out.map.is_repaired && out.cones.is_possible();
   if (is_left && chooser_.task().mesh.triangle_count() <= very_large) repair(out);

@@ -117,6 +117,8 @@ COARSE = {
     "spring": swept.spring(3, 6, True),
     "screw": swept.screw(5, 12, 0.3),
     "gear": closed.gear(12, 0.15, 1),
+    "gear with deep teeth": closed.gear(12, 0.4, 1),
+    "gear with deep teeth in layers": closed.gear(12, 0.4, 3),
     "star": closed.star(8, 0.3, 2.0),
     "beveled box": closed.beveled_box(6, 0.3, (1, 4, 0.5)),
     "handles": tunnels.box_with_handles(6, 3, 0),
