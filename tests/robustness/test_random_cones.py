@@ -3,7 +3,8 @@
 
 Continuous integration runs a selection.  LSGP_FULL_SWEEP=1 runs all 20 seeds on all meshes, which takes long; as a
 script this module does so and prints, a line for each mesh, how many sets end in a valid map, in one whose defects are
-named, in a refusal and in a map with angles near those given, and the seeds that do not end in a valid one:
+named, in a refusal and in a map with angles near those given, and the seeds that do not end in a valid one. Meshes are
+shared ones or members of the zoo:
 
     python tests/robustness/test_random_cones.py [--angles chosen given seamless] [mesh ...]
 """
@@ -24,6 +25,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # as a script
 import lsgp
 import numpy as np
 import pytest
+import zoo
 from meshes import Mesh
 from result_check import undeclared_faults
 from shared_meshes import shared_folder, shared_mesh
@@ -71,7 +73,7 @@ if not mesh_names():
 
 @cache
 def loaded(name: str) -> Mesh:
-    return shared_mesh(name)
+    return shared_mesh(name) if name in mesh_names() else zoo.member(name).mesh()
 
 
 @cache
@@ -162,7 +164,7 @@ def valid_share(ends: Iterable[str]) -> float:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("meshes", nargs="*", metavar="mesh", help="all by default")
+    parser.add_argument("meshes", nargs="*", metavar="mesh", help="all shared ones by default")
     parser.add_argument("--angles", nargs="+", choices=ANGLES, default=ANGLES)
     arguments = parser.parse_args()
     names = arguments.meshes or mesh_names()

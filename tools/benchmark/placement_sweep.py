@@ -25,7 +25,7 @@ import argparse
 import multiprocessing
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
@@ -70,16 +70,24 @@ def main() -> int:
     parser.add_argument("--log", metavar="FILE", type=Path, help="a line for every run that is not valid")
     arguments = parser.parse_args()
     meshes = [(name, read) for name, read in all_meshes(arguments.each) if arguments.only in name]
-    tasks = [(run, name, read) for run in arguments.runs for name, read in meshes]
-    with ThreadPoolExecutor(arguments.jobs) as pool:
-        endings = list(pool.map(lambda task: within(arguments.limit, task[0], task[2]), tasks))
-    found = [(run, name, ending) for (run, name, _), ending in zip(tasks, endings, strict=True)]
+    found = sweep(arguments.runs, meshes, arguments.limit, arguments.jobs)
     print(f"{len(meshes)} meshes:\n\n{table(found)}")
     lines = [line_of(*one) for one in found if one[2].end != "valid" or is_off(one[2])]
     print("\n".join(lines) if arguments.log is None else f"{len(lines)} lines in {arguments.log}")
     if arguments.log is not None:
         arguments.log.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
     return int(any(ending.end in BAD_ENDS for _, _, ending in found))
+
+
+def sweep(
+    runs: Iterable[str], meshes: Iterable[tuple[str, Read]], limit: float, jobs: int
+) -> list[tuple[str, str, Ending]]:
+    """Run, mesh and ending of all of them."""
+    meshes = list(meshes)
+    tasks = [(run, name, read) for run in runs for name, read in meshes]
+    with ThreadPoolExecutor(jobs) as pool:
+        endings = list(pool.map(lambda task: within(limit, task[0], task[2]), tasks))
+    return [(run, name, ending) for (run, name, _), ending in zip(tasks, endings, strict=True)]
 
 
 def all_meshes(each: int) -> Iterator[tuple[str, Read]]:
