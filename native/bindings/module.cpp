@@ -442,15 +442,15 @@ py::array_t<double> cut_costs(const SurfaceArrays& surface_arrays, const CutPref
   return to_array(without_gil([&] { return lsgp::cut_costs(surface, preferences, tell); }));
 }
 
-// Angle, sharp edges and the number of corners.
-using CreaseOptionArrays = std::tuple<double, IndexArray, Index>;
+// Angle, sharp edges, the number of corners and the share of curvature.
+using CreaseOptionArrays = std::tuple<double, IndexArray, Index, double>;
 
 py::array_t<Index> crease_borders(const SurfaceArrays& surface_arrays, const IndexArray& cones,
                                   const CreaseOptionArrays& option_arrays, const ProgressCallback& progress) {
   const lsgp::Surface surface = to_surface(surface_arrays);
   const std::vector<Index> marked = to_vector(cones);
-  const auto& [angle, sharp, most_corners] = option_arrays;
-  const lsgp::CreaseOptions options{angle, to_matrix<lsgp::VertexPairs>(sharp), most_corners};
+  const auto& [angle, sharp, most_corners, least_share] = option_arrays;
+  const lsgp::CreaseOptions options{angle, to_matrix<lsgp::VertexPairs>(sharp), most_corners, least_share};
   const lsgp::Progress tell = to_progress(progress);
   return to_array(without_gil([&] { return lsgp::crease_borders(surface, marked, options, tell); }));
 }

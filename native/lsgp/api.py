@@ -679,6 +679,7 @@ def crease_borders(
     angle: float = 0.7,
     sharp: ArrayLike | None = None,
     most_corners: int = 0,
+    least_share: float = 0.8,
     progress: Progress | None = None,
 ) -> IndexArray:
     """Edges for `Surface.borders`, (b, 2) int32, with which hard surfaces unfold without stretch and without cones.
@@ -686,21 +687,25 @@ def crease_borders(
     The regions between creases are patches. Patches are unfolded together across shared boundary segments that are
     straight and not short, and a tube is opened from end to end: a cylinder becomes a rectangle and two disks.
     Narrow bevels that turn the surface by `angle` are creases along their middle; edges of coarse round shapes, of less
-    than 1.27 radians and like their neighbors, are none. Components with cones or marked seams, and those with more
-    than a fifth of their curvature off the creases, or 2 % off creases and bevels, have no such edges; half of it may
+    than 1.27 radians and like their neighbors, are none. Components with cones or marked seams, and those with less
+    than `least_share` of their curvature on creases, or 98 % on creases and bevels, have no such edges; half of it may
     be at one or two apexes, which remain for cones.
     angle: least angle between the normals at a crease, radians.
     sharp: (s, 2) int32, edges that are creases whatever their angle.
     most_corners: components with their curvature at no more vertices than this have none, since cones there serve as
         well.
+    least_share: of the curvature, from 0 to 1; with less than 0.8 the pieces are stretched.
     progress: as for `parameterize`.  Raises InputError, TopologyError, Cancelled.
     """
     arguments.require_callable(progress)
     marked = np.empty((0, 2), np.int32) if sharp is None else arguments.index_rows("sharp", sharp, 2)
     start = arguments.positive("angle", angle, "pass an angle above 0, at most pi")
     corners = arguments.whole_number("most_corners", most_corners, 0, "pass a whole number from 0")
+    share = arguments.number("least_share", least_share, "pass a number from 0 to 1")
+    if not 0 <= share <= 1:
+        arguments.refuse("least_share", least_share, "pass a number from 0 to 1")
     vertices = arguments.index_vector("cones", cones)
-    return _lsgp.crease_borders(surface_arrays(surface), vertices, (start, marked, corners), progress)
+    return _lsgp.crease_borders(surface_arrays(surface), vertices, (start, marked, corners, share), progress)
 
 
 def cut_costs(

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import compress
 from typing import Literal, TypeVar, get_args
 
 import numpy as np
@@ -25,9 +26,13 @@ from .api import (
     surface_arrays,
 )
 from .arguments import FloatArray, IndexArray
+from .edge_keys import edge_keys
 from .errors import Cancelled, Finding, InputError, LsgpError
 from .ledger import LedgerPart, build_ledger, surface_of_triangles
 from .map_comparison import (
+    are_stretched,
+    gain_by_borders,
+    may_replace_by_borders,
     may_replace_for_features,
     may_replace_map,
     mirrored_cuts_cost_islands,
@@ -57,6 +62,8 @@ _ODD = "NOT_SYMMETRIC"
 # Hard surfaces end at their creases where their curvature sits at more corners than these, at which cones serve as
 # well and the texture runs on; None: it has to run on everywhere.
 _MOST_CORNERS: dict[Preset, int | None] = {"paint": 24, "tile": None, "bake": 0}
+# Other components may end there, too, where creases carry this share of their curvature, if their map gains by it.
+_LEAST_SHARE_TO_TRY = 0.5
 
 # Islands are split in all of them: what lies on itself can neither be painted nor baked, and the cuts of a seamless
 # layout show nowhere.
@@ -72,8 +79,7 @@ def preset_options(preset: Preset) -> Options:
 
     preset: "paint" preserves lengths, for texture painting, and cuts islands that would leave most of the square empty;
         "tile" makes seams invisible for a tileable texture of squares; "bake" is for computed textures: it preserves
-        lengths, cuts islands so that they fill the square, and hard surfaces at their creases, as in
-        `with_crease_borders`.
+        lengths, cuts islands so that they fill the square, and hard surfaces at their creases.
     With every preset no island overlaps itself.  Raises InputError.
     """
     arguments.require_choice("preset", preset, get_args(Preset))
@@ -113,7 +119,10 @@ def auto_unwrap(
         fifths of the cuts are saved, L2 stretch may be up to 1.05 and the filled part a quarter less, unless the usual
         map is isometric. Where symmetric cuts cost two islands (or a tenth), symmetric cones get other cuts if these
         save them. Only without cones and `count`.
-    creases: whether hard surfaces may be cut at their creases, as in `with_crease_borders`, which takes `sharp`.
+    creases: whether hard surfaces may be cut at their creases, as by `crease_borders`, which takes `sharp`; and with
+        half of the curvature on creases, or few corners, where that halves the excess of L2 stretch over 1, and removes
+        0.004 of it for each further island (without further ones: a fifth of it), and fills the square at most three
+        tenths less. The latter only where it exceeds 0.002, and without cones, `count` or pins.
     pack: "tight": as by `pack_islands`; "shelves": in rows; None: tight if `packer_name` returns a packer. Layouts that
         are seamless, pinned or in UDIM tiles at a texel density are never packed.
     margin: with "tight", around each island, as a fraction of the square's side; None: 4 / 1024, before the layout gets
@@ -130,8 +139,12 @@ def auto_unwrap(
         arguments.require_type("options", options, Options)
         chosen = options
     arguments.require_callable(progress)
+    given = GivenCones.of(cones, angles, count)
+    choices = CreaseChoices(surface)
     if arguments.flag("creases", creases):
-        surface = with_crease_borders(surface, cones, preset, chosen, sharp)
+        choices = crease_choices(surface, given, preset, chosen, sharp)
+    if pins is not None:
+        choices = replace(choices, possible=None)
     if texels is not None:
         arguments.require_type("texels", texels, TexelLayout)
         if pins is not None:
@@ -140,12 +153,15 @@ def auto_unwrap(
     if udim is not None:
         chosen = replace(chosen, square_share=float(udim))
     packs = _may_pack(packing, chosen, pins, texels)
-    placing, mapping = share_of(progress, 0.0, PLACING), share_of(progress, PLACING, PACKING if packs else 1.0)
     is_free = arguments.flag("symmetric", symmetric) and count is None
-    solver = Solver(surface)
-    choices = possible_cones(solver, GivenCones.of(cones, angles, count), chosen, is_free, placing)
+
+    def make(opened: Surface, share: Progress | None) -> tuple[CompletedCones, Result]:
+        solver = Solver(opened)
+        found = possible_cones(solver, given, chosen, is_free, share_of(share, 0.0, PLACING))
+        return best_map(solver, found, chosen, pins, share_of(share, PLACING, 1.0))
+
     with packing_once():
-        _, result = best_map(solver, choices, chosen, pins, mapping)
+        surface, _, result = best_at_creases(choices, chosen, make, share_of(progress, 0.0, PACKING if packs else 1.0))
         if packs:
             result = laid_out(surface, result, packing, texels, share_of(progress, PACKING, 1.0)).result
         elif texels is not None:
@@ -172,23 +188,100 @@ def _may_pack(packing: Packing, options: Options, pins: Pins | None, texels: Tex
     return packing.is_tight and not any(fixed.values())
 
 
-def with_crease_borders(
+@dataclass(frozen=True, slots=True)
+class CreaseChoices:
+    """A surface with its own borders and those at creases that a preset requires; and further ones at creases, (b, 2)
+    int32, of components that end there if their maps gain by it; None without."""
+
+    surface: Surface
+    possible: IndexArray | None = None
+
+
+def crease_choices(
     surface: Surface,
-    cones: ArrayLike,
+    given: GivenCones,
     preset: Preset,
     options: Options,
     sharp: ArrayLike | None = None,
-) -> Surface:
-    """The surface with its own borders and those of `crease_borders` that a preset requires.
+) -> CreaseChoices:
+    """The borders of `crease_borders` that a preset requires, and those with which it may become better.
 
-    "bake": all; "paint": those of components with curvature at more than 24 vertices, since fewer can be cones, across
-    which the texture continues; "tile", and options for seamless layouts, straight borders or prescribed turning: none.
+    "bake" requires all; "paint" those of components with curvature at more than 24 vertices, since fewer can be cones,
+    across which the texture continues. Both may gain by those of other components with half of their curvature on
+    creases, unless the number of cones is given. "tile", and options for seamless layouts, straight borders or
+    prescribed turning: none.
     sharp, errors: as for `crease_borders`.
     """
     most_corners = _MOST_CORNERS[preset]
     if most_corners is None or options.seamless is not None or options.border != "free" or options.loop_turning:
-        return surface
-    borders = crease_borders(surface, cones, sharp=sharp, most_corners=most_corners)
+        return CreaseChoices(surface)
+    required = crease_borders(surface, given.cones, sharp=sharp, most_corners=most_corners)
+    if given.count is not None:
+        return CreaseChoices(_ending_at(surface, required))
+    possible = crease_borders(surface, given.cones, sharp=sharp, least_share=_LEAST_SHARE_TO_TRY)
+    further = possible[~np.isin(_keys(possible, surface), _keys(required, surface))]
+    return CreaseChoices(_ending_at(surface, required), further if len(further) else None)
+
+
+def best_at_creases(
+    choices: CreaseChoices,
+    options: Options,
+    make: Callable[[Surface, Progress | None], tuple[CompletedCones, Result]],
+    progress: Progress | None = None,
+) -> tuple[Surface, CompletedCones, Result]:
+    """The surface with the best borders among the possible ones, its cones and its map.
+
+    Other borders are tried on components that are stretched without them.
+    make: the cones and the map of a surface, as of `possible_cones` and `best_map`. progress, errors: of `make`.
+    """
+    surface = choices.surface
+    if choices.possible is None:
+        return surface, *make(surface, progress)
+    usual = surface, *make(surface, share_of(progress, 0.0, TRYING))
+    parts = _parts_with_borders(surface, choices.possible)
+    parts = list(compress(parts, are_stretched(surface, usual[2], [part.triangles for part in parts])))
+    # Where only some parts gain, their map is another one, which has no time of its own.
+    still = share_of(progress, 1.0, 1.0)
+    for stage in (share_of(progress, TRYING, 1.0), still):
+        if not parts:
+            break
+        opened = _ending_at(surface, np.concatenate([part.borders for part in parts]))
+        found = or_none(partial(make, opened, stage))
+        if found is None:
+            break
+        gain = gain_by_borders(surface, found[1], usual[2], [part.triangles for part in parts])
+        if all(gain):
+            may_replace = may_replace_by_borders(found[1], usual[2], options.square_share, still)
+            return (opened, *found) if may_replace else usual
+        parts = list(compress(parts, gain))
+    return usual
+
+
+@dataclass(frozen=True, slots=True)
+class _PartWithBorders:
+    """The triangles of a connected component, and the borders at which it may end, (b, 2)."""
+
+    triangles: IndexArray
+    borders: IndexArray
+
+
+def _parts_with_borders(surface: Surface, borders: IndexArray) -> list[_PartWithBorders]:
+    components = build_ledger(surface, ())
+    component = np.full(len(surface.triangles), -1)
+    for i, found in enumerate(components):
+        component[found.triangles] = i
+    edges = _keys(surface.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), surface)
+    order = np.argsort(edges, kind="stable")
+    triangle = order[np.searchsorted(edges, _keys(borders, surface), sorter=order)] // 3
+    of_border = component[triangle]
+    return [_PartWithBorders(components[i].triangles, borders[of_border == i]) for i in np.unique(of_border)]
+
+
+def _keys(edges: IndexArray, surface: Surface) -> NDArray[np.int64]:
+    return edge_keys(edges[:, 0], edges[:, 1], len(surface.positions))
+
+
+def _ending_at(surface: Surface, borders: IndexArray) -> Surface:
     return replace(surface, borders=np.concatenate([surface.borders, borders]))
 
 

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What maps with symmetric cones, or with cones for creases, may cost compared with the usual map."""
+"""What maps with symmetric cones, cones for creases, or borders at creases may cost compared with the usual map."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
 
-from .api import Progress, Result
+from .api import IndexArray, Progress, Result, Surface
 from .errors import InputError
 from .lattice import island_boxes
 from .packing import pack_islands, packer_name
-from .triangles import uv_area
+from .triangles import singular_values, triangle_areas, uv_area
 
 # Of the L2 stretch that the other one has, of the edges that it cuts, and of what it fills of the square: a tenth less
 # is a twentieth of the texel density. One island more for so many; one for fewer, or a pair that fills the square as
@@ -38,6 +38,13 @@ _MOST_PACKED = 32
 _MOST_L2_FOR_FEATURES = 1.1
 _LEAST_FEATURES = 0.25
 _MOST_FEATURES = 0.95
+# Borders at creases are worth their islands if they remove half of the stretch, and so much of it for each further
+# island; a fifth of it without further ones. What is stretched less than this has none that one sees.
+_SEEN_EXCESS = 0.002
+_MOST_EXCESS = 0.5
+_MOST_EXCESS_WITHOUT_ISLANDS = 0.8
+_EXCESS_FOR_ISLAND = 0.004
+_LEAST_FILLED_WITH_BORDERS = 0.7
 
 
 def may_replace_map(
@@ -126,6 +133,63 @@ def may_replace_for_features(along: Result, usual: Result) -> bool:
         and along.distortion.l2_stretch <= _MOST_L2_FOR_FEATURES * usual.distortion.l2_stretch
         and runs_along_features(along)
     )
+
+
+def are_stretched(surface: Surface, result: Result, components: Sequence[IndexArray]) -> list[bool]:
+    """Whether a map of the surface is stretched visibly on each of these components, given by their triangles: those
+    that are small beside the others count less.
+    """
+    weights = _weights(surface, result, components)
+    stretches = _stretches(surface, result, components)
+    return [weight * (one - 1) > _SEEN_EXCESS for weight, one in zip(weights, stretches, strict=True)]
+
+
+def gain_by_borders(surface: Surface, bordered: Result, usual: Result, components: Sequence[IndexArray]) -> list[bool]:
+    """Whether a map with more borders halves the excess of L2 stretch over 1 on each of these components, and reduces
+    it by 0.004 for each further island; without further ones, whether it reduces it by a fifth.
+    """
+    out = []
+    weights = _weights(surface, usual, components)
+    stretches = (_stretches(surface, result, components) for result in (bordered, usual))
+    for part, weight, one, other in zip(components, weights, *stretches, strict=True):
+        more = len(np.unique(bordered.island[part])) - len(np.unique(usual.island[part]))
+        most = _MOST_EXCESS if more > 0 else _MOST_EXCESS_WITHOUT_ISLANDS
+        out.append(bool(one - 1 <= most * (other - 1) and weight * (other - one) >= _EXCESS_FOR_ISLAND * more))
+    return out
+
+
+def may_replace_by_borders(
+    bordered: Result, usual: Result, square_share: float = 1.0, progress: Progress | None = None
+) -> bool:
+    """Whether a map with more borders is stretched no more as a whole, has no further defects and fills the square at
+    most three tenths less, as measured by `may_replace_map`.  Raises Cancelled.
+    """
+    if not (
+        bordered.solved.tolist() == usual.solved.tolist()
+        and _defects(bordered) <= _defects(usual)
+        and bordered.distortion.l2_stretch <= usual.distortion.l2_stretch
+    ):
+        return False
+    filled = _measure_of_filling(usual, square_share, progress)
+    return filled(bordered) >= _LEAST_FILLED_WITH_BORDERS * filled(usual)
+
+
+def _weights(surface: Surface, result: Result, components: Sequence[IndexArray]) -> list[float]:
+    """The area of each of these components relative to that of an average island, at most 1."""
+    areas = triangle_areas(surface)
+    average = areas.sum() / max(1, _island_count(result))
+    return [min(1.0, float(areas[part].sum() / average)) for part in components]
+
+
+def _stretches(surface: Surface, result: Result, components: Sequence[IndexArray]) -> list[float]:
+    """The L2 stretch of each of these components, at a common scale of its own; NaN where one is not solved."""
+    areas = triangle_areas(surface)
+    largest, smallest = singular_values(surface, result.corner_uv)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        image, spread = areas * largest * smallest, areas * (1 / largest**2 + 1 / smallest**2) / 2
+        flat = areas == 0
+        image[flat] = spread[flat] = 0.0
+        return [float(np.sqrt(spread[part].sum() * image[part].sum()) / areas[part].sum()) for part in components]
 
 
 def _saves_many_cuts(symmetric: Result, usual: Result) -> bool:

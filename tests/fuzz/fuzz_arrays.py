@@ -159,8 +159,8 @@ def find_cuts(data: Data, on: lsgp.Surface) -> None:
 
 
 def creases(data: Data, on: lsgp.Surface) -> None:
-    angle, corners = number(data, 0.2), number(data, 0)
-    found = lsgp.crease_borders(on, cones(data, on)[0], angle=angle, most_corners=corners, sharp=on.seams)
+    how = {"angle": number(data, 0.2), "most_corners": number(data, 0), "least_share": number(data, 0.5)}
+    found = lsgp.crease_borders(on, cones(data, on)[0], sharp=on.seams, **how)
     assert len(np.unique(np.sort(found, axis=1), axis=0)) == len(found)
 
 

@@ -110,7 +110,8 @@ void ask_parts(Bytes& bytes, const lsgp::Surface& surface) {
   error_of(surface, [&] {
     const double angle = bytes.below(8) / 2.0;
     lsgp::Surface ending = surface;
-    ending.borders = lsgp::crease_borders(surface, call.cones.vertices, {angle, surface.seams, bytes.below(3)});
+    const lsgp::CreaseOptions creases{angle, surface.seams, bytes.below(3), bytes.below(5) / 4.0};
+    ending.borders = lsgp::crease_borders(surface, call.cones.vertices, creases);
     const lsgp::Pins no_pins;
     require_honest(ending, call.options, lsgp::parameterize(ending, call.cones, call.options, no_pins));
   });

@@ -70,7 +70,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
         lsgp.crease_borders,
         {
             **{"surface": WHOLE, "cones": BALL.cones, "angle": 0.3, "sharp": EDGES[:3], "most_corners": 2},
-            **{"progress": None},
+            **{"least_share": 0.5, "progress": None},
         },
     ),
     "feature_edges": (lsgp.feature_edges, {"surface": WHOLE, "angle": 0.3, "seams": True, "borders": True}),

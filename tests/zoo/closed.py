@@ -80,6 +80,15 @@ def gear(teeth: int, depth: float, layers: int) -> Mesh:
     return body._replace(positions=body.positions * np.stack([tooth, tooth, np.ones_like(tooth)], 1))
 
 
+def toothed_wheel(teeth: int, depth: float) -> Mesh:
+    """A wheel with square teeth: its caps are rings around a fan, so that cones have room inside."""
+    around = 4 * teeth
+    radius = np.array([0, 0.3, 0.6, 1, 1, 1, 0.6, 0.3, 0])
+    body = lathe(radius, np.array([0, 0, 0, 0, 0.2, 0.4, 0.4, 0.4, 0.4]), around, caps=(False, False))
+    is_low = (np.arange(len(body.positions)) % 4 >= 2) & (np.hypot(*body.positions[:, :2].T) > 0.9)
+    return body._replace(positions=body.positions * np.where(is_low, 1 - depth, 1.0)[:, None] ** [1, 1, 0])
+
+
 def beveled_box(cells: int, bevel: float, size: tuple[float, float, float]) -> Mesh:
     """A box whose edges are rounded by a bevel that is narrow against its faces."""
     box = cube(cells)

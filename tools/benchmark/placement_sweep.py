@@ -27,14 +27,13 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from pathlib import Path
 
 import lsgp
 import numpy as np
 import zoo
-from lsgp.auto_unwrap import with_crease_borders
 from outcome_check import error_faults, placement_faults, result_faults
 from placement_quality import SHARED, of_member, read_surface
 
@@ -148,7 +147,7 @@ def with_cones(surface: lsgp.Surface, count: int | None) -> Ending:
 def with_preset(surface: lsgp.Surface, preset: lsgp.Preset) -> Ending:
     result = lsgp.auto_unwrap(surface, preset=preset, pack="shelves" if preset != "tile" else None)
     options = lsgp.preset_options(preset)
-    opened = with_crease_borders(surface, (), preset, options)
+    opened = replace(surface, borders=result.borders)
     return ending(result, {one.code for one in result.warnings}, result_faults(opened, result, options))
 
 

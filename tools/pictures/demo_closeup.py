@@ -77,11 +77,17 @@ def is_open(model: bpy.types.Object, view: View) -> bool:
 
 def whole(model: bpy.types.Object, view: View) -> View:
     """The whole model from the side of a view."""
-    positions = vectors(model.data.vertices, "co")
-    low, high = positions.min(axis=0), positions.max(axis=0)
-    width = 1.1 * float(np.linalg.norm(high - low)) * min(1.0, WHOLE_SIZE[0] / WHOLE_SIZE[1])
     rotation = facing(-view.rotation[1], np.array([0.0, 0.0, 1.0]))
-    return replace(view, focus=(low + high) / 2, rotation=rotation, width=width, size=WHOLE_SIZE)
+    turn = tilted(rotation)
+    seen = vectors(model.data.vertices, "co") @ turn.T
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    across, _, up = high - low
+    width = 1.25 * float(max(across, up * WHOLE_SIZE[0] / WHOLE_SIZE[1]))  # near parts look larger
+    return replace(view, focus=turn.T @ (low + high) / 2, rotation=rotation, width=width, size=WHOLE_SIZE)
+
+
+def tilted(rotation: FloatArray) -> FloatArray:
+    return np.array(Euler(TILT).to_matrix()) @ rotation
 
 
 def facing(toward: FloatArray, up: FloatArray) -> FloatArray:
@@ -138,7 +144,7 @@ def texture_material(texture: FloatArray) -> bpy.types.Material:
 def render_view(model: bpy.types.Object, view: View, path: Path, samples: int) -> None:
     """Write a picture of the model alone, without background, with beads along the cut; leaves the scene as it was."""
     frame = view.size[0] / PIXELS
-    turn = frame / view.width * np.array(Euler(TILT).to_matrix()) @ view.rotation
+    turn = frame / view.width * tilted(view.rotation)
     line = (vectors(model.data.vertices, "co")[view.path] - view.focus) @ turn.T
     with demo_picture.empty_stage():
         shown = model.copy()

@@ -277,7 +277,7 @@ def add_light(strength: float, lamps: tuple[tuple[str, tuple[float, float, float
 def add_camera(lens: float, distance: float) -> None:
     """Looks along +y at the origin; the picture is 36 * distance / lens units wide there."""
     camera = bpy.data.cameras.new("camera")
-    camera.lens, camera.sensor_width = lens, 36
+    camera.lens, camera.sensor_width, camera.sensor_fit = lens, 36, "HORIZONTAL"
     added = add_object("camera", camera)
     added.location = (0, -distance, 0)
     added.rotation_euler = (np.pi / 2, 0, 0)

@@ -35,7 +35,7 @@ TEETH = 12
 GEAR = ((0.4, -0.25), (1.3, -0.25), (1.3, 0.25), (0.4, 0.25))  # profiles: radius and height
 FLANGE = ((0.35, -0.6), (1.2, -0.6), (1.2, -0.35), (0.6, -0.35), (0.6, 0.8), (0.35, 0.8))
 BOX = ((0, 2, 6, 4), (1, 5, 7, 3), (0, 4, 5, 1), (2, 3, 7, 6), (0, 1, 3, 2), (4, 6, 7, 5))  # of corners by x, y, z
-BRICKS = 0.6  # length on the model of a tile of bricks
+BRICKS = 0.3  # length on the model of a tile of bricks
 AROUND_VASE = 48
 SEEN_FROM_ABOVE = (Euler((np.radians(50), 0, 0)).to_matrix() @ Euler((0, 0, np.radians(20))).to_matrix()).to_4x4()
 
@@ -211,12 +211,12 @@ def add_vase() -> bpy.types.Object:
 
 
 def brick_material() -> bpy.types.Material:
-    """Four courses of bricks per unit of texture."""
+    """Two courses of bricks per unit of texture."""
     material = bpy.data.materials.new("bricks")
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
     courses = nodes.new("ShaderNodeTexBrick")
-    sizes = {"Scale": 1.0, "Brick Width": 0.5, "Row Height": 0.25, "Mortar Size": 0.015}
+    sizes = {"Scale": 1.0, "Brick Width": 1.0, "Row Height": 0.5, "Mortar Size": 0.03}
     colors = {"Color1": (0.5, 0.12, 0.06, 1), "Color2": (0.35, 0.08, 0.04, 1), "Mortar": (0.7, 0.68, 0.6, 1)}
     for name, value in (sizes | colors).items():
         courses.inputs[name].default_value = value

@@ -10,7 +10,6 @@ BLENDER_USER_RESOURCES must name a throw-away profile, and ImageMagick has to be
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -20,7 +19,7 @@ from mathutils import Vector
 
 sys.path.insert(0, str(Path(__file__).parent))
 import demo_scene
-from blender_window import WAIT, areas, arrange, inside, run
+from blender_window import WAIT, areas, arrange, inside, run, take_picture
 
 OPEN = ("VIEW3D_PT_cone_angles", "VIEW3D_PT_cone_unwrap_quality")
 
@@ -75,9 +74,7 @@ def show(out: Path) -> Iterator[float]:
     seen.view_distance *= 1.45
     seen.view_location = seen.view_rotation @ Vector((0.75, 0, 0))
     yield 2 * WAIT
-    # Blender's own screenshot is black on a virtual screen. A palette makes a third of the file.
-    palette = ["+dither", "-colors", "255"]
-    subprocess.run(["import", "-window", "root", *palette, f"PNG8:{out / 'guide-window.png'}"], check=True)
+    take_picture(out / "guide-window.png")
 
 
 def main() -> None:

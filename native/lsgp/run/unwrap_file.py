@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -14,7 +14,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..api import Options, Placement, Progress, Result, Solver, Surface, parameterize
-from ..auto_unwrap import PACKING, PLACING, GivenCones, best_map, possible_cones, share_of, with_crease_borders
+from ..auto_unwrap import (
+    PACKING,
+    PLACING,
+    CompletedCones,
+    CreaseChoices,
+    GivenCones,
+    best_at_creases,
+    best_map,
+    crease_choices,
+    possible_cones,
+    share_of,
+)
 from ..errors import Finding, InputError, LsgpError
 from ..io.mesh_files import MeshFile, format_mesh, parse_mesh, triangulated
 from ..io.mesh_formats import output_format
@@ -77,7 +88,12 @@ class Run:
     def stage(self, name: str) -> Iterator[None]:
         begin = time.perf_counter()
         yield
-        self.stage_seconds[name] = time.perf_counter() - begin
+        self.add_seconds({name: time.perf_counter() - begin})
+
+    def add_seconds(self, of_stages: Mapping[str, float]) -> None:
+        """Where several maps are compared, a stage has the time of all."""
+        for name, seconds in of_stages.items():
+            self.stage_seconds[name] = self.stage_seconds.get(name, 0.0) + seconds
 
 
 def unwrap_file(
@@ -195,19 +211,25 @@ def _map(
     with run.stage("cut_costs"):
         surface = run.surface = replace(surface, cut_costs=cut_costs_of(args, surface))
     given = ((), None) if cones_path is None else cones_in(cones_json, cones_path, args.prescription)
-    if args.preset is not None and args.creases:
-        with run.stage("creases"):
-            surface = run.surface = with_crease_borders(surface, given[0], args.preset, options)
     if cones_path is not None and args.preset is None:
         result = parameterize(surface, *given, options, progress=progress)
-        run.stage_seconds.update(result.stage_seconds)
+        run.add_seconds(result.stage_seconds)
         return file, result
-    placing, mapping = share_of(progress, 0.0, PLACING), share_of(progress, PLACING, 1.0)
-    with run.stage("place_cones"):
-        solver = Solver(surface)
-        cones = GivenCones.of(*given, cone_count(args))
-        choices = possible_cones(solver, cones, options, tries_symmetry(args), placing)
-    completed, result = best_map(solver, choices, options, progress=mapping)
+    cones = GivenCones.of(*given, cone_count(args))
+    choices = CreaseChoices(surface)
+    if args.preset is not None and args.creases:
+        with run.stage("creases"):
+            choices = crease_choices(surface, cones, args.preset, options)
+
+    def make(opened: Surface, share: Progress | None) -> tuple[CompletedCones, Result]:
+        with run.stage("place_cones"):
+            solver = Solver(opened)
+            placing = share_of(share, 0.0, PLACING)
+            found = possible_cones(solver, cones, options, tries_symmetry(args), placing)
+        completed, result = best_map(solver, found, options, progress=share_of(share, PLACING, 1.0))
+        run.add_seconds(result.stage_seconds)
+        return completed, result
+
+    run.surface, completed, result = best_at_creases(choices, options, make, progress)
     run.placement = completed.placement
-    run.stage_seconds.update(result.stage_seconds)
     return file, result

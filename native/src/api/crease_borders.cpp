@@ -36,6 +36,10 @@ VertexPairs crease_borders(const Surface& surface, const std::vector<Index>& con
                 concat("Creases begin at an angle of ", options.angle, " radians and more than ", options.most_corners,
                        " corners. Give an angle above 0, at most pi, and a number of corners that is not negative."));
   }
+  if (!(options.least_share >= 0 && options.least_share <= 1)) {
+    throw Error(Code::wrong_parameter, concat("Creases are to carry ", options.least_share,
+                                              " of the curvature of a component. Give a share from 0 to 1."));
+  }
   StageSeconds seconds;
   ProgressMonitor monitor(progress, seconds);
   std::set<std::pair<Index, Index>> sharp;

@@ -336,7 +336,7 @@ std::optional<Patches> find_hard_patches(const MetricMesh& surface, const PerHal
   if (!meet_others(mesh, crease, bend, options.angle)) return std::nullopt;
   out.emplace(surface, find_patches(surface, crease, bend));
   const PerVertex<char> nowhere(mesh.vertex_count(), 0);
-  if (!out->carry_curvature(CreaseCurvature::least_share, nowhere, options.most_corners)) out.reset();
+  if (!out->carry_curvature(options.least_share, nowhere, options.most_corners)) out.reset();
   return out;
 }
 

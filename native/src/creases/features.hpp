@@ -27,7 +27,7 @@ class CreaseCurvature {
   double vertex_count_at_creases() const { return count(at_creases_, squares_at_creases_); }
   double vertex_count_elsewhere() const { return count(all_ - at_creases_, all_squares_ - squares_at_creases_); }
 
-  static constexpr double least_share = 0.8;
+  static constexpr double least_share = CreaseOptions::usual_share;
 
  private:
   static double count(double sum, double of_squares);

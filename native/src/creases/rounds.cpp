@@ -36,7 +36,8 @@ struct Crossing {
 };
 
 // The edge of a face that is met from the middle of another one at right angles; none at borders and on large fans.
-// Edges that hardly bend beside the first one are inside a face, as diagonals of quads are that noise has twisted.
+// Edges that together hardly bend beside the first one are inside a face, as diagonals of quads are that noise has
+// twisted; many small bends in a row, as of a barrel, are not.
 std::optional<Crossing> cross(const HalfedgeMesh& mesh, const Eigen::VectorXd& bend, Index first, double share) {
   using Vector = Eigen::Vector3d;
   const auto position = [&](Index h) -> Vector { return mesh.positions.row(mesh.origin(h)); };
@@ -44,13 +45,15 @@ std::optional<Crossing> cross(const HalfedgeMesh& mesh, const Eigen::VectorXd& b
   const Vector middle = (position(first) + position(next(first))) / 2;
   const Vector across = normal.cross(position(next(first)) - position(first)).stableNormalized();
   const double inside = std::max(is_flat, share * bend[first]);
+  double turned = 0;
   Index h = first;
   for (int i = 0; i < most_triangles; ++i) {
     const Vector to_apex = position(prev(h)) - middle;
     const bool apex_is_left = across.cross(to_apex).dot(normal) > -rounding * to_apex.norm();
     h = apex_is_left ? next(h) : prev(h);
     if (mesh.twin[h] == none) return std::nullopt;
-    if (bend[h] >= inside) {
+    turned += bend[h] >= is_flat ? bend[h] : 0;
+    if (turned >= inside) {
       const Vector edge = position(next(h)) - position(h);
       const double width = (position(h) - middle).cross(edge).dot(normal) / across.cross(edge).dot(normal);
       return Crossing{h, width};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "creases/features.hpp"
@@ -10,6 +11,8 @@
 namespace lsgp {
 
 namespace {
+
+double nearest_quarter_turn(double angle) { return std::round(angle / (M_PI / 2)) * (M_PI / 2); }
 
 class FeatureTracer {
  public:
@@ -28,12 +31,7 @@ class FeatureTracer {
     for (const bool may_be_closed : {false, true}) {
       for (Index h = 0; h < mesh_.halfedge_count(); ++h) {
         if (!feature_[h] || is_traced_[h] || !(may_be_closed || begins_at(h))) continue;
-        FeatureLine line = trace_from(h);
-        if (find_axis(line)) {
-          out.straight.push_back(std::move(line));
-        } else {
-          out.curved.insert(out.curved.end(), line.halfedges.begin(), line.halfedges.end());
-        }
+        add_with_axes(trace_from(h), out);
       }
     }
     return out;
@@ -99,26 +97,59 @@ class FeatureTracer {
     return out;
   }
 
-  // Whether all edges are near the same axis, counted without the quarter turns of cuts.
-  bool find_axis(FeatureLine& line) const {
-    Array<double> angle;
-    double mean = 0;
+  // Adds a line whose edges are near the same axis, or the parts of one that turns away from it.
+  void add_with_axes(const FeatureLine& line, FeatureLines& out) const {
+    const Array<double> angle = angles_along(line);
+    const Array<double> axis = axes_along(line, angle);
+    const bool is_curved = std::any_of(axis.begin(), axis.end(), [&](double each) { return each != axis.front(); });
+    if (is_curved) {
+      out.curved.insert(out.curved.end(), line.halfedges.begin(), line.halfedges.end());
+    }
+    for (Index begin = 0, end = 0; begin < ssize(angle); begin = end) {
+      while (end < ssize(angle) && axis[end] == axis[begin]) ++end;
+      FeatureLine part{{}, {}, 0, 0, line.is_marked, true, is_curved};
+      double squares = 0;
+      for (Index i = begin; i < end; ++i) {
+        const Index h = line.halfedges[i];
+        const double off = angle[i] - axis[i];
+        const Complex direction = std::polar(1.0, std::arg(edge(h)) - off);
+        part.halfedges.push_back(h);
+        part.directions.emplace_back(std::round(direction.real()), std::round(direction.imag()));
+        part.length += geometry_.length[h];
+        squares += geometry_.length[h] * off * off;
+      }
+      part.bend = std::sqrt(squares / part.length);
+      out.straight.push_back(std::move(part));
+    }
+  }
+
+  // The angles of edges, counted without the quarter turns of cuts.
+  Array<double> angles_along(const FeatureLine& line) const {
+    Array<double> out;
     for (Index i = 0; i < ssize(line.halfedges); ++i) {
       const Index h = line.halfedges[i];
-      angle.push_back(i == 0 ? std::arg(edge(h)) : angle.back() + turning(line.halfedges[i - 1], h));
-      mean += geometry_.length[h] * angle.back() / line.length;
+      out.push_back(i == 0 ? std::arg(edge(h)) : out.back() + turning(line.halfedges[i - 1], h));
     }
-    const double axis = std::round(mean / (M_PI / 2)) * (M_PI / 2);
-    double squares = 0;
-    for (Index i = 0; i < ssize(angle); ++i) {
-      const double off = angle[i] - axis;
-      if (!(std::abs(off) < most_off_axis)) return false;
-      squares += geometry_.length[line.halfedges[i]] * off * off;
-      const Complex direction = std::polar(1.0, std::arg(edge(line.halfedges[i])) - off);
-      line.directions.emplace_back(std::round(direction.real()), std::round(direction.imag()));
+    return out;
+  }
+
+  // The axis of each edge, as an angle: that of all edges if they are near it. Otherwise an edge far from the axis of
+  // those before it is at the end of a bend, and the line has a corner in the middle of the bend.
+  Array<double> axes_along(const FeatureLine& line, const Array<double>& angle) const {
+    double mean = 0;
+    for (Index i = 0; i < ssize(angle); ++i) mean += geometry_.length[line.halfedges[i]] * angle[i] / line.length;
+    const auto is_near = [](double of, double axis) { return std::abs(of - axis) < most_off_axis; };
+    const double common = nearest_quarter_turn(mean);
+    Array<double> out(ssize(angle), common);
+    if (std::all_of(angle.begin(), angle.end(), [&](double each) { return is_near(each, common); })) return out;
+    out[0] = nearest_quarter_turn(angle[0]);
+    for (Index i = 1; i < ssize(angle); ++i) {
+      out[i] = is_near(angle[i], out[i - 1]) ? out[i - 1] : nearest_quarter_turn(angle[i]);
+      for (Index j = i; j > 0 && out[j] != out[j - 1] && nearest_quarter_turn(angle[j - 1]) == out[j]; --j) {
+        out[j - 1] = out[j];
+      }
     }
-    line.bend = std::sqrt(squares / line.length);
-    return true;
+    return out;
   }
 
   const HalfedgeMesh& mesh_;
@@ -149,7 +180,7 @@ FeatureLines trace_features(const CutSurface& surface, const PerHalfedge<char>& 
                             const Eigen::VectorXcd& position) {
   FeatureLines out = FeatureTracer(surface, feature, ends, position).trace();
   const auto rank = [](const FeatureLine& line) {
-    return std::pair(!line.is_marked, line.bend * line.bend * line.length);
+    return std::tuple(!line.is_marked, line.is_part, line.bend * line.bend * line.length);
   };
   std::stable_sort(out.straight.begin(), out.straight.end(),
                    [&](const FeatureLine& a, const FeatureLine& b) { return rank(a) < rank(b); });

@@ -9,7 +9,8 @@
 
 namespace lsgp {
 
-// Edges of a feature from one corner, junction or cone to the next.
+// Edges of a feature from one corner, junction or cone to the next; a line that bends from one axis to the other has a
+// corner in the middle of the bend.
 struct FeatureLine {
   Array<Index> halfedges;     // one of each edge
   Array<Complex> directions;  // the axis of each in the layout: 1, i, -1 or -i
@@ -17,12 +18,13 @@ struct FeatureLine {
   double length = 0;          // on the surface
   bool is_marked = false;
   bool is_whole = true;  // none of its edges is released
+  bool is_part = false;  // of a line that turns from one axis to the other
 };
 
 struct FeatureLines {
-  Array<FeatureLine> straight;  // edges are nearer to one axis than to the other; marked ones, then those of least cost
-                                // first, the square of the bend times the length
-  Array<Index> curved;          // halfedges of the others
+  Array<FeatureLine> straight;  // edges are nearer to one axis than to the other; marked ones first, among these parts
+                                // of curved lines last, then by cost, the square of the bend times the length
+  Array<Index> curved;          // halfedges of the lines that are divided into parts
 };
 
 // The rotation of a layout that aligns its features, marked ones if there are any, with the axes in the least squares

@@ -5,7 +5,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "base/checkpoint.hpp"
@@ -27,15 +29,20 @@ constexpr int most_fits = 300;                // to find lines that contradict e
 constexpr Index fitted_triangles = 400000;    // in all of them together
 constexpr double least_length = 0.1;          // of an edge, relative to the map without lines, that contradicts none
 constexpr double mendable_share = 0.1;        // of the triangles, flipped, that are repaired
-constexpr int most_trimmings = 3;             // of lines that fail at a few places
-constexpr std::ptrdiff_t most_defects = 48;   // vertices there
+constexpr int most_trimmings = 4;             // of lines that fail at a few places
+constexpr int most_rings = 4;                 // of triangles from there to the next line
+constexpr Index most_defects = 24;            // vertices there, on small meshes
+constexpr double defective_share = 0.01;      // of the vertices, on others
+constexpr double least_kept = 0.25;           // of their length on a lattice
+constexpr double most_cost = 0.5;             // of rounding, relative to the area: it stretches by more than a tenth
 constexpr double compatible_share = 0.01;     // that lines may flip which contradict none
 constexpr Index few = 8;                      // that are always
-constexpr int unfolding_steps = 8;
+constexpr int unfolding_steps = 16;
 constexpr int relaxing_steps = 30;
 constexpr double least_decrease = 1e-3;           // of the energy, for which a further step is taken
 constexpr double fine_step = 1.0 / 256;           // exact in single precision on any grid
 constexpr double short_length = 1.5;              // cells: lines that are rounded first
+constexpr double least_response = 1e-9;           // of a coordinate to a shift, or to unknowns
 constexpr double whole = 1e-5;                    // deviation of a dependent coordinate from its step
 constexpr int tried_scales = 3;                   // above and below the one asked for, by sixteenths of an octave
 constexpr std::ptrdiff_t many_coordinates = 128;  // for which only one scale is tried
@@ -49,6 +56,46 @@ double coordinate_at(Index of, const Eigen::VectorXcd& position) {
 void set_coordinate(Index of, double value, Eigen::VectorXcd& position) {
   Complex& at = position[of / 2];
   at = of % 2 == 0 ? Complex(value, at.imag()) : Complex(at.real(), value);
+}
+
+// Of marked lines, and of the others.
+std::pair<double, double> length_of(const Array<FeatureLine>& lines) {
+  std::pair<double, double> out(0, 0);
+  for (const FeatureLine& line : lines) (line.is_marked ? out.first : out.second) += line.length;
+  return out;
+}
+
+double total_length(const Array<FeatureLine>& lines) {
+  const auto [of_marked, of_others] = length_of(lines);
+  return of_marked + of_others;
+}
+
+Array<FeatureLine> chosen_of(const Array<FeatureLine>& lines, const Array<char>& chosen) {
+  Array<FeatureLine> out;
+  for (Index k = 0; k < ssize(lines); ++k) {
+    if (chosen[k]) out.push_back(lines[k]);
+  }
+  return out;
+}
+
+// The ranges of lines that have precedence over the lines behind them.
+Array<std::pair<Index, Index>> ranks_of(const Array<FeatureLine>& lines) {
+  const auto rank = [&](Index k) { return std::pair(lines[k].is_marked, lines[k].is_part); };
+  Array<std::pair<Index, Index>> out;
+  for (Index begin = 0, end = 0; begin < ssize(lines); begin = end) {
+    while (end < ssize(lines) && rank(end) == rank(begin)) ++end;
+    out.emplace_back(begin, end);
+  }
+  return out;
+}
+
+// Marks the neighbors of marked vertices.
+void grow(const HalfedgeMesh& mesh, PerVertex<char>& is_marked) {
+  const PerVertex<char> inner = is_marked;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (inner[mesh.origin(h)]) is_marked[mesh.target(h)] = 1;
+    if (inner[mesh.target(h)]) is_marked[mesh.origin(h)] = 1;
+  }
 }
 
 }  // namespace
@@ -73,32 +120,99 @@ FeatureLayout::FeatureLayout(const FeatureTask& task, const PerHalfedge<char>& f
   const FeatureLines traced = trace_features(task_.surface, feature, is_cone_, unaligned_);
   for (const Index h : traced.curved) reasons_[h] = ReleaseReason::curved;
   jacobians_ = measure_jacobians(task_.surface, task_.surface.cut_mesh, unaligned_);
-  Array<FeatureLine> lines;
-  choose_compatible(traced.straight, 0, ssize(traced.straight), lines);
+  Array<FeatureLine> lines = compatible(traced.straight);
   const std::ptrdiff_t marked =
       std::count_if(lines.begin(), lines.end(), [](const FeatureLine& line) { return line.is_marked; });
   if (marked > 0) add(lines, 0, marked);
   add(lines, marked, ssize(lines));
+  add_trimmed();
+  aligned_length_ = total_length(aligned_);
   if (!aligned_.empty()) find_coordinates();
 }
 
-// Appends those that do not contradict each other, giving precedence to the first: halves with contradictions are
-// divided again. A linear fit decides, which takes a small part of the time of a map.
-void FeatureLayout::choose_compatible(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end,
-                                      Array<FeatureLine>& chosen) {
-  if (begin == end || fits_left_ == 0) return;
-  --fits_left_;
-  Array<FeatureLine> more = chosen;
-  more.insert(more.end(), lines.begin() + begin, lines.begin() + end);
-  const std::optional<Eigen::VectorXcd> position =
-      fit(free_along(task_.surface, task_.lattice.reduction, edges_of(more)));
-  if (position && keeps_lengths(more, *position) && flips_at_most(compatible_share, *position)) {
+// Lines that do not contradict each other, in their order, those of a higher rank before others. Where not all do, two
+// ways of choosing are compared by length. Linear fits decide, which take a small part of the time of a map.
+Array<FeatureLine> FeatureLayout::compatible(const Array<FeatureLine>& lines) {
+  Array<char> chosen(lines.size(), 0);
+  const int most = fits_left_;
+  for (const auto& [begin, end] : ranks_of(lines)) {
+    Array<Index> numbers(end - begin);
+    std::iota(numbers.begin(), numbers.end(), begin);
+    Array<char> by_halves = chosen;
+    add_compatible(lines, numbers.data(), numbers.data() + numbers.size(), by_halves);
+    if (std::count(by_halves.begin() + begin, by_halves.begin() + end, 0) > 0) {
+      const int left = std::exchange(fits_left_, most / 2);
+      Array<char> by_fault = chosen;
+      add_faultless(lines, begin, end, by_fault);
+      fits_left_ = left;
+      if (length_of(chosen_of(lines, by_fault)) > length_of(chosen_of(lines, by_halves))) by_halves = by_fault;
+    }
+    chosen = std::move(by_halves);
+  }
+  return chosen_of(lines, chosen);
+}
+
+// As long as some of these lines contradict others, releases the more expensive half of those where a fit fails.
+// Released ones are then added as far as possible.
+void FeatureLayout::add_faultless(const Array<FeatureLine>& lines, Index begin, Index end, Array<char>& chosen) {
+  std::fill(chosen.begin() + begin, chosen.begin() + end, 1);
+  Array<Index> released;
+  for (Array<Index> at_fault = contradicting(lines, chosen); !at_fault.empty();
+       at_fault = contradicting(lines, chosen)) {
+    at_fault.erase(at_fault.begin(), std::lower_bound(at_fault.begin(), at_fault.end(), begin));
+    if (at_fault.empty()) break;
+    for (auto k = at_fault.begin() + ssize(at_fault) / 2; k != at_fault.end(); ++k) {
+      chosen[*k] = 0;
+      released.push_back(*k);
+    }
+  }
+  std::sort(released.begin(), released.end());
+  add_compatible(lines, released.data(), released.data() + released.size(), chosen);
+}
+
+// Chooses as many of these as do not contradict chosen ones, the first before others: halves that do are divided again.
+void FeatureLayout::add_compatible(const Array<FeatureLine>& lines, const Index* begin, const Index* end,
+                                   Array<char>& chosen) {
+  if (begin == end || fits_left_ <= 0) return;
+  Array<char> more = chosen;
+  for (const Index* k = begin; k < end; ++k) more[*k] = 1;
+  if (contradicting(lines, more).empty()) {
     chosen = std::move(more);
   } else if (end - begin > 1) {
-    const std::ptrdiff_t middle = begin + (end - begin) / 2;
-    choose_compatible(lines, begin, middle, chosen);
-    choose_compatible(lines, middle, end, chosen);
+    const Index* const middle = begin + (end - begin) / 2;
+    add_compatible(lines, begin, middle, chosen);
+    add_compatible(lines, middle, end, chosen);
   }
+}
+
+// The chosen lines on which edges collapse, or at which triangles are flipped where more are than repair can mend; all
+// of them if there is no map.
+Array<Index> FeatureLayout::contradicting(const Array<FeatureLine>& lines, const Array<char>& chosen) {
+  --fits_left_;
+  const Array<FeatureLine> tried = chosen_of(lines, chosen);
+  Array<Index> number;
+  for (Index k = 0; k < ssize(lines); ++k) {
+    if (chosen[k]) number.push_back(k);
+  }
+  const std::optional<Eigen::VectorXcd> position =
+      fit(free_along(task_.surface, task_.lattice.reduction, edges_of(tried)));
+  if (!position) return number;
+  const HalfedgeMesh& mesh = task_.surface.mesh;
+  PerVertex<char> is_flipped(mesh.vertex_count(), 0);
+  const bool is_mendable = flips_at_most(compatible_share, *position);
+  for (Index f = 0; f < mesh.triangle_count() && !is_mendable; ++f) {
+    if (is_upright(f, *position)) continue;
+    for (int c = 0; c < 3; ++c) is_flipped[mesh.triangles(f, c)] = 1;
+  }
+  Array<Index> out;
+  for (Index i = 0; i < ssize(tried); ++i) {
+    const auto is_at_flip = [&](Index h) { return is_flipped[mesh.origin(h)] || is_flipped[mesh.target(h)]; };
+    const Array<Index>& edges = tried[i].halfedges;
+    if (!keeps_lengths(tried[i], *position) || std::any_of(edges.begin(), edges.end(), is_at_flip)) {
+      out.push_back(number[i]);
+    }
+  }
+  return out.empty() && !is_mendable ? number : out;
 }
 
 // The map nearest to the one without lines; none where lines leave too little freedom.
@@ -113,16 +227,14 @@ std::optional<Eigen::VectorXcd> FeatureLayout::fit(const DegreesOfFreedom& freed
   return std::nullopt;
 }
 
-// Whether no edge of a line has collapsed or been reversed.
-bool FeatureLayout::keeps_lengths(const Array<FeatureLine>& lines, const Eigen::VectorXcd& position) const {
+// Whether no edge of it has collapsed or been reversed.
+bool FeatureLayout::keeps_lengths(const FeatureLine& line, const Eigen::VectorXcd& position) const {
   const CutMesh& cut_mesh = task_.surface.cut_mesh;
-  for (const FeatureLine& line : lines) {
-    for (Index i = 0; i < ssize(line.halfedges); ++i) {
-      const Index tail = cut_mesh.copy_of_corner[line.halfedges[i]];
-      const Index head = cut_mesh.copy_of_corner[next(line.halfedges[i])];
-      const double along = std::real(std::conj(line.directions[i]) * (position[head] - position[tail]));
-      if (!(along > least_length * std::abs(unaligned_[head] - unaligned_[tail]))) return false;
-    }
+  for (Index i = 0; i < ssize(line.halfedges); ++i) {
+    const Index tail = cut_mesh.copy_of_corner[line.halfedges[i]];
+    const Index head = cut_mesh.copy_of_corner[next(line.halfedges[i])];
+    const double along = std::real(std::conj(line.directions[i]) * (position[head] - position[tail]));
+    if (!(along > least_length * std::abs(unaligned_[head] - unaligned_[tail]))) return false;
   }
   return true;
 }
@@ -135,11 +247,11 @@ void FeatureLayout::add(Array<FeatureLine>& lines, std::ptrdiff_t begin, std::pt
     if (begin == end || left_ == 0) return;
     Array<Index> defects;
     reason = align(lines, begin, end, defects);
-    if (trimmings == most_trimmings || !trim(defects, lines, begin, end)) break;
+    if (trimmings == most_trimmings || !trim(defects, lines, begin, end, &trimmed_)) break;
   }
   if (!reason) return;
   for (std::ptrdiff_t i = begin; i < end; ++i) {
-    for (const Index h : lines[i].halfedges) reasons_[h] = *reason;
+    for (const Index h : lines[i].halfedges) release(h, *reason);
   }
   if (end - begin == 1) return;
   const std::ptrdiff_t middle = begin + (end - begin) / 2;
@@ -147,31 +259,54 @@ void FeatureLayout::add(Array<FeatureLine>& lines, std::ptrdiff_t begin, std::pt
   add(lines, middle, end);
 }
 
-// Releases the edges of lines at some vertices; whether there are any, and others left. No distance between cones
-// follows from what is left of a line.
-bool FeatureLayout::trim(const Array<Index>& vertices, Array<FeatureLine>& lines, std::ptrdiff_t begin,
-                         std::ptrdiff_t end) {
-  if (vertices.empty() || ssize(vertices) > most_defects) return false;
-  const HalfedgeMesh& mesh = task_.surface.mesh;
-  const auto is_listed = [&](Index v) { return std::find(vertices.begin(), vertices.end(), v) != vertices.end(); };
-  bool is_trimmed = false, has_others = false;
-  for (std::ptrdiff_t k = begin; k < end; ++k) {
-    FeatureLine kept = lines[k];
-    kept.halfedges.clear();
-    kept.directions.clear();
-    for (Index i = 0; i < ssize(lines[k].halfedges); ++i) {
-      const Index h = lines[k].halfedges[i];
-      if (is_listed(mesh.origin(h)) || is_listed(mesh.target(h))) continue;
-      kept.halfedges.push_back(h);
-      kept.directions.push_back(lines[k].directions[i]);
-    }
-    has_others = has_others || !kept.halfedges.empty();
-    if (kept.halfedges.size() == lines[k].halfedges.size()) continue;
-    is_trimmed = true;
-    kept.is_whole = false;
-    lines[k] = std::move(kept);
+// Most of what was released at defects can often be aligned all the same.
+void FeatureLayout::add_trimmed() {
+  Array<FeatureLine> lines = std::exchange(trimmed_, {});
+  std::stable_sort(lines.begin(), lines.end(), [](const FeatureLine& a, const FeatureLine& b) {
+    return std::pair(a.is_marked, a.length) > std::pair(b.is_marked, b.length);
+  });
+  for (std::ptrdiff_t k = 0; k < ssize(lines) && left_ > 0; ++k) {
+    Array<Index> defects;
+    align(lines, k, k + 1, defects);
   }
-  return is_trimmed && has_others;
+}
+
+// Corners that a curved line would get are the reason why it cannot be aligned.
+void FeatureLayout::release(Index h, ReleaseReason reason) {
+  if (reasons_[h] != ReleaseReason::curved) reasons_[h] = reason;
+}
+
+// Whether releasing edges at these vertices can help.
+bool FeatureLayout::are_few(const Array<Index>& vertices) const {
+  const auto share = static_cast<Index>(defective_share * task_.surface.mesh.vertex_count());
+  return ssize(vertices) <= std::max(most_defects, share);
+}
+
+// Releases the edges of lines at some vertices, or where no line is, at vertices near these; whether there are any, and
+// others left. No distance between cones follows from what is left of a line.  released: gets the edges, if wanted.
+bool FeatureLayout::trim(const Array<Index>& vertices, Array<FeatureLine>& lines, std::ptrdiff_t begin,
+                         std::ptrdiff_t end, Array<FeatureLine>* released) const {
+  const HalfedgeMesh& mesh = task_.surface.mesh;
+  if (vertices.empty() || !are_few(vertices)) return false;
+  PerVertex<char> is_marked(mesh.vertex_count(), 0);
+  for (const Index v : vertices) is_marked[v] = 1;
+  const auto is_released = [&](Index h) { return is_marked[mesh.origin(h)] || is_marked[mesh.target(h)]; };
+  const auto is_trimmed = [&](const FeatureLine& line) {
+    return std::any_of(line.halfedges.begin(), line.halfedges.end(), is_released);
+  };
+  for (int ring = 0; ring < most_rings && std::none_of(lines.begin() + begin, lines.begin() + end, is_trimmed);
+       ++ring) {
+    grow(mesh, is_marked);
+  }
+  bool has_released = false, has_others = false;
+  for (std::ptrdiff_t k = begin; k < end; ++k) {
+    const FeatureLine line = std::exchange(lines[k], part_of(lines[k], [&](Index h) { return !is_released(h); }));
+    has_others = has_others || !lines[k].halfedges.empty();
+    if (lines[k].is_whole || lines[k].halfedges.size() == line.halfedges.size()) continue;
+    has_released = true;
+    if (released != nullptr) released->push_back(part_of(line, is_released));
+  }
+  return has_released && has_others;
 }
 
 std::optional<ReleaseReason> FeatureLayout::align(const Array<FeatureLine>& lines, std::ptrdiff_t begin,
@@ -191,35 +326,101 @@ std::optional<ReleaseReason> FeatureLayout::align(const Array<FeatureLine>& line
       most_l2_) {
     return ReleaseReason::stretch;
   }
+  // Unfolding may turn a map in which much was flipped upside down.
+  if (length_along(more, *position) < 0) *position = -*position;
   aligned_ = std::move(more);
   start_ = std::move(*position);
   return std::nullopt;
 }
 
-// The vertices of flipped triangles, and those with wrong angle sums.
+// The length of lines in a map; reversed ones count negative.
+double FeatureLayout::length_along(const Array<FeatureLine>& lines, const Eigen::VectorXcd& position) const {
+  const DirectedEdges edges = edges_of(lines);
+  const auto at = [&](Index corner) { return position[task_.surface.cut_mesh.copy_of_corner[corner]]; };
+  double out = 0;
+  for (Index i = 0; i < ssize(edges.halfedges); ++i) {
+    const Index h = edges.halfedges[i];
+    out += std::real(std::conj(edges.directions[i]) * (at(next(h)) - at(h)));
+  }
+  return out;
+}
+
+// The vertices of flipped triangles, and those with wrong angle sums, sorted.
 Array<Index> FeatureLayout::defects_of(const Eigen::VectorXcd& position) const {
   const Validity validity = validity_of(position);
   Array<Index> out = validity.wrong_angle_sums;
   for (const Index f : validity.flipped) {
     for (int c = 0; c < 3; ++c) out.push_back(task_.surface.mesh.triangles(f, c));
   }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 
+FeatureLine FeatureLayout::part_of(const FeatureLine& line, const std::function<bool(Index)>& is_in) const {
+  FeatureLine out = line;
+  out.halfedges.clear();
+  out.directions.clear();
+  out.length = 0;
+  for (Index i = 0; i < ssize(line.halfedges); ++i) {
+    const Index h = line.halfedges[i];
+    if (!is_in(h)) continue;
+    out.halfedges.push_back(h);
+    out.directions.push_back(line.directions[i]);
+    out.length += task_.surface.geometry.length[h];
+  }
+  out.is_whole = line.is_whole && out.halfedges.size() == line.halfedges.size();
+  return out;
+}
+
+// Single edges are released a few times, and independently of that whole lines.
+void FeatureLayout::find_loosened() {
+  const Array<Index> defects = std::exchange(lattice_defects_, {});
+  const int trimmings = trimmings_;
+  Loosened trimmed{aligned_, start_, trimmings + 1};
+  if (trimmings >= 0 && trimmings < most_trimmings && trim(defects, trimmed.lines, 0, ssize(trimmed.lines), nullptr)) {
+    loosened_.push_back(std::move(trimmed));
+  }
+  if (trimmings > 0) return;
+  Loosened shortened{aligned_, start_, -1};
+  Array<FeatureLine>& lines = shortened.lines;
+  const auto parts = std::remove_if(lines.begin(), lines.end(), [](const FeatureLine& line) { return line.is_part; });
+  if (parts == lines.end()) {
+    lines.resize(5 * lines.size() / 6);
+  } else {
+    lines.erase(parts, lines.end());
+  }
+  // Layouts that keep less are not worth their time.
+  if (total_length(lines) > least_kept * aligned_length_) loosened_.push_back(std::move(shortened));
+}
+
 bool FeatureLayout::loosen() {
-  const std::size_t kept = 5 * aligned_.size() / 6;
-  if (kept == 0) return false;
-  Array<FeatureLine> released(aligned_.begin() + static_cast<std::ptrdiff_t>(kept), aligned_.end());
-  aligned_.resize(kept);
-  held_ = free_along(task_.surface, task_.lattice.reduction, edges_of(aligned_));
-  std::optional<Eigen::VectorXcd> position = fit(held_);
-  if (!position || !minimize(*position)) return false;
-  start_ = std::move(*position);
-  for (const FeatureLine& line : released) {
-    for (const Index h : line.halfedges) reasons_[h] = ReleaseReason::lattice;
+  const Array<FeatureLine> before = aligned_;
+  find_loosened();
+  do {
+    if (loosened_.empty()) return false;
+    const auto longest = std::max_element(loosened_.begin(), loosened_.end(), [](const auto& a, const auto& b) {
+      return length_of(a.lines) < length_of(b.lines);
+    });
+    aligned_ = std::move(longest->lines);
+    start_ = std::move(longest->start);
+    trimmings_ = longest->trimmings;
+    loosened_.erase(longest);
+    held_ = free_along(task_.surface, task_.lattice.reduction, edges_of(aligned_));
+    // It fulfils the conditions that are left, and stays valid.
+    relax(Eigen::VectorXd::Ones(task_.surface.mesh.triangle_count()), start_);
+  } while (!is_valid(start_));
+  if (trimmings_ < 0) hopeless_scale_ = 0;
+  PerHalfedge<char> is_kept(task_.surface.mesh.halfedge_count(), 0);
+  for (const Index h : edges_of(aligned_).halfedges) is_kept[h] = 1;
+  for (const FeatureLine& line : before) {
+    for (const Index h : line.halfedges) {
+      if (!is_kept[h]) release(h, ReleaseReason::lattice);
+    }
   }
   lines_.clear();
   rounded_.clear();
+  held_translation_.clear();
   find_coordinates();
   return true;
 }
@@ -253,6 +454,10 @@ void FeatureLayout::find_lattice_coordinates() {
       length.emplace_back(surface.cut_mesh.copy_of_corner[next(h)], along);
       length.emplace_back(surface.cut_mesh.copy_of_corner[h], -along);
     }
+    // Unfolding may have reversed a line.
+    if (value_of(length, start_) < 0) {
+      for (auto& term : length) term.second = -term.second;
+    }
     rounded_.push_back(std::move(length));
   }
   length_count_ = ssize(rounded_);
@@ -269,6 +474,26 @@ void FeatureLayout::find_lattice_coordinates() {
   }
   lattice_count_ = ssize(rounded_);
   may_shift_ = lattice.origin == none && (rotation.array() == 0).all();
+  if (lattice.origin == none && !may_shift_) hold_translation();
+}
+
+// Without a cone at the origin, shifts of the layout cost nothing; where cuts turn, they change translations. One of
+// these becomes 0 by a shift and stays so; the compliance would be unbounded otherwise.
+void FeatureLayout::hold_translation() {
+  const Eigen::VectorXcd right = Eigen::VectorXcd::Ones(start_.size()), up = Complex(0, 1) * right;
+  for (std::ptrdiff_t i = length_count_; i < lattice_count_; i += 2) {
+    Eigen::Matrix2d change;
+    Eigen::Vector2d value;
+    for (const int part : {0, 1}) {
+      change.row(part) << value_of(rounded_[i + part], right), value_of(rounded_[i + part], up);
+      value[part] = value_of(rounded_[i + part], start_);
+    }
+    if (!(std::abs(change.determinant()) > least_response)) continue;
+    const Eigen::Vector2d shift = change.inverse() * value;
+    start_.array() -= Complex(shift[0], shift[1]);
+    held_translation_ = {rounded_[i], rounded_[i + 1]};
+    return;
+  }
 }
 
 void FeatureLayout::find_coordinates() {
@@ -304,10 +529,15 @@ void FeatureLayout::find_coordinates() {
     rounded_.push_back(std::move(form));
   }
   const Reduction& reduction = task_.lattice.reduction;
-  system_.emplace(task_.surface, free_along(task_.surface, reduction, edges));
+  DirectedEdges fixed = edges;
+  fixed.fixed = held_translation_;
+  system_.emplace(task_.surface, free_along(task_.surface, reduction, fixed));
   factor_.emplace(system_->dirichlet().triangularView<Eigen::Lower>());
   coefficients_.resize(system_->dirichlet().rows(), ssize(rounded_));
-  for (std::ptrdiff_t i = 0; i < ssize(rounded_); ++i) coefficients_.col(i) = system_->coefficients_of(rounded_[i]);
+  for (std::ptrdiff_t i = 0; i < ssize(rounded_); ++i) {
+    coefficients_.col(i) = system_->coefficients_of(rounded_[i]);
+    if (coefficients_.col(i).cwiseAbs().maxCoeff() < least_response) coefficients_.col(i).setZero();  // held
+  }
   compliance_.resize(ssize(rounded_), ssize(rounded_));
   constexpr Eigen::Index at_once = 16;
   for (Eigen::Index i = 0; i < compliance_.cols(); i += at_once) {
@@ -319,7 +549,6 @@ void FeatureLayout::find_coordinates() {
   Eigen::VectorXd units = Eigen::VectorXd::Ones(ssize(rounded_));
   units.tail(ssize(rounded_) - lattice_count_).setConstant(1 / fine_step);
   fine_values_ = WholeValues::among(units.asDiagonal() * compliance_ * units.asDiagonal());
-  DirectedEdges fixed = edges;
   fixed.fixed = rounded_;
   held_ = free_along(task_.surface, reduction, fixed);
 }
@@ -385,7 +614,7 @@ std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, bool is_
   return out;
 }
 
-std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density) const {
+std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density) {
   const std::optional<Choice> whole_lines = choose(density, false);
   if (whole_lines) {
     if (auto out = lay_out(*whole_lines, 1)) return out;
@@ -418,20 +647,25 @@ std::optional<FeatureLayout::Choice> FeatureLayout::choose(double density, bool 
   return best;
 }
 
-std::optional<Eigen::VectorXcd> FeatureLayout::lay_out(const Choice& choice, double step_of_lines) const {
+std::optional<Eigen::VectorXcd> FeatureLayout::lay_out(const Choice& choice, double step_of_lines) {
+  const bool is_expensive = choice.cost > most_cost * choice.scale * choice.scale * task_.surface.geometry.total_area;
+  if (is_expensive || choice.scale <= hopeless_scale_) return std::nullopt;
   Eigen::VectorXd forces = Eigen::VectorXd::Zero(coefficients_.rows());
   for (Eigen::Index k = 0; k < choice.pull.size(); ++k) {
     forces += choice.pull[k] * coefficients_.col(choice.independent[k]);
   }
   Eigen::VectorXcd position = choice.scale * start_ + system_->expand(factor_->solve(forces));
-  if (!minimize(position)) return std::nullopt;
-  snap(step_of_lines, position);
-  if (!is_valid(position) || !is_on_lattice(position)) return std::nullopt;
-  return position;
+  const bool is_mended = minimize(position);
+  if (is_mended) snap(step_of_lines, position);
+  if (is_mended && is_valid(position) && is_on_lattice(position)) return position;
+  Array<Index> defects = defects_of(position);
+  if (!are_few(defects)) hopeless_scale_ = choice.scale;
+  const bool has_fewer = lattice_defects_.empty() || defects.size() <= lattice_defects_.size();
+  if (!defects.empty() && has_fewer) lattice_defects_ = std::move(defects);
+  return std::nullopt;
 }
 
-// Whether cones and translations are. Where all cuts go around holes, shifts change all translations and cost nothing:
-// the compliance is unbounded then, and which coordinates follow from others is lost to rounding errors.
+// Whether cones and translations are.
 bool FeatureLayout::is_on_lattice(const Eigen::VectorXcd& position) const {
   for (std::ptrdiff_t i = length_count_; i < lattice_count_; ++i) {
     const double value = value_of(rounded_[i], position);
@@ -459,14 +693,16 @@ void FeatureLayout::snap(double step, Eigen::VectorXcd& position) const {
   }
 }
 
+bool FeatureLayout::is_upright(Index triangle, const Eigen::VectorXcd& position) const {
+  const auto corner = [&](int c) { return position[task_.surface.cut_mesh.copy_of_corner[3 * triangle + c]]; };
+  return std::imag(std::conj(corner(1) - corner(0)) * (corner(2) - corner(0))) > 0;
+}
+
 // A few triangles do not count.
 bool FeatureLayout::flips_at_most(double share, const Eigen::VectorXcd& position) const {
   const HalfedgeMesh& mesh = task_.surface.mesh;
   Index flipped = 0;
-  for (Index f = 0; f < mesh.triangle_count(); ++f) {
-    const auto corner = [&](int c) { return position[task_.surface.cut_mesh.copy_of_corner[3 * f + c]]; };
-    if (!(std::imag(std::conj(corner(1) - corner(0)) * (corner(2) - corner(0))) > 0)) ++flipped;
-  }
+  for (Index f = 0; f < mesh.triangle_count(); ++f) flipped += is_upright(f, position) ? 0 : 1;
   return flipped <= few || flipped <= share * mesh.triangle_count();
 }
 
@@ -482,7 +718,8 @@ void FeatureLayout::relax(const Eigen::VectorXd& weights, Eigen::VectorXcd& posi
   const Eigen::VectorXd rest = scale_at_rest(task_.surface, task_.curvature, 1, position);
   NewtonMinimizer newton(task_.surface, {rest, frames}, held_, task_.before_step, position);
   newton.weigh(weights);
-  if (newton.unfold(Kind::foldover_free, unfolding_steps)) {
+  // Wrong angle sums stay wrong without flips.
+  if (newton.unfold(Kind::foldover_free, unfolding_steps) && is_valid(position)) {
     newton.smooth(Kind::symmetric_dirichlet, relaxing_steps, least_decrease);
   }
 }

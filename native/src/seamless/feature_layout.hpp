@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 
 #include "base/array.hpp"
@@ -43,14 +44,15 @@ class FeatureLayout {
   // Why halfedges of features do not run along an axis; meaningless for others.
   const PerHalfedge<ReleaseReason>& reasons() const { return reasons_; }
 
-  // Releases the most expensive sixth of the lines if no lattice admits all of them; false if none would be left, or if
-  // the rest has no valid map.
+  // Releases features after no lattice that was tried has admitted all. Of two ways, whichever keeps more of their
+  // length comes next: edges at the defects of the layout with the fewest are released, or the most expensive sixth of
+  // the lines. False if none would be left.
   bool loosen();
 
   // The layout with about `density` cells per unit of length, with cones and translations on the lattice. Features are
   // on lines of the lattice or, where cells are too large for that, at multiples of 1 / 256 of a cell. None where no
   // such layout without flips is found.
-  std::optional<Eigen::VectorXcd> quantize(double density) const;
+  std::optional<Eigen::VectorXcd> quantize(double density);
 
   // Moves all points but those of features and cones to where they stretch least.  weights: (m) of triangles.
   void relax(const Eigen::VectorXd& weights, Eigen::VectorXcd& position) const;
@@ -65,22 +67,33 @@ class FeatureLayout {
     double cost;
   };
 
-  void choose_compatible(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end,
-                         Array<FeatureLine>& chosen);
+  Array<FeatureLine> compatible(const Array<FeatureLine>& lines);
+  void add_compatible(const Array<FeatureLine>& lines, const Index* begin, const Index* end, Array<char>& chosen);
+  void add_faultless(const Array<FeatureLine>& lines, Index begin, Index end, Array<char>& chosen);
+  Array<Index> contradicting(const Array<FeatureLine>& lines, const Array<char>& chosen);
   std::optional<Eigen::VectorXcd> fit(const DegreesOfFreedom& freedom) const;
-  bool keeps_lengths(const Array<FeatureLine>& lines, const Eigen::VectorXcd& position) const;
+  bool keeps_lengths(const FeatureLine& line, const Eigen::VectorXcd& position) const;
   void add(Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end);
-  bool trim(const Array<Index>& vertices, Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end);
+  void add_trimmed();
+  void release(Index h, ReleaseReason reason);
+  bool are_few(const Array<Index>& vertices) const;
+  void find_loosened();
+  double length_along(const Array<FeatureLine>& lines, const Eigen::VectorXcd& position) const;
+  FeatureLine part_of(const FeatureLine& line, const std::function<bool(Index)>& is_in) const;
+  bool trim(const Array<Index>& vertices, Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end,
+            Array<FeatureLine>* released) const;
   // None if all of them run along axes then, otherwise why they do not.  defects: vertices where the map fails.
   std::optional<ReleaseReason> align(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end,
                                      Array<Index>& defects);
   DirectedEdges edges_of(const Array<FeatureLine>& lines) const;
+  void hold_translation();
   void find_coordinates();
   void find_lattice_coordinates();
   std::optional<Choice> round(double scale, bool is_fine) const;
   std::optional<Choice> choose(double density, bool is_fine) const;
-  std::optional<Eigen::VectorXcd> lay_out(const Choice& choice, double step_of_lines) const;
+  std::optional<Eigen::VectorXcd> lay_out(const Choice& choice, double step_of_lines);
   void snap(double step, Eigen::VectorXcd& position) const;
+  bool is_upright(Index triangle, const Eigen::VectorXcd& position) const;
   bool flips_at_most(double share, const Eigen::VectorXcd& position) const;
   bool minimize(Eigen::VectorXcd& position) const;
   bool is_valid(const Eigen::VectorXcd& position) const;
@@ -95,13 +108,25 @@ class FeatureLayout {
   int left_ = 0, fits_left_ = 0;  // attempts, and fits before them
   PerHalfedge<ReleaseReason> reasons_;
   Array<FeatureLine> aligned_;
+  Array<FeatureLine> trimmed_;  // released at defects
+  double aligned_length_ = 0;   // before any was released for the lattice
   Eigen::VectorXcd start_;
   Array<Array<Index>> lines_;  // coordinates, 2 copy for u and 2 copy + 1 for v, that are the same
   PerVertex<char> is_cone_;
   Array<CoordinateForm> rounded_;  // lengths of lines between cones, the lattice's, and then one of each line
   std::ptrdiff_t length_count_ = 0, lattice_count_ = 0;  // the ends of the first two
   bool may_shift_ = false;
-  DegreesOfFreedom held_;  // with the rounded coordinates fixed
+  Array<CoordinateForm> held_translation_;  // its two coordinates, or empty
+  struct Loosened {
+    Array<FeatureLine> lines;
+    Eigen::VectorXcd start;  // valid, along more lines
+    int trimmings;           // of single edges for the lattice; -1 after releases of whole lines
+  };
+  Array<Loosened> loosened_;      // not tried yet
+  int trimmings_ = 0;             // of the present lines
+  double hopeless_scale_ = 0;     // at which a layout failed at too many places to release edges there
+  Array<Index> lattice_defects_;  // the fewest vertices at which a layout on a lattice failed, or empty
+  DegreesOfFreedom held_;         // with the rounded coordinates fixed
   std::optional<FreedomSystem> system_;
   std::optional<Cholesky<double>> factor_;
   Eigen::MatrixXd coefficients_;  // (rows, rounded)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from command import uv_of
 from polygon_meshes import obj_text
+from zoo import closed
 
 UNWRAP = ("unwrap", "ball.obj", "-o", "out.obj", "--report", "report.json")
 
@@ -106,3 +107,14 @@ def test_a_batch_takes_presets_and_makes_the_bytes_of_single_runs(lsgp, ball_fil
     assert (ball_files / "many" / "ball.obj").read_bytes() == (ball_files / "out.obj").read_bytes()
     (line,) = (json.loads(text) for text in (ball_files / "many" / "journal.jsonl").read_text().splitlines())
     assert line["overlapping"] == 0
+
+
+def test_creases_are_borders_where_the_map_gains_by_them(lsgp, tmp_path: Path) -> None:
+    z = np.linspace(-1, 1, 5)
+    barrel = closed.lathe(1 - 0.25 * z**2, 1.3 * z, 24, caps=(True, True))
+    (tmp_path / "barrel.obj").write_text(obj_text(barrel.positions, barrel.triangles))
+    run = ("unwrap", "barrel.obj", "-o", "out.obj", "--report", "report.json", "--preset", "paint")
+    bordered, plain = lsgp(*run).report(), lsgp(*run, "--no-creases").report()
+    assert bordered["islands"] == 3 and not bordered["cones"] and plain["cones"]
+    assert bordered["distortion"]["l2_stretch"] - 1 < 0.5 * (plain["distortion"]["l2_stretch"] - 1)
+    assert bordered["stage_seconds"]["place_cones"] > 0

@@ -271,6 +271,8 @@ def test_a_border_is_where_the_surface_ends() -> None:
         ({"angle": 0.0}, "WRONG_PARAMETER", "above 0"),
         ({"angle": 3.2}, "WRONG_PARAMETER", "at most pi"),
         ({"most_corners": -1}, "WRONG_PARAMETER", "whole number from 0"),
+        ({"least_share": 1.5}, "WRONG_PARAMETER", "from 0 to 1"),
+        ({"least_share": np.nan}, "WRONG_PARAMETER", "from 0 to 1"),
         ({"cones": [99]}, "CONE_INDEX", "99"),
     ],
 )

@@ -28,20 +28,11 @@ SLAB = np.zeros((5, 5, 2), bool)
 SLAB[:2], SLAB[:, :2] = True, True
 
 
-def toothed_wheel(teeth: int, depth: float) -> Mesh:
-    """A wheel with square teeth: its caps are rings around a fan, so that cones have room inside."""
-    around = 4 * teeth
-    radius = np.array([0, 0.3, 0.6, 1, 1, 1, 0.6, 0.3, 0])
-    body = closed.lathe(radius, np.array([0, 0, 0, 0, 0.2, 0.4, 0.4, 0.4, 0.4]), around, caps=(False, False))
-    is_low = (np.arange(len(body.positions)) % 4 >= 2) & (np.hypot(*body.positions[:, :2].T) > 0.9)
-    return body._replace(positions=body.positions * np.where(is_low, 1 - depth, 1.0)[:, None] ** [1, 1, 0])
-
-
 HARD = {
     "box": closed.box(4, (1, 1.37, 2.11)),
     "turned box": meshes.transform(closed.box(4, (1, 1.37, 2.11)), seed=1),
     "L": meshes.voxels(SLAB),
-    "wheel": toothed_wheel(6, 0.2),
+    "wheel": closed.toothed_wheel(6, 0.2),
     "cylinder": closed.lathe(np.ones(5), np.linspace(0, 2, 5), 24, caps=(True, True)),
 }
 
@@ -81,7 +72,7 @@ def test_every_crease_lies_on_a_line_of_the_lattice(name: str) -> None:
 @pytest.mark.parametrize("teeth", [7, 10])
 def test_creases_whose_lengths_depend_on_each_other_lie_on_fine_lines(teeth: int) -> None:
     """Its cones follow from each other by halves and thirds of lengths, all of which have to be whole."""
-    mesh = toothed_wheel(teeth, 0.2)
+    mesh = closed.toothed_wheel(teeth, 0.2)
     result = lsgp.auto_unwrap(surface(mesh), preset="tile", options=TILE)
     both = 256 * ends(result, creases(mesh))
     assert ((both[:, 0] == both[:, 1]) & (both[:, 0] == np.round(both[:, 0]))).any(axis=1).all()

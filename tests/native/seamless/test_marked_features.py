@@ -106,6 +106,32 @@ def test_marked_borders_are_straight() -> None:
     assert undeclared_faults(tent, result, PLAIN) == []
 
 
+def test_rims_of_a_cone_run_along_the_lattice() -> None:
+    """In the free map they are arcs, without a corner where they could turn."""
+    mesh = closed.lathe(np.linspace(1, 0.4, 6), np.linspace(0, 2, 6), 24, caps=(True, True))
+    edges = lsgp.feature_edges(surface(mesh), angle=0.7)
+    frustum = marked(mesh, edges)
+    result = lsgp.auto_unwrap(frustum, preset="tile", options=PLAIN)
+    assert len(edges) == 48
+    assert is_along_axis(ends(mesh, result, edges)).all()
+    assert result.features.share == 1
+    assert undeclared_faults(frustum, result, PLAIN) == []
+
+
+@pytest.mark.parametrize("teeth, depth", [(5, 0.4), (7, 0.25), (10, 0.15), (12, 0.2)])
+def test_most_edges_of_toothed_wheels_run_along_the_lattice(teeth: int, depth: float) -> None:
+    """Few of them fold the layout, and are released where they do."""
+    mesh = closed.toothed_wheel(teeth, depth)
+    edges = lsgp.feature_edges(surface(mesh), angle=0.7)
+    wheel = marked(mesh, edges)
+    result = lsgp.auto_unwrap(wheel, preset="tile", options=PLAIN)
+    lengths = np.linalg.norm(np.diff(mesh.positions[edges], axis=1)[:, 0], axis=1)
+    is_straight = [is_along_axis(ends(mesh, result, edge[None])).all() for edge in edges]
+    assert lengths[is_straight].sum() / lengths.sum() == pytest.approx(result.features.share, abs=1e-9)
+    assert result.features.share > 0.9
+    assert undeclared_faults(wheel, result, PLAIN) == []
+
+
 def test_released_features_are_named_with_their_shares() -> None:
     mesh = meshes.icosphere(2)
     edges = meshes.edges_of(mesh.triangles)[::3]

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Components whose creases carry part of their curvature end there if their maps gain by it."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+
+import lsgp
+import meshes
+import numpy as np
+import pytest
+from map_checks import pairs, surface
+from meshes import Mesh
+from zoo import closed
+
+BARRELS = [(16, 6, 1.3), (20, 9, 1.6), (24, 5, 1.3), (32, 9, 1.3)]
+
+
+def barrel(around: int, rings: int, height: float) -> Mesh:
+    z = np.linspace(-1, 1, rings)
+    return closed.lathe(1 - 0.25 * z**2, height * z, around, caps=(True, True))
+
+
+def scaled(mesh: Mesh, size: float) -> Mesh:
+    return meshes.make(size * mesh.positions, mesh.triangles)
+
+
+def maps_made(monkeypatch: pytest.MonkeyPatch) -> list[lsgp.Result]:
+    """The results of the maps that are compared, as they are made."""
+    made: list[lsgp.Result] = []
+    module = sys.modules["lsgp.auto_unwrap"]
+    original = module.best_map
+
+    def best_map(*given: object) -> object:
+        found = original(*given)
+        made.append(found[1])
+        return found
+
+    monkeypatch.setattr(module, "best_map", best_map)
+    return made
+
+
+@pytest.mark.parametrize("preset", ["paint", "bake"])
+@pytest.mark.parametrize(("around", "rings", "height"), BARRELS)
+def test_a_barrel_ends_at_its_rims(around: int, rings: int, height: float, preset: lsgp.Preset) -> None:
+    mesh = barrel(around, rings, height)
+    z = mesh.positions[:, 2]
+    result = lsgp.auto_unwrap(surface(mesh), preset=preset)
+    cones = lsgp.auto_unwrap(surface(mesh), preset=preset, creases=False)
+    assert len(result.cones) == 0 < len(cones.cones)
+    assert len(result.flipped) == 0 == len(result.overlapping)
+    assert result.distortion.l2_stretch - 1 <= 0.5 * (cones.distortion.l2_stretch - 1)
+    rims = {
+        e for e in pairs(meshes.edges_of(mesh.triangles)) if abs(z[list(e)]).min() == height and np.ptp(z[[*e]]) == 0
+    }
+    middles = np.flatnonzero((abs(z) == height) & (np.linalg.norm(mesh.positions[:, :2], axis=1) == 0))
+    rims = {e for e in rims if not set(e) & set(middles.tolist())}
+    assert rims < pairs(result.borders) and len(result.borders) == 2 * around + rings - 1
+
+
+@pytest.mark.parametrize("rings", [5, 9, 12, 17])
+def test_many_small_bends_make_no_flat_face(rings: int) -> None:
+    """Across it, one rim would be beside the other, which bends alike."""
+    mesh = barrel(24, rings, 1.0)
+    assert len(lsgp.crease_borders(surface(mesh), least_share=0.5)) == 2 * 24 + rings - 1
+    assert len(lsgp.crease_borders(surface(mesh))) == 0
+
+
+def test_maps_are_compared_only_where_one_is_stretched_and_has_creases(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = maps_made(monkeypatch)
+    for mesh, count in ((meshes.cube(3), 1), (meshes.bumpy_sphere(3), 1), (barrel(24, 5, 1.3), 2)):
+        made.clear()
+        lsgp.auto_unwrap(surface(mesh), pack="shelves")
+        assert len(made) == count
+
+
+def test_each_component_is_judged_by_itself() -> None:
+    """What is small beside others gets no islands of its own, where that is seen before and after the comparison."""
+    large = barrel(24, 5, 1.3)
+    assert len(lsgp.auto_unwrap(surface(scaled(large, 0.05))).borders)
+    for size in (0.05, 0.35):
+        both = surface(meshes.merge([meshes.bumpy_sphere(2), large, scaled(large, size)]))
+        result = lsgp.auto_unwrap(both, pack="shelves", symmetric=False)
+        ball = len(meshes.bumpy_sphere(2).positions)
+        is_of_large = (result.borders >= ball) & (result.borders < ball + len(large.positions))
+        assert is_of_large.all() and len(result.borders) == len(lsgp.auto_unwrap(surface(large)).borders)
+        assert result.cones.min() < ball and result.cones.max() >= ball + len(large.positions)
+
+
+def test_what_the_artist_asks_for_is_not_compared() -> None:
+    given = surface(barrel(24, 5, 1.3))
+    placed = lsgp.place_cones(given)
+    assert not len(lsgp.auto_unwrap(given, placed.cones).borders)
+    assert not len(lsgp.auto_unwrap(given, count=6).borders)
+    assert not len(lsgp.auto_unwrap(given, creases=False).borders)
+    pins = lsgp.Pins([0, 1], [[0.0, 0.0], [0.1, 0.0]])
+    assert not len(lsgp.auto_unwrap(given, pins=pins).borders)
+    sides = replace(lsgp.preset_options("paint"), border="straight")
+    assert not len(lsgp.auto_unwrap(given, options=sides).borders)
