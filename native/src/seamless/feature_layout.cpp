@@ -407,7 +407,7 @@ bool FeatureLayout::loosen() {
     trimmings_ = longest->trimmings;
     loosened_.erase(longest);
     held_ = free_along(task_.surface, task_.lattice.reduction, edges_of(aligned_));
-    // It fulfils the conditions that are left, and stays valid.
+    // It fulfills the conditions that are left, and stays valid.
     relax(Eigen::VectorXd::Ones(task_.surface.mesh.triangle_count()), start_);
   } while (!is_valid(start_));
   if (trimmings_ < 0) hopeless_scale_ = 0;

@@ -242,13 +242,24 @@ REVIEWED = {
         ),
     ],
     "seamless/feature_layout.cpp": [
-        ("for (int trimmings = 0; reason; ++trimmings)", "up to three trimmings of lines", WITHIN),
+        ("for (int trimmings = 0; reason; ++trimmings)", "up to four trimmings of lines", WITHIN),
         ("for (;;)", "each round rounds a coordinate, or ends it", OWN),
+        ("for (Index begin = 0, end = 0; begin < ssize(lines); begin = end)", "passes a line each time", SHORT),
+        ("while (end < ssize(lines) && rank(end) == rank(begin))", "lines, each once", SHORT),
+        (
+            "for (Array<Index> at_fault = contradicting(lines, chosen); !at_fault.empty(); "
+            "at_fault = contradicting(lines, chosen))",
+            "each round releases a line at least",
+            WITHIN,
+        ),
+        ("while (!is_valid(start_))", "takes a choice off a list each time", WITHIN),
     ],
     "repair/feature_lines.cpp": [
         ("for (Index at = next(h);; at = next(mesh_.twin[at]))", AROUND_A_VERTEX, SHORT),
         ("for (Index h = first; h != none && !is_traced_[h]; h = following(h))", ONCE_EACH, SHORT),
         ("while (!is_border(prev(h)))", AROUND_A_VERTEX, SHORT),
+        ("for (Index begin = 0, end = 0; begin < ssize(angle); begin = end)", "passes an edge each time", SHORT),
+        ("while (end < ssize(angle) && axis[end] == axis[begin])", "edges, each once", SHORT),
     ],
     "seamless/whole_values.cpp": [
         ("for (;;)", "Euclid's algorithm: each round lowers the smallest coefficient, or ends it", OWN),
