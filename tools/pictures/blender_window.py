@@ -32,11 +32,15 @@ def inside(area: bpy.types.Area):
     return bpy.context.temp_override(window=window(), area=area, region=region_of(area))
 
 
-def arrange(uv_share: float) -> Iterator[float]:
-    """A UV editor on the left, as wide as this share, a 3D view beside it; yields seconds to wait."""
-    for area in areas("TIMELINE") + areas("DOPESHEET_EDITOR"):
+def close_areas(*kinds: str) -> None:
+    for area in [area for kind in kinds for area in areas(kind)]:
         with inside(area):
             bpy.ops.screen.area_close()
+
+
+def arrange(uv_share: float) -> Iterator[float]:
+    """A UV editor on the left, as wide as this share, a 3D view beside it; yields seconds to wait."""
+    close_areas("TIMELINE", "DOPESHEET_EDITOR")
     yield WAIT
     with inside(areas("VIEW_3D")[0]):
         bpy.ops.screen.area_split(direction="VERTICAL", factor=uv_share)
@@ -45,6 +49,21 @@ def arrange(uv_share: float) -> Iterator[float]:
     editor.ui_type = "UV"
     bpy.context.tool_settings.use_uv_select_sync = False
     yield WAIT
+
+
+def open_tab(view: bpy.types.Area) -> None:
+    """That of the extension in the sidebar, which has to have been drawn before."""
+    for region in view.regions:
+        if region.type == "UI":
+            region.active_panel_category = "Cone Unwrap"
+
+
+def look_from_a_side() -> None:
+    """The whole mesh from the front, somewhat to the right and above; in the context of a 3D view."""
+    bpy.ops.view3d.view_axis(type="FRONT")
+    bpy.ops.view3d.view_orbit(angle=0.5, type="ORBITRIGHT")
+    bpy.ops.view3d.view_orbit(angle=0.4, type="ORBITUP")
+    bpy.ops.view3d.view_all()
 
 
 def take_picture(path: Path) -> None:

@@ -20,7 +20,17 @@ from mathutils import Vector
 
 sys.path.insert(0, str(Path(__file__).parent))
 import demo_scene
-from blender_window import WAIT, areas, arrange, inside, run, take_picture
+from blender_window import (
+    WAIT,
+    areas,
+    arrange,
+    close_areas,
+    inside,
+    look_from_a_side,
+    open_tab,
+    run,
+    take_picture,
+)
 
 SIDEBAR = 0.22  # of the distance that the view moves, so that it does not cover the model
 TILE = 85  # pixels of a tile in the UV editor
@@ -29,9 +39,7 @@ CORNERS = 8  # of a cube, the first of its vertices
 
 def prepare() -> Iterator[float]:
     """A UV editor and a 3D view, with the tab of the extension."""
-    for area in areas("PROPERTIES") + areas("OUTLINER"):
-        with inside(area):
-            bpy.ops.screen.area_close()
+    close_areas("PROPERTIES", "OUTLINER")
     yield WAIT
     yield from arrange(0.36)
     bpy.context.tool_settings.use_uv_select_sync = True  # the UV editor also shows faces that are not selected
@@ -42,9 +50,7 @@ def prepare() -> Iterator[float]:
     for area in areas("IMAGE_EDITOR"):
         area.spaces.active.show_region_toolbar = False
     yield WAIT
-    for region in areas("VIEW_3D")[0].regions:
-        if region.type == "UI":
-            region.active_panel_category = "Cone Unwrap"
+    open_tab(areas("VIEW_3D")[0])
 
 
 def show_all(distance: float) -> Iterator[float]:
@@ -55,10 +61,7 @@ def show_all(distance: float) -> Iterator[float]:
     view, editor = areas("VIEW_3D")[0], areas("IMAGE_EDITOR")[0]
     with inside(view):
         bpy.ops.mesh.select_all(action="SELECT")
-        bpy.ops.view3d.view_axis(type="FRONT")
-        bpy.ops.view3d.view_orbit(angle=0.5, type="ORBITRIGHT")
-        bpy.ops.view3d.view_orbit(angle=0.4, type="ORBITUP")
-        bpy.ops.view3d.view_all()
+        look_from_a_side()
     with inside(editor):
         bpy.ops.image.view_selected()
     yield WAIT

@@ -19,7 +19,17 @@ from mathutils import Vector
 
 sys.path.insert(0, str(Path(__file__).parent))
 import demo_scene
-from blender_window import WAIT, areas, arrange, inside, run, take_picture
+from blender_window import (
+    WAIT,
+    areas,
+    arrange,
+    close_areas,
+    inside,
+    look_from_a_side,
+    open_tab,
+    run,
+    take_picture,
+)
 
 OPEN = ("VIEW3D_PT_cone_angles", "VIEW3D_PT_cone_unwrap_quality")
 
@@ -35,9 +45,7 @@ def open_panels() -> None:
 
 def show(out: Path) -> Iterator[float]:
     """Unwrap, arrange the window, write the picture; yields seconds to wait."""
-    for area in areas("PROPERTIES") + areas("OUTLINER"):
-        with inside(area):
-            bpy.ops.screen.area_close()
+    close_areas("PROPERTIES", "OUTLINER")
     yield WAIT
     yield from arrange(0.38)
     view, editor = areas("VIEW_3D")[0], areas("IMAGE_EDITOR")[0]
@@ -55,15 +63,10 @@ def show(out: Path) -> Iterator[float]:
     for space in view.spaces:
         space.show_region_ui, space.show_region_toolbar, space.overlay.show_floor = True, False, False
     yield WAIT
-    for region in view.regions:
-        if region.type == "UI":
-            region.active_panel_category = "Cone Unwrap"
+    open_tab(view)
     with inside(view):
         bpy.ops.mesh.select_all(action="DESELECT")
-        bpy.ops.view3d.view_axis(type="FRONT")
-        bpy.ops.view3d.view_orbit(angle=0.5, type="ORBITRIGHT")
-        bpy.ops.view3d.view_orbit(angle=0.4, type="ORBITUP")
-        bpy.ops.view3d.view_all()
+        look_from_a_side()
     for space in editor.spaces:
         space.show_region_toolbar = False
     with inside(editor):
