@@ -13,6 +13,7 @@
 #include "base/thread_team.hpp"
 #include "lsgp/lsgp.hpp"
 #include "mesh/mirror.hpp"
+#include "pipeline/said_once.hpp"
 #include "pipeline/validation.hpp"
 #include "pipeline/wording.hpp"
 #include "placement/component_placement.hpp"
@@ -172,6 +173,7 @@ Placement place_cones_on(const KnownSurface& known, const Cones& existing, const
   });
   shortfalls.report(out.warnings);
   report_shared(std::move(shared), out.warnings);
+  say_once(out.warnings);
   out.linear_algebra = counter.counted();
   out.predicted_l2 = std::sqrt(stretched_area / total_area);
   out.mapped_l2 = std::sqrt(stretched_in_maps / total_area);
@@ -221,6 +223,7 @@ ConeGains cone_gains(const Surface& surface, const Cones& existing, SeamMode sea
     out.best = component.source_vertex[gains.best];
   });
   out.present_l2 = std::sqrt(stretched_area / total_area);
+  say_once(out.warnings);
   return out;
 } catch (const Error& error) {
   throw in_words(error);

@@ -7,6 +7,7 @@
 #include "base/thread_team.hpp"
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
+#include "pipeline/said_once.hpp"
 #include "pipeline/wording.hpp"
 #include "prescription/component_system.hpp"
 
@@ -44,6 +45,7 @@ Prescription prescribe_curvature(const Surface& surface, const Cones& cones, con
     total_area += geometry.total_area;
   });
   monitor.advance(1);
+  say_once(out.warnings);
   out.predicted_l2 = std::sqrt(stretched_area / total_area);
   for (const Index v : cones.vertices) {
     if (std::isnan(angle[v])) continue;

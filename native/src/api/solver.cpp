@@ -15,6 +15,7 @@
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
 #include "pipeline/mapping.hpp"
+#include "pipeline/said_once.hpp"
 #include "pipeline/wording.hpp"
 #include "seamless/seamless.hpp"
 #include "solvers/linear_algebra_counter.hpp"
@@ -110,6 +111,7 @@ Result map_components(const KnownSurface& known, const Cones& cones, const Optio
   }
   assembly.require_any();
   assembly.finish(cones, work.topology.duplicates);
+  say_once(result.warnings);
   monitor.advance(1);
   result.linear_algebra = counter.counted();
   return result;

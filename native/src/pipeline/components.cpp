@@ -8,6 +8,7 @@
 
 #include "base/text.hpp"
 #include "cut/parts.hpp"
+#include "pipeline/said_once.hpp"
 #include "pipeline/validation.hpp"
 #include "pipeline/wording.hpp"
 #include "plane/point_lattice.hpp"
@@ -314,10 +315,7 @@ Geometry require_geometry(const Component& component, std::vector<Finding>& find
   }
   require_comparable(component.mesh.positions);  // distant outliers have only degenerate triangles
   findings.push_back(
-      {Code::degenerate_faces,
-       concat(count(geometry.degenerate.size(), "triangle has", "triangles have"),
-              " no area, and got a little for the computation. Merge by distance to be rid of this note."),
-       in_source(component, {ElementKind::triangles, geometry.degenerate})});
+      counted(Code::degenerate_faces, in_source(component, {ElementKind::triangles, geometry.degenerate})));
   return geometry;
 }
 
@@ -331,12 +329,7 @@ Elements in_source(const Component& component, Elements elements) {
 
 void report_border_cones(const Component& component, const Array<Index>& border_cones, std::vector<Finding>& findings) {
   if (border_cones.empty()) return;
-  findings.push_back(
-      {Code::cone_on_boundary,
-       concat(count(border_cones.size(), "cone lies", "cones lie"),
-              " on a boundary, where angles are free anyway; nothing was prescribed there. Give an angle to make a "
-              "corner."),
-       in_source(component, {ElementKind::vertices, border_cones})});
+  findings.push_back(counted(Code::cone_on_boundary, in_source(component, {ElementKind::vertices, border_cones})));
 }
 
 Failure failure_of(const Component& component, const Error& error) {

@@ -104,6 +104,21 @@ def test_a_sliver_without_area_is_survived_and_named() -> None:
     assert finding.elements.indices.tolist() == [len(mesh.triangles) - 1]
 
 
+def test_what_many_components_share_is_said_once() -> None:
+    cubes = [meshes.with_zero_area(meshes.cube(3), 4)] * 5 + [meshes.moebius_strip()] * 3
+    mesh = meshes.merge([cube._replace(cones=np.empty(0, np.int32)) for cube in cubes])
+    placed = lsgp.place_cones(lsgp.Surface(mesh.positions, mesh.triangles))
+    result = unwrap(mesh._replace(cones=placed.cones))
+    strip, size = len(cubes[-1].triangles), len(cubes[0].triangles)
+    for warnings in (placed.warnings, result.warnings):
+        finding = only(warnings, "DEGENERATE_FACES")
+        assert finding.elements.indices.tolist() == [size * (i + 1) - 1 for i in range(5)]
+        assert finding.message.startswith("5 triangles have no area")
+        skipped = only(warnings, "COMPONENT_SKIPPED")
+        assert skipped.elements.indices.tolist() == list(range(5 * size, 5 * size + 3 * strip))
+        assert skipped.message.endswith("(3 times)")
+
+
 def test_cones_on_a_boundary_are_named() -> None:
     mesh = meshes.saddle(6)._replace(cones=np.array([0, 24], np.int32))  # a corner, and the middle
     result = unwrap(mesh)

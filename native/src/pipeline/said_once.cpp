@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/said_once.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "base/array.hpp"
+#include "base/text.hpp"
+
+namespace lsgp {
+
+namespace {
+
+bool is_counted(Code code) { return code == Code::degenerate_faces || code == Code::cone_on_boundary; }
+
+std::string sentence(Code code, std::size_t n) {
+  if (code == Code::degenerate_faces) {
+    return concat(count(n, "triangle has", "triangles have"),
+                  " no area, and got a little for the computation. Merge by distance to be rid of this note.");
+  }
+  return concat(count(n, "cone lies", "cones lie"),
+                " on a boundary, where angles are free anyway; nothing was prescribed there. Give an angle to make a "
+                "corner.");
+}
+
+// Edges are listed by both vertices.
+void append(Elements& elements, const Elements& more) {
+  elements.kind = more.kind;
+  elements.indices.insert(elements.indices.end(), more.indices.begin(), more.indices.end());
+  if (more.kind != ElementKind::edges) sort_unique(elements.indices);
+}
+
+}  // namespace
+
+Finding counted(Code code, Elements elements) {
+  std::string message = sentence(code, elements.indices.size());
+  return {code, std::move(message), std::move(elements)};
+}
+
+void say_once(std::vector<Finding>& findings) {
+  struct Group {
+    Finding* first;
+    Index times;
+  };
+  std::map<std::pair<Code, std::string>, Group> groups;
+  std::vector<Finding> joined;
+  joined.reserve(findings.size());  // groups point into it
+  for (Finding& finding : findings) {
+    const auto key = std::make_pair(finding.code, is_counted(finding.code) ? std::string() : finding.message);
+    const auto [known, is_new] = groups.try_emplace(key, Group{nullptr, 1});
+    if (is_new) {
+      joined.push_back(std::move(finding));
+      known->second.first = &joined.back();
+    } else {
+      append(known->second.first->elements, finding.elements);
+      ++known->second.times;
+    }
+  }
+  for (const auto& [key, group] : groups) {
+    if (group.times == 1) continue;
+    Finding& finding = *group.first;
+    finding.message = is_counted(finding.code) ? sentence(finding.code, finding.elements.indices.size())
+                                               : concat(finding.message, " (", group.times, " times)");
+  }
+  findings = std::move(joined);
+}
+
+}  // namespace lsgp
