@@ -2,6 +2,7 @@
 #include "pipeline/component_map.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "plane/overlaps.hpp"
 
@@ -31,8 +32,7 @@ void check_positions(const HalfedgeMesh& mesh, ComponentMap& map) {
   check_triangles(mesh, corners, map);
 }
 
-bool has_overlap_within(const PerTriangle<Index>& part, Eigen::VectorXcd position, const PerHalfedge<Index>& twin) {
-  // Parts side by side.
+Eigen::VectorXcd side_by_side(const PerTriangle<Index>& part, Eigen::VectorXcd position) {
   PerPart<PositionBox> boxes(1 + *std::max_element(part.begin(), part.end()));
   for (Eigen::Index c = 0; c < position.size(); ++c) boxes[part[c / 3]].add(position[c]);
   Complex at = 0;
@@ -42,7 +42,11 @@ bool has_overlap_within(const PerTriangle<Index>& part, Eigen::VectorXcd positio
     at += 2 * box.size();
   }
   for (Eigen::Index c = 0; c < position.size() && boxes.size() > 1; ++c) position[c] += shift[part[c / 3]];
-  return has_overlap(position, twin);
+  return position;
+}
+
+bool has_overlap_within(const PerTriangle<Index>& part, Eigen::VectorXcd position, const PerHalfedge<Index>& twin) {
+  return has_overlap(side_by_side(part, std::move(position)), twin);
 }
 
 }  // namespace lsgp

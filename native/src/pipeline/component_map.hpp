@@ -46,6 +46,9 @@ void check_triangles(const HalfedgeMesh& mesh, const CornerPositions& corners, C
 // Measures the map's own positions in this way, and their area. Throws SOLVER_FAILED if some are not finite.
 void check_positions(const HalfedgeMesh& mesh, ComponentMap& map);
 
+// A layout with its parts moved apart.  position: (3m) u + iv at the corners.
+Eigen::VectorXcd side_by_side(const PerTriangle<Index>& part, Eigen::VectorXcd position);
+
 // Whether a part of a layout without flipped triangles overlaps itself.  position, twin: as for has_overlap.
 bool has_overlap_within(const PerTriangle<Index>& part, Eigen::VectorXcd position, const PerHalfedge<Index>& twin);
 

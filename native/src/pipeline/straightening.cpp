@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "plane/overlaps.hpp"
 #include "repair/straighten.hpp"
 #include "transitions/holonomy.hpp"
 #include "unfold/jacobians.hpp"
@@ -31,7 +32,8 @@ double l2_of(const CutSurface& surface, const ComponentMap& map) {
   return l2_stretch(surface.geometry, measure_jacobians(surface, surface.cut_mesh, map.position));
 }
 
-// Whether an island of the layout overlaps itself, judged by its boundary.
+// Whether an island of the layout overlaps itself. The sides of a cut that coincide may cross by rounding, so where the
+// boundary tells of an overlap the triangles decide.
 bool overlaps(const CutSurface& surface, const ComponentMap& map) {
   const HalfedgeMesh& mesh = surface.mesh;
   PerHalfedge<Index> twin = mesh.twin;
@@ -40,7 +42,8 @@ bool overlaps(const CutSurface& surface, const ComponentMap& map) {
     if (is_open(mesh, surface.cut_mesh, h)) twin[h] = none;
   }
   label_parts(mesh, surface.cut_graph.is_cut, part);
-  return has_overlap_within(part, at_corners(surface.cut_mesh, map.position), twin);
+  const Eigen::VectorXcd corners = side_by_side(part, at_corners(surface.cut_mesh, map.position));
+  return has_overlap(corners, twin) && !find_overlaps(corners, twin).empty();
 }
 
 // Whether all cuts are connected, boundaries included, so that each can be related to the others.
