@@ -99,7 +99,7 @@ def require_polygons(
     sizes: NDArray[np.int64],
     place: Callable[[int], str] = lambda polygon: "",
 ) -> None:
-    """Refuse polygons that name vertices the file has not or have fewer than three corners.
+    """Refuse polygons that name vertices the file has not or have no corners, and meshes without any of three corners.
 
     place: says where in the file a polygon stands, for the message, e.g. " (line 12)".
     Raises InputError: INDEX_OUT_OF_RANGE, BAD_FACE, with the polygons as elements of kind "faces".
@@ -115,8 +115,15 @@ def require_polygons(
             f"0; {valid}. Export the mesh again.",
             Elements("faces", faces.astype(np.int32)),
         )
+    empty = np.flatnonzero(sizes == 0)
+    if len(empty):
+        raise InputError(
+            "BAD_FACE",
+            f"{_faces(empty, place)} without corners. Export the mesh again.",
+            Elements("faces", empty.astype(np.int32)),
+        )
     small = np.flatnonzero(sizes < 3)
-    if len(small):
+    if len(small) and len(small) == len(sizes):
         raise InputError(
             "BAD_FACE",
             f"{_faces(small, place)} with fewer than three corners. Remove such faces: loose edges are not faces.",
@@ -161,7 +168,8 @@ def triangulate(mesh: PolygonMesh) -> Triangulation:
 
 def separate_diagonals(mesh: PolygonMesh, corner: NDArray[np.int64], edges: NDArray[np.int32]) -> None:
     """Triangulate anew, in `corner`, the polygons with a diagonal between vertices that an edge or another polygon's
-    diagonal joins already (two quads back to back, for example).
+    diagonal joins already (two quads back to back, for example). A polygon that is given again stays
+    alike: its triangles are duplicates, which get the coordinates of the first.
 
     corner: (m, 3), as in `Triangulation`; of every polygon two triangles less than it has corners. edges: (e, 2).
     """
@@ -189,10 +197,17 @@ def separate_diagonals(mesh: PolygonMesh, corner: NDArray[np.int64], edges: NDAr
     joined = np.concatenate([of_edges, keys[~np.isin(owner, redo)]])
     joined = set(joined[near[joined // n] & near[joined % n]].tolist())
     starts = mesh.starts
+    first_alike: dict[tuple[int, ...], list[list[int]]] = {}  # its triangles
     for chosen in redo.tolist():
         count = int(mesh.sizes[chosen])
         row = starts[chosen] + np.arange(count)
         own = mesh.corners[row].tolist()
+        least = own.index(min(own))
+        alike = (*own[least:], *own[:least])
+        if alike in first_alike:
+            local = [sorted(own.index(vertex) for vertex in triangle) for triangle in first_alike[alike]]
+            corner[firsts[chosen] : firsts[chosen] + count - 2] = row[np.array(local)]
+            continue
 
         def is_taken(p: int, q: int, own: list[int] = own) -> bool:
             a, b = own[p], own[q]
@@ -201,6 +216,7 @@ def separate_diagonals(mesh: PolygonMesh, corner: NDArray[np.int64], edges: NDAr
         local = clip_ears_of_one(_in_plane(mesh.positions[mesh.corners[row]][None])[0], is_taken)
         corner[firsts[chosen] : firsts[chosen] + count - 2] = row[local]
         vertices = mesh.corners[row[local]]
+        first_alike[alike] = vertices.tolist()
         joined.update(edge_keys(vertices, np.roll(vertices, -1, axis=1), n).ravel().tolist())
 
 

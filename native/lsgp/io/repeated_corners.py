@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Faces that name a vertex twice: usable ones are simplified and the others left out, instead of refusing the file."""
+"""Faces that name a vertex twice or have fewer than three corners: usable ones are simplified and the others left out,
+instead of refusing the file."""
 
 from __future__ import annotations
 
@@ -65,7 +66,8 @@ def without_repeated_corners(mesh: PolygonMesh) -> Usable:
     if left_out.all():
         raise InputError(
             "BAD_FACE",
-            f"All {len(left_out)} faces name a vertex twice. Merge doubled vertices and delete faces without area.",
+            f"All {len(left_out)} faces name a vertex twice or are edges. Merge doubled vertices and delete faces "
+            "without area.",
             Elements("faces", np.flatnonzero(left_out).astype(np.int32)),
         )
     corner = np.flatnonzero(~is_repeat & ~left_out[owner])
@@ -107,8 +109,8 @@ def _findings(owner: NDArray[np.int64], repeats: NDArray[np.int64], left_out: ND
         findings.append(
             Finding(
                 "FACES_LEFT_OUT",
-                f"{len(faces)} faces name a vertex twice and have no shape; they were left out and have no texture "
-                "coordinates. Delete them.",
+                f"{len(faces)} faces name a vertex twice or have fewer than three corners, so that they have no shape; "
+                "they were left out and have no texture coordinates. Delete them.",
                 Elements("faces", faces),
             )
         )

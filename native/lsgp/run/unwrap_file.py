@@ -125,7 +125,8 @@ def unwrap_file(
             with run.stage("pack"):
                 laid = laid_out(run.surface, result, packing, layout, share_of(progress, PACKING, 1.0))
     if packing is not None:
-        result, seen = laid.result, laid.result.solved & ~laid.stacked
+        result = laid.result
+        seen = result.solved & ~laid.stacked & ~_duplicates(result)
         tiles = 1 if packing.udim is None else _tiles_in_use(result.corner_uv[seen])
         run.packed = Packed(laid.packer, uv_area(result.corner_uv[seen]) / tiles, tiles)
     elif layout is not None:
@@ -141,6 +142,15 @@ def unwrap_file(
             target.parent.mkdir(parents=True, exist_ok=True)
         write_output(args.output, data, keep_backup=args.in_place)
     return replace(result, warnings=[*file.findings, *findings, *result.warnings])
+
+
+def _duplicates(result: Result) -> NDArray[np.bool_]:
+    """Of the triangles, those that have the coordinates of the one they coincide with."""
+    out = np.zeros(len(result.corner_uv), bool)
+    for finding in result.warnings:
+        if finding.code == "DUPLICATE_FACE":
+            out[finding.elements.indices] = True
+    return out
 
 
 def _tiles_in_use(uv: NDArray[np.float64]) -> int:

@@ -47,7 +47,7 @@ def test_a_file_of_nothing_but_such_faces_is_refused() -> None:
 
 
 @settings(max_examples=200, deadline=None)
-@given(st.lists(st.lists(st.integers(0, 7), min_size=3, max_size=7), min_size=1, max_size=6))
+@given(st.lists(st.lists(st.integers(0, 7), min_size=1, max_size=7), min_size=1, max_size=6))
 def test_triangles_are_in_the_numbering_of_the_file_and_every_used_corner_gets_its_value(faces: list) -> None:
     mesh = polygon_mesh(PLACES, [*faces, [0, 1, 2]])
     triangulation, findings = triangulated(mesh)

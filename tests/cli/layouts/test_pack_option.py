@@ -62,6 +62,16 @@ def layout(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return found.triangles, uv, np.unique(island, return_inverse=True)[1]
 
 
+def test_doubled_faces_cover_their_place_once(lsgp, parts: Path) -> None:
+    once = lsgp(*UNWRAP, "--pack", "shelves").report()["packing"]["coverage"]
+    text = (parts / "parts.obj").read_text()
+    faces = [line for line in text.splitlines() if line.startswith("f ")]
+    (parts / "parts.obj").write_text("\n".join([text.rstrip(), *faces[::2], ""]))
+    doubled = lsgp(*UNWRAP, "--pack", "shelves").report()
+    assert [warning["code"] for warning in doubled["warnings"]].count("DUPLICATE_FACE") == 1
+    assert doubled["packing"]["coverage"] == pytest.approx(once, rel=0.1)  # other diagonals, hence other cones
+
+
 def test_bake_and_paint_are_packed_by_default_and_the_report_says_so(lsgp, parts: Path, packer) -> None:
     for preset in ("paint", "bake"):
         shelves = lsgp(*UNWRAP, "--preset", preset, "--pack", "shelves").report()

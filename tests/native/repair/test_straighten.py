@@ -12,6 +12,7 @@ import meshes
 import numpy as np
 import oracle
 import pytest
+import zoo
 from map_checks import assert_angles_met, assert_exact_transitions, surface
 from meshes import Mesh
 from zoo import closed
@@ -139,6 +140,14 @@ def test_sides_that_would_overlap_are_not_straightened() -> None:
     box = closed.beveled_box(4, 0.15, (1, 1.5, 2))  # a net of faces with narrow gaps between them
     result = lsgp.auto_unwrap(surface(box), preset="bake", pack="shelves")
     assert len(result.overlapping) == 0 and len(result.flipped) == 0
+
+
+@pytest.mark.parametrize(
+    "name", ["noise-ball-levels=2-amount=1-seed=1", "ball-with-handles-levels=2-handles=8-seed=1", "mixture-seed=15"]
+)
+def test_straight_sides_do_not_overlap_where_sides_of_a_cut_coincide(name: str) -> None:
+    result = lsgp.auto_unwrap(surface(zoo.member(name).mesh()), preset="paint")
+    assert len(result.overlapping) == 0
 
 
 @pytest.mark.parametrize("pack", ["tight", "shelves"])
