@@ -81,7 +81,11 @@ class Stretch {
   Eigen::VectorXd gradient() {
     const Eigen::RowVector2d whole = shares_.colwise().sum();
     shares_.array().rowwise() /= whole.array();
-    means_ = green_.transpose() * shares_;
+    // Column by column, since a general matrix product packs all of the Green's functions for its two columns.
+    means_.resize(green_.cols(), 2);
+    for (Eigen::Index i = 0; i < green_.cols(); ++i) {
+      for (const int side : {0, 1}) means_(i, side) = green_.col(i).dot(shares_.col(side));
+    }
     return 2 * (means_.col(0) - means_.col(1));
   }
   Eigen::MatrixXd hessian() const {  // after the gradient
