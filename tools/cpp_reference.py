@@ -26,11 +26,12 @@ PARAMETER = re.compile(r"([a-z_]+): (.*)")
 
 START = r"""/** \mainpage
 All names are in the namespace #lsgp, and `#include <lsgp/lsgp.hpp>` declares them. Begin with lsgp::Surface, the input,
-lsgp::parameterize, which computes a map, and lsgp::Result; lsgp::Solver computes many maps of one surface. Every function
-throws lsgp::Error.
+lsgp::parameterize, which computes a map, and lsgp::Result; lsgp::Solver computes many maps of one surface. Every
+function throws lsgp::Error.
 
-Pages on [cones](../../explanation/what-a-cone-is.html), [the algorithm](../../explanation/algorithm.html) and [building the
-library](../../how-to/developing.html) are in [the documentation](../../index.html) that this reference is a part of. */
+Pages on [cones](../../explanation/what-a-cone-is.html), [the algorithm](../../explanation/algorithm.html) and
+[building the library](../../how-to/developing.html) are in [the documentation](../../index.html) that this reference
+is a part of. */
 """
 
 SETTINGS = """

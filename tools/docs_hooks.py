@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes the examples and the reference of the C++ library part of the site. MkDocs calls these functions (mkdocs.yml)."""
+"""Makes the examples and the reference of the C++ library parts of the site; MkDocs calls this (mkdocs.yml)."""
 
 import re
 import sys
