@@ -56,6 +56,9 @@ set_up_system() {
 # The header of the C++ unit tests.
 set_up_unit_tests() { [ -e /usr/include/doctest/doctest.h ] || install_packages doctest-dev; }
 
+# What makes the reference of the C++ library.
+set_up_doxygen() { command -v doxygen >/dev/null || install_packages doxygen; }
+
 # A Clang with the runtimes of its sanitizers and fuzzer; sets `clang`. CLANG names another than Debian's clang++.
 set_up_clang() {
     clang=${CLANG:-clang++}

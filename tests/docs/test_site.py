@@ -6,12 +6,18 @@ import re
 import subprocess
 import sys
 
+import cpp_reference
 import pytest
 from code_blocks import ROOT
 
 DOCS = ROOT / "docs"
+HEADERS = ROOT / "native" / "include" / "lsgp"
+# export.hpp declares nothing.
+PUBLIC_HEADERS = sorted(path.stem for path in HEADERS.glob("*.hpp") if path.stem != "export")
+needs_doxygen = pytest.mark.skipif(not cpp_reference.is_possible(), reason="takes doxygen")
 
 
+@needs_doxygen
 def test_site_builds_without_a_warning(tmp_path):
     pytest.importorskip("material", reason="takes mkdocs-material")
     command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(tmp_path / "site")]
@@ -22,6 +28,40 @@ def test_site_builds_without_a_warning(tmp_path):
     pages = {path.relative_to(DOCS).with_suffix(".html").as_posix() for path in DOCS.rglob("*.md")}
     pages = pages - {"README.html"} | {"index.html"}
     assert pages <= {path.relative_to(tmp_path / "site").as_posix() for path in (tmp_path / "site").rglob("*.html")}
+    cpp = (tmp_path / "site" / "reference" / "cpp.html").read_text(encoding="utf-8")
+    for header in PUBLIC_HEADERS:
+        page = cpp_reference.page_of(header)
+        assert f'href="cpp/{page}"' in cpp, header
+        assert (tmp_path / "site" / "reference" / "cpp" / page).is_file(), header
+
+
+@needs_doxygen
+def test_reference_of_cpp_has_every_function_with_its_comment(tmp_path):
+    cpp_reference.write(tmp_path)
+    page = (tmp_path / "lsgp_8hpp.html").read_text(encoding="utf-8")
+    header = (HEADERS / "lsgp.hpp").read_text(encoding="utf-8")
+    functions = re.findall(r"^LSGP_API .*?(\w+)\(", header, re.MULTILINE)
+    assert len(functions) >= 10
+    for function in functions:
+        assert re.search(rf">(?:lsgp::)?{function}</a>.*\n.*mdescRight", page), f"{function} has no description"
+
+
+@needs_doxygen
+def test_reference_of_cpp_refuses_a_comment_that_doxygen_warns_of(tmp_path, monkeypatch):
+    headers = tmp_path / "include" / "lsgp"
+    headers.mkdir(parents=True)
+    (headers / "wrong.hpp").write_text("// License.\n#pragma once\n\n// What \\ref no_such_name does.\nvoid f();\n")
+    monkeypatch.setattr(cpp_reference, "HEADERS", headers)
+    with pytest.raises(RuntimeError, match="no_such_name"):
+        cpp_reference.write(tmp_path)
+
+
+def test_page_of_cpp_has_every_header_and_shows_a_program_that_is_tested():
+    page = (DOCS / "reference" / "cpp.md").read_text(encoding="utf-8")
+    assert sorted(re.findall(r"^\| \[`(\w+)\.hpp`\]", page, re.MULTILINE)) == PUBLIC_HEADERS
+    program = re.search(r"^```cpp\n(.*?)^```", page, re.MULTILINE | re.DOTALL)[1]
+    tested = (ROOT / "tests" / "packaging" / "consumer" / "main.cpp").read_text(encoding="utf-8")
+    assert tested == f"// SPDX-License-Identifier: GPL-3.0-or-later\n{program}"
 
 
 def test_every_page_is_in_the_index_and_in_the_navigation():
@@ -37,6 +77,20 @@ def test_there_are_twenty_questions_each_with_a_link():
     questions = re.split(r"^\d+\. ", page.partition("## Start")[2], flags=re.MULTILINE)[1:]
     assert len(questions) == 20
     assert all(re.match(r"\*\*[^*]+\?\*\*", question) and "](" in question for question in questions)
+
+
+def links_of(page: str) -> set[str]:
+    """Pages that a page links to, as paths in docs."""
+    path = DOCS / page
+    targets = re.findall(r"\]\((?!https?:)([^)#\s]+\.md)", path.read_text(encoding="utf-8"))
+    return {os.path.relpath((path.parent / target).resolve(), DOCS) for target in targets}
+
+
+def test_answers_to_the_twenty_questions_are_two_clicks_from_the_front_page():
+    assert "how-to/questions.md" in links_of("README.md")
+    answers = links_of("how-to/questions.md")
+    assert len(answers) > 10
+    assert answers <= links_of("README.md") | {"README.md"}, "the front page links to each itself, too"
 
 
 def test_every_name_on_a_mesh_is_on_the_page_of_attributes():
