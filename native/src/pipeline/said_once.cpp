@@ -61,7 +61,7 @@ void say_once(std::vector<Finding>& findings) {
     if (group.times == 1) continue;
     Finding& finding = *group.first;
     finding.message = is_counted(finding.code) ? sentence(finding.code, finding.elements.indices.size())
-                                               : concat(finding.message, " (", group.times, " times)");
+                                               : concat(finding.message, " This was found ", group.times, " times.");
   }
   findings = std::move(joined);
 }

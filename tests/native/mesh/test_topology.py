@@ -116,7 +116,7 @@ def test_what_many_components_share_is_said_once() -> None:
         assert finding.message.startswith("5 triangles have no area")
         skipped = only(warnings, "COMPONENT_SKIPPED")
         assert skipped.elements.indices.tolist() == list(range(5 * size, 5 * size + 3 * strip))
-        assert skipped.message.endswith("(3 times)")
+        assert skipped.message.endswith("This was found 3 times.")
 
 
 def test_cones_on_a_boundary_are_named() -> None:
