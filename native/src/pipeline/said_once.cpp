@@ -24,13 +24,6 @@ std::string sentence(Code code, std::size_t n) {
                 "corner.");
 }
 
-// Edges are listed by both vertices.
-void append(Elements& elements, const Elements& more) {
-  elements.kind = more.kind;
-  elements.indices.insert(elements.indices.end(), more.indices.begin(), more.indices.end());
-  if (more.kind != ElementKind::edges) sort_unique(elements.indices);
-}
-
 }  // namespace
 
 Finding counted(Code code, Elements elements) {
@@ -53,13 +46,17 @@ void say_once(std::vector<Finding>& findings) {
       joined.push_back(std::move(finding));
       known->second.first = &joined.back();
     } else {
-      append(known->second.first->elements, finding.elements);
-      ++known->second.times;
+      auto& [first, times] = known->second;
+      const std::vector<Index>& more = finding.elements.indices;
+      first->elements.indices.insert(first->elements.indices.end(), more.begin(), more.end());
+      ++times;
     }
   }
   for (const auto& [key, group] : groups) {
     if (group.times == 1) continue;
     Finding& finding = *group.first;
+    // Edges are pairs of vertices.
+    if (finding.elements.kind != ElementKind::edges) sort_unique(finding.elements.indices);
     finding.message = is_counted(finding.code) ? sentence(finding.code, finding.elements.indices.size())
                                                : concat(finding.message, " This was found ", group.times, " times.");
   }
