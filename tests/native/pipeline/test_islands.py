@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import time
+
 import lsgp
 import meshes
 import numpy as np
@@ -114,7 +116,12 @@ def test_hundreds_of_components_take_linear_time() -> None:
         assert result.solved.all() and result.island.max() + 1 == len(mesh.triangles) // 4
     seconds = []
     for mesh in (few, lots):
-        seconds.append(min(sum(unwrap(mesh).stage_seconds.values()) for _ in range(3)))
+        took = []
+        for _ in range(3):
+            begin = time.process_time()
+            unwrap(mesh)
+            took.append(time.process_time() - begin)
+        seconds.append(min(took))
     assert seconds[1] <= 20 * 8 * seconds[0] + 0.05  # quadratic growth would be 400
 
 
