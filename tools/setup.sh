@@ -99,10 +99,15 @@ set_up_python() {
     shift
     if [ "$(cat "$folder/installed" 2>/dev/null)" != "$*" ]; then
         say "installing $* in $folder"
-        [ -x "$folder/bin/python" ] || patiently "making $folder" "$python" -m venv "$folder"
-        patiently "installing" "$folder/bin/pip" install -q "$@"
+        patiently "installing" install_in_python "$folder" "$@"
         printf '%s\n' "$*" >"$folder/installed"
     fi
+}
+
+install_in_python() {
+    local folder=$1
+    shift
+    { [ -x "$folder/bin/python" ] || "$python" -m venv "$folder"; } && "$folder/bin/pip" install -q "$@"
 }
 
 # The bpy wheel of Blender $2 (4.5, ...; about 400 MB) in virtual environment $1, with the packages that follow; it brings
