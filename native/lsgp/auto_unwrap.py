@@ -234,6 +234,18 @@ def best_at_creases(
     Other borders are tried on components that are stretched without them.
     make: the cones and the map of a surface, as of `possible_cones` and `best_map`. progress, errors: of `make`.
     """
+    found = _best_at_creases(choices, options, make, progress)
+    if progress is not None:
+        progress(1.0)  # maps that were not needed leave their time
+    return found
+
+
+def _best_at_creases(
+    choices: CreaseChoices,
+    options: Options,
+    make: Callable[[Surface, Progress | None], tuple[CompletedCones, Result]],
+    progress: Progress | None,
+) -> tuple[Surface, CompletedCones, Result]:
     surface = choices.surface
     if choices.possible is None:
         return surface, *make(surface, progress)

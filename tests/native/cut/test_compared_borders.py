@@ -75,6 +75,38 @@ def test_maps_are_compared_only_where_one_is_stretched_and_has_creases(monkeypat
         assert len(made) == count
 
 
+@pytest.mark.parametrize(
+    ("mesh", "preset"),
+    [
+        (meshes.cube(3), "paint"),  # exact without borders
+        (meshes.cube(3), "tile"),  # no map for creases
+        (barrel(24, 5, 1.3), "paint"),  # better with borders
+        (meshes.merge([barrel(24, 5, 1.3), scaled(barrel(24, 5, 1.3), 0.35)]), "paint"),  # of which one gains
+    ],
+    ids=["exact", "seamless", "bordered", "one of two"],
+)
+def test_progress_ends_at_one_whichever_maps_are_made(mesh: Mesh, preset: lsgp.Preset) -> None:
+    told: list[float] = []
+    lsgp.auto_unwrap(surface(mesh), preset=preset, pack="shelves", progress=told.append)
+    assert told[-1] == 1.0 and told == sorted(told)
+
+
+def test_progress_ends_at_one_where_the_map_with_borders_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    module = sys.modules["lsgp.auto_unwrap"]
+    original, made, told = module.best_map, [], []
+
+    def best_map(*given: object) -> object:
+        if made:
+            raise lsgp.SolverError("NOT_CONVERGED", "It did not converge.")
+        made.append(given)
+        return original(*given)
+
+    monkeypatch.setattr(module, "best_map", best_map)
+    result = lsgp.auto_unwrap(surface(barrel(24, 5, 1.3)), pack="shelves", progress=told.append)
+    assert made and not len(result.borders)
+    assert told[-1] == 1.0 and told == sorted(told)
+
+
 def test_each_component_is_judged_by_itself() -> None:
     """What is small beside others gets no islands of its own, where that is seen before and after the comparison."""
     large = barrel(24, 5, 1.3)
