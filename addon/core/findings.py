@@ -54,6 +54,7 @@ INFORMATION = frozenset(
         "SEAMS_OPENED",
         "SPECTRAL_NEEDS_CLOSED",
         "SPLIT_VERTEX",
+        "TILE_SIZE_DIFFERS",
     }
 )
 """Codes of warnings after which nothing needs to be done."""

@@ -26,13 +26,11 @@ from .api import (
     surface_arrays,
 )
 from .arguments import FloatArray, IndexArray
+from .border_gains import BorderGain, FullerSquare, LessStretch
 from .edge_keys import edge_keys
 from .errors import Cancelled, Finding, InputError, LsgpError
 from .ledger import LedgerPart, build_ledger, surface_of_triangles
 from .map_comparison import (
-    are_stretched,
-    gain_by_borders,
-    may_replace_by_borders,
     may_replace_for_features,
     may_replace_map,
     mirrored_cuts_cost_islands,
@@ -46,6 +44,8 @@ from .texels import TexelLayout, at_texel_density, with_tiny_findings
 Preset = Literal["paint", "tile", "bake"]
 
 T = TypeVar("T")
+Mapped = tuple[Surface, "CompletedCones", Result]
+MakeMap = Callable[[Surface, Progress | None], tuple["CompletedCones", Result]]
 
 # The stretch of the map that automatic cones are to reach, as of `place_cones`.
 TARGET = 1.05
@@ -122,7 +122,9 @@ def auto_unwrap(
     creases: whether hard surfaces may be cut at their creases, as by `crease_borders`, which takes `sharp`; and with
         half of the curvature on creases, or few corners, where that halves the excess of L2 stretch over 1, and removes
         0.004 of it for each further island (without further ones: a fifth of it), and fills the square at most three
-        tenths less. The latter only where it exceeds 0.002, and without cones, `count` or pins.
+        tenths less, where it exceeds 0.002; or where less than three fifths of the square are filled, and at no cost of
+        stretch a tenth more with them, a quarter for one further island, or two fifths for two (or a tenth; with "bake"
+        any number). The latter two only without cones, `count` or pins.
     pack: "tight": as by `pack_islands`; "shelves": in rows; None: tight if `packer_name` returns a packer. Layouts that
         are seamless, pinned or in UDIM tiles at a texel density are never packed.
     margin: with "tight", around each island, as a fraction of the square's side; None: 4 / 1024, before the layout gets
@@ -190,11 +192,15 @@ def _may_pack(packing: Packing, options: Options, pins: Pins | None, texels: Tex
 
 @dataclass(frozen=True, slots=True)
 class CreaseChoices:
-    """A surface with its own borders and those at creases that a preset requires; and further ones at creases, (b, 2)
-    int32, of components that end there if their maps gain by it; None without."""
+    """Borders at creases among which `best_at_creases` chooses.
+
+    surface: with its own borders and those that the preset requires. possible: (b, 2) int32, further ones, of
+    components that end there if their maps gain by it; None without. preset: "paint" keeps islands few.
+    """
 
     surface: Surface
     possible: IndexArray | None = None
+    preset: Preset = "paint"
 
 
 def crease_choices(
@@ -220,40 +226,61 @@ def crease_choices(
         return CreaseChoices(_ending_at(surface, required))
     possible = crease_borders(surface, given.cones, sharp=sharp, least_share=_LEAST_SHARE_TO_TRY)
     further = possible[~np.isin(_keys(possible, surface), _keys(required, surface))]
-    return CreaseChoices(_ending_at(surface, required), further if len(further) else None)
+    return CreaseChoices(_ending_at(surface, required), further if len(further) else None, preset)
 
 
 def best_at_creases(
     choices: CreaseChoices,
     options: Options,
-    make: Callable[[Surface, Progress | None], tuple[CompletedCones, Result]],
+    make: MakeMap,
     progress: Progress | None = None,
-) -> tuple[Surface, CompletedCones, Result]:
+) -> Mapped:
     """The surface with the best borders among the possible ones, its cones and its map.
 
-    Other borders are tried on components that are stretched without them.
+    Other borders are tried on components that are stretched without them, and then on others that leave much of the
+    square empty.
     make: the cones and the map of a surface, as of `possible_cones` and `best_map`. progress, errors: of `make`.
     """
-    surface = choices.surface
-    if choices.possible is None:
-        return surface, *make(surface, progress)
-    usual = surface, *make(surface, share_of(progress, 0.0, TRYING))
-    parts = _parts_with_borders(surface, choices.possible)
-    parts = list(compress(parts, are_stretched(surface, usual[2], [part.triangles for part in parts])))
-    # Where only some parts gain, their map is another one, which has no time of its own.
-    still = share_of(progress, 1.0, 1.0)
-    for stage in (share_of(progress, TRYING, 1.0), still):
+    surface, is_possible = choices.surface, choices.possible is not None
+    best = surface, *make(surface, share_of(progress, 0.0, TRYING if is_possible else 1.0))
+    if is_possible:
+        parts = _parts_with_borders(surface, choices.possible)
+        middle = (TRYING + 1.0) / 2
+        gains = (
+            (LessStretch(surface, options.square_share), TRYING, middle),
+            (FullerSquare(surface, options.square_share, choices.preset == "paint"), middle, 1.0),
+        )
+        for gain, begin, end in gains:
+            best = _gaining(gain, parts, best, make, share_of(progress, begin, end))
+    if progress is not None:
+        progress(1.0)  # maps that were not needed leave their time
+    return best
+
+
+def _gaining(
+    gain: BorderGain,
+    parts: list[_PartWithBorders],
+    usual: Mapped,
+    make: MakeMap,
+    progress: Progress | None,
+) -> Mapped:
+    """The usual map, or a better one, in which parts that gain by their borders end there."""
+    # Comparing, and the map of those parts that gain, where others do not, have no time of their own.
+    begin, end = (share_of(progress, done, done) for done in (0.0, 1.0))
+    surface = usual[0]
+    parts = [part for part in parts if not part.is_open(surface)]
+    parts = list(compress(parts, gain.may_gain(usual[2], [part.triangles for part in parts], begin)))
+    for stage in (progress, end):
         if not parts:
             break
         opened = _ending_at(surface, np.concatenate([part.borders for part in parts]))
         found = or_none(partial(make, opened, stage))
         if found is None:
             break
-        gain = gain_by_borders(surface, found[1], usual[2], [part.triangles for part in parts])
-        if all(gain):
-            may_replace = may_replace_by_borders(found[1], usual[2], options.square_share, still)
-            return (opened, *found) if may_replace else usual
-        parts = list(compress(parts, gain))
+        gains = gain.gains(found[1], usual[2], [part.triangles for part in parts])
+        if all(gains):
+            return (opened, *found) if gain.may_replace(found[1], usual[2], end) else usual
+        parts = list(compress(parts, gains))
     return usual
 
 
@@ -263,6 +290,10 @@ class _PartWithBorders:
 
     triangles: IndexArray
     borders: IndexArray
+
+    def is_open(self, surface: Surface) -> bool:
+        """Whether the surface ends there."""
+        return bool(np.isin(_keys(self.borders, surface), _keys(surface.borders, surface)).all())
 
 
 def _parts_with_borders(surface: Surface, borders: IndexArray) -> list[_PartWithBorders]:

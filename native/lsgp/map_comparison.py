@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What maps with symmetric cones, cones for creases, or borders at creases may cost compared with the usual map."""
+"""What maps with symmetric cones or cones for creases may cost compared with the usual map."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
 
-from .api import IndexArray, Progress, Result, Surface
+from .api import Progress, Result
 from .errors import InputError
 from .lattice import island_boxes
 from .packing import pack_islands, packer_name
-from .triangles import singular_values, triangle_areas, uv_area
+from .triangles import uv_area
 
 # Of the L2 stretch that the other one has, of the edges that it cuts, and of what it fills of the square: a tenth less
 # is a twentieth of the texel density. One island more for so many; one for fewer, or a pair that fills the square as
@@ -38,13 +38,6 @@ _MOST_PACKED = 32
 _MOST_L2_FOR_FEATURES = 1.1
 _LEAST_FEATURES = 0.25
 _MOST_FEATURES = 0.95
-# Borders at creases are worth their islands if they remove half of the stretch, and so much of it for each further
-# island; a fifth of it without further ones. What is stretched less than this has none that one sees.
-_SEEN_EXCESS = 0.002
-_MOST_EXCESS = 0.5
-_MOST_EXCESS_WITHOUT_ISLANDS = 0.8
-_EXCESS_FOR_ISLAND = 0.004
-_LEAST_FILLED_WITH_BORDERS = 0.7
 
 
 def may_replace_map(
@@ -60,8 +53,8 @@ def may_replace_map(
     packer is installed. How far many islands, several squares and seamless layouts are filled follows from the boxes of
     the islands, and in one square from the longest island. progress: of packing.  Raises Cancelled.
     """
-    islands = _island_count(usual)
-    more = _island_count(symmetric) - islands
+    islands = island_count(usual)
+    more = island_count(symmetric) - islands
     has_few = islands < _ISLANDS_FOR_ONE
     saves_cuts = _saves_many_cuts(symmetric, usual)
     most_l2 = _MOST_L2 * usual.distortion.l2_stretch
@@ -69,22 +62,22 @@ def may_replace_map(
         most_l2 = max(most_l2, _TARGET_L2)
     if not (
         symmetric.solved.tolist() == usual.solved.tolist()
-        and _defects(symmetric) <= _defects(usual)
+        and defects(symmetric) <= defects(usual)
         and symmetric.distortion.l2_stretch <= most_l2
         and len(symmetric.cut_edges) <= _MOST_CUTS * len(usual.cut_edges)
         and more <= (_PAIR if has_few else islands // _ISLANDS_FOR_ONE)
     ):
         return False
-    filled = _measure_of_filling(usual, square_share, progress)
-    return filled(symmetric) >= _least_filled(more, usual, saves_cuts) * filled(usual)
+    filled = measure_of_filling(usual, square_share, progress)
+    return filled(symmetric) >= least_filled(more, usual, saves_cuts) * filled(usual)
 
 
-def _least_filled(more: int, usual: Result, saves_cuts: bool) -> float:
+def least_filled(more: int, usual: Result, saves_cuts: bool = False) -> float:
     """How far the square has to be filled with so many more islands, relative to the usual map."""
-    if more <= -_worthwhile(usual):
+    if more <= -worthwhile(usual):
         return _LEAST_FILLED_BY_FEWER
     least = _LEAST_FILLED_FOR_CUTS if saves_cuts else _LEAST_FILLED
-    if _island_count(usual) >= _ISLANDS_FOR_ONE or more not in (_PAIR, -1):
+    if island_count(usual) >= _ISLANDS_FOR_ONE or more not in (_PAIR, -1):
         return least
     return 1.0 if more == _PAIR else min(least, _LEAST_FILLED_BY_ONE_FEWER)
 
@@ -94,14 +87,14 @@ def mirrored_cuts_cost_islands(mirrored: Result, usual: Result) -> bool:
     than the usual map, a tenth more if there are many: other cuts for the same cones may leave fewer.
     """
     within_stretch = mirrored.distortion.l2_stretch <= _MOST_L2 * usual.distortion.l2_stretch
-    return within_stretch and _island_count(mirrored) - _island_count(usual) >= _worthwhile(usual)
+    return within_stretch and island_count(mirrored) - island_count(usual) >= worthwhile(usual)
 
 
 def saves_islands(free: Result, mirrored: Result, usual: Result) -> bool:
     """Whether a map with other cuts for symmetric cones has as many islands fewer than the one with symmetric cuts as
     `mirrored_cuts_cost_islands` says.
     """
-    return _island_count(mirrored) - _island_count(free) >= _worthwhile(usual)
+    return island_count(mirrored) - island_count(free) >= worthwhile(usual)
 
 
 def runs_along_features(result: Result) -> bool:
@@ -129,67 +122,10 @@ def may_replace_for_features(along: Result, usual: Result) -> bool:
         return False
     return (
         along.solved.tolist() == usual.solved.tolist()
-        and _defects(along) <= _defects(usual)
+        and defects(along) <= defects(usual)
         and along.distortion.l2_stretch <= _MOST_L2_FOR_FEATURES * usual.distortion.l2_stretch
         and runs_along_features(along)
     )
-
-
-def are_stretched(surface: Surface, result: Result, components: Sequence[IndexArray]) -> list[bool]:
-    """Whether a map of the surface is stretched visibly on each of these components, given by their triangles: those
-    that are small beside the others count less.
-    """
-    weights = _weights(surface, result, components)
-    stretches = _stretches(surface, result, components)
-    return [weight * (one - 1) > _SEEN_EXCESS for weight, one in zip(weights, stretches, strict=True)]
-
-
-def gain_by_borders(surface: Surface, bordered: Result, usual: Result, components: Sequence[IndexArray]) -> list[bool]:
-    """Whether a map with more borders halves the excess of L2 stretch over 1 on each of these components, and reduces
-    it by 0.004 for each further island; without further ones, whether it reduces it by a fifth.
-    """
-    out = []
-    weights = _weights(surface, usual, components)
-    stretches = (_stretches(surface, result, components) for result in (bordered, usual))
-    for part, weight, one, other in zip(components, weights, *stretches, strict=True):
-        more = len(np.unique(bordered.island[part])) - len(np.unique(usual.island[part]))
-        most = _MOST_EXCESS if more > 0 else _MOST_EXCESS_WITHOUT_ISLANDS
-        out.append(bool(one - 1 <= most * (other - 1) and weight * (other - one) >= _EXCESS_FOR_ISLAND * more))
-    return out
-
-
-def may_replace_by_borders(
-    bordered: Result, usual: Result, square_share: float = 1.0, progress: Progress | None = None
-) -> bool:
-    """Whether a map with more borders is stretched no more as a whole, has no further defects and fills the square at
-    most three tenths less, as measured by `may_replace_map`.  Raises Cancelled.
-    """
-    if not (
-        bordered.solved.tolist() == usual.solved.tolist()
-        and _defects(bordered) <= _defects(usual)
-        and bordered.distortion.l2_stretch <= usual.distortion.l2_stretch
-    ):
-        return False
-    filled = _measure_of_filling(usual, square_share, progress)
-    return filled(bordered) >= _LEAST_FILLED_WITH_BORDERS * filled(usual)
-
-
-def _weights(surface: Surface, result: Result, components: Sequence[IndexArray]) -> list[float]:
-    """The area of each of these components relative to that of an average island, at most 1."""
-    areas = triangle_areas(surface)
-    average = areas.sum() / max(1, _island_count(result))
-    return [min(1.0, float(areas[part].sum() / average)) for part in components]
-
-
-def _stretches(surface: Surface, result: Result, components: Sequence[IndexArray]) -> list[float]:
-    """The L2 stretch of each of these components, at a common scale of its own; NaN where one is not solved."""
-    areas = triangle_areas(surface)
-    largest, smallest = singular_values(surface, result.corner_uv)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        image, spread = areas * largest * smallest, areas * (1 / largest**2 + 1 / smallest**2) / 2
-        flat = areas == 0
-        image[flat] = spread[flat] = 0.0
-        return [float(np.sqrt(spread[part].sum() * image[part].sum()) / areas[part].sum()) for part in components]
 
 
 def _saves_many_cuts(symmetric: Result, usual: Result) -> bool:
@@ -198,22 +134,22 @@ def _saves_many_cuts(symmetric: Result, usual: Result) -> bool:
     return has_far_fewer and usual.distortion.l2_stretch > _ISOMETRIC_L2
 
 
-def _defects(result: Result) -> int:
+def defects(result: Result) -> int:
     return len(result.flipped) + len(result.wrong_angle_sums) + len(result.overlapping)
 
 
-def _worthwhile(usual: Result) -> int:
+def worthwhile(usual: Result) -> int:
     """How many islands fewer are worth a less full square, or cuts that are not symmetric."""
-    return max(_PAIR, _island_count(usual) // _ISLANDS_FOR_ONE)
+    return max(_PAIR, island_count(usual) // _ISLANDS_FOR_ONE)
 
 
-def _island_count(result: Result) -> int:
+def island_count(result: Result) -> int:
     return len(np.unique(result.island[result.solved]))
 
 
-def _measure_of_filling(usual: Result, square_share: float, progress: Progress | None) -> Callable[[Result], float]:
+def measure_of_filling(usual: Result, square_share: float, progress: Progress | None) -> Callable[[Result], float]:
     """The measure of how well a map that is compared with the usual one fills its part of the square."""
-    islands = _island_count(usual)
+    islands = island_count(usual)
     has_one_square = square_share <= 1 and usual.seamless is None
     if has_one_square and islands <= _MOST_PACKED and packer_name() is not None:
         return partial(_filled_when_packed, progress=progress)

@@ -155,6 +155,7 @@ API = (
     "api",
     "arguments",
     "auto_unwrap",
+    "border_gains",
     "certificate",
     "chart_packer",
     "cut_moving",

@@ -18,7 +18,7 @@ from ...core import native
 from ...core.errors import Refused
 from ...core.islands import Islands
 from . import cells
-from .areas import size_in_texels
+from .areas import size_in_texels, total_area
 from .cuts import CutChoice, with_cut_costs
 from .directions import DirectionChoice, with_directions
 from .solving import solve_all
@@ -34,6 +34,9 @@ if TYPE_CHECKING:
 HIGH_DISTORTION = "HIGH_DISTORTION"
 # Stretch from which on a map is of little use.
 NEEDS_CONES = 1.5
+GRID_REFINED = "GRID_REFINED"
+# Of the chosen size, by which tiles have to differ from it to be told.
+_NOTICEABLE = 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,6 +223,7 @@ def unwrap(task: UnwrapTask, progress: Progress | None, solver: lsgp.Solver | No
         parameterize = partial(lsgp.parameterize, region.surface) if solver is None else solver.parameterize
         result = parameterize(imposed.cones, imposed.angles, task.options, pins, progress)
     result = replace(result, warnings=_with_one_stretch(result, task))
+    result = replace(result, warnings=_with_size_of_tiles(result, task))
     uv = result.corner_uv
     step = None if result.seamless is None else cells.step(task.options.seamless)
     if task.keep_placement and step is not None:
@@ -273,6 +277,26 @@ def _with_one_stretch(result: lsgp.Result, task: UnwrapTask) -> list[lsgp.Findin
         cause = f"The map is stretched much: {stretch:.3g}, 1 being none."
     remedy = "Choose Low Stretch, or add cones where the texture is small."
     return [*others, native.lsgp.Finding(HIGH_DISTORTION, f"{cause} {remedy}")]
+
+
+def _with_size_of_tiles(result: lsgp.Result, task: UnwrapTask) -> list[lsgp.Finding]:
+    """The warnings; where a size of tiles was chosen, with how far those of the map are from it in place of the number
+    of tiles, which nobody chose."""
+    seamless = task.options.seamless
+    if seamless is None or seamless.tile_size is None:
+        return result.warnings
+    others = [finding for finding in result.warnings if finding.code != GRID_REFINED]
+    surface, covered = task.region.surface, total_area(result.corner_uv[result.solved])
+    area = total_area(surface.positions[surface.triangles[result.solved]])
+    larger = np.sqrt(area / covered) * seamless.cell / seamless.tile_size - 1 if covered else 0.0
+    if not abs(larger) > _NOTICEABLE:
+        return others
+    why = "a whole number of them has to fit between cones. Choose smaller tiles, which are rounded less."
+    if len(others) < len(result.warnings):
+        why = "there is no layout with larger ones. Use fewer cones, or choose smaller tiles."
+    difference = f"{abs(larger):.0%}".replace("%", f" % {'larger' if larger > 0 else 'smaller'}")
+    message = f"Tiles are {difference} on the surface than the size chosen, since {why}"
+    return [*others, native.lsgp.Finding("TILE_SIZE_DIFFERS", message)]
 
 
 def _options_for(region: Region, options: lsgp.Options) -> lsgp.Options:

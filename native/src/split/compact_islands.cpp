@@ -19,8 +19,6 @@ namespace lsgp {
 
 namespace {
 
-// As a fraction of the area of all islands: smaller islands are not cut.
-constexpr double least_island = 0.02;
 constexpr int cells_across = 40;
 constexpr double rounding = 1e-9;  // of what divisions are worth
 constexpr double is_sharp = 1.27;  // radians: beyond what edges of coarse round shapes bend by
@@ -40,7 +38,6 @@ class Compactor {
         geometry_(surface.geometry),
         graph_(graph),
         position_(position),
-        area_(square.area),
         search_(square),
         cutter_(graph, CutCost::shortest),
         center_(graph.face_count(), 0),
@@ -91,7 +88,7 @@ class Compactor {
   Array<Array<Index>> divide(const Array<Index>& island);
   IslandCells cells_of(const Array<Index>& island, Complex along);
   Array<Index> cut_along(const Array<Line>& lines, const Array<Index>& island, double band);
-  Array<Index> without_slivers(const Array<Index>& island, const Array<Index>& class_of);
+  Array<Index> without_slivers(const Array<Index>& island, double island_area, const Array<Index>& class_of);
   double length_between(const Array<Index>& faces, const Array<Index>& class_of);
   // The length with which an edge counts in the price of a division: expensive edges, which cuts avoid as far as they
   // can, are no reason to leave an island undivided.
@@ -110,7 +107,6 @@ class Compactor {
   const Geometry& geometry_;
   const FaceGraph& graph_;
   const Eigen::VectorXcd& position_;
-  const double area_;
   const DivisionSearch search_;
   MinimumCutter cutter_;
   Array<Index> triangle_begin_, triangles_;  // of every face
@@ -225,7 +221,7 @@ Array<Index> Compactor::cut_along(const Array<Line>& lines, const Array<Index>& 
 }
 
 // Pieces too small to be islands join the neighbor with the longest common boundary.
-Array<Index> Compactor::without_slivers(const Array<Index>& island, const Array<Index>& class_of) {
+Array<Index> Compactor::without_slivers(const Array<Index>& island, double island_area, const Array<Index>& class_of) {
   const Array<Array<Index>> pieces = pieces_of(island, class_of);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     for (const Index face : pieces[i]) place_[face] = static_cast<Index>(i);
@@ -242,7 +238,7 @@ Array<Index> Compactor::without_slivers(const Array<Index>& island, const Array<
         piece.ends_smoothly = piece.ends_smoothly || is_smooth(link);
       });
     }
-    if (pieces.size() < 2 || search_.may_be_cut_off(piece)) continue;
+    if (pieces.size() < 2 || search_.may_be_cut_off(piece, island_area)) continue;
     const auto longest = std::max_element(border.begin(), border.end());
     for (const Index face : pieces[i]) place_[face] = static_cast<Index>(longest - border.begin());
   }
@@ -268,7 +264,7 @@ double Compactor::length_between(const Array<Index>& faces, const Array<Index>& 
 Array<Array<Index>> Compactor::divide(const Array<Index>& island) {
   double area = 0;
   for (const Index face : island) area += graph_.area[face];
-  if (island.size() < 2 || area < least_island * area_) return {};
+  if (island.size() < 2) return {};
   const Array<Complex> hull = hull_of(island);
   const double before = search_.demand(hull);
   if (before - area < search_.least_gain()) return {};
@@ -280,7 +276,7 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& island) {
   double most_worth = 0;
   // Of equally short cuts, one hugs one end of the band and one the other.
   for (const Array<Line>& lines : {division.lines, reversed(division.lines)}) {
-    const Array<Index> class_of = without_slivers(island, cut_along(lines, island, band));
+    const Array<Index> class_of = without_slivers(island, area, cut_along(lines, island, band));
     Array<Array<Index>> pieces = pieces_of(island, class_of);
     double after = 0;
     for (const Array<Index>& piece : pieces) after += search_.demand(hull_of(piece));

@@ -18,6 +18,8 @@ namespace {
 // As a fraction of the area of all islands: smaller pieces are not cut off, nor are larger ones of few faces of smooth
 // surfaces.
 constexpr double smallest_piece = 0.01, smallest_of_few = 0.06;
+// Of islands that are smaller than this, only long and narrow ones are divided; pieces are at least a share of them.
+constexpr double small_island = 0.02, smallest_share = 0.1;
 constexpr Index few_faces = 4;
 // Least saving, as a fraction of the area of all islands: for a cut as long as the square root of that area, and for
 // each additional island.
@@ -38,7 +40,8 @@ DivisionSearch::DivisionSearch(const SharedSquare& square)
 
 double DivisionSearch::least_gain() const { return price_factor_ * price_of_island * area_; }
 
-bool DivisionSearch::may_be_cut_off(const Piece& piece) const {
+bool DivisionSearch::may_be_cut_off(const Piece& piece, double island_area) const {
+  if (island_area < small_island * area_) return piece.area >= smallest_share * island_area;
   const bool is_scrap = piece.faces <= few_faces && piece.ends_smoothly;
   return piece.area >= (is_scrap ? smallest_of_few : smallest_piece) * area_;
 }
@@ -62,7 +65,7 @@ double DivisionSearch::worth(double gain, double length, std::size_t pieces) con
   return gain > price ? gain / std::sqrt(price) : 0;
 }
 
-double DivisionSearch::worth(const IslandCells& cells, const Array<Index>& class_of, double demand_before) const {
+double DivisionSearch::worth(const IslandCells& cells, const Array<Index>& class_of, const Undivided& island) const {
   UnionFind sets(cells.count());
   double length = 0;
   for (const IslandCells::Link& link : cells.links) {
@@ -90,7 +93,8 @@ double DivisionSearch::worth(const IslandCells& cells, const Array<Index>& class
     const Index here = number[link.cells[0]], there = number[link.cells[1]];
     if (here != there && link.is_smooth) pieces[here].ends_smoothly = pieces[there].ends_smoothly = true;
   }
-  if (!std::all_of(pieces.begin(), pieces.end(), [&](const Piece& piece) { return may_be_cut_off(piece); })) return 0;
+  const auto may_be = [&](const Piece& piece) { return may_be_cut_off(piece, island.area); };
+  if (!std::all_of(pieces.begin(), pieces.end(), may_be)) return 0;
   double after = 0;
   for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
     Eigen::VectorXcd corners(points[piece]);
@@ -101,12 +105,13 @@ double DivisionSearch::worth(const IslandCells& cells, const Array<Index>& class
     }
     after += demand(convex_hull(corners));
   }
-  return worth(demand_before - after, length, pieces.size());
+  return worth(island.demand - after, length, pieces.size());
 }
 
 IslandDivision DivisionSearch::find_division(const IslandCells& cells, const Array<Complex>& hull,
                                              Complex along) const {
-  const double before = demand(hull);
+  const double total = std::accumulate(cells.area.begin(), cells.area.end(), 0.0);
+  const Undivided island{total, demand(hull)};
   std::size_t points = 0;
   for (const Array<Complex>& own : cells.hull) points += own.size();
   IslandDivision best;
@@ -116,11 +121,10 @@ IslandDivision DivisionSearch::find_division(const IslandCells& cells, const Arr
       class_of[cell] = 0;
       for (const Line& line : lines) class_of[cell] = 2 * class_of[cell] + (line.distance(cells.center[cell]) > 0);
     }
-    const double gain = worth(cells, class_of, before);
+    const double gain = worth(cells, class_of, island);
     if (gain > best.worth) best = {std::move(lines), gain};
     checkpoint(operations_a_point * static_cast<double>(points));
   };
-  const double total = std::accumulate(cells.area.begin(), cells.area.end(), 0.0);
   Complex center = 0;
   for (Index cell = 0; cell < cells.count(); ++cell) center += cells.area[cell] / total * cells.center[cell];
   for (int i = 0; i < directions; ++i) {

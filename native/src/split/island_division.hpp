@@ -62,9 +62,9 @@ class DivisionSearch {
   // The area of the square that an island with this hull occupies.
   double demand(const Array<Complex>& hull) const;
 
-  // Whether a piece is large enough and not a scrap of few faces. Pieces of few faces may be as small as others only on
-  // hard surfaces, where all their cuts follow sharp edges.
-  bool may_be_cut_off(const Piece& piece) const;
+  // Whether a piece of an island of this area is large enough and not a scrap of few faces. Pieces of few faces may be
+  // as small as others only on hard surfaces, where all their cuts follow sharp edges, and on narrow islands.
+  bool may_be_cut_off(const Piece& piece, double island_area) const;
 
   // The least saving that can be worth a division.
   double least_gain() const;
@@ -76,7 +76,10 @@ class DivisionSearch {
   IslandDivision find_division(const IslandCells& cells, const Array<Complex>& hull, Complex along) const;
 
  private:
-  double worth(const IslandCells& cells, const Array<Index>& class_of, double demand_before) const;
+  struct Undivided {
+    double area, demand;
+  };
+  double worth(const IslandCells& cells, const Array<Index>& class_of, const Undivided& island) const;
 
   const double area_, price_factor_;
 };

@@ -6,6 +6,7 @@ import re
 import bpy
 import numpy as np
 import pytest
+from installed import addon
 from logged import refused
 from scenes import (
     UvMap,
@@ -181,6 +182,29 @@ def test_size_is_of_the_surface_as_the_object_is_scaled():
     assert mean_scale(ball) == pytest.approx(20.0, rel=0.1)
     unwrap(tile_fit="SIZE", tile_size=0.2)
     assert mean_scale(ball) == pytest.approx(10.0, rel=0.1)
+
+
+@pytest.mark.parametrize("scale", [1.0, 2.0])
+def test_how_far_tiles_are_from_the_chosen_size_is_told_once(scale):
+    """An edge of the cube is 2 long, and cones are at its ends."""
+    cube = add_cone_cube()
+    cube.scale = (scale, scale, scale)
+    bpy.context.view_layer.update()
+    told = []
+    for size in (1.0, 0.95, 1.5, 0.3, 3.0):
+        unwrap(tile_fit="SIZE", tile_size=size * scale)
+        tiles = 2 * mean_scale(cube)
+        assert tiles == pytest.approx(round(tiles), rel=1e-5)
+        said = [finding.text for finding in addon.core.findings.last(cube) if "size chosen" in finding.text]
+        larger = round(100 * (2 / tiles / size - 1))
+        told.append(larger)
+        if abs(larger) <= 10:
+            assert not said
+            continue
+        (text,) = said
+        assert f"{abs(larger)} % {'larger' if larger > 0 else 'smaller'} on the surface" in text
+        assert not re.search("grid of .* cells", " ".join(f.text for f in addon.core.findings.last(cube)))
+    assert told[:2] == [0, 5] and abs(told[2]) > 10 and abs(told[3]) <= 10 and told[4] == -33
 
 
 def test_no_tile_has_a_size_on_what_is_scaled_to_nothing():

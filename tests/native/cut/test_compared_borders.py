@@ -10,6 +10,9 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
+from lsgp import map_comparison
+from lsgp.border_gains import FullerSquare
+from lsgp.triangles import uv_area
 from map_checks import pairs, surface
 from meshes import Mesh
 from zoo import closed
@@ -73,6 +76,107 @@ def test_maps_are_compared_only_where_one_is_stretched_and_has_creases(monkeypat
         made.clear()
         lsgp.auto_unwrap(surface(mesh), pack="shelves")
         assert len(made) == count
+
+
+@pytest.mark.parametrize(
+    ("mesh", "preset"),
+    [
+        (meshes.cube(3), "paint"),  # exact without borders
+        (meshes.cube(3), "tile"),  # no map for creases
+        (barrel(24, 5, 1.3), "paint"),  # better with borders
+        (meshes.merge([barrel(24, 5, 1.3), scaled(barrel(24, 5, 1.3), 0.35)]), "paint"),  # of which one gains
+    ],
+    ids=["exact", "seamless", "bordered", "one of two"],
+)
+def test_progress_ends_at_one_whichever_maps_are_made(mesh: Mesh, preset: lsgp.Preset) -> None:
+    told: list[float] = []
+    lsgp.auto_unwrap(surface(mesh), preset=preset, pack="shelves", progress=told.append)
+    assert told[-1] == 1.0 and told == sorted(told)
+
+
+def test_progress_ends_at_one_where_the_map_with_borders_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    module = sys.modules["lsgp.auto_unwrap"]
+    original, made, told = module.best_map, [], []
+
+    def best_map(*given: object) -> object:
+        if made:
+            raise lsgp.SolverError("NOT_CONVERGED", "It did not converge.")
+        made.append(given)
+        return original(*given)
+
+    monkeypatch.setattr(module, "best_map", best_map)
+    result = lsgp.auto_unwrap(surface(barrel(24, 5, 1.3)), pack="shelves", progress=told.append)
+    assert made and not len(result.borders)
+    assert told[-1] == 1.0 and told == sorted(told)
+
+
+def extruded(profile: list[str], depth: int) -> Mesh:
+    """Unit cubes, as many behind each other, where the profile has an x; their inner faces are not there."""
+    return meshes.voxels(np.repeat(np.array([[c == "x" for c in row] for row in profile])[:, :, None], depth, axis=2))
+
+
+FULLER = {
+    "stairs": (extruded(["x...", "xx..", "xxx.", "xxxx"], 4), True),
+    "angle": (extruded(["xxx", "x..", "x.."], 1), True),
+    "channel": (extruded(["xxx", "x.x", "x.x"], 8), False),
+    "block": (extruded(["x"], 2), False),
+}
+
+
+@pytest.mark.parametrize("name", FULLER)
+def test_what_unfolds_exactly_through_cones_ends_at_creases_that_fill_the_square(name: str) -> None:
+    mesh, gains = FULLER[name]
+    pytest.importorskip("xatlas")
+    found, cones = (lsgp.auto_unwrap(surface(mesh), creases=creases) for creases in (True, False))
+    assert len(cones.cones) and cones.distortion.l2_stretch == pytest.approx(1, abs=1e-9)
+    assert bool(len(found.borders)) == gains
+    if not gains:
+        assert found.corner_uv.tobytes() == cones.corner_uv.tobytes()
+        return
+    assert found.distortion.l2_stretch == pytest.approx(1, abs=1e-9)
+    assert len(found.flipped) == 0 == len(found.overlapping)
+    assert found.island.max() <= cones.island.max() + 2
+    assert uv_area(found.corner_uv) > uv_area(cones.corner_uv) / 0.9
+
+
+def with_rectangles(result: lsgp.Result, count: int, area: float) -> lsgp.Result:
+    """So many equal islands of two triangles each, of this area together; other triangles are points."""
+    solved = np.arange(len(result.island)) < 24
+    rectangle = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]]) * [1, area / count]
+    corner_uv, island = np.zeros_like(result.corner_uv), np.where(solved, 0, -1).astype(np.int32)
+    for i in range(count):
+        corner_uv[2 * i : 2 * i + 2] = rectangle
+        island[2 * i : 2 * i + 2] = i
+    return replace(result, corner_uv=corner_uv, island=island, solved=solved)
+
+
+@pytest.mark.parametrize(
+    ("islands", "filled", "paint", "bake"),
+    [
+        (2, 0.88, True, True),  # none more: a tenth less is no reason to stay
+        (2, 0.92, False, False),
+        (3, 0.78, True, True),
+        (3, 0.82, False, False),
+        (4, 0.68, True, True),
+        (4, 0.72, False, False),
+        (5, 0.68, False, True),  # Paint keeps islands few
+        (5, 0.72, False, False),
+    ],
+)
+def test_a_fuller_square_is_worth_few_islands(
+    islands: int, filled: float, paint: bool, bake: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without a packer, layouts of up to four islands are compared by their area."""
+    monkeypatch.setattr(map_comparison, "packer_name", lambda: None)
+    cube = surface(meshes.cube(3))
+    result = lsgp.auto_unwrap(cube, pack="shelves")
+    usual, bordered = with_rectangles(result, 2, filled), with_rectangles(result, islands, 1.0)
+    for keeps_few, may in ((True, paint), (False, bake)):
+        gain = FullerSquare(cube, 1.0, keeps_few)
+        assert gain.may_replace(bordered, usual, None) == may
+        stretched = replace(result.distortion, l2_stretch=1.001 * result.distortion.l2_stretch)
+        assert not gain.may_replace(replace(bordered, distortion=stretched), usual, None)
+        assert not gain.may_replace(replace(bordered, flipped=np.array([3], np.int32)), usual, None)
 
 
 def test_each_component_is_judged_by_itself() -> None:

@@ -113,6 +113,23 @@ def test_sparing_leaves_no_strip_much_longer_than_the_square() -> None:
 
 
 @pytest.mark.parametrize("compact", ["sparing", "full"])
+@pytest.mark.parametrize("height", [0.005, 0.02])
+def test_no_narrow_island_keeps_the_others_small(height: float, compact: str) -> None:
+    """The edge of a thin disk, opened, is a strip three times as long as the disk is wide and of hardly any area."""
+    disk = closed.lathe(np.ones(2), height * np.arange(2), 60, caps=(True, True))
+    surface = lsgp.Surface(disk.positions, disk.triangles)
+    surface = replace(surface, borders=lsgp.crease_borders(surface))
+    plain, cut = (lsgp.parameterize(surface, (), None, lsgp.Options(compact=each)) for each in ("off", compact))
+    boxes = [sides_of_smallest_box(points) for points in island_points(plain)]
+    assert max(box.max() for box in boxes) > 1.9 * np.sqrt(uv_area(plain) / FILL)
+    boxes = [sides_of_smallest_box(points) for points in island_points(cut)]
+    assert max(box.max() for box in boxes) < 1.5 * np.sqrt(uv_area(cut) / FILL)
+    assert len(boxes) <= 6  # two disks, and few pieces of the strip
+    assert min(box.max() for box in boxes) > 0.1 * np.sqrt(uv_area(cut) / FILL)
+    assert lengths(cut) == pytest.approx(lengths(plain), abs=1e-9)
+
+
+@pytest.mark.parametrize("compact", ["sparing", "full"])
 def test_sparing_leaves_components_with_marked_seams_whole(compact: str) -> None:
     mesh = flat(np.ones((3, 40), bool))
     both = meshes.make(
