@@ -111,11 +111,15 @@ Array<Index> MirroredIslands::one_sided_halves(const PerHalfedge<char>& open) co
     points.row(2 * i + 1) = (tail + 3 * head) / 4;
   }
   const PointTree tree(points);
+  const auto is_near = [&](const Eigen::RowVector3d& at) { return tree.nearest(at).distance <= edge_; };
   Array<Index> out;
   for (Index i = 0; i < points.rows(); ++i) {
     checkpoint(operations_a_search);
     const Index h = edges[i / 2];
-    if (is_in_plane(h) || tree.nearest(reflected(mirroring_.plane, points.row(i))).distance <= edge_) continue;
+    if (is_in_plane(h)) continue;
+    const Eigen::RowVector3d image = reflected(mirroring_.plane, points.row(i));
+    // The image may lie off the surface, where this mirrors itself only roughly.
+    if (is_near(image) || is_near(mesh.positions.row(vertices_.nearest(image).point))) continue;
     out.push_back(h);
   }
   return out;

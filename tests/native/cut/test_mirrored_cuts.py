@@ -11,6 +11,7 @@ import numpy as np
 import oracle
 import pytest
 from map_checks import codes, only, pairs, surface
+from shared_meshes import shared_mesh
 
 MIRRORED = lsgp.Options(mirrored_cuts=True)
 EXACT = {"horned": meshes.two_horned(), "ball": meshes.icosphere(3), "box": meshes.cube(6, (2, 1, 1))}
@@ -121,6 +122,20 @@ def test_cuts_mirror_each_other_on_triangles_that_do_not(turn: float) -> None:
     mirrored = lsgp.parameterize(of, placed.cones, placed.cone_angles, MIRRORED)
     assert mirrored_share(mesh, mirrored.cut_edges) >= 0.98
     assert mirrored_share(mesh, usual.cut_edges) < 0.95
+
+
+def test_cuts_differ_no_more_than_the_sides_of_the_surface() -> None:
+    """Where these differ by more than an edge, cuts on corresponding vertices are each other's images."""
+    mesh = shared_mesh("max-planck-25k")
+    edges = meshes.edges_of(mesh.triangles)
+    plain = surface(mesh, edges=edges)
+    of = replace(plain, cut_costs=lsgp.cut_costs(plain, front=(0, 0, 1)))
+    placed = lsgp.place_cones(of, symmetric=True)
+    result = lsgp.parameterize(of, placed.cones, placed.cone_angles, MIRRORED)
+    named = [f.elements.indices for f in result.warnings if f.code == "CUTS_NOT_MIRRORED"]
+    without_image = sum(lengths(mesh, np.asarray(edges)).sum() for edges in named)
+    assert without_image <= 0.02 * lengths(mesh, result.cut_edges).sum()
+    assert mirrored_share(mesh, result.cut_edges, float(mesh.positions[:, 0].mean())) < 0.95
 
 
 def test_costs_of_one_side_keep_cuts_away_on_both() -> None:
