@@ -31,8 +31,7 @@ void OneSidedCuts::report(std::vector<Finding>& findings) const {
   if (edges_.empty()) return;
   const double percent = std::max(1.0, std::round(100 * one_sided_ / in_all_));
   findings.push_back({Code::cuts_not_mirrored,
-                      concat(count(edges_.size() / 2, "cut edge has", "cut edges have"),
-                             " no mirror image, ", percent,
+                      concat(count(edges_.size() / 2, "cut edge has", "cut edges have"), " no mirror image, ", percent,
                              " % of the length of the cuts: they would enclose a piece together with it, or it would "
                              "cost much longer cuts or more islands. Mark seams on both sides to choose other routes."),
                       {ElementKind::edges, edges_}});

@@ -19,7 +19,7 @@ class OneSidedCuts {
   void report(std::vector<Finding>& findings) const;
 
  private:
-  Array<Index> edges_;                  // vertex pairs of the caller's
+  Array<Index> edges_;                 // vertex pairs of the caller's
   double one_sided_ = 0, in_all_ = 0;  // lengths of these and of all cuts where they are
 };
 
