@@ -118,9 +118,11 @@ Array<Index> MirroredIslands::one_sided_halves(const PerHalfedge<char>& open) co
     const Index h = edges[i / 2];
     if (is_in_plane(h)) continue;
     const Eigen::RowVector3d image = reflected(mirroring_.plane, points.row(i));
-    // The image may lie off the surface, where this mirrors itself only roughly.
-    if (is_near(image) || is_near(mesh.positions.row(vertices_.nearest(image).point))) continue;
-    out.push_back(h);
+    if (is_near(image)) continue;
+    const PointTree::Nearest vertex = vertices_.nearest(image);
+    // Where the surface mirrors itself only roughly, the image lies off it.
+    const bool is_off = vertex.distance > edge_ / 2;
+    if (!is_off || !is_near(mesh.positions.row(vertex.point))) out.push_back(h);
   }
   return out;
 }

@@ -19,8 +19,8 @@ class MirroredIslands {
   // mirroring: of the mesh, not empty.
   MirroredIslands(const MetricMesh& surface, Borrowed<const Mirroring> mirroring);
 
-  // Length of the open edges with no open edge within a mean edge of their mirror image, or of the vertex nearest to
-  // it. Those in the plane have one.
+  // Length of the open edges with no open edge within a mean edge of their mirror image, or of the vertex nearest to it
+  // where the image lies off the surface. Those in the plane have one.
   double one_sided_length(const PerHalfedge<char>& open) const;
 
   // These edges, one halfedge of each.
