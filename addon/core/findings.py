@@ -40,6 +40,7 @@ INFORMATION = frozenset(
         "CONE_ON_BOUNDARY",
         "CONES_MERGED",
         "CUTS_ADDED",
+        "CUTS_NOT_MIRRORED",
         "DEGENERATE_FACES",
         "DUPLICATE_FACE",
         "FEATURES_OFF_LATTICE",

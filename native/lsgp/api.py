@@ -215,6 +215,7 @@ class Options:
         stay exact. Components with pins keep their islands.
     mirrored_cuts: cuts are alike on both sides of a component's mirror plane, which is detected, if its cones are and
         that costs at most half as much again; so are islands that are split or made compact, if that adds few cuts.
+        CUTS_NOT_MIRRORED names those that are not.
     square_share: with compact, the area available to these islands, 1 being a whole square: less if other surfaces are
         packed beside them, so that they are cut less; the number of UDIM tiles, up to 100, so that all are filled.
     factorization: how linear systems are solved; maps differ only by rounding. "cut" factors once and leaves dense

@@ -67,6 +67,7 @@ enum class Code {
   reoriented,
   seams_opened,
   cuts_added,
+  cuts_not_mirrored,
   cone_on_boundary,
   junction_share,
   straightness_failed,

@@ -114,7 +114,7 @@ struct Options {
   Overlaps overlaps = Overlaps::keep;
   Compactness compact = Compactness::off;
   // Cuts are alike on both sides of a component's mirror plane, which is detected, if its cones are and that costs
-  // little.
+  // little; CUTS_NOT_MIRRORED names those that are not.
   bool mirrored_cuts = false;
   double square_share = 1;  // with compact: number of squares for these islands, above 0: part of one, or UDIM tiles
   Factorization factorization = Factorization::automatic;

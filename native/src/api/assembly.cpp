@@ -103,6 +103,7 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
   defects_.pinned = defects_.pinned || map.pins.size() > 1;
   move_findings(component, findings, result_.warnings);
   added_cuts_.add(component, map);
+  one_sided_cuts_.add(component, geometry, task.cones.mirroring, map);
   for (Index v = 0; v < component.mesh.vertex_count(); ++v) {
     result_.log_scale[component.source_vertex[v]] = map.curvature.log_scale[v];
   }
@@ -153,6 +154,7 @@ void Assembly::finish(const Cones& cones, const Array<std::pair<Index, Index>>& 
   report_flat_cones();
   if (directed_ > 0) result_.direction_error = misalignment_ / directed_;
   added_cuts_.report(result_.warnings);
+  one_sided_cuts_.report(result_.warnings);
   result_.features = features_.report(result_.warnings);
   result_.cut_edges = to_vertex_pairs(cut_edges_);
   result_.required_cuts = to_vertex_pairs(required_cuts_);

@@ -6,6 +6,7 @@
 
 #include "api/added_cuts.hpp"
 #include "api/feature_report.hpp"
+#include "api/one_sided_cuts.hpp"
 #include "api/report_defects.hpp"
 #include "base/array.hpp"
 #include "pipeline/component_map.hpp"
@@ -85,6 +86,7 @@ class Assembly {
   Array<Index> cut_edges_, required_cuts_;  // vertex pairs
   Defects defects_;
   AddedCuts added_cuts_;
+  OneSidedCuts one_sided_cuts_;
   MarkedFeatures features_;
   Array<Index> flat_cones_;
   Array<Solved> solved_;

@@ -46,6 +46,7 @@ const char* name(Code code) {
     case Code::reoriented: return "REORIENTED";
     case Code::seams_opened: return "SEAMS_OPENED";
     case Code::cuts_added: return "CUTS_ADDED";
+    case Code::cuts_not_mirrored: return "CUTS_NOT_MIRRORED";
     case Code::cone_on_boundary: return "CONE_ON_BOUNDARY";
     case Code::junction_share: return "JUNCTION_SHARE";
     case Code::straightness_failed: return "STRAIGHTNESS_FAILED";

@@ -35,6 +35,19 @@ struct CutNetwork : CuttableSurface {
 
   // The path between two nodes that contains a cut halfedge, or a closed curve without nodes.
   CutPath trace(Index h) const;
+  // Calls visit(w) for the neighbors of a vertex along cuts and boundaries.
+  template <typename Visit>
+  void for_each_joined(Index v, Visit visit) const {
+    for (const CutEdges::Edge& edge : edges.from(v)) {
+      if (is_cut[edge.halfedge]) visit(edge.target);
+    }
+    if (!is_on_border(v)) return;
+    mesh.for_each_outgoing(v, [&](Index h) {
+      if (mesh.twin[h] == none) visit(mesh.target(h));
+      if (mesh.twin[prev(h)] == none) visit(mesh.origin(prev(h)));
+    });
+  }
+
   void open(const CutPath& path) { set(path, 1); }
   void close(const CutPath& path) { set(path, 0); }
 

@@ -44,7 +44,6 @@ class SmallerSubtree {
 
   // Expands one vertex. Returns whether the other front was not met.
   bool advance(Front& front, Index other) {
-    const HalfedgeMesh& mesh = network_.mesh;
     const Index v = front.vertices[front.done++];
     bool is_apart = true;
     const auto visit = [&](Index w) {
@@ -53,10 +52,7 @@ class SmallerSubtree {
       mark_of_[w] = front.mark;
       front.vertices.push_back(w);
     };
-    mesh.for_each_outgoing(v, [&](Index h) {
-      if (network_.is_cut[h] || mesh.twin[h] == none) visit(mesh.target(h));
-      if (mesh.twin[prev(h)] == none) visit(mesh.origin(prev(h)));
-    });
+    network_.for_each_joined(v, visit);
     return is_apart;
   }
 

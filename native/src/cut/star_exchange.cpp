@@ -84,10 +84,7 @@ bool StarExchange::mark_subtrees(const Star& star) {
       marked_.push_back(v);
     };
     for (visit(end); next_marked < marked_.size(); ++next_marked) {
-      mesh_.for_each_outgoing(marked_[next_marked], [&](Index h) {
-        if (network_.is_cut[h] || mesh_.twin[h] == none) visit(mesh_.target(h));
-        if (mesh_.twin[prev(h)] == none) visit(mesh_.origin(prev(h)));
-      });
+      network_.for_each_joined(marked_[next_marked], visit);
     }
     ++subtree;
   }

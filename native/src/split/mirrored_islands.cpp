@@ -97,7 +97,8 @@ bool MirroredIslands::is_on(Index h, MirrorSide side) const {
   return (tail == side || tail == MirrorSide::plane) && (head == side || head == MirrorSide::plane);
 }
 
-double MirroredIslands::one_sided_length(const PerHalfedge<char>& open) const {
+// A halfedge for each half of an edge.
+Array<Index> MirroredIslands::one_sided_halves(const PerHalfedge<char>& open) const {
   const HalfedgeMesh& mesh = surface_.mesh;
   Array<Index> edges;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
@@ -110,13 +111,31 @@ double MirroredIslands::one_sided_length(const PerHalfedge<char>& open) const {
     points.row(2 * i + 1) = (tail + 3 * head) / 4;
   }
   const PointTree tree(points);
-  double out = 0;
+  const auto is_near = [&](const Eigen::RowVector3d& at) { return tree.nearest(at).distance <= edge_; };
+  Array<Index> out;
   for (Index i = 0; i < points.rows(); ++i) {
     checkpoint(operations_a_search);
     const Index h = edges[i / 2];
-    if (is_in_plane(h) || tree.nearest(reflected(mirroring_.plane, points.row(i))).distance <= edge_) continue;
-    out += surface_.geometry.length[h] / 2;
+    if (is_in_plane(h)) continue;
+    const Eigen::RowVector3d image = reflected(mirroring_.plane, points.row(i));
+    if (is_near(image)) continue;
+    const PointTree::Nearest vertex = vertices_.nearest(image);
+    // Where the surface mirrors itself only roughly, the image lies off it.
+    const bool is_off = vertex.distance > edge_ / 2;
+    if (!is_off || !is_near(mesh.positions.row(vertex.point))) out.push_back(h);
   }
+  return out;
+}
+
+double MirroredIslands::one_sided_length(const PerHalfedge<char>& open) const {
+  double out = 0;
+  for (const Index h : one_sided_halves(open)) out += surface_.geometry.length[h] / 2;
+  return out;
+}
+
+Array<Index> MirroredIslands::one_sided_edges(const PerHalfedge<char>& open) const {
+  Array<Index> out = one_sided_halves(open);
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 

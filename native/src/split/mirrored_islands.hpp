@@ -19,8 +19,12 @@ class MirroredIslands {
   // mirroring: of the mesh, not empty.
   MirroredIslands(const MetricMesh& surface, Borrowed<const Mirroring> mirroring);
 
-  // Length of the open edges with no open edge within a mean edge of their mirror image. Those in the plane have one.
+  // Length of the open edges with no open edge within a mean edge of their mirror image, or of the vertex nearest to it
+  // where the image lies off the surface. Those in the plane have one.
   double one_sided_length(const PerHalfedge<char>& open) const;
+
+  // These edges, one halfedge of each.
+  Array<Index> one_sided_edges(const PerHalfedge<char>& open) const;
 
   // Opens the map where `open` is on one side, and at the mirror image of that. Its other cuts are closed, the most
   // expensive first, as far as the cones allow: what is left of them is on one side alone. Islands may overlap
@@ -36,6 +40,7 @@ class MirroredIslands {
   std::optional<MapParts> along_plane(const ComponentMap& map, const PerHalfedge<char>& open) const;
 
  private:
+  Array<Index> one_sided_halves(const PerHalfedge<char>& open) const;
   bool is_in_plane(Index h) const;
   bool is_on(Index h, MirrorSide side) const;
   Index image_near(Index v) const;

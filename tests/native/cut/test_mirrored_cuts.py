@@ -10,7 +10,8 @@ import meshes
 import numpy as np
 import oracle
 import pytest
-from map_checks import pairs, surface
+from map_checks import codes, only, pairs, surface
+from shared_meshes import shared_mesh
 
 MIRRORED = lsgp.Options(mirrored_cuts=True)
 EXACT = {"horned": meshes.two_horned(), "ball": meshes.icosphere(3), "box": meshes.cube(6, (2, 1, 1))}
@@ -72,6 +73,7 @@ def test_every_cut_has_its_image(name: str, on_plane: int) -> None:
         assert oracle.euler_of(opened.corner) == 1 and len(np.unique(oracle.face_components(opened.corner))) == 1
         assert set(cones.tolist()) <= set(mirrored.cut_edges.ravel().tolist())
         assert oracle.metric_gap(mirrored.corner_uv, usual.corner_uv) <= 1e-7
+        assert "CUTS_NOT_MIRRORED" not in codes(mirrored.warnings)
 
 
 def with_holes(mesh: meshes.Mesh, places: list[list[float]]) -> meshes.Mesh:
@@ -122,6 +124,20 @@ def test_cuts_mirror_each_other_on_triangles_that_do_not(turn: float) -> None:
     assert mirrored_share(mesh, usual.cut_edges) < 0.95
 
 
+def test_cuts_differ_no_more_than_the_sides_of_the_surface() -> None:
+    """Where these differ by more than an edge, cuts on corresponding vertices are each other's images."""
+    mesh = shared_mesh("max-planck-25k")
+    edges = meshes.edges_of(mesh.triangles)
+    plain = surface(mesh, edges=edges)
+    of = replace(plain, cut_costs=lsgp.cut_costs(plain, front=(0, 0, 1)))
+    placed = lsgp.place_cones(of, symmetric=True)
+    result = lsgp.parameterize(of, placed.cones, placed.cone_angles, MIRRORED)
+    named = [f.elements.indices for f in result.warnings if f.code == "CUTS_NOT_MIRRORED"]
+    without_image = sum(lengths(mesh, np.asarray(edges)).sum() for edges in named)
+    assert without_image <= 0.02 * lengths(mesh, result.cut_edges).sum()
+    assert mirrored_share(mesh, result.cut_edges, float(mesh.positions[:, 0].mean())) < 0.95
+
+
 def test_costs_of_one_side_keep_cuts_away_on_both() -> None:
     mesh = meshes.two_horned()
     image = image_of(mesh.positions)
@@ -135,6 +151,45 @@ def test_costs_of_one_side_keep_cuts_away_on_both() -> None:
     after = lsgp.parameterize(surface(mesh, edges=edges, cut_costs=costs), cones, options=MIRRORED).cut_edges
     assert_mirrored(mesh, image, after)
     assert np.isin(before, hot).any() and not np.isin(after, np.concatenate([hot, image[hot]])).any()
+
+
+def one_sided(mesh: meshes.Mesh, edges: np.ndarray) -> set[tuple[int, int]]:
+    """Edges with a half whose middle is over an edge from the image in x = 0 of the middles of all halves."""
+    edge = lengths(mesh, meshes.edges_of(mesh.triangles)).mean()
+    tail, head = mesh.positions[edges].transpose(1, 0, 2)
+    middles = np.concatenate([(3 * tail + head) / 4, (tail + 3 * head) / 4])
+    apart = np.linalg.norm(middles[:, None] * [-1, 1, 1] - middles, axis=2).min(axis=1)
+    return pairs(np.concatenate([edges, edges])[apart > edge])
+
+
+def test_cuts_that_cannot_be_mirrored_are_named_once() -> None:
+    """Two cones in the plane, which is too expensive for cuts: a way beside it and its image would enclose a piece."""
+    mesh = meshes.two_horned()
+    edges = meshes.edges_of(mesh.triangles)
+    x, y = mesh.positions[:, 0], mesh.positions[:, 1]
+    middle = np.flatnonzero(np.abs(x) < 1e-9)
+    cones = [int(middle[y[middle].argmin()]), int(middle[y[middle].argmax()]), int(x.argmin()), int(x.argmax())]
+    near, is_left = np.abs(x[edges]).max(axis=1) < 0.5, (x[edges] < 0).all(axis=1)
+    costs = np.where(near, 20.0, 1.0) * np.where(is_left, 0.9, 1.0)
+    alone = lsgp.parameterize(surface(mesh, edges=edges, cut_costs=costs), cones, options=MIRRORED)
+    only_here = one_sided(mesh, alone.cut_edges)
+    assert only_here and len(set(cones)) == 4
+    assert pairs(only(alone.warnings, "CUTS_NOT_MIRRORED").elements.indices) == only_here
+
+    both = meshes.merge([mesh, mesh])
+    count = len(mesh.positions)
+    twice = surface(both, edges=np.concatenate([edges, edges + count]), cut_costs=np.tile(costs, 2))
+    result = lsgp.parameterize(twice, [*cones, *np.add(cones, count)], options=MIRRORED)
+    finding = only(result.warnings, "CUTS_NOT_MIRRORED")
+    assert finding.message.startswith(f"{2 * len(only_here)} cut edges have no mirror image, ")
+    share = lengths(mesh, np.array(sorted(only_here))).sum() / lengths(mesh, alone.cut_edges).sum()
+    assert f", {round(100 * share)} % of the length" in finding.message
+    assert pairs(finding.elements.indices) == only_here | {(a + count, b + count) for a, b in only_here}
+
+    # Those that are marked are as the user wants them.
+    marked = surface(mesh, edges=edges, seams=np.array(sorted(only_here)))
+    assert "CUTS_NOT_MIRRORED" not in codes(lsgp.parameterize(marked, cones, options=MIRRORED).warnings)
+    assert "CUTS_NOT_MIRRORED" not in codes(lsgp.parameterize(twice, [*cones, *np.add(cones, count)]).warnings)
 
 
 def test_cones_that_do_not_mirror_each_other_have_the_usual_cuts() -> None:
