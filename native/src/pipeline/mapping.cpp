@@ -183,9 +183,8 @@ FoundMap Mapping::find_valid_map(const ComponentTask& task) {
         }
         if (best->defects() == 0) return std::move(*best);
         // A valid map would have been proof that its angles are possible.
-        if (effort == Effort::local && !is_fat && options_.prescription == PrescriptionRule::manual) {
-          require_possible(system_.surface(), task.cones);
-        }
+        const bool has_angles = options_.method == Method::lsgp;
+        if (has_angles && effort == Effort::local && !is_fat) require_possible(system_.surface(), task.cones);
         if (!repairs_) return std::move(*best);
       }
     }
