@@ -131,7 +131,7 @@ TEST_CASE("a coarse triangulation has the curvatures of a surface") {
   const BorderConditions border = free_border(built.mesh, {});
   const LogScale exact(surface, border, cones);
   LogScale model(coarse.surface(), coarse.at_nodes(border));
-  model.add_cones(nodes);
+  model.set_cones(nodes);
   CHECK(model.required_sum() == doctest::Approx(exact.required_sum()));
   const Eigen::VectorXd kappa = model.harmonic_curvature();
   CHECK(std::abs(kappa.sum() - exact.required_sum()) < 1e-9);

@@ -25,16 +25,17 @@ namespace lsgp {
 
 namespace {
 
-// The factor that gives a map the surface's texel density. Scales by total unsigned UV area; where triangles are nearly
-// degenerate, by Dirichlet energy, which bounds the size of a collapsed map.
+// The factor that gives a map the surface's texel density. Scales by total unsigned UV area; of a collapsed map, which
+// has hardly any, by the mean growth of lengths, which bounds its size. Needles hardly contribute to either, but would
+// dominate the mean square, the Dirichlet energy.
 double scale_to_surface(const MetricMesh& surface, const ComponentMap& map) {
   const Geometry& geometry = surface.geometry;
-  constexpr double least_share = 0.1;  // of the Dirichlet energy, which is the area of a conformal map
+  constexpr double least_share = 0.1;  // of the area of an even map in which lengths grow as much
   const Jacobians jacobians = measure_jacobians(surface, map.cut_mesh, map.position);
   const Eigen::ArrayXd grown = jacobians.f_z.array().abs2(), mirrored = jacobians.f_zbar.array().abs2();
   const double area = (geometry.area.array() * (grown - mirrored).abs()).sum();
-  const double energy = (geometry.area.array() * (grown + mirrored)).sum();
-  const double scale = std::sqrt(geometry.total_area / std::max(area, least_share * energy));
+  const double growth = (geometry.area.array() * (grown + mirrored).sqrt()).sum() / geometry.total_area;
+  const double scale = std::sqrt(1 / std::max(area / geometry.total_area, least_share * growth * growth));
   return std::isfinite(scale) ? scale : 1;
 }
 

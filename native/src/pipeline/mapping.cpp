@@ -25,7 +25,8 @@ namespace {
 // angles up to 2 pi that has no flips has the right angles too.
 constexpr AngleRange angle_ranges[]{widest_angles, {M_PI / 2, 2.5 * M_PI}, {M_PI / 2, 2 * M_PI, false}};
 
-constexpr double same_angle = 1e-9;  // radians
+constexpr double same_angle = 1e-9;    // radians
+constexpr double as_predicted = 1.03;  // times the L2 stretch
 
 // Of triangles made fatter, see `mollified`; in the end hardly any edge is longer than others.
 constexpr double fat_margins[]{0.2, 1};
@@ -94,6 +95,12 @@ class Mapping {
   void cut(ComponentSystem& system, const ComponentTask& task, ComponentMap& map);
   void unfold_and_repair(ComponentSystem& system, const ComponentTask& task, Effort effort, FoundMap& found);
 
+  // Holes are closed where that is predicted to stretch hardly more, but a coarse belt cannot bend into a ring.
+  bool closes_holes_badly(const FoundMap& found) const;
+  ComponentTask with_open_holes() const;
+  bool is_better(const FoundMap& opened, const FoundMap& closed) const;
+  double l2_of(const ComponentMap& map) const;
+
   // Prescribed angles for which no valid map is found directly can often be reached by continuation from angles that
   // have one.
   void approach_angles(FoundMap& found);
@@ -124,11 +131,10 @@ class Mapping {
 ComponentMap Mapping::best(std::vector<Finding>& findings) {
   FoundMap found = find_valid_map(task_);
   const bool chooses_holes = task_.cones.holes == Holes::where_cheap || task_.cones.holes == Holes::all;
-  if (found.defects() > 0 && repairs_ && closes_holes(found.map) && chooses_holes) {
-    ComponentTask opened = task_;
-    opened.cones.holes = Holes::as_they_are;
-    FoundMap other = find_valid_map(opened);
-    if (other.defects() < found.defects()) found = std::move(other);
+  const bool fails_to_close = found.defects() > 0 && repairs_ && closes_holes(found.map) && chooses_holes;
+  if (fails_to_close || closes_holes_badly(found)) {
+    FoundMap opened = find_valid_map(with_open_holes());
+    if (is_better(opened, found)) found = std::move(opened);
   }
   if (found.defects() > 0 && repairs_ && (any_given(task_.cones) || task_.cones.rotation_order > 0))
     approach_angles(found);
@@ -144,9 +150,34 @@ ComponentMap Mapping::best(std::vector<Finding>& findings) {
 ComponentMap Mapping::first(std::vector<Finding>& findings) {
   Array<Eigen::VectorXd> untried;
   FoundMap found = std::move(*attempt(system_, task_, Effort::local, untried));
+  if (closes_holes_badly(found)) {
+    untried.clear();
+    FoundMap opened = std::move(*attempt(system_, with_open_holes(), Effort::local, untried));
+    if (is_better(opened, found)) found = std::move(opened);
+  }
   found.map.repair = report_.value_or(RepairReport{});
   findings.insert(findings.end(), found.findings.begin(), found.findings.end());
   return std::move(found.map);
+}
+
+bool Mapping::closes_holes_badly(const FoundMap& found) const {
+  const bool is_choice = repairs_ && task_.cones.holes == Holes::where_cheap && closes_holes(found.map);
+  return is_choice && found.defects() == 0 && l2_of(found.map) > as_predicted * found.map.curvature.predicted_l2;
+}
+
+ComponentTask Mapping::with_open_holes() const {
+  ComponentTask out = task_;
+  out.cones.holes = Holes::as_they_are;
+  return out;
+}
+
+bool Mapping::is_better(const FoundMap& opened, const FoundMap& closed) const {
+  if (opened.defects() > 0 || closed.defects() > 0) return opened.defects() < closed.defects();
+  return as_predicted * l2_of(opened.map) < l2_of(closed.map);
+}
+
+double Mapping::l2_of(const ComponentMap& map) const {
+  return l2_stretch(system_.geometry(), measure_jacobians(system_.surface(), map.cut_mesh, map.position));
 }
 
 FoundMap Mapping::find_valid_map(const ComponentTask& task) {
@@ -183,9 +214,8 @@ FoundMap Mapping::find_valid_map(const ComponentTask& task) {
         }
         if (best->defects() == 0) return std::move(*best);
         // A valid map would have been proof that its angles are possible.
-        if (effort == Effort::local && !is_fat && options_.prescription == PrescriptionRule::manual) {
-          require_possible(system_.surface(), task.cones);
-        }
+        const bool has_angles = options_.method == Method::lsgp;
+        if (has_angles && effort == Effort::local && !is_fat) require_possible(system_.surface(), task.cones);
         if (!repairs_) return std::move(*best);
       }
     }
@@ -329,7 +359,7 @@ double Mapping::approach_from(const ComponentMap& start, ComponentSystem& system
 void Mapping::straighten(ComponentMap& map) {
   ComponentRepair repair = repair_on(system_, task_);
   if (!repair.may_straighten(map)) return;
-  map.natural_l2 = l2_stretch(system_.geometry(), measure_jacobians(system_.surface(), map.cut_mesh, map.position));
+  map.natural_l2 = l2_of(map);
   std::optional<ComponentMap> found;
   if (std::optional<ComponentMap> turned = with_quarter_turns(map)) {
     turned->natural_l2 = map.natural_l2;

@@ -152,7 +152,7 @@ PlacedCones place_component(const PlacementTask& task, const PlacementOptions& o
     require_feasible(task.mesh, out.cones, chooser.border());
     require_room(choice.cones);
   });
-  require_possible(task, out.cones);
+  if (!choice.map.is_valid()) require_possible(task, out.cones);
   if (!options.count) require_hope(placement, choice, task);
   out.missing = missing_cones(chooser, choice.cones);
   out.cones = chooser.with_angles(choice.cones);

@@ -201,7 +201,6 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, con
 
 void require_possible(const MetricMesh& surface, const ComponentCones& cones) {
   const HalfedgeMesh& mesh = surface.mesh;
-  if (cones.rotation_order > 0) return;  // rounded angles are the tool's own choice
   const BorderConditions border = border_conditions(surface, cones);
   Eigen::VectorXd angle(mesh.vertex_count());
   PerVertex<char> is_free = border.held;
@@ -212,12 +211,12 @@ void require_possible(const MetricMesh& surface, const ComponentCones& cones) {
   Array<Index> given;
   for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
     const Index v = cones.vertices[i];
-    is_free[v] = !cones.angles[i];
-    if (!cones.angles[i]) continue;
+    is_free[v] = !cones.angles[i] || cones.rotation_order > 0;  // rounded angles are the tool's own choice
+    if (is_free[v]) continue;
     angle[v] = *cones.angles[i];
     given.push_back(v);
   }
-  if (!given.empty()) require_possible_angles(mesh, angle, is_free, given);
+  require_possible_angles(mesh, angle, is_free, given);
 }
 
 Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, PrescriptionRule rule,

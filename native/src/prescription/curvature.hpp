@@ -82,7 +82,8 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, con
 // The least and the most curvature that the cones without an angle can take up together.
 std::pair<double, double> room_of_automatic(const HalfedgeMesh& mesh, const ComponentCones& cones);
 
-// Throws ANGLES_IMPOSSIBLE for given angles that no map has, whatever the automatic ones are.
+// Throws ANGLES_IMPOSSIBLE if no map has the given angles, whatever the automatic ones are, or no map has cones at
+// these vertices alone, whatever their angles.
 void require_possible(const MetricMesh& surface, const ComponentCones& cones);
 
 // Whether a map can have this curvature at a vertex.

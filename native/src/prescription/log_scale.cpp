@@ -158,21 +158,32 @@ Eigen::MatrixXd LogScale::solve_columns(const Eigen::MatrixXd& right_sides) cons
   return laplace().solve(right_sides);
 }
 
-void LogScale::add_cones(const Array<Index>& vertices) {
-  require_matrix_memory(surface_.mesh.vertex_count(), 3.0 * static_cast<double>(vertices.size()),
+void LogScale::set_cones(const Array<Index>& vertices) {
+  const Index n = surface_.mesh.vertex_count();
+  PerVertex<Index> column(n, none);  // of green_
+  for (Index i = 0; i < cone_count(); ++i) column[cones_[i]] = i;
+  Array<Index> added;
+  for (const Index v : vertices) {
+    if (column[v] != none) continue;
+    column[v] = cone_count() + static_cast<Index>(added.size());
+    added.push_back(v);
+  }
+  require_matrix_memory(n, 2.0 * static_cast<double>(added.size()) + static_cast<double>(vertices.size()),
                         GrowsWith::conditions);
-  Eigen::MatrixXd impulses =
-      Eigen::MatrixXd::Zero(surface_.mesh.vertex_count(), static_cast<Eigen::Index>(vertices.size()));
-  for (std::size_t i = 0; i < vertices.size(); ++i) impulses(vertices[i], static_cast<Eigen::Index>(i)) = 1;
-  const Eigen::MatrixXd added = laplace().solve(impulses);
-  green_.conservativeResize(Eigen::NoChange, green_.cols() + added.cols());
-  green_.rightCols(added.cols()) = added;
-  cones_.insert(cones_.end(), vertices.begin(), vertices.end());
-}
-
-void LogScale::remove_cones() {
-  cones_.clear();
-  green_.resize(surface_.mesh.vertex_count(), 0);
+  Eigen::MatrixXd impulses = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(added.size()));
+  for (std::size_t i = 0; i < added.size(); ++i) impulses(added[i], static_cast<Eigen::Index>(i)) = 1;
+  const Eigen::MatrixXd solved = laplace().solve(impulses);
+  Eigen::MatrixXd green(n, static_cast<Eigen::Index>(vertices.size()));
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const Index from = column[vertices[i]];
+    const auto to = static_cast<Eigen::Index>(i);
+    if (from < cone_count())
+      green.col(to) = green_.col(from);
+    else
+      green.col(to) = solved.col(from - cone_count());
+  }
+  green_ = std::move(green);
+  cones_ = vertices;
 }
 
 Eigen::VectorXd LogScale::evaluate(const Eigen::VectorXd& cone_curvature) const {

@@ -32,8 +32,7 @@ class LogScale {
   const Geometry& geometry() const { return surface_.geometry; }
   const BorderConditions& border() const { return border_; }
 
-  void add_cones(const Array<Index>& vertices);  // distinct, not held
-  void remove_cones();                           // all of them
+  void set_cones(const Array<Index>& vertices);  // distinct, not held; solves for those that are new
   Index cone_count() const { return static_cast<Index>(cones_.size()); }
   const Array<Index>& cones() const { return cones_; }
   bool balanced() const { return border_.balanced; }

@@ -104,11 +104,13 @@ ConeChoice ConeChooser::choose_more(const ConeChoice& present, const Eigen::Vect
   for (const Index v : present.vertices) is_cone[v] = 1;
   Array<int> sites, others;
   for (int i = 0; i < kernel_.site_count(); ++i) (is_cone[all[i].vertex] ? sites : others).push_back(i);
-  const auto wanted_at = [&](int i) {
+  const bool has_price = !problem_.price.isZero(0);
+  Eigen::VectorXd wanted_at(kernel_.site_count());
+  for (int i = 0; i < kernel_.site_count(); ++i) {
     const double at_both = wanted[all[i].vertex] + (all[i].mirrored == none ? 0 : wanted[all[i].mirrored]);
-    return problem_.price.isZero(0) ? at_both : at_both * (1 - prices_[i] / all[i].cones());
-  };
-  std::stable_sort(others.begin(), others.end(), [&](int a, int b) { return wanted_at(a) > wanted_at(b); });
+    wanted_at[i] = has_price ? at_both * (1 - prices_[i] / all[i].cones()) : at_both;
+  }
+  std::stable_sort(others.begin(), others.end(), [&](int a, int b) { return wanted_at[a] > wanted_at[b]; });
   for (const int i : others) {
     if (more <= 0) break;
     if (near[all[i].vertex]) continue;
@@ -224,12 +226,11 @@ ConeChoice ConeChooser::choose_in_batches(int count) {
 ConeChoice ConeChooser::choose_harmonically(int count) {
   ConeSet set = existing(usual_reach);
   LogScale& scale = model_.scale();
-  scale.remove_cones();
   while (set.cone_count() < count) {
     const Array<Index> now = vertices_of(set.sites());
-    Array<Index> added(now.begin() + scale.cone_count(), now.end());
-    for (Index& vertex : added) vertex = model_.node(vertex);
-    scale.add_cones(added);
+    Array<Index> nodes;
+    for (const Index vertex : now) nodes.push_back(model_.node(vertex));
+    scale.set_cones(nodes);
     Eigen::VectorXd y =
         now.empty() ? kernel_.log_scale({}, {}) : model_.at_vertices(scale.evaluate_held(scale.harmonic_curvature()));
     if (!now.empty()) y.array() -= y[now.front()];
@@ -294,7 +295,7 @@ ConeChoice ConeChooser::rounded(const Set& set, Lattice lattice) {
 }
 
 ConeChoice ConeChooser::quantized(ConeChoice choice, int rotation_order) {
-  use_cones(choice.vertices);
+  scale_.set_cones(choice.vertices);
   const ComponentCones cones = with_given_angles(choice.vertices);
   choice.curvature = quantize_curvature(task_.mesh, cones, scale_, choice.curvature, rotation_order);
   choice.predicted_l2 = scale_.predicted_l2(scale_.evaluate(choice.curvature));
@@ -324,11 +325,6 @@ ComponentCones ConeChooser::with_angles(const ConeChoice& choice) const {
 
 ConeChoice ConeChooser::choice_with(const Array<Index>& vertices, const Eigen::VectorXd& curvature) const {
   return {vertices, curvature, scale_.predicted_l2(scale_.evaluate_held(vertices, curvature))};
-}
-
-void ConeChooser::use_cones(const Array<Index>& vertices) {
-  scale_.remove_cones();
-  scale_.add_cones(vertices);
 }
 
 Array<Index> ConeChooser::vertices_of(const Array<int>& sites) const {

@@ -103,7 +103,6 @@ class ConeChooser {
   ConeChoice choose_at(const Array<int>& sites);
   ConeChoice choose_in_batches(int count);
   ConeChoice quantized(ConeChoice choice, int rotation_order);
-  void use_cones(const Array<Index>& vertices);
   Array<Index> vertices_of(const Array<int>& sites) const;
 
   const PlacementTask task_;

@@ -41,6 +41,31 @@ def test_islands_have_their_area_in_space(many: lsgp.Result) -> None:
     assert plane / space == pytest.approx(np.full(len(PARTS), plane[0] / space[0]), rel=1e-9)
 
 
+def with_needles(mesh: meshes.Mesh, height: float) -> meshes.Mesh:
+    """Every eleventh triangle becomes three that meet close to the middle of its first edge: one of them is a needle,
+    of this height as a share of the triangle's."""
+    positions, triangles = list(mesh.positions), mesh.triangles.tolist()
+    for i in range(0, len(mesh.triangles), 11):
+        a, b, c = mesh.triangles[i].tolist()
+        middle = (mesh.positions[a] + mesh.positions[b]) / 2
+        triangles[i] = [a, b, len(positions)]
+        triangles += [[a, len(positions), c], [len(positions), b, c]]
+        positions.append(middle + height * (mesh.positions[c] - middle))
+    return mesh._replace(positions=np.array(positions), triangles=np.array(triangles))
+
+
+@pytest.mark.parametrize("height", [1e-5, 1e-6, 1e-7])
+def test_needles_do_not_shrink_their_island(height: float) -> None:
+    """Their images are as wide as they are long: their lengths grow a million times, which is not that of the map."""
+    cube, ball = meshes.cube(3), with_needles(meshes.bumpy_sphere(2), height)
+    both = meshes.merge([cube, ball])
+    result = unwrap(both)
+    of_ball = np.arange(len(both.triangles)) >= len(cube.triangles)
+    space = np.bincount(of_ball, oracle.triangle_areas(both.positions, both.triangles))
+    plane = np.bincount(of_ball, np.abs(oracle.signed_areas(result.corner_uv)))
+    assert plane / space == pytest.approx(np.full(2, plane[0] / space[0]), rel=1e-6)
+
+
 def test_islands_lie_in_the_unit_square(many: lsgp.Result) -> None:
     assert many.corner_uv.min() >= 0 and many.corner_uv.max() <= 1
     assert np.ptp(many.corner_uv.reshape(-1, 2), axis=0).max() > 0.9

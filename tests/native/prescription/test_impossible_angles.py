@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Angles that no triangulation of the surface can have are refused before anything is solved, by their cones."""
+"""Angles that no triangulation of the surface can have are refused by their cones, and cones that no angles suit by the
+vertices of which one has to be a cone."""
 
 from __future__ import annotations
 
@@ -12,6 +13,7 @@ import oracle
 import pytest
 from map_checks import surface
 from meshes import Mesh
+from zoo.tunnels import sponge
 
 PI = np.pi
 CLEAR = 1e-6  # radians: nearer than that to the limit, rounding decides
@@ -174,3 +176,56 @@ def test_angles_are_refused_exactly_where_no_triangles_have_them(name: str) -> N
         else:
             assert refusal(mesh, cones, angles) is None
     assert len(set(ends)) == 2
+
+
+# --- automatic angles -------------------------------------------------------------------------------------------------
+
+SPONGE = sponge(1)  # genus 5, 64 vertices
+
+
+def cones_on_one_side(seed: int) -> list[int]:
+    """A few vertices next to each other: of the tunnels far from them no angle is left to choose."""
+    rng = np.random.default_rng(seed)
+    count, center = int(rng.integers(4, 16)), SPONGE.positions[rng.integers(len(SPONGE.positions))]
+    return np.argsort(np.linalg.norm(SPONGE.positions - center, axis=1), kind="stable")[:count].tolist()
+
+
+def test_cones_are_refused_exactly_where_no_angles_suit_the_other_vertices() -> None:
+    """A linear program over the corners knows where, and counting triangles proves the reason."""
+    ends = []
+    for seed in SEEDS:
+        cones = cones_on_one_side(seed)
+        possible = oracle.angle_room(SPONGE.triangles, wanted(SPONGE, cones, [None] * len(cones))) > CLEAR
+        ends.append(possible)
+        if possible:
+            lsgp.parameterize(surface(SPONGE), cones)
+            continue
+        with pytest.raises(lsgp.CurvatureError, match="Mark a cone among these vertices") as refused:
+            lsgp.parameterize(surface(SPONGE), cones)
+        assert refused.value.code == "ANGLES_IMPOSSIBLE" and refused.value.elements.kind == "vertices"
+        named = refused.value.elements.indices
+        assert not np.isin(named, cones).any()
+        # Half a turn each is as much as all these vertices can take, or more.
+        among = int(np.isin(SPONGE.triangles, named).all(axis=1).sum())
+        assert among >= 2 * len(named) > 0
+        assert f"carry {180 * among} degrees" in str(refused.value)
+    assert len(set(ends)) == 2
+
+
+def test_a_cone_among_the_vertices_named_makes_angles_possible() -> None:
+    mesh = meshes.merge([SPONGE, FLOWER])
+    cones = cones_on_one_side(1)[:4]
+    both = [*cones, *(FLOWER.cones + len(SPONGE.positions)).tolist()]
+    for _ in range(20):
+        result = lsgp.parameterize(surface(mesh), both)
+        skipped = [finding for finding in result.warnings if finding.code == "COMPONENT_SKIPPED"]
+        if not skipped:
+            break
+        assert "ANGLES_IMPOSSIBLE" in skipped[0].message and result.solved.sum() == len(FLOWER.triangles)
+        with pytest.raises(lsgp.CurvatureError) as refused:
+            lsgp.parameterize(surface(SPONGE), cones)
+        named = refused.value.elements.indices
+        added = int(named[np.argmax(np.linalg.norm(SPONGE.positions[named] - SPONGE.positions[cones[0]], axis=1))])
+        cones, both = [*cones, added], [*both, added]
+    assert 4 < len(cones) < 20 and result.solved.all()
+    assert oracle.angle_room(SPONGE.triangles, wanted(SPONGE, cones, [None] * len(cones))) > CLEAR

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Plates with many holes: each is closed without a cut, for a number of solves that does not grow with them."""
+"""Plates with many holes: each is closed without a cut, for a number of solves that does not grow with them. Belts: they
+are closed where they bend into a ring."""
 
 from __future__ import annotations
 
@@ -12,6 +13,7 @@ import oracle
 import pytest
 from map_checks import surface
 from result_check import undeclared_faults
+from zoo import closed
 
 HOLES = (8, 9, 18)  # along a side; from 9 on there are too many for a dense matrix
 
@@ -39,3 +41,22 @@ def test_the_log_scale_is_harmonic_between_shifted_borders(holes: int) -> None:
     shifts = oracle.read_loop_scale(mesh.triangles, scale)
     expected = oracle.solve_scale(mesh.positions, mesh.triangles, np.zeros(len(scale)), shifts)
     assert scale - scale[0] == pytest.approx(expected - expected[0], abs=1e-9)
+
+
+# --- belts ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("sides", [4, 6, 8])
+def test_a_belt_of_few_sides_becomes_a_strip(sides: int) -> None:
+    """The prediction knows nothing of its corners: bent into a ring, triangles collapse there."""
+    belt = surface(closed.cylinder(sides, 1, 0.05, caps=0))
+    result, placed = lsgp.parameterize(belt, []), lsgp.place_cones(belt)
+    assert result.distortion.l2_stretch == pytest.approx(1, abs=1e-9)
+    assert placed.mapped_l2 == pytest.approx(1, abs=1e-9) and len(placed.cones) == 0
+    assert len(result.cut_edges) == 1  # across it
+
+
+def test_a_belt_of_many_sides_stays_a_ring() -> None:
+    belt = surface(closed.cylinder(300, 1, 0.05, caps=0))
+    result = lsgp.parameterize(belt, [])
+    assert len(result.cut_edges) == 0 and result.distortion.l2_stretch < 1.03
