@@ -35,6 +35,9 @@ HIGH_DISTORTION = "HIGH_DISTORTION"
 # Stretch from which on a map is of little use.
 NEEDS_CONES = 1.5
 GRID_REFINED = "GRID_REFINED"
+TARGET_MISSED = "PLACEMENT_NOT_REACHED"
+# Of an island: below, nobody sees it.
+_SEEN_STRETCH = 1.1
 # Of the chosen size, by which tiles have to differ from it to be told.
 _NOTICEABLE = 0.1
 
@@ -262,7 +265,11 @@ def _with_one_stretch(result: lsgp.Result, task: UnwrapTask) -> list[lsgp.Findin
     """The warnings with the measured stretch instead of the predicted one, and with a remedy."""
     # Where faces are named, smaller tiles are the remedy.
     others = [f for f in result.warnings if f.code != HIGH_DISTORTION or f.elements.kind == "triangles"]
-    warned = len(others) < len(result.warnings)
+    places_fewest = task.completes and task.count is None
+    if places_fewest and any(f.code == TARGET_MISSED for f in others) and _worst_stretch(result, task) < _SEEN_STRETCH:
+        # The stretch that they are placed for is the library's choice.
+        others = [f for f in others if f.code != TARGET_MISSED]
+    warned = any(f.code == HIGH_DISTORTION and f.elements.kind != "triangles" for f in result.warnings)
     stretch = result.distortion.l2_stretch
     if not len(result.cones) and not stretch < NEEDS_CONES and not task.completes:
         message = (
@@ -277,6 +284,17 @@ def _with_one_stretch(result: lsgp.Result, task: UnwrapTask) -> list[lsgp.Findin
         cause = f"The map is stretched much: {stretch:.3g}, 1 being none."
     remedy = "Choose Low Stretch, or add cones where the texture is small."
     return [*others, native.lsgp.Finding(HIGH_DISTORTION, f"{cause} {remedy}")]
+
+
+def _worst_stretch(result: lsgp.Result, task: UnwrapTask) -> float:
+    """The largest L2 stretch of an island, at the common scale."""
+    surface, solved = task.region.surface, result.solved
+    stretch = native.lsgp.triangle_distortion(surface, result.corner_uv).stretch[solved]
+    a, b, c = np.moveaxis(surface.positions[surface.triangles[solved]], 1, 0)
+    area, island = np.linalg.norm(np.cross(b - a, c - a), axis=1), result.island[solved]
+    squared = np.bincount(island, np.where(area > 0, area * stretch**2, 0.0))
+    total = np.bincount(island, area)
+    return float(np.sqrt((squared[total > 0] / total[total > 0]).max(initial=0.0)))
 
 
 def _with_size_of_tiles(result: lsgp.Result, task: UnwrapTask) -> list[lsgp.Finding]:
