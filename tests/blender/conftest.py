@@ -23,8 +23,10 @@ else:
         """What Blender reported so far, as printed in background mode: call it to read and forget it."""
         import ctypes
 
+        c_library = ctypes.CDLL("ucrtbase" if os.name == "nt" else None)
+
         def read() -> str:
-            ctypes.CDLL(None).fflush(None)
+            c_library.fflush(None)
             return capfd.readouterr().out
 
         return read
