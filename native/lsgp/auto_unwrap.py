@@ -289,8 +289,8 @@ def _gaining(
 
 
 def best_with_cuts(usual: Mapped, options: Options, progress: Progress | None = None) -> Mapped:
-    """The map, or one through the same cones whose islands are cut wherever that fills the square, if sparing cuts leave
-    most of it empty and two further islands, or a tenth, fill it clearly more; no seams may be marked.
+    """The map, or one through the same cones whose islands are cut wherever that fills the square, where no seams are
+    marked: if sparing cuts leave most of it empty, and two further islands, or a tenth, fill it clearly more.
 
     progress: of the map, which has no time of its own.  Raises Cancelled.
     """

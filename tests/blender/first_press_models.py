@@ -31,7 +31,7 @@ def suzanne() -> list[bpy.types.Object]:
     return [bpy.context.object]
 
 
-def _without_half(obj: bpy.types.Object) -> bpy.types.Object:
+def without_half(obj: bpy.types.Object) -> bpy.types.Object:
     """The object with what lies at negative x cut off its mesh, and the modifiers that bring it back and smooth all."""
     bm = bmesh.new()
     bm.from_mesh(obj.data)
@@ -46,7 +46,7 @@ def _without_half(obj: bpy.types.Object) -> bpy.types.Object:
 
 def half_suzanne() -> list[bpy.types.Object]:
     """One half of the head, with Mirror and Subdivision Surface still on it."""
-    return [_without_half(suzanne()[0])]
+    return [without_half(suzanne()[0])]
 
 
 def text() -> list[bpy.types.Object]:
@@ -163,7 +163,7 @@ def mirrored() -> list[bpy.types.Object]:
     bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8, radius=0.3, location=(3, 0, 0))
     small = bpy.context.object
     bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8)
-    half = _without_half(bpy.context.object)
+    half = without_half(bpy.context.object)
     small.select_set(True)
     return [half, small]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The pictures of the guide: paper with darts; cubes, heads and machine parts unwrapped; bricks. Runs inside Blender.
+"""The pictures of the guide: paper with darts; cubes, heads and machine parts unwrapped; textures. Runs inside Blender.
 
 Run by tools/demo --guide, like demo_scene.py; leaves guide-NAME-NUMBER.png, to be put together by guide_sheet.py.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from types import ModuleType
 
@@ -20,6 +21,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parent))
 import demo_picture
 import demo_scene
+import guide_textures
 from bpy_program import run_as_program
 
 FloatArray = NDArray[np.float64]
@@ -29,14 +31,10 @@ RINGS, STEPS = 30, 240
 RADIUS, SQUARES = 1.35, 7.0  # of a sheet of paper, and checker squares along it
 FLAT_PLACE, FLAT_TILT = (-2.1, -2.0, 0.0), np.radians(62)  # toward the camera
 BENT_PLACE, BENT_TILT = (1.8, -2.0, 0.3), np.radians(32)
-SEEN_FROM_A_CORNER = (Euler((np.radians(25), 0, 0)).to_matrix() @ Euler((0, 0, np.radians(20))).to_matrix()).to_4x4()
 EDGE_COLOR = "#d6336c"
 TEETH = 12
 GEAR = ((0.4, -0.25), (1.3, -0.25), (1.3, 0.25), (0.4, 0.25))  # profiles: radius and height
 FLANGE = ((0.35, -0.6), (1.2, -0.6), (1.2, -0.35), (0.6, -0.35), (0.6, 0.8), (0.35, 0.8))
-BOX = ((0, 2, 6, 4), (1, 5, 7, 3), (0, 4, 5, 1), (2, 3, 7, 6), (0, 1, 3, 2), (4, 6, 7, 5))  # of corners by x, y, z
-BRICKS = 0.3  # length on the model of a tile of bricks
-AROUND_VASE = 48
 SEEN_FROM_ABOVE = (Euler((np.radians(50), 0, 0)).to_matrix() @ Euler((0, 0, np.radians(20))).to_matrix()).to_4x4()
 
 
@@ -65,11 +63,16 @@ def main() -> None:
         obj = add()
         demo_scene.run_in_edit_mode(obj, bpy.ops.uv.cone_auto_unwrap, mark=True)
         take_picture(lsgp, obj, arguments.out / f"guide-hard-{number}.png", arguments.samples)
-    for number, direction in enumerate(("FIT", "Z")):
-        empty_scene()
-        bricks(direction)
-        demo_picture.add_studio()
-        demo_picture.render(arguments.out / f"guide-bricks-{number}.png", arguments.samples, WIDTH, WIDTH // 2)
+    rows = {
+        "bricks": (partial(guide_textures.add_bricks, "FIT"), partial(guide_textures.add_bricks, "Z")),
+        "textures": (partial(guide_textures.add_textures, lsgp, by_blender) for by_blender in (True, False)),
+    }
+    for name, pictures in rows.items():
+        for number, add_row in enumerate(pictures):
+            empty_scene()
+            add_row()
+            demo_picture.add_studio()
+            demo_picture.render(arguments.out / f"guide-{name}-{number}.png", arguments.samples, WIDTH, WIDTH // 2)
 
 
 def take_picture(lsgp: ModuleType, obj: bpy.types.Object, path: Path, samples: int) -> None:
@@ -102,7 +105,7 @@ def add_suzanne() -> bpy.types.Object:
 def add_cube() -> bpy.types.Object:
     """Seen from a corner."""
     cube = subdivided_cube()
-    cube.data.transform(SEEN_FROM_A_CORNER)
+    cube.data.transform(guide_textures.SEEN_FROM_A_CORNER)
     return cube
 
 
@@ -125,7 +128,7 @@ def add_rounded_cube() -> bpy.types.Object:
     bpy.ops.object.modifier_apply(modifier="Smooth")
     cube.modifiers.new("Subdivision", "SUBSURF").levels = 1
     bpy.ops.object.modifier_apply(modifier="Subdivision")
-    cube.data.transform(SEEN_FROM_A_CORNER)
+    cube.data.transform(guide_textures.SEEN_FROM_A_CORNER)
     return cube
 
 
@@ -159,71 +162,6 @@ def add_turned(
     mesh.transform(SEEN_FROM_ABOVE)
     demo_picture.add_object(name, mesh)
     return bpy.data.objects[name]
-
-
-def bricks(direction: str) -> None:
-    """A wall, a house and a vase in a row, tiled with bricks whose upward direction is chosen so."""
-    material = brick_material()
-    for x, add in ((-2.5, add_wall), (0.0, add_house), (2.5, add_vase)):
-        obj = add()
-        obj.data.materials.append(material)
-        options = {"preset": "TILE", "tile_fit": "SIZE", "tile_size": BRICKS, "direction": direction}
-        demo_scene.run_in_edit_mode(obj, bpy.ops.uv.cone_auto_unwrap, **options)
-        obj.data.transform(SEEN_FROM_A_CORNER)
-        obj.location = (x, -1.0, 0.0)
-
-
-def add_wall() -> bpy.types.Object:
-    return add_solid("wall", [(x, y, z) for x in (-0.95, 0.95) for y in (-0.2, 0.2) for z in (-0.7, 0.7)], BOX)
-
-
-def add_house() -> bpy.types.Object:
-    corners = [(x, y, z) for x in (-0.8, 0.8) for y in (-0.6, 0.6) for z in (-0.8, 0.2)]
-    bottom, _, *sides = BOX
-    roof = [(1, 5, 9, 8), (3, 8, 9, 7)]
-    gables = [(0, 1, 8, 3, 2), (4, 6, 7, 9, 5)]
-    walls = [side for side in sides if len({corner // 4 for corner in side}) == 2]
-    return add_solid("house", [*corners, (-0.8, 0, 0.8), (0.8, 0, 0.8)], [bottom, *walls, *roof, *gables])
-
-
-def add_solid(
-    name: str, corners: Sequence[tuple[float, float, float]], faces: Sequence[tuple[int, ...]]
-) -> bpy.types.Object:
-    mesh = bpy.data.meshes.new(name)
-    mesh.from_pydata(corners, [], faces)
-    demo_picture.add_object(name, mesh)
-    return bpy.data.objects[name]
-
-
-def add_vase() -> bpy.types.Object:
-    """Open at the top."""
-    height = np.linspace(0, 2, 24)
-    radius = 0.45 + 0.22 * np.sin(2.2 * height) + 0.05 * height
-    turn = 2 * np.pi * np.arange(AROUND_VASE) / AROUND_VASE
-    rings = radius[:, None, None] * np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=-1)
-    rings[..., 2] = height[:, None] - 1
-    index = np.arange(rings[..., 0].size).reshape(rings.shape[:2])
-    right = np.roll(index, -1, axis=1)
-    quads = np.stack([index[:-1], right[:-1], right[1:], index[1:]], axis=-1).reshape(-1, 4)
-    vase = add_solid("vase", rings.reshape(-1, 3).tolist(), [*quads.tolist(), index[0, ::-1].tolist()])
-    vase.data.shade_smooth()
-    return vase
-
-
-def brick_material() -> bpy.types.Material:
-    """Two courses of bricks per unit of texture."""
-    material = bpy.data.materials.new("bricks")
-    material.use_nodes = True
-    nodes, links = material.node_tree.nodes, material.node_tree.links
-    courses = nodes.new("ShaderNodeTexBrick")
-    sizes = {"Scale": 1.0, "Brick Width": 1.0, "Row Height": 0.5, "Mortar Size": 0.03}
-    colors = {"Color1": (0.5, 0.12, 0.06, 1), "Color2": (0.35, 0.08, 0.04, 1), "Mortar": (0.7, 0.68, 0.6, 1)}
-    for name, value in (sizes | colors).items():
-        courses.inputs[name].default_value = value
-    links.new(nodes.new("ShaderNodeUVMap").outputs["UV"], courses.inputs["Vector"])
-    links.new(courses.outputs["Color"], nodes["Principled BSDF"].inputs["Base Color"])
-    nodes["Principled BSDF"].inputs["Roughness"].default_value = 0.8
-    return material
 
 
 def dart() -> None:

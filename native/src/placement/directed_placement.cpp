@@ -14,7 +14,7 @@ namespace lsgp {
 namespace {
 
 constexpr double most_stretch = 1.2;  // that is accepted for straight courses
-constexpr double most_missed = 0.12;  // radians, of courses that count as straight
+constexpr double most_missed = 0.12;  // radians, of courses that count as straight; half as much as before does as well
 constexpr double least_gain = 0.05;   // radians
 
 }  // namespace
@@ -42,7 +42,8 @@ std::optional<PlacedCones> place_beside_directions(const PlacementTask& task, co
     PlacedCones found = place_component({task, existing, allowed, task.mirrored}, generous, unsaid, monitor);
     if (!found.reached) return std::nullopt;
     const double missed = misalignment(found);
-    if (!(missed <= most_missed && missed < misalignment(usual) - least_gain)) return std::nullopt;
+    const double before = misalignment(usual);
+    if (!(missed <= std::max(most_missed, before / 2) && missed < before - least_gain)) return std::nullopt;
     found.maps += trial.made();
     return found;
   } catch (const Error& error) {

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Plates with many holes: each is closed without a cut, for a number of solves that does not grow with them. Belts: they
-are closed where they bend into a ring."""
+"""Plates with many holes: each is closed without a cut, for a number of solves that does not grow with them. Belts:
+they are closed where they bend into a ring."""
 
 from __future__ import annotations
 

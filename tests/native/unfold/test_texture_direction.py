@@ -220,6 +220,20 @@ def test_a_sleeve_has_no_cones() -> None:
     assert len(result.cones) == 0 and result.direction_error <= np.radians(3)
 
 
+def test_a_bent_sleeve_has_no_cones_where_that_halves_the_error() -> None:
+    """Its courses tilt as it bends, so that they miss the direction in any layout."""
+    mesh = meshes.cylinder(24, 12, taper=0.25)
+    along = np.linspace(-1, 1, 13).repeat(24)
+    bent = mesh.positions + np.stack([0.6 * along**2, 0 * along, 0 * along], axis=-1)
+    surface = lsgp.Surface(bent, mesh.triangles, directions=UP)
+    usual = lsgp.place_cones(replace(surface, directions=None), lattice="square")
+    assert len(usual.cones) > 0
+    through_cones = lsgp.auto_unwrap(surface, usual.cones, usual.cone_angles, preset="tile")
+    result = lsgp.auto_unwrap(surface, preset="tile")
+    assert len(result.cones) == 0
+    assert result.direction_error <= through_cones.direction_error / 2
+
+
 def test_cones_are_not_moved_for_courses_that_bend_all_the_same() -> None:
     mesh = meshes.bumpy_sphere(3)
     plain = lsgp.Surface(mesh.positions, mesh.triangles)

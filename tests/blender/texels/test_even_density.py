@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One press gives every part of everything selected the same texel density in the world, as the modifiers show it."""
+
+import bpy
+import first_press_models
+import numpy as np
+import pytest
+
+
+def half_man():
+    (man,) = first_press_models.man()
+    return [first_press_models.without_half(man)]
+
+
+def kit():
+    """Thirty blocks, balls and cylinders of different sizes in one mesh."""
+    random = np.random.RandomState(3)
+    adders = (
+        bpy.ops.mesh.primitive_cube_add,
+        lambda **given: bpy.ops.mesh.primitive_uv_sphere_add(segments=12, ring_count=8, **given),
+        lambda **given: bpy.ops.mesh.primitive_cylinder_add(vertices=12, **given),
+    )
+    for i in range(30):
+        adders[i % 3](location=(4 * i, 0, 0), scale=random.uniform(0.3, 1.5, 3))
+    bpy.ops.object.select_all(action="SELECT")
+    bpy.ops.object.join()
+    return [bpy.context.object]
+
+
+def scaled():
+    """Three objects with one material, scaled alike in all directions, by different amounts."""
+    made, material = [], bpy.data.materials.new("Shared")
+    adders = (bpy.ops.mesh.primitive_monkey_add, bpy.ops.mesh.primitive_cube_add, bpy.ops.mesh.primitive_torus_add)
+    for i, (add, scale) in enumerate(zip(adders, (0.5, 2.0, 1.3), strict=True)):
+        add(location=(5 * i, 0, 0))
+        bpy.context.object.scale = (scale, scale, scale)
+        bpy.context.object.data.materials.append(material)
+        made.append(bpy.context.object)
+    bpy.context.view_layer.update()
+    return made
+
+
+MODELS = {
+    "half man": half_man,
+    "text": first_press_models.text,
+    "screw": first_press_models.screw,
+    "kit": kit,
+    "scaled objects": scaled,
+}
+
+
+def part_of_vertices(mesh):
+    """Connected vertices have the same number."""
+    ends = np.array([edge.vertices[:] for edge in mesh.edges])
+    part = np.arange(len(mesh.vertices))
+    while True:
+        lower = part.copy()
+        np.minimum.at(lower, ends[:, 0], part[ends[:, 1]])
+        np.minimum.at(lower, ends[:, 1], part[ends[:, 0]])
+        lower = lower[lower]
+        if (lower == part).all():
+            return part
+        part = lower
+
+
+def densities(obj):
+    """The square roots of UV area over area in the world, of each connected part as it is shown."""
+    evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh = evaluated.to_mesh()
+    mesh.calc_loop_triangles()
+    places = np.array([obj.matrix_world @ vertex.co for vertex in mesh.vertices])
+    uv = np.array([loop.uv[:] for loop in mesh.uv_layers.active.data])
+    vertices = np.array([triangle.vertices[:] for triangle in mesh.loop_triangles])
+    loops = np.array([triangle.loops[:] for triangle in mesh.loop_triangles])
+    part = part_of_vertices(mesh)[vertices[:, 0]]
+    corners, flat = places[vertices], np.pad(uv, ((0, 0), (0, 1)))[loops]
+    area, uv_area = (
+        np.bincount(part, np.linalg.norm(np.cross(of[:, 1] - of[:, 0], of[:, 2] - of[:, 0]), axis=1))
+        for of in (corners, flat)
+    )
+    evaluated.to_mesh_clear()
+    return np.sqrt(uv_area[area > 0] / area[area > 0])
+
+
+@pytest.mark.parametrize("preset", ["PAINT", "BAKE"])
+@pytest.mark.parametrize("name", MODELS)
+def test_all_parts_have_one_density(name, preset):
+    bpy.ops.object.select_all(action="DESELECT")
+    objects = MODELS[name]()
+    for obj in bpy.context.view_layer.objects:
+        obj.select_set(obj in objects)
+    assert bpy.ops.uv.cone_auto_unwrap(preset=preset) == {"FINISHED"}
+    found = np.concatenate([densities(obj) for obj in objects])
+    print("DENSITY", name, preset, len(found), found.min() / np.median(found), found.max() / np.median(found))
+    assert found == pytest.approx(np.median(found), rel=0.01)
