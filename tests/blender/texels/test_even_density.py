@@ -91,5 +91,4 @@ def test_all_parts_have_one_density(name, preset):
         obj.select_set(obj in objects)
     assert bpy.ops.uv.cone_auto_unwrap(preset=preset) == {"FINISHED"}
     found = np.concatenate([densities(obj) for obj in objects])
-    print("DENSITY", name, preset, len(found), found.min() / np.median(found), found.max() / np.median(found))
     assert found == pytest.approx(np.median(found), rel=0.01)
