@@ -18,7 +18,7 @@ struct PieceGraph {
     Array<Index> halfedges;  // in the left piece
     Index left, right;       // pieces
     Motion across;           // of the left piece, to coincide with the right one along the path
-    double cost;             // of a cut along it
+    double length, cost;     // cost: of a cut along it, its length where edges have the median factor
     Index nodes[2];
     bool is_cut;
   };
