@@ -23,20 +23,20 @@ namespace {
 
 using Kind = DistortionEnergy::Kind;
 
-constexpr int most_attempts = 24;             // to align lines
-constexpr Index attempted_triangles = 80000;  // in all attempts together; the first is always made
-constexpr int most_fits = 300;                // to find lines that contradict each other
-constexpr Index fitted_triangles = 400000;    // in all of them together
-constexpr double least_length = 0.1;          // of an edge, relative to the map without lines, that contradicts none
-constexpr double mendable_share = 0.1;        // of the triangles, flipped, that are repaired
-constexpr int most_trimmings = 4;             // of lines that fail at a few places
-constexpr int most_rings = 4;                 // of triangles from there to the next line
-constexpr Index most_defects = 24;            // vertices there, on small meshes
-constexpr double defective_share = 0.01;      // of the vertices, on others
-constexpr double least_kept = 0.25;           // of their length on a lattice
-constexpr double most_cost = 0.5;             // of rounding, relative to the area: it stretches by more than a tenth
-constexpr double compatible_share = 0.01;     // that lines may flip which contradict none
-constexpr Index few = 8;                      // that are always
+constexpr int most_attempts = 24;              // to align lines
+constexpr Index attempted_triangles = 200000;  // in all attempts together; the first is always made
+constexpr int most_fits = 300;                 // to find lines that contradict each other
+constexpr Index fitted_triangles = 400000;     // in all of them together
+constexpr double least_length = 0.1;           // of an edge, relative to the map without lines, that contradicts none
+constexpr double mendable_share = 0.1;         // of the triangles, flipped, that are repaired
+constexpr int most_trimmings = 4;              // of lines that fail at a few places
+constexpr int most_rings = 4;                  // of triangles from there to the next line
+constexpr Index most_defects = 24;             // vertices there, on small meshes
+constexpr double defective_share = 0.02;       // of the vertices, on others
+constexpr double least_kept = 0.25;            // of their length on a lattice
+constexpr double most_cost = 0.5;              // of rounding, relative to the area: it stretches by more than a tenth
+constexpr double compatible_share = 0.01;      // that lines may flip which contradict none
+constexpr Index few = 8;                       // that are always
 constexpr int unfolding_steps = 16;
 constexpr int relaxing_steps = 30;
 constexpr double least_decrease = 1e-3;           // of the energy, for which a further step is taken
@@ -239,15 +239,21 @@ bool FeatureLayout::keeps_lengths(const FeatureLine& line, const Eigen::VectorXc
   return true;
 }
 
-// All of them, or else as many as possible: lines that fail at a few places are released there, and otherwise halves
-// that fail are divided again.
+// All of them, or else as many as possible: lines that fail at a few places are released there, at first their edges
+// and where that does not help whole lines, and otherwise halves that fail are divided again.
 void FeatureLayout::add(Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end) {
   std::optional<ReleaseReason> reason = ReleaseReason::contradiction;
+  Failure failure;
+  // Halves need attempts, too.
+  const int most = left_ / 2;
   for (int trimmings = 0; reason; ++trimmings) {
     if (begin == end || left_ == 0) return;
-    Array<Index> defects;
-    reason = align(lines, begin, end, defects);
-    if (trimmings == most_trimmings || !trim(defects, lines, begin, end, &trimmed_)) break;
+    const Array<Index> before = std::exchange(failure.vertices, {});
+    reason = align(lines, begin, end, failure.vertices);
+    const bool is_stuck = failure.vertices == before;
+    if (trimmings == most || (is_stuck && failure.is_of_lines)) break;
+    failure.is_of_lines = is_stuck;
+    if (!trim(failure, lines, begin, end, &trimmed_)) break;
   }
   if (!reason) return;
   for (std::ptrdiff_t i = begin; i < end; ++i) {
@@ -282,14 +288,15 @@ bool FeatureLayout::are_few(const Array<Index>& vertices) const {
   return ssize(vertices) <= std::max(most_defects, share);
 }
 
-// Releases the edges of lines at some vertices, or where no line is, at vertices near these; whether there are any, and
-// others left. No distance between cones follows from what is left of a line.  released: gets the edges, if wanted.
-bool FeatureLayout::trim(const Array<Index>& vertices, Array<FeatureLine>& lines, std::ptrdiff_t begin,
-                         std::ptrdiff_t end, Array<FeatureLine>* released) const {
+// Releases the edges of lines, or the whole lines, at vertices where they failed, or where no line is, at vertices near
+// these; whether there are any, and others left. No distance between cones follows from what is left of a line.
+// released: gets the edges, if wanted.
+bool FeatureLayout::trim(const Failure& failure, Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end,
+                         Array<FeatureLine>* released) const {
   const HalfedgeMesh& mesh = task_.surface.mesh;
-  if (vertices.empty() || !are_few(vertices)) return false;
+  if (failure.vertices.empty() || !are_few(failure.vertices)) return false;
   PerVertex<char> is_marked(mesh.vertex_count(), 0);
-  for (const Index v : vertices) is_marked[v] = 1;
+  for (const Index v : failure.vertices) is_marked[v] = 1;
   const auto is_released = [&](Index h) { return is_marked[mesh.origin(h)] || is_marked[mesh.target(h)]; };
   const auto is_trimmed = [&](const FeatureLine& line) {
     return std::any_of(line.halfedges.begin(), line.halfedges.end(), is_released);
@@ -300,11 +307,13 @@ bool FeatureLayout::trim(const Array<Index>& vertices, Array<FeatureLine>& lines
   }
   bool has_released = false, has_others = false;
   for (std::ptrdiff_t k = begin; k < end; ++k) {
-    const FeatureLine line = std::exchange(lines[k], part_of(lines[k], [&](Index h) { return !is_released(h); }));
+    const bool is_lost = failure.is_of_lines && is_trimmed(lines[k]);
+    const auto is_left = [&](Index h) { return !is_lost && !is_released(h); };
+    const FeatureLine line = std::exchange(lines[k], part_of(lines[k], is_left));
     has_others = has_others || !lines[k].halfedges.empty();
     if (lines[k].is_whole || lines[k].halfedges.size() == line.halfedges.size()) continue;
     has_released = true;
-    if (released != nullptr) released->push_back(part_of(line, is_released));
+    if (released != nullptr) released->push_back(part_of(line, [&](Index h) { return !is_left(h); }));
   }
   return has_released && has_others;
 }
@@ -378,20 +387,22 @@ void FeatureLayout::find_loosened() {
   const Array<Index> defects = std::exchange(lattice_defects_, {});
   const int trimmings = trimmings_;
   Loosened trimmed{aligned_, start_, trimmings + 1};
-  if (trimmings >= 0 && trimmings < most_trimmings && trim(defects, trimmed.lines, 0, ssize(trimmed.lines), nullptr)) {
+  if (trimmings >= 0 && trimmings < most_trimmings &&
+      trim({defects, false}, trimmed.lines, 0, ssize(trimmed.lines), nullptr)) {
     loosened_.push_back(std::move(trimmed));
   }
   if (trimmings > 0) return;
   Loosened shortened{aligned_, start_, -1};
   Array<FeatureLine>& lines = shortened.lines;
-  const auto parts = std::remove_if(lines.begin(), lines.end(), [](const FeatureLine& line) { return line.is_part; });
-  if (parts == lines.end()) {
-    lines.resize(5 * lines.size() / 6);
-  } else {
-    lines.erase(parts, lines.end());
-  }
   // Layouts that keep less are not worth their time.
-  if (total_length(lines) > least_kept * aligned_length_) loosened_.push_back(std::move(shortened));
+  const auto is_enough = [&] { return total_length(lines) > least_kept * aligned_length_; };
+  lines.erase(std::remove_if(lines.begin(), lines.end(), [](const FeatureLine& line) { return line.is_part; }),
+              lines.end());
+  if (lines.size() == aligned_.size() || !is_enough()) {
+    lines = aligned_;
+    lines.resize(5 * lines.size() / 6);
+  }
+  if (is_enough()) loosened_.push_back(std::move(shortened));
 }
 
 bool FeatureLayout::loosen() {

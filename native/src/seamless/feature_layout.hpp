@@ -67,6 +67,12 @@ class FeatureLayout {
     double cost;
   };
 
+  // Where lines could not be aligned.
+  struct Failure {
+    Array<Index> vertices;
+    bool is_of_lines = false;  // releasing their edges there has not helped
+  };
+
   Array<FeatureLine> compatible(const Array<FeatureLine>& lines);
   void add_compatible(const Array<FeatureLine>& lines, const Index* begin, const Index* end, Array<char>& chosen);
   void add_faultless(const Array<FeatureLine>& lines, Index begin, Index end, Array<char>& chosen);
@@ -80,7 +86,7 @@ class FeatureLayout {
   void find_loosened();
   double length_along(const Array<FeatureLine>& lines, const Eigen::VectorXcd& position) const;
   FeatureLine part_of(const FeatureLine& line, const std::function<bool(Index)>& is_in) const;
-  bool trim(const Array<Index>& vertices, Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end,
+  bool trim(const Failure& failure, Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end,
             Array<FeatureLine>* released) const;
   // None if all of them run along axes then, otherwise why they do not.  defects: vertices where the map fails.
   std::optional<ReleaseReason> align(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end,
