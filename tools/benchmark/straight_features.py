@@ -3,7 +3,7 @@
 
     PYTHONPATH=tests python tools/benchmark/straight_features.py [--preset tile] [FOLDER]
 
-Features are all edges at which the surface bends by 30 degrees or more. Their sides are measured anew from the
+Features are all edges at which the surface bends by 40 degrees or more. Their sides are measured anew from the
 coordinates as float32 stores them: one is along u or v if the other coordinate of its ends is the same number. L2
 stretch is that of the same preset without features and straight sides, and with features. FOLDER holds OBJ or OFF
 files (default: ../shared/meshes and its folder hard); those that are missing are left out. Needs the lsgp wheel and the
@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from straight_sides import GENERATED, SHARED, models
 from zoo import closed, swept
 
-ANGLE = np.radians(30)
+ANGLE = np.radians(40)
 REASONS = ("curved", "contradiction", "stretch", "lattice")
 COLUMNS = ("cones", "along u or v", "off it", *REASONS, "L2 without", "with", "flips", "seconds")
 

@@ -7,7 +7,7 @@
 
 #include "base/checkpoint.hpp"
 #include "base/union_find.hpp"
-#include "split/face_graph.hpp"
+#include "cut/cut_cost.hpp"
 
 namespace lsgp {
 
@@ -88,7 +88,6 @@ class Builder {
   Builder(const MetricMesh& surface, const ComponentMap& map, double resolution)
       : mesh_(surface.mesh),
         geometry_(surface.geometry),
-        factor_(relative_cut_factors(surface.mesh)),
         map_(map),
         corners_(at_corners(map.cut_mesh, map.position)),
         resolution_(resolution),
@@ -124,17 +123,13 @@ class Builder {
                           graph_.piece_of[twin / 3],
                           {},
                           0,
-                          0,
                           {node(traced.tail), node(traced.head)},
                           cut != none};
     if (cut != none) {
       const double angle = (map_.cut_graph.runs_forward[first] ? 1 : -1) * (*map_.rotation)[cut];
       path.across = {angle, corners_[next(twin)] - std::polar(1.0, angle) * corners_[first]};
     }
-    for (const Index h : traced.halfedges) {
-      path.length += geometry_.length[h];
-      path.cost += geometry_.length[h] * (factor_.empty() ? 1 : factor_[h]);
-    }
+    for (const Index h : traced.halfedges) path.cost += cut_cost({mesh_, geometry_}, h);
     add_boundaries(traced.halfedges);
     path.halfedges = std::move(traced.halfedges);
     graph_.paths.push_back(std::move(path));
@@ -155,7 +150,6 @@ class Builder {
 
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
-  const PerHalfedge<double> factor_;  // of edges as cuts
   const ComponentMap& map_;
   const Eigen::VectorXcd corners_;
   const double resolution_;

@@ -18,7 +18,7 @@ struct PieceGraph {
     Array<Index> halfedges;  // in the left piece
     Index left, right;       // pieces
     Motion across;           // of the left piece, to coincide with the right one along the path
-    double length, cost;     // cost: of a cut along it, its length where edges have the median factor
+    double cost;             // of a cut along it
     Index nodes[2];
     bool is_cut;
   };

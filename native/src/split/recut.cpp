@@ -20,11 +20,11 @@ namespace {
 constexpr double cells_of_layout = 32768;  // of the raster, in the layout's area
 // Weights of the cuts' relative cost in the score, one descent each. Descents with cheap cuts separate pieces that
 // would otherwise remain entangled.
-constexpr double weights[] = {1.5, 0.3, 0.1, 0.03, 0.7, 1.5};
+constexpr double weights[] = {1.5, 0.3, 0.7, 1.5};
 // Added to the score for any overlap, since even a small one requires another island; at this small share of the
 // layout, half of that is added.
 constexpr double any_overlap = 0.2, small_overlap = 1e-4;
-constexpr double most_added = 0.25;       // cost, of that of average cuts as long as the given ones, or of these
+constexpr double largest_cost = 1.25;     // of the given cuts
 constexpr double least_gain = 1e-4;       // of the score
 constexpr double most_work = 1e7;         // sides of boundary polygons visited
 constexpr double operations_a_side = 30;  // of a boundary polygon on the raster
@@ -99,7 +99,7 @@ class Recutter {
   PerPart<Circle> circles_;         // around the pieces where they were at first
   State now_;
   Array<char> is_open_;  // (paths) in the current state
-  double first_cost_ = 0, largest_cost_ = 0;
+  double first_cost_ = 0;
   double work_ = 0;  // so far, in sides of boundary polygons
 };
 
@@ -114,9 +114,6 @@ Recutter::Recutter(PieceGraph graph, double area)
   now_.motion.resize(graph_.piece_count());
   span();
   first_cost_ = cost_of(now_.in_tree);
-  double length = 0;
-  for (const Path& path : graph_.paths) length += path.is_cut ? path.length : 0;
-  largest_cost_ = first_cost_ + most_added * std::max(first_cost_, length);
 }
 
 // Connects the pieces of each island along paths that are not cut.
@@ -268,7 +265,7 @@ Recutter::Exchange Recutter::best_exchange(Index opened, double weight, Array<In
     in_tree[p] = 1;
     const double cost = cost_of(in_tree);
     in_tree[p] = 0;
-    if (cost > largest_cost_ || !(score(overlap, cost, weight) < least)) continue;
+    if (cost > largest_cost * first_cost_ || !(score(overlap, cost, weight) < least)) continue;
     least = score(overlap, cost, weight);
     best = {p, motion, overlap, cost};
   }
