@@ -122,9 +122,9 @@ def auto_unwrap(
     creases: whether hard surfaces may be cut at their creases, as by `crease_borders`, which takes `sharp`; and with
         half of the curvature on creases, or few corners, where that halves the excess of L2 stretch over 1, and removes
         0.004 of it for each further island (without further ones: a fifth of it), and fills the square at most three
-        tenths less, where it exceeds 0.002; or where less than three fifths of the square are filled, and at a cost of
-        at most 0.002 of L2 stretch a tenth more with them, a quarter for one further island, or two fifths for two (or
-        a tenth; with "bake" any number). The latter two only without cones, `count` or pins.
+        tenths less, where it exceeds 0.002; or where less than three fifths of the square are filled, and at no cost of
+        stretch a tenth more with them, a quarter for one further island, or two fifths for two (or a tenth; with "bake"
+        any number). The latter two only without cones, `count` or pins.
     pack: "tight": as by `pack_islands`; "shelves": in rows; None: tight if `packer_name` returns a packer. Layouts that
         are seamless, pinned or in UDIM tiles at a texel density are never packed.
     margin: with "tight", around each island, as a fraction of the square's side; None: 4 / 1024, before the layout gets
@@ -163,11 +163,7 @@ def auto_unwrap(
         return best_map(solver, found, chosen, pins, share_of(share, PLACING, 1.0))
 
     with packing_once():
-        mapping = share_of(progress, 0.0, PACKING if packs else 1.0)
-        best = best_at_creases(choices, chosen, make, mapping)
-        if pins is None:
-            best = best_with_cuts(best, chosen, mapping)
-        surface, _, result = best
+        surface, _, result = best_at_creases(choices, chosen, make, share_of(progress, 0.0, PACKING if packs else 1.0))
         if packs:
             result = laid_out(surface, result, packing, texels, share_of(progress, PACKING, 1.0)).result
         elif texels is not None:
@@ -286,26 +282,6 @@ def _gaining(
             return (opened, *found) if gain.may_replace(found[1], usual[2], end) else usual
         parts = list(compress(parts, gains))
     return usual
-
-
-def best_with_cuts(usual: Mapped, options: Options, progress: Progress | None = None) -> Mapped:
-    """The map, or one through the same cones whose islands are cut wherever that fills the square, where no seams are
-    marked: if sparing cuts leave most of it empty, and two further islands, or a tenth, fill it clearly more.
-
-    progress: of the map, which has no time of its own.  Raises Cancelled.
-    """
-    surface, completed, result = usual
-    if options.compact != "sparing" or len(surface.seams):
-        return usual
-    end = share_of(progress, 1.0, 1.0)
-    gain = FullerSquare(surface, options.square_share, keeps_few=True)
-    if not gain.may_gain_by_cuts(result, end):
-        return usual
-    further = replace(options, compact="full")
-    cut = or_none(lambda: _map_through(Solver(surface), completed, further, None, end))
-    if cut is None or not gain.may_replace(cut, result, end):
-        return usual
-    return surface, completed, completed.told(cut, further)
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,16 +14,16 @@ from .map_comparison import defects, island_count, least_filled, measure_of_fill
 from .triangles import singular_values, triangle_areas
 
 # Borders are worth their islands if they remove half of the stretch, and so much of it for each further island; a fifth
-# of it without further ones. Stretch, and more stretch, of less than this is not seen.
+# of it without further ones. What is stretched less than this has none that one sees.
 _SEEN_EXCESS = 0.002
 _MOST_EXCESS = 0.5
 _MOST_EXCESS_WITHOUT_ISLANDS = 0.8
 _EXCESS_FOR_ISLAND = 0.004
 _LEAST_FILLED_WITH_BORDERS = 0.7
-# More of the square than the first is rarely filled. Less than the second is worth cuts across smooth surfaces, too: a
-# sheet that is twice as long as wide fills more, and stays whole.
+# More of the square than this is rarely filled.
 _WELL_FILLED = 0.6
-_MOSTLY_EMPTY = 0.45
+# Of the stretch of maps that are the same but for rounding.
+_ROUNDING = 1e-6
 
 
 class BorderGain(Protocol):
@@ -81,7 +81,7 @@ class LessStretch:
 
 @dataclass(frozen=True, slots=True)
 class FullerSquare:
-    """Maps of the surface that are not visibly worse and fill the square clearly more.
+    """Maps of the surface that are no worse and fill the square clearly more.
 
     keeps_few: whether only two islands more, or a tenth more of many, are acceptable. Others: as of `LessStretch`.
     """
@@ -92,28 +92,22 @@ class FullerSquare:
 
     def may_gain(self, usual: Result, components: Sequence[IndexArray], progress: Progress | None) -> list[bool]:
         """All of them, if more than two fifths of the square are empty."""
-        return [self._fills_less(_WELL_FILLED, usual, progress)] * len(components)
-
-    def may_gain_by_cuts(self, usual: Result, progress: Progress | None) -> bool:
-        """Whether most of the square is empty, by more than a sheet twice as long as wide leaves empty."""
-        return self._fills_less(_MOSTLY_EMPTY, usual, progress)
+        filled = measure_of_filling(usual, self.square_share, progress)
+        return [filled(usual) < _WELL_FILLED] * len(components)
 
     def gains(self, bordered: Result, usual: Result, components: Sequence[IndexArray]) -> list[bool]:
-        """Where borders cost no stretch that one sees: how islands lie in the square depends on all of them."""
+        """Where borders cost no stretch: how islands lie in the square depends on all of them."""
         stretches = (_stretches(self.surface, result, components) for result in (bordered, usual))
-        return [one <= other + _SEEN_EXCESS for one, other in zip(*stretches, strict=True)]
+        return [one <= (1 + _ROUNDING) * other for one, other in zip(*stretches, strict=True)]
 
     def may_replace(self, bordered: Result, usual: Result, progress: Progress | None) -> bool:
         """Where the usual map, whose square is emptier, does not make up for that by fewer islands."""
         more = island_count(bordered) - island_count(usual)
         has_few = not self.keeps_few or more <= worthwhile(usual)
-        if not (has_few and _is_as_good(bordered, usual, usual.distortion.l2_stretch + _SEEN_EXCESS)):
+        if not (has_few and _is_as_good(bordered, usual, (1 + _ROUNDING) * usual.distortion.l2_stretch)):
             return False
         filled = measure_of_filling(usual, self.square_share, progress)
         return filled(usual) < least_filled(-more, bordered) * filled(bordered)
-
-    def _fills_less(self, share: float, usual: Result, progress: Progress | None) -> bool:
-        return measure_of_filling(usual, self.square_share, progress)(usual) < share
 
 
 def _is_as_good(bordered: Result, usual: Result, most_l2: float) -> bool:

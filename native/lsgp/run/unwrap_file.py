@@ -22,7 +22,6 @@ from ..auto_unwrap import (
     GivenCones,
     best_at_creases,
     best_map,
-    best_with_cuts,
     crease_choices,
     possible_cones,
     share_of,
@@ -241,9 +240,6 @@ def _map(
         run.add_seconds(result.stage_seconds)
         return completed, result
 
-    best = best_at_creases(choices, options, make, progress)
-    if args.preset is not None:
-        best = best_with_cuts(best, options, progress)
-    run.surface, completed, result = best
+    run.surface, completed, result = best_at_creases(choices, options, make, progress)
     run.placement = completed.placement
     return file, result

@@ -174,25 +174,9 @@ def test_a_fuller_square_is_worth_few_islands(
     for keeps_few, may in ((True, paint), (False, bake)):
         gain = FullerSquare(cube, 1.0, keeps_few)
         assert gain.may_replace(bordered, usual, None) == may
-        for more, is_seen in ((0.0019, False), (0.0021, True)):
-            stretched = replace(result.distortion, l2_stretch=result.distortion.l2_stretch + more)
-            assert gain.may_replace(replace(bordered, distortion=stretched), usual, None) == (may and not is_seen)
+        stretched = replace(result.distortion, l2_stretch=1.001 * result.distortion.l2_stretch)
+        assert not gain.may_replace(replace(bordered, distortion=stretched), usual, None)
         assert not gain.may_replace(replace(bordered, flipped=np.array([3], np.int32)), usual, None)
-
-
-@pytest.mark.parametrize(("length", "islands"), [(12, 1), (15, 2), (18, 2)])
-def test_paint_cuts_a_sheet_where_most_of_the_square_would_be_empty(length: int, islands: int) -> None:
-    pytest.importorskip("xatlas")
-    sheet = surface(meshes.grid(length, 6))
-    told: list[float] = []
-    found = lsgp.auto_unwrap(sheet, progress=told.append)
-    assert found.island.max() + 1 == islands
-    assert told[-1] == 1.0 and told == sorted(told)
-    seams = meshes.edges_of(sheet.triangles)[:1]
-    options = replace(lsgp.preset_options("paint"), compact="off")
-    for whole in (lsgp.auto_unwrap(replace(sheet, seams=seams)), lsgp.auto_unwrap(sheet, options=options)):
-        assert whole.island.max() == 0
-        assert islands == 1 or uv_area(found.corner_uv) > uv_area(whole.corner_uv) / 0.8
 
 
 def test_each_component_is_judged_by_itself() -> None:
