@@ -364,14 +364,16 @@ class CompletedCones:
         return replace(options, mirrored_cuts=options.mirrored_cuts or self.is_symmetric)
 
     def told(self, result: Result, options: Options) -> Result:
-        """The result of a map through these cones with the applicable warnings of their placement."""
+        """The result of a map through these cones with the applicable warnings of it and of their placement."""
+        # Presets have cuts mirrored where that is possible; nobody has to be told where it is not.
+        of_map = [finding for finding in result.warnings if finding.code != "CUTS_NOT_MIRRORED"]
         if self.placement is None:
-            return result
+            return replace(result, warnings=of_map)
         findings = self.placement.warnings
         if self.by_target and options.mode == "low-stretch" and result.distortion.l2_stretch <= TARGET:
             # It speaks of the conformal map, and this one reaches the target.
             findings = [finding for finding in findings if finding.code != "PLACEMENT_NOT_REACHED"]
-        return replace(result, warnings=joined_warnings(findings, result.warnings))
+        return replace(result, warnings=joined_warnings(findings, of_map))
 
 
 def complete_cones(

@@ -35,7 +35,6 @@ HIGH_DISTORTION = "HIGH_DISTORTION"
 # Stretch from which on a map is of little use.
 NEEDS_CONES = 1.5
 GRID_REFINED = "GRID_REFINED"
-CUTS_NOT_MIRRORED = "CUTS_NOT_MIRRORED"
 TARGET_MISSED = "PLACEMENT_NOT_REACHED"
 # Of an island: below, nobody sees it.
 _SEEN_STRETCH = 1.1
@@ -246,7 +245,7 @@ def unwrap(task: UnwrapTask, progress: Progress | None, solver: lsgp.Solver | No
 
 def _completed(task: UnwrapTask, cones: ConeAngles, pins: lsgp.Pins | None, progress: Progress | None) -> lsgp.Result:
     """The map through these cones and those placed besides.  Raises LsgpError."""
-    result = native.lsgp.auto_unwrap(
+    return native.lsgp.auto_unwrap(
         task.region.surface,
         cones.cones,
         cones.angles,
@@ -260,8 +259,6 @@ def _completed(task: UnwrapTask, cones: ConeAngles, pins: lsgp.Pins | None, prog
         pack="shelves",  # the islands of all objects are packed together, afterward
         progress=progress,
     )
-    # Nobody chose that cuts be mirrored: they are where it is possible.
-    return replace(result, warnings=[f for f in result.warnings if f.code != CUTS_NOT_MIRRORED])
 
 
 def _with_one_stretch(result: lsgp.Result, task: UnwrapTask) -> list[lsgp.Finding]:
