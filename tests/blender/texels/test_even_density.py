@@ -12,6 +12,13 @@ def half_man():
     return [first_press_models.without_half(man)]
 
 
+def screw():
+    """A cube beside it, so that there are two parts to compare."""
+    parts = first_press_models.screw()
+    bpy.ops.mesh.primitive_cube_add(location=(5, 0, 0))
+    return [*parts, bpy.context.object]
+
+
 def kit():
     """Thirty blocks, balls and cylinders of different sizes in one mesh."""
     random = np.random.RandomState(3)
@@ -43,7 +50,7 @@ def scaled():
 MODELS = {
     "half man": half_man,
     "text": first_press_models.text,
-    "screw": first_press_models.screw,
+    "screw": screw,
     "kit": kit,
     "scaled objects": scaled,
 }
