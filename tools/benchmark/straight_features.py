@@ -28,8 +28,8 @@ ANGLE = np.radians(40)
 REASONS = ("curved", "contradiction", "stretch", "lattice")
 COLUMNS = ("cones", "along u or v", "off it", *REASONS, "L2 without", "with", "flips", "seconds")
 
-GENERATED |= {
-    "spool": closed.lathe(
+MESHES = GENERATED | {
+    "turned spool": closed.lathe(
         np.array([1.0, 1.0, 0.5, 0.5, 1.0, 1.0]), np.array([0.0, 0.2, 0.4, 1.4, 1.6, 1.8]), 32, caps=(True, True)
     ),
     "frustum": closed.lathe(np.array([1.0, 0.6]), np.array([0.0, 1.0]), 32, caps=(True, True)),
@@ -80,7 +80,7 @@ def main() -> None:
     arguments = parser.parse_args()
     print(f"| | {' | '.join(COLUMNS)} |")
     print("|---|" + "--:|" * len(COLUMNS))
-    for name, surface in models(arguments.folder):
+    for name, surface in models(arguments.folder, MESHES):
         print(f"| {name} | {' | '.join(cells(surface, arguments.preset))} |", flush=True)
 
 

@@ -12,7 +12,7 @@ MODEL-without.png and MODEL-with.png. Needs the lsgp wheel and the tests' scipy.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -44,12 +44,12 @@ GENERATED = {
 }
 
 
-def models(folder: Path) -> Iterator[tuple[str, lsgp.Surface]]:
+def models(folder: Path, generated: Mapping[str, Mesh] = GENERATED) -> Iterator[tuple[str, lsgp.Surface]]:
     for name in PARTS:
         for file in (folder / f"{name}.obj", folder / f"{name}.off", folder / "hard" / f"{name}.off"):
             if file.is_file():
                 yield name, lsgp.read_mesh_file(str(file)).surface()
-    for name, mesh in GENERATED.items():
+    for name, mesh in generated.items():
         yield name, lsgp.Surface(mesh.positions, mesh.triangles)
 
 

@@ -312,8 +312,8 @@ def _with_size_of_tiles(result: lsgp.Result, task: UnwrapTask) -> list[lsgp.Find
     why = "a whole number of them has to fit between cones. Choose smaller tiles, which are rounded less."
     if len(others) < len(result.warnings):
         why = "there is no layout with larger ones. Use fewer cones, or choose smaller tiles."
-    difference = f"{abs(larger):.0%}".replace("%", f" % {'larger' if larger > 0 else 'smaller'}")
-    message = f"Tiles are {difference} on the surface than the size chosen, since {why}"
+    comparison = "larger" if larger > 0 else "smaller"
+    message = f"Tiles are {100 * abs(larger):.0f} % {comparison} on the surface than the size chosen, since {why}"
     return [*others, native.lsgp.Finding("TILE_SIZE_DIFFERS", message)]
 
 

@@ -29,8 +29,8 @@ constexpr int most_fits = 300;                 // to find lines that contradict 
 constexpr Index fitted_triangles = 400000;     // in all of them together
 constexpr double least_length = 0.1;           // of an edge, relative to the map without lines, that contradicts none
 constexpr double mendable_share = 0.1;         // of the triangles, flipped, that are repaired
-constexpr int most_trimmings = 4;              // of lines that fail at a few places
-constexpr int most_rings = 4;                  // of triangles from there to the next line
+constexpr int most_trimmings = 4;              // of lines whose layout on the lattice fails at a few places
+constexpr int most_rings = 4;                  // of triangles from where lines fail to the next line
 constexpr Index most_defects = 24;             // vertices there, on small meshes
 constexpr double defective_share = 0.02;       // of the vertices, on others
 constexpr double least_kept = 0.25;            // of their length on a lattice
@@ -308,12 +308,12 @@ bool FeatureLayout::trim(const Failure& failure, Array<FeatureLine>& lines, std:
   bool has_released = false, has_others = false;
   for (std::ptrdiff_t k = begin; k < end; ++k) {
     const bool is_lost = failure.is_of_lines && is_trimmed(lines[k]);
-    const auto is_left = [&](Index h) { return !is_lost && !is_released(h); };
-    const FeatureLine line = std::exchange(lines[k], part_of(lines[k], is_left));
+    const auto is_gone = [&](Index h) { return is_lost || is_released(h); };
+    const FeatureLine line = std::exchange(lines[k], part_of(lines[k], [&](Index h) { return !is_gone(h); }));
     has_others = has_others || !lines[k].halfedges.empty();
     if (lines[k].is_whole || lines[k].halfedges.size() == line.halfedges.size()) continue;
     has_released = true;
-    if (released != nullptr) released->push_back(part_of(line, [&](Index h) { return !is_left(h); }));
+    if (released != nullptr) released->push_back(part_of(line, is_gone));
   }
   return has_released && has_others;
 }
