@@ -153,7 +153,7 @@ def _primitives(document: Document) -> Iterator[_Primitive]:
                 raise malformed("triangle strips and fans are not read; export triangles.")
             if mode != TRIANGLES or "POSITION" not in content["attributes"]:
                 continue
-            count = document.content["accessors"][content["attributes"]["POSITION"]]["count"]
+            count = len(document.rows(content["attributes"]["POSITION"]))
             vertices = np.arange(count)
             if "indices" in content:
                 vertices = document.numbers(content["indices"])[:, 0].astype(np.int64)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -248,10 +249,17 @@ MALFORMED = {
 
 @pytest.mark.parametrize("name", MALFORMED)
 def test_malformed_documents_are_refused(tmp_path: Path, name: str) -> None:
+    """And nothing is allocated for what a file only claims to have."""
     path = in_file(tmp_path, MALFORMED[name], "a.glb" if name.startswith("GLB") else "a.gltf")
-    with pytest.raises(InputError) as caught:
-        read_mesh_file(path)
+    tracemalloc.start()
+    try:
+        with pytest.raises(InputError) as caught:
+            read_mesh_file(path)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
     assert caught.value.code == "MALFORMED_FILE"
+    assert peak < 1e6
 
 
 def test_nodes_that_are_their_own_children_end(tmp_path: Path) -> None:
