@@ -2,15 +2,16 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from subprocess import CompletedProcess
 
 import pytest
 from batch_meshes import off_text
 from lsgp.batch.records import Record
 from meshes import bumpy_sphere, cube, grid, moebius_strip
+from this_process import run_command
 
 
 @pytest.fixture
@@ -30,14 +31,9 @@ def library(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def batch(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
-    """Runs `python -m lsgp batch` with the given arguments in the test's folder."""
-
-    def run(*arguments: object) -> subprocess.CompletedProcess[str]:
-        command = [sys.executable, "-m", "lsgp", "batch", *map(str, arguments)]
-        return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
-
-    return run
+def batch(tmp_path: Path) -> Callable[..., CompletedProcess[str]]:
+    """Runs `lsgp batch` with the given arguments in the test's folder, in this process; its workers are others."""
+    return partial(run_command, tmp_path, "batch")
 
 
 @pytest.fixture

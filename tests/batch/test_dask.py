@@ -92,9 +92,9 @@ def test_a_worker_killed_in_the_middle_loses_nothing(cluster: Cluster, lines_in,
     assert {path.name: path.read_bytes() for path in out.glob("*.obj")} == alone
 
 
-def test_wrong_usage(many: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_usage(library: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr("lsgp.batch.dask_engine.CONNECT_SECONDS", 1)
-    arguments = ["batch", str(many), "--out", str(many.parent / "out")]
+    arguments = ["batch", str(library), "--out", str(library.parent / "out")]
     assert main([*arguments, "--scheduler", "tcp://127.0.0.1:1"]) == 2
     assert "no Dask scheduler answers at 'tcp://127.0.0.1:1'" in capsys.readouterr().err
     assert main([*arguments, "--scheduler", "tcp://127.0.0.1:1", "--jobs", "2"]) == 2

@@ -3,14 +3,13 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from command import Ended
 from polygon_meshes import bumpy_ball, cube, cube_corners, obj_text
+from this_process import run_command
 
 SHARED = Path(os.environ.get("LSGP_SHARED") or Path(__file__).resolve().parents[3] / "shared")
 # On all systems: an OBJ file keeps its own, and one made of another format ends lines so.
@@ -19,11 +18,10 @@ LINE_END = "\n"
 
 @pytest.fixture
 def lsgp(tmp_path: Path) -> Callable[..., Ended]:
-    """Runs `python -m lsgp` with the given arguments in the test's folder."""
+    """Runs a command line in the test's folder, in this process."""
 
     def run(*arguments: object) -> Ended:
-        command = [sys.executable, "-m", "lsgp", *map(str, arguments)]
-        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+        done = run_command(tmp_path, *arguments)
         return Ended(done.returncode, done.stdout, done.stderr, tmp_path)
 
     return run

@@ -92,7 +92,7 @@ PRINT_ANSWERS = "import json, test_repeatability as t; print(json.dumps(t.answer
 
 @pytest.mark.parametrize("threads", ["1", "2", "4"])
 def test_processes_with_any_number_of_threads(threads: str) -> None:
-    numbers = {name: threads for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
+    numbers = {name: threads for name in ("LSGP_THREADS", "OPENBLAS_NUM_THREADS")}
     assert json.loads(in_another_process(PRINT_ANSWERS, **numbers)) == answers()
 
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import json
-import os
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -38,12 +38,9 @@ def packer() -> None:
 
 
 @pytest.fixture
-def without_packer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As if it were not installed: a module of that name that cannot be imported comes first."""
-    folder = tmp_path / "first"
-    folder.mkdir()
-    (folder / "xatlas.py").write_text("raise ImportError\n")
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(folder), *filter(None, [os.environ.get("PYTHONPATH")])]))
+def without_packer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As if it were not installed."""
+    monkeypatch.setitem(sys.modules, "xatlas", None)
 
 
 def layout(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

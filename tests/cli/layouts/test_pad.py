@@ -17,7 +17,7 @@ SIZE = 96
 @pytest.fixture
 def folder(lsgp, ball_files: Path) -> Path:
     """mapped.obj, and images of it full of noise."""
-    assert lsgp("unwrap", "ball.obj", "-o", "mapped.obj", "--preset", "bake").code == 0
+    assert lsgp("unwrap", "ball.obj", "-o", "mapped.obj", "--cones", "cones.json").code == 0
     noise = np.random.default_rng(4).random((SIZE, SIZE, 4))
     for name, kind, channels in [
         *[("gray8.png", "uint8", 1), ("rgb8.png", "uint8", 3), ("rgba16.png", "uint16", 4), ("rgb16.png", "uint16", 3)],
@@ -102,7 +102,7 @@ def test_refusals_write_nothing(lsgp, folder: Path, arguments: tuple, code: int,
     (folder / "text.png").write_text("no image")
     (folder / "empty.png").touch()
     if "tiled.obj" in arguments:
-        lsgp("unwrap", "ball.obj", "-o", "tiled.obj", "--preset", "tile")
+        lsgp("unwrap", "ball.obj", "-o", "tiled.obj", "--cones", "cones.json", "--seamless", "--tiles", 4)
     (folder / "c-mip2.png").write_bytes((folder / "rgb8.png").read_bytes())
     before = {path: path.read_bytes() for path in folder.iterdir()}
     done = lsgp("pad", *arguments)

@@ -35,7 +35,7 @@ def test_another_process_with_other_threads_gives_the_same_bytes(threads: str) -
         "from map_checks import digest, unwrap\n"
         "for mesh in t.SURFACES.values(): print(digest(unwrap(mesh)), digest(unwrap(mesh, unfold='spectral')))\n"
     )
-    printed = in_another_process(script, OMP_NUM_THREADS=threads, PYTHONHASHSEED=threads)
+    printed = in_another_process(script, LSGP_THREADS=threads, PYTHONHASHSEED=threads)
     expected = [f"{digest(unwrap(m))} {digest(unwrap(m, unfold='spectral'))}" for m in SURFACES.values()]
     assert printed.split("\n")[:-1] == expected
 
