@@ -238,17 +238,17 @@ def test_suzanne_with_seams_from_islands_gets_the_same_islands_again(mode, in_ed
     seams = seams_of(suzanne)
     if in_edit_mode:
         edit(suzanne)
-    assert bpy.ops.uv.cone_unwrap(seams=mode, overlaps="KEEP") == {"FINISHED"}
+    assert bpy.ops.uv.cone_unwrap(seams=mode, overlaps="KEEP", pack=False) == {"FINISHED"}
     assert faces_by_island(suzanne) == islands
     assert UvMap(suzanne).split_edges() == seams == seams_of(suzanne)
 
 
 def test_of_suzannes_islands_only_those_that_overlap_themselves_are_split():
     suzanne, islands = add_suzanne_with_seams_from_islands()
-    bpy.ops.uv.cone_unwrap(seams="BOUNDARY", overlaps="KEEP")
+    bpy.ops.uv.cone_unwrap(seams="BOUNDARY", overlaps="KEEP", pack=False)
     overlapping = UvMap(suzanne).overlapping()
     assert overlapping
-    bpy.ops.uv.cone_unwrap(seams="BOUNDARY", overlaps="SPLIT")
+    bpy.ops.uv.cone_unwrap(seams="BOUNDARY", overlaps="SPLIT", pack=False)
     now = faces_by_island(suzanne)
     assert not UvMap(suzanne).overlapping()
     assert islands - now == {island for island in islands if island & overlapping}
