@@ -125,6 +125,33 @@ Complex factor_of(Index variable, Complex of_unknown) {
   return variable % 2 == 0 ? of_unknown : of_unknown * Complex(0, 1);
 }
 
+Sum in_variables(const CoordinateForm& form, const Reduction& reduction) {
+  Sum out;
+  for (const auto& [copy, factor] : form) {
+    reduction.for_each_term(copy, [&, factor = factor](const Term& term) {
+      for (const Index variable : {2 * term.unknown, 2 * term.unknown + 1}) {
+        out[variable] += factor_of(variable, factor * term.coefficient).imag();
+      }
+    });
+  }
+  return out;
+}
+
+// Both coordinates of held copies, the fixed ones, and those of edges across their directions.
+Array<CoordinateForm> coordinates_at_zero(const CutMesh& cut_mesh, const DirectedEdges& edges) {
+  Array<CoordinateForm> out;
+  for (const Index copy : edges.held) {
+    for (const Complex factor : {Complex(1), Complex(0, 1)}) out.push_back({{copy, factor}});
+  }
+  out.insert(out.end(), edges.fixed.begin(), edges.fixed.end());
+  for (Index i = 0; i < ssize(edges.halfedges); ++i) {
+    const Index h = edges.halfedges[i];
+    const Complex back = std::conj(edges.directions[i]);
+    out.push_back({{cut_mesh.copy_of_corner[next(h)], back}, {cut_mesh.copy_of_corner[h], -back}});
+  }
+  return out;
+}
+
 }  // namespace
 
 double value_of(const CoordinateForm& form, const Eigen::VectorXcd& position) {
@@ -134,35 +161,9 @@ double value_of(const CoordinateForm& form, const Eigen::VectorXcd& position) {
 }
 
 DegreesOfFreedom free_along(const CutSurface& surface, const Reduction& reduction, const DirectedEdges& edges) {
-  const CutMesh& cut_mesh = surface.cut_mesh;
   Elimination elimination(2 * reduction.unknown_count);
-  // Adds the imaginary part of a multiple of a position.
-  const auto add = [&](Index copy, Complex factor, Sum& sum) {
-    reduction.for_each_term(copy, [&](const Term& term) {
-      for (const Index variable : {2 * term.unknown, 2 * term.unknown + 1}) {
-        sum[variable] += factor_of(variable, factor * term.coefficient).imag();
-      }
-    });
-  };
-  for (const Index copy : edges.held) {
-    for (const Complex factor : {Complex(1), Complex(0, 1)}) {
-      Sum coordinate;
-      add(copy, factor, coordinate);
-      elimination.add(coordinate);
-    }
-  }
-  for (const CoordinateForm& form : edges.fixed) {
-    Sum coordinate;
-    for (const auto& [copy, factor] : form) add(copy, factor, coordinate);
-    elimination.add(coordinate);
-  }
-  for (Index i = 0; i < ssize(edges.halfedges); ++i) {
-    const Index h = edges.halfedges[i];
-    Sum across;  // the component of the edge across its direction
-    const Complex back = std::conj(edges.directions[i]);
-    add(cut_mesh.copy_of_corner[next(h)], back, across);
-    add(cut_mesh.copy_of_corner[h], -back, across);
-    elimination.add(across);
+  for (const CoordinateForm& zero : coordinates_at_zero(surface.cut_mesh, edges)) {
+    elimination.add(in_variables(zero, reduction));
   }
 
   DegreesOfFreedom out;
@@ -179,7 +180,7 @@ DegreesOfFreedom free_along(const CutSurface& surface, const Reduction& reductio
     }
   }
   out.displacement.begin.assign(1, 0);
-  for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
+  for (Index copy = 0; copy < surface.cut_mesh.copy_count(); ++copy) {
     std::map<Index, Complex> moved;
     reduction.for_each_term(copy, [&](const Term& term) {
       if (is_whole[term.unknown]) {
