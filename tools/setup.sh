@@ -110,6 +110,13 @@ install_in_python() {
     { [ -x "$folder/bin/python" ] || "$python" -m venv "$folder"; } && "$folder/bin/pip" install -q "$@"
 }
 
+# The Python that runs all tests, in $venv.
+set_up_test_python() {
+    set_up_python "$venv" 'numpy' 'scipy' 'pytest' 'hypothesis' 'ruff' 'distributed' 'quickjs' 'openjd-cli' 'pytest-xdist' \
+        'plyfile' 'trimesh' 'meshio' 'libigl' 'pyvista' 'opencv-python-headless' 'xatlas' \
+        'cmake' 'ninja' 'clang-format==19.1.7' 'mkdocs-material' 'mypy' 'basedpyright' 'scikit-build-core'
+}
+
 # The bpy wheel of Blender $2 (4.5, ...; about 400 MB) in virtual environment $1, with the packages that follow; it brings
 # Blender's own libraries, not those of the window system, which it links even when headless.
 set_up_bpy() {
