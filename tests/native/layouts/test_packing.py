@@ -7,6 +7,7 @@ import hashlib
 import math
 import sys
 from dataclasses import replace
+from functools import cache
 
 import lsgp
 import meshes
@@ -20,9 +21,14 @@ from map_checks import codes, surface
 from other_process import in_another_process
 
 PARTS = surface(meshes.merge([*(meshes.bumpy_sphere(2) for _ in range(3)), *(meshes.cube(n) for n in range(1, 4))]))
-SHELVES = {preset: lsgp.auto_unwrap(PARTS, preset=preset, pack="shelves") for preset in ("paint", "bake")}
+PACKED = ("paint", "bake")  # presets
 # Rounding of coordinates in the unit square.
 ROUNDING = 1e-9
+
+
+@cache
+def on_shelves(preset: str) -> lsgp.Result:
+    return lsgp.auto_unwrap(PARTS, preset=preset, pack="shelves")
 
 
 @pytest.fixture
@@ -60,21 +66,21 @@ def require_packed(old: np.ndarray, new: np.ndarray, island: np.ndarray, margin:
 @pytest.mark.parametrize("margin", [0.0, 1 / 4096, 4 / 1024, 16 / 512])
 @pytest.mark.parametrize("preset", ["paint", "bake"])
 def test_islands_keep_their_margin_and_one_scale(packer, preset: str, margin: float) -> None:
-    given = SHELVES[preset]
+    given = on_shelves(preset)
     uv = lsgp.pack_islands(given.corner_uv, given.island, margin)
     require_packed(given.corner_uv, uv, given.island, margin, PARTS.triangles)
     assert uv.max() == pytest.approx(1 - margin)  # it fills the square
 
 
 def test_more_is_covered_than_on_shelves(packer) -> None:
-    for given in SHELVES.values():
+    for given in map(on_shelves, PACKED):
         packed = lsgp.pack_islands(given.corner_uv, given.island)
         assert coverage(packed, given.island) > 1.05 * coverage(given.corner_uv, given.island)
 
 
 @pytest.mark.parametrize("margin", [0.0, 0.01, 2.0])
 def test_islands_that_keep_their_size(packer, margin: float) -> None:
-    given = SHELVES["bake"]
+    given = on_shelves("bake")
     uv = lsgp.pack_islands(given.corner_uv, given.island, margin, fill=False)
     assert np.abs(moves(given.corner_uv, uv, given.island)) == pytest.approx(1.0, rel=1e-6)
     assert uv.min() == pytest.approx(margin)
@@ -95,11 +101,11 @@ def test_cuts_match_as_before(packer) -> None:
         measured = lsgp.measure_distortion(of, found.corner_uv, found.cones)
         assert measured.seams.sister_ratio_max - 1 < 1e-9 and len(measured.flipped) == 0
         assert measured.distortion.l2_stretch == pytest.approx(found.distortion.l2_stretch, rel=1e-9)
-    assert replace(split, corner_uv=SHELVES["bake"].corner_uv) == SHELVES["bake"]
+    assert replace(split, corner_uv=on_shelves("bake").corner_uv) == on_shelves("bake")
 
 
 def test_islands_that_may_not_be_turned_are_only_shifted(packer) -> None:
-    given = SHELVES["bake"]
+    given = on_shelves("bake")
     uv = lsgp.pack_islands(given.corner_uv, given.island, turned=False)
     require_packed(given.corner_uv, uv, given.island, 4 / 1024, PARTS.triangles)
     assert np.abs(np.angle(moves(given.corner_uv, uv, given.island))).max() < 1e-6
@@ -114,7 +120,7 @@ def test_a_direction_that_was_asked_for_stays(packer) -> None:
 
 def digest() -> str:
     """Of layouts that take several tries."""
-    packed = [lsgp.pack_islands(given.corner_uv, given.island).tobytes() for given in SHELVES.values()]
+    packed = [lsgp.pack_islands(given.corner_uv, given.island).tobytes() for given in map(on_shelves, PACKED)]
     return hashlib.sha256(b"".join(packed)).hexdigest()
 
 
@@ -202,7 +208,7 @@ def test_the_chosen_map_is_not_packed_again(packer, monkeypatch: pytest.MonkeyPa
 
 
 def test_progress_is_told_and_stops_it(packer) -> None:
-    given = SHELVES["bake"]
+    given = on_shelves("bake")
     told: list[float] = []
     lsgp.pack_islands(given.corner_uv, given.island, progress=told.append)
     assert told == sorted(told) and told[0] == 0 and told[-1] == 1 and len(told) > 5
@@ -214,19 +220,19 @@ def test_progress_is_told_and_stops_it(packer) -> None:
 
 
 def test_presets_are_packed_where_that_is_installed(packer) -> None:
-    for preset, shelves in SHELVES.items():
+    for preset in PACKED:
         found = lsgp.auto_unwrap(PARTS, preset=preset)
-        assert found == lsgp.auto_unwrap(PARTS, preset=preset, pack="tight") != shelves
+        assert found == lsgp.auto_unwrap(PARTS, preset=preset, pack="tight") != on_shelves(preset)
         wide = lsgp.auto_unwrap(PARTS, preset=preset, pack="tight", margin=16 / 1024)
         assert room(PARTS.triangles, wide.corner_uv, wide.island).between >= 32 / 1024 - ROUNDING
 
 
 def test_without_the_packer_islands_are_on_shelves(without_packer) -> None:
     assert lsgp.packer_name() is None
-    assert lsgp.auto_unwrap(PARTS, preset="bake") == SHELVES["bake"]
+    assert lsgp.auto_unwrap(PARTS, preset="bake") == on_shelves("bake")
     for call in (
         lambda: lsgp.auto_unwrap(PARTS, preset="bake", pack="tight"),
-        lambda: lsgp.pack_islands(SHELVES["bake"].corner_uv, SHELVES["bake"].island),
+        lambda: lsgp.pack_islands(on_shelves("bake").corner_uv, on_shelves("bake").island),
     ):
         with pytest.raises(lsgp.InputError, match=r"pip install 'lsgp\[pack\]'") as caught:
             call()
@@ -246,7 +252,7 @@ def test_islands_that_may_not_be_moved_stay(packer) -> None:
 
 @pytest.mark.parametrize("times", [0.3, 1.0, 3.0])
 def test_a_texel_density_has_the_margin_that_is_asked_for(packer, times: float) -> None:
-    size, given = 512, SHELVES["bake"]
+    size, given = 512, on_shelves("bake")
     density = times * lsgp.texel_density(PARTS, given.corner_uv, size).mean
     layout = TexelLayout(density, size)
     found = lsgp.auto_unwrap(PARTS, preset="bake", pack="tight", margin=8 / size, texels=layout)

@@ -16,7 +16,11 @@ from map_checks import codes, surface
 
 SIZE = 1024
 PARTS = surface(meshes.merge([*(meshes.bumpy_sphere(1) for _ in range(6)), *(meshes.cube(n) for n in range(1, 7))]))
-SPLIT = lsgp.auto_unwrap(PARTS, preset="bake", pack="shelves")
+
+
+@pytest.fixture(scope="module")
+def split() -> lsgp.Result:
+    return lsgp.auto_unwrap(PARTS, preset="bake", pack="shelves")
 
 
 def heron(corners: np.ndarray) -> np.ndarray:
@@ -46,8 +50,8 @@ def boxes_of(result: lsgp.Result) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("size", "texels"), [(1024, 1024**2), ((2048, 512), 2048 * 512), (1.5, 2.25)])
-def test_density_is_that_of_the_areas(size: object, texels: float) -> None:
-    uv = SPLIT.corner_uv
+def test_density_is_that_of_the_areas(split: lsgp.Result, size: object, texels: float) -> None:
+    uv = split.corner_uv
     density, area, covered = by_areas(PARTS, uv, texels)
     assert lsgp.triangle_texel_density(PARTS, uv, size) == pytest.approx(density, rel=1e-6)
     found = texel_density(PARTS, uv, size)
@@ -58,16 +62,16 @@ def test_density_is_that_of_the_areas(size: object, texels: float) -> None:
 
 
 @pytest.mark.parametrize("scale", [1e-100, 1e-3, 1e5, 1e100])
-def test_a_larger_surface_has_fewer_texels_per_unit(scale: float) -> None:
+def test_a_larger_surface_has_fewer_texels_per_unit(split: lsgp.Result, scale: float) -> None:
     larger = replace(PARTS, positions=scale * PARTS.positions)
-    one, other = (texel_density(of, SPLIT.corner_uv, SIZE) for of in (PARTS, larger))
+    one, other = (texel_density(of, split.corner_uv, SIZE) for of in (PARTS, larger))
     for name in ("minimum", "median", "maximum", "mean"):
         assert getattr(other, name) == pytest.approx(getattr(one, name) / scale, rel=1e-9)
 
 
 @pytest.mark.parametrize("scale", [1e-290, 1e-200, 1e200, 1e290])
-def test_density_grows_with_the_layout_at_any_size(scale: float) -> None:
-    one, other = (texel_density(PARTS, factor * SPLIT.corner_uv, SIZE) for factor in (1.0, scale))
+def test_density_grows_with_the_layout_at_any_size(split: lsgp.Result, scale: float) -> None:
+    one, other = (texel_density(PARTS, factor * split.corner_uv, SIZE) for factor in (1.0, scale))
     for name in ("minimum", "median", "maximum", "mean"):
         assert getattr(other, name) == pytest.approx(getattr(one, name) * scale, rel=1e-9)
 
@@ -91,18 +95,18 @@ def test_what_is_not_mapped_does_not_count() -> None:
 
 
 @pytest.mark.parametrize("density", [3.0, 40.0, 700.0])
-def test_a_layout_gets_the_density_by_one_scale(density: float) -> None:
-    found = at_texel_density(PARTS, SPLIT, TexelLayout(density, SIZE))
+def test_a_layout_gets_the_density_by_one_scale(split: lsgp.Result, density: float) -> None:
+    found = at_texel_density(PARTS, split, TexelLayout(density, SIZE))
     assert texel_density(PARTS, found.corner_uv, SIZE).mean == pytest.approx(density, rel=1e-12)
-    factors = found.corner_uv / np.where(SPLIT.corner_uv == 0, np.nan, SPLIT.corner_uv)
+    factors = found.corner_uv / np.where(split.corner_uv == 0, np.nan, split.corner_uv)
     assert np.nanmax(factors) == pytest.approx(np.nanmin(factors), rel=1e-12)
-    assert replace(found, corner_uv=SPLIT.corner_uv, warnings=SPLIT.warnings) == SPLIT
+    assert replace(found, corner_uv=split.corner_uv, warnings=split.warnings) == split
 
 
-def test_islands_outside_the_square_are_named() -> None:
-    plain = texel_density(PARTS, SPLIT.corner_uv, SIZE).mean
-    assert "ISLANDS_OUTSIDE" not in codes(at_texel_density(PARTS, SPLIT, TexelLayout(plain, SIZE)).warnings)
-    found = at_texel_density(PARTS, SPLIT, TexelLayout(1.5 * plain, SIZE))
+def test_islands_outside_the_square_are_named(split: lsgp.Result) -> None:
+    plain = texel_density(PARTS, split.corner_uv, SIZE).mean
+    assert "ISLANDS_OUTSIDE" not in codes(at_texel_density(PARTS, split, TexelLayout(plain, SIZE)).warnings)
+    found = at_texel_density(PARTS, split, TexelLayout(1.5 * plain, SIZE))
     (finding,) = [finding for finding in found.warnings if finding.code == "ISLANDS_OUTSIDE"]
     reaches = boxes_of(found)[:, 2:].max(axis=1) > 1
     assert 0 < reaches.sum() < len(reaches)
@@ -112,10 +116,10 @@ def test_islands_outside_the_square_are_named() -> None:
 
 @pytest.mark.parametrize("margin", [0.0, 4.0, 30.0])
 @pytest.mark.parametrize("times", [1.2, 2.5])
-def test_islands_lie_in_tiles_with_their_margin(times: float, margin: float) -> None:
-    plain = texel_density(PARTS, SPLIT.corner_uv, SIZE).mean
+def test_islands_lie_in_tiles_with_their_margin(split: lsgp.Result, times: float, margin: float) -> None:
+    plain = texel_density(PARTS, split.corner_uv, SIZE).mean
     layout = TexelLayout(times * plain, SIZE, udim=20, margin=margin)
-    found = at_texel_density(PARTS, SPLIT, layout)
+    found = at_texel_density(PARTS, split, layout)
     assert texel_density(PARTS, found.corner_uv, SIZE).mean == pytest.approx(times * plain, rel=1e-12)
     boxes, free, slack = boxes_of(found), margin / SIZE, 1e-9
     tiles = np.floor((boxes[:, :2] + boxes[:, 2:]) / 2)
@@ -126,9 +130,9 @@ def test_islands_lie_in_tiles_with_their_margin(times: float, margin: float) -> 
     # No tile is left out, and no fewer would do by this way of packing.
     taken = len(set(numbers))
     assert numbers.max() == 1000 + taken and taken >= (heron(found.corner_uv).sum())
-    assert at_texel_density(PARTS, SPLIT, replace(layout, udim=taken)) == found
+    assert at_texel_density(PARTS, split, replace(layout, udim=taken)) == found
     with pytest.raises(lsgp.InputError, match=f"the islands take {taken} tiles .* Take {taken} tiles") as error:
-        at_texel_density(PARTS, SPLIT, replace(layout, udim=taken - 1))
+        at_texel_density(PARTS, split, replace(layout, udim=taken - 1))
     assert error.value.code == "TOO_FEW_TILES"
     assert set(error.value.elements.indices) == set(np.flatnonzero((numbers == numbers.max())[found.island]))
 
@@ -170,9 +174,9 @@ def test_more_than_a_row_of_tiles_goes_on_in_the_next_row() -> None:
         (TexelLayout(10.0, SIZE, udim=2, margin=-1.0), "margin is -1.0"),
     ],
 )
-def test_numbers_that_cannot_be_used_are_named(layout: TexelLayout, match: str) -> None:
+def test_numbers_that_cannot_be_used_are_named(split: lsgp.Result, layout: TexelLayout, match: str) -> None:
     with pytest.raises(lsgp.InputError, match=match):
-        at_texel_density(PARTS, SPLIT, layout)
+        at_texel_density(PARTS, split, layout)
 
 
 def test_seamless_layouts_and_pins_have_a_size_of_their_own() -> None:
@@ -183,6 +187,6 @@ def test_seamless_layouts_and_pins_have_a_size_of_their_own() -> None:
         lsgp.auto_unwrap(ball, pins=lsgp.Pins([0, 5], [[0, 0], [1, 0]]), texels=TexelLayout(10.0, SIZE))
 
 
-def test_unwrapping_in_one_call_at_a_density() -> None:
+def test_unwrapping_in_one_call_at_a_density(split: lsgp.Result) -> None:
     layout = TexelLayout(60.0, SIZE, udim=4)
-    assert lsgp.auto_unwrap(PARTS, preset="bake", texels=layout) == at_texel_density(PARTS, SPLIT, layout)
+    assert lsgp.auto_unwrap(PARTS, preset="bake", texels=layout) == at_texel_density(PARTS, split, layout)

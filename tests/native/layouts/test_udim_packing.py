@@ -16,8 +16,12 @@ from map_checks import surface
 pytest.importorskip("xatlas", reason="tight layouts take pip install 'lsgp[pack]'")
 
 PARTS = surface(meshes.merge([*(meshes.bumpy_sphere(2) for _ in range(3)), *(meshes.cube(n) for n in range(1, 4))]))
-GIVEN = lsgp.auto_unwrap(PARTS, preset="bake", pack="shelves")
 ROUNDING = 1e-9
+
+
+@pytest.fixture(scope="module")
+def given() -> lsgp.Result:
+    return lsgp.auto_unwrap(PARTS, preset="bake", pack="shelves")
 
 
 def rectangles(sizes: list[tuple[float, float]]) -> tuple[np.ndarray, np.ndarray]:
@@ -49,17 +53,17 @@ def scale(old: np.ndarray, new: np.ndarray, island: np.ndarray) -> float:
 
 @pytest.mark.parametrize("margin", [0.0, 4 / 1024, 16 / 512])
 @pytest.mark.parametrize("tiles", [2, 3])
-def test_every_island_has_its_margin_in_a_tile(tiles: int, margin: float) -> None:
-    uv = lsgp.pack_islands(GIVEN.corner_uv, GIVEN.island, margin, udim=tiles)
-    found = in_tiles(uv, GIVEN.island)
+def test_every_island_has_its_margin_in_a_tile(given: lsgp.Result, tiles: int, margin: float) -> None:
+    uv = lsgp.pack_islands(given.corner_uv, given.island, margin, udim=tiles)
+    found = in_tiles(uv, given.island)
     assert set(found) == {(column, 0) for column in range(tiles)}
     for tile, islands in found.items():
-        inside = np.where(np.isin(GIVEN.island, islands), GIVEN.island, -1)
+        inside = np.where(np.isin(given.island, islands), given.island, -1)
         measured = room(PARTS.triangles, uv - tile, inside)
         assert measured.border >= margin - ROUNDING and measured.between >= 2 * margin - ROUNDING
         assert overlapping_islands(uv, inside) == 0
-    one = lsgp.pack_islands(GIVEN.corner_uv, GIVEN.island, margin)
-    larger = scale(GIVEN.corner_uv, uv, GIVEN.island) / scale(GIVEN.corner_uv, one, GIVEN.island)
+    one = lsgp.pack_islands(given.corner_uv, given.island, margin)
+    larger = scale(given.corner_uv, uv, given.island) / scale(given.corner_uv, one, given.island)
     # As tightly packed as in one tile, but for what does not come out even.
     assert larger**2 > 0.85 * tiles
 
@@ -89,15 +93,15 @@ def test_tiles_are_in_rows_of_ten() -> None:
     assert scale(uv, packed, island) == pytest.approx(0.9, rel=0.02)
 
 
-def test_one_tile_is_the_unit_square() -> None:
-    given = GIVEN.corner_uv, GIVEN.island
-    assert np.array_equal(lsgp.pack_islands(*given, udim=1), lsgp.pack_islands(*given))
-    assert np.array_equal(lsgp.pack_islands(*given, udim=3), lsgp.pack_islands(*given, udim=3))
+def test_one_tile_is_the_unit_square(given: lsgp.Result) -> None:
+    whole = given.corner_uv, given.island
+    assert np.array_equal(lsgp.pack_islands(*whole, udim=1), lsgp.pack_islands(*whole))
+    assert np.array_equal(lsgp.pack_islands(*whole, udim=3), lsgp.pack_islands(*whole, udim=3))
 
 
-def test_islands_that_may_not_be_turned_are_only_shifted() -> None:
-    uv = lsgp.pack_islands(GIVEN.corner_uv, GIVEN.island, turned=False, udim=2)
-    assert np.abs(np.angle(moves(GIVEN.corner_uv, uv, GIVEN.island))).max() < 1e-6
+def test_islands_that_may_not_be_turned_are_only_shifted(given: lsgp.Result) -> None:
+    uv = lsgp.pack_islands(given.corner_uv, given.island, turned=False, udim=2)
+    assert np.abs(np.angle(moves(given.corner_uv, uv, given.island))).max() < 1e-6
 
 
 def test_presets_take_tiles() -> None:
@@ -108,14 +112,14 @@ def test_presets_take_tiles() -> None:
     assert found == lsgp.auto_unwrap(PARTS, preset="bake", pack="tight", udim=3, margin=0.02)
 
 
-def test_progress_never_goes_back_and_stops_it() -> None:
+def test_progress_never_goes_back_and_stops_it(given: lsgp.Result) -> None:
     told: list[float] = []
-    lsgp.pack_islands(GIVEN.corner_uv, GIVEN.island, udim=2, progress=told.append)
+    lsgp.pack_islands(given.corner_uv, given.island, udim=2, progress=told.append)
     assert told == sorted(told) and told[-1] == 1.0 and len(told) > 20
     for stop in (1, len(told) // 2):
         calls = iter(range(stop))
         with pytest.raises(lsgp.Cancelled):
-            lsgp.pack_islands(GIVEN.corner_uv, GIVEN.island, udim=2, progress=lambda _: next(calls, None) is not None)  # noqa: B023
+            lsgp.pack_islands(given.corner_uv, given.island, udim=2, progress=lambda _: next(calls, None) is not None)  # noqa: B023
 
 
 @pytest.mark.parametrize(
