@@ -75,7 +75,7 @@ std::string told_of_automatic(const PlacementTask& task, PlacementOptions option
                               int& maps) {
   options.count.reset();
   const ProgressMonitor::Interval interval(monitor, 1, 1);
-  ConeChooser chooser(task, options, effort_for(task.mesh.vertex_count()), monitor);
+  ConeChooser chooser(task, options, usual_sites, monitor);
   VerifiedPlacement placement(chooser, monitor);
   const VerifiedChoice choice = placement.place();
   maps += placement.maps();
@@ -131,7 +131,7 @@ Index best_place(const ConeChooser& chooser, const Eigen::VectorXd& gains, const
 
 PlacedCones place_component(const PlacementTask& task, const PlacementOptions& options, std::vector<Finding>& findings,
                             ProgressMonitor& monitor) {
-  ConeChooser chooser(task, options, effort_for(task.mesh.vertex_count()), monitor);
+  ConeChooser chooser(task, options, usual_sites, monitor);
   const ProgressMonitor::Interval interval(monitor, 0.3, 1);
   VerifiedPlacement placement(chooser, monitor);
   const VerifiedChoice choice = placement.place();
@@ -174,10 +174,9 @@ PlacedCones place_component(const PlacementTask& task, const PlacementOptions& o
 
 ComponentGains component_gains(const PlacementTask& task, ProgressMonitor& monitor) {
   constexpr double unlimited = std::numeric_limits<double>::infinity();
-  PlacementEffort effort = effort_for(task.mesh.vertex_count());
-  effort.sites = std::numeric_limits<int>::max();
+  constexpr int all_sites = std::numeric_limits<int>::max();
   const PlacementOptions options;
-  ConeChooser chooser(task, options, effort, monitor);
+  ConeChooser chooser(task, options, all_sites, monitor);
   chooser.weigh_prices(price_weights[0]);
   const ConeSet set = chooser.existing(usual_reach);
   ComponentGains out;

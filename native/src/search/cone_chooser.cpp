@@ -15,36 +15,31 @@ namespace lsgp {
 
 namespace {
 
-constexpr double hopeless_l2 = 1.3;  // the variance does not see stretch beyond this well
+constexpr double hopeless_l2 = 1.1;  // the variance does not see stretch beyond this well
 constexpr int most_relocations = 3;
 constexpr double trusted_reach = 1.15;
-constexpr double low_l2 = 1.03;             // an L2 stretch that stronger cones need not lower
+constexpr double low_l2 = 1.01;             // an L2 stretch that stronger cones need not lower
 constexpr double worth_strong_cones = 0.9;  // of the stretch above 1 with weaker ones
-constexpr int batch_reaches = 2;            // tried for more, of which few carry much
-constexpr Index large = 60000;              // vertices
+constexpr int batch_sweeps = 2;
+constexpr int batch_reaches = 2;  // tried for more, of which few carry much
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-PlacementEffort effort_for(Index vertices) {
-  return vertices > large ? PlacementEffort{12000, 48, 4} : PlacementEffort{12000, 48, 2};
-}
-
-ConeChooser::ConeChooser(const PlacementTask& task, PlacementOptions options, const PlacementEffort& effort,
-                         ProgressMonitor& monitor)
+ConeChooser::ConeChooser(const PlacementTask& task, PlacementOptions options, int most_sites, ProgressMonitor& monitor)
     : task_(task),
       options_(std::move(options)),
-      effort_(effort),
+      effort_(options_.count ? thorough_effort : usual_effort),
       monitor_(monitor),
       border_(free_border(task.mesh, task.existing.vertices)),
       scale_(task, border_),
-      sites_(find_cone_sites(task, effort.sites)),
+      sites_(find_cone_sites(task, most_sites)),
       model_(scale_, sites_.sites),
       kernel_(make_kernel()),
       limits_(task, kernel_.sites(), given_curvature()),
       prices_(site_prices(task, kernel_.sites())),
       problem_{kernel_, limits_, scale_.balanced(), scale_.required_sum(), {}},
-      search_(task.mesh, problem_, sites_.existing, options_.prefer_sharp, monitor) {
+      search_(task.mesh, problem_, sites_.existing, options_.prefer_sharp, effort_.exchange, monitor) {
   weigh_prices(0);
 }
 
@@ -193,12 +188,25 @@ ConeChoice ConeChooser::choose_within(double reach, int count) {
     if (stage <= set.cone_count() || stage >= count) continue;
     search_.grow(set, stage);
     if (stage < count / 2) continue;
-    search_.exchange(set, 1);
+    search_.exchange(set);
     break;
   }
   search_.grow(set, count);
-  search_.exchange(set, effort_.sweeps);
-  return settled(set);
+  return settled(exchanged(std::move(set)));
+}
+
+// The variance does not see all stretch: of spikes it sees hardly any, and their cones may be moved elsewhere.
+ConeSet ConeChooser::exchanged(ConeSet set) const {
+  ConeSet best = set;
+  double least = unlimited;
+  for (int sweep = 0; sweep < effort_.sweeps; ++sweep) {
+    if (!search_.exchange(set) && sweep > 0) break;
+    const double l2 = predicted_l2(set);
+    if (l2 >= least && !options_.prefer_sharp) continue;
+    least = l2;
+    best = set;
+  }
+  return best;
 }
 
 // The first cones are chosen one by one, the rest in batches.
@@ -209,13 +217,13 @@ ConeChoice ConeChooser::choose_in_batches(int count) {
     if (sites_.existing < most_one_by_one) {
       ConeSet first = existing(reaches[i]);
       search_.grow(first, std::min(count, most_one_by_one));
-      search_.exchange(first, 1);
+      search_.exchange(first);
       set.add(first.sites());
     } else {
       set.add(existing_sites());
     }
     set.grow(count);
-    set.exchange(effort_.sweeps);
+    set.exchange(batch_sweeps);
     ConeChoice choice = settled(set);
     if (!best || choice.predicted_l2 < best->predicted_l2) best = std::move(choice);
     if (best->predicted_l2 <= low_l2 || options_.lattice) break;
@@ -247,14 +255,9 @@ ConeChoice ConeChooser::choose_harmonically(int count) {
     set.add(best);
     monitor_.tick();
   }
-  // Spikes hardly affect the variance: their cones may be moved elsewhere, which stretches them much.
-  ConeChoice best = choice_of(set);
-  for (int sweep = 0; sweep < effort_.sweeps; ++sweep) {
-    search_.exchange(set, 1);
-    ConeChoice exchanged = choice_of(set);
-    if (exchanged.predicted_l2 < best.predicted_l2) best = std::move(exchanged);
-  }
-  return best;
+  const ConeChoice others = choice_of(exchanged(set));
+  const ConeChoice chosen = choice_of(set);
+  return others.predicted_l2 < chosen.predicted_l2 ? others : chosen;
 }
 
 // Alternates between curvatures that are multiples of the lattice's rotation and sites for them; flat cones are

@@ -24,11 +24,15 @@ struct ConeChoice {
   bool is_possible() const { return predicted_l2 < std::numeric_limits<double>::infinity(); }
 };
 
-// The effort that a mesh is worth: sites to choose from, random probes of the diagonal of H, sweeps of exchange.
 struct PlacementEffort {
-  int sites, probes, sweeps;
+  int probes;  // random, of the diagonal of H
+  int sweeps;  // of exchange
+  ExchangeEffort exchange;
 };
-PlacementEffort effort_for(Index vertices);
+constexpr PlacementEffort usual_effort{48, 2, {2, 0.998}};
+constexpr PlacementEffort thorough_effort{96, 4, {4, 0.9995}};  // for a number of cones, which is not grown in stages
+
+constexpr int usual_sites = 12000;  // of which cones are chosen, at most
 
 constexpr double isometric_l2 = 1.001;                                        // L2 stretch at which no cone is dropped
 constexpr int cone_stages[] = {4, 6, 8, 10, 12, 15, 19, 24, 30, 37, 46, 57};  // cones at which sets are exchanged
@@ -40,8 +44,7 @@ constexpr int most_one_by_one = 60;          // cones that are chosen one by one
 
 class ConeChooser {
  public:
-  ConeChooser(const PlacementTask& task, PlacementOptions options, const PlacementEffort& effort,
-              ProgressMonitor& monitor);
+  ConeChooser(const PlacementTask& task, PlacementOptions options, int most_sites, ProgressMonitor& monitor);
   ConeChooser(const ConeChooser&) = delete;
   ConeChooser& operator=(const ConeChooser&) = delete;
 
@@ -74,6 +77,9 @@ class ConeChooser {
   bool reaches_all() const { return sites_.reaches_all; }
   int existing_count() const;  // cones, with those that mirror them
 
+  // The set of the least predicted stretch among those after each sweep of exchange.
+  ConeSet exchanged(ConeSet set) const;
+
   // The choice that a ConeSet or a BatchPlacement leads to, with rounded angles if a lattice is given.
   template <typename Set>
   ConeChoice settled(const Set& set);
@@ -89,7 +95,6 @@ class ConeChooser {
   const LogScale& scale() const { return scale_; }
   const PlacementTask& task() const { return task_; }
   const PlacementOptions& options() const { return options_; }
-  const PlacementEffort& effort() const { return effort_; }
   const PlacementProblem& problem() const { return problem_; }
   ProgressMonitor& monitor() { return monitor_; }
 

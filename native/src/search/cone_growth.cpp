@@ -44,7 +44,7 @@ bool ConeGrowth::advance(double target) {
       if (stage <= before) continue;
       chooser_.search().grow(set_, stage);
       if (set_.cone_count() == before) break;  // no room
-      chooser_.search().exchange(set_, 1);
+      chooser_.search().exchange(set_);
       keep_better(chooser_.settled(set_));
       return true;
     }
@@ -91,7 +91,7 @@ void ConeGrowth::drop_unneeded(ConeSet& set, double target, double worth_all) co
   while (search.can_drop(set) && chooser_.predicted_l2(set) > worth_all) {
     ConeSet fewer = set;
     search.drop(fewer);
-    if (chooser_.predicted_l2(fewer) > target) search.exchange(fewer, chooser_.effort().sweeps);
+    if (chooser_.predicted_l2(fewer) > target) fewer = chooser_.exchanged(std::move(fewer));
     if (chooser_.predicted_l2(fewer) > target) return;
     set = std::move(fewer);
   }

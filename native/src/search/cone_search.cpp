@@ -10,15 +10,13 @@ namespace lsgp {
 
 namespace {
 
-constexpr int tries = 2;                     // of new sites for a cone that is exchanged
-constexpr double worth_an_exchange = 0.998;  // of the variance: less is not worth an exchange
-constexpr double sharp_price = 1.25;         // the factor by which the variance may grow for it
+constexpr double sharp_price = 1.25;  // the factor by which the variance may grow for it
 
 }  // namespace
 
 ConeSearch::ConeSearch(const HalfedgeMesh& mesh, const PlacementProblem& problem, int kept, bool sharp,
-                       ProgressMonitor& monitor)
-    : mesh_(mesh), problem_(problem), kept_(kept), prefers_sharp_(sharp), monitor_(monitor) {}
+                       ExchangeEffort effort, ProgressMonitor& monitor)
+    : mesh_(mesh), problem_(problem), kept_(kept), prefers_sharp_(sharp), effort_(effort), monitor_(monitor) {}
 
 bool ConeSearch::is_sharp(int site) const { return std::abs(problem_.limits.defect(site)) >= sharp_defect; }
 
@@ -76,20 +74,18 @@ Array<int> ConeSearch::by_need(const Array<int>& sites, const Eigen::VectorXd& l
   return places;
 }
 
-void ConeSearch::exchange(ConeSet& set, int sweeps) const {
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    bool moved = false;
-    Array<int> sites;
-    for (const int place : by_need(set.sites(), set.losses())) sites.push_back(set.sites()[place]);
-    ConeSet::Explained explained = set.explain();
-    for (const int site : sites) {
-      monitor_.tick();
-      if (!exchange_one(set, explained, site)) continue;
-      moved = true;
-      explained = set.explain();
-    }
-    if (!moved) return;
+bool ConeSearch::exchange(ConeSet& set) const {
+  bool moved = false;
+  Array<int> sites;
+  for (const int place : by_need(set.sites(), set.losses())) sites.push_back(set.sites()[place]);
+  ConeSet::Explained explained = set.explain();
+  for (const int site : sites) {
+    monitor_.tick();
+    if (!exchange_one(set, explained, site)) continue;
+    moved = true;
+    explained = set.explain();
   }
+  return moved;
 }
 
 bool ConeSearch::exchange_one(ConeSet& set, const ConeSet::Explained& explained, int site) const {
@@ -101,12 +97,12 @@ bool ConeSearch::exchange_one(ConeSet& set, const ConeSet::Explained& explained,
   const Eigen::VectorXd gains = rest.gains(explained.without(place)), priced = gains - price;
   Array<char> open = open_sites(rest.sites());
   for (std::size_t i = 0; i < open.size(); ++i) open[i] = open[i] && sites[i].cones() == sites[site].cones();
-  for (int i = 0; i < tries; ++i) {
+  for (int i = 0; i < effort_.tries; ++i) {
     const std::optional<int> best = best_site(priced, open);
     if (!best || *best == site) return false;
     const bool sharper = prefers_sharp_ && is_sharp(*best) && !is_sharp(site);
     const double saved = price[site] - price[*best];
-    const double most = set.variance() * (sharper ? sharp_price : worth_an_exchange) + saved;
+    const double most = set.variance() * (sharper ? sharp_price : effort_.worth_an_exchange) + saved;
     if (rest.variance() - gains[*best] >= most) return false;
     ConeSet moved = rest;
     moved.add(*best);

@@ -12,10 +12,16 @@ namespace lsgp {
 
 constexpr int free_rings = 2;  // around each cone: cones side by side cancel each other
 
+struct ExchangeEffort {
+  int tries;                 // of new sites for a cone that is exchanged
+  double worth_an_exchange;  // of the variance: less is not worth an exchange
+};
+
 class ConeSearch {
  public:
   // The first `kept` sites of every set are fixed.  sharp: sharp corners are preferred if they gain nearly as much.
-  ConeSearch(const HalfedgeMesh& mesh, const PlacementProblem& problem, int kept, bool sharp, ProgressMonitor& monitor);
+  ConeSearch(const HalfedgeMesh& mesh, const PlacementProblem& problem, int kept, bool sharp, ExchangeEffort effort,
+             ProgressMonitor& monitor);
 
   const HalfedgeMesh& mesh() const { return mesh_; }
   const PlacementProblem& problem() const { return problem_; }
@@ -24,8 +30,8 @@ class ConeSearch {
   // Adds the site with the largest gain repeatedly, until there are so many cones or no room is left.
   void grow(ConeSet& set, int cones) const;
 
-  // Removes every cone in turn, the least important first, and places it where it gains most.
-  void exchange(ConeSet& set, int sweeps) const;
+  // Removes every cone in turn, the least important first, and places it where it gains most; false if all remain.
+  bool exchange(ConeSet& set) const;
 
   // Drops the least important cone.
   void drop(ConeSet& set) const;
@@ -51,6 +57,7 @@ class ConeSearch {
   const PlacementProblem& problem_;
   int kept_;
   bool prefers_sharp_;
+  ExchangeEffort effort_;
   ProgressMonitor& monitor_;
 };
 

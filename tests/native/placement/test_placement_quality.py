@@ -24,11 +24,11 @@ FEWEST = {
     "julius": 4,
 }
 AT_COUNT = {
-    "fandisk": (25, 1.008),
-    "igea-16k": (14, 1.014),
-    "max-planck-25k": (14, 1.025),
+    "fandisk": (25, 1.006),
+    "igea-16k": (14, 1.012),
+    "max-planck-25k": (14, 1.022),
     "bird": (25, 1.008),
-    "hand-5k": (25, 1.10),
+    "hand-5k": (25, 1.02),
 }
 CLOSED = [
     "cube-768",
@@ -67,7 +67,7 @@ def test_stretch_at_a_count(name: str) -> None:
     mesh = shared_mesh(name)
     count, most = AT_COUNT[name]
     placed = place(mesh, count=count)
-    assert len(placed.cones) == count and placed.back_substitutions <= 500
+    assert len(placed.cones) == count and placed.back_substitutions <= 800
     assert unwrapped(mesh, placed).distortion.l2_stretch <= most
 
 
