@@ -99,13 +99,9 @@ int PlacementProblem::cone_count(const Array<int>& sites) const {
 }
 
 void ConeSet::add(const Array<int>& sites) {
-  const Eigen::Index before = columns_.cols(), added = static_cast<Eigen::Index>(sites.size());
-  require_matrix_memory(static_cast<double>(columns_.rows()), 2.0 * static_cast<double>(before + added),
-                        GrowsWith::conditions);
-  columns_.conservativeResize(Eigen::NoChange, before + added);
-  for (Eigen::Index i = 0; i < added; ++i) {
-    columns_.col(before + i) = problem_->kernel.column(sites[static_cast<std::size_t>(i)]);
-  }
+  const Eigen::Index before = ssize(sites_), added = ssize(sites);
+  require_matrix_memory(problem_->kernel.site_count(), static_cast<double>(before + added), GrowsWith::conditions);
+  for (const int site : sites) columns_.push_back(problem_->kernel.column(site));
   sites_.insert(sites_.end(), sites.begin(), sites.end());
   fit_.curvature.conservativeResize(before + added);
   fit_.curvature.tail(added).setZero();
@@ -113,19 +109,18 @@ void ConeSet::add(const Array<int>& sites) {
 }
 
 void ConeSet::remove(int place) {
-  const Eigen::Index after = columns_.cols() - 1 - place;
-  columns_.middleCols(place, after) = columns_.rightCols(after).eval();
-  columns_.conservativeResize(Eigen::NoChange, columns_.cols() - 1);
+  const Eigen::Index after = ssize(sites_) - 1 - place;
   fit_.curvature.segment(place, after) = fit_.curvature.tail(after).eval();
-  fit_.curvature.conservativeResize(columns_.cols());
   sites_.erase(sites_.begin() + place);
+  columns_.erase(columns_.begin() + place);
+  fit_.curvature.conservativeResize(ssize(sites_));
   fit();
 }
 
 void ConeSet::fit() {
-  const Eigen::Index count = static_cast<Eigen::Index>(sites_.size());
+  const Eigen::Index count = ssize(sites_);
   Eigen::MatrixXd hessian(count, count);
-  for (Eigen::Index i = 0; i < count; ++i) hessian.row(i) = columns_.row(sites_[static_cast<std::size_t>(i)]);
+  for (Eigen::Index i = 0; i < count; ++i) hessian.col(i) = (*columns_[i])(sites_);
   fit_ = fit_curvature(*problem_, sites_, reach_, hessian, std::move(fit_.curvature));
 }
 
@@ -139,7 +134,7 @@ Eigen::MatrixXd ConeSet::inverse_over(const Array<int>& free) const {
   const int count = static_cast<int>(free.size()), size = count + problem_->balanced;
   Eigen::MatrixXd system = Eigen::MatrixXd::Zero(size, size);
   for (int i = 0; i < count; ++i) {
-    for (int j = 0; j < count; ++j) system(i, j) = columns_(sites_[free[i]], free[j]);
+    for (int j = 0; j < count; ++j) system(i, j) = (*columns_[free[j]])[sites_[free[i]]];
     if (problem_->balanced) system(i, count) = system(count, i) = 1;
   }
   if (count > 0) system.topLeftCorner(count, count).diagonal().array() += ridge * system.diagonal().mean();
@@ -158,11 +153,11 @@ Eigen::VectorXd ConeSet::first_gains() const {
 }
 
 ConeSet::Explained ConeSet::explain() const {
-  Explained out{Eigen::VectorXd::Zero(columns_.rows()), places_that_respond(), {}, {}};
+  Explained out{Eigen::VectorXd::Zero(problem_->kernel.site_count()), places_that_respond(), {}, {}};
   const int count = static_cast<int>(out.free.size());
   if (count == 0) return out;
-  Eigen::MatrixXd coupling(columns_.rows(), count + problem_->balanced);
-  for (int i = 0; i < count; ++i) coupling.col(i) = columns_.col(out.free[i]);
+  Eigen::MatrixXd coupling(out.by_all.size(), count + problem_->balanced);
+  for (int i = 0; i < count; ++i) coupling.col(i) = *columns_[out.free[i]];
   if (problem_->balanced) coupling.col(count).setOnes();
   const Eigen::MatrixXd inverse = inverse_over(out.free);
   out.responses = coupling * inverse;
@@ -173,15 +168,15 @@ ConeSet::Explained ConeSet::explain() const {
 
 Eigen::VectorXd ConeSet::explained() const {
   constexpr Eigen::Index rows_at_once = 1024;
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(columns_.rows());
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(problem_->kernel.site_count());
   const Array<int> free = places_that_respond();
   const Eigen::Index count = static_cast<Eigen::Index>(free.size());
   if (count == 0) return out;
   const Eigen::MatrixXd inverse = inverse_over(free);
-  for (Eigen::Index begin = 0; begin < columns_.rows(); begin += rows_at_once) {
-    const Eigen::Index rows = std::min(rows_at_once, columns_.rows() - begin);
+  for (Eigen::Index begin = 0; begin < out.size(); begin += rows_at_once) {
+    const Eigen::Index rows = std::min(rows_at_once, out.size() - begin);
     Eigen::MatrixXd coupling = Eigen::MatrixXd::Ones(rows, inverse.rows());
-    for (Eigen::Index i = 0; i < count; ++i) coupling.col(i) = columns_.col(free[i]).segment(begin, rows);
+    for (Eigen::Index i = 0; i < count; ++i) coupling.col(i) = columns_[free[i]]->segment(begin, rows);
     out.segment(begin, rows) = coupling.cwiseProduct(coupling * inverse).rowwise().sum();
     checkpoint(static_cast<double>(rows * count * count));
   }
@@ -199,7 +194,9 @@ Eigen::VectorXd ConeSet::gains(const Eigen::VectorXd& explained) const {
   const LogScaleVariance& kernel = problem_->kernel;
   if (kernel.site_count() == 0) return {};
   if (sites_.empty() && problem_->balanced) return first_gains();
-  Eigen::VectorXd slope = -kernel.gradient() - columns_ * fit_.curvature;
+  Eigen::VectorXd slope = -kernel.gradient();
+  for (std::size_t i = 0; i < columns_.size(); ++i)
+    slope -= fit_.curvature[static_cast<Eigen::Index>(i)] * *columns_[i];
   if (problem_->balanced) slope.array() -= mean_slope(fit_, sites_, slope);
   const double least = std::max(kernel.diagonal_error() / 2, 1e-12 * kernel.diagonal().mean());
   Eigen::VectorXd gains(kernel.site_count());

@@ -48,10 +48,7 @@ Eigen::MatrixXd with_ridge(const Eigen::MatrixXd& hessian);
 
 class ConeSet {
  public:
-  ConeSet(const PlacementProblem& problem, double reach) : problem_(&problem), reach_(reach) {
-    columns_.resize(problem.kernel.site_count(), 0);
-    fit();
-  }
+  ConeSet(const PlacementProblem& problem, double reach) : problem_(&problem), reach_(reach) { fit(); }
 
   void add(int site) { add(Array<int>{site}); }
   void add(const Array<int>& sites);  // one fit, and two back-substitutions a site that is new
@@ -94,7 +91,7 @@ class ConeSet {
   const PlacementProblem* problem_;
   double reach_;
   Array<int> sites_;
-  Eigen::MatrixXd columns_;  // (all sites, k)
+  Array<LogScaleVariance::Column> columns_;  // (k), which copies share
   CurvatureFit fit_;
 };
 

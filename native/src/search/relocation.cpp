@@ -22,7 +22,7 @@ bool relocate(const PlacementProblem& problem, const ConeSearch& search, int kep
   LogScaleVariance& kernel = problem.kernel;
   Eigen::VectorXd slope = kernel.gradient();
   for (std::size_t i = 0; i < sites.size(); ++i) {
-    slope += curvature[static_cast<Eigen::Index>(i)] * kernel.column(sites[i]);
+    slope += curvature[static_cast<Eigen::Index>(i)] * *kernel.column(sites[i]);
   }
   double objective = kernel.without_cones() + problem.mean_price(sites);
   for (std::size_t i = 0; i < sites.size(); ++i) {
@@ -32,7 +32,7 @@ bool relocate(const PlacementProblem& problem, const ConeSearch& search, int kep
   for (Eigen::Index i = kept; i < ssize(sites); ++i) {
     const double kappa = curvature[i];
     if (kappa == 0) continue;
-    slope -= kappa * kernel.column(sites[i]);
+    slope -= kappa * *kernel.column(sites[i]);
     Array<int> others = sites;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
     Array<char> open = search.open_sites(others);
@@ -50,13 +50,13 @@ bool relocate(const PlacementProblem& problem, const ConeSearch& search, int kep
       const double wanted = present - least_gain * objective;
       if (best == sites[i] || at(best) > wanted) break;
       open[best] = 0;
-      if (share(kappa, slope[best], kernel.column(best)[best]) + price[best] > wanted) continue;
+      if (share(kappa, slope[best], (*kernel.column(best))[best]) + price[best] > wanted) continue;
       objective += at(best) - present;
       sites[i] = best;
       moved = true;
       break;
     }
-    slope += kappa * kernel.column(sites[i]);
+    slope += kappa * *kernel.column(sites[i]);
   }
   return moved;
 }

@@ -87,14 +87,14 @@ Eigen::MatrixXd LogScaleVariance::at_sites(const Eigen::MatrixXd& values) const 
   return out;
 }
 
-const Eigen::VectorXd& LogScaleVariance::column(int site) {
+LogScaleVariance::Column LogScaleVariance::column(int site) {
   const auto known = columns_.find(site);
   if (known != columns_.end()) return known->second;
   const Eigen::MatrixXd y = caused_by(impulses({site}));
-  latest_ = at_sites(transposed(weight_.asDiagonal() * y));
-  diagonal_[site] = latest_[site];
-  if ((columns_.size() + 1) * sites_.size() > most_kept) return latest_;
-  return columns_.emplace(site, std::move(latest_)).first->second;
+  const Column out = std::make_shared<const Eigen::VectorXd>(at_sites(transposed(weight_.asDiagonal() * y)));
+  diagonal_[site] = (*out)[site];
+  if ((columns_.size() + 1) * sites_.size() <= most_kept) columns_.emplace(site, out);
+  return out;
 }
 
 Eigen::MatrixXd LogScaleVariance::entries(const Array<int>& rows, const Array<int>& columns) const {

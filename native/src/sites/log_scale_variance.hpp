@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <memory>
 
 #include "base/array.hpp"
 #include "base/borrowed.hpp"
@@ -25,8 +26,8 @@ class LogScaleVariance {
   const Eigen::VectorXd& gradient() const { return gradient_; }  // (sites) h
   const Eigen::VectorXd& diagonal() const { return diagonal_; }  // (sites) of H, estimated until its column is known
   double diagonal_error() const { return diagonal_error_; }      // how far off it may be
-  // (sites) of H, exact; valid until the next call.
-  const Eigen::VectorXd& column(int site);
+  using Column = std::shared_ptr<const Eigen::VectorXd>;         // (sites)
+  Column column(int site);                                       // of H, exact
   // Some rows and columns of H, exact: two back-substitutions a column, of which only these rows are kept.
   Eigen::MatrixXd entries(const Array<int>& rows, const Array<int>& columns) const;
   // H times curvatures at some sites, (sites): two back-substitutions.
@@ -51,8 +52,7 @@ class LogScaleVariance {
   double without_cones_ = 0;
   Eigen::VectorXd gradient_, diagonal_;
   double diagonal_error_ = 0;
-  std::map<int, Eigen::VectorXd> columns_;  // that are kept
-  Eigen::VectorXd latest_;                  // one that is not
+  std::map<int, Column> columns_;  // that are kept
 };
 
 }  // namespace lsgp

@@ -10,8 +10,9 @@ namespace lsgp {
 namespace {
 
 constexpr double at_bound = 1e-12;
-constexpr int most_pivoted_singly = 64;      // variables
+constexpr int most_pivoted_singly = 8;       // variables
 constexpr int most_rounds = 100;             // of block pivoting, a factorization each; some 5 to 10 is usual
+constexpr int large = 64;                    // variables
 constexpr int most_changes_when_large = 30;  // of single sides, a factorization each
 constexpr int spare_rounds = 3;              // without a decrease in the number of infeasible variables
 
@@ -131,7 +132,7 @@ Eigen::VectorXd BoxProgram::minimize(const Eigen::VectorXd& gradient, const Eige
     if (low[i] >= high[i]) side_[i] = Side::low;  // a fixed variable is never released
   }
   Eigen::VectorXd d = Eigen::VectorXd::Zero(size);
-  const int most_changes = size > most_pivoted_singly ? most_changes_when_large : 50 * (size + 1);
+  const int most_changes = size > large ? most_changes_when_large : 50 * (size + 1);
   for (int change = 0; change < most_changes; ++change) {
     const Array<int> free = free_variables();
     const Eigen::VectorXd slope = gradient + hessian_ * d;

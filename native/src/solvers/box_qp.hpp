@@ -14,8 +14,9 @@ namespace lsgp {
 // Minimizes  gradient . d + d . hessian d / 2  over  low <= d <= high  and, with keep_sum, sum d = 0.
 // A primal active-set method: every iterate is feasible and the objective never rises. The active set is kept from one
 // program to the next, and the factorization for as long as the set does not change.
-// Large programs change the sides of many variables at once (block principal pivoting, Judice and Pires 1994) and fall
-// back on a limited number of steps of the active-set method where that does not converge.
+// All but the smallest programs change the sides of many variables at once (block principal pivoting, Judice and Pires
+// 1994) and fall back on the active-set method where that does not converge, large ones on a limited number of its
+// steps.
 class BoxProgram {
  public:
   explicit BoxProgram(bool keep_sum) : keep_sum_(keep_sum) {}
@@ -44,7 +45,7 @@ class BoxProgram {
   Array<Side> side_;  // (k)
   Array<int> free_;   // those that are factored
   std::optional<Eigen::PartialPivLU<Eigen::MatrixXd>> factor_;
-  // Of large programs.
+  // Of block pivoting.
   Array<int> block_free_;
   std::optional<DenseCholesky<double>> block_;
   Eigen::VectorXd block_ones_;  // the block's inverse times ones
