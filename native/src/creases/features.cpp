@@ -30,6 +30,27 @@ UnionFind coincident_vertices(const HalfedgeMesh& mesh) {
   return out;
 }
 
+// Whether features are lines rather than noise, which is as sharp in places and ends everywhere.
+bool are_lines(const HalfedgeMesh& mesh, const PerHalfedge<char>& feature) {
+  constexpr double most_ends = 0.2;  // of the points of features
+  UnionFind point = coincident_vertices(mesh);
+  PerVertex<char> is_inside(mesh.vertex_count(), 1);
+  PerVertex<Index> edges(mesh.vertex_count(), 0);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    if (mesh.loop_of_vertex[v] != none) is_inside[point.find(v)] = 0;
+  }
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    const Index from = point.find(mesh.origin(h));
+    if (feature[h] && from != point.find(mesh.target(h))) ++edges[from];
+  }
+  double points = 0, ends = 0;
+  for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    points += edges[v] > 0 ? 1 : 0;
+    ends += edges[v] == 1 && is_inside[v] ? 1 : 0;
+  }
+  return ends <= most_ends * points;
+}
+
 }  // namespace
 
 CreaseCurvature::CreaseCurvature(const MetricMesh& surface, const PerVertex<char>& is_at_crease) {
@@ -70,7 +91,8 @@ PerHalfedge<char> find_features(const MetricMesh& surface) {
     out[h] = 1;
     has_feature[mesh.origin(h)] = 1;
   }
-  if (!CreaseCurvature(surface, has_feature).is_hard()) std::fill(out.begin(), out.end(), 0);
+  const bool is_hard = are_lines(mesh, out) && CreaseCurvature(surface, has_feature).is_hard();
+  if (!is_hard) std::fill(out.begin(), out.end(), 0);
   return out;
 }
 
