@@ -179,31 +179,35 @@ Array<TurnExchange::Swap> TurnExchange::swaps(bool keep_sum, const Array<Index>&
   for (const Index i : held) {
     if (i != none) is_held[i] = 1;
   }
-  // Of those at the same cost the ones that come first.
   Array<Swap> all;
-  const auto is_cheaper = [](const Swap& a, const Swap& b) { return a.cost < b.cost; };
   const auto keep_cheapest = [&] {
-    std::stable_sort(all.begin(), all.end(), is_cheaper);
+    std::sort(all.begin(), all.end(), precedes);
     if (all.size() > count) all.resize(count);
   };
   double limit = std::numeric_limits<double>::infinity();  // of the cost of what can be among them
   const auto consider = [&](const Swap& swap) {
-    if (!(swap.cost < limit) || leads_to_impossible(swap)) return;
+    if (swap.cost > limit || leads_to_impossible(swap)) return;
     all.push_back(swap);
     if (count > 1 && all.size() < 8 * count) return;
     keep_cheapest();
     if (all.size() == count) limit = all.back().cost;
   };
+  Array<Index> free;
   for (Index i = 0; i < k; ++i) {
-    if (is_held[i]) continue;
-    for (const int step : {1, -1}) {
-      if (!allowed(i, step)) continue;
-      const double alone = 2 * gradient_[i] * step + hessian_(i, i);
-      if (!keep_sum) consider({alone, i, none, step});
-      for (Index j = 0; j < k; ++j) {
-        if (j == i || is_held[j] || !allowed(j, -step)) continue;
-        consider({alone - 2 * gradient_[j] * step + hessian_(j, j) - 2 * hessian_(i, j), i, j, step});
-      }
+    if (!is_held[i]) free.push_back(i);
+  }
+  std::sort(free.begin(), free.end(), [&](Index i, Index j) { return gradient_[i] < gradient_[j]; });
+  const auto cost = [&](Index i, int step) { return 2 * gradient_[i] * step + hessian_(i, i); };
+  for (const Index i : free) {
+    if (!keep_sum && allowed(i, 1)) consider({cost(i, 1), i, none, 1});
+    if (!keep_sum && allowed(i, -1)) consider({cost(i, -1), i, none, -1});
+  }
+  // No exchange costs less than twice the difference of the gradients, since the Hessian is positive semidefinite.
+  for (const Index i : free) {
+    if (!allowed(i, 1)) continue;
+    for (auto j = free.rbegin(); j != free.rend() && 2 * (gradient_[i] - gradient_[*j]) <= limit; ++j) {
+      if (*j == i || !allowed(*j, -1)) continue;
+      consider({cost(i, 1) + cost(*j, -1) - 2 * hessian_(i, *j), i, *j, 1});
     }
   }
   keep_cheapest();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <tuple>
 
 #include "base/array.hpp"
 #include "prescription/curvature.hpp"
@@ -52,11 +53,11 @@ class TurnExchange {
   // never both seem to gain.
   static constexpr double relative_gain = 1e-12;
   static constexpr double operations_of_exponential = 40;
-  static constexpr std::size_t least_trials = 4, most_trials = 100;
-  static constexpr double trial_work = 4e6;  // entries of the Hessian times trials
-  static constexpr int least_stretch_trials = 24, most_stretch_trials = 400;
-  static constexpr double stretch_work = 5e5;  // vertices times trials
-  static constexpr std::size_t first_exchanges = 50, continued_exchanges = 10, second_exchanges = 30;
+  static constexpr std::size_t least_trials = 2, most_trials = 50;
+  static constexpr double trial_work = 2e6;  // entries of the Hessian times trials
+  static constexpr int least_stretch_trials = 12, most_stretch_trials = 200;
+  static constexpr double stretch_work = 2.5e5;  // vertices times trials
+  static constexpr std::size_t first_exchanges = 25, continued_exchanges = 5, second_exchanges = 15;
 
   // A trial looks at the whole Hessian once a step.
   std::size_t trial_count() const;
@@ -81,6 +82,11 @@ class TurnExchange {
   void take_turns_of(const TurnExchange& other);
 
   bool leads_to_impossible(const Swap& swap) const;
+
+  // Whether one is to be tried before another: the cheaper one, or the one of cones that come first.
+  static bool precedes(const Swap& a, const Swap& b) {
+    return std::tie(a.cost, a.first, a.second, a.step) < std::tie(b.cost, b.first, b.second, b.step);
+  }
 
   // The cheapest possible ones, in order.
   Array<Swap> swaps(bool keep_sum, const Array<Index>& held, std::size_t count) const;

@@ -29,7 +29,7 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 ConeChooser::ConeChooser(const PlacementTask& task, PlacementOptions options, int most_sites, ProgressMonitor& monitor)
     : task_(task),
       options_(std::move(options)),
-      effort_(options_.count ? thorough_effort : usual_effort),
+      effort_(options_.count && !options_.lattice ? thorough_effort : usual_effort),
       monitor_(monitor),
       border_(free_border(task.mesh, task.existing.vertices)),
       scale_(task, border_),
@@ -276,7 +276,7 @@ ConeChoice ConeChooser::rounded(const Set& set, Lattice lattice) {
       curvature[static_cast<Eigen::Index>(i)] = best.curvature.segment(first, cones).sum();
       first += cones;
     }
-    if (!relocate(problem_, search_, sites_.existing, curvature, sites)) break;
+    if (!relocate(problem_, task_.mesh, sites_.existing, curvature, sites)) break;
     ConeChoice moved = quantized({vertices_of(sites), best.curvature}, q);
     if (!(moved.predicted_l2 < best.predicted_l2)) break;
     best = std::move(moved);

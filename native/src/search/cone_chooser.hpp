@@ -30,7 +30,8 @@ struct PlacementEffort {
   ExchangeEffort exchange;
 };
 constexpr PlacementEffort usual_effort{48, 2, {2, 0.998}};
-constexpr PlacementEffort thorough_effort{96, 4, {4, 0.9995}};  // for a number of cones, which is not grown in stages
+// For a number of cones, which does not grow in stages; rounding would undo its gain.
+constexpr PlacementEffort thorough_effort{96, 4, {4, 0.9995}};
 
 constexpr int usual_sites = 12000;  // of which cones are chosen, at most
 

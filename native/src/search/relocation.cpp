@@ -15,9 +15,40 @@ double share(double curvature, double slope, double diagonal) {
   return 2 * curvature * slope + curvature * curvature * diagonal;
 }
 
+// How often each vertex is within some rings of the cones of a set.
+class Neighborhoods {
+ public:
+  // Fewer rings than usual if there is no room for a further cone outside them.
+  Neighborhoods(const HalfedgeMesh& mesh, const Array<Site>& all, const Array<int>& sites)
+      : mesh_(mesh), all_(all), count_(mesh.vertex_count()) {
+    for (; rings_ >= 0; --rings_) {
+      std::fill(count_.begin(), count_.end(), 0);
+      for (const int site : sites) add(site, 1);
+      if (std::any_of(all.begin(), all.end(), [&](const Site& site) { return is_outside(site); })) return;
+    }
+  }
+
+  void add(int site, int times) {
+    for (const Index center : {all_[site].vertex, all_[site].mirrored}) {
+      if (center == none) continue;
+      for (const Index v : rings_around(mesh_, center, rings_)) count_[v] += times;
+    }
+  }
+
+  bool is_outside(const Site& site) const {
+    return count_[site.vertex] == 0 && (site.mirrored == none || count_[site.mirrored] == 0);
+  }
+
+ private:
+  const HalfedgeMesh& mesh_;
+  const Array<Site>& all_;
+  int rings_ = free_rings;
+  PerVertex<int> count_;
+};
+
 }  // namespace
 
-bool relocate(const PlacementProblem& problem, const ConeSearch& search, int kept, const Eigen::VectorXd& curvature,
+bool relocate(const PlacementProblem& problem, const HalfedgeMesh& mesh, int kept, const Eigen::VectorXd& curvature,
               Array<int>& sites) {
   LogScaleVariance& kernel = problem.kernel;
   Eigen::VectorXd slope = kernel.gradient();
@@ -28,14 +59,14 @@ bool relocate(const PlacementProblem& problem, const ConeSearch& search, int kep
   for (std::size_t i = 0; i < sites.size(); ++i) {
     objective += curvature[static_cast<Eigen::Index>(i)] * (kernel.gradient()[sites[i]] + slope[sites[i]]);
   }
+  Neighborhoods near(mesh, kernel.sites(), sites);
   bool moved = false;
   for (Eigen::Index i = kept; i < ssize(sites); ++i) {
     const double kappa = curvature[i];
     if (kappa == 0) continue;
     slope -= kappa * *kernel.column(sites[i]);
-    Array<int> others = sites;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    Array<char> open = search.open_sites(others);
+    near.add(sites[i], -1);
+    Array<char> tried_in_vain(kernel.site_count(), 0);
     const int cones = kernel.sites()[sites[i]].cones();
     const auto price = problem.price_among(problem.cone_count(sites));
     for (int tried = 0; tried < sites_tried; ++tried) {
@@ -43,19 +74,21 @@ bool relocate(const PlacementProblem& problem, const ConeSearch& search, int kep
       const double present = at(sites[i]);
       int best = sites[i];
       for (int site = 0; site < kernel.site_count(); ++site) {
-        if (!open[site] || kernel.sites()[site].cones() != cones || !(at(site) < at(best))) continue;
+        if (!(at(site) < at(best)) || kernel.sites()[site].cones() != cones) continue;
+        if (tried_in_vain[site] || !near.is_outside(kernel.sites()[site])) continue;
         if (problem.limits.low(site, wider_reach) > kappa || problem.limits.high(site, wider_reach) < kappa) continue;
         best = site;
       }
       const double wanted = present - least_gain * objective;
       if (best == sites[i] || at(best) > wanted) break;
-      open[best] = 0;
+      tried_in_vain[best] = 1;
       if (share(kappa, slope[best], (*kernel.column(best))[best]) + price[best] > wanted) continue;
       objective += at(best) - present;
       sites[i] = best;
       moved = true;
       break;
     }
+    near.add(sites[i], 1);
     slope += kappa * *kernel.column(sites[i]);
   }
   return moved;

@@ -82,21 +82,24 @@ Array<Site> existing_sites(const HalfedgeMesh& mesh, const ComponentCones& exist
 
 }  // namespace
 
-void mark_rings(const HalfedgeMesh& mesh, Index vertex, int rings, PerVertex<char>& marked) {
-  Array<Index> rim{vertex};
-  marked[vertex] = 1;
+Array<Index> rings_around(const HalfedgeMesh& mesh, Index vertex, int rings) {
+  Array<Index> out{vertex}, rim{vertex};
   for (int ring = 0; ring < rings; ++ring) {
     Array<Index> grown;
     for (const Index v : rim) {
       if (is_hub(mesh, v)) continue;
-      mesh.for_each_outgoing(v, [&](Index h) {
-        marked[mesh.target(h)] = 1;
-        grown.push_back(mesh.target(h));
-      });
+      mesh.for_each_outgoing(v, [&](Index h) { grown.push_back(mesh.target(h)); });
     }
     sort_unique(grown);
+    out.insert(out.end(), grown.begin(), grown.end());
     rim = std::move(grown);
   }
+  sort_unique(out);
+  return out;
+}
+
+void mark_rings(const HalfedgeMesh& mesh, Index vertex, int rings, PerVertex<char>& marked) {
+  for (const Index v : rings_around(mesh, vertex, rings)) marked[v] = 1;
 }
 
 ConeSites find_cone_sites(const PlacementTask& task, int most) {

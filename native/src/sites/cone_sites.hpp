@@ -36,7 +36,8 @@ struct ConeSites {
 // more than `most`, evenly distributed ones, each the sharpest of its neighborhood.
 ConeSites find_cone_sites(const PlacementTask& task, int most);
 
-// Marks a vertex and the rings around it, which end at a vertex of more than 64 triangles.
+// A vertex and those in the rings around it, which end at a vertex of more than 64 triangles, in ascending order.
+Array<Index> rings_around(const HalfedgeMesh& mesh, Index vertex, int rings);
 void mark_rings(const HalfedgeMesh& mesh, Index vertex, int rings, PerVertex<char>& marked);
 
 }  // namespace lsgp

@@ -52,7 +52,7 @@ def test_placing_cones_for_a_lattice_on_long_boxes_ends(lengths: tuple[float, fl
 
 def test_rounding_many_angles_can_be_stopped() -> None:
     """With so many cones their rounding takes longest by far: it has to be there that progress is told."""
-    mesh = meshes.icosphere(3)
+    mesh = meshes.icosphere(4)
     cones = np.arange(0, len(mesh.positions), 2)
     told: list[float] = []
 
