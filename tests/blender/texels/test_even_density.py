@@ -9,6 +9,7 @@ import pytest
 
 def half_man():
     (man,) = first_press_models.man()
+    man.modifiers.clear()
     return [first_press_models.without_half(man)]
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Use Subdivision Surface: the map is that of the surface that the modifier makes."""
 
+import bmesh
 import bpy
 import numpy as np
 import pytest
@@ -14,6 +15,15 @@ def swollen(name="Swollen"):
         vertex.co.z *= 3
     cube.modifiers.new("Subdivision", "SUBSURF").levels = 2
     return cube
+
+
+def with_waist(obj):
+    """The object, made thin where x is 0."""
+    for vertex in obj.data.vertices:
+        if abs(vertex.co.x) < 0.01:
+            vertex.co.y *= 0.4
+            vertex.co.z *= 0.4
+    return obj
 
 
 def applied(obj):
@@ -73,6 +83,28 @@ def test_auto_unwrap_takes_the_modifier_that_is_shown():
     assert np.array_equal(lengths[hidden], lengths[plain])
     assert lengths[cube] == pytest.approx(lengths[twin], abs=1e-4)
     assert np.abs(lengths[cube] - lengths[plain]).max() > 0.01
+
+
+def right_half(obj):
+    """The object without its vertices at negative x."""
+    bm = bmesh.new()
+    bm.from_mesh(obj.data)
+    bmesh.ops.delete(bm, geom=[vertex for vertex in bm.verts if vertex.co.x < -0.01], context="VERTS")
+    bm.to_mesh(obj.data)
+    bm.free()
+    return obj
+
+
+def test_half_a_figure_is_subdivided_together_with_the_other_half():
+    """By itself it would shrink at its rim, where the mirror plane is."""
+    twin = right_half(applied(with_waist(swollen())))
+    mirrored, alone = (right_half(with_waist(swollen(name))) for name in ("Mirrored", "Alone"))
+    mirrored.modifiers.clear()
+    mirrored.modifiers.new("Mirror", "MIRROR")
+    mirrored.modifiers.new("Subdivision", "SUBSURF").levels = 2
+    lengths = {obj: unwrapped_alone(obj, bpy.ops.uv.cone_auto_unwrap) for obj in (twin, mirrored, alone)}
+    assert lengths[mirrored] == pytest.approx(lengths[twin], abs=1e-4)
+    assert np.abs(lengths[alone] - lengths[twin]).max() > 0.01
 
 
 def test_other_modifiers_and_shape_keys_have_no_say():
