@@ -20,7 +20,9 @@ namespace {
 
 constexpr int most_newton_steps = 60;
 constexpr double newton_decrement = 1e-20;  // of the objective, a logarithm of order 1
-constexpr double too_small_to_see = 1e-11;  // decreases below the rounding error of the objective
+constexpr int most_harmonic_steps = 100;
+constexpr double harmonic_residual = 1e-22;  // squared, relative to that of the coarse surface's solution
+constexpr double too_small_to_see = 1e-11;   // decreases below the rounding error of the objective
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double ridge = 1e-13;  // relative: cones so close that their Green's functions nearly agree
 
@@ -71,41 +73,13 @@ Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& columns, const Eigen::Vecto
   return sum;
 }
 
-// What the prescription minimizes, log mean e^{2y} + log mean e^{-2y}, as a function of the cone curvatures.
-class Stretch {
- public:
-  Stretch(const Eigen::VectorXd& weight, const Eigen::MatrixXd& green) : weight_(weight), green_(green) {}
-
-  // All that follows is of this log scale.
-  double evaluate(const Eigen::VectorXd& y) { return log_stretch(weight_, y, shares_); }
-  Eigen::VectorXd gradient() {
-    const Eigen::RowVector2d whole = shares_.colwise().sum();
-    shares_.array().rowwise() /= whole.array();
-    // A few columns at a time, which stay in the cache: a general matrix product packs them all for its two columns.
-    constexpr Eigen::Index columns_at_once = 4;
-    means_.resize(green_.cols(), 2);
-    for (Eigen::Index i = 0; i < green_.cols(); i += columns_at_once) {
-      const Eigen::Index count = std::min(columns_at_once, green_.cols() - i);
-      for (const int side : {0, 1}) {
-        means_.col(side).segment(i, count).noalias() = green_.middleCols(i, count).transpose() * shares_.col(side);
-      }
-    }
-    return 2 * (means_.col(0) - means_.col(1));
-  }
-  Eigen::MatrixXd hessian() const {  // after the gradient
-    Eigen::MatrixXd out = 4 * weighted_gram(green_, shares_.rowwise().sum());
-    out.selfadjointView<Eigen::Lower>().rankUpdate(means_, -4);
-    out.triangularView<Eigen::StrictlyUpper>() = out.transpose();
-    out.diagonal().array() += ridge * out.diagonal().mean();
-    return out;
-  }
-
- private:
-  const Eigen::VectorXd& weight_;
-  const Eigen::MatrixXd& green_;
-  Eigen::MatrixXd shares_;  // (n, 2) of the area, weighted by e^{2y} and by e^{-2y}
-  Eigen::MatrixXd means_;   // (k, 2) of the Green's functions
-};
+// The update of a Hessian that makes it explain how a step changed the gradient (BFGS).
+void learn(Eigen::MatrixXd& hessian, const Eigen::VectorXd& step, const Eigen::VectorXd& change) {
+  const Eigen::VectorXd expected = hessian * step;
+  const double curvature = step.dot(change), expected_curvature = step.dot(expected);
+  if (!(curvature > 0 && expected_curvature > 0)) return;
+  hessian += change * (change / curvature).transpose() - expected * (expected / expected_curvature).transpose();
+}
 
 // The number of further steps to the minimum, extrapolated from the last two decreases of the objective.
 double steps_left(double decrease, double before) {
@@ -120,17 +94,53 @@ Index ground(const Array<Index>& cones, const CutFactor* factor) {
 
 }  // namespace
 
+// What the prescription minimizes, log mean e^{2y} + log mean e^{-2y}, as a function of the cone curvatures.
+class LogScale::Stretch {
+ public:
+  explicit Stretch(const LogScale& scale) : scale_(scale) {}
+
+  // All that follows is of this log scale.
+  double evaluate(const Eigen::VectorXd& y) { return log_stretch(scale_.weight_, y, shares_); }
+  Eigen::VectorXd gradient() {
+    const Eigen::RowVector2d whole = shares_.colwise().sum();
+    shares_.array().rowwise() /= whole.array();
+    return 2 * scale_.products(shares_.col(0) - shares_.col(1));
+  }
+  // After the gradient. With a coarse surface, that of the same stretch there.
+  Eigen::MatrixXd hessian() const {
+    if (!scale_.is_coarse_) return hessian(scale_.green(), shares_.col(0), shares_.col(1));
+    const CoarseGreen& coarse = scale_.coarse_green();
+    return hessian(coarse.columns(), coarse.at_nodes(shares_.col(0)), coarse.at_nodes(shares_.col(1)));
+  }
+
+ private:
+  static Eigen::MatrixXd hessian(const Eigen::MatrixXd& green, const Eigen::VectorXd& growth,
+                                 const Eigen::VectorXd& shrinkage) {
+    Eigen::MatrixXd means(green.cols(), 2), out = 4 * weighted_gram(green, growth + shrinkage);
+    means << green.transpose() * growth, green.transpose() * shrinkage;
+    out.selfadjointView<Eigen::Lower>().rankUpdate(means, -4);
+    out.triangularView<Eigen::StrictlyUpper>() = out.transpose();
+    out.diagonal().array() += ridge * out.diagonal().mean();
+    return out;
+  }
+
+  const LogScale& scale_;
+  Eigen::MatrixXd shares_;  // (n, 2) of the area, weighted by e^{2y} and by e^{-2y}
+};
+
 LogScale::LogScale(const MetricMesh& surface, const BorderConditions& border, const Array<Index>& cones,
                    const CutFactor* factor)
     : surface_(surface),
       border_(border),
       cones_(cones),
       weight_(surface.geometry.vertex_area / surface.geometry.total_area) {
-  require_matrix_memory(mesh().vertex_count(), static_cast<double>(cones.size()), GrowsWith::conditions);
+  is_coarse_ = CoarseGreen::pays(mesh(), cones_);
+  require_matrix_memory(mesh().vertex_count(), is_coarse_ ? 0 : cone_count(), GrowsWith::conditions);
   green_.resize(mesh().vertex_count(), 0);
   if (cones.empty() && factor == nullptr) return;
   const PerVertex<char> held = held_with(ground(cones, factor));
   laplace_ = factor != nullptr ? laplace_on_cut(*factor, held) : sparse_laplace(surface, held);
+  if (is_coarse_) return;
   LaplaceSolver::Response response = laplace_->solve(border.curvature - geometry().angle_defect, cones);
   without_cones_ = std::move(response.to_right_side);
   green_ = std::move(response.to_impulses);
@@ -150,6 +160,35 @@ const LaplaceSolver& LogScale::laplace() const {
 const Eigen::VectorXd& LogScale::without_cones() const {
   if (without_cones_.size() == 0) without_cones_ = laplace().solve(border_.curvature - geometry().angle_defect);
   return without_cones_;
+}
+
+const Eigen::MatrixXd& LogScale::green() const {
+  if (green_.cols() < cone_count()) {
+    require_matrix_memory(mesh().vertex_count(), cone_count(), GrowsWith::conditions);
+    green_ = laplace().solve(Eigen::VectorXd::Zero(mesh().vertex_count()), cones_).to_impulses;
+  }
+  return green_;
+}
+
+const CoarseGreen& LogScale::coarse_green() const {
+  if (!coarse_green_) {
+    BorderConditions border = border_;
+    border.held = held_with(ground(cones_, nullptr));
+    coarse_green_ = std::make_unique<CoarseGreen>(surface_, border, cones_);
+  }
+  return *coarse_green_;
+}
+
+Eigen::VectorXd LogScale::combine(const Eigen::VectorXd& cone_curvature) const {
+  if (!is_coarse_) return green_ * cone_curvature;
+  Eigen::VectorXd right_side = Eigen::VectorXd::Zero(mesh().vertex_count());
+  right_side(cones_) = cone_curvature;
+  return solve(right_side);
+}
+
+Eigen::VectorXd LogScale::products(const Eigen::VectorXd& values) const {
+  if (!is_coarse_) return green_.transpose() * values;
+  return solve(values)(cones_);  // the Laplacian is symmetric
 }
 
 Eigen::VectorXd LogScale::solve(const Eigen::VectorXd& right_side) const { return laplace().solve(right_side); }
@@ -178,12 +217,13 @@ void LogScale::set_cones(const Array<Index>& vertices) {
     const Index from = column[vertices[i]];
     const auto to = static_cast<Eigen::Index>(i);
     if (from < cone_count())
-      green.col(to) = green_.col(from);
+      green.col(to) = this->green().col(from);
     else
       green.col(to) = solved.col(from - cone_count());
   }
   green_ = std::move(green);
   cones_ = vertices;
+  is_coarse_ = false;
 }
 
 Eigen::VectorXd LogScale::evaluate(const Eigen::VectorXd& cone_curvature) const {
@@ -193,7 +233,7 @@ Eigen::VectorXd LogScale::evaluate(const Eigen::VectorXd& cone_curvature) const 
 }
 
 Eigen::VectorXd LogScale::evaluate_held(const Eigen::VectorXd& cone_curvature) const {
-  return without_cones() + green_ * cone_curvature;
+  return without_cones() + combine(cone_curvature);
 }
 
 Eigen::VectorXd LogScale::evaluate_held(const Array<Index>& vertices, const Eigen::VectorXd& curvature) const {
@@ -202,31 +242,52 @@ Eigen::VectorXd LogScale::evaluate_held(const Array<Index>& vertices, const Eige
   return without_cones() + solve(right_side);
 }
 
+// On the surface itself by conjugate gradients, with the solution on a coarse one as preconditioner.
 Eigen::VectorXd LogScale::harmonic_curvature() const {
   const Index k = cone_count();
   const bool balanced = border_.balanced;
-  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(k + balanced, k + balanced);
-  Eigen::VectorXd right(k + balanced);
-  for (Index i = 0; i < k; ++i) {
-    system.row(i).head(k) = green_.row(cones_[i]);
-    right[i] = -without_cones()[cones_[i]];
+  Eigen::MatrixXd system = Eigen::MatrixXd::Ones(k + balanced, k + balanced);
+  if (is_coarse_)
+    system.topLeftCorner(k, k) = coarse_green().at_cones();
+  else
+    system.topLeftCorner(k, k) = green_(cones_, Eigen::all);
+  if (balanced) system(k, k) = 0;
+  const Eigen::PartialPivLU<Eigen::MatrixXd> factor(system);
+  const auto solve_for = [&](const Eigen::VectorXd& y, double sum) {
+    Eigen::VectorXd right = Eigen::VectorXd::Constant(k + balanced, sum);
+    right.head(k) = y;
+    return Eigen::VectorXd(factor.solve(right).head(k));
+  };
+  Eigen::VectorXd kappa = solve_for(-without_cones()(cones_), balanced ? required_sum() : 0);
+  if (!is_coarse_) return kappa;
+  Eigen::VectorXd residual = -evaluate_held(kappa)(cones_), direction = Eigen::VectorXd::Zero(k);
+  double first = 0, before = infinity;
+  for (int step = 0; step < most_harmonic_steps; ++step) {
+    const Eigen::VectorXd change = solve_for(residual, 0);
+    const double size = residual.dot(change);
+    if (step == 0) first = size;
+    if (!(size > harmonic_residual * first)) break;
+    direction = change + size / before * direction;
+    const Eigen::VectorXd response = combine(direction)(cones_);
+    const double length = size / direction.dot(response);
+    kappa += length * direction;
+    residual -= length * response;
+    before = size;
   }
-  if (balanced) {
-    system.col(k).head(k).setOnes();
-    system.row(k).head(k).setOnes();
-    right[k] = required_sum();
-  }
-  return system.partialPivLu().solve(right).head(k);
+  return kappa;
 }
 
-// With many cones a Hessian costs as much as dozens of gradients: it is reused while fewer steps remain.
+// With many cones a Hessian costs as much as dozens of gradients: while fewer steps remain, or if it is a coarse one
+// anyway, it is improved by what the steps teach instead.
 Eigen::VectorXd LogScale::least_distortion_curvature(const Eigen::VectorXd& low, const Eigen::VectorXd& high,
                                                      Eigen::VectorXd start) const {
-  const double gradients_of_hessian = 2 + cone_count() / 20.0;
+  const double gradients_of_hessian = is_coarse_ ? most_newton_steps : 2 + cone_count() / 20.0;
   Eigen::VectorXd kappa = std::move(start);
-  Eigen::VectorXd y = without_cones() + green_ * kappa;
-  Stretch stretch(weight_, green_);
+  Eigen::VectorXd y = evaluate_held(kappa);
+  Stretch stretch(*this);
   BoxProgram program(border_.balanced);
+  Eigen::MatrixXd hessian;
+  Eigen::VectorXd last_gradient, moved;
   double value = stretch.evaluate(y), before = infinity;
   for (int step = 0; step < most_newton_steps; ++step) {
     const Eigen::VectorXd gradient = stretch.gradient();
@@ -236,23 +297,30 @@ Eigen::VectorXd LogScale::least_distortion_curvature(const Eigen::VectorXd& low,
       direction = program.minimize(gradient, low - kappa, high - kappa);
       decrease = -gradient.dot(direction);
     };
-    if (step > 0) minimize();
+    if (step > 0) {
+      learn(hessian, moved, gradient - last_gradient);
+      program.set_hessian(hessian);
+      minimize();
+    }
     const bool is_fresh =
         step == 0 || (decrease > newton_decrement && steps_left(decrease, before) > gradients_of_hessian);
     if (is_fresh) {
-      program.set_hessian(stretch.hessian());
+      hessian = stretch.hessian();
+      program.set_hessian(hessian);
       minimize();
     }
     const bool is_visible = decrease > too_small_to_see;
     if (!(decrease > newton_decrement) || (is_fresh && !is_visible && !(decrease < before))) break;
-    const Eigen::VectorXd change = green_ * direction;
+    const Eigen::VectorXd change = combine(direction);
     double length = 1, tried = value;
     for (; length > 1e-6; length /= 2) {
       tried = stretch.evaluate(y + length * change);
       if (!is_visible || tried <= value - 1e-4 * length * decrease) break;
     }
     if (is_visible && !(tried < value)) break;
-    kappa += length * direction;
+    moved = length * direction;
+    last_gradient = gradient;
+    kappa += moved;
     y += length * change;
     value = tried;
     before = decrease;
@@ -279,11 +347,11 @@ double LogScale::lumped_l2(const Eigen::VectorXd& log_scale) const {
 }
 
 LogScale::Variance LogScale::variance() const {
-  const Eigen::VectorXd mean = green_.transpose() * weight_;
-  Variance out{weighted_gram(green_, weight_), {}};
+  const Eigen::VectorXd mean = green().transpose() * weight_;
+  Variance out{weighted_gram(green(), weight_), {}};
   out.hessian.triangularView<Eigen::StrictlyUpper>() = out.hessian.transpose();
   out.hessian -= mean * mean.transpose();
-  out.gradient = green_.transpose() * weight_.cwiseProduct(without_cones()) - weight_.dot(without_cones()) * mean;
+  out.gradient = green().transpose() * weight_.cwiseProduct(without_cones()) - weight_.dot(without_cones()) * mean;
   return out;
 }
 

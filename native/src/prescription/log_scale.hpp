@@ -10,6 +10,7 @@
 #include "mesh/border.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/topology.hpp"
+#include "prescription/coarse_green.hpp"
 #include "systems/laplace_solver.hpp"
 
 namespace lsgp {
@@ -18,9 +19,10 @@ namespace lsgp {
 constexpr double largest_l2 = 1e100;
 
 // The log scale y of the metric with given curvatures: L y = kappa - K where y is not held at 0, so y is affine in the
-// cone curvatures, y = y_0 + sum of kappa_c G_c. One factorization; one more back-substitution for every cone. Without
-// cones it waits for the first use, since large surfaces may never need their own. With nothing held, y is known up to
-// a constant, Gauss-Bonnet has to hold, and y is held at one vertex, a cone if any.
+// cone curvatures, y = y_0 + sum of kappa_c G_c. One factorization; one more back-substitution for every cone, if there
+// are not so many that a few per step are cheaper, in directions from a coarse surface. Without cones it waits for the
+// first use, since large surfaces may never need their own. With nothing held, y is known up to a constant,
+// Gauss-Bonnet has to hold, and y is held at one vertex, a cone if any.
 class LogScale {
  public:
   // cones: interior, distinct.  factor: if given, an existing one with the cones on its cuts.
@@ -47,7 +49,7 @@ class LogScale {
   // The same with curvatures at any vertices, which need not be cones; one back-substitution.
   Eigen::VectorXd evaluate_held(const Array<Index>& vertices, const Eigen::VectorXd& curvature) const;
   // The change of that per unit of a cone's curvature.
-  auto effect(Index cone) const { return green_.col(cone); }
+  auto effect(Index cone) const { return green().col(cone); }
 
   // Solves L y = right side, (n), where y is not held; the sum of the right side is 0 when balanced.
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;
@@ -74,16 +76,25 @@ class LogScale {
   Variance variance() const;
 
  private:
+  class Stretch;
+
   PerVertex<char> held_with(Index vertex) const;  // if balanced
   const LaplaceSolver& laplace() const;
   const Eigen::VectorXd& without_cones() const;
+  const Eigen::MatrixXd& green() const;
+  const CoarseGreen& coarse_green() const;
+  // Sum of kappa_c G_c, and the inner product of every G_c with values at vertices (n), (k).
+  Eigen::VectorXd combine(const Eigen::VectorXd& cone_curvature) const;
+  Eigen::VectorXd products(const Eigen::VectorXd& values) const;
 
   const MetricMesh surface_;
   BorderConditions border_;
   Array<Index> cones_;
   Eigen::VectorXd weight_;  // (n) share of the area
-  Eigen::MatrixXd green_;   // (n, k) G_c
+  bool is_coarse_ = false;  // whether Green's functions on a coarse surface are used
   // Made on first use, if not with cones at once.
+  mutable Eigen::MatrixXd green_;  // (n, k) G_c
+  mutable std::unique_ptr<CoarseGreen> coarse_green_;
   mutable std::unique_ptr<LaplaceSolver> laplace_;
   mutable Eigen::VectorXd without_cones_;  // (n) y_0
 };

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "base/array.hpp"
+#include "mesh/coarse_surface.hpp"
 #include "prescription/log_scale.hpp"
-#include "sites/coarse_surface.hpp"
 #include "sites/cone_sites.hpp"
 
 namespace lsgp {

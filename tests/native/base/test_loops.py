@@ -170,7 +170,7 @@ REVIEWED = {
     "search/cone_set.cpp": [
         ("while (!reaches_sum() && out.used_reach <= widest_reach)", "the reach grows by a tenth up to 8", SHORT),
     ],
-    "sites/coarse_surface.cpp": [
+    "mesh/coarse_surface.cpp": [
         (
             "for (int pass = 1; ssize(removals) < most && !left_.empty(); ++pass)",
             "a pass that removes no vertex ends it",

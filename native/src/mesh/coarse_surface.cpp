@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sites/coarse_surface.hpp"
+#include "mesh/coarse_surface.hpp"
 
 #include <algorithm>
 #include <cmath>
