@@ -16,21 +16,26 @@ double half_of(double cost) { return (0.5 + 1e-9) * cost; }
 
 }  // namespace
 
-CutRegions::CutRegions(const CutNetwork& network, double below)
-    : network_(network),
-      was_cut_(network.is_cut),
-      again_(network.mesh.vertex_count()),
-      redone_(network.mesh.vertex_count(), 0) {
-  for (Index v = 0; v < network.mesh.vertex_count(); ++v) {
-    if (network.holds(v)) sources_.push_back(v);
+CutRegions::CutRegions(const CutNetwork& network)
+    : network_(network), again_(network.mesh.vertex_count()), redone_(network.mesh.vertex_count(), 0) {}
+
+void CutRegions::update(double below) {
+  was_cut_ = network_.is_cut;
+  sources_.clear();
+  for (Index v = 0; v < network_.mesh.vertex_count(); ++v) {
+    if (network_.holds(v)) sources_.push_back(v);
   }
-  grow(below);
+  if (below > below_) {
+    grow(below);
+  } else {
+    regrow_changed();
+    list();
+  }
 }
 
 void CutRegions::grow(double below) {
-  const HalfedgeMesh& mesh = network_.mesh;
   below_ = below;
-  reached_.assign(mesh.vertex_count(), {});
+  reached_.assign(network_.mesh.vertex_count(), {});
   PathStarts starts;
   for (const Index v : sources_) {
     reached_[v] = {0, none, v};
@@ -38,6 +43,51 @@ void CutRegions::grow(double below) {
   }
   const auto admits = [&](Index v) { return !network_.is_avoided[v]; };
   grow_paths(network_.edges, {std::move(starts), half_of(below)}, admits, reached_);
+  list();
+}
+
+// The regions of vertices that left the cuts, and those that have new vertices of the cuts inside.
+void CutRegions::regrow_changed() {
+  ++round_;
+  around_.clear();
+  const auto add = [&](Index v) {
+    around_.push_back(v);
+    redone_[v] = round_;
+  };
+  for (Index v = 0; v < network_.mesh.vertex_count(); ++v) {
+    const Index source = reached_[v].source;
+    if (network_.holds(v) == (source == v) || redone_[v] == round_) continue;
+    if (source == none) {
+      add(v);
+    } else {
+      std::for_each(members_.begin() + first_[source], members_.begin() + first_[source + 1], add);
+    }
+  }
+  for (const Index v : around_) reached_[v] = network_.holds(v) ? Reached{0, none, v} : Reached{};
+  const auto admits = [&](Index v) { return !network_.is_avoided[v]; };
+  grow_paths(network_.edges, {enter(below_, reached_), half_of(below_)}, admits, reached_);
+}
+
+// Reaches the vertices of `around_` from their neighbors elsewhere. Returns those that are reached.
+PathStarts CutRegions::enter(double below, PerVertex<Reached>& reached) const {
+  PathStarts starts;
+  for (const Index v : around_) {
+    for (const CutEdges::Edge& edge : network_.edges.from(v)) {
+      if (redone_[edge.target] == round_) continue;
+      const Reached& there = reached_[edge.target];
+      if (there.source == none || !network_.holds(there.source)) continue;
+      const double through = there.distance + edge.cost;
+      if (!(through < half_of(below) && through < reached[v].distance)) continue;
+      reached[v] = {through, network_.mesh.twin[edge.halfedge], there.source};
+    }
+    if (reached[v].source != none) starts.emplace_back(reached[v].distance, v);
+  }
+  return starts;
+}
+
+// The vertices of each region, and the edges between regions.
+void CutRegions::list() {
+  const HalfedgeMesh& mesh = network_.mesh;
   first_.assign(mesh.vertex_count() + 1, 0);
   for (const Reached& there : reached_) {
     if (there.source != none) ++first_[there.source + 1];
@@ -56,31 +106,18 @@ void CutRegions::grow(double below) {
 
 // Distributes the regions of the interior vertices of a closed path over the neighboring ones, up to a cost.
 void CutRegions::redo(const CutPath& closed, double below) {
-  const HalfedgeMesh& mesh = network_.mesh;
   ++round_;
   around_.clear();
   for (std::size_t i = 1; i < closed.size(); ++i) {
-    const Index base = mesh.origin(closed[i]);
+    const Index base = network_.mesh.origin(closed[i]);
     for (Index m = first_[base]; m < first_[base + 1]; ++m) {
       around_.push_back(members_[m]);
       redone_[members_[m]] = round_;
       again_[members_[m]] = {};
     }
   }
-  PathStarts starts;
-  for (const Index v : around_) {
-    for (const CutEdges::Edge& edge : network_.edges.from(v)) {
-      if (redone_[edge.target] == round_) continue;
-      const Reached& there = reached_[edge.target];
-      if (there.source == none || !network_.holds(there.source)) continue;
-      const double through = there.distance + edge.cost;
-      if (!(through < half_of(below) && through < again_[v].distance)) continue;
-      again_[v] = {through, mesh.twin[edge.halfedge], there.source};
-    }
-    if (again_[v].source != none) starts.emplace_back(again_[v].distance, v);
-  }
   const auto admits = [&](Index v) { return redone_[v] == round_; };
-  grow_paths(network_.edges, {std::move(starts), half_of(below)}, admits, again_);
+  grow_paths(network_.edges, {enter(below, again_), half_of(below)}, admits, again_);
 }
 
 CutPath CutRegions::find(const CutPath& closed, const PerVertex<Index>& is_apart, Index mark, double below) {

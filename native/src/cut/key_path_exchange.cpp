@@ -64,17 +64,22 @@ class SmallerSubtree {
 class KeyPathExchange {
  public:
   explicit KeyPathExchange(CutNetwork& network)
-      : network_(network), smaller_(network), strips_(network), traced_(network.mesh.halfedge_count(), 0) {}
+      : network_(network),
+        smaller_(network),
+        regions_(network),
+        strips_(network),
+        traced_(network.mesh.halfedge_count(), 0) {}
 
   // Tries every path once. Returns the relative reduction of cost.
   double try_all();
 
  private:
   CutPath trace(Index h);
-  CutPath find_cheaper(const CutPath& path, CutRegions& regions);
+  CutPath find_cheaper(const CutPath& path);
 
   CutNetwork& network_;
   SmallerSubtree smaller_;
+  CutRegions regions_;
   StripSearch strips_;
   PerHalfedge<Index> traced_;  // the last round that saw the path of a halfedge
   Index rounds_ = 0;
@@ -87,14 +92,14 @@ CutPath KeyPathExchange::trace(Index h) {
 }
 
 // Closes a path. Returns a cheaper one, or an empty one.
-CutPath KeyPathExchange::find_cheaper(const CutPath& path, CutRegions& regions) {
+CutPath KeyPathExchange::find_cheaper(const CutPath& path) {
   constexpr double least_gain = 1e-9;  // of the path's cost: rounding is no gain
   const HalfedgeMesh& mesh = network_.mesh;
   const double below = (1 - least_gain) * network_.cost(path);
   const StripSearch::Ends ends = strips_.ends_of(path);
   network_.close(path);
   if (const auto mark = smaller_.mark(mesh.target(path.back()), mesh.origin(path.front()))) {
-    return regions.find(path, smaller_.mark_of(), *mark, below);
+    return regions_.find(path, smaller_.mark_of(), *mark, below);
   }
   // A closed path may be the whole boundary of a piece.
   const bool is_whole = ends.after_head == path.front() || ends.after_tail == mesh.twin[path.back()];
@@ -115,10 +120,10 @@ double KeyPathExchange::try_all() {
   std::sort(order.begin(), order.end());
   if (order.empty()) return 0;
   ++rounds_;
-  CutRegions regions(network_, -order.front().first);
+  regions_.update(-order.front().first);
   for (const auto& [_, h] : order) {
     if (!network_.is_cut[h] || traced_[h] == rounds_) continue;
-    const CutPath path = trace(h), cheaper = find_cheaper(path, regions);
+    const CutPath path = trace(h), cheaper = find_cheaper(path);
     network_.open(cheaper.empty() ? path : cheaper);
     if (!cheaper.empty()) gained += network_.cost(path) - network_.cost(cheaper);
   }

@@ -2,6 +2,7 @@
 #include "cut/star_exchange.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -124,6 +125,15 @@ void StarExchange::grow_from(std::size_t subtree, double below) {
   grow_paths(network_.edges, {std::move(starts), below}, [&](Index v) { return near_[v].source != none; }, from);
 }
 
+// The distance from the first subtree to another.
+double StarExchange::from_first(Index subtree) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Index v : around_) {
+    if (subtree_of_[v] == subtree) least = std::min(least, from_[0][v].distance);
+  }
+  return least;
+}
+
 // `none` if nowhere the paths from all subtrees cost less.
 Index StarExchange::nearest_to_all(double below) const {
   Index best = none;
@@ -176,7 +186,11 @@ double StarExchange::exchange(const Star& star) {
   if (mark_subtrees(star)) {
     const double below = (1 - least_gain) * star.cost;
     grow_around(star);
-    for (std::size_t subtree = 0; subtree < 3; ++subtree) grow_from(subtree, below);
+    grow_from(0, below);
+    // The other two subtrees are at least so far from a vertex together as from each other.
+    const double to_first = from_first(1), to_second = from_first(2);
+    grow_from(1, below - to_second);
+    grow_from(2, below - to_first);
     const Index at = nearest_to_all(below);
     if (at != none) joint = joint_at(at);
     if (!joint.empty() && !is_tree(joint)) joint.clear();

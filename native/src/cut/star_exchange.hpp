@@ -36,6 +36,7 @@ class StarExchange {
   bool mark_subtrees(const Star& star);
   void grow_around(const Star& star);
   void grow_from(std::size_t subtree, double below);
+  double from_first(Index subtree) const;
   Index nearest_to_all(double below) const;
   CutPath joint_at(Index v) const;
   bool is_tree(const CutPath& joint) const;
