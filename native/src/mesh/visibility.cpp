@@ -48,13 +48,17 @@ class DepthBuffer {
   }
 
   void draw(const Eigen::RowVector3d& a, const Eigen::RowVector3d& b, const Eigen::RowVector3d& c) {
+    const int first_column = first_center(std::min({a[0], b[0], c[0]}));
+    const int last_column = last_center(std::max({a[0], b[0], c[0]}));
+    if (first_column > last_column) return;  // most triangles of a large surface lie between pixels
+    const int first_row = first_center(std::min({a[1], b[1], c[1]}));
+    const int last_row = last_center(std::max({a[1], b[1], c[1]}));
+    if (first_row > last_row) return;
     const Eigen::RowVector3d ab = b - a, ac = c - a;
     const double doubled_area = ab[0] * ac[1] - ab[1] * ac[0];
     if (doubled_area == 0) return;
-    const auto [left, right] = std::minmax({a[0], b[0], c[0]});
-    const auto [bottom, top] = std::minmax({a[1], b[1], c[1]});
-    for (int row = first_center(bottom); row <= last_center(top); ++row) {
-      for (int column = first_center(left); column <= last_center(right); ++column) {
+    for (int row = first_row; row <= last_row; ++row) {
+      for (int column = first_column; column <= last_column; ++column) {
         const double x = column + 0.5 - a[0], y = row + 0.5 - a[1];
         const double s = (x * ac[1] - y * ac[0]) / doubled_area, t = (ab[0] * y - ab[1] * x) / doubled_area;
         if (s < 0 || t < 0 || s + t > 1) continue;
@@ -78,8 +82,15 @@ class DepthBuffer {
   }
 
  private:
-  int first_center(double x) const { return std::clamp(static_cast<int>(std::ceil(x - 0.5)), 0, size_); }
-  int last_center(double x) const { return std::clamp(static_cast<int>(std::floor(x - 0.5)), -1, size_ - 1); }
+  // Pixels from and up to a coordinate. Rounding by conversion, since `ceil` and `floor` are calls on older processors.
+  int first_center(double x) const {
+    const int pixel = static_cast<int>(x - 0.5);
+    return std::clamp(pixel + (pixel < x - 0.5), 0, size_);
+  }
+  int last_center(double x) const {
+    const int pixel = static_cast<int>(x - 0.5);
+    return std::clamp(pixel - (pixel > x - 0.5), -1, size_ - 1);
+  }
 
   const int size_;
   const double scale_;
