@@ -10,6 +10,7 @@
 #include <cmath>
 #include <complex>
 #include <cstddef>
+#include <type_traits>
 
 #include "solvers/dense_kernels.hpp"
 
@@ -23,6 +24,10 @@ template <typename Scalar>
 using Block = Eigen::Map<Dense<Scalar>, 0, Eigen::OuterStride<>>;
 template <typename Scalar>
 using ConstBlock = Eigen::Map<const Dense<Scalar>, 0, Eigen::OuterStride<>>;
+template <typename Scalar>
+using Column = Eigen::Map<
+    std::conditional_t<std::is_const_v<Scalar>, const Eigen::Matrix<std::remove_const_t<Scalar>, Eigen::Dynamic, 1>,
+                       Eigen::Matrix<Scalar, Eigen::Dynamic, 1>>>;
 
 // Below these sizes plain loops are faster than kernels that pack their operands.
 constexpr int narrow_columns = 16;
@@ -273,10 +278,64 @@ void substitute_backward_rows(const Front<Scalar>& front, Scalar* own, const Sca
   for (; j > 0; j -= 4) backward_four<Scalar, width>(front, j - 4, own, others);
 }
 
+// A single right-hand side: except on small fronts, products with a few columns at a time are faster than these loops,
+// three times as fast for complex numbers.
+constexpr int least_rows_of_products = 24, columns_of_products = 8;
+
+template <typename Scalar>
+void substitute_forward_single(const Front<Scalar>& front, Scalar* own, Scalar* others) {
+  const std::ptrdiff_t rows = front.columns + front.below;
+  const Eigen::OuterStride<> stride(rows);
+  Column<Scalar> below(others, front.below);
+  below.setZero();
+  for (int begin = 0; begin < front.columns; begin += columns_of_products) {
+    const int end = std::min(begin + columns_of_products, front.columns);
+    for (int j = begin; j < end; ++j) {
+      const Scalar* column = front.panel + j * rows;
+      own[j] *= 1 / real_part(column[j]);
+      for (int i = j + 1; i < end; ++i) own[i] -= column[i] * own[j];
+    }
+    const Scalar* panel = front.panel + begin * rows;
+    const int count = end - begin, left = front.columns - end;
+    const Column<const Scalar> x(own + begin, count);
+    Column<Scalar>(own + end, left).noalias() -= ConstBlock<Scalar>(panel + end, left, count, stride) * x;
+    below.noalias() += ConstBlock<Scalar>(panel + front.columns, front.below, count, stride) * x;
+  }
+}
+
+template <typename Scalar>
+void substitute_backward_single(const Front<Scalar>& front, Scalar* own, const Scalar* others) {
+  const std::ptrdiff_t rows = front.columns + front.below;
+  const Eigen::OuterStride<> stride(rows);
+  const Column<const Scalar> below(others, front.below);
+  const int last = (front.columns - 1) / columns_of_products * columns_of_products;
+  for (int begin = last; begin >= 0; begin -= columns_of_products) {
+    const int end = std::min(begin + columns_of_products, front.columns);
+    const Scalar* panel = front.panel + begin * rows;
+    const int count = end - begin, left = front.columns - end;
+    Column<Scalar> x(own + begin, count);
+    x.noalias() -=
+        ConstBlock<Scalar>(panel + end, left, count, stride).adjoint() * Column<const Scalar>(own + end, left);
+    x.noalias() -= ConstBlock<Scalar>(panel + front.columns, front.below, count, stride).adjoint() * below;
+    for (int j = end - 1; j >= begin; --j) {
+      const Scalar* column = front.panel + j * rows;
+      for (int i = j + 1; i < end; ++i) own[j] -= conjugate(column[i]) * own[i];
+      own[j] *= 1 / real_part(column[j]);
+    }
+  }
+}
+
+template <typename Scalar>
+bool is_small(const Front<Scalar>& front) {
+  return front.columns + front.below < least_rows_of_products;
+}
+
 template <typename Scalar>
 void substitute_forward(const Front<Scalar>& front, int width, Scalar* own, Scalar* others) {
   switch (width) {
-    case 1: return substitute_forward_rows<Scalar, 1>(front, own, others);
+    case 1:
+      return is_small(front) ? substitute_forward_rows<Scalar, 1>(front, own, others)
+                             : substitute_forward_single(front, own, others);
     case 2: return substitute_forward_rows<Scalar, 2>(front, own, others);
     default: return substitute_forward_rows<Scalar, 8>(front, own, others);
   }
@@ -285,7 +344,9 @@ void substitute_forward(const Front<Scalar>& front, int width, Scalar* own, Scal
 template <typename Scalar>
 void substitute_backward(const Front<Scalar>& front, int width, Scalar* own, const Scalar* others) {
   switch (width) {
-    case 1: return substitute_backward_rows<Scalar, 1>(front, own, others);
+    case 1:
+      return is_small(front) ? substitute_backward_rows<Scalar, 1>(front, own, others)
+                             : substitute_backward_single(front, own, others);
     case 2: return substitute_backward_rows<Scalar, 2>(front, own, others);
     default: return substitute_backward_rows<Scalar, 8>(front, own, others);
   }
