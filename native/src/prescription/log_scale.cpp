@@ -19,6 +19,7 @@ namespace lsgp {
 namespace {
 
 constexpr int most_newton_steps = 60;
+constexpr int most_coarse_steps = 20;       // of these; some 10 to 14 are usual
 constexpr double newton_decrement = 1e-20;  // of the objective, a logarithm of order 1
 constexpr int most_harmonic_steps = 100;
 constexpr double harmonic_residual = 1e-22;  // squared, relative to that of the coarse surface's solution
@@ -35,6 +36,18 @@ double log_stretch(const Eigen::VectorXd& weight, const Eigen::VectorXd& y, Eige
   shares.col(0) = weight.array() * growth;
   shares.col(1) = weight.array() / growth;
   return shares.colwise().sum().array().log().sum();
+}
+
+// The product with a tall matrix, a few columns at a time: Eigen reads a few rows of all columns at a time, which
+// misses the cache.
+Eigen::VectorXd tall_product(const Eigen::MatrixXd& columns, const Eigen::VectorXd& factors) {
+  constexpr Eigen::Index columns_at_once = 8;
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(columns.rows());
+  for (Eigen::Index i = 0; i < columns.cols(); i += columns_at_once) {
+    const Eigen::Index count = std::min(columns_at_once, columns.cols() - i);
+    out.noalias() += columns.middleCols(i, count) * factors.segment(i, count);
+  }
+  return out;
 }
 
 // The part of a weighted Gram matrix that some rows make up; a few rows at a time, which stay in the cache.
@@ -106,9 +119,10 @@ class LogScale::Stretch {
     shares_.array().rowwise() /= whole.array();
     return 2 * scale_.products(shares_.col(0) - shares_.col(1));
   }
-  // After the gradient. With a coarse surface, that of the same stretch there.
-  Eigen::MatrixXd hessian() const {
-    if (!scale_.is_coarse_) return hessian(scale_.green(), shares_.col(0), shares_.col(1));
+  // After the gradient, as the next one.
+  Eigen::MatrixXd hessian() const { return hessian(scale_.green(), shares_.col(0), shares_.col(1)); }
+  // That of the same stretch on a coarse surface.
+  Eigen::MatrixXd coarse_hessian() const {
     const CoarseGreen& coarse = scale_.coarse_green();
     return hessian(coarse.columns(), coarse.at_nodes(shares_.col(0)), coarse.at_nodes(shares_.col(1)));
   }
@@ -180,7 +194,7 @@ const CoarseGreen& LogScale::coarse_green() const {
 }
 
 Eigen::VectorXd LogScale::combine(const Eigen::VectorXd& cone_curvature) const {
-  if (!is_coarse_) return green_ * cone_curvature;
+  if (!is_coarse_) return tall_product(green_, cone_curvature);
   Eigen::VectorXd right_side = Eigen::VectorXd::Zero(mesh().vertex_count());
   right_side(cones_) = cone_curvature;
   return solve(right_side);
@@ -277,11 +291,12 @@ Eigen::VectorXd LogScale::harmonic_curvature() const {
   return kappa;
 }
 
-// With many cones a Hessian costs as much as dozens of gradients: while fewer steps remain, or if it is a coarse one
-// anyway, it is improved by what the steps teach instead.
+// With many cones a Hessian costs as much as dozens of gradients: while fewer steps remain, it is improved by what the
+// steps teach instead. One of a coarse surface is cheap, but where it is not enough, exact ones follow.
 Eigen::VectorXd LogScale::least_distortion_curvature(const Eigen::VectorXd& low, const Eigen::VectorXd& high,
                                                      Eigen::VectorXd start) const {
-  const double gradients_of_hessian = is_coarse_ ? most_newton_steps : 2 + cone_count() / 20.0;
+  const double gradients_of_hessian = 2 + cone_count() / 20.0;
+  const int coarse_steps = is_coarse_ ? most_coarse_steps : 0;
   Eigen::VectorXd kappa = std::move(start);
   Eigen::VectorXd y = evaluate_held(kappa);
   Stretch stretch(*this);
@@ -302,10 +317,11 @@ Eigen::VectorXd LogScale::least_distortion_curvature(const Eigen::VectorXd& low,
       program.set_hessian(hessian);
       minimize();
     }
-    const bool is_fresh =
-        step == 0 || (decrease > newton_decrement && steps_left(decrease, before) > gradients_of_hessian);
+    const double worth_another = step < coarse_steps ? most_newton_steps : gradients_of_hessian;
+    const bool is_fresh = step == 0 || (decrease > newton_decrement &&
+                                        (step == coarse_steps || steps_left(decrease, before) > worth_another));
     if (is_fresh) {
-      hessian = stretch.hessian();
+      hessian = step < coarse_steps ? stretch.coarse_hessian() : stretch.hessian();
       program.set_hessian(hessian);
       minimize();
     }

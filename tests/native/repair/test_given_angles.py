@@ -85,7 +85,7 @@ def test_angles_are_reached_across_needles(needles: int, seed: int) -> None:
 
 def test_adjusted_angles_are_named_with_those_of_corners() -> None:
     rim = oracle.boundary_loops(HILL.triangles)[0]
-    asked = drawn_angles(HILL, 16, 11) | {int(rim[3]): QUARTER, int(rim[12]): 3 * QUARTER}
+    asked = drawn_angles(HILL, 16, 14) | {int(rim[3]): QUARTER, int(rim[12]): 3 * QUARTER}
     result = lsgp.parameterize(surface(HILL), list(asked), list(asked.values()))
     assert len(result.flipped) == len(result.wrong_angle_sums) == 0
     assert set(only(result.warnings, "ANGLES_ADJUSTED").elements.indices.tolist()) == set(asked)
