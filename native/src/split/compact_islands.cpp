@@ -274,18 +274,22 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& island) {
   const double band = extent_along(hull, along).width() / division_positions;
   Array<Array<Index>> best;
   double most_worth = 0;
-  // Of equally short cuts, one hugs one end of the band and one the other.
-  for (const Array<Line>& lines : {division.lines, reversed(division.lines)}) {
-    const Array<Index> class_of = without_slivers(island, area, cut_along(lines, island, band));
-    Array<Array<Index>> pieces = pieces_of(island, class_of);
-    double after = 0;
-    for (const Array<Index>& piece : pieces) after += search_.demand(hull_of(piece));
-    // The cells only gave an estimate of the gain.
-    const double worth = search_.worth(before - after, length_between(island, class_of), pieces.size());
-    if (worth > most_worth * (1 + rounding)) {
-      most_worth = worth;
-      best = std::move(pieces);
+  // Where the shortest cut of a band leaves too small a piece, a cut nearer to the line may not.
+  for (const double width : {band, band / 4}) {
+    // Of equally short cuts, one hugs one end of the band and one the other.
+    for (const Array<Line>& lines : {division.lines, reversed(division.lines)}) {
+      const Array<Index> class_of = without_slivers(island, area, cut_along(lines, island, width));
+      Array<Array<Index>> pieces = pieces_of(island, class_of);
+      double after = 0;
+      for (const Array<Index>& piece : pieces) after += search_.demand(hull_of(piece));
+      // The cells only gave an estimate of the gain.
+      const double worth = search_.worth(before - after, length_between(island, class_of), pieces.size());
+      if (worth > most_worth * (1 + rounding)) {
+        most_worth = worth;
+        best = std::move(pieces);
+      }
     }
+    if (!best.empty()) break;
   }
   return best;
 }
