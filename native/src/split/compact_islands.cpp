@@ -85,10 +85,10 @@ class Compactor {
   // The connected faces of one class each.  faces: those that are divided.  class_of: by their place among them.
   Array<Array<Index>> pieces_of(const Array<Index>& faces, const Array<Index>& class_of);
   // The faces of the pieces of the best division of an island; fewer than two if it is best left whole.
-  Array<Array<Index>> divide(const Array<Index>& island);
+  Array<Array<Index>> divide(const Array<Index>& faces);
   IslandCells cells_of(const Array<Index>& island, Complex along);
   Array<Index> cut_along(const Array<Line>& lines, const Array<Index>& island, double band);
-  Array<Index> without_slivers(const Array<Index>& island, double island_area, const Array<Index>& class_of);
+  Array<Index> without_slivers(const Array<Index>& faces, const WholeIsland& island, const Array<Index>& class_of);
   double length_between(const Array<Index>& faces, const Array<Index>& class_of);
   // The length with which an edge counts in the price of a division: expensive edges, which cuts avoid as far as they
   // can, are no reason to leave an island undivided.
@@ -221,8 +221,9 @@ Array<Index> Compactor::cut_along(const Array<Line>& lines, const Array<Index>& 
 }
 
 // Pieces too small to be islands join the neighbor with the longest common boundary.
-Array<Index> Compactor::without_slivers(const Array<Index>& island, double island_area, const Array<Index>& class_of) {
-  const Array<Array<Index>> pieces = pieces_of(island, class_of);
+Array<Index> Compactor::without_slivers(const Array<Index>& faces, const WholeIsland& island,
+                                        const Array<Index>& class_of) {
+  const Array<Array<Index>> pieces = pieces_of(faces, class_of);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     for (const Index face : pieces[i]) place_[face] = static_cast<Index>(i);
   }
@@ -238,13 +239,13 @@ Array<Index> Compactor::without_slivers(const Array<Index>& island, double islan
         piece.ends_smoothly = piece.ends_smoothly || is_smooth(link);
       });
     }
-    if (pieces.size() < 2 || search_.may_be_cut_off(piece, island_area)) continue;
+    if (pieces.size() < 2 || search_.may_be_cut_off(piece, island)) continue;
     const auto longest = std::max_element(border.begin(), border.end());
     for (const Index face : pieces[i]) place_[face] = static_cast<Index>(longest - border.begin());
   }
   Array<Index> out;
-  for (const Index face : island) out.push_back(place_[face]);
-  clear_places(island);
+  for (const Index face : faces) out.push_back(place_[face]);
+  clear_places(faces);
   return out;
 }
 
@@ -261,15 +262,15 @@ double Compactor::length_between(const Array<Index>& faces, const Array<Index>& 
   return length;
 }
 
-Array<Array<Index>> Compactor::divide(const Array<Index>& island) {
+Array<Array<Index>> Compactor::divide(const Array<Index>& faces) {
   double area = 0;
-  for (const Index face : island) area += graph_.area[face];
-  if (island.size() < 2) return {};
-  const Array<Complex> hull = hull_of(island);
-  const double before = search_.demand(hull);
-  if (before - area < search_.least_gain()) return {};
+  for (const Index face : faces) area += graph_.area[face];
+  if (faces.size() < 2) return {};
+  const Array<Complex> hull = hull_of(faces);
+  const WholeIsland island = search_.describe(area, hull);
+  if (island.demand - area < search_.least_gain()) return {};
   const Complex along = longer_side(hull);
-  const IslandDivision division = search_.find_division(cells_of(island, along), hull, along);
+  const IslandDivision division = search_.find_division(cells_of(faces, along), island, hull, along);
   if (division.lines.empty()) return {};
   const double band = extent_along(hull, along).width() / division_positions;
   Array<Array<Index>> best;
@@ -278,12 +279,12 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& island) {
   for (const double width : {band, band / 4}) {
     // Of equally short cuts, one hugs one end of the band and one the other.
     for (const Array<Line>& lines : {division.lines, reversed(division.lines)}) {
-      const Array<Index> class_of = without_slivers(island, area, cut_along(lines, island, width));
-      Array<Array<Index>> pieces = pieces_of(island, class_of);
+      const Array<Index> class_of = without_slivers(faces, island, cut_along(lines, faces, width));
+      Array<Array<Index>> pieces = pieces_of(faces, class_of);
       double after = 0;
       for (const Array<Index>& piece : pieces) after += search_.demand(hull_of(piece));
       // The cells only gave an estimate of the gain.
-      const double worth = search_.worth(before - after, length_between(island, class_of), pieces.size());
+      const double worth = search_.worth(island.demand - after, length_between(faces, class_of), pieces.size());
       if (worth > most_worth * (1 + rounding)) {
         most_worth = worth;
         best = std::move(pieces);

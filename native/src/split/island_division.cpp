@@ -17,7 +17,7 @@ namespace {
 
 // As a fraction of the area of all islands: smaller pieces are not cut off, nor are larger ones of few faces of smooth
 // surfaces.
-constexpr double smallest_piece = 0.01, smallest_of_few = 0.06;
+constexpr double smallest_piece = 0.01, smallest_of_few = 0.06, smallest_of_long = 0.001;
 // Of islands that are smaller than this, only long and narrow ones are divided; pieces are at least a share of them.
 constexpr double small_island = 0.02, smallest_share = 0.1;
 constexpr Index few_faces = 4;
@@ -40,13 +40,14 @@ DivisionSearch::DivisionSearch(const SharedSquare& square)
 
 double DivisionSearch::least_gain() const { return price_factor_ * price_of_island * area_; }
 
-bool DivisionSearch::may_be_cut_off(const Piece& piece, double island_area) const {
-  if (island_area < small_island * area_) return piece.area >= smallest_share * island_area;
+bool DivisionSearch::may_be_cut_off(const Piece& piece, const WholeIsland& island) const {
+  if (island.area < small_island * area_) return piece.area >= smallest_share * island.area;
+  if (island.is_long && piece.area >= smallest_of_long * area_ && piece.faces > few_faces) return true;
   const bool is_scrap = piece.faces <= few_faces && piece.ends_smoothly;
   return piece.area >= (is_scrap ? smallest_of_few : smallest_piece) * area_;
 }
 
-double DivisionSearch::demand(const Array<Complex>& hull) const {
+WholeIsland DivisionSearch::describe(double area, const Array<Complex>& hull) const {
   constexpr int turns = 45;  // of a quarter
   double box = std::numeric_limits<double>::infinity(), square = box;
   for (int i = 0; i < turns; ++i) {
@@ -55,7 +56,7 @@ double DivisionSearch::demand(const Array<Complex>& hull) const {
     square = std::min(square, std::max(extent.width(), extent.height()));
   }
   const double too_large = std::max(0.0, square * square - large * area_ / fill);
-  return (area_of_hull(hull) + box) / 2 + cost_of_large * too_large;
+  return {area, (area_of_hull(hull) + box) / 2 + cost_of_large * too_large, too_large > 0};
 }
 
 double DivisionSearch::worth(double gain, double length, std::size_t pieces) const {
@@ -65,7 +66,7 @@ double DivisionSearch::worth(double gain, double length, std::size_t pieces) con
   return gain > price ? gain / std::sqrt(price) : 0;
 }
 
-double DivisionSearch::worth(const IslandCells& cells, const Array<Index>& class_of, const Undivided& island) const {
+double DivisionSearch::worth(const IslandCells& cells, const Array<Index>& class_of, const WholeIsland& island) const {
   UnionFind sets(cells.count());
   double length = 0;
   for (const IslandCells::Link& link : cells.links) {
@@ -93,7 +94,7 @@ double DivisionSearch::worth(const IslandCells& cells, const Array<Index>& class
     const Index here = number[link.cells[0]], there = number[link.cells[1]];
     if (here != there && link.is_smooth) pieces[here].ends_smoothly = pieces[there].ends_smoothly = true;
   }
-  const auto may_be = [&](const Piece& piece) { return may_be_cut_off(piece, island.area); };
+  const auto may_be = [&](const Piece& piece) { return may_be_cut_off(piece, island); };
   if (!std::all_of(pieces.begin(), pieces.end(), may_be)) return 0;
   double after = 0;
   for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
@@ -108,10 +109,8 @@ double DivisionSearch::worth(const IslandCells& cells, const Array<Index>& class
   return worth(island.demand - after, length, pieces.size());
 }
 
-IslandDivision DivisionSearch::find_division(const IslandCells& cells, const Array<Complex>& hull,
-                                             Complex along) const {
-  const double total = std::accumulate(cells.area.begin(), cells.area.end(), 0.0);
-  const Undivided island{total, demand(hull)};
+IslandDivision DivisionSearch::find_division(const IslandCells& cells, const WholeIsland& island,
+                                             const Array<Complex>& hull, Complex along) const {
   std::size_t points = 0;
   for (const Array<Complex>& own : cells.hull) points += own.size();
   IslandDivision best;
@@ -126,7 +125,7 @@ IslandDivision DivisionSearch::find_division(const IslandCells& cells, const Arr
     checkpoint(operations_a_point * static_cast<double>(points));
   };
   Complex center = 0;
-  for (Index cell = 0; cell < cells.count(); ++cell) center += cells.area[cell] / total * cells.center[cell];
+  for (Index cell = 0; cell < cells.count(); ++cell) center += cells.area[cell] / island.area * cells.center[cell];
   for (int i = 0; i < directions; ++i) {
     const Complex normal = along * std::polar(1.0, M_PI * i / directions);
     const Extent extent = extent_along(hull, normal);

@@ -47,6 +47,13 @@ struct IslandCells {
   Index count() const { return static_cast<Index>(area.size()); }
 };
 
+// An island before it is divided.
+struct WholeIsland {
+  double area = 0;
+  double demand = 0;     // of the square
+  bool is_long = false;  // it reaches so far that it blocks room for others
+};
+
 // A part of a divided island.
 struct Piece {
   double area = 0;
@@ -59,12 +66,15 @@ class DivisionSearch {
  public:
   explicit DivisionSearch(const SharedSquare& square);
 
+  // An island of this area with this hull.
+  WholeIsland describe(double area, const Array<Complex>& hull) const;
   // The area of the square that an island with this hull occupies.
-  double demand(const Array<Complex>& hull) const;
+  double demand(const Array<Complex>& hull) const { return describe(0, hull).demand; }
 
-  // Whether a piece of an island of this area is large enough and not a scrap of few faces. Pieces of few faces may be
-  // as small as others only on hard surfaces, where all their cuts follow sharp edges, and on narrow islands.
-  bool may_be_cut_off(const Piece& piece, double island_area) const;
+  // Whether a piece of an island is large enough and not a scrap of few faces. Pieces of few faces may be as small as
+  // others only on hard surfaces, where all their cuts follow sharp edges, and on narrow islands. Of long islands also
+  // smaller pieces may be cut off: a thin tail keeps everything else small.
+  bool may_be_cut_off(const Piece& piece, const WholeIsland& island) const;
 
   // The least saving that can be worth a division.
   double least_gain() const;
@@ -72,14 +82,12 @@ class DivisionSearch {
   // The worth of a division into this many pieces by cuts of this length; 0 if the gain does not exceed the price.
   double worth(double gain, double length, std::size_t pieces) const;
 
-  // The best division of an island.  along: a side of its smallest box.
-  IslandDivision find_division(const IslandCells& cells, const Array<Complex>& hull, Complex along) const;
+  // The best division of an island with this hull.  along: a side of its smallest box.
+  IslandDivision find_division(const IslandCells& cells, const WholeIsland& island, const Array<Complex>& hull,
+                               Complex along) const;
 
  private:
-  struct Undivided {
-    double area, demand;
-  };
-  double worth(const IslandCells& cells, const Array<Index>& class_of, const Undivided& island) const;
+  double worth(const IslandCells& cells, const Array<Index>& class_of, const WholeIsland& island) const;
 
   const double area_, price_factor_;
 };
