@@ -30,7 +30,7 @@ struct QuantizedLayout {
 
 // Which layouts on a grid are acceptable.
 struct LayoutEffort {
-  double most_growth = std::numeric_limits<double>::infinity();  // of the energy by rounding
+  double most_growth = 1e4;  // of the energy by rounding: with more, triangles collapse in single precision
   double most_turned = std::numeric_limits<double>::infinity();  // radians, of directions by rounding, on average
   bool quick = false;  // accept only layouts that need little repair; otherwise continuation in steps is tried, too
   enum class Features { if_possible, required, ignored } features = Features::if_possible;
