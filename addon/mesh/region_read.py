@@ -21,7 +21,7 @@ from .cones import weights_in
 from .image_aspect import image_aspect
 from .reader import readable_mesh
 from .stored_mesh import StoredMesh
-from .subdivided import places_on_subdivision
+from .subdivided import Subdivided, subdivide
 from .texel_settings import density_weight
 
 # Ratios of the sizes of an object's axes, which Blender has in single precision.
@@ -52,13 +52,14 @@ class Groups:
 def read_region(obj: bpy.types.Object, faces: Faces, groups: Groups, *, subdivided: bool = False) -> Region | None:
     """The faces of an object's mesh; None where none of them is selected.
 
-    subdivided: with its vertices where the Subdivision Surface modifier puts them.
+    subdivided: with its vertices where the Subdivision Surface modifier puts them, and each connected part with the
+        area that it has there.
     Raises Refused where the mesh has no faces or is linked from another file.
     """
     require_editable(obj)
     with readable_mesh(obj) as mesh:
-        places = places_on_subdivision(obj, mesh) if subdivided else None
-        return build_region(obj, StoredMesh(mesh), faces, groups, places)
+        smooth = subdivide(obj, mesh) if subdivided else None
+        return build_region(obj, StoredMesh(mesh), faces, groups, smooth)
 
 
 def read_chosen(obj: bpy.types.Object, faces: Faces) -> tuple[Region, NDArray[np.bool_]] | None:
@@ -79,9 +80,9 @@ def build_region(
     mesh: StoredMesh,
     faces: Faces,
     groups: Groups,
-    places: NDArray[np.float32] | None = None,
+    subdivided: Subdivided | None = None,
 ) -> Region | None:
-    """As `read_region`, of a mesh that is readable already.  places: (n, 3) of its vertices; None for those it has."""
+    """As `read_region`, of a mesh that is readable already.  subdivided: None for the mesh as it is."""
     chosen = _chosen_faces(mesh, faces, obj.mode)
     if not chosen.any():
         if faces is Faces.ALL or obj.mode != "EDIT":
@@ -90,13 +91,15 @@ def build_region(
     inside = chosen[mesh.triangle_faces]
     triangle_loops = mesh.triangle_loops[inside]
     triangles = mesh.loop_vertices[triangle_loops]
-    is_rounded = places is not None and _area(places, triangles) < ROUNDED * _area(mesh.places, triangles)
+    is_rounded = subdivided is not None and (
+        _areas(subdivided.places, triangles).sum() < ROUNDED * _areas(mesh.places, triangles).sum()
+    )
     vertex_used = np.zeros(len(mesh.places), bool)
     vertex_used[triangles] = True
     edge_used = np.zeros(len(mesh.edges), bool)
     edge_used[mesh.loop_edges[chosen[mesh.loop_faces]]] = True
     shape, axes, size = _object_shape(obj)
-    places = (mesh.places if places is None else places).astype(np.float64) @ shape
+    places = (mesh.places.astype(np.float64) if subdivided is None else _enlarged(mesh, subdivided)) @ shape
     uv = np.full((len(mesh.loop_vertices), 2), np.nan) if mesh.uv is None else mesh.uv.astype(np.float64)
     return Region(
         surface=native.lsgp.Surface(
@@ -126,9 +129,35 @@ def build_region(
     )
 
 
-def _area(places: NDArray[np.float32], triangles: NDArray[np.int32]) -> float:
-    surface = native.lsgp.Surface(places.astype(np.float64), triangles)
-    return float(native.part("triangles").triangle_areas(surface).sum())
+def _enlarged(mesh: StoredMesh, subdivided: Subdivided) -> NDArray[np.float64]:
+    """(n, 3) places of the vertices, each connected part enlarged about its middle to the area of its subdivided faces:
+    flat ones between the same vertices have less, and texels are those of the surface that is seen."""
+    part, count = _part_of_vertices(mesh.edges, len(subdivided.places)), len(subdivided.places)
+    triangles = mesh.loop_vertices[mesh.triangle_loops]
+    flat = np.bincount(part[triangles[:, 0]], _areas(subdivided.places, triangles), minlength=count)
+    curved = np.bincount(part[mesh.loop_vertices[mesh.loop_start]], subdivided.areas, minlength=count)
+    factor = np.sqrt(np.divide(curved, flat, out=np.ones(count), where=(flat > 0) & (curved > 0)))
+    sums = np.stack([np.bincount(part, column, minlength=count) for column in subdivided.places.T], axis=1)
+    middle = (sums / np.maximum(np.bincount(part, minlength=count), 1)[:, None])[part]
+    return middle + factor[part, None] * (subdivided.places - middle)
+
+
+def _part_of_vertices(edges: NDArray[np.int32], count: int) -> NDArray[np.int64]:
+    """(n,) the first vertex of the connected part of each."""
+    part = np.arange(count)
+    while True:
+        lower = part.copy()
+        ends = part[edges]
+        np.minimum.at(lower, ends, ends.min(axis=1, keepdims=True))
+        lower = lower[lower]
+        if np.array_equal(lower, part):
+            return part
+        part = lower
+
+
+def _areas(places: NDArray[np.float32], triangles: NDArray[np.int32]) -> NDArray[np.float64]:
+    """(m,)"""
+    return native.part("triangles").triangle_areas(native.lsgp.Surface(places.astype(np.float64), triangles))
 
 
 def _active_edge(obj: bpy.types.Object, edges: NDArray[np.int32]) -> tuple[int, int] | None:

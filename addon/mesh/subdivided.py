@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the vertices of a mesh are once its Subdivision Surface modifier is applied, as `uv.unwrap` has it too."""
+"""A mesh once its Subdivision Surface modifier is applied, as `uv.unwrap` has it too."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import bpy
 import numpy as np
@@ -10,14 +12,25 @@ from numpy.typing import NDArray
 from .arrays import read_array
 
 NAME = "Cone Unwrap subdivision"
+# Attributes with the numbers that elements had before.
+VERTEX = "cone_unwrap_vertex"
+FACE = "cone_unwrap_face"
 SETTINGS = {
     "MIRROR": ("use_axis", "mirror_object", "use_clip", "use_mirror_merge", "merge_threshold"),
     "SUBSURF": ("subdivision_type", "levels", "quality", "boundary_smooth", "use_creases", "use_limit_surface"),
 }
 
 
-def places_on_subdivision(obj: bpy.types.Object, mesh: bpy.types.Mesh) -> NDArray[np.float32] | None:
-    """(n, 3) places of the vertices; None where the object shows no such modifier.
+@dataclass(frozen=True, slots=True)
+class Subdivided:
+    """places: (n, 3) of the mesh's vertices. areas: (f,) of what becomes of its faces."""
+
+    places: NDArray[np.float32]
+    areas: NDArray[np.float64]
+
+
+def subdivide(obj: bpy.types.Object, mesh: bpy.types.Mesh) -> Subdivided | None:
+    """None where the object shows no such modifier.
 
     mesh: the object's, out of edit mode. Of other modifiers only Mirror counts, if it comes before: half a figure is
     subdivided together with the other half. Shape keys do not count.
@@ -32,8 +45,9 @@ def places_on_subdivision(obj: bpy.types.Object, mesh: bpy.types.Mesh) -> NDArra
     try:
         stand_in.shape_key_clear()
         stand_in.matrix_world = obj.matrix_world
-        number = copy.attributes.new(NAME, "INT", "POINT")
-        number.data.foreach_set("value", np.arange(len(mesh.vertices), dtype=np.int32))
+        for name, domain, count in ((VERTEX, "POINT", len(mesh.vertices)), (FACE, "FACE", len(mesh.polygons))):
+            number = copy.attributes.new(name, "INT", domain)
+            number.data.foreach_set("value", np.arange(count, dtype=np.int32))
         for entry in shown[: smooth + 1]:
             own = stand_in.modifiers.new(NAME, entry.type)
             for name in SETTINGS[entry.type]:
@@ -41,17 +55,25 @@ def places_on_subdivision(obj: bpy.types.Object, mesh: bpy.types.Mesh) -> NDArra
         scene.collection.objects.link(stand_in)
         layer = scene.view_layers[0]
         layer.update()
-        return _places(stand_in.evaluated_get(layer.depsgraph).data, number.name)
+        shown = stand_in.evaluated_get(layer.depsgraph).data
+        return Subdivided(_places(shown), _areas(shown))
     finally:
         bpy.data.batch_remove([scene, stand_in, copy])
 
 
-def _places(subdivided: bpy.types.Mesh, numbers: str) -> NDArray[np.float32]:
-    """Those of the vertices that were there before, by an attribute with their numbers.
+def _places(subdivided: bpy.types.Mesh) -> NDArray[np.float32]:
+    """Those of the vertices that were there before.
 
     Mirror puts images behind them, of which those in the plane replace them; Subdivision Surface puts the vertices of
     edges and faces behind all.
     """
-    number = read_array(subdivided.attributes[numbers].data, "value", np.int32)
+    number = read_array(subdivided.attributes[VERTEX].data, "value", np.int32)
     first = np.unique(number, return_index=True)[1]
     return read_array(subdivided.vertices, "co", np.float32, 3)[first]
+
+
+def _areas(subdivided: bpy.types.Mesh) -> NDArray[np.float64]:
+    """Mirror puts images of all faces behind them, as large as these."""
+    face = read_array(subdivided.attributes[FACE].data, "value", np.int32)
+    images = 1 + int((np.diff(face) < 0).sum())
+    return np.bincount(face, read_array(subdivided.polygons, "area", np.float32)) / images

@@ -36,7 +36,8 @@ def without_half(obj: bpy.types.Object) -> bpy.types.Object:
     bm = bmesh.new()
     bm.from_mesh(obj.data)
     everything = [*bm.verts, *bm.edges, *bm.faces]
-    bmesh.ops.bisect_plane(bm, geom=everything, plane_co=(0, 0, 0), plane_no=(1, 0, 0), clear_inner=True)
+    # The threshold of Mesh > Bisect; without it vertices beside the plane leave faces without area there.
+    bmesh.ops.bisect_plane(bm, geom=everything, dist=1e-4, plane_co=(0, 0, 0), plane_no=(1, 0, 0), clear_inner=True)
     bm.to_mesh(obj.data)
     bm.free()
     obj.modifiers.new("Mirror", "MIRROR")

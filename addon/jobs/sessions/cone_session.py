@@ -23,7 +23,7 @@ from ...mesh.angles import require_attributes
 from ...mesh.reader import readable_mesh
 from ...mesh.region_read import Faces, Groups, build_region, require_editable
 from ...mesh.stored_mesh import FrozenMesh
-from ...mesh.subdivided import places_on_subdivision
+from ...mesh.subdivided import subdivide
 from ..angles.angle_table import FollowedTable
 from ..layouts.maps import report_on
 from ..tasks.cuts import with_cut_costs
@@ -76,8 +76,8 @@ class ConeSession(MapSession):
         with readable_mesh(obj) as copy:
             mesh = FrozenMesh(copy)
             groups = Groups(settings.cone_group, settings.weight_group)
-            places = places_on_subdivision(obj, copy) if settings.subdivided else None
-            region = build_region(obj, mesh, Faces.ALL, groups, places)
+            subdivided = subdivide(obj, copy) if settings.subdivided else None
+            region = build_region(obj, mesh, Faces.ALL, groups, subdivided)
         self._group = settings.cone_group
         task = unwrap_task(region, settings)
         self._whole = replace(task, region=with_cut_costs(task.region, task.cuts))

@@ -8,9 +8,11 @@ import pytest
 
 
 def half_man():
+    """A cube beside it, whose flat faces lose nothing."""
     (man,) = first_press_models.man()
     man.modifiers.clear()
-    return [first_press_models.without_half(man)]
+    bpy.ops.mesh.primitive_cube_add(location=(5, 0, 0))
+    return [first_press_models.without_half(man), bpy.context.object]
 
 
 def screw():
@@ -48,8 +50,26 @@ def scaled():
     return made
 
 
+def cages():
+    """A coarse cube and a fine ball in one mesh, and half a scaled ball with Mirror, all made round; a cube stays."""
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=24, ring_count=12, location=(4, 0, 0))
+    ball = bpy.context.object
+    bpy.ops.mesh.primitive_cube_add()
+    cage = bpy.context.object
+    ball.select_set(True)
+    bpy.ops.object.join()
+    cage.modifiers.new("Subdivision", "SUBSURF").levels = 3
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=1, location=(0, 8, 0))
+    half = first_press_models.without_half(bpy.context.object)
+    half.scale = (2, 2, 2)
+    bpy.ops.mesh.primitive_cube_add(location=(4, 8, 0))
+    bpy.context.view_layer.update()
+    return [cage, half, bpy.context.object]
+
+
 MODELS = {
     "half man": half_man,
+    "cages": cages,
     "text": first_press_models.text,
     "screw": screw,
     "kit": kit,
