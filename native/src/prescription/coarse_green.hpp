@@ -20,8 +20,8 @@ class CoarseGreen {
   // border: y is held at one vertex at least, which is on a boundary or a cone.
   CoarseGreen(const MetricMesh& surface, const BorderConditions& border, const Array<Index>& cones);
 
-  const Eigen::MatrixXd& columns() const { return columns_; }                // (nodes, k) G_c
-  Eigen::MatrixXd at_cones() const { return columns_(nodes_, Eigen::all); }  // (k, k)
+  const Eigen::MatrixXd& columns() const { return columns_; }                                     // (nodes, k) G_c
+  Eigen::MatrixXd at_cones() const { return columns_(nodes_, Eigen::seqN(0, columns_.cols())); }  // (k, k)
   // The sum of values at vertices (n) to each node.
   Eigen::VectorXd at_nodes(const Eigen::VectorXd& values) const { return surface_.at_nodes(values); }
 

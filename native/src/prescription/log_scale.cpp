@@ -264,7 +264,7 @@ Eigen::VectorXd LogScale::harmonic_curvature() const {
   if (is_coarse_)
     system.topLeftCorner(k, k) = coarse_green().at_cones();
   else
-    system.topLeftCorner(k, k) = green_(cones_, Eigen::all);
+    system.topLeftCorner(k, k) = green_(cones_, Eigen::seqN(0, k));
   if (balanced) system(k, k) = 0;
   const Eigen::PartialPivLU<Eigen::MatrixXd> factor(system);
   const auto solve_for = [&](const Eigen::VectorXd& y, double sum) {
