@@ -55,8 +55,8 @@ def subdivide(obj: bpy.types.Object, mesh: bpy.types.Mesh) -> Subdivided | None:
         scene.collection.objects.link(stand_in)
         layer = scene.view_layers[0]
         layer.update()
-        shown = stand_in.evaluated_get(layer.depsgraph).data
-        return Subdivided(_places(shown), _areas(shown))
+        evaluated = stand_in.evaluated_get(layer.depsgraph).data
+        return Subdivided(_places(evaluated), _areas(evaluated))
     finally:
         bpy.data.batch_remove([scene, stand_in, copy])
 

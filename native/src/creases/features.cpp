@@ -91,7 +91,7 @@ PerHalfedge<char> find_features(const MetricMesh& surface) {
     out[h] = 1;
     has_feature[mesh.origin(h)] = 1;
   }
-  const bool is_hard = are_lines(mesh, out) && CreaseCurvature(surface, has_feature).is_hard();
+  const bool is_hard = CreaseCurvature(surface, has_feature).is_hard() && are_lines(mesh, out);
   if (!is_hard) std::fill(out.begin(), out.end(), 0);
   return out;
 }
