@@ -131,7 +131,8 @@ class LogScale::Stretch {
   static Eigen::MatrixXd hessian(const Eigen::MatrixXd& green, const Eigen::VectorXd& growth,
                                  const Eigen::VectorXd& shrinkage) {
     Eigen::MatrixXd means(green.cols(), 2), out = 4 * weighted_gram(green, growth + shrinkage);
-    means << green.transpose() * growth, green.transpose() * shrinkage;
+    means.col(0) = green.transpose() * growth;
+    means.col(1) = green.transpose() * shrinkage;
     out.selfadjointView<Eigen::Lower>().rankUpdate(means, -4);
     out.triangularView<Eigen::StrictlyUpper>() = out.transpose();
     out.diagonal().array() += ridge * out.diagonal().mean();
