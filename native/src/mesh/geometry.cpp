@@ -115,6 +115,18 @@ Geometry mollified(const HalfedgeMesh& mesh, Geometry geometry, double margin) {
   return geometry;
 }
 
+Geometry geometry_of_lengths(const HalfedgeMesh& mesh, Eigen::VectorXd length) {
+  Geometry geometry;
+  geometry.length = std::move(length);
+  geometry.angle.resize(mesh.halfedge_count());
+  geometry.half_cotangent.resize(mesh.halfedge_count());
+  geometry.area.resize(mesh.triangle_count());
+  for_each_at_once(mesh.triangle_count(), [&](Index f) { measure_from_lengths(geometry, f); });
+  place_apexes(geometry);
+  add_up_vertices(mesh, geometry);
+  return geometry;
+}
+
 Eigen::Vector3d area_normal(const Positions& positions, const Triangles& triangles, Index f) {
   const Eigen::Vector3d a = positions.row(triangles(f, 0)), b = positions.row(triangles(f, 1));
   const Eigen::Vector3d c = positions.row(triangles(f, 2));

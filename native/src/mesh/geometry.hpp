@@ -34,6 +34,9 @@ Geometry build_geometry(const HalfedgeMesh& mesh);
 // The same with a margin given, in mean edge lengths: fatter triangles, for which more maps are valid.
 Geometry mollified(const HalfedgeMesh& mesh, Geometry geometry, double margin);
 
+// A metric with other lengths, (3m), of its edges.
+Geometry geometry_of_lengths(const HalfedgeMesh& mesh, Eigen::VectorXd length);
+
 // The normal of a triangle in space; its length is twice the area.
 Eigen::Vector3d area_normal(const Positions& positions, const Triangles& triangles, Index f);
 

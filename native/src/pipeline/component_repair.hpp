@@ -60,6 +60,9 @@ class ComponentRepair {
   // its bounds or if there is nothing to straighten.
   std::optional<ComponentMap> straightened(const ComponentMap& map);
 
+  // Counts the steps of Newton's method, the number of which is not known in advance.
+  StepHook counter();
+
  private:
   // Continues the map from the metric's own rotations about handles to the chosen ones; leaves the map unchanged on
   // failure.
@@ -71,8 +74,6 @@ class ComponentRepair {
   ParallelTransport connection_of(const ComponentMap& map) const;
   // Vertices that a repair must not move.
   PerVertex<char> fixed_vertices(const ComponentMap& map) const;
-  // Counts the steps of Newton's method, the number of which is not known in advance.
-  StepHook counter();
 
   ComponentSystem& system_;
   const HalfedgeMesh& mesh_;

@@ -13,6 +13,7 @@
 #include "pipeline/component_unfold.hpp"
 #include "prescription/border_turning.hpp"
 #include "prescription/parallel_transport.hpp"
+#include "repair/flat_metric.hpp"
 #include "unfold/jacobians.hpp"
 #include "unfold/lscm.hpp"
 #include "unfold/spectral.hpp"
@@ -101,6 +102,8 @@ class Mapping {
   bool is_better(const FoundMap& opened, const FoundMap& closed) const;
   double l2_of(const ComponentMap& map) const;
 
+  // A metric whose angles add up as they have to is found more often than a map. Its own map is as exact.
+  void map_flat_metric(FoundMap& found);
   // Prescribed angles for which no valid map is found directly can often be reached by continuation from angles that
   // have one.
   void approach_angles(FoundMap& found);
@@ -136,6 +139,7 @@ ComponentMap Mapping::best(std::vector<Finding>& findings) {
     FoundMap opened = find_valid_map(with_open_holes());
     if (is_better(opened, found)) found = std::move(opened);
   }
+  if (found.defects() > 0 && repairs_) map_flat_metric(found);
   if (found.defects() > 0 && repairs_ && (any_given(task_.cones) || task_.cones.rotation_order > 0))
     approach_angles(found);
   if (options_.mode == Mode::low_stretch && options_.stretch > 0 && found.defects() == 0) {
@@ -301,6 +305,33 @@ void Mapping::unfold_and_repair(ComponentSystem& system, const ComponentTask& ta
     repair.repair(connections, connection, target, effort, map);
     if (map.validity.defects() == 0) repair.polish(connection, flipped, map);
   }
+}
+
+void Mapping::map_flat_metric(FoundMap& found) {
+  const ComponentCones& cones = task_.cones;
+  const bool has_turning = std::any_of(cones.loop_turning.begin(), cones.loop_turning.end(),
+                                       [](const auto& turning) { return turning.has_value(); });
+  const bool has_directions = found.map.pins.size() > 1 || !aligned_edges(system_.mesh(), cones).empty();
+  if (cones.rotation_order > 0 || has_turning || has_directions || cones.border == BorderMode::straight) return;
+  const ProgressMonitor::Stage stage(monitor_, "repair");
+  const std::optional<Geometry> flat = find_flat_metric(system_.surface(), required_angles(system_.surface(), cones),
+                                                        repair_on(system_, task_).counter());
+  if (!flat) return;
+  ComponentTask flat_task = task_;
+  flat_task.cones.holes = Holes::as_given;
+  for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
+    const Index v = cones.vertices[i];
+    flat_task.cones.angles[i] = system_.mesh().flat_angle(v) - flat->angle_defect[v];
+  }
+  ComponentSystem flat_system({system_.mesh(), *flat}, cones, options_.factorization);
+  Array<Eigen::VectorXd> untried;
+  FoundMap other = std::move(*attempt(flat_system, flat_task, Effort::local, untried));
+  if (other.defects() > 0) return;
+  const Curvature own = metric_of(system_, cones, other.map.curvature);
+  other.map.curvature.log_scale = own.log_scale;
+  other.map.curvature.predicted_l2 = own.predicted_l2;
+  repair_on(system_, task_).smooth(other.map);
+  found = std::move(other);
 }
 
 void Mapping::approach_angles(FoundMap& found) {

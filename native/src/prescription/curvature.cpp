@@ -199,24 +199,29 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, con
       {ElementKind::vertices, cones.vertices});
 }
 
-void require_possible(const MetricMesh& surface, const ComponentCones& cones) {
+AngleSums required_angles(const MetricMesh& surface, const ComponentCones& cones) {
   const HalfedgeMesh& mesh = surface.mesh;
   const BorderConditions border = border_conditions(surface, cones);
-  Eigen::VectorXd angle(mesh.vertex_count());
-  PerVertex<char> is_free = border.held;
+  AngleSums out{Eigen::VectorXd(mesh.vertex_count()), border.held};
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
-    angle[v] = mesh.flat_angle(v) - border.curvature[v];
-    is_free[v] |= border.curvature[v] != 0;  // teeth
+    out.angle[v] = mesh.flat_angle(v) - border.curvature[v];
+    out.is_free[v] |= border.curvature[v] != 0;  // teeth
   }
-  Array<Index> given;
   for (std::size_t i = 0; i < cones.vertices.size(); ++i) {
     const Index v = cones.vertices[i];
-    is_free[v] = !cones.angles[i] || cones.rotation_order > 0;  // rounded angles are the tool's own choice
-    if (is_free[v]) continue;
-    angle[v] = *cones.angles[i];
-    given.push_back(v);
+    out.is_free[v] = !cones.angles[i] || cones.rotation_order > 0;  // rounded angles are the tool's own choice
+    if (!out.is_free[v]) out.angle[v] = *cones.angles[i];
   }
-  require_possible_angles(mesh, angle, is_free, given);
+  return out;
+}
+
+void require_possible(const MetricMesh& surface, const ComponentCones& cones) {
+  const AngleSums required = required_angles(surface, cones);
+  Array<Index> given;
+  for (const Index v : cones.vertices) {
+    if (!required.is_free[v]) given.push_back(v);
+  }
+  require_possible_angles(surface.mesh, required.angle, required.is_free, given);
 }
 
 Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, PrescriptionRule rule,

@@ -82,6 +82,13 @@ void require_feasible(const HalfedgeMesh& mesh, const ComponentCones& cones, con
 // The least and the most curvature that the cones without an angle can take up together.
 std::pair<double, double> room_of_automatic(const HalfedgeMesh& mesh, const ComponentCones& cones);
 
+// The sums of angles that a map has to have.
+struct AngleSums {
+  Eigen::VectorXd angle;    // (n)
+  PerVertex<char> is_free;  // any sum will do
+};
+AngleSums required_angles(const MetricMesh& surface, const ComponentCones& cones);
+
 // Throws ANGLES_IMPOSSIBLE if no map has the given angles, whatever the automatic ones are, or no map has cones at
 // these vertices alone, whatever their angles.
 void require_possible(const MetricMesh& surface, const ComponentCones& cones);

@@ -19,10 +19,10 @@ constexpr double refined = 1e-15;  // of the values' size
 }  // namespace
 
 template <typename Scalar>
-Eigen::Matrix<Scalar, Eigen::Dynamic, 1> minimize_under(const Eigen::SparseMatrix<Scalar>& form,
-                                                        const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& right_side,
-                                                        const Eigen::SparseMatrix<Scalar, Eigen::RowMajor>& rows,
-                                                        const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& values) {
+ConstrainedMinimum<Scalar> minimize_under(const Eigen::SparseMatrix<Scalar>& form,
+                                          const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& right_side,
+                                          const Eigen::SparseMatrix<Scalar, Eigen::RowMajor>& rows,
+                                          const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& values) {
   using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
   const int n = static_cast<int>(form.rows()), r = static_cast<int>(rows.rows());
   LowerAssembly<Scalar> assembly(n + r, static_cast<std::size_t>(form.nonZeros() + rows.nonZeros() + r));
@@ -55,13 +55,14 @@ Eigen::Matrix<Scalar, Eigen::Dynamic, 1> minimize_under(const Eigen::SparseMatri
     solution += correction;
     if (!(correction.head(n).norm() > refined * size)) break;
   }
-  return solution.head(n);
+  return {solution.head(n), solution.tail(r)};
 }
 
-template Eigen::VectorXd minimize_under(const Eigen::SparseMatrix<double>&, const Eigen::VectorXd&,
-                                        const Eigen::SparseMatrix<double, Eigen::RowMajor>&, const Eigen::VectorXd&);
-template Eigen::VectorXcd minimize_under(const Eigen::SparseMatrix<std::complex<double>>&, const Eigen::VectorXcd&,
-                                         const Eigen::SparseMatrix<std::complex<double>, Eigen::RowMajor>&,
-                                         const Eigen::VectorXcd&);
+template ConstrainedMinimum<double> minimize_under(const Eigen::SparseMatrix<double>&, const Eigen::VectorXd&,
+                                                   const Eigen::SparseMatrix<double, Eigen::RowMajor>&,
+                                                   const Eigen::VectorXd&);
+template ConstrainedMinimum<std::complex<double>> minimize_under(
+    const Eigen::SparseMatrix<std::complex<double>>&, const Eigen::VectorXcd&,
+    const Eigen::SparseMatrix<std::complex<double>, Eigen::RowMajor>&, const Eigen::VectorXcd&);
 
 }  // namespace lsgp

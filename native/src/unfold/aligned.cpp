@@ -49,7 +49,7 @@ Eigen::VectorXcd unfold_aligned(const CutSurface& surface, const Reduction& redu
   }
   rows.setFromTriplets(entries.begin(), entries.end());
   const Eigen::VectorXd solution =
-      minimize_under<double>(assembly.build(), right, rows, Eigen::VectorXd::Zero(rows.rows()));
+      minimize_under<double>(assembly.build(), right, rows, Eigen::VectorXd::Zero(rows.rows())).x;
   Eigen::VectorXcd unknowns(reduction.unknown_count);
   for (Index k = 0; k < reduction.unknown_count; ++k) unknowns[k] = {solution[2 * k], solution[2 * k + 1]};
   return expand(reduction, unknowns);

@@ -128,7 +128,7 @@ PinnedMap move_onto_pins(const CutSurface& surface, const Reduction& reduction, 
   }
   rows.setFromTriplets(entries.begin(), entries.end());
   const Eigen::VectorXcd displacement =
-      expand(reduction, minimize_under<Complex>(form, Eigen::VectorXcd::Zero(reduction.unknown_count), rows, values));
+      expand(reduction, minimize_under<Complex>(form, Eigen::VectorXcd::Zero(reduction.unknown_count), rows, values).x);
   out.position += displacement;
   out.position.array() += origin - displacement[pins.front().copy];
   const double miss = largest_miss(pins, out.position);

@@ -230,6 +230,7 @@ REVIEWED = {
         ("for (;;)", "a straight line leaves each triangle that it crosses, and ends after a cell", OWN),
         ("for (int visited = 0; !grid_.leads_into(corner, ray.direction); ++visited)", AROUND_A_VERTEX, SHORT),
     ],
+    "repair/flat_metric.cpp": [("for (double length = 1; length > shortest_step; length /= 2)", "20 halvings", SHORT)],
     "repair/newton.cpp": [("for (double length = longest; length > 1e-8; length /= 2)", "27 halvings", SHORT)],
     "repair/straight_sides.cpp": [
         ("for (Index h = first; !is_listed[h];)", SIDES, SHORT),
