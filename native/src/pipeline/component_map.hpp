@@ -22,8 +22,9 @@ namespace lsgp {
 struct ComponentMap {
   CutGraph cut_graph;
   CutMesh cut_mesh;
-  Array<Index> required_cuts;      // halfedges, one of each edge that is cut before overlaps are split
-  bool has_straight_cuts = false;  // cone angles were chosen for straight cuts
+  Array<Index> required_cuts;        // halfedges, one of each edge that is cut before overlaps are split
+  bool has_straight_cuts = false;    // cone angles were chosen for straight cuts
+  Holes holes = Holes::where_cheap;  // those that were to close
   Curvature curvature;
   Array<Index> cones;                       // interior
   Array<Index> flat_cones;                  // cones rounded to zero curvature

@@ -245,6 +245,7 @@ void Mapping::prescribe_angles(ComponentSystem& system, const ComponentTask& tas
   const ProgressMonitor::Stage stage(monitor_, "prescribe");
   const ProgressMonitor::Interval interval(monitor_, 0, 0.2);
   monitor_.advance(0);
+  found.map.holes = task.cones.holes;
   found.map.curvature = prescribe(system, task.cones, options_.prescription, found.findings);
 }
 

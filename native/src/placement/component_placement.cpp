@@ -159,7 +159,9 @@ PlacedCones place_component(const PlacementTask& task, const PlacementOptions& o
   out.system = placement.take_system(choice.cones);
   ComponentSystem* const of_map = out.system.get();
   const LogScale& scale = chooser.scale().is_factored() || !of_map ? chooser.scale() : of_map->log_scale();
-  out.curvature = impose(scale, out.cones, choice.cones.curvature,
+  ComponentCones imposed = out.cones;
+  if (!choice.map.failed) imposed.holes = choice.map.holes;  // left open where closing them would stretch the map
+  out.curvature = impose(scale, imposed, choice.cones.curvature,
                          scale.evaluate_held(choice.cones.vertices, choice.cones.curvature), findings);
   // A map that was made has cuts to all cones.
   if (choice.map.failed) {

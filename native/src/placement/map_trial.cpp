@@ -85,6 +85,7 @@ TriedMap MapTrial::measured(ComponentMap map, const ComponentCones& cones) const
   check_seams(mesh_, corners, map);
   TriedMap out;
   out.failed = false;
+  out.holes = map.holes;
   out.flipped = static_cast<Index>(map.validity.flipped.size());
   out.wrong_angles = static_cast<Index>(map.validity.wrong_angle_sums.size());
   if (is_visible(map.seams)) out.inexact_seams = static_cast<Index>(map.inexact_seams.size());

@@ -18,6 +18,7 @@ struct TriedMap {
   Index inexact_seams = 0;                              // cut edges, where sides disagree visibly
   bool failed = true;                                   // there is no map
   bool is_repaired = false;                             // as far as possible
+  Holes holes = Holes::where_cheap;                     // those that were to close
   Eigen::VectorXd curvature;                            // (cones) that it has, in their order; empty where it failed
 
   Eigen::VectorXd stretch;  // (n) the triangles' around each vertex, by area and less 1; empty where it is not valid

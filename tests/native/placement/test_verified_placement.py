@@ -267,6 +267,15 @@ def test_one_map_will_do_where_it_is_as_predicted() -> None:
     assert place(meshes.bumpy_sphere(3), count=9).maps == 1
 
 
+@pytest.mark.parametrize("around", [3, 4, 6, 12])
+def test_tubes_are_predicted_as_they_are_mapped(around: int) -> None:
+    """Whether their ends close as rings is decided by the map: coarse belts do not bend into one."""
+    for length in (0.2, 0.35, 0.5, 1, 3):
+        mesh = closed.cylinder(around, 5, length, 0)
+        placed = place(mesh)
+        assert unwrapped(mesh, placed).distortion.l2_stretch == pytest.approx(placed.predicted_l2, rel=0.03)
+
+
 def test_what_choosing_takes_does_not_count_the_maps() -> None:
     placed = place(meshes.flower(3))
     assert placed.factorizations == 1 and placed.maps >= 1
