@@ -17,6 +17,7 @@ void add_scaled(Expression& sum, Complex factor, const Expression& terms) {
 // a local expression in the translations of its cuts. Below it this would divide by almost zero, and the translation
 // toward the root, whose coefficient has modulus 1, is eliminated instead.
 constexpr double clear_turn = 0.01;
+constexpr double least_coefficient = 1e-9;  // others are rounding errors
 
 }  // namespace
 
@@ -134,7 +135,7 @@ void TransitionElimination::close_node(Index node, double curvature) {
     for (const auto& [id, coefficient] : round) add_scaled(resolved, coefficient, resolve(id));
     round = std::move(resolved);
     for (const auto& [id, coefficient] : round) {
-      if (std::abs(coefficient) < clear_turn) continue;
+      if (std::abs(coefficient) < least_coefficient) continue;
       const bool larger = pivot == none || std::abs(coefficient) > std::abs(round[pivot]);
       // On a lattice the smallest coefficient is the one that may divide the others.
       if (pivot == none || larger == (eliminate_ == Eliminate::positions)) pivot = id;

@@ -150,6 +150,17 @@ def test_a_flat_cone_between_two_cuts() -> None:
     assert_exact_transitions(with_flat, result)
 
 
+@pytest.mark.parametrize("degrees", [0.5, 0.1, 0.01])
+def test_weak_cones_on_a_torus(degrees: float) -> None:
+    """Where no rotation is clear, about cones or handles, the transitions are no less exact."""
+    for count in (2, 4, 8):
+        cones = np.linspace(0, 180, count, endpoint=False).astype(np.int32)
+        mesh = meshes.torus()._replace(cones=cones)
+        result = unwrap(mesh, [2 * PI + (-1) ** i * np.radians(degrees) for i in range(count)])
+        assert_exact_transitions(mesh, result)
+        assert_angles_met(mesh, result)
+
+
 def test_a_cone_of_two_turns() -> None:
     """4 pi, the same rotation as a flat vertex: only the metric tells them apart, so the Poisson map must."""
     mesh = meshes.icosphere(3)
