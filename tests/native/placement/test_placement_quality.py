@@ -80,6 +80,33 @@ def test_as_good_as_other_cones_of_the_same_number(name: str) -> None:
 
 
 @pytest.mark.many_solves
+def body_with_limbs(count: int, length: float, sharpness: float, seed: int) -> tuple[Mesh, np.ndarray]:
+    """A ball with limbs in random directions, and the outermost vertex of each."""
+    rng = np.random.default_rng(seed)
+    along: list[np.ndarray] = []
+    while len(along) < count:
+        direction = rng.normal(size=3)
+        direction /= np.linalg.norm(direction)
+        if all(direction @ other < 0.6 for other in along):
+            along.append(direction)
+    ball = meshes.icosphere(3)
+    nearness = ball.positions @ np.array(along).T
+    radius = 1 + length * np.exp(sharpness * (nearness - 1)).sum(axis=1)
+    return meshes.make(ball.positions * radius[:, None], ball.triangles), nearness.argmax(axis=0)
+
+
+@pytest.mark.parametrize(("length", "sharpness"), [(1, 10), (1.5, 20)])
+@pytest.mark.parametrize("count", [3, 5, 7])
+def test_limbs_get_cones_at_their_tips(count: int, length: float, sharpness: float) -> None:
+    for seed in range(3):
+        mesh, tips = body_with_limbs(count, length, sharpness, seed)
+        cones = place(mesh).cones
+        edges = meshes.edges_of(mesh.triangles)
+        for tip in tips.tolist():
+            near = np.append(edges[(edges == tip).any(axis=1)], tip)  # and its neighbors
+            assert np.isin(near, cones).any()
+
+
 def test_rounded_angles_and_places_are_chosen_together() -> None:
     mesh = shared_mesh("fandisk")
     placed = place(mesh, count=25, lattice="square")
