@@ -52,7 +52,8 @@ class FlatMetricSearch {
   bool find(const StepHook& before_step) {
     State state = measured(log_length_);
     int exact_steps = 0;
-    for (int step = 0; step < most_steps; ++step) {
+    const Index most = std::min(most_steps, triangles_measured / mesh_.triangle_count());
+    for (Index step = 0; step < most; ++step) {
       before_step();
       const Direction direction = find_direction(state);
       if (!search(direction, state)) return is_exact(state);
@@ -70,10 +71,11 @@ class FlatMetricSearch {
   }
 
  private:
-  static constexpr int most_steps = 200, most_refining_steps = 20;  // the latter once the sums are right
-  static constexpr double exact = 1e-10;                            // radians
-  static constexpr double settled = 1e-3;                           // decrease of the energy, relative
-  static constexpr double least_curvature = 1e-3;                   // of a triangle's energy, which bounds the steps
+  static constexpr Index most_steps = 200, triangles_measured = 200000;  // of all steps together
+  static constexpr int most_refining_steps = 20;                         // once the sums are right
+  static constexpr double exact = 1e-10;                                 // radians
+  static constexpr double settled = 1e-3;                                // decrease of the energy, relative
+  static constexpr double least_curvature = 1e-3;  // of a triangle's energy, which bounds the steps
   static constexpr double shortest_step = 1e-6;
   static constexpr double penalty_margin = 1.1;
 
