@@ -9,7 +9,7 @@
 namespace {
 
 // A torus, whose map needs the Schur complement of its cuts.
-lsgp::Surface torus(int around, int about) {
+lsgp::Surface ring(int around, int about) {
   lsgp::Surface out;
   out.positions.resize(around * about, 3);
   out.triangles.resize(2 * around * about, 3);
@@ -30,7 +30,7 @@ lsgp::Surface torus(int around, int about) {
 }  // namespace
 
 TEST_CASE("a map has the sides of its cuts related by rotations and translations") {
-  const lsgp::Surface surface = torus(24, 12);
+  const lsgp::Surface surface = ring(24, 12);
   const lsgp::Cones cones{{0, 100, 200, 6}, {2.5 * M_PI, 1.5 * M_PI, 2.25 * M_PI, 1.75 * M_PI}};
   for (const auto factorization : {lsgp::Factorization::cut, lsgp::Factorization::sparse}) {
     lsgp::Options options;

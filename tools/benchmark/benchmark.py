@@ -39,14 +39,16 @@ Shares of the samples of a profiler (perf) on the head with 200,000 triangles, p
 
 | cones | cuts | ordering | real factor | complex factor | solves | coarse surface | curvatures | the rest |
 |--:|--:|--:|--:|--:|--:|--:|--:|--:|
-| 8 | 38 | 12 | 12 |  | 6 |  | 2 | 30 |
-| 100 random | 20 | 13 | 4 | 21 | 14 |  | 11 | 17 |
-| 500 random | 20 | 9 | 2 | 16 | 23 | 10 | 7 | 13 |
+| 8 | 26 | 14 | 22 |  | 6 |  | 2 | 30 |
+| 100 random | 11 | 11 | 4 | 35 | 17 |  | 9 | 13 |
+| 500 random | 13 | 7 | 4 | 28 | 24 | 9 | 4 | 11 |
 
-- **Cuts** take longest with few cones: two searches over the whole surface, one for the tree and one for shortening it,
-  are a third of this, exchanges of junctions another. A bucket queue instead of a heap would save a twelfth, vertices
-  numbered along the surface a tenth.
-- **Ordering** is minimum degree and the symbolic factorization, more than the numerical one.
+- **Cuts** of few cones: the search for the tree is a tenth of this, exchanges of key paths with the regions around the
+  cuts are four tenths, exchanges of junctions three.
+- **Ordering** is minimum degree and the symbolic factorization. In a trial, nested dissection by the vertices' places
+  took a third of the time of minimum degree; the factor then has as many operations here, an eighth less with a million
+  triangles, and two fifths more with 50,000.
+- **Real factor** includes the pages of memory that the system clears for it.
 - **Complex factor.** With many cones, unfolding factors a complex system with the transitions in it, at four times the
   operations of the real one. Four fifths of them are in fronts with a cut below even for 8 cones, so that real numbers
   elsewhere save little; with the real factor as preconditioner, one solve takes over 250 steps.

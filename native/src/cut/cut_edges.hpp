@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
+
 #include "base/array.hpp"
 #include "cut/cut_cost.hpp"
 
@@ -26,10 +28,14 @@ class CutEdges {
   Index vertex_count() const { return static_cast<Index>(first_.size()) - 1; }
   // Counter-clockwise from outgoing[v].
   Range from(Index v) const { return {edges_.data() + first_[v], edges_.data() + first_[v + 1]}; }
+  // Starts to read the edges from v into the caches.
+  void prefetch(Index v) const { Eigen::internal::prefetch(&from(v).first->cost); }
+  double usual_cost() const { return usual_cost_; }  // the mean
 
  private:
   Array<Index> first_;  // (n + 1)
   Array<Edge> edges_;
+  double usual_cost_ = 0;
 };
 
 }  // namespace lsgp

@@ -4,15 +4,14 @@
 #pragma once
 
 #include <algorithm>
-#include <functional>
 #include <limits>
-#include <queue>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "base/array.hpp"
 #include "base/checkpoint.hpp"
+#include "cut/bucket_queue.hpp"
 #include "cut/cut_edges.hpp"
 
 namespace lsgp {
@@ -35,21 +34,23 @@ struct PathSearch {
 
 // Dijkstra's algorithm over the vertices that admits(v).  reached: with the starts entered; receives the others.
 template <typename Admits>
-void grow_paths(const CutEdges& edges, PathSearch search, Admits admits, PerVertex<Reached>& reached) {
+void grow_paths(const CutEdges& edges, const PathSearch& search, Admits admits, PerVertex<Reached>& reached) {
   constexpr double operations_a_vertex = 100;
-  std::priority_queue<PathStarts::value_type, PathStarts, std::greater<>> queue(std::greater<>(),
-                                                                                std::move(search.starts));
+  constexpr std::size_t likely_read_soon = 4;  // vertices
+  BucketQueue queue(edges.usual_cost() / 4);
+  for (const auto& [distance, v] : search.starts) queue.push(distance, v);
   while (!queue.empty()) {
     checkpoint(operations_a_vertex);
-    const auto [distance, v] = queue.top();
-    queue.pop();
+    const auto [distance, v] = queue.pop();
+    const Index soon = queue.ahead(likely_read_soon);
+    if (soon != none) edges.prefetch(soon);
     const Reached from = reached[v];
     if (distance > from.distance) continue;
     for (const CutEdges::Edge& edge : edges.from(v)) {
       const double through = distance + edge.cost;
       if (!(through < std::min(reached[edge.target].distance, search.below)) || !admits(edge.target)) continue;
       reached[edge.target] = {through, edge.halfedge, from.source};
-      queue.emplace(through, edge.target);
+      queue.push(through, edge.target);
     }
   }
 }

@@ -108,6 +108,11 @@ REVIEWED = {
         ("for (Index h = from[v].by; h != none; h = from[mesh_.origin(h)].by)", LINKED, SHORT),
         ("for (std::size_t i = 0; work_left_ > 0; ++i)", "pairs of cuts at a vertex, while work is left", OWN),
     ],
+    "cut/bucket_queue.cpp": [
+        ("while (!(filled_ >> begun_ & 1))", "at most 64 buckets, one of them filled", SHORT),
+        ("while (at != none)", LINKED, SHORT),
+        ("while (!early_.empty() && bucket_of(early_.top().first) < bucket_count)", "takes an entry each time", SHORT),
+    ],
     "cut/shortest_paths.hpp": [("while (!queue.empty())", NEAREST, OWN)],
     "cut/strip_search.cpp": [
         ("while (!is_border(g))", AROUND_A_VERTEX, SHORT),
