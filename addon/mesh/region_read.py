@@ -63,14 +63,15 @@ def read_region(obj: bpy.types.Object, faces: Faces, groups: Groups, *, subdivid
 
 
 def read_chosen(obj: bpy.types.Object, faces: Faces) -> tuple[Region, NDArray[np.bool_]] | None:
-    """All faces of an object's mesh, and (m,) bool, the triangles of those that are asked for; None where none is.
+    """All faces of an object's mesh, as the Subdivision Surface modifier shows them, and (m,) bool, the triangles of
+    those that are asked for; None where none is.
 
     Raises Refused as `read_region`.
     """
     require_editable(obj)
     with readable_mesh(obj) as mesh:
         stored = StoredMesh(mesh)
-        whole = build_region(obj, stored, Faces.ALL, Groups())
+        whole = build_region(obj, stored, Faces.ALL, Groups(), subdivide(obj, mesh))
         chosen = _chosen_faces(stored, faces, obj.mode)
         return (whole, chosen[whole.triangle_faces]) if chosen.any() else None
 

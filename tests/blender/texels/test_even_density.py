@@ -120,3 +120,16 @@ def test_all_parts_have_one_density(name, preset):
     assert bpy.ops.uv.cone_auto_unwrap(preset=preset) == {"FINISHED"}
     found = np.concatenate([densities(obj) for obj in objects])
     assert found == pytest.approx(np.median(found), rel=0.01)
+
+
+def test_a_density_is_read_and_set_as_the_modifiers_show_it():
+    objects = cages()
+    for obj in bpy.context.view_layer.objects:
+        obj.select_set(obj in objects)
+    bpy.ops.uv.cone_auto_unwrap(preset="BAKE")
+    assert bpy.ops.uv.cone_texel_get(use_image=False, texture_size=512) == {"FINISHED"}
+    shown = np.concatenate([densities(obj) for obj in objects])
+    assert bpy.context.scene.cone_unwrap_texels.density == pytest.approx(512 * np.median(shown), rel=0.01)
+    assert bpy.ops.uv.cone_texel_set(use_image=False, texture_size=512, density=77) == {"FINISHED"}
+    shown = np.concatenate([densities(obj) for obj in objects])
+    assert shown == pytest.approx(77 / 512, rel=0.01)
