@@ -38,12 +38,10 @@ void MarkedFeatures::add(const Component& component, const ComponentMap& map, co
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     const Index twin = mesh.twin[h];
     if (!mesh.feature[h] || (twin != none && twin < h)) continue;
-    const Index tail = component.source_vertex[mesh.origin(h)], head = component.source_vertex[mesh.target(h)];
-    length_ += (positions.row(head) - positions.row(tail)).norm();
+    auto& reason =
+        edges_[std::minmax(component.source_vertex[mesh.origin(h)], component.source_vertex[mesh.target(h)])];
     if (is_stored_along_axis(corners, h) && (twin == none || is_stored_along_axis(corners, twin))) continue;
-    const ReleaseReason reason = map.release_reasons.empty() ? ReleaseReason::unsupported : map.release_reasons[h];
-    Array<Index>& edges = released_[static_cast<std::size_t>(reason)];
-    edges.insert(edges.end(), {tail, head});
+    if (!reason) reason = map.release_reasons.empty() ? ReleaseReason::unsupported : map.release_reasons[h];
   }
 }
 
@@ -58,20 +56,24 @@ std::optional<FeatureReport> MarkedFeatures::report(std::vector<Finding>& findin
   FeatureReport out;
   Array<Index> edges;
   std::string reasons;
-  for (std::size_t i = 0; i < reason_count; ++i) {
-    if (released_[i].empty()) continue;
-    const auto reason = static_cast<ReleaseReason>(i);
+  double whole = 0;
+  std::map<ReleaseReason, Array<Index>> released;
+  for (const auto& [edge, reason] : edges_) {
+    whole += length_of({edge.first, edge.second});
+    if (reason) released[*reason].insert(released[*reason].end(), {edge.first, edge.second});
+  }
+  for (const auto& [reason, ends] : released) {
     double share = 0;
     const std::size_t before = out.released.size();
-    for (std::vector<Index>& path : split_into_paths(to_vertex_pairs(released_[i]), {})) {
+    for (std::vector<Index>& path : split_into_paths(to_vertex_pairs(ends), {})) {
       const double length = length_of(path);
-      share += length / length_;
-      out.released.push_back({std::move(path), reason, length / length_});
+      share += length / whole;
+      out.released.push_back({std::move(path), reason, length / whole});
     }
     out.share -= share;
     reasons += concat(reasons.empty() ? "" : "; ", out.released.size() - before, " ", words_of(reason), " (",
                       rounded(100 * share, 2), " %)");
-    edges.insert(edges.end(), released_[i].begin(), released_[i].end());
+    edges.insert(edges.end(), ends.begin(), ends.end());
   }
   if (out.released.empty()) return out;
   out.share = std::max(0.0, out.share);

@@ -2,8 +2,9 @@
 // Which marked features run along an axis, and why the others do not.
 #pragma once
 
-#include <array>
+#include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/array.hpp"
@@ -21,13 +22,12 @@ class MarkedFeatures {
   std::optional<FeatureReport> report(std::vector<Finding>& findings) const;
 
  private:
-  static constexpr std::size_t reason_count = 5;
-
   double length_of(const std::vector<Index>& path) const;
 
   const Positions* positions_ = nullptr;
-  double length_ = 0;
-  std::array<Array<Index>, reason_count> released_;  // edges by reason
+  // Of every edge, the lower vertex first, why it is released, if it is on any side: at borders it is in two
+  // components.
+  std::map<std::pair<Index, Index>, std::optional<ReleaseReason>> edges_;
 };
 
 }  // namespace lsgp

@@ -25,13 +25,26 @@ def edges_at(mesh: Mesh, is_on: NDArray[np.bool_]) -> NDArray[np.int64]:
     return edges[is_on[edges].all(axis=1)]
 
 
-def off_axis(mesh: Mesh, result: lsgp.Result, edges: NDArray[np.integer]) -> float:
-    """The most that a side of these edges is off u and v, as stored in float32."""
+def distance_off_axes(mesh: Mesh, result: lsgp.Result, edges: NDArray[np.integer]) -> NDArray[np.float64]:
+    """(e,) the most that a side of each edge is off u and v, as stored in float32.
+
+    edges: the lower vertex first, sorted.
+    """
     uv = result.corner_uv.astype(np.float32).astype(float)
     sides = np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
     both = np.stack([uv, np.roll(uv, -1, axis=1)], axis=-2).reshape(-1, 2, 2)
     keys, wanted = (np.sort(pairs, axis=1).astype(int) @ [len(mesh.positions), 1] for pairs in (sides, edges))
-    return float(np.abs(np.diff(both[np.isin(keys, wanted)], axis=1)).min(axis=-1).max())
+    is_side = np.isin(keys, wanted)
+    out = np.zeros(len(edges))
+    np.maximum.at(
+        out, np.searchsorted(wanted, keys[is_side]), np.abs(np.diff(both[is_side], axis=1)).min(axis=-1)[:, 0]
+    )
+    return out
+
+
+def off_axis(mesh: Mesh, result: lsgp.Result, edges: NDArray[np.integer]) -> float:
+    """The most of all edges."""
+    return float(distance_off_axes(mesh, result, edges).max())
 
 
 def dome(cells: int = 10) -> Mesh:
@@ -81,3 +94,17 @@ def test_what_the_other_options_do_with_marked_edges() -> None:
     for options in (replace(LOW_STRETCH, straighten=True), replace(PAINT, compact="full")):
         result = lsgp.parameterize(marked, (), options=options)
         assert off_axis(mesh, result, path) == 0 and result.features.share == 1
+
+
+@pytest.mark.parametrize("mesh", [closed.gear(12, 0.3, 2), closed.beveled_box(8, 0.1, (1, 1.5, 2))])
+def test_the_share_counts_edges_between_islands_once(mesh: Mesh) -> None:
+    """The preset cuts these parts at creases, which are then boundaries of two components."""
+    edges = lsgp.feature_edges(surface(mesh), angle=np.radians(40))
+    result = lsgp.auto_unwrap(replace(surface(mesh), features=edges), preset="paint", options=PAINT)
+    length = np.linalg.norm(np.diff(mesh.positions[edges], axis=1)[:, 0], axis=1)
+    is_straight = distance_off_axes(mesh, result, edges) == 0
+    share = length[is_straight].sum() / length.sum()
+    assert 0.5 < share < 1
+    assert result.features.share == pytest.approx(share, abs=1e-12)
+    released = sum(feature.share for feature in result.features.released)
+    assert released == pytest.approx(1 - share, abs=1e-12)
