@@ -6,7 +6,6 @@ from __future__ import annotations
 import faulthandler
 import json
 import os
-import resource
 import sys
 import traceback
 
@@ -20,7 +19,9 @@ MEMORY = 6 << 30  # bytes of address space
 def main() -> None:
     faulthandler.enable()
     np.seterr(all="ignore")
-    if "libasan" not in os.environ.get("LD_PRELOAD", ""):  # which reserves terabytes
+    if os.name == "posix" and "libasan" not in os.environ.get("LD_PRELOAD", ""):  # which reserves terabytes
+        import resource
+
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     # What the library or a command prints must not get among the answers.
     answers = os.fdopen(os.dup(1), "w", buffering=1)

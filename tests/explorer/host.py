@@ -6,13 +6,15 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import select
+import queue
 import signal
 import subprocess
 import sys
 import tempfile
+import threading
 from dataclasses import dataclass, field
 from types import TracebackType
+from typing import IO
 
 from .steps import Step
 
@@ -53,18 +55,19 @@ class Host:
         if self._child is None:
             self._start()
         child = self._child
-        assert child is not None and child.stdin is not None and child.stdout is not None
-        with contextlib.suppress(BrokenPipeError):
+        assert child is not None and child.stdin is not None
+        with contextlib.suppress(OSError):  # a broken pipe, whatever the system calls it
             child.stdin.write(json.dumps(step) + "\n")
             child.stdin.flush()
-        if not select.select([child.stdout], [], [], self._seconds)[0]:
+        try:
+            line = self._answers.get(timeout=self._seconds)
+        except queue.Empty:
             os.kill(child.pid, signal.SIGABRT)  # faulthandler tells where it was
             with contextlib.suppress(subprocess.TimeoutExpired):
                 child.wait(5)
             where = self._last_words()
             self._end()
             return Ended("hang", [f"no answer within {self._seconds:g} s\n{where}"])
-        line = child.stdout.readline()
         if not line:
             code = child.wait()
             where = self._last_words()
@@ -86,6 +89,9 @@ class Host:
             stderr=self._errors,
             text=True,
         )
+        self._answers: queue.Queue[str] = queue.Queue()
+        self._reader = threading.Thread(target=_read, args=(self._child.stdout, self._answers), daemon=True)
+        self._reader.start()
 
     def _last_words(self) -> str:
         """What the process wrote to stderr: the beginning, where a sanitizer or the interpreter says why."""
@@ -97,10 +103,18 @@ class Host:
             return
         self._child.kill()
         self._child.wait()
+        self._reader.join()
         for pipe in (self._child.stdin, self._child.stdout):
-            with contextlib.suppress(BrokenPipeError):
+            with contextlib.suppress(OSError):
                 pipe.close()
         self._child = None
+
+
+def _read(answers: IO[str], lines: queue.Queue[str]) -> None:
+    """Passes on every line, then an empty one: Windows can wait for a queue with a time limit, but not for a pipe."""
+    for line in answers:
+        lines.put(line)
+    lines.put("")
 
 
 def _name(code: int) -> str:
