@@ -10,7 +10,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TextIO
+from typing import NoReturn, TextIO
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from ..io.standard_streams import complain, hold_standard_descriptors, say
 from ..io.whole_files import write_whole
 from ..quads import quad_quality
 from ..run import report as reports
-from ..run.exit_codes import OF_A_RUN, OK, REFUSED, ended, flushed, listed
+from ..run.exit_codes import OF_A_RUN, OK, REFUSED, USAGE, ended, flushed, listed
 from ..run.pad_file import add_pad_options, pad_file
 from ..run.place_file import add_placement_options, place_file, summary
 from ..run.quads_file import add_quads_options, quads_file
@@ -42,10 +42,15 @@ INPUT = "OBJ, OFF, PLY, glTF, GLB or STL, or - for standard input; polygons of a
 
 
 class _Parser(argparse.ArgumentParser):
-    """Help that cannot be printed is an error; argparse itself ignores that of a help longer than a buffer."""
+    """Help that cannot be printed is an error; argparse itself ignores that of a help longer than a buffer. A message
+    that cannot be printed is none; argparse of Python 3.11.2 fails where standard error is closed."""
 
     def print_help(self, file: TextIO | None = None) -> None:
         say(sys.stdout if file is None else file, self.format_help().rstrip("\n"))
+
+    def error(self, message: str) -> NoReturn:
+        complain(f"{self.format_usage()}{self.prog}: error: {message}")
+        raise SystemExit(USAGE)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
