@@ -92,7 +92,7 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
   if (!keeps_islands) {
     const SharedSquare square{surface_area_ / options_.square_share, scale_to_surface({component.mesh, geometry}, map),
                               options_.compact};
-    if (compact_islands(opened, square, map)) restore_symmetry(opened, split, square, map);
+    if (compact_islands(opened, split.mirroring, square, map)) restore_symmetry(opened, split, square, map);
   }
   if (map.natural_l2 > 0) {
     const ProgressMonitor::Stage stage(monitor_, "relax");

@@ -6,8 +6,11 @@
 #include <complex>
 #include <iterator>
 #include <numeric>
+#include <optional>
 #include <utility>
 
+#include "base/checkpoint.hpp"
+#include "mesh/point_tree.hpp"
 #include "plane/convex_hull.hpp"
 #include "split/cut_apart.hpp"
 #include "split/face_graph.hpp"
@@ -22,21 +25,61 @@ namespace {
 constexpr int cells_across = 40;
 constexpr double rounding = 1e-9;  // of what divisions are worth
 constexpr double is_sharp = 1.27;  // radians: beyond what edges of coarse round shapes bend by
+// An island is its own mirror image if this share of its area has an image in it, at most this far from there,
+// relative to the square root of its area.
+constexpr double least_reflected = 0.6, most_apart = 0.05;
+constexpr double outlying = 0.5;      // distances that do not count in a first fit
+constexpr double beside_axis = 0.35;  // how far a cut may be from the axis, in square roots of the mean face's area
+constexpr double operations_a_face = 500;
+
+// The face nearest to the mirror image of each.
+PerFace<Index> mirror_faces(const MetricMesh& surface, const FaceGraph& graph, const MirrorPlane& plane) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  Positions center = Positions::Zero(graph.face_count(), 3);
+  PerFace<double> area(graph.face_count(), 0);
+  for (Index f = 0; f < mesh.triangle_count(); ++f) {
+    const Index face = graph.face_of[f];
+    area[face] += surface.geometry.area[f];
+    for (Index c = 0; c < 3; ++c) {
+      center.row(face) += surface.geometry.area[f] / 3 * mesh.positions.row(mesh.triangles(f, c));
+    }
+  }
+  for (Index face = 0; face < graph.face_count(); ++face) center.row(face) /= area[face];
+  const PointTree tree(center);
+  PerFace<Index> image;
+  for (Index face = 0; face < graph.face_count(); ++face) {
+    checkpoint(operations_a_face);
+    image.push_back(tree.nearest(reflected(plane, center.row(face))).point);
+  }
+  return image;
+}
 
 // The same lines, seen from their other sides.
 Array<Line> reversed(Array<Line> lines) {
-  for (Line& line : lines) line = {-line.normal, -line.offset};
+  for (Line& line : lines) line = line.reversed();
   return lines;
 }
+
+// A reflection of the plane, which moves z to turn conj(z) + shift.
+struct Reflection {
+  Complex turn = 1, shift = 0;
+  Complex operator()(Complex z) const { return turn * std::conj(z) + shift; }
+  Line axis() const {
+    const Complex normal = Complex(0, 1) * std::sqrt(turn);
+    return {normal, std::real(std::conj(normal) * shift) / 2};
+  }
+};
 
 class Compactor {
  public:
   // graph: of the surface.  position: at the corners, on the scale of the surface.
-  Compactor(const OpenedSurface& surface, const FaceGraph& graph, const Eigen::VectorXcd& position,
-            const SharedSquare& square)
+  // image: of each face beyond a mirror plane; empty if the islands need not be symmetric.
+  Compactor(const OpenedSurface& surface, const FaceGraph& graph, PerFace<Index> image,
+            const Eigen::VectorXcd& position, const SharedSquare& square)
       : mesh_(surface.mesh),
         geometry_(surface.geometry),
         graph_(graph),
+        image_(std::move(image)),
         position_(position),
         search_(square),
         cutter_(graph, CutCost::shortest),
@@ -87,6 +130,8 @@ class Compactor {
   // The faces of the pieces of the best division of an island; fewer than two if it is best left whole.
   Array<Array<Index>> divide(const Array<Index>& faces);
   IslandCells cells_of(const Array<Index>& island, Complex along);
+  std::optional<Line> axis_of(const Array<Index>& island);
+  Reflection fit_reflection(const Array<Index>& faces) const;
   Array<Index> cut_along(const Array<Line>& lines, const Array<Index>& island, double band);
   Array<Index> without_slivers(const Array<Index>& faces, const WholeIsland& island, const Array<Index>& class_of);
   double length_between(const Array<Index>& faces, const Array<Index>& class_of);
@@ -106,6 +151,7 @@ class Compactor {
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
   const FaceGraph& graph_;
+  const PerFace<Index> image_;
   const Eigen::VectorXcd& position_;
   const DivisionSearch search_;
   MinimumCutter cutter_;
@@ -184,6 +230,48 @@ IslandCells Compactor::cells_of(const Array<Index>& island, Complex along) {
   }
   clear_places(island);
   return cells;
+}
+
+// The line at which the plane mirrors an island of the layout, if it does.
+std::optional<Line> Compactor::axis_of(const Array<Index>& island) {
+  if (image_.empty()) return std::nullopt;
+  set_places(island);
+  Array<Index> fitted;
+  double whole = 0;
+  for (const Index face : island) {
+    whole += graph_.area[face];
+    if (image_[face] != none && place_[image_[face]] != none) fitted.push_back(face);
+  }
+  clear_places(island);
+  // Faces across the plane are near their own images, but may lie elsewhere on the island.
+  for (const double most : {outlying, most_apart}) {
+    const Reflection reflection = fit_reflection(fitted);
+    const auto is_apart = [&](Index face) {
+      return std::abs(reflection(center_[face]) - center_[image_[face]]) > most * std::sqrt(whole);
+    };
+    fitted.erase(std::remove_if(fitted.begin(), fitted.end(), is_apart), fitted.end());
+  }
+  double reflected = 0;
+  for (const Index face : fitted) reflected += graph_.area[face];
+  if (reflected < least_reflected * whole) return std::nullopt;
+  return fit_reflection(fitted).axis();
+}
+
+// The reflection in the plane nearest to that which moves faces to their images.
+Reflection Compactor::fit_reflection(const Array<Index>& faces) const {
+  double area = 0;
+  Complex from = 0, to = 0, turn = 0;
+  for (const Index face : faces) {
+    area += graph_.area[face];
+    from += graph_.area[face] * center_[face];
+    to += graph_.area[face] * center_[image_[face]];
+  }
+  if (!(area > 0)) return {};
+  from /= area;
+  to /= area;
+  for (const Index face : faces) turn += graph_.area[face] * (center_[image_[face]] - to) * (center_[face] - from);
+  turn = std::polar(1.0, std::arg(turn));
+  return {turn, to - turn * std::conj(from)};
 }
 
 // The side of every face, by its index in the island, after a cut near each of the lines, short and preferably along
@@ -269,10 +357,15 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& faces) {
   const Array<Complex> hull = hull_of(faces);
   const WholeIsland island = search_.describe(area, hull);
   if (island.demand - area < search_.least_gain()) return {};
-  const Complex along = longer_side(hull);
-  const IslandDivision division = search_.find_division(cells_of(faces, along), island, hull, along);
+  const std::optional<Line> axis = axis_of(faces);
+  const Complex along = axis ? axis->normal : longer_side(hull);
+  const IslandDivision division = search_.find_division(cells_of(faces, along), island, hull, along, axis);
   if (division.lines.empty()) return {};
-  const double band = extent_along(hull, along).width() / division_positions;
+  // A single line is the axis or at right angles to it.
+  const bool is_axis = axis && division.lines.size() == 1 &&
+                       std::abs(std::real(std::conj(axis->normal) * division.lines.front().normal)) > 0.5;
+  const double band = is_axis ? beside_axis * std::sqrt(area / static_cast<double>(faces.size()))
+                              : extent_along(hull, along).width() / division_positions;
   Array<Array<Index>> best;
   double most_worth = 0;
   // Where the shortest cut of a band leaves too small a piece, a cut nearer to the line may not.
@@ -297,14 +390,17 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& faces) {
 
 }  // namespace
 
-bool compact_islands(const OpenedSurface& surface, const SharedSquare& square, ComponentMap& map) {
+bool compact_islands(const OpenedSurface& surface, const Mirroring& mirroring, const SharedSquare& square,
+                     ComponentMap& map) {
   const HalfedgeMesh& mesh = surface.mesh;
   PerHalfedge<char> ends = surface.open, is_cut = map.cut_graph.is_cut;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) ends[h] = ends[h] || is_cut[h];
   const OpenedSurface islands{surface, ends};
   const FaceGraph graph = build_face_graph(islands);
   const Eigen::VectorXcd position = square.scale * at_corners(map.cut_mesh, map.position);
-  Compactor compactor(islands, graph, position, square);
+  PerFace<Index> image;
+  if (are_mirrored(mirroring, map.cones)) image = mirror_faces(surface, graph, mirroring.plane);
+  Compactor compactor(islands, graph, std::move(image), position, square);
   PerFace<Index> part = compactor.divide_all();
   straighten_cuts(islands, graph, [&](Index face, Index) { return !compactor.is_near_cut(face); }, part);
   bool has_opened = false;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/array.hpp"
+#include "mesh/mirror.hpp"
 #include "pipeline/component_map.hpp"
 #include "split/face_graph.hpp"
 #include "split/island_division.hpp"
@@ -12,7 +13,9 @@ namespace lsgp {
 // Cuts islands that are far from convex, or long compared with the square, if the area saved outweighs the additional
 // cut length and islands; sharp edges are preferred. The parts do not move, so transitions are unchanged, and those
 // across the additional cuts are the identity.
-// surface: its open edges, besides the cuts. Returns whether any was cut.
-bool compact_islands(const OpenedSurface& surface, const SharedSquare& square, ComponentMap& map);
+// Islands that lie on both sides of a mirror plane are cut alike on both.
+// surface: its open edges, besides the cuts.  mirroring: of the mesh, or empty. Returns whether any was cut.
+bool compact_islands(const OpenedSurface& surface, const Mirroring& mirroring, const SharedSquare& square,
+                     ComponentMap& map);
 
 }  // namespace lsgp

@@ -30,7 +30,23 @@ constexpr double sparing_factor = 8;
 constexpr double fill = 0.62, large = 0.7, cost_of_large = 0.5;
 constexpr Index most_pieces = 8;  // of one division
 constexpr int directions = 12;
+constexpr std::ptrdiff_t most_lines = 2;
 constexpr double operations_a_point = 60;  // of finding hulls
+constexpr double same_line = 1e-6;         // of normals, and of offsets relative to the extent
+
+// Adds the mirror images of lines that are not among them.
+void add_images(const Line& axis, double extent, Array<Line>& lines) {
+  const auto are_alike = [&](const Line& a, const Line& b) {
+    return std::abs(a.normal - b.normal) < same_line && std::abs(a.offset - b.offset) < same_line * extent;
+  };
+  for (std::size_t i = 0, count = lines.size(); i < count; ++i) {
+    const Line image = lines[i].mirrored_at(axis);
+    const auto is_image = [&](const Line& other) {
+      return are_alike(other, image) || are_alike(other.reversed(), image);
+    };
+    if (std::none_of(lines.begin(), lines.end(), is_image)) lines.push_back(image);
+  }
+}
 
 }  // namespace
 
@@ -109,12 +125,15 @@ double DivisionSearch::worth(const IslandCells& cells, const Array<Index>& class
 }
 
 IslandDivision DivisionSearch::find_division(const IslandCells& cells, const WholeIsland& island,
-                                             const Array<Complex>& hull, Complex along) const {
+                                             const Array<Complex>& hull, Complex along,
+                                             const std::optional<Line>& axis) const {
   std::size_t points = 0;
   for (const Array<Complex>& own : cells.hull) points += own.size();
   IslandDivision best;
   Array<Index> class_of(cells.count());
   const auto consider = [&](Array<Line> lines) {
+    if (axis) add_images(*axis, std::sqrt(area_), lines);
+    if (ssize(lines) > most_lines) return;
     for (Index cell = 0; cell < cells.count(); ++cell) {
       class_of[cell] = 0;
       for (const Line& line : lines) class_of[cell] = 2 * class_of[cell] + (line.distance(cells.center[cell]) > 0);
@@ -125,6 +144,7 @@ IslandDivision DivisionSearch::find_division(const IslandCells& cells, const Who
   };
   Complex center = 0;
   for (Index cell = 0; cell < cells.count(); ++cell) center += cells.area[cell] / island.area * cells.center[cell];
+  if (axis) consider({*axis});
   for (int i = 0; i < directions; ++i) {
     const Complex normal = along * std::polar(1.0, M_PI * i / directions);
     const Extent extent = extent_along(hull, normal);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <complex>
+#include <optional>
 
 #include "base/array.hpp"
 #include "lsgp/options.hpp"
@@ -24,6 +25,12 @@ struct Line {
   double offset;
   // Above 0 on the side that the normal points to.
   double distance(Complex z) const { return std::real(std::conj(normal) * z) - offset; }
+  Line reversed() const { return {-normal, -offset}; }
+  // The mirror image of this line, with its normal.
+  Line mirrored_at(const Line& axis) const {
+    const Complex image = -axis.normal * axis.normal * std::conj(normal);
+    return {image, offset + 2 * axis.offset * std::real(std::conj(image) * axis.normal)};
+  }
 };
 
 // A way to divide an island: by a line, or by two that cross.
@@ -82,9 +89,10 @@ class DivisionSearch {
   // The worth of a division into this many pieces by cuts of this length; 0 if the gain does not exceed the price.
   double worth(double gain, double length, std::size_t pieces) const;
 
-  // The best division of an island with this hull.  along: a side of its smallest box.
+  // The best division of an island with this hull.  along: a side of its smallest box.  axis: if the island mirrors
+  // itself there, so does the division, and it may run along the axis.
   IslandDivision find_division(const IslandCells& cells, const WholeIsland& island, const Array<Complex>& hull,
-                               Complex along) const;
+                               Complex along, const std::optional<Line>& axis) const;
 
  private:
   double worth(const IslandCells& cells, const Array<Index>& class_of, const WholeIsland& island) const;

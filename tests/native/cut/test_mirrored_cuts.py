@@ -259,3 +259,17 @@ def test_cuts_that_fill_the_square_are_not_closed_to_be_alike(mesh: meshes.Mesh,
     assert filled_cut > 1.5 * filled_whole
     assert mirrored_share(mesh, cut.cut_edges, middle) >= 0.98
     assert oracle.metric_gap(whole.corner_uv, cut.corner_uv) <= 1e-9
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.4], ids=["exact", "turned"])
+def test_islands_that_mirror_themselves_are_divided_alike_on_both_sides(turn: float) -> None:
+    """With all but one of several numbers of cones; single sets may overlap, and are then divided further."""
+    mesh = meshes.two_horned(3, turn)
+    shares = []
+    for count in (8, 10, 12, 16, 20, 24):
+        placed = lsgp.place_cones(surface(mesh), symmetric=True, count=count)
+        options = replace(MIRRORED, overlaps="split", compact="full")
+        result = lsgp.parameterize(surface(mesh), placed.cones, placed.cone_angles, options)
+        assert result.island.max() > 0
+        shares.append(mirrored_share(mesh, result.cut_edges))
+    assert sum(share < 0.98 for share in shares) <= 1, shares
