@@ -18,7 +18,7 @@ TEST_CASE_TEMPLATE("a form is minimized under equations", Scalar, double, std::c
       const auto lower = random_definite<Scalar>(random, size, 5);
       const Matrix rows = random_matrix<Scalar>(random, equations, size);
       const Vector right = random_matrix<Scalar>(random, size, 1), values = random_matrix<Scalar>(random, equations, 1);
-      const Vector found = lsgp::minimize_under<Scalar>(
+      const auto found = lsgp::minimize_under<Scalar>(
           lower, right, Eigen::SparseMatrix<Scalar, Eigen::RowMajor>(rows.sparseView()), values);
 
       // The conditions of Lagrange, as one dense system.
@@ -28,8 +28,10 @@ TEST_CASE_TEMPLATE("a form is minimized under equations", Scalar, double, std::c
       system.bottomLeftCorner(equations, size) = rows;
       Vector whole(size + equations);
       whole << right, values;
-      CHECK((found - system.partialPivLu().solve(whole).head(size)).norm() < 1e-8 * (1 + found.norm()));
-      CHECK((rows * found - values).norm() < 1e-10 * (1 + values.norm()));
+      const Vector solution = system.partialPivLu().solve(whole);
+      CHECK((found.x - solution.head(size)).norm() < 1e-8 * (1 + solution.norm()));
+      CHECK((found.multipliers - solution.tail(equations)).norm() < 1e-8 * (1 + solution.norm()));
+      CHECK((rows * found.x - values).norm() < 1e-10 * (1 + values.norm()));
     }
   }
 }
