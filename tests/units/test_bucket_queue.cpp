@@ -40,7 +40,7 @@ void check_order(double bucket_width, double spread) {
 
 TEST_CASE("the nearest comes first whatever the steps are") {
   for (const double spread : {1.0, 3.0, 1e3, 1e9}) {
-    for (const double width : {0.0, 1e-6, 0.25, 1e6}) {
+    for (const double width : {0.0, 1e-310, 1e-6, 0.25, 1e6, 1e308}) {
       CAPTURE(spread);
       CAPTURE(width);
       check_order(width, spread);

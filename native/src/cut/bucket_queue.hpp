@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -20,7 +21,8 @@ class BucketQueue {
   using Entry = std::pair<double, Index>;  // finite distance, vertex
 
   // bucket_width: a fraction of a usual step from vertex to vertex.
-  explicit BucketQueue(double bucket_width) : buckets_of_(bucket_width > 0 ? 1 / bucket_width : 0) {
+  explicit BucketQueue(double bucket_width)
+      : buckets_of_(std::isnormal(1 / bucket_width) && bucket_width > 0 ? 1 / bucket_width : 0) {
     first_.fill(none);
   }
 

@@ -14,6 +14,7 @@
 #include "prescription/border_turning.hpp"
 #include "prescription/parallel_transport.hpp"
 #include "repair/flat_metric.hpp"
+#include "solvers/failure.hpp"
 #include "unfold/jacobians.hpp"
 #include "unfold/lscm.hpp"
 #include "unfold/spectral.hpp"
@@ -139,7 +140,13 @@ ComponentMap Mapping::best(std::vector<Finding>& findings) {
     FoundMap opened = find_valid_map(with_open_holes());
     if (is_better(opened, found)) found = std::move(opened);
   }
-  if (found.defects() > 0 && repairs_) map_flat_metric(found);
+  if (found.defects() > 0 && repairs_) {
+    try {
+      map_flat_metric(found);
+    } catch (const SolverFailure&) {
+      // What was found before remains.
+    }
+  }
   if (found.defects() > 0 && repairs_ && (any_given(task_.cones) || task_.cones.rotation_order > 0))
     approach_angles(found);
   if (options_.mode == Mode::low_stretch && options_.stretch > 0 && found.defects() == 0) {

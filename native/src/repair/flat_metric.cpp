@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "base/thread_team.hpp"
-#include "lsgp/errors.hpp"
 #include "solvers/saddle_point.hpp"
 #include "solvers/sparse_assembly.hpp"
 
@@ -51,6 +50,7 @@ class FlatMetricSearch {
 
   bool find(const StepHook& before_step) {
     State state = measured(log_length_);
+    if (!state.is_metric) return false;  // degenerate triangles
     int exact_steps = 0;
     const Index most = std::min(most_steps, triangles_measured / mesh_.triangle_count());
     for (Index step = 0; step < most; ++step) {
