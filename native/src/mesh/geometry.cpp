@@ -53,6 +53,10 @@ bool measure_from_positions(const HalfedgeMesh& mesh, Geometry& geometry, Index 
   return !(doubled_area > degenerate_height * longest * longest);
 }
 
+void measure_from_lengths(Geometry& geometry) {
+  for_each_at_once(triangle_count(geometry), [&](Index f) { measure_from_lengths(geometry, f); });
+}
+
 // margin: in mean edge lengths.
 void mollify(Geometry& geometry, double margin) {
   const double mean = geometry.length.mean();
@@ -62,7 +66,7 @@ void mollify(Geometry& geometry, double margin) {
     added = std::max(added, margin * mean - slack);
   }
   geometry.length.array() += added;
-  for_each_at_once(triangle_count(geometry), [&](Index f) { measure_from_lengths(geometry, f); });
+  measure_from_lengths(geometry);
 }
 
 void place_apexes(Geometry& geometry) {
@@ -87,15 +91,26 @@ void add_up_vertices(const HalfedgeMesh& mesh, Geometry& geometry) {
   geometry.total_area = geometry.area.sum();
 }
 
+Geometry unmeasured(const HalfedgeMesh& mesh) {
+  Geometry geometry;
+  geometry.length.resize(mesh.halfedge_count());
+  geometry.angle.resize(mesh.halfedge_count());
+  geometry.half_cotangent.resize(mesh.halfedge_count());
+  geometry.area.resize(mesh.triangle_count());
+  return geometry;
+}
+
+// What follows from the measures of the triangles.
+Geometry completed(const HalfedgeMesh& mesh, Geometry geometry) {
+  place_apexes(geometry);
+  add_up_vertices(mesh, geometry);
+  return geometry;
+}
+
 }  // namespace
 
 Geometry build_geometry(const HalfedgeMesh& mesh) {
-  const Index halfedge_count = mesh.halfedge_count();
-  Geometry geometry;
-  geometry.length.resize(halfedge_count);
-  geometry.angle.resize(halfedge_count);
-  geometry.half_cotangent.resize(halfedge_count);
-  geometry.area.resize(mesh.triangle_count());
+  Geometry geometry = unmeasured(mesh);
   PerTriangle<char> is_degenerate(mesh.triangle_count());
   for_each_at_once(mesh.triangle_count(),
                    [&](Index f) { is_degenerate[f] = measure_from_positions(mesh, geometry, f); });
@@ -103,28 +118,19 @@ Geometry build_geometry(const HalfedgeMesh& mesh) {
     if (is_degenerate[f]) geometry.degenerate.push_back(f);
   }
   if (!geometry.degenerate.empty()) mollify(geometry, least_margin);
-  place_apexes(geometry);
-  add_up_vertices(mesh, geometry);
-  return geometry;
+  return completed(mesh, std::move(geometry));
 }
 
 Geometry mollified(const HalfedgeMesh& mesh, Geometry geometry, double margin) {
   mollify(geometry, margin);
-  place_apexes(geometry);
-  add_up_vertices(mesh, geometry);
-  return geometry;
+  return completed(mesh, std::move(geometry));
 }
 
 Geometry geometry_of_lengths(const HalfedgeMesh& mesh, Eigen::VectorXd length) {
-  Geometry geometry;
+  Geometry geometry = unmeasured(mesh);
   geometry.length = std::move(length);
-  geometry.angle.resize(mesh.halfedge_count());
-  geometry.half_cotangent.resize(mesh.halfedge_count());
-  geometry.area.resize(mesh.triangle_count());
-  for_each_at_once(mesh.triangle_count(), [&](Index f) { measure_from_lengths(geometry, f); });
-  place_apexes(geometry);
-  add_up_vertices(mesh, geometry);
-  return geometry;
+  measure_from_lengths(geometry);
+  return completed(mesh, std::move(geometry));
 }
 
 Eigen::Vector3d area_normal(const Positions& positions, const Triangles& triangles, Index f) {

@@ -14,6 +14,22 @@ constexpr double sharp_price = 1.25;  // the factor by which the variance may gr
 
 }  // namespace
 
+Neighborhoods::Neighborhoods(const HalfedgeMesh& mesh, const Array<Site>& all, const Array<int>& sites, int rings)
+    : mesh_(mesh), all_(all), rings_(rings), count_(mesh.vertex_count()) {
+  for (; rings_ >= 0; --rings_) {
+    std::fill(count_.begin(), count_.end(), 0);
+    for (const int site : sites) add(site, 1);
+    if (std::any_of(all.begin(), all.end(), [&](const Site& site) { return is_outside(site); })) return;
+  }
+}
+
+void Neighborhoods::add(int site, int times) {
+  for (const Index center : {all_[site].vertex, all_[site].mirrored}) {
+    if (center == none) continue;
+    for (const Index v : rings_around(mesh_, center, rings_)) count_[v] += times;
+  }
+}
+
 ConeSearch::ConeSearch(const HalfedgeMesh& mesh, const PlacementProblem& problem, int kept, bool sharp,
                        ExchangeEffort effort, ProgressMonitor& monitor)
     : mesh_(mesh), problem_(problem), kept_(kept), prefers_sharp_(sharp), effort_(effort), monitor_(monitor) {}
@@ -22,21 +38,9 @@ bool ConeSearch::is_sharp(int site) const { return std::abs(problem_.limits.defe
 
 Array<char> ConeSearch::open_sites(const Array<int>& used, int rings) const {
   const Array<Site>& sites = problem_.kernel.sites();
+  const Neighborhoods near(mesh_, sites, used, rings);
   Array<char> open(sites.size());
-  for (; rings >= 0; --rings) {
-    PerVertex<char> near(mesh_.vertex_count(), 0);
-    for (const int site : used) {
-      for (const Index v : {sites[site].vertex, sites[site].mirrored}) {
-        if (v != none) mark_rings(mesh_, v, rings, near);
-      }
-    }
-    bool room = false;
-    for (std::size_t i = 0; i < sites.size(); ++i) {
-      open[i] = !near[sites[i].vertex] && (sites[i].mirrored == none || !near[sites[i].mirrored]);
-      room |= open[i] != 0;
-    }
-    if (room) break;
-  }
+  for (std::size_t i = 0; i < sites.size(); ++i) open[i] = near.is_outside(sites[i]);
   return open;
 }
 

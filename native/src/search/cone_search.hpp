@@ -12,6 +12,24 @@ namespace lsgp {
 
 constexpr int free_rings = 2;  // around each cone: cones side by side cancel each other
 
+// How often each vertex is within some rings of the cones of a set.
+class Neighborhoods {
+ public:
+  // Fewer rings if there is no room for a further cone outside them.
+  Neighborhoods(const HalfedgeMesh& mesh, const Array<Site>& all, const Array<int>& sites, int rings);
+
+  void add(int site, int times);
+  bool is_outside(const Site& site) const {
+    return count_[site.vertex] == 0 && (site.mirrored == none || count_[site.mirrored] == 0);
+  }
+
+ private:
+  const HalfedgeMesh& mesh_;
+  const Array<Site>& all_;
+  int rings_;
+  PerVertex<int> count_;
+};
+
 struct ExchangeEffort {
   int tries;                 // of new sites for a cone that is exchanged
   double worth_an_exchange;  // of the variance: less is not worth an exchange

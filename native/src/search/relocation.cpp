@@ -15,37 +15,6 @@ double share(double curvature, double slope, double diagonal) {
   return 2 * curvature * slope + curvature * curvature * diagonal;
 }
 
-// How often each vertex is within some rings of the cones of a set.
-class Neighborhoods {
- public:
-  // Fewer rings than usual if there is no room for a further cone outside them.
-  Neighborhoods(const HalfedgeMesh& mesh, const Array<Site>& all, const Array<int>& sites)
-      : mesh_(mesh), all_(all), count_(mesh.vertex_count()) {
-    for (; rings_ >= 0; --rings_) {
-      std::fill(count_.begin(), count_.end(), 0);
-      for (const int site : sites) add(site, 1);
-      if (std::any_of(all.begin(), all.end(), [&](const Site& site) { return is_outside(site); })) return;
-    }
-  }
-
-  void add(int site, int times) {
-    for (const Index center : {all_[site].vertex, all_[site].mirrored}) {
-      if (center == none) continue;
-      for (const Index v : rings_around(mesh_, center, rings_)) count_[v] += times;
-    }
-  }
-
-  bool is_outside(const Site& site) const {
-    return count_[site.vertex] == 0 && (site.mirrored == none || count_[site.mirrored] == 0);
-  }
-
- private:
-  const HalfedgeMesh& mesh_;
-  const Array<Site>& all_;
-  int rings_ = free_rings;
-  PerVertex<int> count_;
-};
-
 }  // namespace
 
 bool relocate(const PlacementProblem& problem, const HalfedgeMesh& mesh, int kept, const Eigen::VectorXd& curvature,
@@ -59,7 +28,7 @@ bool relocate(const PlacementProblem& problem, const HalfedgeMesh& mesh, int kep
   for (std::size_t i = 0; i < sites.size(); ++i) {
     objective += curvature[static_cast<Eigen::Index>(i)] * (kernel.gradient()[sites[i]] + slope[sites[i]]);
   }
-  Neighborhoods near(mesh, kernel.sites(), sites);
+  Neighborhoods near(mesh, kernel.sites(), sites, free_rings);
   bool moved = false;
   for (Eigen::Index i = kept; i < ssize(sites); ++i) {
     const double kappa = curvature[i];

@@ -36,15 +36,12 @@ constexpr double operations_a_face = 500;
 PerFace<Index> mirror_faces(const MetricMesh& surface, const FaceGraph& graph, const MirrorPlane& plane) {
   const HalfedgeMesh& mesh = surface.mesh;
   Positions center = Positions::Zero(graph.face_count(), 3);
-  PerFace<double> area(graph.face_count(), 0);
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
-    const Index face = graph.face_of[f];
-    area[face] += surface.geometry.area[f];
     for (Index c = 0; c < 3; ++c) {
-      center.row(face) += surface.geometry.area[f] / 3 * mesh.positions.row(mesh.triangles(f, c));
+      center.row(graph.face_of[f]) += surface.geometry.area[f] / 3 * mesh.positions.row(mesh.triangles(f, c));
     }
   }
-  for (Index face = 0; face < graph.face_count(); ++face) center.row(face) /= area[face];
+  for (Index face = 0; face < graph.face_count(); ++face) center.row(face) /= graph.area[face];
   const PointTree tree(center);
   PerFace<Index> image;
   for (Index face = 0; face < graph.face_count(); ++face) {
