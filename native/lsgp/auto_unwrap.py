@@ -31,8 +31,10 @@ from .edge_keys import edge_keys
 from .errors import Cancelled, Finding, InputError, LsgpError
 from .ledger import LedgerPart, build_ledger, surface_of_triangles
 from .map_comparison import (
+    fills_badly,
     may_replace_for_features,
     may_replace_map,
+    may_replace_undivided,
     mirrored_cuts_cost_islands,
     releases_features,
     runs_along_features,
@@ -57,6 +59,8 @@ PACKING = 0.9
 _BEFORE_FEATURES = 0.9
 # Of the time of placing cones: what two attempts, with and without symmetry, have each.
 TRYING = 0.5
+# Where the square stays empty, islands are divided as if they had so many of them.
+_SQUARES = 2.0
 # What tells that a component is not symmetric.
 _ODD = "NOT_SYMMETRIC"
 # Hard surfaces end at their creases where their curvature sits at more corners than these, at which cones serve as
@@ -163,7 +167,11 @@ def auto_unwrap(
         return best_map(solver, found, chosen, pins, share_of(share, PLACING, 1.0))
 
     with packing_once():
-        surface, _, result = best_at_creases(choices, chosen, make, share_of(progress, 0.0, PACKING if packs else 1.0))
+        mapping = share_of(progress, 0.0, PACKING if packs else 1.0)
+        found = best_at_creases(choices, chosen, make, mapping)
+        surface, result = found[0], found[2]
+        if pins is None:
+            result = best_division(found, chosen, share_of(mapping, 1.0, 1.0))
         if packs:
             result = laid_out(surface, result, packing, texels, share_of(progress, PACKING, 1.0)).result
         elif texels is not None:
@@ -255,6 +263,23 @@ def best_at_creases(
     if progress is not None:
         progress(1.0)  # maps that were not needed leave their time
     return best
+
+
+def best_division(mapped: Mapped, options: Options, progress: Progress | None = None) -> Result:
+    """The map with its islands divided further, where much of the square stays empty and the packer fills it well then.
+
+    Dividing them goes by an estimate of what they take; which of several layouts is the smallest only packing can tell.
+    mapped: as of `best_at_creases`. progress: without time of its own.  Raises Cancelled.
+    """
+    surface, cones, usual = mapped
+    keeps_few = options.compact == "sparing"
+    if options.compact == "off" or options.square_share != 1 or not fills_badly(usual, keeps_few, progress):
+        return usual
+    further = replace(options, square_share=_SQUARES)
+    divided = or_none(lambda: _map_through(Solver(surface), cones, further, None, progress))
+    if divided is None or not may_replace_undivided(divided, usual, keeps_few, progress):
+        return usual
+    return cones.told(divided, options)
 
 
 def _gaining(

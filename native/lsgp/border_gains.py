@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from .api import IndexArray, Progress, Result, Surface
-from .map_comparison import defects, island_count, least_filled, measure_of_filling, worthwhile
+from .map_comparison import WELL_FILLED, defects, island_count, least_filled, measure_of_filling, worthwhile
 from .triangles import singular_values, triangle_areas
 
 # Borders are worth their islands if they remove half of the stretch, and so much of it for each further island; a fifth
@@ -20,8 +20,6 @@ _MOST_EXCESS = 0.5
 _MOST_EXCESS_WITHOUT_ISLANDS = 0.8
 _EXCESS_FOR_ISLAND = 0.004
 _LEAST_FILLED_WITH_BORDERS = 0.7
-# More of the square than this is rarely filled.
-_WELL_FILLED = 0.6
 # Of the stretch of maps that are the same but for rounding.
 _ROUNDING = 1e-6
 
@@ -93,7 +91,7 @@ class FullerSquare:
     def may_gain(self, usual: Result, components: Sequence[IndexArray], progress: Progress | None) -> list[bool]:
         """All of them, if more than two fifths of the square are empty."""
         filled = measure_of_filling(usual, self.square_share, progress)
-        return [filled(usual) < _WELL_FILLED] * len(components)
+        return [filled(usual) < WELL_FILLED] * len(components)
 
     def gains(self, bordered: Result, usual: Result, components: Sequence[IndexArray]) -> list[bool]:
         """Where borders cost no stretch: how islands lie in the square depends on all of them."""

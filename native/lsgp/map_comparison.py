@@ -30,6 +30,15 @@ _ISOMETRIC_L2 = 1.001
 _TARGET_L2 = 1.05
 _LEAST_FILLED_FOR_CUTS = 0.75
 _ISLANDS_FOR_ONE = 10
+# More of the square than this is rarely filled.
+WELL_FILLED = 0.6
+# Where islands are to be few, they are divided further only if less is filled, and into more than three only if it is
+# less still.
+_HALF_FILLED = 0.5
+_HARDLY_FILLED = 0.4
+_MOST_WHERE_FEW = 3
+# What twice as many islands have to fill in addition where islands need not be few.
+_FILLED_FOR_TWICE = 0.3
 _PAIR = 2
 # More than this lie on shelves too differently to compare them; packing more than that takes long.
 _FEW_ISLANDS = 4
@@ -80,6 +89,37 @@ def least_filled(more: int, usual: Result, saves_cuts: bool = False) -> float:
     if island_count(usual) >= _ISLANDS_FOR_ONE or more not in (_PAIR, -1):
         return least
     return 1.0 if more == _PAIR else min(least, _LEAST_FILLED_BY_ONE_FEWER)
+
+
+def fills_badly(usual: Result, keeps_few: bool, progress: Progress | None = None) -> bool:
+    """Whether two fifths of the square, half of it where islands are to be few, stay empty even if it is packed
+    tightly; False where that cannot be known."""
+    can_be_known = packer_name() is not None and island_count(usual) <= _MOST_PACKED
+    most = _HALF_FILLED if keeps_few else WELL_FILLED
+    return can_be_known and _filled_when_packed(usual, progress) < most
+
+
+def may_replace_undivided(divided: Result, usual: Result, keeps_few: bool, progress: Progress | None = None) -> bool:
+    """Whether further divisions are worth their islands: a tenth more of the square without further ones, a quarter
+    more for one, and two fifths for two (a tenth of many), L2 stretch up to 1 % more and no further defects.
+
+    keeps_few: whether that is the most, and more than three islands only replace what fills less than two fifths;
+    otherwise twice as many islands have to fill three tenths more, fewer further ones proportionally less.
+    progress: of packing.  Raises Cancelled.
+    """
+    islands, more = island_count(usual), island_count(divided) - island_count(usual)
+    if not (
+        divided.solved.tolist() == usual.solved.tolist()
+        and defects(divided) <= defects(usual)
+        and divided.distortion.l2_stretch <= _MOST_L2 * usual.distortion.l2_stretch
+        and (more <= worthwhile(usual) or not keeps_few)
+    ):
+        return False
+    filled = _filled_when_packed(usual, progress)
+    if keeps_few and more > 0 and islands + more > _MOST_WHERE_FEW and filled >= _HARDLY_FILLED:
+        return False
+    most = least_filled(-more, divided) if keeps_few else 1 / (1 + _FILLED_FOR_TWICE * max(0, more) / islands)
+    return filled < most * _filled_when_packed(divided, progress)
 
 
 def mirrored_cuts_cost_islands(mirrored: Result, usual: Result) -> bool:

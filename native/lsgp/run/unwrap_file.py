@@ -21,6 +21,7 @@ from ..auto_unwrap import (
     CreaseChoices,
     GivenCones,
     best_at_creases,
+    best_division,
     best_map,
     crease_choices,
     possible_cones,
@@ -240,6 +241,6 @@ def _map(
         run.add_seconds(result.stage_seconds)
         return completed, result
 
-    run.surface, completed, result = best_at_creases(choices, options, make, progress)
-    run.placement = completed.placement
-    return file, result
+    mapped = best_at_creases(choices, options, make, progress)
+    run.surface, run.placement = mapped[0], mapped[1].placement
+    return file, best_division(mapped, options, share_of(progress, 1.0, 1.0))

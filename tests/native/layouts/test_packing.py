@@ -200,7 +200,7 @@ def test_the_chosen_map_is_not_packed_again(packer, monkeypatch: pytest.MonkeyPa
     given = surface(meshes.flower(3))
     shelves = lsgp.auto_unwrap(given, preset=preset, pack="shelves")
     compared = len(packed)
-    assert compared == 2  # with symmetric cones, and without
+    assert compared >= 2  # with symmetric cones, without, and perhaps divided further
     result = lsgp.auto_unwrap(given, preset=preset)
     assert len(packed) == 2 * compared
     assert (result.corner_uv == lsgp.pack_islands(shelves.corner_uv, shelves.island)).all()
