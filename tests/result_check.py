@@ -57,7 +57,7 @@ def undeclared_faults(
     if unlisted.any():
         faults.append(f"{int(unlisted.sum())} sides of edges are apart that cut_edges does not list")
     if options.method == "lsgp":
-        faults += _wrong_angles(result, opened, flipped) + _open_seams(result, opened)
+        faults += _wrong_angles(result, opened, flipped) + _open_seams(surface, result, opened)
     if surface.directions is not None:
         faults += _wrong_directions(surface, result)
     if options.seamless is not None:
@@ -194,7 +194,7 @@ def _wrong_angles(result: lsgp.Result, opened: Opened, flipped: NDArray[np.int64
     return faults
 
 
-def _open_seams(result: lsgp.Result, opened: Opened) -> list[str]:
+def _open_seams(surface: lsgp.Surface, result: lsgp.Result, opened: Opened) -> list[str]:
     """Each path of the cut between nodes (cones, branchings, the border) is one rotation and one translation."""
     z, twin = opened.z, opened.twin
     h = np.flatnonzero(twin >= 0)
@@ -208,7 +208,10 @@ def _open_seams(result: lsgp.Result, opened: Opened) -> list[str]:
     lengths = np.abs(left[:, 1] - left[:, 0]), np.abs(right[:, 1] - right[:, 0])
     named = named_by(result, "INEXACT_SEAMS").reshape(-1, 2)
     excused = np.isin(edge_keys(opened.vertex[h], opened.vertex[next_corner(h)]), edge_keys(*named.T))
-    ratio = np.divide(*lengths, where=lengths[1] > 0, out=np.ones(len(h)))[~excused].max(initial=1)
+    positions = surface.positions
+    on_surface = np.linalg.norm(positions[opened.vertex[h]] - positions[opened.vertex[next_corner(h)]], axis=1)
+    is_point = on_surface <= np.finfo(np.float32).eps * np.linalg.norm(np.ptp(positions, axis=0))
+    ratio = np.divide(*lengths, where=lengths[1] > 0, out=np.ones(len(h)))[~(excused | is_point)].max(initial=1)
     if ratio - 1 > SISTER_RATIO:
         faults.append(f"sister edges differ in length by {ratio - 1:.1e}")
 

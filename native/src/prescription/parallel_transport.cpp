@@ -90,6 +90,16 @@ NodeGraph nodes_of_cuts(const CutSurface& surface, const Curvature& curvature) {
                           [&](Index v) { return std::abs(std::sin(curvature.at_vertex[v] / 2)); });
 }
 
+// Quarter turns that come out of sums and solves are exact again, so that both sides of a cut can run along the axes.
+Eigen::VectorXd without_rounding(Eigen::VectorXd angles) {
+  constexpr double rounding = 1e-11, quarter = M_PI / 2;
+  for (double& angle : angles) {
+    const double turned = quarter * std::round(angle / quarter);
+    if (std::abs(angle - turned) < rounding) angle = turned;
+  }
+  return angles;
+}
+
 // How the metric turns by itself.
 struct MetricConnection {
   NodeGraph nodes;
@@ -99,9 +109,9 @@ struct MetricConnection {
 
   MetricConnection(const CutSurface& surface, const Curvature& curvature)
       : nodes(nodes_of_cuts(surface, curvature)),
-        node_curvature(curvature_of_nodes(surface.mesh, nodes, curvature.at_vertex)),
+        node_curvature(without_rounding(curvature_of_nodes(surface.mesh, nodes, curvature.at_vertex))),
         frames(integrate(surface, curvature.log_scale)),
-        natural(read_rotations(surface, surface.cut_graph, curvature.log_scale, frames)) {}
+        natural(without_rounding(read_rotations(surface, surface.cut_graph, curvature.log_scale, frames))) {}
 };
 
 }  // namespace

@@ -64,6 +64,12 @@ Measured measure(const Surface& surface, const CornerUv& corner_uv, Index f) {
   return out;
 }
 
+// Of an edge with a length and a direction: shorter ones are points to within the single precision of positions.
+double shortest_edge(const Positions& positions) {
+  return std::numeric_limits<float>::epsilon() *
+         (positions.colwise().maxCoeff() - positions.colwise().minCoeff()).norm();
+}
+
 }  // namespace
 
 Distortion measure_triangles(const Surface& surface, const CornerUv& corner_uv, const Array<Index>& triangles) {
@@ -116,6 +122,10 @@ SeamQuality measure_seams(const HalfedgeMesh& mesh, const Array<SisterEdges>& se
                           Array<Index>* inexact) {
   SeamQuality out;
   if (inexact) inexact->clear();
+  const double shortest = shortest_edge(mesh.positions);
+  const auto is_point = [&](Index h) {
+    return !((mesh.positions.row(mesh.origin(h)) - mesh.positions.row(mesh.target(h))).norm() > shortest);
+  };
   for (const auto& [halfedges, rotation, size] : seams) {
     // Corners of both sides of one halfedge: left origin, left target, right origin, right target.
     const auto ends = [&](Index h) {
@@ -126,23 +136,25 @@ SeamQuality measure_seams(const HalfedgeMesh& mesh, const Array<SisterEdges>& se
     for (const Index h : halfedges) {
       const auto z = ends(h);
       const Complex left = z[1] - z[0], right = z[3] - z[2];
+      turn += std::conj(left) * right;
+      if (is_point(h)) continue;
       const double longer = std::max(std::abs(left), std::abs(right)),
                    shorter = std::min(std::abs(left), std::abs(right));
       // A collapsed edge counts as the smallest number, so that the ratio stays finite.
       out.sister_ratio_max =
           std::max(out.sister_ratio_max, longer / std::max(shorter, std::numeric_limits<double>::min()));
-      turn += std::conj(left) * right;
     }
     turn = rotation ? std::polar(1.0, *rotation) : turn / std::max(std::abs(turn), std::numeric_limits<double>::min());
     Complex translation = 0;
     for (const Index h : halfedges) {
       const auto z = ends(h);
+      translation += ((z[2] - turn * z[0]) + (z[3] - turn * z[1])) / (2.0 * static_cast<double>(halfedges.size()));
+      if (is_point(h)) continue;
       const double off = std::abs(std::arg((z[3] - z[2]) * std::conj(turn * (z[1] - z[0]))));
       out.rotation_residual = std::max(out.rotation_residual, off);
       const double left = std::abs(z[1] - z[0]), right = std::abs(z[3] - z[2]);
       if (inexact && !(std::max(off, std::abs(left - right) / std::min(left, right)) <= exact_seam))
         inexact->push_back(h);
-      translation += ((z[2] - turn * z[0]) + (z[3] - turn * z[1])) / (2.0 * static_cast<double>(halfedges.size()));
     }
     for (const Index h : halfedges) {
       const auto z = ends(h);

@@ -61,7 +61,8 @@ struct SisterEdges {
 };
 
 // position: at the component's corners.  inexact: where given, receives the halfedges whose two sides differ in length
-// or direction by more than rounding explains on edges of ordinary length.
+// or direction by more than rounding explains on edges of ordinary length. Edges without a length on the surface have
+// neither, and count by their translation alone.
 SeamQuality measure_seams(const HalfedgeMesh& mesh, const Array<SisterEdges>& seams, const CornerPositions& position,
                           Array<Index>* inexact = nullptr);
 

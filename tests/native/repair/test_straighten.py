@@ -131,6 +131,15 @@ def test_digits_that_a_file_has_lost_do_not_bend_sides() -> None:
     assert share_along_axes(rounded, unwrapped(rounded)) == 1
 
 
+@pytest.mark.parametrize(("around", "along"), [(48, 8), (160, 30), (400, 20)])
+def test_sides_of_a_cut_along_the_axes_match_to_the_last_digits(around: int, along: int) -> None:
+    """Angle sums along many vertices make quarter turns only up to their rounding."""
+    mesh = barrel(around, along, 0.02)
+    rough = mesh._replace(positions=mesh.positions + np.random.default_rng(1).normal(0, 1e-4, mesh.positions.shape))
+    seams = unwrapped(rough).seams
+    assert max(seams.sister_ratio_max - 1, seams.rotation_residual, seams.translation_residual) < 1e-14
+
+
 def test_round_borders_stay_as_they_are() -> None:
     ring = closed.lathe(np.array([0.4, 0.7, 1.0]), np.array([0.25, 0.15, 0]), 48, caps=(False, False))
     np.testing.assert_array_equal(unwrapped(ring).corner_uv, unwrapped(ring, False).corner_uv)

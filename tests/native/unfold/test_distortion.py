@@ -194,6 +194,22 @@ def test_sisters_of_different_length_are_measured() -> None:
     assert (found.island == np.where(right, found.island[right][0], found.island[~right][0])).all()
 
 
+def test_sisters_without_a_length_on_the_surface_are_not_compared() -> None:
+    """Their length in the plane is no more than what the computation gives degenerate triangles."""
+    mesh = meshes.grid(4, 2)
+    right = mesh.positions[mesh.triangles].mean(axis=1)[:, 0] > 2
+    uv = flat_uv(mesh) + np.where(right, 9, 0)[:, None, None]
+    uv[(mesh.triangles == 12) & right[:, None]] += (0.0, 0.25)  # an end of the edge from 7 to 12
+    ratios = []
+    for at in (mesh.positions[12], mesh.positions[7] + (0, 1e-8, 0)):
+        positions = mesh.positions.copy()
+        positions[12] = at
+        found = lsgp.measure_distortion(surface(mesh._replace(positions=positions)), uv)
+        assert pairs(found.cut_edges) == {(2, 7), (7, 12)}
+        ratios.append(found.seams.sister_ratio_max)
+    assert ratios == [pytest.approx(1.25), 1]
+
+
 def test_sister_ratio_of_lscm_is_the_oracles() -> None:
     mesh = MAPPED["bumpy sphere"]
     result = unwrap(mesh, method="lscm")
