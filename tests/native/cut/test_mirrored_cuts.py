@@ -124,6 +124,7 @@ def test_cuts_mirror_each_other_on_triangles_that_do_not(turn: float) -> None:
     assert mirrored_share(mesh, usual.cut_edges) < 0.95
 
 
+@pytest.mark.many_solves
 def test_cuts_differ_no_more_than_the_sides_of_the_surface() -> None:
     """Where these differ by more than an edge, cuts on corresponding vertices are each other's images."""
     mesh = shared_mesh("max-planck-25k")

@@ -78,14 +78,23 @@ def test_the_target_is_kept_with_at_most_a_quarter_more_cones(name: str, front: 
     assert result.distortion.l2_stretch == pytest.approx(placed.mapped_l2, rel=1e-6)
 
 
-@pytest.mark.parametrize("count", [8, 70])
-@pytest.mark.parametrize("name", MESHES)
+@pytest.mark.parametrize(
+    "name, count",
+    [
+        *((name, 8) for name in MESHES),
+        ("ring", 70),
+        *(pytest.param(name, 70, marks=pytest.mark.many_solves) for name in MESHES if name != "ring"),
+    ],
+)
 def test_a_number_of_cones_stays_and_stretches_within_the_target(name: str, count: int) -> None:
     placed = lsgp.place_cones(hidden(MESHES[name], FRONTS[0]), count=count)
     assert len(placed.cones) == count and placed.mapped_l2 <= TARGET
 
 
-@pytest.mark.parametrize("options", [{}, {"count": 70}, {"lattice": "square"}, {"symmetric": True}])
+@pytest.mark.parametrize(
+    "options",
+    [{}, pytest.param({"count": 70}, marks=pytest.mark.many_solves), {"lattice": "square"}, {"symmetric": True}],
+)
 @pytest.mark.parametrize("name", ["egg", "ring"])
 def test_cuts_cost_less_than_those_of_cones_placed_without_regard(name: str, options: dict[str, object]) -> None:
     costly = hidden(MESHES[name], FRONTS[0])

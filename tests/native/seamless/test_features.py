@@ -69,7 +69,7 @@ def test_every_crease_lies_on_a_line_of_the_lattice(name: str) -> None:
     assert undeclared_faults(surface(mesh), result, TILE) == []
 
 
-@pytest.mark.parametrize("teeth", [7, 10])
+@pytest.mark.parametrize("teeth", [7, pytest.param(10, marks=pytest.mark.many_solves)])
 def test_creases_whose_lengths_depend_on_each_other_lie_on_fine_lines(teeth: int) -> None:
     """Its cones follow from each other by halves and thirds of lengths, all of which have to be whole."""
     mesh = closed.toothed_wheel(teeth, 0.2)

@@ -118,7 +118,10 @@ def test_rims_of_a_cone_run_along_the_lattice() -> None:
     assert undeclared_faults(frustum, result, PLAIN) == []
 
 
-@pytest.mark.parametrize("teeth, depth", [(5, 0.4), (7, 0.25), (10, 0.15), (12, 0.2)])
+@pytest.mark.parametrize(
+    "teeth, depth",
+    [(5, 0.4), *(pytest.param(*wheel, marks=pytest.mark.many_solves) for wheel in ((7, 0.25), (10, 0.15), (12, 0.2)))],
+)
 def test_most_edges_of_toothed_wheels_run_along_the_lattice(teeth: int, depth: float) -> None:
     """Few of them fold the layout, and are released where they do."""
     mesh = closed.toothed_wheel(teeth, depth)
