@@ -134,8 +134,10 @@ def _unwrap_task(obj: bpy.types.Object, args: argparse.Namespace) -> UnwrapTask:
         cuts=cut_choice(args),
         direction=direction_choice(args),
         features=args.features,
+        subdivided=args.preset is not None,
     )
-    region = read_region(obj, Faces.ALL, Groups(settings.cone_group, settings.weight_group))
+    groups = Groups(settings.cone_group, settings.weight_group)
+    region = read_region(obj, Faces.ALL, groups, subdivided=settings.subdivided)
     task = unwrap_task(region, settings)
     if len(task.cones.cones) and args.preset is None:
         return task

@@ -299,3 +299,27 @@ def test_wrong_usage(tmp_path):
     assert run(tmp_path / "nowhere", "--out", tmp_path / "out") == 2
     assert run("--no-such-option") == 2
     assert run("--help") == 0
+
+
+def test_presets_take_the_subdivision_surface_as_the_operator_does(tmp_path):
+    cage = add_cone_cube("Cage", cuts=1)
+    for vertex in cage.data.vertices:
+        vertex.co.z *= 3
+    cage.modifiers.new("Subdivision", "SUBSURF").levels = 2
+    source, out = tmp_path / "cage.blend", tmp_path / "out"
+    bpy.ops.wm.save_as_mainfile(filepath=str(source), copy=True)
+    wanted, flat = (edge_shares(cage, use_subsurf_data=use) for use in (True, False))
+    assert run(source, "--out", out, "--preset", "paint", "--no-pictures") == 0
+    bpy.ops.wm.open_mainfile(filepath=str(out / "cage.blend"))
+    found = edge_shares(bpy.data.objects["Cage"])
+    assert found == pytest.approx(wanted, abs=1e-4)
+    assert np.abs(flat - wanted).max() > 0.01
+
+
+def edge_shares(obj, **options):
+    """Lengths of the edges in the map by the mean one; with options, after unwrapping with them."""
+    assert not options or bpy.ops.uv.cone_auto_unwrap(**options) == {"FINISHED"}
+    uv_map = UvMap(obj)
+    ends = uv_map.uv[np.array([uv_map.sides[edge][0] for edge in sorted(uv_map.sides)])]
+    lengths = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+    return lengths / lengths.mean()
