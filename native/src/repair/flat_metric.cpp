@@ -49,10 +49,11 @@ class FlatMetricSearch {
   }
 
   bool find(const StepHook& before_step) {
+    const Index most = std::min(most_steps, triangles_measured / mesh_.triangle_count());
+    if (most < least_steps) return false;
     State state = measured(log_length_);
     if (!state.is_metric) return false;  // degenerate triangles
     int exact_steps = 0;
-    const Index most = std::min(most_steps, triangles_measured / mesh_.triangle_count());
     for (Index step = 0; step < most; ++step) {
       before_step();
       const Direction direction = find_direction(state);
@@ -72,6 +73,7 @@ class FlatMetricSearch {
 
  private:
   static constexpr Index most_steps = 200, triangles_measured = 200000;  // of all steps together
+  static constexpr Index least_steps = 15;                               // fewer than it takes
   static constexpr int most_refining_steps = 20;                         // once the sums are right
   static constexpr double exact = 1e-10;                                 // radians
   static constexpr double settled = 1e-3;                                // decrease of the energy, relative
