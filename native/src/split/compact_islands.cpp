@@ -24,7 +24,8 @@ namespace {
 
 constexpr int cells_across = 40;
 constexpr double rounding = 1e-9;  // of what divisions are worth
-constexpr double is_sharp = 1.27;  // radians: beyond what edges of coarse round shapes bend by
+// Radians: beyond what edges of coarse round shapes bend by; those of rings with five sides bend by 1.2 to 1.31.
+constexpr double is_sharp = 1.4;
 // An island is its own mirror image if this share of its area has an image in it, at most this far from there,
 // relative to the square root of its area.
 constexpr double least_reflected = 0.6, most_apart = 0.05;
