@@ -25,8 +25,9 @@ using Kind = DistortionEnergy::Kind;
 
 constexpr int most_attempts = 24;              // to align lines
 constexpr Index attempted_triangles = 200000;  // in all attempts together; the first is always made
+constexpr Index retried_triangles = 40000;     // in those for what was released
 constexpr int most_fits = 300;                 // to find lines that contradict each other
-constexpr Index fitted_triangles = 400000;     // in all of them together
+constexpr Index fitted_triangles = 200000;     // in all of them together
 constexpr double least_length = 0.1;           // of an edge, relative to the map without lines, that contradicts none
 constexpr double mendable_share = 0.1;         // of the triangles, flipped, that are repaired
 constexpr int most_trimmings = 4;              // of lines whose layout on the lattice fails at a few places
@@ -34,7 +35,7 @@ constexpr int most_rings = 4;                  // of triangles from where lines 
 constexpr Index most_defects = 24;             // vertices there, on small meshes
 constexpr double defective_share = 0.02;       // of the vertices, on others
 constexpr double least_kept = 0.25;            // of their length on a lattice
-constexpr double most_cost = 0.5;              // of rounding, relative to the area: it stretches by more than a tenth
+constexpr double most_cost = 0.25;             // of rounding, relative to the area: layouts fold beyond, or stretch too much
 constexpr double compatible_share = 0.01;      // that lines may flip which contradict none
 constexpr Index few = 8;                       // that are always
 constexpr int unfolding_steps = 16;
@@ -107,8 +108,10 @@ FeatureLayout::FeatureLayout(const FeatureTask& task, const PerHalfedge<char>& f
       most_l2_(most_l2),
       reasons_(task.surface.mesh.halfedge_count(), ReleaseReason::contradiction) {
   const HalfedgeMesh& mesh = task_.surface.mesh;
-  left_ = std::clamp(attempted_triangles / mesh.triangle_count(), 1, most_attempts);
-  fits_left_ = std::clamp(fitted_triangles / mesh.triangle_count(), 1, most_fits);
+  // With hundreds of cones and handles most copies depend on many unknowns.
+  const Index size = std::max(mesh.triangle_count(), static_cast<Index>(ssize(task_.lattice.reduction.terms) / 2));
+  left_ = std::clamp(attempted_triangles / size, 1, most_attempts);
+  fits_left_ = std::clamp(fitted_triangles / size, 1, most_fits);
   is_cone_.assign(mesh.vertex_count(), 0);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     is_cone_[v] = mesh.loop_of_vertex[v] == none && task_.curvature.at_vertex[v] != 0;
@@ -161,6 +164,10 @@ void FeatureLayout::add_faultless(const Array<FeatureLine>& lines, Index begin, 
        at_fault = contradicting(lines, chosen)) {
     at_fault.erase(at_fault.begin(), std::lower_bound(at_fault.begin(), at_fault.end(), begin));
     if (at_fault.empty()) break;
+    if (fits_left_ <= 0) {
+      std::fill(chosen.begin() + begin, chosen.begin() + end, 0);
+      return;
+    }
     for (auto k = at_fault.begin() + ssize(at_fault) / 2; k != at_fault.end(); ++k) {
       chosen[*k] = 0;
       released.push_back(*k);
@@ -271,6 +278,7 @@ void FeatureLayout::add_trimmed() {
   std::stable_sort(lines.begin(), lines.end(), [](const FeatureLine& a, const FeatureLine& b) {
     return std::pair(a.is_marked, a.length) > std::pair(b.is_marked, b.length);
   });
+  left_ = std::min(left_, retried_triangles / task_.surface.mesh.triangle_count());
   for (std::ptrdiff_t k = 0; k < ssize(lines) && left_ > 0; ++k) {
     Array<Index> defects;
     align(lines, k, k + 1, defects);
