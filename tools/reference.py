@@ -134,9 +134,10 @@ def _value(default: Any) -> str:
 
 
 def _docstring(obj: Any) -> list[str]:
+    text, *examples = re.split(r"^(?=>>> )", inspect.getdoc(obj), maxsplit=1, flags=re.MULTILINE)
     lines = []
     in_list = False
-    for line in inspect.getdoc(obj).splitlines():
+    for line in text.splitlines():
         item = re.match(r"([a-z]\w*(?:, [a-z]\w*)*): (.*)", line)
         if item:
             if not in_list and lines and lines[-1]:
@@ -151,6 +152,8 @@ def _docstring(obj: Any) -> list[str]:
                 lines.append("")
             in_list = False
             lines.append(line)
+    for example in examples:
+        lines += ["```pycon", *example.splitlines(), "```"]
     return [*lines, ""]
 
 

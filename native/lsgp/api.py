@@ -582,6 +582,12 @@ def parameterize(
     progress: called at intervals with the fraction done, 0 to 1; if it returns False, Cancelled is raised; its own
         exceptions propagate.
     Raises InputError, TopologyError, CurvatureError, SolverError, Cancelled.
+
+    >>> result = lsgp.parameterize(surface, cones=[0, 1, 2, 3], angles=[math.pi, math.pi, None, None])
+    >>> result.cone_angles.round(3)
+    array([3.142, 3.142, 3.142, 3.142])
+    >>> len(result.flipped), len(result.warnings)
+    (0, 0)
     """
     arrays = surface_arrays(surface)
     out = _lsgp.parameterize(arrays, *_call(cones, angles, options, pins, progress))
@@ -786,6 +792,10 @@ def place_cones(
     No cone is placed on a boundary, at a vertex that cuts cannot reach, or, if the mesh has room, within two rings of
     another.
     Raises InputError, TopologyError, CurvatureError, SolverError, Cancelled.
+
+    >>> placed = lsgp.place_cones(surface)
+    >>> placed.cones.tolist(), placed.reached
+    ([0, 1, 2, 3], True)
     """
     arguments.require_callable(progress)
     if count is not None:
@@ -831,6 +841,11 @@ def measure_distortion(
 
     cones: (k,) int32, the vertices at which a cut may change its rotation; None: every vertex whose angles do not add
     up to a full turn. progress: as for `parameterize`.  Raises InputError, Cancelled.
+
+    >>> corner_uv = surface.positions[surface.triangles][:, :, :2]  # seen from above
+    >>> measured = lsgp.measure_distortion(surface, corner_uv)
+    >>> len(measured.flipped), measured.distortion.l2_stretch > 1
+    (2, True)
     """
     arguments.require_callable(progress)
     arrays = surface_arrays(surface)

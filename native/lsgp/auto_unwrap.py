@@ -139,6 +139,10 @@ def auto_unwrap(
     texels: a layout at a texel density, as by `at_texel_density`; None: it fills the unit square. Not with pins.
     pins, progress, errors and the result as for `parameterize`; `Result.cones` includes the placed cones, its warnings
         those of the placement, and ISLANDS_TINY names islands that do not keep their shape in single precision.
+
+    >>> result = lsgp.auto_unwrap(surface, preset="bake")
+    >>> result.corner_uv.shape, len(result.overlapping)
+    ((4, 3, 2), 0)
     """
     chosen = preset_options(preset)
     if options is not None:

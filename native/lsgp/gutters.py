@@ -59,6 +59,11 @@ def pad_image(
     returns an image of its shape and dtype.
     Raises InputError: WRONG_SHAPE, WRONG_DTYPE, WRONG_PARAMETER, INDEX_OUT_OF_RANGE; ISLANDS_OUTSIDE the unit square,
     as in seamless layouts, in which a texel is at several places of the surface; NO_UV if nothing is mapped.
+
+    >>> image = np.zeros((64, 64, 3), np.uint8)
+    >>> padded = lsgp.pad_image(image, surface, lsgp.auto_unwrap(surface).corner_uv, margin=4)
+    >>> padded.shape, padded.dtype
+    ((64, 64, 3), dtype('uint8'))
     """
     turns_normals = arguments.flag("normal_map", normal_map)
     pixels = _image(image, turns_normals)

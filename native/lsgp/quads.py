@@ -144,6 +144,10 @@ def remesh_to_quads(
     If the surface has `directions`, rows of quads follow them as far as the cones permit; its seams have no effect.
     progress: as for `parameterize`.  Raises the errors of `parameterize` and `extract_quads`, OPEN_SURFACE before any
     work is done; COMPONENT_SKIPPED if a component has no layout; TOO_MANY_QUADS.
+
+    >>> quads = lsgp.remesh_to_quads(surface, cones=[0, 1, 2, 3], target=100).mesh.quads
+    >>> quads.shape[1], 50 < len(quads) < 200
+    (4, True)
     """
     arguments.require_callable(progress)
     arguments.require_type("surface", surface, Surface)

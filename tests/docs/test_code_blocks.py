@@ -24,7 +24,7 @@ import pytest
 from code_blocks import LEFT_OUT, ROOT, Block, blocks_of, documents
 
 MODEL = ROOT / "examples" / "model.obj"
-LANGUAGES = {"sh", "python", "text", "cpp", "cmake", "mermaid"}
+LANGUAGES = {"sh", "python", "pycon", "text", "cpp", "cmake", "mermaid"}
 
 
 def names(paths: list[Path]) -> list[str]:
@@ -60,7 +60,7 @@ def test_blocks_run_and_print_what_is_shown(document, tmp_path):
             continue
         elif block.language == "text":
             require_shown(block, printed, document)
-        elif not block.runs or block.in_blender or block.language in {"cpp", "cmake", "mermaid"}:
+        elif not block.runs or block.in_blender or block.language in {"cpp", "cmake", "mermaid", "pycon"}:
             printed = ""
         elif block.language == "sh":
             printed = run_in_shell(block, tmp_path, document)

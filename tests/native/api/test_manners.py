@@ -3,6 +3,7 @@
 
 import dataclasses
 import doctest
+import math
 
 import lsgp
 import meshes
@@ -16,6 +17,17 @@ LONGEST = 400  # characters, about three lines of a terminal
 def test_the_example_of_the_package_runs():
     outcome = doctest.testmod(lsgp, verbose=False)
     assert outcome.attempted >= 6 and outcome.failed == 0
+
+
+def test_examples_of_functions_run():
+    """Their surface is that of the package's example."""
+    finder, runner = doctest.DocTestFinder(recurse=False), doctest.DocTestRunner(verbose=False)
+    (package,) = finder.find(lsgp)
+    runner.run(package, clear_globs=False)
+    known = {**package.globs, "math": math, "np": np}
+    of_functions = [test for name in lsgp.__all__ for test in finder.find(getattr(lsgp, name), name, globs=known)]
+    assert sum(bool(test.examples) for test in of_functions) >= 6
+    assert sum(runner.run(test).failed for test in of_functions) == 0
 
 
 def test_results_are_shown_by_counts():
