@@ -14,7 +14,8 @@ namespace lsgp {
 namespace {
 
 constexpr double exact_seam = 1e-9;          // of an edge's length, and radians
-constexpr double exact_translation = 1e-12;  // of the layout
+constexpr double exact_translation = 1e-12;  // of the layout, beside the rounding of its coordinates
+constexpr double coordinate_rounding = 4 * std::numeric_limits<double>::epsilon();
 constexpr double exact_angle = 1e-6;         // radians
 constexpr double wrong_angle = M_PI / 180;
 constexpr double unlimited = std::numeric_limits<double>::infinity();
@@ -161,7 +162,8 @@ SeamQuality measure_seams(const HalfedgeMesh& mesh, const Array<SisterEdges>& se
       for (const std::size_t end : {0u, 1u}) {
         const double off = std::abs(z[2 + end] - turn * z[end] - translation) / size;
         out.translation_residual = std::max(out.translation_residual, off);
-        if (inexact && !(off <= exact_translation)) inexact->push_back(h);
+        const double rounding = coordinate_rounding * std::max(std::abs(z[end]), std::abs(z[2 + end])) / size;
+        if (inexact && !(off <= exact_translation + rounding)) inexact->push_back(h);
       }
     }
   }
