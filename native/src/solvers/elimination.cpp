@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solvers/elimination.hpp"
 
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseCore>
 #include <algorithm>
 #include <numeric>
 #include <utility>
+
+#include "solvers/nested_dissection.hpp"
 
 namespace lsgp {
 
@@ -92,31 +92,11 @@ class Ordering {
   }
 
   void reduce_fill() {
-    using Pattern = Eigen::SparseMatrix<signed char, Eigen::ColMajor, int>;
-    Pattern pattern(eliminated_, eliminated_);
-    int count = 0;
-    for (int row = 0; row < eliminated_; ++row) {
-      for (int k = adjacency_.begin[row]; k < adjacency_.begin[row + 1]; ++k)
-        count += adjacency_.neighbor[k] < eliminated_;
-    }
-    pattern.resizeNonZeros(count + eliminated_);
-    std::fill_n(pattern.valuePtr(), pattern.nonZeros(), Pattern::Scalar(1));
-    int filled = 0;
-    for (int row = 0; row < eliminated_; ++row) {
-      pattern.outerIndexPtr()[row] = filled;
-      pattern.innerIndexPtr()[filled++] = row;
-      for (int k = adjacency_.begin[row]; k < adjacency_.begin[row + 1]; ++k) {
-        if (adjacency_.neighbor[k] < eliminated_) pattern.innerIndexPtr()[filled++] = adjacency_.neighbor[k];
-      }
-    }
-    pattern.outerIndexPtr()[eliminated_] = filled;
-    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
-    // With both triangles in one matrix: otherwise Eigen sorts the pattern again, which takes 3 % of a map.
-    if (eliminated_ > 0) Eigen::AMDOrdering<int>()(pattern.selfadjointView<Eigen::Lower | Eigen::Upper>(), order);
+    const Array<int> order = order_rows(adjacency_, eliminated_);
     out_.eliminated = eliminated_;
     out_.row_at.resize(size_);
     std::iota(out_.row_at.begin(), out_.row_at.end(), 0);
-    std::copy_n(order.indices().data(), eliminated_, out_.row_at.begin());
+    std::copy(order.begin(), order.end(), out_.row_at.begin());
     invert();
   }
 

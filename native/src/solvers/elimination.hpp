@@ -48,8 +48,8 @@ struct Elimination {
   }
 };
 
-// Minimum degree ordering of the rows but the last `retained`; supernodes of its elimination tree, merged where that
-// adds few zeros (Ashcraft and Grimes 1989; Chen, Davis, Hager, Rajamanickam 2008, section 2.4).
+// An order of the rows but the last `retained`; supernodes of its elimination tree, merged where that adds few zeros
+// (Ashcraft and Grimes 1989; Chen, Davis, Hager, Rajamanickam 2008, section 2.4).
 Elimination order_elimination(const Adjacency& adjacency, int retained);
 
 }  // namespace lsgp

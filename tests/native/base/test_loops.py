@@ -322,6 +322,10 @@ REVIEWED = {
         ("for (;;)", "each walk blocks an arc or a node", OWN),
         ("while (a >= 0 && (residual_[a] == 0 || distance_[to_[a]] != distance_[node] - 1))", LINKED, SHORT),
     ],
+    "solvers/nested_dissection.cpp": [
+        ("for (int head = 0; tail < rows_; start = next)", "rows, each once", SHORT),
+        ("while (next < rows_ && level_[next] != -1)", "rows, each once", SHORT),
+    ],
     "solvers/sparse_assembly.hpp": [
         ("while (column < entry.column)", "columns, each once", SHORT),
         ("while (column < size_)", "columns, each once", SHORT),

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solvers/nested_dissection.hpp"
+
+#include <doctest/doctest.h>
+
+#include <numeric>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "random_matrices.hpp"
+
+namespace {
+
+using lsgp::Adjacency;
+using lsgp::Array;
+using Edges = std::set<std::pair<int, int>>;
+
+Adjacency adjacency_of(int size, const Edges& edges) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < size; ++i) entries.emplace_back(i, i, 1);
+  for (const auto& [a, b] : edges) entries.emplace_back(std::max(a, b), std::min(a, b), 1);
+  Eigen::SparseMatrix<double> lower(size, size);
+  lower.setFromTriplets(entries.begin(), entries.end());
+  return lsgp::adjacency_of_lower(size, lower.outerIndexPtr(), lower.innerIndexPtr());
+}
+
+// A triangulated grid, numbered in random order or row by row.
+Edges grid(int width, int height, Random* random = nullptr) {
+  std::vector<int> number(width * height);
+  std::iota(number.begin(), number.end(), 0);
+  for (int i = width * height; random && i-- > 1;) std::swap(number[i], number[below(*random, i + 1)]);
+  Edges out;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const auto join = [&](int to_x, int to_y) {
+        if (to_x < width && to_y < height) out.emplace(number[y * width + x], number[to_y * width + to_x]);
+      };
+      join(x + 1, y);
+      join(x, y + 1);
+      join(x + 1, y + 1);
+    }
+  }
+  return out;
+}
+
+void check_permutation(const Array<int>& order, int rows) {
+  REQUIRE(order.size() == static_cast<std::size_t>(rows));
+  CHECK(std::set<int>(order.begin(), order.end()).size() == static_cast<std::size_t>(rows));
+  for (const int row : order) CHECK((row >= 0 && row < rows));
+}
+
+// The sum of the squared numbers of entries of the factor's columns, by eliminating row after row with sets.
+double operations(const Adjacency& adjacency, const Array<int>& order) {
+  const int rows = static_cast<int>(order.size());
+  std::vector<int> position(rows);
+  for (int at = 0; at < rows; ++at) position[order[at]] = at;
+  std::vector<std::set<int>> later(rows);
+  for (int row = 0; row < rows; ++row) {
+    for (int k = adjacency.begin[row]; k < adjacency.begin[row + 1]; ++k) {
+      const int other = adjacency.neighbor[k];
+      if (other < rows && position[other] > position[row]) later[position[row]].insert(position[other]);
+    }
+  }
+  double out = 0;
+  for (int at = 0; at < rows; ++at) {
+    const auto count = static_cast<double>(later[at].size());
+    out += (count + 1) * (count + 1);
+    if (later[at].empty()) continue;
+    const int parent = *later[at].begin();  // what it joins is passed on with it
+    later[parent].insert(std::next(later[at].begin()), later[at].end());
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("orders of elimination are permutations") {
+  Random random(1);
+  std::vector<std::pair<int, Edges>> patterns{{0, {}}, {1, {}}, {3000, {}}, {2500, grid(50, 50, &random)}};
+  patterns.push_back({10000, grid(2, 5000)});
+  Edges hub = grid(60, 60), parts, sparse;
+  for (int row = 1; row < 3600; ++row) hub.emplace(0, row);
+  for (int part = 0; part < 40; ++part) {
+    for (const auto& [a, b] : grid(10, 10)) parts.emplace(100 * part + a, 100 * part + b);
+  }
+  for (int i = 0; i < 6000; ++i) {
+    const int a = below(random, 3000), b = below(random, 3000);
+    if (a != b) sparse.emplace(std::min(a, b), std::max(a, b));
+  }
+  patterns.push_back({3600, hub});
+  patterns.push_back({4000, parts});
+  patterns.push_back({3000, sparse});
+  for (const auto& [size, edges] : patterns) {
+    const Adjacency adjacency = adjacency_of(size, edges);
+    for (const int retained : {0, size / 3}) {
+      CAPTURE(size);
+      CAPTURE(retained);
+      check_permutation(lsgp::order_by_degree(adjacency, size - retained), size - retained);
+      check_permutation(lsgp::order_by_dissection(adjacency, size - retained), size - retained);
+    }
+  }
+}
+
+TEST_CASE("dissection takes fewer operations than minimum degree on large grids, few more on others") {
+  Random random(2);
+  for (const auto& [width, height] :
+       {std::pair(100, 100), std::pair(300, 50), std::pair(200, 200), std::pair(250, 250)}) {
+    const Adjacency adjacency = adjacency_of(width * height, grid(width, height, &random));
+    const double by_degree = operations(adjacency, lsgp::order_by_degree(adjacency, width * height)),
+                 by_dissection = operations(adjacency, lsgp::order_by_dissection(adjacency, width * height));
+    CAPTURE(width);
+    CHECK(by_dissection < (width * height < 30000 ? 1.2 : 0.9) * by_degree);
+  }
+}
+
+TEST_CASE("large surfaces are dissected, matrices with rows that many others share are not") {
+  constexpr int width = 600, height = 520;
+  Edges edges = grid(width, height);
+  const Adjacency surface = adjacency_of(width * height, edges);
+  CHECK(lsgp::order_rows(surface, width * height) == lsgp::order_by_dissection(surface, width * height));
+  CHECK(lsgp::order_rows(surface, width * 400) == lsgp::order_by_degree(surface, width * 400));
+  Random random(3);
+  for (int i = 0; i < 40000; ++i) edges.emplace(below(random, 40), 40 + below(random, width * height - 40));
+  const Adjacency shared = adjacency_of(width * height, edges);
+  CHECK(lsgp::order_rows(shared, width * height) == lsgp::order_by_degree(shared, width * height));
+}
