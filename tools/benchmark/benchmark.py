@@ -56,6 +56,9 @@ Shares of the samples of a profiler (perf) on the head with 200,000 triangles, p
   elsewhere save little; with the real factor as preconditioner, one solve takes over 250 steps.
 - **Solves.** 100 cones have a Green's function each. 500 need about forty solves of one right-hand side instead, which
   wait for memory.
+- **From file to file**, `lsgp unwrap --cones auto:8` takes 11.6 s for the head with a million triangles, and no step
+  dominates: the visibility of vertices, which cuts cost by, is 9 % of the samples, memory that the system clears 8 %,
+  the coarse surface of placement 5 %, the distances kept between cones 5 %.
 """
 
 
