@@ -26,8 +26,9 @@ MOST_PASSES = 5
 """Of Blender's packer, for each way to turn islands."""
 QUARTER_TURN, ANY_TURN = "CARDINAL", "ANY"
 """Ways of Blender's packer to turn islands, the faster one first: the other takes seconds."""
-ENOUGH = 0.65
-"""Part of the square from which on a layout by Blender's packer is large enough."""
+ENOUGH, ENOUGH_UNTURNED = 0.65, 0.6
+"""Parts of the square from which on a layout by Blender's packer is large enough; the other if no island is turned,
+which takes a hundredth of the time."""
 # Of a full turn, tried for an island that is alone, and what another of them has to gain.
 DIRECTIONS = 720
 TURN_GAINS = 1e-3
@@ -57,7 +58,7 @@ def pack(
     if len(parts) == 1 and not parts[0].island.any() and not parts[0].pinned.any():
         return [_alone(parts[0], margin, turned)]
     if margin_method != EXACT and udim == 1:
-        return pack_once(parts, margin_method, margin, _turns(parts, turned)[-1])
+        return _first_large_enough(parts, margin_method, margin, _turns(parts, turned))
     obstacle = _obstacle(parts)
     if obstacle is None:
         try:
@@ -121,6 +122,21 @@ def forget() -> None:
     _kept.clear()
 
 
+def _first_large_enough(
+    parts: Sequence[Islands], margin_method: str, margin: float, turns: Sequence[str | None]
+) -> list[NDArray[np.float64]]:
+    """The layout without turning islands, or, where that leaves much of the square empty, the larger one of it and that
+    of the slowest way to turn them."""
+    unturned = pack_once(parts, margin_method, margin, None)
+    if len(turns) == 1 or _covered(unturned) >= ENOUGH_UNTURNED:
+        return unturned
+    return max(unturned, pack_once(parts, margin_method, margin, turns[-1]), key=_covered)
+
+
+def _covered(layout: Sequence[NDArray[np.float64]]) -> float:
+    return sum(map(total_area, layout))
+
+
 def _with_exact_margin(
     parts: Sequence[Islands], margin: float, turns: Sequence[str | None]
 ) -> list[NDArray[np.float64]]:
@@ -137,7 +153,7 @@ def _with_exact_margin(
             if 1 <= left <= 1 + MOST_ABOVE or now < scale:
                 break
             added *= (1 + MOST_ABOVE / 2) / left
-        if scale and sum(map(total_area, kept)) >= ENOUGH:
+        if scale and _covered(kept) >= ENOUGH:
             break
     return kept
 

@@ -138,8 +138,8 @@ def test_with_a_preset_all_objects_of_a_file_are_packed_together(library, tmp_pa
     assert run(library / "two.blend", "--out", out, "--preset", preset, "--no-pictures") == 0
     (line,) = lines_of(out)
     assert line["overlapping"] == 0
-    # The bare cube ends at its creases where a map is baked.
-    assert line["cones"] == 8 if preset == "bake" else line["cones"] > 8
+    # The bare cube may end at its creases instead of having cones, but not on a lattice.
+    assert line["cones"] > 8 if preset == "tile" else line["cones"] >= 8
     bpy.ops.wm.open_mainfile(filepath=str(out / "two.blend"))
     maps = [UvMap(bpy.data.objects[name]) for name in ("Marked", "Bare")]
     if preset == "tile":
