@@ -16,7 +16,7 @@ namespace {
 constexpr double exact_seam = 1e-9;          // of an edge's length, and radians
 constexpr double exact_translation = 1e-12;  // of the layout, beside the rounding of its coordinates
 constexpr double coordinate_rounding = 4 * std::numeric_limits<double>::epsilon();
-constexpr double exact_angle = 1e-6;         // radians
+constexpr double exact_angle = 1e-6;  // radians
 constexpr double wrong_angle = M_PI / 180;
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
