@@ -2,8 +2,9 @@
 """Time of `lsgp.parameterize` as Markdown tables.
 
 speed: the whole map on growing meshes beside libigl's LSCM on the same cut, Blender's methods with that cut marked as
-seams, and one factorization of the bare Laplacian; edits through `lsgp.Solver`, memory and growth. rounding: what
-seamless layouts add. shares: checks and repair. stretch: low stretch beside Blender's Minimum Stretch.
+seams, and one factorization of the bare Laplacian; edits through `lsgp.Solver`, memory and growth. threads: two threads
+beside one. rounding: what seamless layouts add. shares: checks and repair. stretch: low stretch beside Blender's
+Minimum Stretch and libigl's SLIM.
 
 All get arrays and give texture coordinates. lsgp also finds the cut, prescribes the cone angles and measures the map.
 Times are CPU seconds of all threads together, one thread being asked for; medians over repetitions in which the methods
@@ -22,11 +23,12 @@ import sys
 from collections.abc import Iterable
 
 from benchmark_cases import MESHES, ROOT, SHARED, dense_cases, growing_cases, small_cases
-from benchmark_options import measure_low_stretch, measure_rounding, measure_shares
+from benchmark_options import measure_low_stretch, measure_rounding, measure_shares, measure_slim, measure_threads
 from benchmark_speed import Measured, measure, plot, ratio_rows, stage_rows, time_rows
 from benchmark_workers import ONE_THREAD, build_laplacian_program, find_blender
 
-TABLES = ("speed", "rounding", "shares", "stretch")
+LARGE, MANY = 200_000, 100
+TABLES = ("speed", "threads", "rounding", "shares", "stretch")
 PAGE = ROOT / "docs" / "reference" / "benchmark.md"
 PLOT = ROOT / "docs" / "images" / "benchmark.svg"
 
@@ -81,6 +83,10 @@ def main() -> None:
     repetitions = arguments.repetitions
     if "speed" in arguments.tables:
         print(measure_speed(arguments.largest, repetitions, blender, arguments.write))
+    if "threads" in arguments.tables:
+        print("\nOne thread and two, wall-clock time:\n")
+        large = [case for case in growing_cases(arguments.largest) if len(case.triangles) >= LARGE]
+        print(as_table(measure_threads(case, repetitions) for case in large if len(case.cones) < MANY))
     small = small_cases(arguments.meshes)
     if "rounding" in arguments.tables:
         print("\nRounding angles and translations, repair included, as a multiple of the whole unwrap without it:\n")
@@ -96,6 +102,9 @@ def main() -> None:
             "relative difference in length of the two sides of a cut edge:\n"
         )
         print(as_table(measure_low_stretch(case, min(3, repetitions), blender) for case in dense_cases()))
+        print("\nLow stretch beside libigl's SLIM on the same cut, from Tutte's map to within 2 % of the energy:\n")
+        growing = [case for case in growing_cases(200_000) if len(case.cones) < MANY]
+        print(as_table(measure_slim(case) for case in growing))
 
 
 def measure_speed(largest: int, repetitions: int, blender: str | None, writes: bool) -> str:

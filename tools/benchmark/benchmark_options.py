@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What seamless layouts, checks, repair and low stretch cost; a part of `benchmark.py`."""
+"""What threads, seamless layouts, checks, repair and low stretch cost; a part of `benchmark.py`."""
 
 from __future__ import annotations
 
@@ -11,8 +11,14 @@ from pathlib import Path
 
 import lsgp
 import numpy as np
-from benchmark_cases import Case
+from benchmark_cases import Case, cut_open
 from benchmark_workers import blender_worker
+from lsgp.triangles import singular_values, triangle_areas
+from scipy import sparse
+from scipy.sparse.linalg import splu
+
+MOST_STEPS_OF_SLIM = 100
+SAME_ENERGY = 1.02
 
 
 def measure_rounding(case: Case, repetitions: int) -> dict[str, object]:
@@ -85,6 +91,103 @@ def minimum_stretch(blender: str, case: Case, seams: np.ndarray, repetitions: in
             raise SystemExit(f"benchmark: Blender did not survive {case.name}")
         with np.load(target) as arrays:
             return arrays["corner_uv"], [run["seconds"] for run in runs]
+
+
+def measure_threads(case: Case, repetitions: int) -> dict[str, object]:
+    """Wall-clock seconds of the whole map on one thread and on two."""
+    surface = lsgp.Surface(case.positions, case.triangles)
+    seconds: dict[int, list[float]] = {1: [], 2: []}
+    maps = {}
+    for _ in range(repetitions):
+        for threads, found in seconds.items():
+            begin = time.perf_counter()
+            options = lsgp.Options(repair=False, threads=threads)
+            maps[threads] = lsgp.parameterize(surface, case.cones, options=options).corner_uv
+            found.append(time.perf_counter() - begin)
+    one, two = (statistics.median(found) for found in seconds.values())
+    return {
+        "mesh": case.name,
+        "triangles": f"{len(case.triangles):,}",
+        "cones": len(case.cones),
+        "one thread s": f"{one:.2f}",
+        "two threads s": f"{two:.2f}",
+        "ratio": f"{one / two:.2f}",
+        "same bytes": maps[1].tobytes() == maps[2].tobytes(),
+    }
+
+
+def measure_slim(case: Case) -> dict[str, object]:
+    """libigl's SLIM (Rabinovich et al. 2017) from Tutte's map of the same disk, until its energy is within 2 % of that
+    of lsgp, whose map is continuous across the cuts besides."""
+    surface = lsgp.Surface(case.positions, case.triangles)
+    result: lsgp.Result | None = None
+
+    def unwrap() -> None:
+        nonlocal result
+        result = lsgp.parameterize(surface, case.cones, options=lsgp.Options(mode="low-stretch"))
+
+    own = cpu_seconds(unwrap)
+    energy = symmetric_dirichlet(surface, result.corner_uv)
+    steps, theirs, reached = run_slim(*cut_open(case, result.cut_edges), SAME_ENERGY * energy)
+    return {
+        "mesh": case.name,
+        "triangles": f"{len(case.triangles):,}",
+        "cones": len(case.cones),
+        "lsgp s": f"{own:.2f}",
+        "lsgp energy": f"{energy:.4f}",
+        "SLIM s": f"{theirs:.2f}",
+        "SLIM steps": steps,
+        "SLIM energy": f"{reached:.4f}",
+        "SLIM / lsgp": f"{theirs / own:.1f}",
+    }
+
+
+def run_slim(positions: np.ndarray, triangles: np.ndarray, wanted: float) -> tuple[int, float, float]:
+    """Steps, CPU seconds, and the energy after them."""
+    import igl
+
+    positions = positions * np.sqrt(np.pi / triangle_areas(lsgp.Surface(positions, triangles)).sum())  # as the disk
+    faces = triangles.astype(np.int32)
+    surface = lsgp.Surface(positions, faces)
+    border = igl.boundary_loop(faces.astype(np.int64))
+    around = 2 * np.pi * np.arange(len(border)) / len(border)
+    disk = tutte(faces, border, np.stack([np.cos(around), np.sin(around)], axis=1))
+    none, nowhere = np.empty(0, np.int32), np.empty((0, 2), order="F")
+    begin = time.process_time()
+    data = igl.slim_precompute(
+        np.asfortranarray(positions), np.asfortranarray(faces), disk, igl.SYMMETRIC_DIRICHLET, none, nowhere, 0.0
+    )
+    seconds, energy, steps = time.process_time() - begin, np.inf, 0
+    while energy > wanted and steps < MOST_STEPS_OF_SLIM:
+        steps += 1
+        begin = time.process_time()
+        places = igl.slim_solve(data, 1)
+        seconds += time.process_time() - begin
+        energy = symmetric_dirichlet(surface, places[faces, :2])
+    return steps, seconds, energy
+
+
+def tutte(triangles: np.ndarray, border: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """(n, 2) column-major: every inner vertex at the mean of its neighbors."""
+    ends = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    count = int(triangles.max()) + 1
+    joined = sparse.coo_array((np.ones(len(ends)), ends.T), (count, count)).tocsr()
+    joined = ((joined + joined.T) > 0).astype(float)
+    out = np.empty((count, 2), order="F")
+    out[border] = places
+    inner = np.setdiff1d(np.arange(count), border)
+    form = (sparse.diags_array(joined.sum(axis=1)) - joined).tocsr()[inner]
+    out[inner] = splu(form[:, inner].tocsc()).solve(-(form[:, border] @ places))
+    return out
+
+
+def symmetric_dirichlet(surface: lsgp.Surface, corner_uv: np.ndarray) -> float:
+    """Of the map at the scale that suits it best, per area; 4 without any stretch."""
+    areas = triangle_areas(surface)
+    largest, smallest = singular_values(surface, corner_uv)
+    grown = np.average(largest**2 + smallest**2, weights=areas)
+    shrunk = np.average(largest**-2.0 + smallest**-2.0, weights=areas)
+    return float(2 * np.sqrt(grown * shrunk))
 
 
 def cpu_seconds(run: Callable[[], object]) -> float:

@@ -153,14 +153,15 @@ def test_noise_does_not_hide_creases(seed: int) -> None:
     assert len(borders) >= 0.9 * len(lsgp.crease_borders(surface(mesh)))
 
 
-@pytest.mark.parametrize(("preset", "islands"), [("paint", 2), ("bake", 3)])
-def test_a_circular_cone_becomes_a_disk_and_a_sector_with_one_cone_at_the_apex(preset: str, islands: int) -> None:
-    """Its apex has more than a fifth of the curvature, but at a single vertex. Halves of the sector fill the square
-    better."""
+@pytest.mark.parametrize("preset", ["paint", "bake"])
+def test_a_circular_cone_becomes_a_disk_and_a_sector_with_one_cone_at_the_apex(preset: str) -> None:
+    """Its apex has more than a fifth of the curvature, but at a single vertex. Where a packer tells that halves of the
+    sector fill the square better, a map for baking has these."""
     mesh = closed.lathe(np.array([1.0, 0.0]), np.array([0.0, 2.0]), 32, caps=(True, False))
     apex = int(np.argmax(mesh.positions[:, 2]))
     result = lsgp.auto_unwrap(surface(mesh), preset=preset)
-    assert result.island.max() + 1 == islands and result.cones.tolist() == [apex]
+    has_halves = preset == "bake" and lsgp.packer_name() is not None
+    assert result.island.max() + 1 == (3 if has_halves else 2) and result.cones.tolist() == [apex]
     assert result.distortion.l2_stretch == pytest.approx(1, abs=1e-9)
 
 
