@@ -13,7 +13,8 @@ namespace lsgp {
 namespace {
 
 constexpr double seam_factor = 0.2, sharp_factor = 0.5;
-constexpr double largest_factor = 10;  // of the median, so that no edge keeps cuts away at any length
+// Of what the surface's median edge costs as a cut: none is cheaper than a seam, none keeps cuts away at any length.
+constexpr double least_factor = seam_factor, largest_factor = 10;
 constexpr double units_of_mean_edge = 1e4;
 
 double sharpness_factor(const HalfedgeMesh& mesh, Index h) {
@@ -33,9 +34,7 @@ PerHalfedge<double> relative_cut_factors(const HalfedgeMesh& mesh) {
   std::nth_element(of_edges.begin(), median, of_edges.end());
   // Most edges may cost nothing.
   const double unit = std::max(*median, std::numeric_limits<double>::min());
-  // The length counts as much as the cost of the median edge: cuts that are long because they cost little would leave
-  // small islands.
-  for (double& own : factor) own = (1 + std::min(own / unit, largest_factor)) / 2;
+  for (double& own : factor) own = std::clamp(own / unit, least_factor, largest_factor);
   return factor;
 }
 

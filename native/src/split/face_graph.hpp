@@ -46,7 +46,7 @@ struct FaceGraph {
   }
 };
 
-// What an edge costs as a cut per unit of length, relative to the median edge; empty where all cost the same.
+// What an edge's length counts as a cut, of the median edge's and within bounds; empty where all cost the same.
 PerHalfedge<double> relative_cut_factors(const HalfedgeMesh& mesh);
 
 FaceGraph build_face_graph(const OpenedSurface& surface);

@@ -7,7 +7,7 @@
 
 #include "base/checkpoint.hpp"
 #include "base/union_find.hpp"
-#include "split/face_graph.hpp"
+#include "cut/cut_cost.hpp"
 
 namespace lsgp {
 
@@ -91,7 +91,6 @@ class Builder {
         map_(map),
         corners_(at_corners(map.cut_mesh, map.position)),
         resolution_(resolution),
-        factor_(relative_cut_factors(surface.mesh)),
         is_cone_(surface.mesh.vertex_count(), 0),
         node_of_(surface.mesh.vertex_count(), none) {
     for (const Index v : map.cones) is_cone_[v] = 1;
@@ -130,7 +129,7 @@ class Builder {
       const double angle = (map_.cut_graph.runs_forward[first] ? 1 : -1) * (*map_.rotation)[cut];
       path.across = {angle, corners_[next(twin)] - std::polar(1.0, angle) * corners_[first]};
     }
-    for (const Index h : traced.halfedges) path.cost += geometry_.length[h] * (factor_.empty() ? 1 : factor_[h]);
+    for (const Index h : traced.halfedges) path.cost += cut_cost({mesh_, geometry_}, h);
     add_boundaries(traced.halfedges);
     path.halfedges = std::move(traced.halfedges);
     graph_.paths.push_back(std::move(path));
@@ -154,7 +153,6 @@ class Builder {
   const ComponentMap& map_;
   const Eigen::VectorXcd corners_;
   const double resolution_;
-  const PerHalfedge<double> factor_;  // of edges as cuts
   PerVertex<char> is_cone_;
   PerVertex<Index> node_of_;
   PieceGraph graph_;
