@@ -102,12 +102,6 @@ def test_blenders_packer_turns_no_islands_where_they_fill_the_square_without(run
     cube = add_cube("Cube")
     assert unwrap() == {"FINISHED"}
     assert runs == ["Blender"] and area(UvMap(cube)) > 0.6
-    runs.clear()
-    grid, other = add_grid("Grid"), add_cube("Other")
-    other.scale.z = 4
-    grid.select_set(True)
-    assert unwrap() == {"FINISHED"}
-    assert runs == ["Blender"] * 2
 
 
 def test_what_xatlas_cannot_pack_is_for_blenders_packer(packer, runs):
