@@ -96,6 +96,7 @@ def test_islands_are_apart_and_all_of_one_density(packer, runs, preset):
     assert max(density) / min(density) < 1.001
 
 
+@pytest.mark.skipif(bpy.app.version[:2] != (4, 5), reason="other Blenders may fill the square less")
 def test_blenders_packer_turns_no_islands_where_they_fill_the_square_without(runs, monkeypatch):
     """Turning the two islands of a cube by quarters takes it seconds."""
     monkeypatch.setattr(lsgp, "packer_name", lambda: None)
