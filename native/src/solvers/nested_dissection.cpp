@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace lsgp {
 
@@ -81,7 +82,7 @@ class Dissection {
 
   // From rows that are as far as possible from those before.
   void find_levels() {
-    count_levels_from(0);
+    if (level_.empty()) count_levels_from(0);
     Array<int> nearest = level_;
     levels_.resize(rows_);
     for (int function = 0; function < level_functions; ++function) {
@@ -204,8 +205,11 @@ Array<int> order_by_dissection(const Adjacency& adjacency, int rows) {
 }
 
 Array<int> order_rows(const Adjacency& adjacency, int rows) {
-  const bool is_large_surface = rows >= least_rows && Dissection(adjacency, rows).has_narrow_levels();
-  return is_large_surface ? order_by_dissection(adjacency, rows) : order_by_degree(adjacency, rows);
+  if (rows >= least_rows) {
+    Dissection dissection(adjacency, rows);
+    if (dissection.has_narrow_levels()) return std::move(dissection).by_dissection();
+  }
+  return order_by_degree(adjacency, rows);
 }
 
 }  // namespace lsgp
