@@ -339,6 +339,12 @@ class UvMap:
         pairs = np.array(list(chosen.values()), int).reshape(-1, 2, 2)
         return float(np.abs(self._length(pairs[:, 0]) - self._length(pairs[:, 1])).max(initial=0.0))
 
+    def edge_shares(self) -> np.ndarray:
+        """UV length of a side of every edge by the mean one, edges by their vertices; cuts of one length may be others
+        and make the map fit otherwise."""
+        lengths = self._length(np.array([self.sides[edge][0] for edge in sorted(self.sides)]))
+        return lengths / lengths.mean()
+
     def scale_spread(self, faces: Iterable[int] | None = None) -> float:
         """Largest over smallest ratio of UV to 3D distance, over all loop pairs of each face; 1 is isometric."""
         ratios = []

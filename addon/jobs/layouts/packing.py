@@ -58,7 +58,7 @@ def pack(
     if len(parts) == 1 and not parts[0].island.any() and not parts[0].pinned.any():
         return [_alone(parts[0], margin, turned)]
     if margin_method != EXACT and udim == 1:
-        return _first_large_enough(parts, margin_method, margin, _turns(parts, turned))
+        return _turned_where_that_pays(parts, margin_method, margin, _turns(parts, turned)[-1])
     obstacle = _obstacle(parts)
     if obstacle is None:
         try:
@@ -122,15 +122,15 @@ def forget() -> None:
     _kept.clear()
 
 
-def _first_large_enough(
-    parts: Sequence[Islands], margin_method: str, margin: float, turns: Sequence[str | None]
+def _turned_where_that_pays(
+    parts: Sequence[Islands], margin_method: str, margin: float, turn: str | None
 ) -> list[NDArray[np.float64]]:
     """The layout without turning islands, or, where that leaves much of the square empty, the larger one of it and that
-    of the slowest way to turn them."""
+    with islands turned."""
     unturned = pack_once(parts, margin_method, margin, None)
-    if len(turns) == 1 or _covered(unturned) >= ENOUGH_UNTURNED:
+    if turn is None or _covered(unturned) >= ENOUGH_UNTURNED:
         return unturned
-    return max(unturned, pack_once(parts, margin_method, margin, turns[-1]), key=_covered)
+    return max(unturned, pack_once(parts, margin_method, margin, turn), key=_covered)
 
 
 def _covered(layout: Sequence[NDArray[np.float64]]) -> float:

@@ -319,7 +319,4 @@ def test_presets_take_the_subdivision_surface_as_the_operator_does(tmp_path):
 def edge_shares(obj, **options):
     """Lengths of the edges in the map by the mean one; with options, after unwrapping with them."""
     assert not options or bpy.ops.uv.cone_auto_unwrap(**options) == {"FINISHED"}
-    uv_map = UvMap(obj)
-    ends = uv_map.uv[np.array([uv_map.sides[edge][0] for edge in sorted(uv_map.sides)])]
-    lengths = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
-    return lengths / lengths.mean()
+    return UvMap(obj).edge_shares()

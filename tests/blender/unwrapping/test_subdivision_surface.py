@@ -39,19 +39,11 @@ def applied(obj):
 
 
 def unwrapped_alone(obj, call, **options):
-    """As `shares`, of a map of this object alone."""
+    """Its `UvMap.edge_shares`, of a map of this object alone."""
     bpy.ops.object.select_all(action="DESELECT")
     obj.select_set(True)
     assert call(**options) == {"FINISHED"}
-    return shares(obj)
-
-
-def shares(obj):
-    """Lengths of the edges in the map by the mean one; cuts of one length may be others and make it fit otherwise."""
-    uv_map = UvMap(obj)
-    ends = uv_map.uv[np.array([uv_map.sides[edge][0] for edge in sorted(uv_map.sides)])]
-    lengths = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
-    return lengths / lengths.mean()
+    return UvMap(obj).edge_shares()
 
 
 @pytest.mark.parametrize("in_edit_mode", [True, False])
@@ -68,7 +60,7 @@ def test_the_map_is_that_of_the_subdivided_surface(in_edit_mode):
     found = {}
     for use in (False, True):
         assert bpy.ops.uv.cone_unwrap(use_subsurf_data=use) == {"FINISHED"}
-        found[use] = shares(cube)
+        found[use] = UvMap(cube).edge_shares()
     assert changed(before, snapshot(cube)) == {uv_key()}
     assert found[True] == pytest.approx(wanted, abs=1e-4)
     assert np.abs(found[False] - wanted).max() > 0.01
