@@ -4,7 +4,6 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -78,7 +77,7 @@ class Dissection {
     }
   }
 
-  using Levels = std::array<int, level_functions>;
+  using Levels = Eigen::Array<int, level_functions, 1>;
 
   // From rows that are as far as possible from those before.
   void find_levels() {
@@ -106,16 +105,15 @@ class Dissection {
     Levels low = levels_[order_[begin]], high = low;
     for (int k = begin; k < end; ++k) {
       const Levels& levels = levels_[order_[k]];
-      for (int i = 0; i < level_functions; ++i) {
-        low[i] = std::min(low[i], levels[i]);
-        high[i] = std::max(high[i], levels[i]);
-      }
+      low = low.min(levels);
+      high = high.max(levels);
     }
     const double size = end - begin;
     Separator best{narrow * std::sqrt(size)};
-    std::array<int, level_functions + 1> first{};  // count of each function
+    Eigen::Array<int, level_functions + 1, 1> first;  // count of each function
+    first[0] = 0;
     for (int i = 0; i < level_functions; ++i) first[i + 1] = first[i] + high[i] - low[i] + 1;
-    count_.assign(first.back(), 0);
+    count_.assign(first[level_functions], 0);
     for (int k = begin; k < end; ++k) {
       const Levels& levels = levels_[order_[k]];
       for (int i = 0; i < level_functions; ++i) ++count_[first[i] + levels[i] - low[i]];
