@@ -29,6 +29,7 @@ from benchmark_workers import ONE_THREAD, build_laplacian_program, find_blender
 
 LARGE, MANY = 200_000, 100
 TABLES = ("speed", "threads", "rounding", "shares", "stretch")
+ON_PAGE = ("speed", "threads", "stretch")
 PAGE = ROOT / "docs" / "reference" / "benchmark.md"
 PLOT = ROOT / "docs" / "images" / "benchmark.svg"
 
@@ -60,7 +61,27 @@ Shares of the samples of a profiler (perf) on the head with 200,000 triangles, p
   wait for memory.
 - **From file to file**, `lsgp unwrap --cones auto:8` takes 11.6 s for the head with a million triangles, and no step
   dominates: the visibility of vertices, which cuts cost by, is 9 % of the samples, memory that the system clears 8 %,
-  the coarse surface of placement 5 %, the distances kept between cones 5 %.
+  the coarse surface of placement 5 %, the distances kept between cones 5 %."""
+
+THREADS = """\
+## Two threads
+
+Wall-clock seconds of the whole map. Threads divide the factorization, the solves and the passes over triangles. The
+search for cuts, ordering and topology run on one thread: they are half of the time of one thread with 200,000
+triangles, and nothing of the factorization can begin before the cuts are known. [Batches](../how-to/batch.md) unwrap
+one mesh on each processor instead.
+"""
+
+BESIDE_BLENDER = """\
+## Low stretch
+
+CPU seconds beside Blender's Minimum Stretch with 10 iterations on the same cut. *Mismatch* is the largest relative
+difference in length of the two sides of a cut edge.
+"""
+
+BESIDE_SLIM = """\
+Beside libigl's SLIM (Rabinovich et al. 2017) on the same cut, which starts from Tutte's map and ends when its symmetric
+Dirichlet energy is within 2 % of that of lsgp. Its maps do not match across the cuts, which makes their problem easier.
 """
 
 
@@ -70,8 +91,10 @@ def main() -> None:
     parser.add_argument("--tables", nargs="+", choices=TABLES, default=TABLES)
     parser.add_argument("--largest", type=int, default=1_000_000, help="triangles of the largest mesh for speed")
     parser.add_argument("--repetitions", type=int, default=5, help="at 60,000 triangles; more below, fewer above")
-    parser.add_argument("--write", action="store_true", help=f"the tables of speed to {PAGE.relative_to(ROOT)}")
+    parser.add_argument("--write", action="store_true", help=f"{', '.join(ON_PAGE)} to {PAGE.relative_to(ROOT)}")
     arguments = parser.parse_args()
+    if arguments.write and not set(ON_PAGE) <= set(arguments.tables):
+        parser.error(f"--write needs --tables {' '.join(ON_PAGE)}")
     os.environ.update(ONE_THREAD)  # libigl reads its own at its first parallel loop
     if not SHARED.is_dir():
         print(f"{SHARED} is not there: made surfaces instead.", file=sys.stderr)
@@ -81,12 +104,18 @@ def main() -> None:
             "Blender is left out: no Python with bpy. Run tools/test once or name one in BPY_PYTHON.", file=sys.stderr
         )
     repetitions = arguments.repetitions
+    page = []
+
+    def show(section: str) -> None:
+        print(section, end="\n\n")
+        page.append(section)
+
     if "speed" in arguments.tables:
-        print(measure_speed(arguments.largest, repetitions, blender, arguments.write))
+        show(measure_speed(arguments.largest, repetitions, blender, arguments.write))
     if "threads" in arguments.tables:
-        print("\nOne thread and two, wall-clock time:\n")
         large = [case for case in growing_cases(arguments.largest) if len(case.triangles) >= LARGE]
-        print(as_table(measure_threads(case, repetitions) for case in large if len(case.cones) < MANY))
+        table = as_table(measure_threads(case, repetitions) for case in large if len(case.cones) < MANY)
+        show(f"{THREADS}\n{table}")
     small = small_cases(arguments.meshes)
     if "rounding" in arguments.tables:
         print("\nRounding angles and translations, repair included, as a multiple of the whole unwrap without it:\n")
@@ -97,14 +126,12 @@ def main() -> None:
         )
         print(as_table(measure_shares(case, repetitions) for case in small))
     if "stretch" in arguments.tables:
-        print(
-            "\nLow stretch beside Blender's Minimum Stretch with 10 iterations, on the same cut; mismatch: largest "
-            "relative difference in length of the two sides of a cut edge:\n"
-        )
-        print(as_table(measure_low_stretch(case, min(3, repetitions), blender) for case in dense_cases()))
-        print("\nLow stretch beside libigl's SLIM on the same cut, from Tutte's map to within 2 % of the energy:\n")
+        beside_blender = as_table(measure_low_stretch(case, min(3, repetitions), blender) for case in dense_cases())
+        show(f"{BESIDE_BLENDER}\n{beside_blender}")
         growing = [case for case in growing_cases(200_000) if len(case.cones) < MANY]
-        print(as_table(measure_slim(case) for case in growing))
+        show(f"{BESIDE_SLIM}\n{as_table(measure_slim(case) for case in growing)}")
+    if arguments.write:
+        PAGE.write_text("\n\n".join(page) + "\n", encoding="utf-8")
 
 
 def measure_speed(largest: int, repetitions: int, blender: str | None, writes: bool) -> str:
@@ -125,9 +152,9 @@ def measure_speed(largest: int, repetitions: int, blender: str | None, writes: b
 def speed_page(rows: list[Measured]) -> str:
     return f"""# Speed
 
-Written by `python tools/benchmark/benchmark.py --tables speed --write`. All methods take arrays and return texture
-coordinates, in alternating processes of their own; figures are CPU seconds of all threads, medians of repetitions.
-Compare them with each other, not with those of another machine.
+Written by `python tools/benchmark/benchmark.py --tables speed threads stretch --write`. All methods take arrays and
+return texture coordinates, in alternating processes of their own; figures are CPU seconds of all threads, medians of
+repetitions. Compare them with each other, not with those of another machine.
 
 - **lsgp**: given cones, angles of least distortion, the Poisson map, its check and the search for overlaps, no repair.
 - **angle edited**, **cone moved**: a repeated call of `lsgp.Solver`, which caches unchanged data.
