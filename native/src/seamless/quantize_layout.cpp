@@ -144,7 +144,7 @@ void LayoutQuantizer::align_features() {
   const double l2 = l2_stretch(geometry_, measure_jacobians({mesh_, geometry_}, cut_mesh_, start_));
   most_l2_ = most_growth * l2;
   features_ = std::make_unique<FeatureLayout>(FeatureTask{surface(), curvature_, rotation_, reduction_, before_step_},
-                                              feature, start_, most_l2_);
+                                              feature, start_, most_l2_, demands_.alignment);
   release_reasons_ = features_->reasons();
   if (!features_->is_aligned()) return features_.reset();
   energy_ = std::max(energy_, measure_energy(features_->start()));

@@ -46,10 +46,11 @@ struct ConePair {
 // How layouts are to lie on the lattice.
 struct LatticeDemands {
   PointLattice lattice;
-  bool parity;                          // translations lead from white cells to white ones
-  const Array<Index>& relaxed;          // cones that need not lie on the lattice
-  const TextureDirections& directions;  // what v is to run along
-  bool creases;                         // run along lines of the lattice, as marked features do
+  bool parity;                                 // translations lead from white cells to white ones
+  const Array<Index>& relaxed;                 // cones that need not lie on the lattice
+  const TextureDirections& directions;         // what v is to run along
+  bool creases;                                // run along lines of the lattice, as marked features do
+  std::optional<FeatureAlignment>& alignment;  // of the map, or empty, which is filled where features are aligned
 };
 
 // The layouts of one map on grids of any size. What does not depend on the size is computed once, when it is needed.
