@@ -601,7 +601,9 @@ class Solver:
     Every call returns the same as the function of that name and caches data for the next one: the surface's topology
     and geometry, and, as long as a component's cones do not move, its factored linear systems, also those of the cones
     that `place_cones` has placed. Angles and all options except `seams`, `border` and `factorization`, including those
-    of seamless layouts, can then change without a new factorization.
+    of seamless layouts, can then change without a new factorization. A seamless layout that differs from the previous
+    one only in the size of its tiles takes only their rounding: the map, and which creases run along the lattice, are
+    kept.
     A call during another one, from another thread or from its progress callback, raises SolverError (SOLVER_BUSY).
     """
 

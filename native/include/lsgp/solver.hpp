@@ -16,7 +16,8 @@ namespace lsgp {
 // placed. Every call returns the same as the function of that name and caches data for the next one: the topology and
 // geometry of the surface, and, as long as a component's cones do not move, its factored linear systems, also those of
 // placed cones. Angles, prescription, unfolding, repair, mode and seamless options can then change without a new
-// factorization.
+// factorization. A seamless layout that differs from the previous one only in the size of its tiles takes only their
+// rounding: the map, and which creases run along the lattice, are kept.
 // A call during another one, from another thread or from its progress callback, throws SOLVER_BUSY.
 class LSGP_API Solver {
  public:

@@ -5,6 +5,27 @@
 
 namespace lsgp {
 
+namespace {
+
+// Fields are counted: a further one does not compile before it is compared.
+bool is_same_lattice(const Seamless& a, const Seamless& b) {
+  const auto& [lattice, tiles, tile_size, parity, coarse_grid, cell] = a;
+  return lattice == b.lattice && parity == b.parity && coarse_grid == b.coarse_grid && cell == b.cell;
+}
+
+// Whether seamless layouts differ only in the size of tiles; the number of threads does not matter.
+bool has_same_maps(const Options& a, const Options& b) {
+  const auto& [prescription, unfold, method, seams, border, loop_turning, seamless, mode, stretch, straighten, repair,
+               overlaps, compact, mirrored_cuts, square_share, factorization, threads] = a;
+  return prescription == b.prescription && unfold == b.unfold && method == b.method && seams == b.seams &&
+         border == b.border && loop_turning == b.loop_turning && seamless && b.seamless &&
+         is_same_lattice(*seamless, *b.seamless) && mode == b.mode && stretch == b.stretch &&
+         straighten == b.straighten && repair == b.repair && overlaps == b.overlaps && compact == b.compact &&
+         mirrored_cuts == b.mirrored_cuts && square_share == b.square_share && factorization == b.factorization;
+}
+
+}  // namespace
+
 void KeptComponents::update(const std::function<Work(Work)>& prepare) {
   try {
     work_ = prepare(std::move(work_));
@@ -39,6 +60,23 @@ const Mirroring& KeptComponents::mirroring_of(std::size_t i) {
 ComponentSystem& KeptComponents::system_of(std::size_t i, Factorization factorization) {
   Kept& kept = *kept_[i];
   return kept.system.of({work_.topology.components[i].mesh, kept.geometry}, work_.tasks[i].cones, factorization);
+}
+
+void KeptComponents::keep_maps_of(const Cones& cones, const Options& options) {
+  if (of_maps_ && of_maps_->cones.vertices == cones.vertices && of_maps_->cones.angles == cones.angles &&
+      has_same_maps(of_maps_->options, options)) {
+    return;
+  }
+  of_maps_ = Request{cones, options};
+  for (auto& kept : kept_) {
+    if (!kept) continue;
+    kept->map.reset();
+    kept->alignment.reset();
+  }
+}
+
+void KeptComponents::keep_map(std::size_t i, KeptMap map) {
+  if (keeps_systems_) kept_[i]->map = std::move(map);
 }
 
 void KeptComponents::keep_system(std::size_t i, KeptSystem system) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Data shared by calls on one surface: its components, and the geometry and the factored systems of each.
+// Data shared by calls on one surface: its components, and the geometry, the factored systems and, for seamless layouts
+// with tiles of another size, the map of each.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +10,21 @@
 #include <vector>
 
 #include "base/array.hpp"
+#include "lsgp/options.hpp"
+#include "lsgp/surface.hpp"
 #include "mesh/mirror.hpp"
+#include "pipeline/component_map.hpp"
 #include "pipeline/components.hpp"
 #include "prescription/component_system.hpp"
+#include "seamless/feature_layout.hpp"
 
 namespace lsgp {
+
+// A component's map before it is put onto a lattice.
+struct KeptMap {
+  ComponentMap map;
+  std::vector<Finding> found;  // about it
+};
 
 class KeptComponents {
  public:
@@ -34,6 +45,12 @@ class KeptComponents {
   // The system of the task's cones.
   ComponentSystem& system_of(std::size_t i, Factorization factorization);
   ComponentSystem* system(std::size_t i) { return kept_[i]->system.get(); }  // after that
+  // Forgets maps that are not those of these cones and options, whose tiles may have another size.
+  void keep_maps_of(const Cones& cones, const Options& options);
+  const std::optional<KeptMap>& map(std::size_t i) const { return kept_[i]->map; }
+  void keep_map(std::size_t i, KeptMap map);
+  // Of the map, or empty.
+  std::optional<FeatureAlignment>& alignment(std::size_t i) { return kept_[i]->alignment; }
   // Takes over the system of a component, if there is one.
   void keep_system(std::size_t i, KeptSystem system);
   void release(std::size_t i) {
@@ -46,10 +63,19 @@ class KeptComponents {
     std::optional<Mirroring> mirroring;  // where requested
     std::vector<Finding> found;          // during its construction
     KeptSystem system;
+    std::optional<KeptMap> map;  // of a seamless layout
+    std::optional<FeatureAlignment> alignment;
+  };
+
+  // What maps were made with.
+  struct Request {
+    Cones cones;
+    Options options;
   };
 
   const bool keeps_systems_;
   Work work_;
+  std::optional<Request> of_maps_;
   PerComponent<std::unique_ptr<Kept>> kept_;  // systems refer to the geometry beside them
   std::int64_t kept_of_ = 0;                  // generation of the topology it was made from
 };

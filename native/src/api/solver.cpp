@@ -39,7 +39,8 @@ void quantize(KeptComponents& kept, const Options& options, MappedComponents& ma
   monitor.advance(0);
   Array<SeamlessComponent> laid_out;
   for (std::size_t i = 0; i < components.size(); ++i) {
-    if (mapped.maps[i]) laid_out.push_back({&components[i], &mapped.tasks[i], &*mapped.maps[i], kept.system(i)});
+    if (mapped.maps[i])
+      laid_out.push_back({&components[i], &mapped.tasks[i], &*mapped.maps[i], kept.system(i), &kept.alignment(i)});
   }
   result.seamless = make_seamless(options, work.unit_scale, laid_out, result.warnings, monitor);
   for (std::size_t i = 0; i < components.size(); ++i) {
@@ -64,6 +65,7 @@ Result map_components(const KnownSurface& known, const Cones& cones, const Optio
     const ProgressMonitor::Stage stage(monitor, "topology");
     kept.update(
         [&](Work earlier) { return prepare({surface, cones, options}, result.warnings, pins, std::move(earlier)); });
+    kept.keep_maps_of(cones, options);
   }
   Work& work = kept.work();
   const PerComponent<Component>& components = work.topology.components;
@@ -88,7 +90,15 @@ Result map_components(const KnownSurface& known, const Cones& cones, const Optio
       kept.geometry_of(i, result.warnings);
       if (options.mirrored_cuts) work.tasks[i].cones.mirroring = kept.mirroring_of(i);
     }
-    ComponentMap map = map_component(kept.system_of(i, options.factorization), task, options, found[i], monitor);
+    ComponentSystem& system = kept.system_of(i, options.factorization);
+    ComponentMap map;
+    if (const auto& known = kept.map(i)) {
+      map = known->map;
+      found[i] = known->found;
+    } else {
+      map = map_component(system, task, options, found[i], monitor);
+      if (options.seamless) kept.keep_map(i, {map, found[i]});
+    }
     kept.release(i);
     if (options.seamless) require_quantizable(component.mesh, map);
     result.repair.flipped_before += map.repair.flipped_before;

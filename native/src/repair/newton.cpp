@@ -271,20 +271,18 @@ void NewtonMinimizer::add_derivatives(const Shape& shape, const double* derivati
 std::optional<Eigen::VectorXcd> NewtonMinimizer::newton_direction(const DistortionEnergy& energy) {
   const Index count = displacement_.unknown_count;
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(first_row_.back());
-  Array<double> derivatives;
-  Array<std::ptrdiff_t> offset;
   // Computed on all threads, and added up in the order of the triangles.
   const auto add_up = [&](const auto& add) {
     for (std::ptrdiff_t begin = 0; begin < ssize(shapes_); begin += shapes_at_once) {
       const Shape* some = shapes_.data() + begin;
       const std::ptrdiff_t some_count = std::min(shapes_at_once, ssize(shapes_) - begin);
-      offset.assign(1, 0);
-      for (std::ptrdiff_t i = 0; i < some_count; ++i) offset.push_back(offset.back() + derivative_size(some[i]));
-      derivatives.resize(offset.back());
+      offset_.assign(1, 0);
+      for (std::ptrdiff_t i = 0; i < some_count; ++i) offset_.push_back(offset_.back() + derivative_size(some[i]));
+      derivatives_.resize(offset_.back());
       for_each_at_once(some_count,
-                       [&](std::ptrdiff_t i) { differentiate(energy, some[i], derivatives.data() + offset[i]); });
+                       [&](std::ptrdiff_t i) { differentiate(energy, some[i], derivatives_.data() + offset_[i]); });
       for (std::ptrdiff_t i = 0; i < some_count; ++i) {
-        add_derivatives(some[i], derivatives.data() + offset[i], gradient, add);
+        add_derivatives(some[i], derivatives_.data() + offset_[i], gradient, add);
       }
     }
   };

@@ -125,6 +125,8 @@ class NewtonMinimizer {
   Eigen::VectorXcd& position_;
   Array<Shape> shapes_;
   Array<Slope> slopes_;
+  Array<double> derivatives_;  // of some triangles, whose memory serves every step
+  Array<std::ptrdiff_t> offset_;
   RepeatedAssembly<double> hessian_;
   std::optional<Cholesky<double>> factor_;
 };

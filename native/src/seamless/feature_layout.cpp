@@ -102,20 +102,33 @@ void grow(const HalfedgeMesh& mesh, PerVertex<char>& is_marked) {
 }  // namespace
 
 FeatureLayout::FeatureLayout(const FeatureTask& task, const PerHalfedge<char>& feature, const Eigen::VectorXcd& start,
-                             double most_l2)
+                             double most_l2, std::optional<FeatureAlignment>& known)
     : task_(task),
       unaligned_(start),
       most_l2_(most_l2),
       reasons_(task.surface.mesh.halfedge_count(), ReleaseReason::contradiction) {
   const HalfedgeMesh& mesh = task_.surface.mesh;
-  // With hundreds of cones and handles most copies depend on many unknowns.
-  const Index size = std::max(mesh.triangle_count(), static_cast<Index>(ssize(task_.lattice.reduction.terms) / 2));
-  left_ = std::clamp(attempted_triangles / size, 1, most_attempts);
-  fits_left_ = std::clamp(fitted_triangles / size, 1, most_fits);
   is_cone_.assign(mesh.vertex_count(), 0);
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     is_cone_[v] = mesh.loop_of_vertex[v] == none && task_.curvature.at_vertex[v] != 0;
   }
+  if (!known) {
+    align_all(feature);
+    known = FeatureAlignment{aligned_, start_, reasons_};
+  }
+  aligned_ = known->lines;
+  start_ = known->start;
+  reasons_ = known->reasons;
+  aligned_length_ = total_length(aligned_);
+  if (!aligned_.empty()) find_coordinates();
+}
+
+void FeatureLayout::align_all(const PerHalfedge<char>& feature) {
+  const HalfedgeMesh& mesh = task_.surface.mesh;
+  // With hundreds of cones and handles most copies depend on many unknowns.
+  const Index size = std::max(mesh.triangle_count(), static_cast<Index>(ssize(task_.lattice.reduction.terms) / 2));
+  left_ = std::clamp(attempted_triangles / size, 1, most_attempts);
+  fits_left_ = std::clamp(fitted_triangles / size, 1, most_fits);
   // Close to an isometry, lines have nearly their final directions.
   held_ = free_all(mesh, task_.surface.cut_mesh, task_.lattice.reduction, PerVertex<char>(mesh.vertex_count(), 0));
   minimize(unaligned_);
@@ -129,8 +142,6 @@ FeatureLayout::FeatureLayout(const FeatureTask& task, const PerHalfedge<char>& f
   if (marked > 0) add(lines, 0, marked);
   add(lines, marked, ssize(lines));
   add_trimmed();
-  aligned_length_ = total_length(aligned_);
-  if (!aligned_.empty()) find_coordinates();
 }
 
 // Lines that do not contradict each other, in their order, those of a higher rank before others. Where not all do, two

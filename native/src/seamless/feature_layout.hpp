@@ -29,13 +29,20 @@ struct FeatureTask {
   StepHook before_step;
 };
 
+// Features along the axes, before the lattice; the same for lattices of any size.
+struct FeatureAlignment {
+  Array<FeatureLine> lines;
+  Eigen::VectorXcd start;              // (copies) the map with these lines along the axes
+  PerHalfedge<ReleaseReason> reasons;  // of the others
+};
+
 class FeatureLayout {
  public:
   // feature: the FeatureKind of halfedges.  start: (copies) a valid map of the surface's area, without a lattice.
   // most_l2: the largest stretch that features may cost. As many as possible run along the axes, marked ones before
-  // others, those of least cost first.
+  // others, those of least cost first.  known: of an earlier layout of the same map, or empty, which is filled then.
   FeatureLayout(const FeatureTask& task, const PerHalfedge<char>& feature, const Eigen::VectorXcd& start,
-                double most_l2);
+                double most_l2, std::optional<FeatureAlignment>& known);
 
   // Whether any feature runs along an axis.
   bool is_aligned() const { return factor_.has_value(); }
@@ -73,6 +80,7 @@ class FeatureLayout {
     bool is_of_lines = false;  // releasing their edges there has not helped
   };
 
+  void align_all(const PerHalfedge<char>& feature);
   Array<FeatureLine> compatible(const Array<FeatureLine>& lines);
   void add_compatible(const Array<FeatureLine>& lines, const Index* begin, const Index* end, Array<char>& chosen);
   void add_faultless(const Array<FeatureLine>& lines, Index begin, Index end, Array<char>& chosen);

@@ -192,7 +192,7 @@ std::optional<QuantizedLayout> GridSearch::quantize(std::size_t component, doubl
 
 void GridSearch::prepare(std::size_t component) {
   const SeamlessComponent& of = components_[component];
-  const LatticeDemands demands{lattice_, parity_, relaxed_[component], of.task->directions, creases_};
+  const LatticeDemands demands{lattice_, parity_, relaxed_[component], of.task->directions, creases_, *of.alignment};
   quantizers_[component] = std::make_unique<LayoutQuantizer>(*of.system, *of.map, demands, step_);
 }
 
@@ -223,6 +223,8 @@ bool GridSearch::merge(const ConePair& pair, const Options& options) {
     *component.map = std::move(map);
     component.system = system.get();
     component.merged_system = std::move(system);
+    component.merged_alignment = std::make_unique<std::optional<FeatureAlignment>>();
+    component.alignment = component.merged_alignment.get();
   } catch (const Error& error) {
     if (error.code() == Code::cancelled || error.code() == Code::out_of_memory) throw;
     return false;  // this pair cannot be merged, another may

@@ -69,32 +69,50 @@ Eigen::MatrixXcd reduce_basis(const Eigen::MatrixXcd& form, const PointLattice& 
   return basis;
 }
 
-LatticeSearch::LatticeSearch(Eigen::MatrixXcd form, Array<MovingTriangle> triangles, const PointLattice& lattice)
-    : form_(std::move(form)), triangles_(std::move(triangles)), lattice_(lattice) {
+LatticeSearch::LatticeSearch(Eigen::MatrixXcd form, const Array<MovingTriangle>& triangles, const PointLattice& lattice)
+    : form_(std::move(form)),
+      parts_(form_.rows()),
+      triangle_count_(static_cast<int>(ssize(triangles))),
+      lattice_(lattice),
+      moves_of_triangle_(triangles.size()) {
   if (form_.size() == 0) return;
-  reduced_ = reduce_basis(form_, lattice_);
-  triangular_ = upper_factor(reduced_.adjoint() * form_ * reduced_);
-  const auto add_move = [&](const Eigen::VectorXcd& x) {
-    Move move{x, form_ * x, 0, {}, {}};
-    move.cost = std::real(x.dot(move.pull));
-    for (std::size_t f = 0; f < triangles_.size(); ++f) {
-      std::array<Complex, 3> corners;
-      for (std::size_t c = 0; c < 3; ++c) corners[c] = (triangles_[f].slope[c] * x).value();
-      if (corners[0] == corners[1] && corners[1] == corners[2]) continue;  // only shifted
-      move.corners.push_back(corners);
-      move.triangles.push_back(static_cast<int>(f));
+  const int directions = lattice_.square() ? 4 : 6;
+  for (int turn = 0; turn < directions; ++turn) units_.push_back(PointLattice(directions).unit(turn));
+  for (int f = 0; f < triangle_count_; ++f) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Eigen::RowVectorXcd& slope = triangles[f].slope[c];
+      for (Eigen::Index k = 0; k < slope.size(); ++k) {
+        if (slope[k] != 0.0) parts_[k].push_back({f, c, slope[k]});
+      }
     }
-    moves_.push_back(std::move(move));
-  };
+  }
+  reduced_ = reduce_basis(form_, lattice_);
+  inverse_of_reduced_.compute(reduced_);
+  const Eigen::MatrixXcd pulls = form_ * reduced_;
+  triangular_ = upper_factor(reduced_.adjoint() * pulls);
   for (Eigen::Index k = 0; k < form_.rows(); ++k) {
-    add_move(Eigen::VectorXcd::Unit(form_.rows(), k));
-    const Eigen::VectorXcd reduced = reduced_.col(k);
-    if (reduced.cwiseAbs().sum() != 1) add_move(reduced);
+    add_move(Eigen::VectorXcd::Unit(form_.rows(), k), form_.col(k));
+    if (reduced_.col(k).cwiseAbs().sum() != 1) add_move(reduced_.col(k), pulls.col(k));
   }
 }
 
+void LatticeSearch::add_move(const Eigen::VectorXcd& x, const Eigen::VectorXcd& pull) {
+  Move move{{}, pull, std::real(x.dot(pull)), {}, {}};
+  for (Eigen::Index k = 0; k < x.size(); ++k) {
+    if (x[k] != 0.0) move.x.emplace_back(k, x[k]);
+  }
+  const Array<std::array<Complex, 3>> all = corners_at(x);
+  for (int f = 0; f < triangle_count_; ++f) {
+    if (all[f][0] == all[f][1] && all[f][1] == all[f][2]) continue;  // only shifted
+    move.corners.push_back(all[f]);
+    move.triangles.push_back(f);
+    moves_of_triangle_[f].push_back(static_cast<int>(ssize(moves_)));
+  }
+  moves_.push_back(std::move(move));
+}
+
 LatticeSearch::Choice LatticeSearch::nearest(const Eigen::VectorXcd& wanted) const {
-  Eigen::VectorXcd rest = triangular_ * reduced_.partialPivLu().solve(wanted);
+  Eigen::VectorXcd rest = triangular_ * inverse_of_reduced_.solve(wanted);
   Choice out;
   out.x = Eigen::VectorXcd::Zero(wanted.size());
   for (Eigen::Index k = wanted.size(); k-- > 0;) {
@@ -108,9 +126,10 @@ LatticeSearch::Choice LatticeSearch::nearest(const Eigen::VectorXcd& wanted) con
 }
 
 Array<std::array<Complex, 3>> LatticeSearch::corners_at(const Eigen::VectorXcd& x) const {
-  Array<std::array<Complex, 3>> out(triangles_.size());
-  for (std::size_t f = 0; f < triangles_.size(); ++f) {
-    for (std::size_t c = 0; c < 3; ++c) out[f][c] = (triangles_[f].slope[c] * x).value();
+  Array<std::array<Complex, 3>> out(moves_of_triangle_.size(), std::array<Complex, 3>{});
+  for (Eigen::Index k = 0; k < x.size(); ++k) {
+    if (x[k] == 0.0) continue;
+    for (const Part& part : parts_[k]) out[part.triangle][part.corner] += part.slope * x[k];
   }
   return out;
 }
@@ -119,48 +138,89 @@ double LatticeSearch::violation(const std::array<Complex, 3>& corners) const {
   return std::max(0.0, 1 - doubled_area(corners[0], corners[1], corners[2]) / lattice_.cell_area());
 }
 
+// What steps change is kept from one to the next, since a step concerns few triangles, and few other steps.
+struct LatticeSearch::Descent {
+  const LatticeSearch& search;
+  Array<std::array<Complex, 3>> corners;  // of the triangles
+  Array<double> missing;                  // their violations
+  Eigen::VectorXcd away, force;           // from the wanted point, and form * away
+  Array<Changes> changes;                 // of the missing area, by each move in each direction
+  Array<char> is_stale;                   // whether those have to be computed again
+
+  Descent(const LatticeSearch& owner, const Eigen::VectorXcd& x, const Eigen::VectorXcd& wanted)
+      : search(owner),
+        corners(owner.corners_at(x)),
+        away(x - wanted),
+        force(owner.form_ * away),
+        changes(owner.moves_.size()),
+        is_stale(owner.moves_.size(), 1) {
+    for (const auto& triangle : corners) missing.push_back(owner.violation(triangle));
+  }
+
+  double cost() const { return std::real(away.dot(force)); }
+
+  const Changes& changes_by(int number) {
+    Changes& out = changes[number];
+    if (!is_stale[number]) return out;
+    is_stale[number] = 0;
+    const Move& move = search.moves_[number];
+    out.fill(0);
+    checkpoint(100.0 * static_cast<double>(search.units_.size() * move.triangles.size()));
+    for (std::size_t turn = 0; turn < search.units_.size(); ++turn) {
+      for (std::size_t i = 0; i < move.triangles.size(); ++i) {
+        const int f = move.triangles[i];
+        out[turn] += search.violation(moved(corners[f], search.units_[turn], move.corners[i])) - missing[f];
+      }
+    }
+    return out;
+  }
+
+  void step(const Move& move, Complex unit) {
+    for (const auto& [k, x] : move.x) away[k] += unit * x;
+    force += unit * move.pull;
+    for (std::size_t i = 0; i < move.triangles.size(); ++i) {
+      const int f = move.triangles[i];
+      corners[f] = moved(corners[f], unit, move.corners[i]);
+      missing[f] = search.violation(corners[f]);
+      for (const int number : search.moves_of_triangle_[f]) is_stale[number] = 1;
+    }
+  }
+
+  static std::array<Complex, 3> moved(std::array<Complex, 3> triangle, Complex unit, const std::array<Complex, 3>& by) {
+    for (std::size_t c = 0; c < 3; ++c) triangle[c] += unit * by[c];
+    return triangle;
+  }
+};
+
 void LatticeSearch::descend(const Eigen::VectorXcd& wanted, double penalty, Choice& choice) const {
-  Array<std::array<Complex, 3>> corners = corners_at(choice.x);
-  Array<double> missing;
-  for (const auto& triangle : corners) missing.push_back(violation(triangle));
-  Eigen::VectorXcd away = choice.x - wanted;
-  const int directions = lattice_.square() ? 4 : 6;
-  const PointLattice units(directions);
-  const double least_gain = 1e-9 * (penalty + std::real(away.dot(form_ * away)));
+  Descent descent(*this, choice.x, wanted);
+  const double least_gain = 1e-9 * (penalty + descent.cost());
   for (Eigen::Index left = most_steps * (1 + choice.x.size()); left > 0; --left) {
-    const Move* best = nullptr;
+    int best = -1;
     Complex best_unit = 0;
     double most = -least_gain;
-    for (const Move& move : moves_) {
-      checkpoint(static_cast<double>(4 * away.size()) +
-                 100.0 * directions * static_cast<double>(move.triangles.size()));
-      const Complex slope = move.pull.dot(away);  // conj(pull) . away
-      for (int turn = 0; turn < directions; ++turn) {
-        const Complex unit = units.unit(turn);
-        double change = move.cost + 2 * std::real(std::conj(unit) * slope);
-        for (std::size_t i = 0; i < move.triangles.size(); ++i) {
-          std::array<Complex, 3> moved = corners[move.triangles[i]];
-          for (std::size_t c = 0; c < 3; ++c) moved[c] += unit * move.corners[i][c];
-          change += penalty * (violation(moved) - missing[move.triangles[i]]);
-        }
+    for (int number = 0; number < ssize(moves_); ++number) {
+      const Move& move = moves_[number];
+      const Changes& of_area = descent.changes_by(number);
+      Complex slope = 0;
+      for (const auto& [k, x] : move.x) slope += std::conj(x) * descent.force[k];
+      checkpoint(4.0 * static_cast<double>(move.x.size()));
+      for (std::size_t turn = 0; turn < units_.size(); ++turn) {
+        const Complex unit = units_[turn];
+        const double change = move.cost + 2 * std::real(std::conj(unit) * slope) + penalty * of_area[turn];
         if (change >= most) continue;
         most = change;
-        best = &move;
+        best = number;
         best_unit = unit;
       }
     }
-    if (!best) break;
-    choice.x += best_unit * best->x;
-    away += best_unit * best->x;
-    for (std::size_t i = 0; i < best->triangles.size(); ++i) {
-      std::array<Complex, 3>& moved = corners[best->triangles[i]];
-      for (std::size_t c = 0; c < 3; ++c) moved[c] += best_unit * best->corners[i][c];
-      missing[best->triangles[i]] = violation(moved);
-    }
+    if (best < 0) break;
+    for (const auto& [k, x] : moves_[best].x) choice.x[k] += best_unit * x;
+    descent.step(moves_[best], best_unit);
   }
-  choice.cost = std::real(away.dot(form_ * away));
+  choice.cost = std::real((choice.x - wanted).dot(form_ * (choice.x - wanted)));
   choice.violation = 0;
-  for (const double area : missing) choice.violation += area;
+  for (const double area : descent.missing) choice.violation += area;
 }
 
 LatticeSearch::Choice LatticeSearch::improve(const Eigen::VectorXcd& wanted, Choice choice) const {

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <array>
+#include <utility>
 
 #include "base/array.hpp"
 #include "plane/point_lattice.hpp"
@@ -24,7 +26,7 @@ struct MovingTriangle {
 // doubled area of at least a lattice cell.
 class LatticeSearch {
  public:
-  LatticeSearch(Eigen::MatrixXcd form, Array<MovingTriangle> triangles, const PointLattice& lattice);
+  LatticeSearch(Eigen::MatrixXcd form, const Array<MovingTriangle>& triangles, const PointLattice& lattice);
 
   struct Choice {
     Eigen::VectorXcd x;
@@ -42,23 +44,37 @@ class LatticeSearch {
 
  private:
   struct Move {
-    Eigen::VectorXcd x;                     // (d)
-    Eigen::VectorXcd pull;                  // form * x
-    double cost;                            // x^H form x
-    Array<std::array<Complex, 3>> corners;  // of the triangles it moves
-    Array<int> triangles;                   // which those are
+    Array<std::pair<Eigen::Index, Complex>> x;  // the coordinates that are not 0
+    Eigen::VectorXcd pull;                      // form * x
+    double cost;                                // x^H form x
+    Array<std::array<Complex, 3>> corners;      // of the triangles it moves
+    Array<int> triangles;                       // which those are
   };
 
+  // The part of x in a corner of a triangle.
+  struct Part {
+    int triangle;
+    std::size_t corner;
+    Complex slope;
+  };
+
+  void add_move(const Eigen::VectorXcd& x, const Eigen::VectorXcd& pull);
   Array<std::array<Complex, 3>> corners_at(const Eigen::VectorXcd& x) const;
+  using Changes = std::array<double, 6>;  // by each of the units, of which there are up to 6
+  struct Descent;
   void descend(const Eigen::VectorXcd& wanted, double penalty, Choice& choice) const;
   double violation(const std::array<Complex, 3>& corners) const;
 
   Eigen::MatrixXcd form_;
-  Array<MovingTriangle> triangles_;
+  Array<Array<Part>> parts_;  // of each coordinate, by triangles: few, since cones move the triangles around them
+  int triangle_count_ = 0;
   PointLattice lattice_;
-  Eigen::MatrixXcd reduced_;     // columns: the reduced basis
+  Array<Complex> units_;      // the shortest vectors of the lattice
+  Eigen::MatrixXcd reduced_;  // columns: the reduced basis
+  Eigen::PartialPivLU<Eigen::MatrixXcd> inverse_of_reduced_;
   Eigen::MatrixXcd triangular_;  // R of form = ..., over the reduced basis
   Array<Move> moves_;
+  Array<Array<int>> moves_of_triangle_;
 };
 
 }  // namespace lsgp

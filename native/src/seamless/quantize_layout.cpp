@@ -60,8 +60,10 @@ double symmetric_dirichlet_energy(const Geometry& geometry, const Jacobians& jac
 
 LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, Borrowed<const ComponentMap> map,
                                  const LatticeDemands& demands, StepHook before_step)
-    : mesh_(system.mesh()),
+    : system_(system),
+      mesh_(system.mesh()),
       geometry_(system.geometry()),
+      cones_(map.get().cones),
       cut_graph_(map.get().cut_graph),
       cut_mesh_(map.get().cut_mesh),
       curvature_(map.get().curvature),
@@ -80,17 +82,25 @@ LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, Borrowed<const Compone
   set_start(map);
   if (relaxed.empty() && lattice_.square()) align_features();
   integers_ = integers_of(start_);
+}
 
+// Layouts along features need none of it.
+void LayoutQuantizer::prepare_search() {
+  if (search_) return;
   const double integers = static_cast<double>(integers_.size());
   require_memory(lattice_blocks * sizeof(Complex) * integers * integers, GrowsWith::conditions);
-  if (const CutFactor* factor = system.stiff_factor(map.get().cones, cut_graph_)) {
+  if (const CutFactor* factor = system_.stiff_factor(cones_, cut_graph_)) {
     lattice_energy_ = lattice_energy_on_cut(mesh_, cut_mesh_, *factor, reduction_);
   } else {
-    const Geometry stiffened = stiffen_around({mesh_, geometry_}, map.get().cones);
+    const Geometry stiffened = stiffen_around({mesh_, geometry_}, cones_);
     lattice_energy_ = sparse_lattice_energy({{mesh_, stiffened}, cut_graph_, cut_mesh_}, reduction_);
   }
+  if (integers_.size() > 0) inverse_of_basis_.compute(reduction_.basis);
   const Eigen::MatrixXcd restricted = reduction_.basis.adjoint() * lattice_energy_->schur() * reduction_.basis;
-  search_.emplace((restricted + restricted.adjoint()) / 2, moving_triangles(map), lattice_);
+  // Relaxed cones may be anywhere, so collapsing triangles cannot be detected.
+  const bool sees_triangles = demands_.relaxed.empty();
+  search_.emplace((restricted + restricted.adjoint()) / 2,
+                  sees_triangles ? cone_triangles().triangles : Array<MovingTriangle>{}, lattice_);
 }
 
 void LayoutQuantizer::set_start(const ComponentMap& map) {
@@ -134,7 +144,7 @@ void LayoutQuantizer::align_features() {
   const double l2 = l2_stretch(geometry_, measure_jacobians({mesh_, geometry_}, cut_mesh_, start_));
   most_l2_ = most_growth * l2;
   features_ = std::make_unique<FeatureLayout>(FeatureTask{surface(), curvature_, rotation_, reduction_, before_step_},
-                                              feature, start_, most_l2_);
+                                              feature, start_, most_l2_, demands_.alignment);
   release_reasons_ = features_->reasons();
   if (!features_->is_aligned()) return features_.reset();
   energy_ = std::max(energy_, measure_energy(features_->start()));
@@ -182,13 +192,18 @@ double LayoutQuantizer::measure_misalignment(const Eigen::VectorXcd& position) c
   return mean_angle_to_v(demands_.directions, at_corners(cut_mesh_, position), lattice_.rotation_order());
 }
 
-// Also lists the pairs of cones that share an edge of their triangulation.
-Array<MovingTriangle> LayoutQuantizer::moving_triangles(const ComponentMap& map) {
-  Array<MovingTriangle> out;
-  if (!mesh_.closed() || map.cones.empty()) return out;
+// The triangles between the cones; computed when it is needed.
+const LayoutQuantizer::ConeTriangles& LayoutQuantizer::cone_triangles() {
+  if (!cone_triangles_) cone_triangles_ = find_cone_triangles();
+  return *cone_triangles_;
+}
+
+LayoutQuantizer::ConeTriangles LayoutQuantizer::find_cone_triangles() const {
+  ConeTriangles out;
+  if (!mesh_.closed() || cones_.empty()) return out;
   PerCut<Complex> turn;
   for (const int t : turns_of_cuts(rotation_, lattice_.rotation_order())) turn.push_back(lattice_.unit(t));
-  const auto triangulation = triangulate_cones(surface(), turn, map.cones, start_);
+  const auto triangulation = triangulate_cones(surface(), turn, cones_, start_);
   if (!triangulation) return out;
   const auto translation_at_start = [&](Index cut) {
     const Sisters sisters = origin_sisters(mesh_, cut_mesh_, cut_graph_.cuts[cut].halfedges.front());
@@ -212,8 +227,7 @@ Array<MovingTriangle> LayoutQuantizer::moving_triangles(const ComponentMap& map)
       }
       triangle.slope[c] = slope * reduction_.basis;
     }
-    // Relaxed cones may be anywhere, so collapsing triangles cannot be detected.
-    if (demands_.relaxed.empty()) out.push_back(std::move(triangle));
+    out.triangles.push_back(std::move(triangle));
     for (std::size_t c = 0; c < 3; ++c) {
       const auto [first, second] = std::minmax(corners[c].cone, corners[(c + 1) % 3].cone);
       if (first == second) continue;
@@ -222,8 +236,8 @@ Array<MovingTriangle> LayoutQuantizer::moving_triangles(const ComponentMap& map)
       if (!added) entry->second = std::min(entry->second, distance);
     }
   }
-  for (const auto& [pair, distance] : nearest) cone_pairs_.push_back({distance, pair.first, pair.second});
-  std::stable_sort(cone_pairs_.begin(), cone_pairs_.end(),
+  for (const auto& [pair, distance] : nearest) out.pairs.push_back({distance, pair.first, pair.second});
+  std::stable_sort(out.pairs.begin(), out.pairs.end(),
                    [](const ConePair& a, const ConePair& b) { return a.distance < b.distance; });
   return out;
 }
@@ -241,10 +255,11 @@ Eigen::VectorXcd LayoutQuantizer::integers_of(const Eigen::VectorXcd& position) 
   return out;
 }
 
-Array<LayoutQuantizer::Target> LayoutQuantizer::find_targets(double density, int searched_angles) const {
+Array<LayoutQuantizer::Target> LayoutQuantizer::find_targets(double density, int searched_angles) {
+  prepare_search();
   if (integers_.size() == 0) return {{density, integers_, 0}};
   Array<Target> out;
-  const Eigen::VectorXcd wanted = reduction_.basis.partialPivLu().solve(integers_);
+  const Eigen::VectorXcd wanted = inverse_of_basis_.solve(integers_);
   const Eigen::VectorXcd pull = lattice_energy_->schur() * integers_;
   struct Candidate {
     Complex motion;
@@ -279,7 +294,7 @@ double LayoutQuantizer::measure_energy(const Eigen::VectorXcd& position) const {
   return symmetric_dirichlet_energy(geometry_, measure_jacobians({mesh_, geometry_}, cut_mesh_, position));
 }
 
-std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, const LayoutEffort& effort) const {
+std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, const LayoutEffort& effort) {
   const bool quick = effort.quick;
   if (features_ && effort.features != LayoutEffort::Features::ignored) {
     auto out = quantize_with_features(density, effort);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -45,13 +46,14 @@ struct ConePair {
 // How layouts are to lie on the lattice.
 struct LatticeDemands {
   PointLattice lattice;
-  bool parity;                          // translations lead from white cells to white ones
-  const Array<Index>& relaxed;          // cones that need not lie on the lattice
-  const TextureDirections& directions;  // what v is to run along
-  bool creases;                         // run along lines of the lattice, as marked features do
+  bool parity;                                 // translations lead from white cells to white ones
+  const Array<Index>& relaxed;                 // cones that need not lie on the lattice
+  const TextureDirections& directions;         // what v is to run along
+  bool creases;                                // run along lines of the lattice, as marked features do
+  std::optional<FeatureAlignment>& alignment;  // of the map, or empty, which is filled where features are aligned
 };
 
-// The layouts of one map on grids of any size. What does not depend on the size is computed once.
+// The layouts of one map on grids of any size. What does not depend on the size is computed once, when it is needed.
 class LayoutQuantizer {
  public:
   // system: of the map's cones, and others that are flat.
@@ -71,11 +73,11 @@ class LayoutQuantizer {
   PerHalfedge<ReleaseReason> release_reasons(const QuantizedLayout& layout) const;
 
   // The nearest first; closed surfaces.
-  const Array<ConePair>& cone_pairs() const { return cone_pairs_; }
+  const Array<ConePair>& cone_pairs() { return cone_triangles().pairs; }
 
   // The layout with `density` cells per unit of length, rounded to lattice points: by the displacement of least
   // Dirichlet energy, then repaired. None where no choice of points keeps it valid and its energy within bounds.
-  std::optional<QuantizedLayout> quantize(double density, const LayoutEffort& effort) const;
+  std::optional<QuantizedLayout> quantize(double density, const LayoutEffort& effort);
 
   // Symmetric Dirichlet energy of positions of the copies.
   double measure_energy(const Eigen::VectorXcd& position) const;
@@ -95,16 +97,24 @@ class LayoutQuantizer {
     double cost;
   };
 
+  // A triangulation of the cones of a closed surface, and the pairs that share an edge of it.
+  struct ConeTriangles {
+    Array<MovingTriangle> triangles;
+    Array<ConePair> pairs;  // the nearest first
+  };
+
   CutSurface surface() const { return {{mesh_, geometry_}, cut_graph_, cut_mesh_}; }
   void set_start(const ComponentMap& map);
   void align_features();
   std::optional<QuantizedLayout> quantize_with_features(double density, const LayoutEffort& effort) const;
-  Array<MovingTriangle> moving_triangles(const ComponentMap& map);
+  void prepare_search();
+  const ConeTriangles& cone_triangles();
+  ConeTriangles find_cone_triangles() const;
   UpwardTurn find_upward_turn(const Eigen::VectorXcd& position) const;
   void turn_upwards(Eigen::VectorXcd& position) const;
   double measure_misalignment(const Eigen::VectorXcd& position) const;
   Eigen::VectorXcd integers_of(const Eigen::VectorXcd& position) const;
-  Array<Target> find_targets(double density, int searched_angles) const;
+  Array<Target> find_targets(double density, int searched_angles);
 
   // In move_layout.cpp.
   Validity check(const Eigen::VectorXcd& position) const;
@@ -117,8 +127,10 @@ class LayoutQuantizer {
   bool follow(double scale, const Eigen::VectorXcd& change, Eigen::VectorXcd& position) const;
   PerVertex<char> without_cones(PerVertex<char> marked) const;
 
+  ComponentSystem& system_;
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
+  const Array<Index>& cones_;  // of the map
   const CutGraph& cut_graph_;
   const CutMesh& cut_mesh_;
   const Curvature& curvature_;
@@ -135,12 +147,13 @@ class LayoutQuantizer {
   double extent_ = 0, energy_ = 1;
   LatticeReduction reduction_;
   Eigen::VectorXcd integers_;                      // (d) at the start
-  std::unique_ptr<LatticeEnergy> lattice_energy_;  // of the Dirichlet form, stiffened around cones
+  std::unique_ptr<LatticeEnergy> lattice_energy_;  // beside search_: of the Dirichlet form, stiffened around cones
   std::unique_ptr<FeatureLayout> features_;        // or null
   PerHalfedge<ReleaseReason> release_reasons_;     // without a lattice, or empty
   double most_l2_ = 0;                             // stretch with features along the lattice
-  Array<ConePair> cone_pairs_;
-  std::optional<LatticeSearch> search_;
+  std::optional<ConeTriangles> cone_triangles_;    // where needed
+  Eigen::PartialPivLU<Eigen::MatrixXcd> inverse_of_basis_;  // beside search_
+  std::optional<LatticeSearch> search_;                     // where needed
 };
 
 // Symmetric Dirichlet energy of a map, area-weighted, at its best scale; 1 is isometric.

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "base/array.hpp"
 #include "pipeline/component_map.hpp"
 #include "pipeline/components.hpp"
+#include "seamless/feature_layout.hpp"
 
 namespace lsgp {
 
@@ -15,10 +17,12 @@ struct SeamlessComponent {
   const Component* source;
   ComponentTask* task;
   ComponentMap* map;
-  ComponentSystem* system;  // of the map
+  ComponentSystem* system;                     // of the map
+  std::optional<FeatureAlignment>* alignment;  // of the map, or empty
   // Cones merged with others, as the caller's vertices, and the system of the remaining ones.
   Array<Index> merged{};
   std::unique_ptr<ComponentSystem> merged_system{};
+  std::unique_ptr<std::optional<FeatureAlignment>> merged_alignment{};
 };
 
 // Thrown if components fail, so that the others are laid out without them.

@@ -32,11 +32,6 @@ double common_divisor(const Eigen::RowVectorXd& coefficients) {
   return out;
 }
 
-// Without a free coordinate it is empty, and Eigen has no largest element of that.
-bool are_exact(const Eigen::Ref<const Eigen::MatrixXd>& values) {
-  return values.size() == 0 || values.cwiseAbs().maxCoeff() < most_exact;
-}
-
 }  // namespace
 
 PivotedCholesky::PivotedCholesky(Borrowed<const Eigen::MatrixXd> matrix)
@@ -75,6 +70,7 @@ std::optional<WholeValues> WholeValues::among(const Eigen::MatrixXd& compliance)
   WholeValues out;
   out.offset_ = Eigen::VectorXd::Zero(count);
   out.columns_ = Eigen::MatrixXd::Zero(count, rank);
+  out.largest_ = Eigen::VectorXd::Ones(rank);
   out.free_ = rank;
   for (Eigen::Index k = 0; k < rank; ++k) out.columns_(pivots[k], k) = 1;
   // The values of the pivots for which the others are whole as well.
@@ -93,10 +89,16 @@ std::optional<WholeValues> WholeValues::among(const Eigen::MatrixXd& compliance)
     const auto shared = static_cast<double>(std::gcd(std::llround(step), std::llround(divisor)));
     if (step != 0) out.columns_.col(out.free_ - 1) *= divisor / shared;
     out.columns_.row(i) /= divisor;
-    if (!are_exact(out.columns_)) return std::nullopt;
+    if (step != 0) out.measure(out.free_ - 1);
+    if (!out.is_exact()) return std::nullopt;
   }
   return out;
 }
+
+void WholeValues::measure(Eigen::Index column) { largest_[column] = columns_.col(column).cwiseAbs().maxCoeff(); }
+
+// Eigen has no largest element of nothing.
+bool WholeValues::is_exact() const { return free_ == 0 || largest_.head(free_).maxCoeff() < most_exact; }
 
 // Euclid's algorithm on row i leaves one column with a coefficient there, which becomes the last one.
 double WholeValues::isolate(Eigen::Index i) {
@@ -113,11 +115,13 @@ double WholeValues::isolate(Eigen::Index i) {
     if (pivot < 0) return 0;
     if (with == 1) {
       columns_.col(pivot).swap(columns_.col(free_ - 1));
+      std::swap(largest_[pivot], largest_[free_ - 1]);
       return std::abs(columns_(i, free_ - 1));
     }
     for (Eigen::Index k = 0; k < free_; ++k) {
       if (k == pivot || columns_(i, k) == 0) continue;
       columns_.col(k) -= std::round(columns_(i, k) / columns_(i, pivot)) * columns_.col(pivot);
+      measure(k);
     }
   }
 }
@@ -132,7 +136,7 @@ bool WholeValues::fix(Eigen::Index i, double step, double value) {
   if (step == 0) return true;
   const Eigen::Index last = --free_;
   offset_ += (value - offset_[i]) / columns_(i, last) * columns_.col(last);
-  return are_exact(columns_.leftCols(free_));
+  return is_exact();
 }
 
 }  // namespace lsgp

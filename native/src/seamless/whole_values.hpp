@@ -26,8 +26,12 @@ class WholeValues {
   bool fix(Eigen::Index i, double step, double value);
 
  private:
+  void measure(Eigen::Index column);
+  bool is_exact() const;
+
   Eigen::VectorXd offset_;   // (n)
   Eigen::MatrixXd columns_;  // (n, rank)
+  Eigen::VectorXd largest_;  // (rank) magnitude in each column
   Eigen::Index free_ = 0;    // columns, the first ones
 };
 

@@ -13,6 +13,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
+import zoo
 from map_checks import digest
 
 RAW = lsgp.Options(repair=False)
@@ -150,8 +151,26 @@ def test_changed_seamless_options_take_no_factorization(make: object) -> None:
     for changed in ({"tiles": 32}, {"tiles": 24, "parity": True}, {"tiles": 16, "cell": 0.25}):
         again, fresh = seamless(**changed)
         assert_same(again, fresh)
-        # On a torus the twist about the handles is chosen anew.
-        assert again.factorizations == (1 if make is meshes.torus else 0)
+        # On a torus the twist about the handles is chosen anew where more than the size changes.
+        assert again.factorizations == (1 if make is meshes.torus and len(changed) > 1 else 0)
+
+
+@pytest.mark.parametrize("make", [lambda: zoo.closed.gear(8, 0.2, 1), lambda: zoo.closed.box(4, (1, 2, 3))])
+def test_tiles_of_another_size_take_neither_another_map_nor_another_alignment_of_creases(make: object) -> None:
+    mesh = make()
+    surface = surface_of(mesh)
+    cones = lsgp.place_cones(surface, lattice="square").cones
+    solver = lsgp.Solver(surface)
+    options = lsgp.Options(seamless=lsgp.Seamless(), straighten=True)
+    for tiles in (None, 24, 48, 24):
+        sized = dataclasses.replace(options, seamless=lsgp.Seamless(tiles=tiles))
+        again, fresh = solver.parameterize(cones, options=sized), lsgp.parameterize(surface, cones, options=sized)
+        assert outcome(lambda result=again: result) == outcome(lambda result=fresh: result)
+        if tiles is None:
+            continue
+        assert again.seamless.feature_share > 0.5
+        # What finds the coordinates and rounds them is left.
+        assert again.factorizations < fresh.factorizations - 2
 
 
 def test_moved_cone_is_that_of_a_fresh_start() -> None:
@@ -240,7 +259,13 @@ CHANGES: dict[str, list[object]] = {
     "method": ["lsgp", "lscm"],
     "seams": ["follow", "boundary", "ignore"],
     "border": ["free", "straight"],
-    "seamless": [None, lsgp.Seamless(tiles=8), lsgp.Seamless(tiles=6, lattice="stripe", coarse_grid="merge")],
+    "seamless": [
+        None,
+        lsgp.Seamless(tiles=8),
+        lsgp.Seamless(tiles=12),
+        lsgp.Seamless(tiles=6, lattice="stripe", coarse_grid="merge"),
+    ],
+    "straighten": [False, True],
     "mode": ["conformal", "low-stretch"],
     "stretch": [1.0, 0.5],
     "repair": [True, False],
