@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -113,4 +114,48 @@ TEST_CASE("triangles keep an area") {
   CHECK(choice.valid());
   CHECK((std::conj(choice.x[0]) * choice.x[1]).imag() >= 1);
   CHECK(choice.cost == doctest::Approx(0.1 * 0.1 + 0.7 * 0.7));
+}
+
+TEST_CASE("no single step improves an improved choice that keeps all areas") {
+  Random random(4);
+  int tried = 0;
+  for (const int rotation_order : {4, 6}) {
+    const lsgp::PointLattice lattice(rotation_order);
+    const auto area_of = [&](const lsgp::MovingTriangle& triangle, const Eigen::VectorXcd& x) {
+      const lsgp::Complex a = triangle.slope[0] * x, b = triangle.slope[1] * x, c = triangle.slope[2] * x;
+      return (std::conj(b - a) * (c - a)).imag() / lattice.cell_area();
+    };
+    for (int round = 0; round < 40; ++round) {
+      constexpr int size = 7;
+      const Eigen::MatrixXcd form = random_form(random, size);
+      const Eigen::VectorXcd wanted = 4 * random_matrix<lsgp::Complex>(random, size, 1);
+      // A fan of triangles around the origin, in the order of where their corners are wanted.
+      std::vector<int> order{0, 1, 2, 3, 4, 5, 6};
+      std::sort(order.begin(), order.end(), [&](int i, int j) { return std::arg(wanted[i]) < std::arg(wanted[j]); });
+      lsgp::Array<lsgp::MovingTriangle> fan;
+      for (std::size_t i = 0; i < order.size(); ++i) {
+        const int from = order[i], to = order[(i + 1) % order.size()];
+        if (!((std::conj(wanted[from]) * wanted[to]).imag() > 0)) continue;
+        fan.push_back({{Eigen::RowVectorXcd::Zero(size), Eigen::RowVectorXcd::Unit(size, from),
+                        Eigen::RowVectorXcd::Unit(size, to)}});
+      }
+      const lsgp::LatticeSearch search(form, fan, lattice);
+      const auto nearest = search.nearest(wanted), improved = search.improve(wanted, nearest);
+      CHECK(improved.cost == doctest::Approx(cost(form, improved.x - wanted)));
+      double violation = 0;
+      for (const auto& triangle : fan) violation += std::max(0.0, 1 - area_of(triangle, improved.x));
+      CHECK(improved.violation == doctest::Approx(violation));
+      if (nearest.valid() || !improved.valid()) continue;
+      ++tried;
+      for (int k = 0; k < size; ++k) {
+        for (int turn = 0; turn < rotation_order; ++turn) {
+          const Eigen::VectorXcd stepped = improved.x + lattice.unit(turn) * Eigen::VectorXcd::Unit(size, k);
+          const bool keeps_areas = std::all_of(
+              fan.begin(), fan.end(), [&](const auto& triangle) { return area_of(triangle, stepped) >= 1 - 1e-9; });
+          if (keeps_areas) CHECK(cost(form, stepped - wanted) >= improved.cost * (1 - 1e-6));
+        }
+      }
+    }
+  }
+  CHECK(tried > 10);
 }

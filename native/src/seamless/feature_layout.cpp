@@ -565,14 +565,19 @@ void FeatureLayout::find_coordinates() {
   factor_.emplace(system_->dirichlet().triangularView<Eigen::Lower>());
   coefficients_.resize(system_->dirichlet().rows(), ssize(rounded_));
   for (std::ptrdiff_t i = 0; i < ssize(rounded_); ++i) {
-    coefficients_.col(i) = system_->coefficients_of(rounded_[i]);
-    if (coefficients_.col(i).cwiseAbs().maxCoeff() < least_response) coefficients_.col(i).setZero();  // held
+    const Eigen::VectorXd column = system_->coefficients_of(rounded_[i]);
+    coefficients_.startVec(i);
+    if (column.cwiseAbs().maxCoeff() < least_response) continue;  // held
+    for (Eigen::Index row = 0; row < column.size(); ++row) {
+      if (column[row] != 0) coefficients_.insertBack(row, i) = column[row];
+    }
   }
+  coefficients_.finalize();
   compliance_.resize(ssize(rounded_), ssize(rounded_));
   constexpr Eigen::Index at_once = 16;
   for (Eigen::Index i = 0; i < compliance_.cols(); i += at_once) {
     const Eigen::Index width = std::min(at_once, compliance_.cols() - i);
-    const Eigen::MatrixXd forces = coefficients_.middleCols(i, width);
+    const Eigen::MatrixXd forces(coefficients_.middleCols(i, width));
     compliance_.middleCols(i, width) = coefficients_.transpose() * factor_->solve(forces);
   }
   whole_values_ = WholeValues::among(compliance_);

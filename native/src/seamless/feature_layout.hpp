@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <functional>
 #include <optional>
 
@@ -143,8 +144,8 @@ class FeatureLayout {
   DegreesOfFreedom held_;         // with the rounded coordinates fixed
   std::optional<FreedomSystem> system_;
   std::optional<Cholesky<double>> factor_;
-  Eigen::MatrixXd coefficients_;  // (rows, rounded)
-  Eigen::MatrixXd compliance_;    // (rounded, rounded) how far each moves under a unit force on another
+  Eigen::SparseMatrix<double> coefficients_;  // (rows, rounded)
+  Eigen::MatrixXd compliance_;                // (rounded, rounded) how far each moves under a unit force on another
   std::optional<WholeValues> whole_values_, fine_values_;  // of the rounded ones; lines in cells, or in fine steps
 };
 

@@ -359,3 +359,22 @@ def test_cones_are_added_as_long_as_the_prediction_falls() -> None:
 def test_spikes_get_a_map_although_none_of_the_usual_cones_have_one() -> None:
     mesh = closed.spiked_sphere(4, 12, 5)
     assert_keeps_its_word(mesh, place(mesh))
+
+
+def test_what_too_few_cones_leave_inexact_is_rounding_and_comes_with_a_number_of_cones_that_are_exact() -> None:
+    filled = np.zeros((7, 7, 17), bool)
+    filled[:, :, 0] = True
+    filled[1::2, 1::2] = True  # nine posts, sixteen times as high as wide
+    posts = meshes.voxels(filled)
+    placed = lsgp.place_cones(surface(posts), count=8)
+    result = unwrapped(posts, placed)
+    assert {"HIGH_DISTORTION", "PLACEMENT_NOT_REACHED"} <= set(codes(placed.warnings))
+    assert "INEXACT_SEAMS" in codes(result.warnings)
+    assert result.flipped.size == result.wrong_angle_sums.size == 0
+    size = np.abs(result.corner_uv).max()
+    edges = np.linalg.norm(np.roll(result.corner_uv, -1, axis=1) - result.corner_uv, axis=2)
+    assert result.seams.rotation_residual * edges.min() <= 4 * np.finfo(float).eps * size
+    missed = only(placed.warnings, "PLACEMENT_NOT_REACHED").message
+    automatic = lsgp.place_cones(surface(posts))
+    assert f"Left automatic, {len(automatic.cones)} cones are placed" in missed
+    assert "INEXACT_SEAMS" not in codes(unwrapped(posts, automatic).warnings)
