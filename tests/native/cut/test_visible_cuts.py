@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How much of all cuts is seen from the front, those that undo overlaps and fill the square included."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import lsgp
+import meshes
+import numpy as np
+import pytest
+from map_checks import pairs, surface
+from meshes import Mesh
+from zoo.swept import circle, sweep
+
+FRONT = (0, 0, 1)
+UNSEEN = 0.1  # the cost of an edge that no view sees
+
+
+def horned(seed: int, horns: int) -> Mesh:
+    """A ball with a low nose and a bare face in front, and horns elsewhere, alike on both sides of x = 0."""
+    random = np.random.RandomState(seed)
+    ball = meshes.icosphere(3)
+    p = ball.positions
+    radius = 1 + 0.35 * np.exp(18 * (p[:, 2] - 1))
+    tips: list[np.ndarray] = []
+    while len(tips) < horns:
+        tip = random.standard_normal(3)
+        tip /= np.linalg.norm(tip)
+        if tip[2] > 0.5 or abs(tip[0]) < 0.25 or any(tip @ other > 0.8 for other in tips):
+            continue
+        tips.append(tip)
+        height, sharpness = random.uniform(0.8, 2.2), random.uniform(8, 25)
+        for side in (1, -1):
+            radius += height * np.exp(sharpness * (p @ (tip * [side, 1, 1]) - 1))
+    return meshes.make(p * radius[:, None], ball.triangles)
+
+
+def bent_tube(seed: int) -> Mesh:
+    """A closed tube along a generic curve."""
+    random = np.random.RandomState(seed)
+    t = np.linspace(0, 3, 40)
+    waves = random.uniform(-1, 1, (3, 3)) / [1, 2, 3]
+    phase = random.uniform(0, 2 * np.pi, (3, 3))
+    path = 4 * np.sum(waves[..., None] * np.sin(np.array([1, 2, 3])[:, None] * t + phase[..., None]), axis=1).T
+    return sweep(path, circle(0.45, 14), closed=False, caps=True)
+
+
+FAMILIES = {
+    "heads": [horned(seed, 1 + seed % 2) for seed in range(4)],
+    "beasts": [horned(seed, 4 + seed % 3) for seed in range(4)],
+    "tubes": [bent_tube(seed) for seed in range(4)],
+    "blobs": [meshes.bumpy_sphere(3, height) for height in (0.36, 0.48)],
+}
+
+
+def visible_length(mesh: Mesh, preset: str, is_hidden: bool) -> float:
+    """Of all cuts, in square roots of the surface's area."""
+    given = surface(mesh, edges=meshes.edges_of(mesh.triangles))
+    views = lsgp.cut_costs(given, FRONT, creases=False) - UNSEEN
+    hidden = replace(given, cut_costs=lsgp.cut_costs(given, FRONT)) if is_hidden else given
+    result = lsgp.auto_unwrap(hidden, preset=preset)
+    cuts = pairs(result.cut_edges)
+    is_cut = np.array([(int(a), int(b)) in cuts for a, b in given.edges])
+    length = np.linalg.norm(np.diff(given.positions[given.edges], axis=1), axis=2).ravel()
+    corners = given.positions[given.triangles]
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum() / 2
+    return float((is_cut * length * views).sum() / np.sqrt(area))
+
+
+@pytest.mark.many_solves
+@pytest.mark.parametrize("preset", ["paint", "bake"])
+@pytest.mark.parametrize(("family", "share"), [("heads", 0.68), ("beasts", 0.83), ("tubes", 0.81), ("blobs", 0.69)])
+def test_whole_layouts_keep_their_cuts_out_of_sight(family: str, share: float, preset: str) -> None:
+    """Relative to the shortest cuts. Divisions that all weigh length as much show more of baked heads and tubes."""
+    hidden = sum(visible_length(mesh, preset, is_hidden=True) for mesh in FAMILIES[family])
+    shortest = sum(visible_length(mesh, preset, is_hidden=False) for mesh in FAMILIES[family])
+    assert hidden <= share * shortest
