@@ -196,6 +196,7 @@ lsgp::Seamless to_seamless(const py::dict& values) {
   seamless.tiles = values["tiles"].cast<std::optional<double>>();
   seamless.tile_size = values["tile_size"].cast<std::optional<double>>();
   seamless.parity = values["parity"].cast<bool>();
+  seamless.whole_features = values["whole_features"].cast<bool>();
   seamless.coarse_grid =
       choose<CoarseGrid>(values["coarse_grid"].cast<std::string>(),
                          {{"refine", CoarseGrid::refine}, {"merge", CoarseGrid::merge}, {"relax", CoarseGrid::relax}});

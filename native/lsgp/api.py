@@ -154,6 +154,8 @@ class Seamless:
     tiles: cells along the layout's longer side, before rounding. tile_size: or the side of a cell on the surface, in
         its unit. Neither: the coarsest grid that is valid and costs at most a tenth in distortion.
     parity: square lattice only: black and white cells match across cuts as well.
+    whole_features: features are at whole cells or released, and may cost a fifth of L2 stretch, as quads along them
+        require; otherwise at multiples of 1 / 256 of a cell where cells are too large, at a tenth.
     coarse_grid: if no layout on such a coarse grid is valid: "refine" uses the next finer one, "merge" merges cones
         less than a cell apart, "relax" leaves those cones off the grid that cannot be placed on it.
     cell: side of a cell in texture coordinates, a power of two. 1 is a whole tile; 2**level / size makes translations
@@ -166,11 +168,13 @@ class Seamless:
     parity: bool = False
     coarse_grid: CoarseGrid = "refine"
     cell: float = 1.0
+    whole_features: bool = False
 
     def __post_init__(self) -> None:
         arguments.require_choice("lattice", self.lattice, get_args(Lattice))
         arguments.require_choice("coarse_grid", self.coarse_grid, get_args(CoarseGrid))
-        _set(self, "parity", arguments.flag("parity", self.parity))
+        for name in ("parity", "whole_features"):
+            _set(self, name, arguments.flag(name, getattr(self, name)))
         for name in ("tiles", "tile_size", "cell"):
             value = getattr(self, name)
             if value is not None or name == "cell":

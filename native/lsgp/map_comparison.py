@@ -47,6 +47,7 @@ _MOST_PACKED = 32
 _MOST_L2_FOR_FEATURES = 1.1
 _LEAST_FEATURES = 0.25
 _MOST_FEATURES = 0.95
+_MANY_FEATURES = 0.9
 
 
 def may_replace_map(
@@ -140,15 +141,21 @@ def saves_islands(free: Result, mirrored: Result, usual: Result) -> bool:
 def runs_along_features(result: Result) -> bool:
     """Whether a seamless map has a quarter of the length of marked features along its lattice, or of creases if none
     are marked."""
-    return _feature_share(result) >= _LEAST_FEATURES
+    return feature_share(result) >= _LEAST_FEATURES
 
 
 def releases_features(result: Result | None) -> bool:
     """Whether a seamless map has more than a twentieth of that length off its lattice."""
-    return result is not None and _feature_share(result) < _MOST_FEATURES
+    return result is not None and feature_share(result) < _MOST_FEATURES
 
 
-def _feature_share(result: Result) -> float:
+def releases_many_features(result: Result) -> bool:
+    """Whether a seamless map has more than a tenth of that length off its lattice."""
+    return feature_share(result) < _MANY_FEATURES
+
+
+def feature_share(result: Result) -> float:
+    """Of the length of marked features, or of creases if none are marked: what runs along the lattice."""
     if result.features is not None:
         return result.features.share
     return result.seamless.feature_share or 0.0
@@ -158,7 +165,7 @@ def may_replace_for_features(along: Result, usual: Result) -> bool:
     """Whether a seamless map through cones for features runs along them, at up to a tenth more of L2 stretch and
     without further defects; at least as far as the usual one. Both as from `parameterize`.
     """
-    if _feature_share(usual) > _feature_share(along):
+    if feature_share(usual) > feature_share(along):
         return False
     return (
         along.solved.tolist() == usual.solved.tolist()

@@ -13,10 +13,11 @@ from numpy.typing import ArrayLike
 from . import _lsgp, arguments
 from .api import Options, Progress, Result, Seamless, Solver, Surface, surface_arrays
 from .arguments import FloatArray, IndexArray
-from .auto_unwrap import CompletedCones, GivenCones, complete_cones, feature_cones, or_none, share_of
+from .auto_unwrap import CompletedCones, GivenCones, complete_cones, feature_cones, follows_features, or_none, share_of
+from .divided_triangles import DividedSurface, divide_long_edges
 from .equality import EqualByContent
 from .errors import Finding, InputError, SolverError
-from .map_comparison import may_replace_for_features, runs_along_features
+from .map_comparison import feature_share, releases_many_features, runs_along_features
 from .short_repr import ShortRepr
 from .triangles import triangle_areas, uv_area
 
@@ -25,6 +26,17 @@ _PLACED, _LAID_OUT = 0.6, 0.95
 # Of the time of placing, where cones for creases are placed, and of that of layouts, where those along creases and the
 # plain one end.
 _FOR_FEATURES, _ALONG, _PLAIN = 0.1, 0.4, 0.6
+# And of these layouts, where those on the given surface end, and those on one with long edges divided begin.
+_ON_GIVEN = 0.6
+# Rows of quads along creases may cost as much L2 stretch.
+_MOST_L2_ALONG = 1.2
+# Edges longer than this, of the square root of the area, are divided where quads follow features, unless nearly all
+# are followed with hardly any stretch. What that has to gain: more than a few features, or stretch, without more quads.
+_LONGEST_EDGE = 0.06
+_NEARLY_ALL, _NEARLY_ISOMETRIC = 0.95, 1.01
+_FEW_FEATURES, _LESS_STRETCH, _MORE_QUADS = 0.05, 0.75, 1.25
+# How many features, of those followed before, have to be followed on the first grid, for which another one is tried.
+_PROMISING = 0.8
 # What layouts are warned of does not matter to the grid on the surface.
 _OF_LAYOUTS_ALONE = frozenset({"OVERLAPPING_TRIANGLES"})
 _MOST_QUADS = 2**28
@@ -88,11 +100,15 @@ class QuadRemesh(EqualByContent, ShortRepr):
     mesh: the quads. layout: the seamless layout whose grid was traced; its `cones` are the irregular vertices, its
         `seamless.tile_size` is the side of a quad.
     warnings: findings that leave the mesh usable, including those of the placement of cones and of the layout.
+    surface: what the layout is of: the given surface, or where quads follow creases and its triangles are large, the
+        same with long edges divided. New vertices follow the given ones. The mesh and the warnings refer to the given
+        surface.
     """
 
     mesh: QuadMesh
     layout: Result
     warnings: list[Finding]
+    surface: Surface
 
 
 def extract_quads(
@@ -158,19 +174,29 @@ def remesh_to_quads(
     chosen = replace(chosen, seamless=replace(chosen.seamless, tile_size=side))
     placing, laying_out = share_of(progress, 0.0, _PLACED), share_of(progress, _PLACED, _LAID_OUT)
     given = GivenCones.of(cones, angles, count)
-    solver, along = Solver(surface), None
-    if given.is_free and chosen.straighten:
+    solver, along, finer = Solver(surface), None, None
+    if given.is_free and follows_features(surface, chosen):
         along = feature_cones(solver, chosen, share_of(placing, 0.0, _FOR_FEATURES))
     completed = _wide_cones(solver, given, chosen, share_of(placing, _FOR_FEATURES, 1.0))
     if along is None:
-        layouts = _Layouts(surface, completed, chosen)
-        layout = layouts.nearest(target, laying_out)
+        layouts, layout = _whole_or_between(surface, target, completed, chosen, laying_out)
     else:
-        layouts, layout = _along_features((surface, target, chosen), (along, completed), laying_out)
+        on_given, on_finer = share_of(laying_out, 0.0, _ON_GIVEN), share_of(laying_out, _ON_GIVEN, 1.0)
+        layouts, layout = _along_features((surface, target, chosen), (along, completed), on_given)
+        if not _is_close(layout):
+            finer = _divided(surface)
+        gained = None if finer is None else or_none(lambda: _gained(finer, target, chosen, layout, on_finer))
+        if gained is None:
+            finer = None
+        else:
+            layouts, layout = gained
     asked = 0.0 if side is None else _area(surface) / side**2
     mesh, layout = layouts.extracted(layout, asked, share_of(progress, _LAID_OUT, 1.0))
     warnings = [finding for finding in layout.warnings if finding.code not in _OF_LAYOUTS_ALONE]
-    return QuadRemesh(mesh, layout, warnings)
+    if finer is None:
+        return QuadRemesh(mesh, layout, warnings, surface)
+    warnings = [replace(finding, elements=finer.elements(finding.elements)) for finding in warnings]
+    return QuadRemesh(_undivided(mesh, finer), layout, warnings, finer.surface)
 
 
 def quad_quality(positions: ArrayLike, quads: ArrayLike) -> QuadQuality:
@@ -212,7 +238,7 @@ def _options(options: Options | None) -> Options:
         arguments.refuse("options.seamless", seamless, remedy)
     if seamless.tiles is not None or seamless.tile_size is not None:
         arguments.refuse("options.seamless", seamless, f"{remedy}; target or size determines the number of quads")
-    return chosen
+    return replace(chosen, seamless=replace(seamless, whole_features=True))
 
 
 def _side(surface: Surface, target: int | None, size: float | None) -> float | None:
@@ -264,10 +290,11 @@ class _Layouts:
         self._surface, self._completed, self._options = surface, completed, options
         self._solver = Solver(surface)
 
-    def nearest(self, target: int | None, progress: Progress | None) -> Result:
-        """On the first grid, or on one of another size where rounding has taken that away from its target."""
+    def nearest(self, target: int | None, progress: Progress | None, first: Result | None = None) -> Result:
+        """On the first grid, or on one of another size where rounding has taken that away from its target.  first: the
+        layout on the first grid, if known."""
         side = self._options.seamless.tile_size
-        layout = self._lay_out(side, share_of(progress, 0.0, 0.5))
+        layout = self.first(share_of(progress, 0.0, 0.5)) if first is None else first
         if target is None or any(finding.code == "GRID_REFINED" for finding in layout.warnings):
             return layout
         quads = _quad_count(layout)
@@ -275,6 +302,10 @@ class _Layouts:
             return layout
         second = self._lay_out(side * math.sqrt(quads / target), share_of(progress, 0.5, 1.0))
         return min(layout, second, key=lambda found: abs(_quad_count(found) - target))
+
+    def first(self, progress: Progress | None) -> Result:
+        """On the first grid."""
+        return self._lay_out(self._options.seamless.tile_size, progress)
 
     def extracted(self, layout: Result, asked: float, progress: Progress | None) -> tuple[QuadMesh, Result]:
         """The quads of a layout, or of the first one on a finer grid on which they are a mesh, and that layout.
@@ -313,17 +344,89 @@ def _along_features(
     progress: Progress | None,
 ) -> tuple[_Layouts, Result]:
     """Layouts along creases, and the nearest of them to the target: through the cones for creases, which are the first,
-    or if these gain nothing or cost much more than a plain layout, through the usual ones."""
+    or where these gain less, or cost much more than a plain layout, through the usual ones."""
     surface, target, options = asked
     for_features, usual = cones
-    layouts = _Layouts(surface, for_features, options)
-    layout = or_none(lambda: layouts.nearest(target, share_of(progress, 0.0, _ALONG)))
+    found = or_none(lambda: _whole_or_between(surface, target, for_features, options, share_of(progress, 0.0, _ALONG)))
+    along, layout = (None, None) if found is None else found
     if layout is not None and runs_along_features(layout):
         plain = _Layouts(surface, usual, replace(options, straighten=False))
-        if may_replace_for_features(layout, plain.nearest(target, share_of(progress, _ALONG, _PLAIN))):
-            return layouts, layout
-    layouts = _Layouts(surface, usual, options)
-    return layouts, layouts.nearest(target, share_of(progress, _PLAIN, 1.0))
+        if not _is_affordable(layout, plain.first(share_of(progress, _ALONG, _PLAIN))):
+            layout = None
+    if layout is not None and not releases_many_features(layout):
+        return along, layout
+    others, other = _whole_or_between(surface, target, usual, options, share_of(progress, _PLAIN, 1.0))
+    is_better = layout is not None and feature_share(layout) > feature_share(other)
+    return (along, layout) if is_better else (others, other)
+
+
+def _whole_or_between(
+    surface: Surface, target: int | None, cones: CompletedCones, options: Options, progress: Progress | None
+) -> tuple[_Layouts, Result]:
+    """Layouts through these cones, and the nearest to the target. On a coarse grid few features find a place on whole
+    cells; quads nearly follow those that lie between."""
+    layouts = _Layouts(surface, cones, options)
+    layout = layouts.nearest(target, share_of(progress, 0.0, 0.5))
+    has_features = layout.features is not None or layout.seamless.feature_share is not None
+    if not has_features or runs_along_features(layout):
+        return layouts, layout
+    between = _Layouts(surface, cones, replace(options, seamless=replace(options.seamless, whole_features=False)))
+    other = between.nearest(target, share_of(progress, 0.5, 1.0))
+    return (between, other) if feature_share(other) > feature_share(layout) else (layouts, layout)
+
+
+def _is_affordable(along: Result, plain: Result) -> bool:
+    """Whether following creases costs little stretch and no further defects. Overlaps in the plane are none."""
+    return (
+        along.solved.tolist() == plain.solved.tolist()
+        and len(along.flipped) + len(along.wrong_angle_sums) <= len(plain.flipped) + len(plain.wrong_angle_sums)
+        and along.distortion.l2_stretch <= _MOST_L2_ALONG * plain.distortion.l2_stretch
+    )
+
+
+def _is_close(along: Result) -> bool:
+    """Whether nothing is to be gained for features."""
+    return feature_share(along) >= _NEARLY_ALL and along.distortion.l2_stretch <= _NEARLY_ISOMETRIC
+
+
+def _divided(surface: Surface) -> DividedSurface | None:
+    """The surface with long edges divided; None if none is long. Cones, and what is between features, need vertices
+    inside faces, of which models with flat faces have few."""
+    if len(surface.borders):
+        return None
+    finer = divide_long_edges(surface, _LONGEST_EDGE * math.sqrt(_area(surface)))
+    return finer if len(finer.triangles) > len(surface.triangles) else None
+
+
+def _gained(
+    finer: DividedSurface, target: int | None, options: Options, before: Result, progress: Progress | None
+) -> tuple[_Layouts, Result] | None:
+    """Layouts along features of a divided surface, if they follow more of them than the one before, or as many at less
+    stretch."""
+    cones = feature_cones(Solver(finer.surface), options, share_of(progress, 0.0, _FOR_FEATURES))
+    if cones is None:
+        return None
+    layouts = _Layouts(finer.surface, cones, options)
+    first = layouts.first(share_of(progress, _FOR_FEATURES, 0.5))
+    if runs_along_features(before) and feature_share(first) < _PROMISING * feature_share(before):
+        return None
+    layout = layouts.nearest(target, share_of(progress, 0.5, 1.0), first)
+    more = feature_share(layout) - feature_share(before)
+    has_less_stretch = layout.distortion.l2_stretch - 1 < _LESS_STRETCH * (before.distortion.l2_stretch - 1)
+    if not (more > _FEW_FEATURES or (more > -_FEW_FEATURES and has_less_stretch)):
+        return None
+    if layout.distortion.l2_stretch > _MOST_L2_ALONG * before.distortion.l2_stretch:
+        return None
+    return None if _quad_count(layout) > _MORE_QUADS * _quad_count(before) else (layouts, layout)
+
+
+def _undivided(mesh: QuadMesh, finer: DividedSurface) -> QuadMesh:
+    """The same mesh with its places on the surface that was divided."""
+    weights = np.einsum("vc,vck->vk", mesh.weights, finer.corners[mesh.triangles])
+    weights /= weights.sum(axis=1, keepdims=True)
+    is_given = mesh.surface_vertices < len(finer.source.positions)
+    vertices = np.where(is_given, mesh.surface_vertices, -1).astype(np.int32)
+    return replace(mesh, triangles=finer.triangles[mesh.triangles], weights=weights, surface_vertices=vertices)
 
 
 def _refined(layout: Result) -> Finding:

@@ -160,6 +160,7 @@ API = (
     "chart_packer",
     "cut_moving",
     "cut_paths",
+    "divided_triangles",
     "edge_keys",
     "equality",
     "errors",

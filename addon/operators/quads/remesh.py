@@ -86,6 +86,12 @@ class OBJECT_OT_cone_remesh_to_quads(ConeGroupProperty, BackgroundOperator, bpy.
         description="Keep quads alike in size, at the cost of their right angles",
         default=False,
     )
+    follow_creases: bpy.props.BoolProperty(
+        name="Follow Creases",
+        description="Let rows of quads run along the creases of hard surfaces, wherever that costs little distortion. "
+        f'Edges with the attribute "{identifiers.FEATURE_ATTRIBUTE}" are followed anyway',
+        default=True,
+    )
     coarse_grid: bpy.props.EnumProperty(
         name="Too Large",
         description="What to do if the quads are too large for the cones",
@@ -104,7 +110,7 @@ class OBJECT_OT_cone_remesh_to_quads(ConeGroupProperty, BackgroundOperator, bpy.
         layout.use_property_split = True
         layout.row().prop(self, "amount", expand=True)
         layout.prop(self, "count" if self.amount == "COUNT" else "size")
-        for name in ("rows", "even_sizes", "coarse_grid", "hide_original"):
+        for name in ("rows", "follow_creases", "even_sizes", "coarse_grid", "hide_original"):
             layout.prop(self, name)
         self.draw_vertex_group(layout, context)
 
@@ -118,7 +124,7 @@ class OBJECT_OT_cone_remesh_to_quads(ConeGroupProperty, BackgroundOperator, bpy.
             options=lsgp.Options(
                 seamless=lsgp.Seamless(coarse_grid=COARSE_GRIDS[self.coarse_grid][0]),
                 mode="low-stretch" if self.even_sizes else "conformal",
-                straighten=True,
+                straighten=self.follow_creases,
             ),
             target=self.count if self.amount == "COUNT" else None,
             size=self.size if self.amount == "SIZE" else None,

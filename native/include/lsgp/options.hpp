@@ -85,6 +85,7 @@ struct Seamless {
   std::optional<double> tile_size;  // or the side of a cell on the surface; neither: the coarsest grid that is valid
                                     // and costs at most a tenth in distortion
   bool parity = false;              // square lattice: black and white cells match as well
+  bool whole_features = false;      // features are on whole cells or released, at up to a fifth of L2 stretch
   CoarseGrid coarse_grid = CoarseGrid::refine;
   double cell = 1;  // its side in texture coordinates, a power of two: 1 is a whole tile
 };

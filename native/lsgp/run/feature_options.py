@@ -35,13 +35,13 @@ class FeatureKinds:
         return np.unique(np.concatenate([found, np.sort(sharp, axis=1)]), axis=0).astype(np.int32)
 
 
-def add_features_option(command: argparse.ArgumentParser) -> None:
+def add_features_option(command: argparse.ArgumentParser, which: str) -> None:
+    """which: the edges that these are."""
     command.add_argument(
         "--features",
         metavar="FILE.json|KIND,...",
         type=_features_option,
-        help="edges that run straight along u or v, as far as they do not contradict each other and cost at most a "
-        "tenth of L2 stretch: [[a, b], ...], or by kind: crease:ANGLE, edges with that angle between the normals, in "
+        help=f"{which}: [[a, b], ...], or by kind: crease:ANGLE, edges with that angle between the normals, in "
         "degrees, or more; seams, those of --seam-edges; borders; and, in Blender's batches, sharp, those marked so "
         "(default: none)",
     )

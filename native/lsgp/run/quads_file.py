@@ -19,6 +19,7 @@ from ..io.safe_files import is_standard_stream
 from ..io.side_files import UsageError, cones_in, load_json
 from ..io.whole_files import write_output
 from ..quads import QuadQuality, QuadRemesh, remesh_to_quads
+from .feature_options import add_features_option, features_of
 from .unwrap_file import Run, read_file
 from .unwrap_options import add_cones_option, add_mode_option, add_stretch_option, cone_count, cones_file
 
@@ -45,6 +46,18 @@ def add_quads_options(quads: argparse.ArgumentParser) -> None:
         help="the model's up direction: the grid is rotated so that rows of quads follow it, as far as the cones "
         "permit (default: any rotation)",
     )
+    add_features_option(
+        quads,
+        "edges that rows of quads follow, as far as they do not contradict each other and cost at most a fifth of L2 "
+        "stretch; they have precedence over creases of hard surfaces, which are followed anyway",
+    )
+    quads.add_argument(
+        "--no-straighten",
+        dest="straighten",
+        action="store_false",
+        help="do not follow the creases of hard surfaces, which needs further irregular vertices and distorts quads; "
+        "by default rows of quads run along them where that costs at most a fifth of L2 stretch",
+    )
     quads.add_argument(
         "--coarse-grid",
         choices=["refine", "merge"],
@@ -70,7 +83,8 @@ def quads_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
     cones_json = None if path is None else load_json(path)
     file = read_file(args.input, run, args.format)
     given = ((), None) if path is None else cones_in(cones_json, path, None)
-    surface = file.surface() if args.up is None else replace(file.surface(), directions=args.up)
+    surface = file.surface()
+    surface = replace(surface, directions=args.up, features=features_of(args.features, surface))
     with run.stage("remesh_to_quads"):
         remesh = remesh_to_quads(
             surface,
@@ -112,6 +126,6 @@ def _options(args: argparse.Namespace) -> Options:
         seamless=Seamless(coarse_grid=args.coarse_grid),
         mode=args.mode or "conformal",
         stretch=1.0 if args.stretch is None else args.stretch,
-        straighten=True,
+        straighten=args.straighten,
         threads=args.threads,
     )

@@ -100,7 +100,11 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
         "(default: follow)",
     )
     add_cut_options(unwrap)
-    add_features_option(unwrap)
+    add_features_option(
+        unwrap,
+        "edges that run straight along u or v, as far as they do not contradict each other and cost at most a tenth of "
+        "L2 stretch",
+    )
     _add_direction_options(unwrap)
     _add_preset_switches(unwrap)
     unwrap.add_argument(

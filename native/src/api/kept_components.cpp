@@ -9,8 +9,9 @@ namespace {
 
 // Fields are counted: a further one does not compile before it is compared.
 bool is_same_lattice(const Seamless& a, const Seamless& b) {
-  const auto& [lattice, tiles, tile_size, parity, coarse_grid, cell] = a;
-  return lattice == b.lattice && parity == b.parity && coarse_grid == b.coarse_grid && cell == b.cell;
+  const auto& [lattice, tiles, tile_size, parity, whole_features, coarse_grid, cell] = a;
+  return lattice == b.lattice && parity == b.parity && whole_features == b.whole_features &&
+         coarse_grid == b.coarse_grid && cell == b.cell;
 }
 
 // Whether seamless layouts differ only in the size of tiles; the number of threads does not matter.

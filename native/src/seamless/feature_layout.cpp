@@ -649,11 +649,12 @@ std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, bool is_
   return out;
 }
 
-std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density) {
+std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, bool must_be_whole) {
   const std::optional<Choice> whole_lines = choose(density, false);
   if (whole_lines) {
     if (auto out = lay_out(*whole_lines, 1)) return out;
   }
+  if (must_be_whole) return std::nullopt;
   const std::optional<Choice> fine_lines = choose(density, true);
   if (!fine_lines) return std::nullopt;
   // The same values would fail in the same way.

@@ -58,9 +58,9 @@ class FeatureLayout {
   bool loosen();
 
   // The layout with about `density` cells per unit of length, with cones and translations on the lattice. Features are
-  // on lines of the lattice or, where cells are too large for that, at multiples of 1 / 256 of a cell. None where no
-  // such layout without flips is found.
-  std::optional<Eigen::VectorXcd> quantize(double density);
+  // on lines of the lattice or, where cells are too large for that and they need not be whole, at multiples of 1 / 256
+  // of a cell. None where no such layout without flips is found.
+  std::optional<Eigen::VectorXcd> quantize(double density, bool must_be_whole);
 
   // Moves all points but those of features and cones to where they stretch least.  weights: (m) of triangles.
   void relax(const Eigen::VectorXd& weights, Eigen::VectorXcd& position) const;

@@ -45,6 +45,7 @@ GridSearch::GridSearch(const Options& options, PointLattice lattice, Array<Seaml
                        ProgressMonitor& monitor)
     : parity_(options.seamless->parity),
       creases_(options.straighten),
+      whole_features_(options.seamless->whole_features),
       lattice_(lattice),
       components_(components),
       monitor_(monitor),
@@ -192,7 +193,8 @@ std::optional<QuantizedLayout> GridSearch::quantize(std::size_t component, doubl
 
 void GridSearch::prepare(std::size_t component) {
   const SeamlessComponent& of = components_[component];
-  const LatticeDemands demands{lattice_, parity_, relaxed_[component], of.task->directions, creases_, *of.alignment};
+  const LatticeDemands demands{lattice_, parity_,         relaxed_[component], of.task->directions,
+                               creases_, whole_features_, *of.alignment};
   quantizers_[component] = std::make_unique<LayoutQuantizer>(*of.system, *of.map, demands, step_);
 }
 

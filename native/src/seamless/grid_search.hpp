@@ -79,7 +79,7 @@ class GridSearch {
   // One of the cones takes up the curvature of both: the one whose own is nearer to that.
   bool merge(const ConePair& pair, const Options& options);
 
-  const bool parity_, creases_;
+  const bool parity_, creases_, whole_features_;
   const PointLattice lattice_;
   Array<SeamlessComponent>& components_;
   ProgressMonitor& monitor_;

@@ -137,7 +137,7 @@ void LayoutQuantizer::set_start(const ComponentMap& map) {
 
 // Leaves features_ empty on soft surfaces without marked features and where no feature can be aligned.
 void LayoutQuantizer::align_features() {
-  constexpr double most_growth = 1.1;  // of the L2 stretch
+  const double most_growth = demands_.whole_features ? 1.2 : 1.1;  // of the L2 stretch
   const PerHalfedge<char> feature =
       features_to_align({mesh_, geometry_}, demands_.creases && lattice_.rotation_order() == 4);
   if (std::count(feature.begin(), feature.end(), no_feature) == ssize(feature)) return;
@@ -164,7 +164,8 @@ PerHalfedge<ReleaseReason> LayoutQuantizer::release_reasons(const QuantizedLayou
 
 std::optional<QuantizedLayout> LayoutQuantizer::quantize_with_features(double density,
                                                                        const LayoutEffort& effort) const {
-  std::optional<Eigen::VectorXcd> position = features_->quantize(density);
+  const bool must_be_whole = demands_.whole_features && effort.features == LayoutEffort::Features::required;
+  std::optional<Eigen::VectorXcd> position = features_->quantize(density, must_be_whole);
   if (!position) return std::nullopt;
   QuantizedLayout out{std::move(*position), 1, true};
   out.energy = measure_energy(out.position);

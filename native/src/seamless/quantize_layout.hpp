@@ -50,6 +50,7 @@ struct LatticeDemands {
   const Array<Index>& relaxed;                 // cones that need not lie on the lattice
   const TextureDirections& directions;         // what v is to run along
   bool creases;                                // run along lines of the lattice, as marked features do
+  bool whole_features;                         // which are to be at whole cells, at more stretch
   std::optional<FeatureAlignment>& alignment;  // of the map, or empty, which is filled where features are aligned
 };
 

@@ -349,3 +349,19 @@ def test_undo_leaves_the_file_as_it_was():
     bpy.ops.ed.undo()
     assert changed(before, snapshot(bpy.data.objects["Cube"])) == set()
     assert "Cube Quads" not in bpy.data.objects and "Cube Quads" not in bpy.data.meshes
+
+
+@pytest.mark.parametrize("follows", [True, False])
+def test_rows_run_along_creases_unless_told_not_to(follows):
+    """On a turned box every vertex on an edge is on two of its planes."""
+    bpy.ops.mesh.primitive_cube_add(rotation=(0.3, 0.5, 0.2))
+    box = bpy.context.object
+    box.data.transform(box.matrix_basis)
+    box.matrix_basis.identity()
+    normals = np.array([face.normal[:] for face in box.data.polygons])
+    offsets = np.array([face.normal.dot(face.center) for face in box.data.polygons])
+    made = remesh(count=600, follow_creases=follows)
+    assert_closed(made, euler=2)
+    at_planes = (np.abs(positions(made) @ normals.T - offsets) < 1e-5).sum(axis=1)
+    on_edges = int((at_planes >= 2).sum())
+    assert on_edges > 80 if follows else on_edges < 60

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 from command import DISTORTION_KEYS, REPORT_KEYS
 from lsgp.io.mesh_files import read_mesh
-from meshes import cylinder
+from meshes import cylinder, transform
 from polygon_meshes import obj_text
 from quad_checks import fans, sides
+from zoo import closed
 
 QUADS = ["quads", "ball.obj", "-o", "quads.obj"]
 
@@ -110,3 +111,20 @@ def test_standard_streams(lsgp, ball_files: Path) -> None:
     done = lsgp("quads", "ball.obj", "-o", "-", "--target", 200)
     assert done.out == (ball_files / "quads.obj").read_text()
     assert "quads of side" in done.err
+
+
+def test_creases_are_followed_unless_told_not_to(lsgp, tmp_path: Path) -> None:
+    box = transform(closed.box(3, (1, 1.4, 2.2)), seed=2)
+    (tmp_path / "box.obj").write_text(obj_text(box.positions, box.triangles.tolist()))
+    run = ["quads", "box.obj", "-o", "quads.obj", "--target", 300, "--up", 1, 2, 3]
+    corners = []
+    for arguments in ([], ["--no-straighten"], ["--no-straighten", "--features", "crease:40"]):
+        assert lsgp(*run, *arguments).code == 0
+        positions, _ = quads_of(tmp_path / "quads.obj")
+        normals = [np.cross(*np.diff(box.positions[t], axis=0)) for t in box.triangles]
+        normals = np.unique(np.round([n / np.linalg.norm(n) for n in normals], 6), axis=0)
+        off = np.abs(positions @ normals.T - (box.positions @ normals.T).max(axis=0)) < 1e-5
+        corners.append(int((off.sum(axis=1) >= 2).sum()))
+    followed, free, marked = corners
+    assert followed == marked > 50
+    assert free < followed / 2

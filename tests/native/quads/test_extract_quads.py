@@ -207,8 +207,8 @@ def test_placed_cones_of_a_quarter_turn_are_held_at_two() -> None:
 
 
 def test_quads_too_large_for_a_mesh_are_made_smaller() -> None:
-    """A tube of two quads around would have two edges between the same vertices."""
-    mesh = meshes.torus(24, 8, 3.0, 0.4)
+    """A tube of two quads around would have two edges between the same vertices. It is too round to have creases."""
+    mesh = meshes.torus(24, 12, 3.0, 0.4)
     remesh = lsgp.remesh_to_quads(surface(mesh), size=1.2)
     assert codes(remesh.warnings) == ["GRID_REFINED"]
     assert remesh.layout.seamless.tile_size < 1.2

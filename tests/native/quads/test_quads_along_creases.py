@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Creases of hard surfaces are rows of edges of quads, also on models with few vertices inside their faces."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import lsgp
+import meshes
+import numpy as np
+import oracle
+import pytest
+from lsgp.divided_triangles import divide_long_edges
+from map_checks import codes, surface
+from meshes import Mesh
+from numpy.typing import NDArray
+from quad_checks import fans, require_on_surface, sides
+from zoo import closed
+
+EXACT = 1e-6  # of the size
+SHARP = np.radians(40)
+SLAB = np.zeros((5, 5, 2), bool)
+SLAB[:2], SLAB[:, :2] = True, True
+
+
+def prism(corners: int, height: float) -> Mesh:
+    return closed.lathe(np.ones(4), np.linspace(0, height, 4), corners, caps=(True, True))
+
+
+STRAIGHT = {
+    "cube of twelve triangles": closed.box(1, (1, 1, 1)),
+    "flat box": closed.box(3, (1, 1.7, 0.3)),
+    "long box": closed.box(2, (1, 1.2, 5)),
+    "L": meshes.voxels(SLAB),
+    "low L": meshes.voxels(SLAB[:, :, :1]),
+    "square prism": prism(4, 1.5),
+    "hexagonal prism": prism(6, 2.0),
+    "octagonal prism": prism(8, 1.0),
+}
+BEVELED = {"beveled block": closed.beveled_box(6, 0.15, (1, 1.3, 0.8))}
+ROUND = {"cylinder": prism(24, 2.0), "disk": prism(32, 0.4), "rod": prism(16, 6.0)}
+SOLIDS = STRAIGHT | BEVELED | ROUND
+TARGETS = (300, 1000, 4000)
+
+
+@cache
+def remesh(name: str, target: int) -> lsgp.QuadRemesh:
+    return lsgp.remesh_to_quads(surface(SOLIDS[name]), target=target)
+
+
+def creases(mesh: lsgp.Surface | Mesh) -> NDArray[np.int64]:
+    """One halfedge of each edge at which a closed surface bends."""
+    corners = mesh.positions[mesh.triangles]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    twin = oracle.halfedges(mesh.triangles)[2]
+    h = np.arange(len(twin))
+    bend = np.arccos(np.clip((normal[h // 3] * normal[twin // 3]).sum(axis=1), -1, 1))
+    return h[(bend > SHARP) & (h < twin)]
+
+
+def carried_share(mesh: Mesh, quads: lsgp.QuadMesh) -> float:
+    """Of the length of creases: where an edge of a quad is, along it."""
+    h = creases(mesh)
+    begin = mesh.positions[mesh.triangles.ravel()[h]]
+    end = mesh.positions[mesh.triangles.ravel()[h // 3 * 3 + (h + 1) % 3]]
+    tail = quads.positions[quads.quads.ravel()]
+    side = quads.positions[np.roll(quads.quads, -1, axis=1).ravel()] - tail
+    size, kept, whole = np.ptp(mesh.positions, axis=0).max(), 0.0, 0.0
+    for a, b in zip(begin, end, strict=True):
+        length = np.linalg.norm(b - a)
+        along = (b - a) / length
+        parallel = np.linalg.norm(np.cross(side, along), axis=1) < EXACT * size
+        for step in (np.arange(8) + 0.5) / 8:
+            point = a + step * (b - a)
+            share = np.clip(((point - tail) * side).sum(axis=1) / (side**2).sum(axis=1), 0, 1)
+            away = np.linalg.norm(tail + share[:, None] * side - point, axis=1)
+            kept += length / 8 if (away[parallel] < EXACT * size).any() else 0.0
+        whole += length
+    return kept / whole
+
+
+@pytest.mark.parametrize("target", TARGETS)
+@pytest.mark.parametrize("name", STRAIGHT)
+def test_edges_of_quads_carry_every_crease(name: str, target: int) -> None:
+    assert carried_share(SOLIDS[name], remesh(name, target).mesh) == pytest.approx(1, abs=1e-6)
+
+
+@pytest.mark.parametrize("target", TARGETS)
+@pytest.mark.parametrize("name", SOLIDS)
+def test_creases_lie_on_whole_cells_of_the_layout(name: str, target: int) -> None:
+    found = remesh(name, target)
+    h = creases(found.surface)
+    uv = found.layout.corner_uv.astype(np.float32).astype(float).reshape(-1, 2) / found.layout.seamless.cell
+    both = np.stack([uv[h], uv[h // 3 * 3 + (h + 1) % 3]], axis=1)
+    assert ((both[:, 0] == both[:, 1]) & (both[:, 0] == np.round(both[:, 0]))).any(axis=1).all()
+    assert "FEATURES_OFF_LATTICE" not in codes(found.warnings)
+
+
+@pytest.mark.parametrize("target", TARGETS)
+@pytest.mark.parametrize("name", SOLIDS)
+def test_they_are_a_closed_manifold_whose_irregular_vertices_are_the_cones(name: str, target: int) -> None:
+    mesh, found = SOLIDS[name], remesh(name, target)
+    once = sides(found.mesh.quads)
+    assert set(once.values()) == {1} and all((b, a) in once for a, b in once)
+    assert fans(found.mesh.quads) == len(found.mesh.positions) == len(found.mesh.quads) + 2
+    require_on_surface(mesh, found.mesh)
+    turns = np.round(found.layout.cone_angles / (np.pi / 2)).astype(int)
+    assert sorted(turns[turns != 4].tolist()) == sorted(found.mesh.valences[found.mesh.irregular].tolist())
+    assert len(found.mesh.quads) == pytest.approx(target, rel=0.15)
+
+
+@pytest.mark.parametrize("name", ["cylinder", "disk"])
+def test_few_vertices_on_round_faces_do_not_limit_quads(name: str) -> None:
+    """The caps are fans around one vertex, where no cone can be; a divided surface has room for some."""
+    found = remesh(name, 1000)
+    quality = lsgp.quad_quality(found.mesh.positions, found.mesh.quads)
+    assert len(found.surface.triangles) > len(SOLIDS[name].triangles)
+    assert quality.angle_error < np.radians(6)
+
+
+def test_a_surface_that_is_fine_or_soft_is_not_divided() -> None:
+    for mesh in (meshes.cube(12), meshes.bumpy_sphere(2), meshes.icosphere(1)):
+        given = surface(mesh)
+        assert lsgp.remesh_to_quads(given, target=200).surface == given
+
+
+def test_without_straight_sides_creases_are_not_followed() -> None:
+    mesh = STRAIGHT["flat box"]
+    turned = meshes.transform(mesh, seed=1)
+    options = lsgp.Options(seamless=lsgp.Seamless())
+    found = lsgp.remesh_to_quads(surface(turned), target=300, options=options)
+    assert found.layout.seamless.feature_share is None
+    assert carried_share(turned, found.mesh) < 0.9
+
+
+# --- dividing -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("longest", [0.5, 0.3, 0.2])
+@pytest.mark.parametrize("name", ["cylinder", "L", "cube of twelve triangles"])
+def test_a_divided_surface_is_the_same_surface_without_long_edges(name: str, longest: float) -> None:
+    mesh = SOLIDS[name]
+    found = divide_long_edges(surface(mesh), longest)
+    positions, triangles = found.surface.positions, found.surface.triangles
+    assert np.array_equal(positions[: len(mesh.positions)], mesh.positions)
+    corners = positions[triangles]
+    assert np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max() <= longest
+    once = sides(triangles)
+    assert set(once.values()) == {1} and all((b, a) in once for a, b in once)
+    places = mesh.positions[mesh.triangles][found.triangles]
+    np.testing.assert_allclose(np.einsum("tck,tkx->tcx", found.corners, places), corners, atol=1e-14)
+    np.testing.assert_allclose(
+        np.bincount(found.triangles, areas(corners)), areas(mesh.positions[mesh.triangles]), rtol=1e-12
+    )
+
+
+def areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+
+
+def test_parts_are_named_as_what_they_are_parts_of() -> None:
+    mesh = closed.box(1, (1, 1, 1))
+    features = mesh.triangles[:3, :2]
+    found = divide_long_edges(replace(surface(mesh), features=features), 0.3)
+    named = found.elements(lsgp.Elements("edges", found.surface.features))
+    assert named.indices.tolist() == sorted(np.sort(features, axis=1).tolist())
+    divided = found.surface.positions[found.surface.features]
+    length = np.linalg.norm(np.diff(divided, axis=1), axis=2).sum()
+    given = np.linalg.norm(np.diff(mesh.positions[features], axis=1), axis=2).sum()
+    assert length == pytest.approx(given)
+    every = lsgp.Elements("triangles", np.arange(len(found.surface.triangles), dtype=np.int32))
+    assert found.elements(every).indices.tolist() == list(range(12))
+    vertices = lsgp.Elements("vertices", np.arange(len(found.surface.positions), dtype=np.int32))
+    assert found.elements(vertices).indices.tolist() == list(range(8))
+
+
+def test_needles_are_not_divided_without_end() -> None:
+    mesh = closed.box(1, (1, 1, 1))
+    needles = mesh._replace(positions=mesh.positions * (1e5, 1, 1))
+    found = divide_long_edges(surface(needles), 1.0)
+    assert len(found.surface.triangles) <= 20_000
+
+
+def test_warnings_name_the_given_edges() -> None:
+    mesh = closed.gear(7, 0.3, 1)
+    found = lsgp.remesh_to_quads(surface(mesh), target=300)
+    edges = {tuple(sorted(pair)) for t in mesh.triangles.tolist() for pair in zip(t, t[1:] + t[:1], strict=True)}
+    for finding in found.warnings:
+        if finding.elements.kind == "edges":
+            assert {tuple(sorted(pair)) for pair in finding.elements.indices.tolist()} <= edges
+    assert found.mesh.triangles.max() < len(mesh.triangles)
+    assert found.mesh.surface_vertices.max() < len(mesh.positions)
