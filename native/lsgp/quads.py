@@ -28,7 +28,7 @@ _PLACED, _LAID_OUT = 0.6, 0.95
 _FOR_FEATURES, _ALONG, _PLAIN = 0.1, 0.4, 0.6
 # And of these layouts, where those on the given surface end, and those on one with long edges divided begin.
 _ON_GIVEN = 0.6
-# Rows of quads along creases may cost as much L2 stretch.
+# Rows of quads along all creases may cost as much L2 stretch, along some of them accordingly less.
 _MOST_L2_ALONG = 1.2
 # Edges longer than this, of the square root of the area, are divided where quads follow features, unless nearly all
 # are followed with hardly any stretch. What that has to gain: more than a few features, or stretch, without more quads.
@@ -344,20 +344,19 @@ def _along_features(
     progress: Progress | None,
 ) -> tuple[_Layouts, Result]:
     """Layouts along creases, and the nearest of them to the target: through the cones for creases, which are the first,
-    or where these gain less, or cost much more than a plain layout, through the usual ones."""
+    or where these gain less, through the usual ones; plain layouts where both cost much more for what they follow."""
     surface, target, options = asked
     for_features, usual = cones
     found = or_none(lambda: _whole_or_between(surface, target, for_features, options, share_of(progress, 0.0, _ALONG)))
-    along, layout = (None, None) if found is None else found
-    if layout is not None and runs_along_features(layout):
-        plain = _Layouts(surface, usual, replace(options, straighten=False))
-        if not _is_affordable(layout, plain.first(share_of(progress, _ALONG, _PLAIN))):
-            layout = None
-    if layout is not None and not releases_many_features(layout):
-        return along, layout
-    others, other = _whole_or_between(surface, target, usual, options, share_of(progress, _PLAIN, 1.0))
-    is_better = layout is not None and feature_share(layout) > feature_share(other)
-    return (along, layout) if is_better else (others, other)
+    plain = _Layouts(surface, usual, replace(options, straighten=False))
+    first = plain.first(share_of(progress, _ALONG, _PLAIN))
+    if found is not None and _is_affordable(found[1], first) and not releases_many_features(found[1]):
+        return found
+    others = _whole_or_between(surface, target, usual, options, share_of(progress, _PLAIN, 1.0))
+    affordable = [of for of in (others, found) if of is not None and _is_affordable(of[1], first)]
+    if not affordable:
+        return plain, plain.nearest(target, share_of(progress, 1.0, 1.0), first)
+    return max(affordable, key=lambda of: feature_share(of[1]))
 
 
 def _whole_or_between(
@@ -376,12 +375,18 @@ def _whole_or_between(
 
 
 def _is_affordable(along: Result, plain: Result) -> bool:
-    """Whether following creases costs little stretch and no further defects. Overlaps in the plane are none."""
+    """Whether following creases costs little stretch for their share, and no further defects. Overlaps in the plane are
+    none."""
     return (
         along.solved.tolist() == plain.solved.tolist()
         and len(along.flipped) + len(along.wrong_angle_sums) <= len(plain.flipped) + len(plain.wrong_angle_sums)
-        and along.distortion.l2_stretch <= _MOST_L2_ALONG * plain.distortion.l2_stretch
+        and along.distortion.l2_stretch <= _most_stretch(feature_share(along)) * plain.distortion.l2_stretch
     )
+
+
+def _most_stretch(share: float) -> float:
+    """What following this share of the features may cost in L2 stretch, as a factor."""
+    return 1 + (_MOST_L2_ALONG - 1) * max(0.0, share)
 
 
 def _is_close(along: Result) -> bool:
@@ -415,7 +420,7 @@ def _gained(
     has_less_stretch = layout.distortion.l2_stretch - 1 < _LESS_STRETCH * (before.distortion.l2_stretch - 1)
     if not (more > _FEW_FEATURES or (more > -_FEW_FEATURES and has_less_stretch)):
         return None
-    if layout.distortion.l2_stretch > _MOST_L2_ALONG * before.distortion.l2_stretch:
+    if layout.distortion.l2_stretch > _most_stretch(more) * before.distortion.l2_stretch:
         return None
     return None if _quad_count(layout) > _MORE_QUADS * _quad_count(before) else (layouts, layout)
 

@@ -16,6 +16,7 @@ from map_checks import codes, surface
 from meshes import Mesh
 from numpy.typing import NDArray
 from quad_checks import fans, require_on_surface, sides
+from shared_meshes import hard_mesh
 from zoo import closed
 
 EXACT = 1e-6  # of the size
@@ -42,6 +43,7 @@ BEVELED = {"beveled block": closed.beveled_box(6, 0.15, (1, 1.3, 0.8))}
 ROUND = {"cylinder": prism(24, 2.0), "disk": prism(32, 0.4), "rod": prism(16, 6.0)}
 SOLIDS = STRAIGHT | BEVELED | ROUND
 TARGETS = (300, 1000, 4000)
+ROUNDED = 0.02  # of the stretch, by grids of another size
 
 
 @cache
@@ -133,6 +135,17 @@ def test_without_straight_sides_creases_are_not_followed() -> None:
     found = lsgp.remesh_to_quads(surface(turned), target=300, options=options)
     assert found.layout.seamless.feature_share is None
     assert carried_share(turned, found.mesh) < 0.9
+
+
+@pytest.mark.parametrize("target", [400, 2000])
+@pytest.mark.parametrize("name", ["gear of 5 teeth", "gear of 7 teeth", "joint", "spool"])
+def test_creases_cost_stretch_by_the_share_that_is_followed(name: str, target: int) -> None:
+    teeth = {"gear of 5 teeth": 5, "gear of 7 teeth": 7}.get(name)
+    given = surface(hard_mesh(name) if teeth is None else closed.gear(teeth, 0.3, 2))
+    along = lsgp.remesh_to_quads(given, target=target).layout
+    plain = lsgp.remesh_to_quads(given, target=target, options=lsgp.Options(seamless=lsgp.Seamless())).layout
+    share = along.seamless.feature_share or 0.0
+    assert along.distortion.l2_stretch <= (1 + 0.2 * share + ROUNDED) * plain.distortion.l2_stretch
 
 
 # --- dividing -------------------------------------------------------------------------------------------------------
