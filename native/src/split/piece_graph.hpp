@@ -35,9 +35,8 @@ struct PieceGraph {
 };
 
 // network: on both halfedges, with the map's cuts; paths around small pieces are removed.
-// resolution: sides of boundaries inside the surface are merged up to about this length.  costs: the surface with the
-// costs of the paths.
+// resolution: sides of boundaries inside the surface are merged up to about this length.
 PieceGraph build_piece_graph(const MetricMesh& surface, const ComponentMap& map, PerHalfedge<char> network,
-                             double resolution, const MetricMesh& costs);
+                             double resolution);
 
 }  // namespace lsgp
