@@ -68,7 +68,7 @@ void KeptComponents::keep_maps_of(const Cones& cones, const Options& options) {
       has_same_maps(of_maps_->options, options)) {
     return;
   }
-  of_maps_ = Request{cones, options};
+  of_maps_ = MapInput{cones, options};
   for (auto& kept : kept_) {
     if (!kept) continue;
     kept->map.reset();
@@ -76,8 +76,8 @@ void KeptComponents::keep_maps_of(const Cones& cones, const Options& options) {
   }
 }
 
-void KeptComponents::keep_map(std::size_t i, KeptMap map) {
-  if (keeps_systems_) kept_[i]->map = std::move(map);
+void KeptComponents::keep_map(std::size_t i, const ComponentMap& map, const std::vector<Finding>& found) {
+  if (keeps_systems_) kept_[i]->map = KeptMap{map, found};
 }
 
 void KeptComponents::keep_system(std::size_t i, KeptSystem system) {

@@ -48,7 +48,7 @@ class KeptComponents {
   // Forgets maps that are not those of these cones and options, whose tiles may have another size.
   void keep_maps_of(const Cones& cones, const Options& options);
   const std::optional<KeptMap>& map(std::size_t i) const { return kept_[i]->map; }
-  void keep_map(std::size_t i, KeptMap map);
+  void keep_map(std::size_t i, const ComponentMap& map, const std::vector<Finding>& found);
   // Of the map, or empty.
   std::optional<FeatureAlignment>& alignment(std::size_t i) { return kept_[i]->alignment; }
   // Takes over the system of a component, if there is one.
@@ -68,14 +68,14 @@ class KeptComponents {
   };
 
   // What maps were made with.
-  struct Request {
+  struct MapInput {
     Cones cones;
     Options options;
   };
 
   const bool keeps_systems_;
   Work work_;
-  std::optional<Request> of_maps_;
+  std::optional<MapInput> of_maps_;
   PerComponent<std::unique_ptr<Kept>> kept_;  // systems refer to the geometry beside them
   std::int64_t kept_of_ = 0;                  // generation of the topology it was made from
 };

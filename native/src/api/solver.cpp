@@ -97,7 +97,7 @@ Result map_components(const KnownSurface& known, const Cones& cones, const Optio
       found[i] = known->found;
     } else {
       map = map_component(system, task, options, found[i], monitor);
-      if (options.seamless) kept.keep_map(i, {map, found[i]});
+      if (options.seamless) kept.keep_map(i, map, found[i]);
     }
     kept.release(i);
     if (options.seamless) require_quantizable(component.mesh, map);

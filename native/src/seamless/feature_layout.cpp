@@ -112,13 +112,14 @@ FeatureLayout::FeatureLayout(const FeatureTask& task, const PerHalfedge<char>& f
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
     is_cone_[v] = mesh.loop_of_vertex[v] == none && task_.curvature.at_vertex[v] != 0;
   }
-  if (!known) {
+  if (known) {
+    aligned_ = known->lines;
+    start_ = known->start;
+    reasons_ = known->reasons;
+  } else {
     align_all(feature);
     known = FeatureAlignment{aligned_, start_, reasons_};
   }
-  aligned_ = known->lines;
-  start_ = known->start;
-  reasons_ = known->reasons;
   aligned_length_ = total_length(aligned_);
   if (!aligned_.empty()) find_coordinates();
 }

@@ -70,15 +70,11 @@ Eigen::MatrixXcd reduce_basis(const Eigen::MatrixXcd& form, const PointLattice& 
 }
 
 LatticeSearch::LatticeSearch(Eigen::MatrixXcd form, const Array<MovingTriangle>& triangles, const PointLattice& lattice)
-    : form_(std::move(form)),
-      parts_(form_.rows()),
-      triangle_count_(static_cast<int>(ssize(triangles))),
-      lattice_(lattice),
-      moves_of_triangle_(triangles.size()) {
+    : form_(std::move(form)), parts_(form_.rows()), lattice_(lattice), moves_of_triangle_(triangles.size()) {
   if (form_.size() == 0) return;
   const int directions = lattice_.square() ? 4 : 6;
   for (int turn = 0; turn < directions; ++turn) units_.push_back(PointLattice(directions).unit(turn));
-  for (int f = 0; f < triangle_count_; ++f) {
+  for (int f = 0; f < ssize(triangles); ++f) {
     for (std::size_t c = 0; c < 3; ++c) {
       const Eigen::RowVectorXcd& slope = triangles[f].slope[c];
       for (Eigen::Index k = 0; k < slope.size(); ++k) {
@@ -102,7 +98,7 @@ void LatticeSearch::add_move(const Eigen::VectorXcd& x, const Eigen::VectorXcd& 
     if (x[k] != 0.0) move.x.emplace_back(k, x[k]);
   }
   const Array<std::array<Complex, 3>> all = corners_at(x);
-  for (int f = 0; f < triangle_count_; ++f) {
+  for (int f = 0; f < ssize(all); ++f) {
     if (all[f][0] == all[f][1] && all[f][1] == all[f][2]) continue;  // only shifted
     move.corners.push_back(all[f]);
     move.triangles.push_back(f);

@@ -67,7 +67,6 @@ class LatticeSearch {
 
   Eigen::MatrixXcd form_;
   Array<Array<Part>> parts_;  // of each coordinate, by triangles: few, since cones move the triangles around them
-  int triangle_count_ = 0;
   PointLattice lattice_;
   Array<Complex> units_;      // the shortest vectors of the lattice
   Eigen::MatrixXcd reduced_;  // columns: the reduced basis
