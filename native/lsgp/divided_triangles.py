@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .api import FloatArray, IndexArray, Surface
+from .edge_keys import edge_keys
 from .errors import Elements
 
 # Needles are divided along their length into as many triangles as that takes; no more than this in all, or as many
@@ -166,6 +167,6 @@ def _divided_pairs(pairs: IndexArray, ends: NDArray[np.int64], edges: NDArray[np
     if not len(pairs):
         return pairs
     whole = _edges_of(ends, edges)
-    count = int(max(ends.max(), pairs.max())) + 1
-    keys = np.sort(pairs.astype(np.int64), axis=1) @ (count, 1)
-    return edges[(whole[:, 0] >= 0) & np.isin(whole @ (count, 1), keys)].astype(np.int32)
+    count = int(ends.max()) + 1
+    keys, wanted = (edge_keys(of[:, 0], of[:, 1], count) for of in (whole, pairs))
+    return edges[(whole[:, 0] >= 0) & np.isin(keys, wanted)].astype(np.int32)

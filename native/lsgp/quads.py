@@ -183,13 +183,9 @@ def remesh_to_quads(
     else:
         on_given, on_finer = share_of(laying_out, 0.0, _ON_GIVEN), share_of(laying_out, _ON_GIVEN, 1.0)
         layouts, layout = _along_features((surface, target, chosen), (along, completed), on_given)
-        if not _is_close(layout):
-            finer = _divided(surface)
-        gained = None if finer is None else or_none(lambda: _gained(finer, target, chosen, layout, on_finer))
-        if gained is None:
-            finer = None
-        else:
-            layouts, layout = gained
+        gained = None if _is_close(layout) else or_none(lambda: _gained(surface, target, chosen, layout, on_finer))
+        if gained is not None:
+            finer, layouts, layout = gained
     asked = 0.0 if side is None else _area(surface) / side**2
     mesh, layout = layouts.extracted(layout, asked, share_of(progress, _LAID_OUT, 1.0))
     warnings = [finding for finding in layout.warnings if finding.code not in _OF_LAYOUTS_ALONE]
@@ -350,10 +346,12 @@ def _along_features(
     found = or_none(lambda: _whole_or_between(surface, target, for_features, options, share_of(progress, 0.0, _ALONG)))
     plain = _Layouts(surface, usual, replace(options, straighten=False))
     first = plain.first(share_of(progress, _ALONG, _PLAIN))
-    if found is not None and _is_affordable(found[1], first) and not releases_many_features(found[1]):
-        return found
+    affordable = [found] if found is not None and _is_affordable(found[1], first) else []
+    if affordable and not releases_many_features(affordable[0][1]):
+        return affordable[0]
     others = _whole_or_between(surface, target, usual, options, share_of(progress, _PLAIN, 1.0))
-    affordable = [of for of in (others, found) if of is not None and _is_affordable(of[1], first)]
+    if _is_affordable(others[1], first):
+        affordable.insert(0, others)
     if not affordable:
         return plain, plain.nearest(target, share_of(progress, 1.0, 1.0), first)
     return max(affordable, key=lambda of: feature_share(of[1]))
@@ -404,10 +402,13 @@ def _divided(surface: Surface) -> DividedSurface | None:
 
 
 def _gained(
-    finer: DividedSurface, target: int | None, options: Options, before: Result, progress: Progress | None
-) -> tuple[_Layouts, Result] | None:
-    """Layouts along features of a divided surface, if they follow more of them than the one before, or as many at less
-    stretch."""
+    surface: Surface, target: int | None, options: Options, before: Result, progress: Progress | None
+) -> tuple[DividedSurface, _Layouts, Result] | None:
+    """The surface with long edges divided, and layouts along features on it, if they follow more of them than the one
+    before, or as many at less stretch."""
+    finer = _divided(surface)
+    if finer is None:
+        return None
     cones = feature_cones(Solver(finer.surface), options, share_of(progress, 0.0, _FOR_FEATURES))
     if cones is None:
         return None
@@ -422,7 +423,7 @@ def _gained(
         return None
     if layout.distortion.l2_stretch > _most_stretch(more) * before.distortion.l2_stretch:
         return None
-    return None if _quad_count(layout) > _MORE_QUADS * _quad_count(before) else (layouts, layout)
+    return None if _quad_count(layout) > _MORE_QUADS * _quad_count(before) else (finer, layouts, layout)
 
 
 def _undivided(mesh: QuadMesh, finer: DividedSurface) -> QuadMesh:
