@@ -145,7 +145,7 @@ def measure_speed(largest: int, repetitions: int, blender: str | None, writes: b
         print(f"{case.name}, {len(case.cones)} cones: {rows[-1].seconds}", file=sys.stderr)
         if writes:
             plot(rows, PLOT)
-            PAGE.write_text(speed_page(rows), encoding="utf-8")
+            PAGE.write_text(speed_page(rows) + "\n", encoding="utf-8")
     return speed_page(rows)
 
 

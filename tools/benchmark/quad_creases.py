@@ -19,7 +19,7 @@ import numpy as np
 from meshes import Mesh
 from placement_quality import SHARED
 from quad_meshes import Quads, irregular, kept_share
-from zoo import closed
+from zoo import closed, swept
 
 FILES = ("fandisk.obj", "hard/joint.off", "hard/spool.off", "hard/pinion.off", "hard/anchor.off")
 
@@ -28,23 +28,15 @@ def turned(radius: np.ndarray, height: float, around: int) -> Mesh:
     return closed.lathe(radius, np.linspace(0, height, len(radius)), around, caps=(True, True))
 
 
-def bent(pipe: Mesh, radius: float) -> Mesh:
-    """Along a quarter of a circle."""
-    angle = pipe.positions[:, 2] / np.ptp(pipe.positions[:, 2]) * np.pi / 2
-    away = radius + pipe.positions[:, 0]
-    places = np.stack([away * np.cos(angle), pipe.positions[:, 1], away * np.sin(angle)], axis=1)
-    return pipe._replace(positions=places)
-
-
 SOLIDS = {
-    "cylinder": turned(np.ones(5), 2, 24),
+    "cylinder": closed.prism(24, 4, 2),
     "frustum": turned(np.linspace(1, 0.6, 5), 2, 24),
     "barrel": turned(1 + 0.15 * np.sin(np.linspace(0, np.pi, 13)), 2.4, 32),
-    "hexagonal prism": turned(np.ones(5), 2, 6),
+    "hexagonal prism": closed.prism(6, 4, 2),
     "beveled block": closed.beveled_box(6, 0.15, (1, 1.3, 0.8)),
     "gear of five teeth": closed.gear(5, 0.3, 2),
     "gear of twelve teeth": closed.gear(12, 0.25, 2),
-    "bent pipe": bent(turned(np.full(25, 0.4), 4, 24), 2.5),
+    "bent pipe": swept.pipe(24, 16, 1.2, True),
 }
 
 

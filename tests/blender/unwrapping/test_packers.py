@@ -101,8 +101,10 @@ def test_blenders_packer_turns_no_islands_where_they_fill_enough_without(enough,
     """Turning the two islands of a cube by quarters takes it seconds."""
     monkeypatch.setattr(lsgp, "packer_name", lambda: None)
     monkeypatch.setattr(packing, "ENOUGH_UNTURNED", enough)
-    add_cube("Cube")
+    cube = add_cube("Cube")
     assert unwrap() == {"FINISHED"}
+    # Other Blenders may fill the square less.
+    assert bpy.app.version[:2] != (4, 5) or area(UvMap(cube)) > 0.6
     assert (len(runs) > 1) == may_turn and set(runs) == {"Blender"}
 
 

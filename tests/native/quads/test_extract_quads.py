@@ -206,10 +206,11 @@ def test_placed_cones_of_a_quarter_turn_are_held_at_two() -> None:
     assert remesh.mesh.valences[held].tolist() == [2] * len(narrow)
 
 
-def test_quads_too_large_for_a_mesh_are_made_smaller() -> None:
-    """A tube of two quads around would have two edges between the same vertices. It is too round to have creases."""
-    mesh = meshes.torus(24, 12, 3.0, 0.4)
-    remesh = lsgp.remesh_to_quads(surface(mesh), size=1.2)
+@pytest.mark.parametrize(("around", "options"), [(8, lsgp.Options(seamless=lsgp.Seamless())), (12, None)])
+def test_quads_too_large_for_a_mesh_are_made_smaller(around: int, options: lsgp.Options | None) -> None:
+    """A tube of two quads around would have two edges between the same vertices. One of twelve sides has no creases."""
+    mesh = meshes.torus(24, around, 3.0, 0.4)
+    remesh = lsgp.remesh_to_quads(surface(mesh), size=1.2, options=options)
     assert codes(remesh.warnings) == ["GRID_REFINED"]
     assert remesh.layout.seamless.tile_size < 1.2
     require_quads_of(mesh, remesh.layout.corner_uv, remesh.mesh)

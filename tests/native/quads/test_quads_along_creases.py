@@ -25,22 +25,18 @@ SLAB = np.zeros((5, 5, 2), bool)
 SLAB[:2], SLAB[:, :2] = True, True
 
 
-def prism(corners: int, height: float) -> Mesh:
-    return closed.lathe(np.ones(4), np.linspace(0, height, 4), corners, caps=(True, True))
-
-
 STRAIGHT = {
     "cube of twelve triangles": closed.box(1, (1, 1, 1)),
     "flat box": closed.box(3, (1, 1.7, 0.3)),
     "long box": closed.box(2, (1, 1.2, 5)),
     "L": meshes.voxels(SLAB),
     "low L": meshes.voxels(SLAB[:, :, :1]),
-    "square prism": prism(4, 1.5),
-    "hexagonal prism": prism(6, 2.0),
-    "octagonal prism": prism(8, 1.0),
+    "square prism": closed.prism(4, 3, 1.5),
+    "hexagonal prism": closed.prism(6, 3, 2.0),
+    "octagonal prism": closed.prism(8, 3, 1.0),
 }
 BEVELED = {"beveled block": closed.beveled_box(6, 0.15, (1, 1.3, 0.8))}
-ROUND = {"cylinder": prism(24, 2.0), "disk": prism(32, 0.4), "rod": prism(16, 6.0)}
+ROUND = {"cylinder": closed.prism(24, 3, 2.0), "disk": closed.prism(32, 3, 0.4), "rod": closed.prism(16, 3, 6.0)}
 SOLIDS = STRAIGHT | BEVELED | ROUND
 TARGETS = (300, 1000, 4000)
 ROUNDED = 0.02  # of the stretch, by grids of another size
