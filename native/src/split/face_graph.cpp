@@ -38,6 +38,13 @@ PerHalfedge<double> relative_cut_factors(const HalfedgeMesh& mesh) {
   return factor;
 }
 
+HalfedgeMesh weighing_length(const HalfedgeMesh& mesh) {
+  HalfedgeMesh out = mesh;
+  out.cut_factor = relative_cut_factors(mesh);
+  for (double& factor : out.cut_factor) factor = (1 + factor) / 2;
+  return out;
+}
+
 FaceGraph build_face_graph(const OpenedSurface& surface) {
   const HalfedgeMesh& mesh = surface.mesh;
   const Geometry& geometry = surface.geometry;

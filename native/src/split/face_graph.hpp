@@ -49,6 +49,10 @@ struct FaceGraph {
 // What an edge's length counts as a cut, of the median edge's and within bounds; empty where all cost the same.
 PerHalfedge<double> relative_cut_factors(const HalfedgeMesh& mesh);
 
+// The mesh where the length of a cut counts as much as its cost. Cuts that are only to be cheap would take long ways
+// and leave small islands.  mesh: with factors.
+HalfedgeMesh weighing_length(const HalfedgeMesh& mesh);
+
 FaceGraph build_face_graph(const OpenedSurface& surface);
 
 }  // namespace lsgp

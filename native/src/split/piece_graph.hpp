@@ -35,8 +35,9 @@ struct PieceGraph {
 };
 
 // network: on both halfedges, with the map's cuts; paths around small pieces are removed.
-// resolution: sides of boundaries inside the surface are merged up to about this length.
+// resolution: sides of boundaries inside the surface are merged up to about this length.  costs: the surface with the
+// costs of the paths.
 PieceGraph build_piece_graph(const MetricMesh& surface, const ComponentMap& map, PerHalfedge<char> network,
-                             double resolution);
+                             double resolution, const MetricMesh& costs);
 
 }  // namespace lsgp

@@ -320,14 +320,15 @@ PerHalfedge<char> Recutter::cuts_of(const HalfedgeMesh& mesh, const State& state
 
 }  // namespace
 
-Array<ComponentMap> recut(const MetricMesh& surface, const ComponentMap& map) {
+Array<ComponentMap> recut(const MetricMesh& surface, const MetricMesh& costs, const ComponentMap& map) {
   const HalfedgeMesh& mesh = surface.mesh;
   const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
   double area = 0;
   for (Index f = 0; f < mesh.triangle_count(); ++f) area += doubled_area(corners, f) / 2;
   if (!(area > 0)) return {};
   const double resolution = std::sqrt(area / cells_of_layout) / 2;
-  Recutter recutter(build_piece_graph(surface, map, find_candidate_cuts(surface, map.cut_graph), resolution), area);
+  PerHalfedge<char> network = find_candidate_cuts(surface, map.cut_graph);
+  Recutter recutter(build_piece_graph(surface, map, std::move(network), resolution, costs), area);
   Array<ComponentMap> out;
   for (const Recutter::State& state : recutter.search()) {
     out.push_back(map);

@@ -110,11 +110,18 @@ class SplitRules {
                  std::find(kept_.begin(), kept_.end(), 1) == kept_.end();
     const bool has_images = may_recut_ && map.validity.flipped.empty() && are_mirrored(task.mirroring, map.cones);
     if (has_images) mirrored_.emplace(surface, task.mirroring);
+    if (!factor_.empty()) by_length_ = weighing_length(surface.mesh);
   }
 
   const OpenedSurface& surface() const { return surface_; }
   const PerHalfedge<char>& kept() const { return kept_; }
   bool may_recut() const { return may_recut_; }
+  // The surface, and where cuts have costs once more with their length weighed as well.
+  Array<MetricMesh> weighings() const {
+    Array<MetricMesh> out{surface_};
+    if (by_length_) out.push_back({*by_length_, surface_.geometry});
+    return out;
+  }
   bool is_mirrored() const { return mirrored_.has_value(); }
   double least_cost(const PerHalfedge<char>& ends) const { return cost(surface_, factor_, ends); }
   double cost_of(const PerHalfedge<char>& ends) const {
@@ -155,6 +162,7 @@ class SplitRules {
   const OpenedSurface surface_;
   const PerHalfedge<char>& kept_;     // may not be closed
   const PerHalfedge<double> factor_;  // of edges as cuts
+  std::optional<HalfedgeMesh> by_length_;
   bool may_recut_;
   std::optional<MirroredIslands> mirrored_;
 };
@@ -173,10 +181,12 @@ class MapDivider {
   bool is_whole() const { return overlaps_.empty(); }
   double cost_before() const { return rules_.least_cost(surface_.open); }
 
-  Division divide(CutCost rule) const {
+  // costs: the surface, with the costs of further cuts.
+  Division divide(CutCost rule, const MetricMesh& costs) const {
     const HalfedgeMesh& mesh = surface_.mesh;
     MapParts parts{surface_.open, {}, {}};
-    const Array<Index> opened = split_overlaps(surface_, overlaps_, rule, [&] { monitor_.advance(0); });
+    const auto before_cut = [&] { monitor_.advance(0); };
+    const Array<Index> opened = split_overlaps({costs, surface_.open}, overlaps_, rule, before_cut);
     for (const Index h : opened) parts.open[h] = parts.open[mesh.twin[h]] = 1;
     parts.motion.resize(label_parts(mesh, parts.open, parts.part));
     if (map_.rotation) merge_islands(surface_, map_, rules_.kept(), parts);
@@ -203,16 +213,20 @@ class WaySearch {
  public:
   WaySearch(const SplitRules& rules, ProgressMonitor& monitor) : rules_(rules), monitor_(monitor) {}
 
-  // least: dividing an overlapping layout is assumed to add at least this cost.
-  void divide(const ComponentMap& way, std::initializer_list<CutCost> costs, double least) {
+  // weighings: the surface with each of the costs that further cuts may have.  least: dividing an overlapping layout is
+  // assumed to add at least this cost.
+  void divide(const ComponentMap& way, std::initializer_list<CutCost> rules, const Array<MetricMesh>& weighings,
+              double least) {
     const PerHalfedge<char> ends = ends_of(rules_.surface(), way);
     const MapDivider divider(rules_, ends, way, monitor_);
-    for (const CutCost cost : costs) {
-      if (chosen_ && divider.cost_before() + (divider.is_whole() ? 0 : least) >= best_.cost) break;
-      Division other = divider.divide(cost);
-      if (chosen_ && !(other.cost < best_.cost)) continue;
-      best_ = std::move(other);
-      chosen_ = &way;
+    for (const CutCost rule : rules) {
+      for (const MetricMesh& costs : weighings) {
+        if (chosen_ && divider.cost_before() + (divider.is_whole() ? 0 : least) >= best_.cost) return;
+        Division other = divider.divide(rule, costs);
+        if (chosen_ && !(other.cost < best_.cost)) continue;
+        best_ = std::move(other);
+        chosen_ = &way;
+      }
     }
   }
 
@@ -247,7 +261,13 @@ void apply(const OpenedSurface& surface, const MapParts& parts, ComponentMap& ma
 Array<ComponentMap> find_ways(const SplitRules& rules, const ComponentMap& map) {
   Array<ComponentMap> ways;
   if (!rules.may_recut()) return ways;
-  ways = recut(rules.surface(), map);
+  const Array<MetricMesh> weighings = rules.weighings();
+  for (std::size_t sought = 0; sought < weighings.size(); ++sought) {
+    // Cuts sought by their length as well are not exchanged by cost alone.
+    for (std::size_t costs = sought; costs < weighings.size(); ++costs) {
+      for (ComponentMap& way : recut(weighings[sought], weighings[costs], map)) ways.push_back(std::move(way));
+    }
+  }
   for (std::size_t i = 0, count = ways.size(); i < count; ++i) {
     for (const MapParts& parts : rules.mirror(ways[i], ways[i].cut_graph.is_cut)) {
       ComponentMap way = ways[i];
@@ -266,12 +286,13 @@ bool split_map(const OpenedSurface& surface, const SplitTask& task, ProgressMoni
   if (find_own_overlaps(surface.mesh, map).empty()) return false;
   const SplitRules rules(surface, task, map);
   // The fastest rule selects among the recut maps. The map's own cuts compete with every rule, so that recutting never
-  // costs more.
+  // costs more. All divisions are judged by the given costs of cuts, those found by length as well.
   const Array<ComponentMap> ways = find_ways(rules, map);
+  const Array<MetricMesh> weighings = rules.weighings();
   WaySearch search(rules, monitor);
-  for (const ComponentMap& way : ways) search.divide(way, {CutCost::shortest}, cost_of_island);
-  if (search.chosen()) search.divide(*search.chosen(), {CutCost::no_slivers, CutCost::no_small_parts}, 0);
-  search.divide(map, {CutCost::shortest, CutCost::no_slivers, CutCost::no_small_parts}, 0);
+  for (const ComponentMap& way : ways) search.divide(way, {CutCost::shortest}, {surface}, cost_of_island);
+  if (search.chosen()) search.divide(*search.chosen(), {CutCost::no_slivers, CutCost::no_small_parts}, weighings, 0);
+  search.divide(map, {CutCost::shortest, CutCost::no_slivers, CutCost::no_small_parts}, weighings, 0);
   ComponentMap chosen = *search.chosen();
   apply(surface, search.best().parts, chosen);
   map = std::move(chosen);
