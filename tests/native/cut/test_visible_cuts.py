@@ -76,3 +76,17 @@ def test_whole_layouts_keep_their_cuts_out_of_sight(family: str, share: float, p
     hidden = sum(visible_length(mesh, preset, is_hidden=True) for mesh in FAMILIES[family])
     shortest = sum(visible_length(mesh, preset, is_hidden=False) for mesh in FAMILIES[family])
     assert hidden <= share * shortest
+
+
+def test_hidden_cuts_leave_few_islands() -> None:
+    """With sight alone as the cost, ten layouts come apart in twenty islands."""
+    islands = 0
+    for mesh in (horned(seed, 5 + seed % 3) for seed in range(10)):
+        given = surface(mesh, edges=meshes.edges_of(mesh.triangles))
+        given = replace(given, cut_costs=lsgp.cut_costs(given, FRONT))
+        placed = lsgp.place_cones(given, count=24)
+        options = lsgp.Options(mode="low-stretch", overlaps="split")
+        split = lsgp.parameterize(given, placed.cones, placed.cone_angles, options)
+        assert len(split.overlapping) == 0
+        islands += int(split.island.max()) + 1
+    assert islands <= 15
