@@ -82,6 +82,7 @@ class Compactor {
         search_(square),
         cutter_(graph, CutCost::shortest),
         center_(graph.face_count(), 0),
+        map_area_(graph.face_count(), 0),
         place_(graph.face_count(), none),
         is_near_cut_(graph.face_count(), 0) {
     const HalfedgeMesh& mesh = surface.mesh;
@@ -93,6 +94,7 @@ class Compactor {
     for (Index f = 0; f < mesh.triangle_count(); ++f) {
       const Index face = graph.face_of[f];
       triangles_[triangles[face]++] = f;
+      map_area_[face] += doubled_area(position, f) / 2;
       center_[face] +=
           position.segment<3>(3 * f).mean() / static_cast<double>(triangle_begin_[face + 1] - triangle_begin_[face]);
     }
@@ -127,6 +129,7 @@ class Compactor {
   Array<Array<Index>> pieces_of(const Array<Index>& faces, const Array<Index>& class_of);
   // The faces of the pieces of the best division of an island; fewer than two if it is best left whole.
   Array<Array<Index>> divide(const Array<Index>& faces);
+  WholeIsland describe(const Array<Index>& faces, const Array<Complex>& hull) const;
   IslandCells cells_of(const Array<Index>& island, Complex along);
   std::optional<Line> axis_of(const Array<Index>& island);
   Reflection fit_reflection(const Array<Index>& faces) const;
@@ -155,6 +158,7 @@ class Compactor {
   MinimumCutter cutter_;
   Array<Index> triangle_begin_, triangles_;  // of every face
   PerFace<Complex> center_;
+  PerFace<double> map_area_;
   PerFace<Index> place_;       // index in the current island, none elsewhere
   PerFace<char> is_near_cut_;  // may change sides
 };
@@ -208,14 +212,16 @@ IslandCells Compactor::cells_of(const Array<Index>& island, Complex along) {
   IslandCells cells;
   const Array<Array<Index>> pieces = pieces_of(island, square_of);
   for (std::size_t cell = 0; cell < pieces.size(); ++cell) {
-    double area = 0;
+    double area = 0, map_area = 0;
     Complex center = 0;
     for (const Index face : pieces[cell]) {
       place_[face] = static_cast<Index>(cell);
       area += graph_.area[face];
+      map_area += map_area_[face];
       center += graph_.area[face] * center_[face];
     }
     cells.area.push_back(area);
+    cells.map_area.push_back(map_area);
     cells.faces.push_back(static_cast<Index>(pieces[cell].size()));
     cells.center.push_back(area > 0 ? center / area : center_[pieces[cell].front()]);
     cells.hull.push_back(hull_of(pieces[cell]));
@@ -314,10 +320,12 @@ Array<Index> Compactor::without_slivers(const Array<Index>& faces, const WholeIs
     for (const Index face : pieces[i]) place_[face] = static_cast<Index>(i);
   }
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    Piece piece{0, static_cast<Index>(pieces[i].size()), false};
+    Piece piece;
+    piece.faces = static_cast<Index>(pieces[i].size());
     Array<double> border(pieces.size(), 0);
     for (const Index face : pieces[i]) {
       piece.area += graph_.area[face];
+      piece.map_area += map_area_[face];
       graph_.for_each_link(face, [&](Index other, const FaceGraph::Link& link) {
         const Index beside = place_[other];
         if (beside == none || beside == place_[face]) return;
@@ -348,13 +356,20 @@ double Compactor::length_between(const Array<Index>& faces, const Array<Index>& 
   return length;
 }
 
+WholeIsland Compactor::describe(const Array<Index>& faces, const Array<Complex>& hull) const {
+  double area = 0, squares = 0;
+  for (const Index face : faces) {
+    area += graph_.area[face];
+    squares += graph_.area[face] * std::norm(std::log(map_area_[face] / graph_.area[face]));
+  }
+  return search_.describe(area, std::sqrt(squares / area), hull);
+}
+
 Array<Array<Index>> Compactor::divide(const Array<Index>& faces) {
-  double area = 0;
-  for (const Index face : faces) area += graph_.area[face];
   if (faces.size() < 2) return {};
   const Array<Complex> hull = hull_of(faces);
-  const WholeIsland island = search_.describe(area, hull);
-  if (island.demand - area < search_.least_gain()) return {};
+  const WholeIsland island = describe(faces, hull);
+  if (island.demand - island.area < search_.least_gain()) return {};
   const std::optional<Line> axis = axis_of(faces);
   const Complex along = axis ? axis->normal : longer_side(hull);
   const IslandDivision division = search_.find_division(cells_of(faces, along), island, hull, along, axis);
@@ -362,7 +377,7 @@ Array<Array<Index>> Compactor::divide(const Array<Index>& faces) {
   // A single line is the axis or at right angles to it.
   const bool is_axis = axis && division.lines.size() == 1 &&
                        std::abs(std::real(std::conj(axis->normal) * division.lines.front().normal)) > 0.5;
-  const double band = is_axis ? beside_axis * std::sqrt(area / static_cast<double>(faces.size()))
+  const double band = is_axis ? beside_axis * std::sqrt(island.area / static_cast<double>(faces.size()))
                               : extent_along(hull, along).width() / division_positions;
   Array<Array<Index>> best;
   double most_worth = 0;

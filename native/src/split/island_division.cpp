@@ -20,6 +20,8 @@ constexpr double smallest_piece = 0.01, smallest_of_few = 0.06, smallest_of_long
 // Of islands that are smaller than this, only long and narrow ones are divided; pieces are at least a share of them.
 constexpr double small_island = 0.02, smallest_share = 0.1;
 constexpr Index few_faces = 4;
+// How far the texel density of a piece may differ from that of all islands, relative to how far that of faces does.
+constexpr double most_uneven = 0.5, hardly_uneven = 0.01;
 // Least saving, as a fraction of the area of all islands: for a cut as long as the square root of that area, and for
 // each additional island.
 constexpr double price_of_cut = 0.15, price_of_island = 0.01;
@@ -56,13 +58,15 @@ DivisionSearch::DivisionSearch(const SharedSquare& square)
 double DivisionSearch::least_gain() const { return price_factor_ * price_of_island * area_; }
 
 bool DivisionSearch::may_be_cut_off(const Piece& piece, const WholeIsland& island) const {
+  const double unevenness = std::abs(std::log(piece.map_area / piece.area));
+  if (!(unevenness <= std::max(hardly_uneven, most_uneven * island.unevenness))) return false;
   if (island.area < small_island * area_) return piece.area >= smallest_share * island.area;
   if (island.is_long && piece.area >= smallest_of_long * area_ && piece.faces > few_faces) return true;
   const bool is_scrap = piece.faces <= few_faces && piece.ends_smoothly;
   return piece.area >= (is_scrap ? smallest_of_few : smallest_piece) * area_;
 }
 
-WholeIsland DivisionSearch::describe(double area, const Array<Complex>& hull) const {
+WholeIsland DivisionSearch::describe(double area, double unevenness, const Array<Complex>& hull) const {
   constexpr int turns = 45;  // of a quarter
   double box = std::numeric_limits<double>::infinity(), square = box;
   for (int i = 0; i < turns; ++i) {
@@ -71,7 +75,7 @@ WholeIsland DivisionSearch::describe(double area, const Array<Complex>& hull) co
     square = std::min(square, std::max(extent.width(), extent.height()));
   }
   const double too_large = std::max(0.0, square * square - large * area_ / fill);
-  return {area, (area_of_hull(hull) + box) / 2 + cost_of_large * too_large, too_large > 0};
+  return {area, unevenness, (area_of_hull(hull) + box) / 2 + cost_of_large * too_large, too_large > 0};
 }
 
 double DivisionSearch::worth(double gain, double length, std::size_t pieces) const {
@@ -101,6 +105,7 @@ double DivisionSearch::worth(const IslandCells& cells, const Array<Index>& class
     }
     number[cell] = number[root];
     pieces[number[cell]].area += cells.area[cell];
+    pieces[number[cell]].map_area += cells.map_area[cell];
     pieces[number[cell]].faces += cells.faces[cell];
     points[number[cell]] += static_cast<Index>(cells.hull[cell].size());
   }

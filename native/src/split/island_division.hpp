@@ -47,7 +47,7 @@ struct IslandCells {
     bool is_smooth;  // where the surface hardly bends, or bends as round shapes do
   };
   Array<Complex> center;
-  Array<double> area;
+  Array<double> area, map_area;
   Array<Index> faces;  // their number
   Array<Array<Complex>> hull;
   Array<Link> links;
@@ -57,13 +57,15 @@ struct IslandCells {
 // An island before it is divided.
 struct WholeIsland {
   double area = 0;
-  double demand = 0;     // of the square
-  bool is_long = false;  // it reaches so far that it blocks room for others
+  double unevenness = 0;  // root mean square of the logarithm of its faces' areas in the map relative to their own
+  double demand = 0;      // of the square
+  bool is_long = false;   // it reaches so far that it blocks room for others
 };
 
 // A part of a divided island.
 struct Piece {
   double area = 0;
+  double map_area = 0;  // on the scale of the surface
   Index faces = 0;
   bool ends_smoothly = false;  // at some of its cuts
 };
@@ -73,14 +75,14 @@ class DivisionSearch {
  public:
   explicit DivisionSearch(const SharedSquare& square);
 
-  // An island of this area with this hull.
-  WholeIsland describe(double area, const Array<Complex>& hull) const;
+  // An island of this area and unevenness with this hull.
+  WholeIsland describe(double area, double unevenness, const Array<Complex>& hull) const;
   // The area of the square that an island with this hull occupies.
-  double demand(const Array<Complex>& hull) const { return describe(0, hull).demand; }
+  double demand(const Array<Complex>& hull) const { return describe(0, 0, hull).demand; }
 
-  // Whether a piece of an island is large enough and not a scrap of few faces. Pieces of few faces may be as small as
-  // others only on hard surfaces, where all their cuts follow sharp edges, and on narrow islands. Of long islands also
-  // smaller pieces may be cut off: a thin tail keeps everything else small.
+  // Whether a piece of an island is large enough, not a scrap of few faces, and has about the texel density of all.
+  // Pieces of few faces may be as small as others only on hard surfaces, where all their cuts follow sharp edges, and
+  // on narrow islands. Of long islands also smaller pieces may be cut off: a thin tail keeps everything else small.
   bool may_be_cut_off(const Piece& piece, const WholeIsland& island) const;
 
   // The least saving that can be worth a division.
