@@ -69,9 +69,12 @@ class TreeSearch {
         cones_(cones),
         scale_(system.log_scale()),
         least_(least),
+        curvature_(Eigen::VectorXd::Zero(system.mesh().vertex_count())),
         log_scale_(scale_.evaluate_held(least)),
         enough_l2_(enough * scale_.predicted_l2(log_scale_)),
-        varied_(system.mesh()) {}
+        varied_(system.mesh()) {
+    for (Eigen::Index i = 0; i < least.size(); ++i) curvature_[cones.vertices[i]] = least[i];
+  }
 
   StraightAngles best();
 
@@ -86,7 +89,7 @@ class TreeSearch {
   // Whether a tree's angles are good enough; the best are kept.
   bool suffices(const CutGraph& cuts, const CutSurface& surface);
   int count_strained(const Eigen::VectorXd& curvature) const;
-  StraightenedLayout lay_out(const CutSurface& surface, bool is_conformal) const;
+  Array<StraightenedLayout> lay_out(const CutSurface& surface, bool is_conformal) const;
   Angles read(const StraightenedLayout& layout) const;
   bool search_other_trees();
   CutGraph connect_varied(const PerVertex<double>& field);
@@ -97,6 +100,7 @@ class TreeSearch {
   const ComponentCones& cones_;
   const LogScale& scale_;
   const Eigen::VectorXd& least_;
+  Eigen::VectorXd curvature_;  // of least distortion, at all vertices
   const Eigen::VectorXd log_scale_;
   const double enough_l2_;
   HalfedgeMesh varied_;  // with other costs of cuts
@@ -137,16 +141,16 @@ int TreeSearch::count_strained(const Eigen::VectorXd& curvature) const {
   return out;
 }
 
-StraightenedLayout TreeSearch::lay_out(const CutSurface& surface, bool is_conformal) const {
+Array<StraightenedLayout> TreeSearch::lay_out(const CutSurface& surface, bool is_conformal) const {
   try {
-    return is_conformal ? straighten(surface) : straighten_beside(surface, log_scale_);
+    return is_conformal ? straighten(surface) : straighten_beside(surface, curvature_, log_scale_);
   } catch (const Error& error) {
     if (error.code() != Code::solver_failed) throw;
     StraightenedLayout none_found;
     none_found.curvature = Eigen::VectorXd::Zero(system_.mesh().vertex_count());
     none_found.crossings = std::numeric_limits<int>::max();
     none_found.failure = "triangles are too thin to straighten cuts beside them";
-    return none_found;
+    return {none_found};
   }
 }
 
@@ -158,14 +162,15 @@ bool TreeSearch::suffices(const CutGraph& cuts, const CutSurface& surface) {
     // An eigenvector takes long without a factor.
     const bool is_dear = trees_ > 1 && surface.factor == nullptr;
     if (is_conformal && (is_dear || !system_.mesh().closed())) continue;
-    const StraightenedLayout layout = lay_out(surface, is_conformal);
-    Angles angles = read(layout);
-    last_ = std::min(last_, {layout.crossings, angles.l2});
-    if (first_failure_.empty()) first_failure_ = angles.failure;
-    if (!(angles.l2 < best_.l2)) continue;
-    best_ = std::move(angles);
-    best_tree_ = trees_;
-    if (trees_ > 1) best_cuts_ = cuts;
+    for (const StraightenedLayout& layout : lay_out(surface, is_conformal)) {
+      Angles angles = read(layout);
+      last_ = std::min(last_, {layout.crossings, angles.l2});
+      if (first_failure_.empty()) first_failure_ = angles.failure;
+      if (!(angles.l2 < best_.l2)) continue;
+      best_ = std::move(angles);
+      best_tree_ = trees_;
+      if (trees_ > 1) best_cuts_ = cuts;
+    }
     if (best_.l2 <= enough_l2_) return true;
   }
   return false;

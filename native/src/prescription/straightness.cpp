@@ -151,7 +151,7 @@ StraightSides straighten_sides(const MetricMesh& surface, const CutGraph& cut_gr
   return out;
 }
 
-// The angle of a node's sector between the two straight cuts that bound it, in (0, 2 pi].
+// The angle of a node's sector between the two straight cuts that bound it, in (-pi, pi].
 double read_angle(const CutSurface& surface, const Eigen::VectorXcd& position, const Sector& sector, Index closed_by) {
   const HalfedgeMesh& mesh = surface.mesh;
   const CutGraph& cut_graph = surface.cut_graph;
@@ -165,59 +165,94 @@ double read_angle(const CutSurface& surface, const Eigen::VectorXcd& position, c
   };
   const Complex tip = position[sector.copy];
   const Complex right = far_end(sector.opened_by, true) - tip, left = far_end(closed_by, false) - tip;
-  const double angle = std::arg(left * std::conj(right));
-  return angle > 0 ? angle : angle + 2 * M_PI;
+  return std::arg(left * std::conj(right));
 }
 
-// Swaps until no swap leaves fewer crossings, and reads the angles.
-StraightenedLayout untangle_and_read(const CutSurface& surface, StraightBoundary boundary) {
+// The curvature of all nodes inside the surface.  branch: (v, sector, angle up to whole turns), returns the angle.
+template <typename Branch>
+Eigen::VectorXd read_curvature(const CutSurface& surface, const Eigen::VectorXcd& position, const Branch& branch) {
   const HalfedgeMesh& mesh = surface.mesh;
   const CutGraph& cut_graph = surface.cut_graph;
   const CutMesh& cut_mesh = surface.cut_mesh;
-  StraightenedLayout layout;
-  // Each swap lowers the number of crossings.
-  while (boundary.count_crossings() > 0 && boundary.swap_worst()) {
-  }
-  layout.crossings = boundary.count_crossings();
-
-  layout.curvature = Eigen::VectorXd::Zero(mesh.vertex_count());
+  Eigen::VectorXd curvature = Eigen::VectorXd::Zero(mesh.vertex_count());
   PerVertex<char> read(mesh.vertex_count(), 0);
   for (const Cut& cut : cut_graph.cuts) {
     for (const Index v : {cut.tail, cut.head}) {
       if (read[v] || mesh.loop_of_vertex[v] != none) continue;
       read[v] = 1;
       const auto all = sectors(mesh, cut_graph, cut_mesh, v);
-      layout.curvature[v] = 2 * M_PI;
+      curvature[v] = 2 * M_PI;
       for (std::size_t i = 0; i < all.size(); ++i) {
         const Index closed_by = all[(i + 1) % all.size()].opened_by;
-        layout.curvature[v] -= read_angle(surface, boundary.positions(), all[i], closed_by);
+        curvature[v] -= branch(v, all[i], read_angle(surface, position, all[i], closed_by));
       }
     }
   }
-  const double total = layout.curvature.sum(), required = 2 * M_PI * mesh.euler;
+  return curvature;
+}
+
+double required_curvature(const HalfedgeMesh& mesh) { return 2 * M_PI * mesh.euler; }
+
+// Whether angles obey Gauss-Bonnet. A boundary takes up what the others leave.
+bool are_possible(const HalfedgeMesh& mesh, const Eigen::VectorXd& curvature) {
+  return !mesh.closed() || std::abs(curvature.sum() - required_curvature(mesh)) <= turn_tolerance;
+}
+
+// Swaps until no swap leaves fewer crossings, and reads the angles.
+StraightenedLayout untangle_and_read(const CutSurface& surface, StraightBoundary boundary) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  StraightenedLayout layout;
+  // Each swap lowers the number of crossings.
+  while (boundary.count_crossings() > 0 && boundary.swap_worst()) {
+  }
+  layout.crossings = boundary.count_crossings();
+  const auto within_turn = [](Index, const Sector&, double angle) { return angle > 0 ? angle : angle + 2 * M_PI; };
+  layout.curvature = read_curvature(surface, boundary.positions(), within_turn);
   if (layout.crossings > 0) {
     layout.failure = concat(count(layout.crossings, "pair of them crosses", "pairs of them cross"), " in the plane");
-  } else if (mesh.closed() && std::abs(total - required) > turn_tolerance) {
-    layout.failure = concat("the angles between the straight cuts leave a curvature of ", degrees(total),
-                            " where the surface requires ", degrees(required));
+  } else if (!are_possible(mesh, layout.curvature)) {
+    layout.failure =
+        concat("the angles between the straight cuts leave a curvature of ", degrees(layout.curvature.sum()),
+               " where the surface requires ", degrees(required_curvature(mesh)));
   }
   return layout;
 }
 
-}  // namespace
-
-StraightenedLayout straighten(const CutSurface& surface) {
-  StraightSides sides = straighten_sides(surface, surface.cut_graph, surface.cut_mesh);
-  Eigen::VectorXcd position = unfold_spectral(surface, sides.reduction);
-  return untangle_and_read(surface, {std::move(sides.segments), std::move(position)});
+// The curvature of the nodes where the layout may lie over itself: of the angles up to whole turns, the nearest to what
+// sectors have in a flat metric, their shares of a node's angle being those on the surface.  curvature: of the metric.
+Eigen::VectorXd read_beside(const CutSurface& surface, const Eigen::VectorXcd& position,
+                            const Eigen::VectorXd& curvature) {
+  return read_curvature(surface, position, [&](Index v, const Sector& sector, double angle) {
+    double own = 0, whole = 0;
+    surface.mesh.for_each_outgoing(v, [&](Index h) {
+      whole += surface.geometry.angle[h];
+      if (surface.cut_mesh.copy_of_corner[h] == sector.copy) own += surface.geometry.angle[h];
+    });
+    const double expected = own / whole * (2 * M_PI - curvature[v]);
+    const double nearest = angle + 2 * M_PI * std::round((expected - angle) / (2 * M_PI));
+    return nearest > 0 ? nearest : nearest + 2 * M_PI;
+  });
 }
 
-StraightenedLayout straighten_beside(const CutSurface& surface, const Eigen::VectorXd& log_scale) {
+}  // namespace
+
+Array<StraightenedLayout> straighten(const CutSurface& surface) {
+  StraightSides sides = straighten_sides(surface, surface.cut_graph, surface.cut_mesh);
+  Eigen::VectorXcd position = unfold_spectral(surface, sides.reduction);
+  return {untangle_and_read(surface, {std::move(sides.segments), std::move(position)})};
+}
+
+Array<StraightenedLayout> straighten_beside(const CutSurface& surface, const Eigen::VectorXd& curvature,
+                                            const Eigen::VectorXd& log_scale) {
   StraightSides sides = straighten_sides(surface, surface.cut_graph, surface.cut_mesh);
   const Eigen::VectorXd frames = FrameTree(surface, surface.cut_graph).integrate(log_scale);
   const RelativeFit fit(surface, prescribed_jacobians(surface.mesh, log_scale, frames));
   Eigen::VectorXcd position = PoissonSystem(fit.surface(), sides.reduction).fit(fit.jacobians());
-  return untangle_and_read(surface, {std::move(sides.segments), std::move(position)});
+  StraightenedLayout overlapping;
+  overlapping.curvature = read_beside(surface, position, curvature);
+  Array<StraightenedLayout> out{untangle_and_read(surface, {std::move(sides.segments), std::move(position)})};
+  if (are_possible(surface.mesh, overlapping.curvature)) out.push_back(std::move(overlapping));
+  return out;
 }
 
 }  // namespace lsgp
