@@ -22,6 +22,7 @@ from .mesh_off import read_off
 from .mesh_ply import read_ply
 from .mesh_ply_write import format_ply
 from .mesh_stl import read_stl
+from .mesh_text import quoted
 from .polygons import PolygonMesh, Triangulation, triangulate
 from .repeated_corners import without_repeated_corners
 from .safe_files import is_same_file, require_separate
@@ -177,13 +178,22 @@ def _not_kept(file: MeshFile, form: Format) -> tuple[Finding, ...]:
 
 
 def _beside(path: Path | None) -> Callable[[str], bytes]:
-    """Reads files that a document names."""
+    """Reads files that a document names.
+
+    What is read ends up in the output, and documents come from anywhere, so they get nothing from outside their folder.
+    """
 
     def read(uri: str) -> bytes:
+        named = quoted(uri.encode("utf-8", "surrogatepass"))
         if path is None:
             raise InputError(
-                "MALFORMED_FILE", f"The document needs '{uri}', which is not beside standard input. Give its path."
+                "MALFORMED_FILE", f"The document needs {named}, which is not beside standard input. Give its path."
             )
-        return read_regular(path.parent / uri)
+        place = Path(os.path.normpath(uri))
+        if place.anchor or ".." in place.parts:
+            raise InputError(
+                "MALFORMED_FILE", f"The document needs {named}, which is outside its folder. Copy that file beside it."
+            )
+        return read_regular(path.parent / place)
 
     return read

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ..errors import Finding, InputError
 from ..indexed_uv import index_corners
 from .gltf_document import COMPONENTS, INDICES, VERTICES, Document, ReadUri, load_document, uri_data
-from .mesh_text import malformed
+from .mesh_text import malformed, quoted
 from .polygons import PolygonMesh
 from .welding import weld
 
@@ -43,8 +43,15 @@ def read_gltf(data: bytes, read_uri: ReadUri, with_uv: bool = False) -> PolygonM
     Vertices of a mesh at exactly the same place are one: glTF repeats them at hard edges, materials and seams.
     read_uri: the content of a file beside the document.  Raises OSError, InputError: MALFORMED_FILE.
     """
-    try:
+    with _contradictions_refused():
         return _joined(load_document(data, read_uri), with_uv)
+
+
+@contextlib.contextmanager
+def _contradictions_refused() -> Iterator[None]:
+    """Raises InputError: MALFORMED_FILE where a document does not have what it refers to, or has another type."""
+    try:
+        yield
     except InputError:
         raise
     except BROKEN as error:
@@ -60,11 +67,34 @@ def edit_gltf(
     Triangles with a NaN keep the coordinates they have. Tangents follow from coordinates and are taken out. The rest of
     the document stays, its binary data inside the file.
 
-    with_images: take images that are files of their own into the document.
+    with_images: take images that are files of their own into the document.  Raises InputError: MALFORMED_FILE.
     """
-    document = load_document(data, read_uri)
-    if with_images:
-        _take_in_images(document, read_uri)
+    with _contradictions_refused():
+        document = load_document(data, read_uri)
+        outside = _take_in_images(document, read_uri) if with_images else []
+        tangents, missing = _put_uv(document, corner_uv)
+        edited = document.to_bytes(binary=binary)
+    findings = []
+    if outside:
+        findings.append(
+            Finding(
+                "CONTENT_NOT_KEPT",
+                "Images outside the document's folder are not read and were not taken along, first "
+                f"{quoted(outside[0].encode('utf-8', 'surrogatepass'))}. Copy them beside it.",
+            )
+        )
+    if tangents:
+        findings.append(
+            Finding("CONTENT_NOT_KEPT", "Tangents belong to the old texture coordinates and were taken out.")
+        )
+    if missing:
+        findings.append(unsolved_at_origin(missing, "glTF"))
+    return edited, tuple(findings)
+
+
+def _put_uv(document: Document, corner_uv: NDArray[np.float64]) -> tuple[int, int]:
+    """The coordinates of all corners into the document; of how many primitives tangents were taken out, and how many
+    triangles have no coordinates."""
     uses = _accessor_uses(document)
     tangents = missing = at = 0
     for primitive in list(_primitives(document)):
@@ -74,14 +104,7 @@ def edit_gltf(
         missing += without
         tangents += primitive.content["attributes"].pop(TANGENTS, None) is not None
         _split(document, primitive, uv, uses)
-    findings = []
-    if tangents:
-        findings.append(
-            Finding("CONTENT_NOT_KEPT", "Tangents belong to the old texture coordinates and were taken out.")
-        )
-    if missing:
-        findings.append(unsolved_at_origin(missing, "glTF"))
-    return document.to_bytes(binary=binary), tuple(findings)
+    return tangents, missing
 
 
 def new_gltf(
@@ -244,15 +267,23 @@ def _accessor_uses(document: Document) -> Counter[int]:
     return uses
 
 
-def _take_in_images(document: Document, read_uri: ReadUri) -> None:
+def _take_in_images(document: Document, read_uri: ReadUri) -> list[str]:
+    """Returns the names of those outside the document's folder, which stay where they are."""
+    outside = []
     for image in document.content.get("images", []):
         uri = image.get("uri", "data:")
         if uri.startswith("data:"):
             continue
-        with contextlib.suppress(OSError):  # one that is missing here is no more missing elsewhere
+        try:
             text = base64.b64encode(uri_data(uri, read_uri)).decode("ascii")
-            kind = image.get("mimeType") or mimetypes.guess_type(uri)[0] or "application/octet-stream"
-            image["uri"] = f"data:{kind};base64,{text}"
+        except OSError:  # one that is missing here is no more missing elsewhere
+            continue
+        except InputError:
+            outside.append(uri)
+            continue
+        kind = image.get("mimeType") or mimetypes.guess_type(uri)[0] or "application/octet-stream"
+        image["uri"] = f"data:{kind};base64,{text}"
+    return outside
 
 
 def _stored(

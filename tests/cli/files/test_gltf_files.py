@@ -203,6 +203,39 @@ def test_files_beside_a_document_are_found_and_taken_along(tmp_path: Path) -> No
     assert far == [{"uri": "data:image/png;base64,iVBORw=="}, {"uri": "missing.png"}]
 
 
+@pytest.mark.parametrize("kind", ["above", "absolute", "detour"])
+def test_nothing_outside_the_folder_of_a_document_gets_into_a_result(tmp_path: Path, kind: str) -> None:
+    """Documents come from anywhere, and what they name is written into the output."""
+    b = scene()
+    secret = tmp_path / "secret"
+    secret.write_bytes(b.buffer)
+    (tmp_path / "in").mkdir()
+    uri = {"above": "../secret", "absolute": secret.as_posix(), "detour": "maps/%2E%2E/../secret"}[kind]
+    buffers = [{"byteLength": len(b.buffer), "uri": uri}]
+    path = in_file(tmp_path / "in", json.dumps(b.content | {"buffers": buffers}).encode(), "a.gltf")
+    with pytest.raises(InputError, match="outside its folder") as caught:
+        read_mesh_file(path)
+    assert caught.value.code == "MALFORMED_FILE"
+
+    b.content["images"] = [{"uri": uri}]
+    file = read_mesh_file(in_file(tmp_path / "in", b.gltf(), "b.gltf"))
+    findings = write_mesh_file(tmp_path / "far.gltf", file, some_uv(len(file.triangulation.triangles)))
+    assert json.loads((tmp_path / "far.gltf").read_text())["images"] == [{"uri": uri}]
+    (about_images,) = [finding for finding in findings if "Images" in finding.message]
+    assert about_images.code == "CONTENT_NOT_KEPT"
+
+
+def test_files_in_folders_below_that_of_a_document_are_found(tmp_path: Path) -> None:
+    b = scene()
+    (tmp_path / "in" / "maps").mkdir(parents=True)
+    (tmp_path / "in" / "maps" / "stone.png").write_bytes(b"\x89PNG")
+    b.content["images"] = [{"uri": "maps/stone.png"}, {"uri": "other/../maps/stone.png"}]
+    file = read_mesh_file(in_file(tmp_path / "in", b.gltf(), "a.gltf"))
+    write_mesh_file(tmp_path / "far.gltf", file, some_uv(len(file.triangulation.triangles)))
+    images = json.loads((tmp_path / "far.gltf").read_text())["images"]
+    assert images == [{"uri": "data:image/png;base64,iVBORw=="}] * 2
+
+
 def test_other_formats_become_glb_and_what_is_lost_is_said(tmp_path: Path, lsgp) -> None:
     positions, faces = bumpy_ball(3)
     text = "mtllib a.mtl\nvn 0 0 1\n" + obj_text(positions, faces)
@@ -260,6 +293,27 @@ def test_malformed_documents_are_refused(tmp_path: Path, name: str) -> None:
         tracemalloc.stop()
     assert caught.value.code == "MALFORMED_FILE"
     assert peak < 1e6
+
+
+MALFORMED_BESIDE_THE_MESH = {
+    "images of no list": lambda c: c.update(images=5),
+    "image of no object": lambda c: c.update(images=[5]),
+    "name of an image": lambda c: c.update(images=[{"uri": 7}]),
+    "name with a zero": lambda c: c.update(images=[{"uri": "a\0b"}]),
+    "morph targets": lambda c: c["meshes"][0]["primitives"][0].update(targets=5),
+    "attribute": lambda c: c["meshes"][0]["primitives"][0]["attributes"].update(COLOR_0=999),
+    "view": lambda c: c.update(extras={"bufferView": 999}),
+}
+
+
+@pytest.mark.parametrize("name", MALFORMED_BESIDE_THE_MESH)
+def test_documents_that_are_malformed_beside_the_mesh_are_refused(tmp_path: Path, lsgp, name: str) -> None:
+    in_file(tmp_path, broken(MALFORMED_BESIDE_THE_MESH[name]), "in.gltf")
+    (tmp_path / "far").mkdir()
+    done = lsgp("unwrap", "in.gltf", "-o", "far/out.gltf")
+    assert done.code == 3
+    assert "MALFORMED_FILE" in done.err
+    assert not list((tmp_path / "far").iterdir())
 
 
 def test_nodes_that_are_their_own_children_end(tmp_path: Path) -> None:
