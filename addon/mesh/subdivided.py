@@ -23,7 +23,8 @@ SETTINGS = {
 
 @dataclass(frozen=True, slots=True)
 class Subdivided:
-    """places: (n, 3) of the mesh's vertices. areas: (f,) of what becomes of its faces."""
+    """places: (n, 3) of the mesh's vertices. areas: (f,) of what becomes of its faces; 0 of those that Mirror drops, as
+    one of two faces between the same vertices."""
 
     places: NDArray[np.float32]
     areas: NDArray[np.float64]
@@ -56,7 +57,7 @@ def subdivide(obj: bpy.types.Object, mesh: bpy.types.Mesh) -> Subdivided | None:
         layer = scene.view_layers[0]
         layer.update()
         evaluated = stand_in.evaluated_get(layer.depsgraph).data
-        return Subdivided(_places(evaluated), _areas(evaluated))
+        return Subdivided(_places(evaluated), _areas(evaluated, len(mesh.polygons)))
     finally:
         bpy.data.batch_remove([scene, stand_in, copy])
 
@@ -72,8 +73,8 @@ def _places(subdivided: bpy.types.Mesh) -> NDArray[np.float32]:
     return read_array(subdivided.vertices, "co", np.float32, 3)[first]
 
 
-def _areas(subdivided: bpy.types.Mesh) -> NDArray[np.float64]:
+def _areas(subdivided: bpy.types.Mesh, count: int) -> NDArray[np.float64]:
     """Mirror puts images of all faces behind them, as large as these."""
     face = read_array(subdivided.attributes[FACE].data, "value", np.int32)
     images = 1 + int((np.diff(face) < 0).sum())
-    return np.bincount(face, read_array(subdivided.polygons, "area", np.float32)) / images
+    return np.bincount(face, read_array(subdivided.polygons, "area", np.float32), minlength=count) / images

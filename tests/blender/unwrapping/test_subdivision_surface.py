@@ -99,6 +99,21 @@ def test_half_a_figure_is_subdivided_together_with_the_other_half():
     assert np.abs(lengths[alone] - lengths[twin]).max() > 0.01
 
 
+def test_a_face_that_mirror_drops_counts_as_nothing():
+    """Of two faces between the same vertices it keeps one where vertices are merged, at its plane."""
+    half = right_half(swollen())
+    half.modifiers.clear()
+    half.modifiers.new("Mirror", "MIRROR")
+    half.modifiers.new("Subdivision", "SUBSURF").levels = 2
+    mesh = half.data
+    places = [tuple(vertex.co) for vertex in mesh.vertices]
+    faces = [tuple(face.vertices) for face in mesh.polygons]
+    at_plane = next(face for face in faces if min(abs(places[vertex][0]) for vertex in face) < 0.01)
+    mesh.clear_geometry()
+    mesh.from_pydata(places, [], [*faces, at_plane])
+    assert bpy.ops.uv.cone_auto_unwrap() == {"FINISHED"}
+
+
 def test_other_modifiers_and_shape_keys_have_no_say():
     first, second = swollen("First"), swollen("Second")
     second.modifiers.new("Mirror", "MIRROR")
