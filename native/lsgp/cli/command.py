@@ -10,7 +10,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NoReturn, TextIO
+from typing import Any, NoReturn, TextIO
 
 import numpy as np
 
@@ -39,6 +39,7 @@ from .examples import Formatter, with_examples
 from .output_paths import require_usable_paths
 
 INPUT = "OBJ, OFF, PLY, glTF, GLB or STL, or - for standard input; polygons of any size"
+OUTPUT = "the file, or - for standard output"
 
 
 class _Parser(argparse.ArgumentParser):
@@ -51,6 +52,30 @@ class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         complain(f"{self.format_usage()}{self.prog}: error: {message}")
         raise SystemExit(USAGE)
+
+
+class _Command(_Parser):
+    """The parser of one command."""
+
+    def __init__(self, **further: Any) -> None:
+        super().__init__(allow_abbrev=False, formatter_class=Formatter, **further)
+
+    def add_paths(self, output: str) -> None:
+        """The mesh to read and the file to write."""
+        self.add_argument("input", metavar="IN", type=Path, help=INPUT)
+        self.add_argument("-o", "--output", metavar=output, type=Path, required=True, help=OUTPUT)
+
+    def add_format(self) -> None:
+        self.add_argument(
+            "--format",
+            metavar="F",
+            choices=list(BY_KEY),
+            help="format of standard input and output and of files without a suffix: "
+            f"{', '.join(BY_KEY)} (default: by the first bytes, otherwise obj)",
+        )
+
+    def add_report(self) -> None:
+        self.add_argument("--report", metavar="FILE.json", type=Path, help="write a report, also when refused")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -84,11 +109,17 @@ def _parser() -> _Parser:
     parser.add_argument(
         "--formats", action="store_true", help="print which formats of meshes are read and written here, and exit"
     )
-    commands = parser.add_subparsers(dest="command", metavar="command")
+    commands = parser.add_subparsers(dest="command", metavar="command", parser_class=_Command)
+    for add in (_add_unwrap, _add_cones, _add_quads, _add_batch, _add_measure, _add_pad):
+        add(commands)
+    for name, command in commands.choices.items():
+        command.epilog = with_examples(name, command.epilog)
+    return parser
 
+
+def _add_unwrap(commands: argparse._SubParsersAction[_Command]) -> None:
     unwrap = commands.add_parser(
         "unwrap",
-        allow_abbrev=False,
         help="write a mesh with texture coordinates",
         description="Cut a mesh through its cones, unfold it, and write it with texture coordinates. OBJ, PLY and glTF "
         "files written in the same format keep all other content.",
@@ -103,41 +134,44 @@ def _parser() -> _Parser:
     )
     add_unwrap_options(unwrap)
     add_threads_option(unwrap)
+    unwrap.add_format()
+    unwrap.add_report()
     unwrap.set_defaults(run=_reported, make=_unwrap)
 
+
+def _add_cones(commands: argparse._SubParsersAction[_Command]) -> None:
     cones = commands.add_parser(
         "cones",
-        allow_abbrev=False,
         help="place cones and find their angles",
         description="Place cones where they lower the stretch of a mesh most, and write them with their angles into a "
         "file for lsgp unwrap --cones.",
     )
-    cones.add_argument("input", metavar="IN", type=Path, help=INPUT)
-    cones.add_argument(
-        "-o", "--output", metavar="OUT.json", type=Path, required=True, help="the file, or - for standard output"
-    )
+    cones.add_paths("OUT.json")
     add_placement_options(cones)
     add_threads_option(cones)
+    cones.add_format()
+    cones.add_report()
     cones.set_defaults(run=_reported, make=_cones, in_place=False)
 
+
+def _add_quads(commands: argparse._SubParsersAction[_Command]) -> None:
     quads = commands.add_parser(
         "quads",
-        allow_abbrev=False,
         help="cover a closed mesh with quads",
         description="Cover a closed mesh with quads: the squares of a seamless layout, traced over its surface. Every "
         "face is a quad, every vertex lies on the surface, and irregular vertices are at the cones.",
     )
-    quads.add_argument("input", metavar="IN", type=Path, help=INPUT)
-    quads.add_argument(
-        "-o", "--output", metavar="OUT.obj", type=Path, required=True, help="the file, or - for standard output"
-    )
+    quads.add_paths("OUT.obj")
     add_quads_options(quads)
     add_threads_option(quads)
+    quads.add_format()
+    quads.add_report()
     quads.set_defaults(run=_reported, make=_quads, in_place=False)
 
+
+def _add_batch(commands: argparse._SubParsersAction[_Command]) -> None:
     batch = commands.add_parser(
         "batch",
-        allow_abbrev=False,
         help="unwrap many meshes",
         description="Unwrap all meshes of a folder or a list, or a single one, each as `lsgp unwrap` does it. Every "
         "asset gets a line in DIR/journal.jsonl when it is done; DIR/summary.txt and DIR/contact-sheet.html are "
@@ -150,9 +184,10 @@ def _parser() -> _Parser:
     add_unwrap_options(batch)
     batch.set_defaults(run=run_batch)
 
+
+def _add_measure(commands: argparse._SubParsersAction[_Command]) -> None:
     measure = commands.add_parser(
         "measure",
-        allow_abbrev=False,
         help="measure the texture coordinates of a file",
         description="Print the quality of the texture coordinates of an OBJ, glTF or GLB file.",
     )
@@ -163,31 +198,21 @@ def _parser() -> _Parser:
         type=texture_size_option,
         help="texels of the texture's side, a power of two, to measure the texel density as well",
     )
+    measure.add_format()
+    measure.add_report()
     measure.set_defaults(run=_reported, make=_measure, output=None)
 
+
+def _add_pad(commands: argparse._SubParsersAction[_Command]) -> None:
     pad = commands.add_parser(
         "pad",
-        allow_abbrev=False,
         help="fill the gutters of a texture",
         description="Fill the texels beside the islands of a texture with the content beyond the cuts, so that "
         "filtered lookups match there. Texels whose center is in an island do not change.",
     )
     add_pad_options(pad)
+    pad.add_format()
     pad.set_defaults(run=_reported, make=_pad, report=None)
-    for command in (unwrap, cones, quads, measure, pad):
-        command.add_argument(
-            "--format",
-            metavar="F",
-            choices=list(BY_KEY),
-            help="format of standard input and output and of files without a suffix: "
-            f"{', '.join(BY_KEY)} (default: by the first bytes, otherwise obj)",
-        )
-    for command in (unwrap, cones, quads, measure):
-        command.add_argument("--report", metavar="FILE.json", type=Path, help="write a report, also when refused")
-    for name, command in commands.choices.items():
-        command.formatter_class = Formatter
-        command.epilog = with_examples(name, command.epilog)
-    return parser
 
 
 def _reported(args: argparse.Namespace) -> int:
