@@ -34,7 +34,7 @@ def size(key):
 mesh = meshes.bumpy_sphere(7 if sys.argv[1] == "fine" else 5)
 surface = lsgp.Surface(mesh.positions, mesh.triangles)
 many = np.arange(0, len(mesh.positions), 20)
-plate = meshes.plate(25)
+plate, box = meshes.plate(25), meshes.cube(2)
 overlapping, flipped = np.array([[1, 1, 1, 5, 4, 4], [3, 4, 1, 2, 1, 5]]) * np.pi / 2
 calls = {
     "poisson": lambda: lsgp.parameterize(surface, mesh.cones),
@@ -51,6 +51,7 @@ calls = {
     "gains": lambda: lsgp.cone_gains(surface, many),
     "holes": lambda: lsgp.parameterize(lsgp.Surface(plate.positions, plate.triangles), []),
     "measure": lambda: lsgp.measure_distortion(surface, mesh.positions[mesh.triangles][..., :2]),
+    "quads": lambda: lsgp.remesh_to_quads(lsgp.Surface(box.positions, box.triangles), target=10**6),
     "command": lambda: main(sys.argv[3:]),
     "again": lambda: [new_pages() for _ in range(5)],
 }
@@ -273,6 +274,14 @@ class TestMemory:
         assert code == "OUT_OF_MEMORY" and needed > left
         # The factor was asked for while the surface was all there was.
         assert found["grown"] <= 0.5 * whole and 0.4 * whole <= needed <= whole
+
+    def test_quads_are_counted_before_they_are_made(self) -> None:
+        whole = peak("quads")
+        found = run_child("quads", whole // 2)
+        code, message = found["ended"]
+        needed, left = (1e6 * int(number) for number in re.findall(r"(\d+) MB", message))
+        assert code == "OUT_OF_MEMORY" and needed > left and "larger quads" in message
+        assert found["grown"] <= 0.1 * whole and 0.5 * whole <= needed <= 1.5 * whole
 
     @pytest.mark.parametrize("percent", [25, 50, 75])
     def test_the_command_line_refuses_and_writes_nothing(self, tmp_path: Path, percent: int) -> None:

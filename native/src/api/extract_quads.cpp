@@ -5,12 +5,14 @@
 
 #include "base/array.hpp"
 #include "base/checkpoint.hpp"
+#include "base/memory.hpp"
 #include "base/progress_monitor.hpp"
 #include "base/text.hpp"
 #include "lsgp/lsgp.hpp"
 #include "pipeline/components.hpp"
 #include "pipeline/validation.hpp"
 #include "pipeline/wording.hpp"
+#include "plane/predicates.hpp"
 #include "quads/exact_grid.hpp"
 #include "quads/grid_edges.hpp"
 #include "quads/grid_vertices.hpp"
@@ -70,6 +72,16 @@ Topology build_closed_topology(const Surface& surface) {
 
 // The cost of collecting a vertex or a quad, in multiplications.
 constexpr double operations_an_element = 100;
+// What all arrays together take while a mesh is made.
+constexpr double bytes_a_quad = 280;
+
+// uv: (3m), in cells.
+double cell_count(const Eigen::VectorXcd& uv) {
+  double doubled_area = 0;
+  for (Eigen::Index corner = 0; corner < uv.size(); corner += 3)
+    doubled_area += cross(uv[corner + 1] - uv[corner], uv[corner + 2] - uv[corner]);
+  return doubled_area / 2;
+}
 
 // The mesh of all components.
 class Collector {
@@ -130,6 +142,7 @@ class Collector {
 
 void extract(const Component& component, const Eigen::VectorXcd& uv, Collector& out) {
   const ExactGrid grid = build_exact_grid(component.mesh, uv);
+  require_memory(bytes_a_quad * cell_count(uv), GrowsWith::quads);
   const GridVertices vertices(component.mesh, grid);
   const GridEdges edges = trace_edges(component.mesh, grid, vertices);
   out.add(component, grid, vertices, walk_faces(component.mesh, vertices, edges));

@@ -9,7 +9,7 @@
 namespace lsgp {
 
 // What else than the size of the input an amount of memory grows with.
-enum class GrowsWith { input, conditions };  // conditions: columns of dense matrices
+enum class GrowsWith { input, conditions, quads };  // conditions: columns of dense matrices
 
 // OUT_OF_MEMORY, in bytes.
 class MemoryShortage : public Error {

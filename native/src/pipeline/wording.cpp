@@ -27,13 +27,20 @@ const char* words_for(SolverFailure::Cause cause) {
   return "";
 }
 
+const char* remedy_for(GrowsWith grows_with) {
+  switch (grows_with) {
+    case GrowsWith::conditions: return "Use fewer cones, unwrap fewer faces at once";
+    case GrowsWith::quads: return "Choose larger quads";
+    case GrowsWith::input: break;
+  }
+  return "Unwrap fewer faces at once";
+}
+
 std::string words_for(const MemoryShortage& shortage) {
   constexpr double megabyte = 1e6;
-  const bool needs_fewer_cones = shortage.grows_with == GrowsWith::conditions;
   return concat("This surface needs ", std::ceil(shortage.needed / megabyte), " MB of memory, and ",
-                std::max(0.0, std::floor(shortage.left / megabyte)), " MB are left. ",
-                needs_fewer_cones ? "Use fewer cones, unwrap" : "Unwrap",
-                " fewer faces at once, or close other programs.");
+                std::max(0.0, std::floor(shortage.left / megabyte)), " MB are left. ", remedy_for(shortage.grows_with),
+                ", or close other programs.");
 }
 
 }  // namespace
