@@ -82,12 +82,17 @@ void require_some_angle(const ComponentCones& cones, int rotation_order, const T
 
 [[noreturn]] void throw_out_of_reach(const ComponentCones& cones, int rotation_order, int sum,
                                      const TurnBounds& widest) {
-  const int reached = sum > widest.high.sum() ? widest.high.sum() : widest.low.sum();
+  const bool needs_more = sum > widest.high.sum();
+  // Where only whole turns are angles, cones take up no curvature, however many there are.
+  const bool has_other_angles = rotation_order > 1;
   throw Error(Code::seamless_impossible,
               concat("With angles that are multiples of ", 360 / rotation_order, " degrees ",
                      count(cones.vertices.size(), "cone takes", "cones take"), " up at ",
-                     reached > 0 ? "most " : "least ", reached, " of these, but the surface requires ", sum,
-                     ". Mark more cones, leave given angles automatic, or choose another lattice."),
+                     needs_more ? "most " : "least ", needs_more ? widest.high.sum() : widest.low.sum(),
+                     " of these, but the surface requires ", sum, ". ",
+                     needs_more && !has_other_angles ? "Choose another lattice."
+                                                     : "Mark more cones, leave given angles automatic, or choose "
+                                                       "another lattice."),
               {ElementKind::vertices, cones.vertices});
 }
 

@@ -172,6 +172,7 @@ def test_no_sphere_without_turns() -> None:
     with pytest.raises(lsgp.CurvatureError) as caught:
         rounded(meshes.bumpy_sphere(2), "translation")
     assert caught.value.code == "SEAMLESS_IMPOSSIBLE"
+    assert "at most 0 of these, but the surface requires 2. Choose another lattice." in str(caught.value)
 
 
 @pytest.mark.parametrize("lattice", ["square", "stripe", "triangle", "hexagon"])
