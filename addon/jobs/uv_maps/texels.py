@@ -77,11 +77,16 @@ class Scaled:
 
 
 def scale_islands(measured: Texels, density: float) -> Scaled:
-    """The islands of the chosen triangles at a density, each about the middle of its bounds.  Raises LsgpError."""
+    """The islands of the chosen triangles at a density, each about the middle of its bounds.
+
+    Raises LsgpError; Refused where there is no island.
+    """
     region, uv = measured.region, measured.region.corner_uv
     island = native.lsgp.measure_distortion(region.surface, uv).island
     inside = island >= 0
-    count = int(island.max(initial=-1)) + 1
+    if not inside.any():
+        raise Refused("the UV map has no finite coordinates; unwrap the mesh again")
+    count = int(island.max()) + 1
     asked = np.zeros(count, bool)
     asked[island[inside & measured.chosen]] = True
     area = np.bincount(island[inside], measured.area[inside], minlength=count)

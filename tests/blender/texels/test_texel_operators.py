@@ -193,6 +193,15 @@ def test_a_map_without_area_is_left_alone_and_said_to_be(reports):
         bpy.ops.uv.cone_texel_get()
 
 
+def test_a_map_without_finite_coordinates_is_refused():
+    ball = stretched_ball()
+    set_uv(ball, np.full_like(UvMap(ball).uv, np.nan))
+    before = snapshot(ball)
+    with pytest.raises(RuntimeError, match="no finite coordinates"):
+        bpy.ops.uv.cone_texel_set(density=64.0)
+    assert changed(before, snapshot(ball)) == set()
+
+
 def test_what_has_no_map_or_no_size_is_refused():
     grid = add_grid()
     grid.scale = (0, 0, 0)
