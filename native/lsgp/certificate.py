@@ -10,6 +10,7 @@ import numpy as np
 
 from . import arguments
 from .api import SeamlessReport
+from .counted import counted
 
 # Rows of the table; one line summarizes the remaining cuts.
 SHOWN_CUTS = 12
@@ -59,7 +60,7 @@ def certificate_table(report: SeamlessReport, texture_size: int) -> str:
     unit = "tiles" if report.cell == 1 else "cells"
     count = len(report.cut_errors)
     lines = [
-        f"seamless: {count} {'cut' if count == 1 else 'cuts'}, {_off(report.error * texels)} texels off at "
+        f"seamless: {counted(count, 'cut')}, {_off(report.error * texels)} texels off at "
         f"{texture_size} x {texture_size}; {report.tiles:.4g} {unit} across, {report.tile_size:.4g} each on the "
         f"surface; energy {report.energy_before:.4f} before, {report.energy_after:.4f} after rounding",
     ]

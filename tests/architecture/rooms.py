@@ -158,6 +158,7 @@ API = (
     "border_gains",
     "certificate",
     "chart_packer",
+    "counted",
     "cut_moving",
     "cut_paths",
     "divided_triangles",

@@ -13,6 +13,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path, PurePath, PurePosixPath
 
+from ..counted import counted
 from ..io.mesh_files import MESH_SUFFIXES
 from ..io.side_files import UsageError
 
@@ -103,8 +104,7 @@ def find_assets(source: Path, out: Path, suffixes: Iterable[str], shard: Shard |
 def skipped_note(skipped: Counter[str]) -> str:
     """How many files were left out, and of which kinds."""
     kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(skipped.items()))
-    total = skipped.total()
-    return f"{total} {'file was' if total == 1 else 'files were'} left out, of kinds that are not read: {kinds}"
+    return f"{counted(skipped.total(), 'file was', 'files were')} left out, of kinds that are not read: {kinds}"
 
 
 def output_name(name: str, suffix: str = ".obj") -> str:

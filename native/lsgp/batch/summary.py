@@ -7,6 +7,7 @@ import statistics
 from collections import Counter
 from collections.abc import Sequence
 
+from ..counted import counted
 from .progress import duration
 from .records import FAILED, OK, REFUSED, Record
 
@@ -24,7 +25,7 @@ def summary_table(records: Sequence[Record]) -> str:
             first = min(record["asset"] for record in ended if record["code"] == code)
             rows.append((f"  {code}", count, f"{first}{', ...' if count > 1 else ''}"))
     rows += _figures(records, results)
-    lines = [f"{len(records)} {'asset' if len(records) == 1 else 'assets'}"]
+    lines = [counted(len(records), "asset")]
     lines += [f"{label:<28}{value:>12}  {note}".rstrip() for label, value, note in rows]
     return "\n".join(lines)
 

@@ -18,6 +18,7 @@ from .. import __version__
 from ..api import measure_distortion
 from ..batch.command import EXIT_CODES, add_batch_options, add_scheduler_options, expand_options, run_batch
 from ..certificate import certificate_table
+from ..counted import counted
 from ..errors import Elements, Finding, LsgpError
 from ..io.mesh_formats import BY_KEY, formats_table
 from ..io.polygons import Triangulation
@@ -245,10 +246,9 @@ def _unwrap(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
     with ProgressLine(sys.stderr) as progress:
         result = unwrap_file(args, run, progress, args.format)
     _warn(result.warnings, run.triangulation)
-    islands = reports.island_count(result.island)
     lines = [
         f"{args.output}: {int(result.solved.sum())} of {len(result.solved)} triangles unwrapped, "
-        f"{len(result.cones)} cones, {islands} {'island' if islands == 1 else 'islands'}",
+        f"{counted(len(result.cones), 'cone')}, {counted(reports.island_count(result.island), 'island')}",
         reports.quality_table(result, run.texels, run.packed),
     ]
     if result.seamless is not None:
@@ -279,9 +279,10 @@ def _measure(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
     warnings = list(file.findings)
     if len(without):
         faces = Elements("faces", triangulation.polygons_of(without))
-        message = (
-            f"{len(faces.indices)} faces have no texture coordinates and were left out. Unwrap them to measure them."
+        which = counted(
+            len(faces.indices), "face without texture coordinates was", "faces without texture coordinates were"
         )
+        message = f"{which} left out. Unwrap all faces to measure them."
         warnings.append(Finding("FACES_WITHOUT_UV", message, faces))
     with run.stage("measure_distortion"):
         measurement = measure_distortion(file.surface(), corner_uv)

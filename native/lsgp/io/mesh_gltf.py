@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..counted import counted
 from ..errors import Finding, InputError
 from ..indexed_uv import index_corners
 from .gltf_document import COMPONENTS, INDICES, VERTICES, Document, ReadUri, load_document, uri_data
@@ -138,8 +139,8 @@ def unsolved_at_origin(count: int, form: str) -> Finding:
     """The warning about faces without texture coordinates in a format that requires them for every vertex."""
     return Finding(
         "UNSOLVED_AT_ORIGIN",
-        f"{count} faces have no texture coordinates; {form} cannot say so, and has them at the origin. Write OBJ where "
-        "that matters.",
+        f"{counted(count, 'face has', 'faces have')} no texture coordinates, which {form} cannot say: they are at the "
+        "origin. Write OBJ where that matters.",
     )
 
 

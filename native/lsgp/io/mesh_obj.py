@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _lsgp
+from ..counted import counted
 from ..errors import Elements, InputError
 from ..indexed_uv import index_corners
 from .mesh_text import Rows, malformed, quoted
@@ -112,7 +113,8 @@ def _corner_uv(texture: Rows, faces: Rows) -> NDArray[np.float64]:
         wrong = np.unique(np.repeat(np.arange(len(faces.counts)), faces.counts)[present[outside]])
         raise InputError(
             "INDEX_OUT_OF_RANGE",
-            f"{len(wrong)} faces name texture coordinates (vt) that are not among the {len(uv)} of the file; the first "
+            f"{counted(len(wrong), 'face names', 'faces name')} texture coordinates (vt) that are not among the "
+            f"{len(uv)} of the file; the first "
             f"is face {wrong[0]} (line {faces.lines[wrong[0]]}). Export the mesh again.",
             Elements("faces", wrong.astype(np.int32)),
         )

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..counted import counted
 from ..errors import Elements, Finding, InputError
 from .polygons import PolygonMesh, Triangulation
 
@@ -100,7 +101,7 @@ def _findings(owner: NDArray[np.int64], repeats: NDArray[np.int64], left_out: ND
         findings.append(
             Finding(
                 "REPEATED_CORNERS",
-                f"{len(shortened)} faces name a vertex twice in a row and were taken without the repetition.",
+                f"{counted(len(shortened), 'face names', 'faces name')} a vertex twice in a row; this was ignored.",
                 Elements("faces", shortened),
             )
         )
@@ -109,8 +110,8 @@ def _findings(owner: NDArray[np.int64], repeats: NDArray[np.int64], left_out: ND
         findings.append(
             Finding(
                 "FACES_LEFT_OUT",
-                f"{len(faces)} faces name a vertex twice or have fewer than three corners, so that they have no shape; "
-                "they were left out and have no texture coordinates. Delete them.",
+                f"{counted(len(faces), 'face was', 'faces were')} left out and got no texture coordinates: a vertex is "
+                "named twice, or there are fewer than three. Delete such faces.",
                 Elements("faces", faces),
             )
         )

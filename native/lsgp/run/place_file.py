@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..api import Placement, Progress, place_cones
+from ..counted import counted
 from ..io.side_files import UsageError, cones_in, load_json, pairs_in
 from ..io.whole_files import write_output
 from .report import finite, placed_figures
@@ -88,16 +89,13 @@ def place_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
 
 def summary(args: argparse.Namespace, placement: Placement) -> str:
     """The placed cones and their stretch, on one line."""
-    count = len(placement.cones)
-    told = f"{args.output}: {count} {'cone' if count == 1 else 'cones'}"
+    told = f"{args.output}: {counted(len(placement.cones), 'cone')}"
     told += f", an L2 stretch of {placement.predicted_l2:.4f} predicted"
     told += f" and {placement.mapped_l2:.4f} in the map"
     if args.count is None:
         told += f", the target was {'' if placement.reached else 'not '}reached"
-    work = placement.factorizations
-    told += f"; {placement.maps} {'map' if placement.maps == 1 else 'maps'}"
-    told += f", {work} {'factorization' if work == 1 else 'factorizations'}"
-    return f"{told}, {placement.back_substitutions} back-substitutions"
+    told += f"; {counted(placement.maps, 'map')}, {counted(placement.factorizations, 'factorization')}"
+    return f"{told}, {counted(placement.back_substitutions, 'back-substitution')}"
 
 
 def _placement(args: argparse.Namespace) -> dict[str, Any]:

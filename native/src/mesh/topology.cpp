@@ -13,7 +13,9 @@ namespace lsgp {
 
 namespace {
 
-PerEdge<char> mark_edges(const EdgeTable& edges, const VertexPairs& pairs, Code code, const char* sentence) {
+// what: the pairs, for the message.
+PerEdge<char> mark_edges(const EdgeTable& edges, const VertexPairs& pairs, Code code, const char* what,
+                         const char* remedy) {
   PerEdge<char> marked(edges.count(), 0);
   Array<Index> missing;
   for (Index row = 0; row < pairs.rows(); ++row) {
@@ -24,7 +26,10 @@ PerEdge<char> mark_edges(const EdgeTable& edges, const VertexPairs& pairs, Code 
       missing.insert(missing.end(), {a, b});
   }
   if (!missing.empty()) {
-    throw Error(code, concat(count(missing.size() / 2, "vertex pair", "vertex pairs"), " ", sentence),
+    const std::size_t pairs_missing = missing.size() / 2;
+    throw Error(code,
+                concat(count(pairs_missing, "vertex pair", "vertex pairs"), " among the ", what,
+                       pairs_missing == 1 ? " is" : " are", " not joined by an edge. ", remedy),
                 {ElementKind::edges, missing});
   }
   return marked;
@@ -279,16 +284,13 @@ struct EdgeMarks {
 };
 
 EdgeMarks marks_of(const Surface& surface, const EdgeTable& edges) {
-  return {surface.edges ? mark_edges(edges, *surface.edges, Code::edge_not_in_mesh,
-                                     "are not edges of a triangle. Pass edges of this mesh as cuttable edges.")
-                        : PerEdge<char>(edges.count(), 1),
-          mark_edges(edges, surface.seams, Code::seam_not_an_edge,
-                     "are marked as seams but are not edges. Mark edges of this mesh."),
-          mark_edges(edges, surface.borders, Code::edge_not_in_mesh,
-                     "are given as borders but are not edges. Pass edges of this mesh."),
-          mark_edges(edges, surface.features, Code::edge_not_in_mesh,
-                     "are given as features but are not edges. Pass edges of this mesh."),
-          cut_factors(edges, surface)};
+  constexpr auto pass_edges = "Pass edges of this mesh.";
+  return {
+      surface.edges ? mark_edges(edges, *surface.edges, Code::edge_not_in_mesh, "cuttable edges", pass_edges)
+                    : PerEdge<char>(edges.count(), 1),
+      mark_edges(edges, surface.seams, Code::seam_not_an_edge, "seams", "Mark edges of this mesh."),
+      mark_edges(edges, surface.borders, Code::edge_not_in_mesh, "borders", pass_edges),
+      mark_edges(edges, surface.features, Code::edge_not_in_mesh, "features", pass_edges), cut_factors(edges, surface)};
 }
 
 // A surface's edges, how its triangles are joined across them, and which of these are turned over.

@@ -308,10 +308,8 @@ Geometry require_geometry(const Component& component, std::vector<Finding>& find
   Geometry geometry = build_geometry(component.mesh);
   if (geometry.degenerate.empty()) return geometry;
   if (geometry.degenerate.size() == component.source_triangle.size()) {
-    throw Error(
-        Code::degenerate_mesh,
-        concat("None of the ", geometry.degenerate.size(), " triangles has an area. Restore the surface's shape."),
-        {ElementKind::triangles, geometry.degenerate});
+    throw Error(Code::degenerate_mesh, "No triangle has an area. Restore the surface's shape.",
+                {ElementKind::triangles, geometry.degenerate});
   }
   require_comparable(component.mesh.positions);  // distant outliers have only degenerate triangles
   findings.push_back(

@@ -102,7 +102,7 @@ def test_faces_without_coordinates_are_at_the_origin_of_a_ply_or_keep_theirs(tmp
     write_mesh_file(tmp_path / "solved.ply", file, uv)
     uv[-1] = np.nan
     (finding,) = write_mesh_file(tmp_path / "out.ply", file, uv)
-    assert (finding.code, finding.message[:7]) == ("UNSOLVED_AT_ORIGIN", "1 faces")
+    assert (finding.code, finding.message[:7]) == ("UNSOLVED_AT_ORIGIN", "1 face ")
     assert write_mesh_file(tmp_path / "kept.ply", read_mesh_file(tmp_path / "solved.ply"), uv) == []
     for name, expected in (("out", [0, 0]), ("kept", None)):
         data = plyfile.PlyData.read(tmp_path / f"{name}.ply")
