@@ -7,22 +7,15 @@ import argparse
 import json
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
-from ..api import Placement, Progress, place_cones
+from ..api import Lattice, Placement, Progress, SeamMode, place_cones
 from ..counted import counted
 from ..io.side_files import UsageError, cones_in, load_json, pairs_in
 from ..io.whole_files import write_output
 from .report import finite, placed_figures
 from .unwrap_file import Run, read_file, require_flawless
-from .unwrap_options import (
-    LATTICES,
-    SEAM_MODES,
-    add_cut_options,
-    add_strict_option,
-    cut_costs_of,
-    require_cut_options,
-)
+from .unwrap_options import add_cut_options, add_strict_option, cut_costs_of, require_cut_options
 
 DEFAULT_LATTICE = "square"
 
@@ -44,7 +37,7 @@ def add_placement_options(cones: argparse.ArgumentParser) -> None:
     )
     cones.add_argument(
         "--lattice",
-        choices=LATTICES,
+        choices=get_args(Lattice),
         help=f"with --seamless: angles are multiples of its rotation (default: {DEFAULT_LATTICE})",
     )
     cones.add_argument("--symmetric", action="store_true", help="the same cones on both sides of a mirror plane")
@@ -60,7 +53,7 @@ def add_placement_options(cones: argparse.ArgumentParser) -> None:
     )
     cones.add_argument("--seam-edges", metavar="FILE.json", help="[[a, b], ...]: marked edges, as for lsgp unwrap")
     cones.add_argument(
-        "--seams", choices=SEAM_MODES, default="follow", help="meaning of marked edges, as for lsgp unwrap"
+        "--seams", choices=get_args(SeamMode), default="follow", help="meaning of marked edges, as for lsgp unwrap"
     )
     add_cut_options(cones)
     add_strict_option(cones, "set of cones")

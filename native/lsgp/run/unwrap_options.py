@@ -14,7 +14,23 @@ from typing import get_args
 
 import numpy as np
 
-from ..api import Compactness, Options, Progress, Seamless, Surface, cut_costs
+from ..api import (
+    BorderMode,
+    CoarseGrid,
+    Compactness,
+    Lattice,
+    Method,
+    Mode,
+    Options,
+    Overlaps,
+    PrescriptionRule,
+    Progress,
+    Seamless,
+    SeamMode,
+    Surface,
+    UnfoldMethod,
+    cut_costs,
+)
 from ..arguments import FloatArray
 from ..auto_unwrap import Preset, preset_options
 from ..errors import InputError
@@ -25,9 +41,6 @@ from .feature_options import add_features_option
 
 DEFAULT_TEXTURE_SIZE = 1024
 LARGEST_TEXTURE_SIZE = 65536
-
-SEAM_MODES = ["follow", "boundary", "ignore"]
-LATTICES = ["square", "stripe", "translation", "triangle", "hexagon"]
 
 # Of most exporters of OBJ and of glTF.
 DEFAULT_FRONT = (0.0, 0.0, 1.0)
@@ -71,20 +84,20 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
     add_cones_option(unwrap)
     unwrap.add_argument(
         "--prescription",
-        choices=["least-distortion", "harmonic", "straightness", "manual"],
+        choices=get_args(PrescriptionRule),
         help="how cone angles are chosen (default: the cone_angles of the cones file where it has them, otherwise "
         "least-distortion)",
     )
     unwrap.add_argument(
         "--unfold",
-        choices=["poisson", "spectral"],
+        choices=get_args(UnfoldMethod),
         default="poisson",
         help="integrate the prescribed metric by one linear solve, or compute the smallest conformal eigenvector as "
         "in the paper, on closed surfaces (default: poisson)",
     )
     unwrap.add_argument(
         "--method",
-        choices=["lsgp", "lscm"],
+        choices=get_args(Method),
         default="lsgp",
         help="relate the sides of every cut by one rotation and translation, or, for comparison, unfold along the same "
         "cuts by least squares conformal maps without transitions (default: lsgp)",
@@ -94,7 +107,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
     )
     unwrap.add_argument(
         "--seams",
-        choices=SEAM_MODES,
+        choices=get_args(SeamMode),
         default="follow",
         help="meaning of marked edges: cut, with further cuts where cones need them; open boundaries; or ignored "
         "(default: follow)",
@@ -109,7 +122,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
     _add_preset_switches(unwrap)
     unwrap.add_argument(
         "--border",
-        choices=["free", "straight"],
+        choices=get_args(BorderMode),
         default="free",
         help="boundaries take the shape of least distortion, or are straight from cone to cone (default: free)",
     )
@@ -122,7 +135,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
     )
     unwrap.add_argument(
         "--overlaps",
-        choices=["keep", "split"],
+        choices=get_args(Overlaps),
         help="keep islands that overlap themselves, or split them along further cuts (default: keep)",
     )
     unwrap.add_argument(
@@ -180,7 +193,7 @@ def add_cones_option(command: argparse.ArgumentParser) -> None:
 def add_mode_option(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--mode",
-        choices=["conformal", "low-stretch"],
+        choices=get_args(Mode),
         help="preserve angles, or lengths as far as the cone angles permit (default: conformal)",
     )
 
@@ -324,7 +337,7 @@ def _add_seamless_options(unwrap: argparse.ArgumentParser) -> None:
     scale.add_argument("--tile-size", metavar="X", type=float, help="side of a tile on the surface, in its unit")
     seamless.add_argument(
         "--lattice",
-        choices=LATTICES,
+        choices=get_args(Lattice),
         help="the texture's symmetry: rotations of squares by quarter turns (square), by half turns (stripe) or none "
         "(translation), of triangles by third turns (triangle) or sixth turns (hexagon) (default: square)",
     )
@@ -333,7 +346,7 @@ def _add_seamless_options(unwrap: argparse.ArgumentParser) -> None:
     )
     seamless.add_argument(
         "--coarse-grid",
-        choices=["refine", "merge", "relax"],
+        choices=get_args(CoarseGrid),
         help="if the tiles are too large for a valid layout: take smaller tiles, merge cones less than a tile apart, "
         "or leave cones off the grid (default: refine)",
     )
