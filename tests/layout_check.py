@@ -63,6 +63,14 @@ def moves(old: NDArray[np.float64], new: NDArray[np.float64], island: NDArray[np
     return (two[:, 1:] - two[:, :1]) / (one[:, 1:] - one[:, :1])
 
 
+def share_along_axes(triangles: NDArray[np.integer], corner_uv: NDArray[np.float64]) -> float:
+    """Of the length of an island's border: what runs along u or v."""
+    ends = _borders(triangles, corner_uv)
+    edges = ends[:, 1] - ends[:, 0]
+    along = np.minimum(np.abs(edges.real), np.abs(edges.imag)) < 1e-4 * np.abs(edges)
+    return float(np.abs(edges[along]).sum() / np.abs(edges).sum())
+
+
 def overlapping_islands(corner_uv: NDArray[np.float64], island: NDArray[np.integer]) -> int:
     """How many pairs of triangles of different islands overlap."""
     pairs, _ = overlaps(corner_uv[island >= 0] @ np.array([1, 1j]))

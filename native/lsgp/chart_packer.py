@@ -47,7 +47,6 @@ _MOST_AROUND = 2000
 # where the system tells what threads do, up to so many seconds, and elsewhere for so many.
 _MOST_SETTLING, _SETTLING = 1.0, 0.005
 _TASKS = Path("/proc/self/task")
-_QUARTER_TURNS = np.array([1, 1j, -1, -1j])
 _TINY = np.finfo(float).tiny
 
 
@@ -119,16 +118,17 @@ class Packer:
         self._boxed = np.zeros(islands.count, bool)
         self._boxed[islands.island[np.bincount(islands.triangles.ravel()) > _MOST_AROUND]] = True
 
-    def improved(self, turns: Indices, best: Layout | None) -> Layout | None:
+    def improved(self, turns: ComplexArray, best: Layout | None, shorter: float = 1.0) -> Layout | None:
         """The smallest layout found of islands so turned, if it is smaller than `best`.
 
-        turns: (islands,) quarter turns. best: None: any is; there is one, or InputError is raised.
+        turns: (islands,) of length 1. best: None: any is; there is one, or InputError is raised. shorter: the side that
+        it has to have at most, relative to that of `best`.
         """
-        place = self._islands.place * _QUARTER_TURNS[turns][self._islands.island]
+        place = self._islands.place * turns[self._islands.island]
         found = self._first(place) if best is None else None
-        best = best or found
-        while (smaller := self._fitted(place, best.side * _GAIN)) is not None and smaller.side < best.side:
-            best = found = smaller
+        most = (best or found).side * shorter
+        while (smaller := self._fitted(place, most * _GAIN)) is not None and smaller.side < most:
+            found, most = smaller, smaller.side
         return found
 
     def _first(self, place: ComplexArray) -> Layout:

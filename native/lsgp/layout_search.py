@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The smallest layout of islands among those with different quarter turns."""
+"""The smallest layout of islands among those with different turns."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+from numpy.typing import NDArray
 
 from .api import Progress
 from .arguments import FloatArray, IndexArray
@@ -12,11 +15,21 @@ from .errors import Cancelled
 from .island_gaps import border_edges
 from .triangles import uv_area
 
-# Ways to turn islands by quarter turns that are tried; of many islands fewer, since each takes longer.
-_TRIES = 24
+# Ways to turn islands that are tried, by quarter turns and then by any; of many islands fewer, since each takes longer.
+_TRIES = 24, 12
 _ISLANDS_OF_ALL_TRIES = 64
 # Of the islands of the best layout, so many keep their turn when some are turned.
 _KEPT = 0.7
+_QUARTER_TURNS = np.array([1, 1j, -1, -1j])
+# Within a quarter turn; by so much the square around an island may be larger than with the best of them.
+_DIRECTIONS = np.exp(0.5j * np.pi * np.arange(90) / 90)
+_AS_SMALL = 1e-3
+# Where so little of the square is filled, sides along the axes are given up for a layout whose side is so much shorter,
+# as of strips along the diagonal. Unfolded boxes fill more.
+_HARDLY_FILLED = 0.3
+_SHORTER_UNALIGNED = 0.9
+# Of an edge along an axis, radians; coordinates may come from files of few digits.
+_TILT = 1e-3
 
 
 def islands_of(uv: FloatArray, island: IndexArray) -> Islands:
@@ -41,25 +54,62 @@ def islands_of(uv: FloatArray, island: IndexArray) -> Islands:
 
 
 def best_layout(islands: Islands, square: Square, may_turn: bool, progress: Progress | None) -> Layout:
-    """The smallest of the layouts tried.  Raises InputError, Cancelled."""
-    tries = max(1, _TRIES * _ISLANDS_OF_ALL_TRIES // max(islands.count, _ISLANDS_OF_ALL_TRIES)) if may_turn else 1
+    """The smallest of the layouts tried.  Raises InputError, Cancelled.
+
+    may_turn: whether islands may be turned; those that lie along the axes, as straight sides do, by quarters, unless
+    that leaves most of the square empty.
+    """
+    count = islands.count
+    middle, free = (max(1, tries * _ISLANDS_OF_ALL_TRIES // max(count, _ISLANDS_OF_ALL_TRIES)) for tries in _TRIES)
+    is_aligned, sides = lie_along_axes(islands), sides_when_turned(islands)
+    squarest = _DIRECTIONS[(sides <= (1 + _AS_SMALL) * sides.min(axis=0)).argmax(axis=0)]
+    tries = middle + (2 if is_aligned.all() else free) if may_turn else 1
     packer = Packer(islands, square)
     # The generator whose numbers never change with the version of numpy.
     random = np.random.RandomState(0)
     best: Layout | None = None
-    turns = best_turns = np.zeros(islands.count, np.int64)
+    turns = best_turns = np.ones(count, np.complex128)
     for number in range(tries):
         if progress is not None and progress(number / tries) is False:
             raise Cancelled("CANCELLED", "Stopped as asked; nothing was changed.")
-        if number == 1:
-            turns = np.ones(islands.count, np.int64)
+        shorter = 1.0
+        if number == middle:
+            turns = np.where(is_aligned, best_turns, squarest)
+        elif number == middle + 1 and islands.area < _HARDLY_FILLED * best.side**2:
+            turns, shorter = squarest, _SHORTER_UNALIGNED
+        elif number == 1:
+            turns = np.full(count, 1j)
         elif number > 1:
-            # Half of them from the best so far, of which some islands are turned.
-            kept = random.random_sample(islands.count) < _KEPT if number % 2 else np.zeros(islands.count, bool)
-            turns = np.where(kept, best_turns, random.randint(0, 4, islands.count))
-        found = packer.improved(turns, best)
+            # Half of the first ones from the best so far, of which some islands are turned, and all of the others.
+            kept = random.random_sample(count) < _KEPT if number % 2 or number > middle else np.zeros(count, bool)
+            further = _QUARTER_TURNS[random.randint(0, 4, count)]
+            if number > middle:
+                kept[random.randint(count)] = False
+                fits = sides < best.side * (1 - 2 * square.share(best.side))
+                direction = _DIRECTIONS[(random.random_sample(sides.shape) * fits).argmax(axis=0)]
+                further = np.where(is_aligned, further, direction * further)
+            turns = np.where(kept, best_turns, further)
+        found = packer.improved(turns, best, shorter)
         if found is not None:
             best, best_turns = found, turns
     if progress is not None:
         progress(1.0)
     return best
+
+
+def lie_along_axes(islands: Islands) -> NDArray[np.bool_]:
+    """(islands,), whether most of the border of each is parallel to one of the axes."""
+    edges = islands.place[islands.borders[:, 1]] - islands.place[islands.borders[:, 0]]
+    length, island = np.abs(edges), islands.island[islands.borders[:, 0]]
+    along = np.minimum(np.abs(edges.real), np.abs(edges.imag)) <= _TILT * length
+    whole, aligned = (np.bincount(island, of, islands.count) for of in (length, along * length))
+    return 2 * aligned >= whole
+
+
+def sides_when_turned(islands: Islands) -> FloatArray:
+    """(directions, islands), of the square around each island, turned into each of the directions."""
+    # Islands that are closed have no border, but count.
+    ends = np.union1d(islands.borders, np.unique(islands.island, return_index=True)[1])
+    around = replace(islands, place=islands.place[ends], island=islands.island[ends])
+    sizes = np.array([around.boxes(around.place * turn)[1] for turn in _DIRECTIONS])
+    return np.maximum(sizes.real, sizes.imag)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tight packing of islands, by quarter turns and translations, with the packer of xatlas."""
+"""Tight packing of islands, by turns and translations, with the packer of xatlas."""
 
 from __future__ import annotations
 
@@ -122,14 +122,17 @@ def pack_islands(
 ) -> FloatArray:
     """Pack islands tightly, into the smallest square found, and return their coordinates, (m, 3, 2).
 
-    Every island is moved as a whole: by a quarter turn, a translation, and a common scale, so that texel density and
-    the transitions across cuts are preserved.  Requires the package xatlas: pip install 'lsgp[pack]'.
+    Every island is moved as a whole: by a turn, a translation, and a common scale, so that texel density is preserved,
+    and both sides of a cut stay related by one rotation and one translation.  Requires the package xatlas: pip install
+    'lsgp[pack]'.
 
     corner_uv: (m, 3, 2). island: (m,), -1 for none; such triangles do not move.
     margin: around each island, so that the gap between two is twice as wide; at least 0, less than 0.5.
     fill: the square is the unit square, and the margin is a fraction of its side. Otherwise islands keep their size,
         the square starts at the origin, and the margin is in the unit of the coordinates.
-    turned: whether islands may be rotated.
+    turned: whether islands may be rotated; those with most of their border along the axes by quarter turns, unless
+        seven tenths of the square stay empty and other turns make its side a tenth shorter: long strips lie along the
+        diagonal.
     udim: the most UDIM tiles that islands are spread over, from 1001 on, so that they become as large as possible;
         fewer are used if the largest island alone fills one. Each island lies inside one tile, with its margin. Only
         with `fill`.

@@ -29,9 +29,11 @@ QUARTER_TURN, ANY_TURN = "CARDINAL", "ANY"
 ENOUGH, ENOUGH_UNTURNED = 0.65, 0.6
 """Parts of the square from which on a layout by Blender's packer is large enough; the other if no island is turned,
 which takes a hundredth of the time."""
-# Of a full turn, tried for an island that is alone, and what another of them has to gain.
+# Of a full turn, tried for an island that is alone, and what another of them has to gain. If the island fills so little
+# of the square, sides along the axes are given up for one whose side is so much shorter, as by the packer of xatlas.
 DIRECTIONS = 720
 TURN_GAINS = 1e-3
+HARDLY_FILLED, SHORTER_UNALIGNED = 0.3, 0.9
 KEPT = 8
 """Layouts that are not searched for again."""
 
@@ -51,7 +53,7 @@ def pack(
 
     margin_method: of Blender's packer, or EXACT, which looks for the largest layout that leaves the margin.
     margin: around each island. turned: whether islands may be; by quarters alone where most of their border lies along
-    the axes. udim: over how many UDIM tiles they are spread at most.
+    the axes, unless that leaves most of the square empty. udim: over how many UDIM tiles they are spread at most.
     Every island is moved by a single similarity.  Raises Refused where Blender does not pack, and where several tiles
     are asked for that it would have to fill.
     """
@@ -163,7 +165,8 @@ def _alone(part: Islands, margin: float, turned: bool) -> NDArray[np.float64]:
     squeeze = native.lsgp.correct_aspect((1.0, 1.0), part.aspect)
     places = (part.corner_uv / squeeze).reshape(-1, 2)
     if turned:
-        turn = _filling_turn(places, squeeze, DIRECTIONS // 4 if lie_along_axes([part]) else 1)
+        area = total_area(part.corner_uv) if lie_along_axes([part]) else 0.0
+        turn = _filling_turn(places, squeeze, area)
         places = places @ np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
     places = places * squeeze
     low = places.min(axis=0)
@@ -171,17 +174,22 @@ def _alone(part: Islands, margin: float, turned: bool) -> NDArray[np.float64]:
     return (margin + scale * (places - low)).reshape(part.corner_uv.shape)
 
 
-def _filling_turn(places: NDArray[np.float64], squeeze: NDArray[np.float64], step: int) -> float:
-    """The turn with which an island gets largest, radians, one of every `step` directions; Blender's packer does not
-    look for that."""
+def _filling_turn(places: NDArray[np.float64], squeeze: NDArray[np.float64], aligned: float) -> float:
+    """The turn with which an island gets largest, radians; Blender's packer does not look for that.
+
+    aligned: the area of an island that lies along the axes, 0 of others; it is turned by quarters, unless that leaves
+    most of the square empty.
+    """
     angles = np.arange(DIRECTIONS) * (2 * np.pi / DIRECTIONS)
     reach = np.array([(places @ (np.cos(angle), np.sin(angle))).max() for angle in angles])
     quarter = DIRECTIONS // 4
     across, up = reach + np.roll(reach, -2 * quarter), np.roll(reach, -quarter) + np.roll(reach, -3 * quarter)
     side = np.maximum(across * squeeze[0], up * squeeze[1])
+    least = side[::quarter].min()
+    if aligned > HARDLY_FILLED * least**2 or (aligned and side.min() > SHORTER_UNALIGNED * least):
+        angles, side = angles[::quarter], side[::quarter]
     # As it lies, where turning gains nothing.
-    side = side[::step]
-    return float(angles[::step][np.flatnonzero(side <= side.min() * (1 + TURN_GAINS))[0]])
+    return float(angles[np.flatnonzero(side <= side.min() * (1 + TURN_GAINS))[0]])
 
 
 def _scale(parts: Sequence[Islands], packed: Sequence[NDArray[np.float64]]) -> float:

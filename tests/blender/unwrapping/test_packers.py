@@ -212,3 +212,11 @@ def test_straight_sides_stay_along_the_axes(packer, preset, compact):
     uv_map = UvMap(bpy.context.object)
     along = [np.diff(uv_map.uv[list(side)], axis=0)[0] for sides in uv_map.sides.values() for side in sides]
     assert np.abs(along).min(axis=1).max() < 1e-6
+
+
+def test_a_strip_that_is_alone_lies_along_the_diagonal(packer):
+    """Nothing of it can be divided across, and along an axis it fills an eighth of the square."""
+    strip = add_grid("Strip", segments=1)
+    strip.data.transform(np.diag([8, 1, 1, 1]))
+    assert unwrap() == {"FINISHED"}
+    assert area(UvMap(strip)) > 0.18

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tight layouts: margins, one scale, quarter turns, determinism; and when islands stay where they are."""
+"""Tight layouts: margins, one scale, turns, determinism; and when islands stay where they are."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
-from layout_check import coverage, moves, overlapping_islands, room
+from layout_check import coverage, moves, overlapping_islands, room, share_along_axes
 from lsgp import TexelLayout, packing
 from lsgp.island_gaps import least_gap
 from lsgp.layout_search import best_layout
@@ -50,17 +50,23 @@ def squares(count: int, side: float = 0.1) -> tuple[np.ndarray, np.ndarray]:
 
 
 def require_packed(old: np.ndarray, new: np.ndarray, island: np.ndarray, margin: float, triangles: np.ndarray) -> None:
-    """No overlap, margins, and every island moved by a quarter turn, a shift and the same scale."""
+    """No overlap, margins, and every island moved by a turn, a shift and the same scale, those along the axes by a
+    quarter turn."""
     assert overlapping_islands(new, island) == 0
     found = room(triangles, new, island)
     assert found.between >= 2 * margin - ROUNDING and found.border >= margin - ROUNDING
     factors = moves(old, new, island)
     assert np.abs(factors) == pytest.approx(np.abs(factors[0, 0]), rel=1e-6)
-    quarters = np.angle(factors) / (math.pi / 2)
-    assert np.abs(quarters - np.round(quarters)).max() < 1e-6
     for i in range(int(island.max()) + 1):
         of_island = factors[island[island >= 0] == i]
         assert np.abs(of_island - of_island[0, 0]).max() < 1e-6 * abs(of_island[0, 0])
+        if share_along_axes(triangles[island == i], old[island == i]) > 0.5:
+            assert quarter_turned(of_island[0, 0])
+
+
+def quarter_turned(factor: complex) -> bool:
+    quarters = np.angle(factor) / (math.pi / 2)
+    return bool(np.abs(quarters - np.round(quarters)) < 1e-6)
 
 
 @pytest.mark.parametrize("margin", [0.0, 1 / 4096, 4 / 1024, 16 / 512])
@@ -146,6 +152,39 @@ def test_few_and_many_islands(packer, count: int) -> None:
     # Squares with their margins, on a grid.
     least = (1 - 2 * margin * (math.ceil(math.sqrt(count)) + 1)) ** 2 * count / math.ceil(math.sqrt(count)) ** 2
     assert coverage(packed, island) > (0.99 if count == 1 else 0.7) * least
+
+
+@pytest.mark.parametrize("count", [1, 3])
+@pytest.mark.parametrize("length", [1.2, 20.0])
+def test_long_strips_lie_along_the_diagonal(packer, count: int, length: float) -> None:
+    """Those that are hardly longer than wide stay along the axes."""
+    uv, island = squares(count)
+    packed = lsgp.pack_islands(uv * [length, 1], island)
+    factor = moves(uv * [length, 1], packed, island)[0, 0]
+    assert quarter_turned(factor) == (length < 2)
+    if length > 2:
+        assert abs(factor.real) == pytest.approx(abs(factor.imag), rel=0.05)
+        # The square around strips on top of each other, with room for their margins.
+        side = (length + 1.2 * count) * 0.1 / math.sqrt(2)
+        assert coverage(packed, island) > 0.9 * length * count * 0.01 / side**2
+
+
+def test_an_island_that_is_alone_is_turned_until_it_fits_best(packer) -> None:
+    angle = 0.3
+    corners = np.array([[0, 0], [3, 0], [3, 3], [0, 3], [1.5, 1.5]]) @ [
+        [math.cos(angle), math.sin(angle)],
+        [-math.sin(angle), math.cos(angle)],
+    ]
+    packed = lsgp.pack_islands(corners[[[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]], np.zeros(4, np.int32))
+    assert coverage(packed, np.zeros(4)) > 0.97
+
+
+@pytest.mark.parametrize("order", [[0, 1, 2], [2, 0, 1]])
+def test_an_island_without_a_border_is_packed_like_others(packer, order: list[int]) -> None:
+    """Two triangles on each other, with the same corners."""
+    uv = np.array([[[0, 0], [1, 0], [1, 0.3]], [[1, 0], [0, 0], [1, 0.3]], [[2, 0], [3, 0], [3, 1]]])
+    packed = lsgp.pack_islands(uv[order], np.array([0, 0, 1])[order])
+    assert overlapping_islands(packed, np.array([0, 0, 1])[order]) == 0
 
 
 def test_an_island_lies_in_the_hole_of_another(packer) -> None:

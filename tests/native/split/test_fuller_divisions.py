@@ -19,7 +19,7 @@ from zoo import closed, swept
 pytest.importorskip("xatlas")
 
 MODELS = {
-    **{f"spring of {turns} turns": swept.spring(turns, 10, True) for turns in (2, 3, 4, 6)},
+    **{f"spring of {turns} turns": swept.spring(turns, 10, True) for turns in (2, 3, 4, 6, 7)},
     **{
         f"shade of {around} faces": closed.lathe(np.array([1, 0.6]), np.array([0, height]), around, caps=(False, False))
         for around, height in ((16, 1.2), (24, 1.5), (40, 1.5))
