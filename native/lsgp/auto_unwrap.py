@@ -126,9 +126,10 @@ def auto_unwrap(
     creases: whether hard surfaces may be cut at their creases, as by `crease_borders`, which takes `sharp`; and with
         half of the curvature on creases, or few corners, where that halves the excess of L2 stretch over 1, and removes
         0.004 of it for each further island (without further ones: a fifth of it), and fills the square at most three
-        tenths less, where it exceeds 0.002; or where less than three fifths of the square are filled, and at no cost of
-        stretch a tenth more with them, a quarter for one further island, or two fifths for two (or a tenth; with "bake"
-        any number). The latter two only without cones, `count` or pins.
+        tenths less, where it exceeds 0.002; an island for two cones fewer is no further one, unless the component is
+        small. Or where less than three fifths of the square are filled, and at no cost of stretch a tenth more with
+        them, a quarter for one further island, or two fifths for two (or a tenth; with "bake" any number). The latter
+        two only without cones, `count` or pins.
     pack: "tight": as by `pack_islands`; "shelves": in rows; None: tight if `packer_name` returns a packer. Layouts that
         are seamless, pinned or in UDIM tiles at a texel density are never packed.
     margin: with "tight", around each island, as a fraction of the square's side; None: 4 / 1024, before the layout gets

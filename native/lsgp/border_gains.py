@@ -14,11 +14,13 @@ from .map_comparison import WELL_FILLED, defects, island_count, least_filled, me
 from .triangles import singular_values, triangle_areas
 
 # Borders are worth their islands if they remove half of the stretch, and so much of it for each further island; a fifth
-# of it without further ones. What is stretched less than this has none that one sees.
+# of it without further ones. So many cones that they spare pay for an island, as each has a cut that ends inside; on
+# what is small they are hardly seen. What is stretched less than this has none that one sees.
 _SEEN_EXCESS = 0.002
 _MOST_EXCESS = 0.5
 _MOST_EXCESS_WITHOUT_ISLANDS = 0.8
 _EXCESS_FOR_ISLAND = 0.004
+_CONES_FOR_ISLAND = 2
 _LEAST_FILLED_WITH_BORDERS = 0.7
 # Of the stretch of maps that are the same but for rounding.
 _ROUNDING = 1e-6
@@ -58,13 +60,16 @@ class LessStretch:
 
     def gains(self, bordered: Result, usual: Result, components: Sequence[IndexArray]) -> list[bool]:
         """Where borders halve the excess of L2 stretch over 1, and reduce it by 0.004 for each further island; without
-        further ones, where they reduce it by a fifth.
+        further ones, where they reduce it by a fifth. On those that are not small, an island for two cones fewer is no
+        further one.
         """
         out = []
         weights = _weights(self.surface, usual, components)
         stretches = (_stretches(self.surface, result, components) for result in (bordered, usual))
         for part, weight, one, other in zip(components, weights, *stretches, strict=True):
             more = len(np.unique(bordered.island[part])) - len(np.unique(usual.island[part]))
+            if weight == 1:
+                more -= max(0, self._cones_on(usual, part) - self._cones_on(bordered, part)) // _CONES_FOR_ISLAND
             most = _MOST_EXCESS if more > 0 else _MOST_EXCESS_WITHOUT_ISLANDS
             out.append(bool(one - 1 <= most * (other - 1) and weight * (other - one) >= _EXCESS_FOR_ISLAND * more))
         return out
@@ -75,6 +80,9 @@ class LessStretch:
             return False
         filled = measure_of_filling(usual, self.square_share, progress)
         return filled(bordered) >= _LEAST_FILLED_WITH_BORDERS * filled(usual)
+
+    def _cones_on(self, result: Result, component: IndexArray) -> int:
+        return int(np.isin(result.cones, self.surface.triangles[component]).sum())
 
 
 @dataclass(frozen=True, slots=True)

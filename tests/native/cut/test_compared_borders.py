@@ -62,6 +62,17 @@ def test_a_barrel_ends_at_its_rims(around: int, rings: int, height: float, prese
     assert rims < pairs(result.borders) and len(result.borders) == 2 * around + rings - 1
 
 
+@pytest.mark.parametrize(("around", "neck"), [(16, 0.2), (20, 0.3), (32, 0.18)])
+def test_a_bottle_ends_at_its_creases_and_needs_no_cones(around: int, neck: float) -> None:
+    """With a narrow neck the pieces save less of the stretch than so many islands would be worth by that alone."""
+    radius = np.array([0.5, 0.5, 0.45, 0.3, neck, neck, neck + 0.04, neck + 0.04])
+    height = np.array([0, 1.2, 1.35, 1.55, 1.7, 2.1, 2.12, 2.2])
+    bottle = surface(closed.lathe(radius, height, around, caps=(True, True)))
+    found, cones = (lsgp.auto_unwrap(bottle, creases=creases, pack="shelves") for creases in (True, False))
+    assert len(found.cones) == 0 < len(cones.cones)
+    assert found.distortion.l2_stretch - 1 < 0.8 * (cones.distortion.l2_stretch - 1)
+
+
 @pytest.mark.parametrize("rings", [5, 9, 12, 17])
 def test_many_small_bends_make_no_flat_face(rings: int) -> None:
     """Across it, one rim would be beside the other, which bends alike."""
