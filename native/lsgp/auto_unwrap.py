@@ -271,7 +271,8 @@ def best_at_creases(
 
 
 def best_division(mapped: Mapped, options: Options, progress: Progress | None = None) -> Result:
-    """The map with its islands divided further, where much of the square stays empty and the packer fills it well then.
+    """The map with its islands divided further, or less, where much of the square stays empty and the packer fills it
+    better then.
 
     Dividing them goes by an estimate of what they take; which of several layouts is the smallest only packing can tell.
     mapped: as of `best_at_creases`. progress: without time of its own.  Raises Cancelled.
@@ -280,11 +281,14 @@ def best_division(mapped: Mapped, options: Options, progress: Progress | None = 
     keeps_few = options.compact == "sparing"
     if options.compact == "off" or options.square_share != 1 or not fills_badly(usual, keeps_few, progress):
         return usual
-    further = replace(options, square_share=_SQUARES)
-    divided = or_none(lambda: _map_through(Solver(surface), cones, further, None, progress))
-    if divided is None or not may_replace_undivided(divided, usual, keeps_few, progress):
-        return usual
-    return cones.told(divided, options)
+    best, others = usual, [replace(options, square_share=_SQUARES)]
+    if not keeps_few:
+        others.append(replace(options, compact="sparing"))
+    for other in others:
+        divided = or_none(partial(_map_through, Solver(surface), cones, other, None, progress))
+        if divided is not None and may_replace_undivided(divided, best, keeps_few, progress):
+            best = cones.told(divided, options)
+    return best
 
 
 def _gaining(

@@ -65,6 +65,18 @@ def test_further_islands_fill_the_square(preset: lsgp.Preset, monkeypatch: pytes
     assert len(gained) >= 2 and "block" not in gained
 
 
+@pytest.mark.parametrize("depth", [0.4, 0.45])
+def test_what_fills_the_square_better_whole_is_not_divided(depth: float) -> None:
+    """A flat body of three lobes, of which one would be cut off by the estimate."""
+    ball = meshes.icosphere(3)
+    x, y, _ = ball.positions.T
+    radius = 1 + depth * np.cos(3 * np.arctan2(y, x)) * (x**2 + y**2)
+    result = lsgp.auto_unwrap(
+        surface(meshes.make(ball.positions * radius[:, None] * [1, 1, 0.6], ball.triangles)), preset="bake"
+    )
+    assert result.island.max() == 0 and uv_area(result.corner_uv) > 0.55
+
+
 @pytest.mark.parametrize(
     ("before", "islands", "filled", "paint", "bake"),
     [
