@@ -547,6 +547,9 @@ def best_map(
         best = for_features, along
     elif not is_chosen:
         best = best[0], _map_through(solver, best[0], options, pins, next(stages))
+        # Along creases the usual one is stretched as well.
+        if along is not None and may_replace_for_features(along, best[1]):
+            best = for_features, along
     return best[0], best[0].told(best[1], options)
 
 

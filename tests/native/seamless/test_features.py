@@ -17,6 +17,7 @@ from map_checks import codes, only, surface
 from meshes import Mesh
 from numpy.typing import NDArray
 from result_check import undeclared_faults
+from shared_meshes import hard_mesh
 from zoo import broken, closed
 
 TILE = lsgp.preset_options("tile")
@@ -86,6 +87,14 @@ def test_that_costs_at_most_a_tenth_of_stretch(name: str) -> None:
 
 
 SOFT = [meshes.bumpy_sphere(2), meshes.torus(), meshes.icosphere(1), closed.noise_sphere(3, 0.04, 1)]
+
+
+def test_creases_are_followed_as_far_as_marked_ones() -> None:
+    """On a part with bevels, through cones for creases, which cost stretch as the creases do through others."""
+    given = surface(hard_mesh("anchor"))
+    marked = replace(given, features=lsgp.feature_edges(given, angle=SHARP))
+    share = lsgp.auto_unwrap(marked, preset="tile").features.share
+    assert lsgp.auto_unwrap(given, preset="tile").seamless.feature_share >= share - 0.05 > 0.85
 
 
 @pytest.mark.parametrize("mesh", SOFT)
