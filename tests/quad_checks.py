@@ -79,6 +79,13 @@ def distances(mesh: Mesh, points: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def require_quads_of(mesh: Mesh, corner_uv: NDArray[np.float64], found: lsgp.QuadMesh, cell: float = 1.0) -> None:
     """A closed manifold of quads over the surface, as its layout says."""
+    require_closed_quads(mesh, found)
+    assert len(found.quads) == round(layout_area(corner_uv) / cell**2)
+    require_cones(mesh, corner_uv, found)
+
+
+def require_closed_quads(mesh: Mesh, found: lsgp.QuadMesh) -> None:
+    """A closed manifold of quads over the surface."""
     quads, count = found.quads, len(found.positions)
     assert quads.min() == 0 and quads.max() == count - 1
     assert all(len(set(quad)) == 4 for quad in quads.tolist())
@@ -88,8 +95,6 @@ def require_quads_of(mesh: Mesh, corner_uv: NDArray[np.float64], found: lsgp.Qua
     assert fans(quads) == count
     assert np.bincount(quads.ravel(), minlength=count).tolist() == found.valences.tolist()
     assert count - len(once) // 2 + len(quads) == euler_characteristic(mesh.triangles)
-    assert len(quads) == round(layout_area(corner_uv) / cell**2)
-    require_cones(mesh, corner_uv, found)
     require_on_surface(mesh, found)
 
 

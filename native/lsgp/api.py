@@ -607,7 +607,7 @@ class Solver:
     that `place_cones` has placed. Angles and all options except `seams`, `border` and `factorization`, including those
     of seamless layouts, can then change without a new factorization. A seamless layout that differs from the previous
     one only in the size of its tiles takes only their rounding: the map, and which creases run along the lattice, are
-    kept.
+    kept. The map is kept, too, if only `straighten` differs.
     A call during another one, from another thread or from its progress callback, raises SolverError (SOLVER_BUSY).
     """
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,8 +16,9 @@ from .arguments import FloatArray, IndexArray
 from .auto_unwrap import CompletedCones, GivenCones, complete_cones, feature_cones, follows_features, or_none, share_of
 from .divided_triangles import DividedSurface, divide_long_edges
 from .equality import EqualByContent
-from .errors import Finding, InputError, SolverError
+from .errors import Elements, Finding, InputError, SolverError
 from .map_comparison import feature_share, releases_many_features, runs_along_features
+from .quad_rows import QuadLines
 from .short_repr import ShortRepr
 from .triangles import triangle_areas, uv_area
 
@@ -42,11 +43,15 @@ _OF_LAYOUTS_ALONE = frozenset({"OVERLAPPING_TRIANGLES"})
 _MOST_QUADS = 2**28
 # A number of quads further than this from what was asked for, as a share of it, gets a second try.
 _NEAR = 0.02
+# And this far from it is as bad as following no features instead of all.
+_WORTH_OF_FEATURES = 0.25
 # Cones of a quarter turn are below this angle, radians; how often others are placed to do without.
 _NARROW, _MOST_HOLDS = 0.75 * math.pi, 4
-# Where quads are too large for a mesh: by how much smaller ones are tried, and how often.
+# Where quads are too large for a mesh: by how much smaller ones are tried, how often, and into how many parts rows of
+# quads are divided.
 _FINER = 0.8
 _MOST_REFINEMENTS = 12
+_PARTS_OF_ROWS = (2, 3)
 # More quads than this, and this many times what was asked for, are refused instead of made: parts of the surface differ
 # so much in size that the grid of the smallest one covers the others with millions.
 _MANY_QUADS, _FAR_ABOVE = 2**20, 2
@@ -98,7 +103,7 @@ class QuadRemesh(EqualByContent, ShortRepr):
     """A quadrangulation and its seamless layout.
 
     mesh: the quads. layout: the seamless layout whose grid was traced; its `cones` are the irregular vertices, its
-        `seamless.tile_size` is the side of a quad.
+        `seamless.tile_size` is the side of a quad whose row is not divided.
     warnings: findings that leave the mesh usable, including those of the placement of cones and of the layout.
     surface: what the layout is of: the given surface, or where quads follow creases and its triangles are large, the
         same with long edges divided. New vertices follow the given ones. The mesh and the warnings refer to the given
@@ -151,7 +156,8 @@ def remesh_to_quads(
         curvature, get some, as with `auto_unwrap`, but none of 90 degrees. count: the number on each component that
         gets some.
     target: the approximate number of quads; it is larger if so few have no valid layout or are not a mesh
-        (GRID_REFINED), but more than a million, and twice the target, are refused (TOO_MANY_QUADS).
+        (GRID_REFINED): some rows of quads are then divided, or all are smaller. More than a million, and twice the
+        target, are refused (TOO_MANY_QUADS).
         size: or the side of a quad on the surface, in its unit. Neither: the coarsest grid that costs at most a tenth
         in distortion.
     options: for the layout, as for `parameterize`; None: `Options(seamless=Seamless(), straighten=True)`. Its
@@ -179,10 +185,10 @@ def remesh_to_quads(
         along = feature_cones(solver, chosen, share_of(placing, 0.0, _FOR_FEATURES))
     completed = _wide_cones(solver, given, chosen, share_of(placing, _FOR_FEATURES, 1.0))
     if along is None:
-        layouts, layout = _whole_or_between(surface, target, completed, chosen, laying_out)
+        layouts, layout = _whole_or_between(solver, target, completed, chosen, laying_out)
     else:
         on_given, on_finer = share_of(laying_out, 0.0, _ON_GIVEN), share_of(laying_out, _ON_GIVEN, 1.0)
-        layouts, layout = _along_features((surface, target, chosen), (along, completed), on_given)
+        layouts, layout = _along_features((solver, target, chosen), (along, completed), on_given)
         gained = None if _is_close(layout) else or_none(lambda: _gained(surface, target, chosen, layout, on_finer))
         if gained is not None:
             finer, layouts, layout = gained
@@ -279,16 +285,16 @@ def _wide_cones(solver: Solver, given: GivenCones, options: Options, progress: P
 class _Layouts:
     """Layouts of one surface through the same cones, on grids of any size.
 
-    options: seamless ones, with the side of the first grid's cells.
+    solver: of the surface, which keeps what several of these have in common. options: seamless ones, with the side of
+        the first grid's cells.
     """
 
-    def __init__(self, surface: Surface, completed: CompletedCones, options: Options) -> None:
-        self._surface, self._completed, self._options = surface, completed, options
-        self._solver = Solver(surface)
+    def __init__(self, solver: Solver, completed: CompletedCones, options: Options) -> None:
+        self._solver, self._completed, self._options = solver, completed, options
 
     def nearest(self, target: int | None, progress: Progress | None, first: Result | None = None) -> Result:
-        """On the first grid, or on one of another size where rounding has taken that away from its target.  first: the
-        layout on the first grid, if known."""
+        """On the first grid, or on one of another size where rounding has taken that away from its target, if that does
+        not follow fewer features.  first: the layout on the first grid, if known."""
         side = self._options.seamless.tile_size
         layout = self.first(share_of(progress, 0.0, 0.5)) if first is None else first
         if target is None or any(finding.code == "GRID_REFINED" for finding in layout.warnings):
@@ -297,33 +303,61 @@ class _Layouts:
         if abs(quads - target) <= _NEAR * target:
             return layout
         second = self._lay_out(side * math.sqrt(quads / target), share_of(progress, 0.5, 1.0))
-        return min(layout, second, key=lambda found: abs(_quad_count(found) - target))
+        return min(layout, second, key=lambda found: _missed(found, target))
 
     def first(self, progress: Progress | None) -> Result:
         """On the first grid."""
         return self._lay_out(self._options.seamless.tile_size, progress)
 
     def extracted(self, layout: Result, asked: float, progress: Progress | None) -> tuple[QuadMesh, Result]:
-        """The quads of a layout, or of the first one on a finer grid on which they are a mesh, and that layout.
+        """The quads of a layout, and that layout. Where they are no mesh, those of the first finer grid on which they
+        are, or of a coarser one with some rows divided, if there are far fewer of these.
 
         asked: the number of quads that was asked for, 0 for any. Raises SolverError: TOO_MANY_QUADS.
         """
-        done = 0.0
-        for _ in range(_MOST_REFINEMENTS):
+        done, places, fewest = 0.0, None, None
+        for refinement in range(_MOST_REFINEMENTS + 1):
             half = (1 + done) / 2
+            if fewest is not None and _quad_count(layout) > _MORE_QUADS * len(fewest[0].quads):
+                break
             try:
-                return self._extract(layout, asked, share_of(progress, done, half)), layout
+                mesh = self._extract(layout, asked, share_of(progress, done, half))
             except SolverError as error:
-                if error.code != "GRID_TOO_COARSE":
+                if error.code != "GRID_TOO_COARSE" or refinement == _MOST_REFINEMENTS:
                     raise
+                places = error.elements if places is None else places
+            else:
+                return mesh, _told(layout, mesh, asked, places)
+            divided = self._with_divided_rows(layout, asked)
+            if divided is not None and (fewest is None or len(divided.quads) < len(fewest[0].quads)):
+                fewest = divided, layout
             done = (1 + half) / 2
             layout = self._lay_out(_FINER * layout.seamless.tile_size, share_of(progress, half, done))
-            layout = replace(layout, warnings=[*layout.warnings, _refined(layout)])
-        return self._extract(layout, asked, share_of(progress, done, 1.0)), layout
+        mesh, layout = fewest
+        return mesh, _told(layout, mesh, asked, places)
 
     def _extract(self, layout: Result, asked: float, progress: Progress | None) -> QuadMesh:
         _refuse_far_above(asked, layout)
-        return extract_quads(self._surface, layout.corner_uv, self._options.seamless.cell, progress)
+        return extract_quads(self._solver.surface, layout.corner_uv, self._options.seamless.cell, progress)
+
+    def _with_divided_rows(self, layout: Result, asked: float) -> QuadMesh | None:
+        """As few rows of the grid as possible divided in two or three, so that its quads are a mesh; None if even all
+        of them are too few."""
+        for parts in _PARTS_OF_ROWS:
+            if parts**2 * _quad_count(layout) > _MANY_QUADS:
+                return None
+            cell = self._options.seamless.cell / parts
+            try:
+                mesh = extract_quads(self._solver.surface, layout.corner_uv, cell)
+            except SolverError as error:
+                if error.code != "GRID_TOO_COARSE":
+                    raise
+                continue
+            uv = np.einsum("vc,vck->vk", mesh.weights, layout.corner_uv[mesh.triangles]) / cell
+            lines = QuadLines(mesh.quads, (np.round(uv) % parts == 0).all(axis=1))
+            lines.leave_out(math.ceil(asked))
+            return _without_lines(mesh, lines)
+        return None
 
     def _lay_out(self, side: float | None, progress: Progress | None) -> Result:
         options = replace(self._options, seamless=replace(self._options.seamless, tile_size=side))
@@ -335,21 +369,21 @@ class _Layouts:
 
 
 def _along_features(
-    asked: tuple[Surface, int | None, Options],
+    asked: tuple[Solver, int | None, Options],
     cones: tuple[CompletedCones, CompletedCones],
     progress: Progress | None,
 ) -> tuple[_Layouts, Result]:
     """Layouts along creases, and the nearest of them to the target: through the cones for creases, which are the first,
     or where these gain less, through the usual ones; plain layouts where both cost much more for what they follow."""
-    surface, target, options = asked
+    solver, target, options = asked
     for_features, usual = cones
-    found = or_none(lambda: _whole_or_between(surface, target, for_features, options, share_of(progress, 0.0, _ALONG)))
-    plain = _Layouts(surface, usual, replace(options, straighten=False))
+    found = or_none(lambda: _whole_or_between(solver, target, for_features, options, share_of(progress, 0.0, _ALONG)))
+    plain = _Layouts(solver, usual, replace(options, straighten=False))
     first = plain.first(share_of(progress, _ALONG, _PLAIN))
     affordable = [found] if found is not None and _is_affordable(found[1], first) else []
     if affordable and not releases_many_features(affordable[0][1]):
         return affordable[0]
-    others = _whole_or_between(surface, target, usual, options, share_of(progress, _PLAIN, 1.0))
+    others = _whole_or_between(solver, target, usual, options, share_of(progress, _PLAIN, 1.0))
     if _is_affordable(others[1], first):
         affordable.insert(0, others)
     if not affordable:
@@ -358,18 +392,23 @@ def _along_features(
 
 
 def _whole_or_between(
-    surface: Surface, target: int | None, cones: CompletedCones, options: Options, progress: Progress | None
+    solver: Solver, target: int | None, cones: CompletedCones, options: Options, progress: Progress | None
 ) -> tuple[_Layouts, Result]:
     """Layouts through these cones, and the nearest to the target. On a coarse grid few features find a place on whole
     cells; quads nearly follow those that lie between."""
-    layouts = _Layouts(surface, cones, options)
+    layouts = _Layouts(solver, cones, options)
     layout = layouts.nearest(target, share_of(progress, 0.0, 0.5))
     has_features = layout.features is not None or layout.seamless.feature_share is not None
     if not has_features or runs_along_features(layout):
         return layouts, layout
-    between = _Layouts(surface, cones, replace(options, seamless=replace(options.seamless, whole_features=False)))
+    between = _Layouts(solver, cones, replace(options, seamless=replace(options.seamless, whole_features=False)))
     other = between.nearest(target, share_of(progress, 0.5, 1.0))
     return (between, other) if feature_share(other) > feature_share(layout) else (layouts, layout)
+
+
+def _missed(layout: Result, target: int) -> float:
+    """How far a layout is from the target, as a share of it; less, the more features it follows."""
+    return abs(_quad_count(layout) - target) / target - _WORTH_OF_FEATURES * feature_share(layout)
 
 
 def _is_affordable(along: Result, plain: Result) -> bool:
@@ -409,10 +448,11 @@ def _gained(
     finer = _divided(surface)
     if finer is None:
         return None
-    cones = feature_cones(Solver(finer.surface), options, share_of(progress, 0.0, _FOR_FEATURES))
+    solver = Solver(finer.surface)
+    cones = feature_cones(solver, options, share_of(progress, 0.0, _FOR_FEATURES))
     if cones is None:
         return None
-    layouts = _Layouts(finer.surface, cones, options)
+    layouts = _Layouts(solver, cones, options)
     first = layouts.first(share_of(progress, _FOR_FEATURES, 0.5))
     if runs_along_features(before) and feature_share(first) < _PROMISING * feature_share(before):
         return None
@@ -435,12 +475,30 @@ def _undivided(mesh: QuadMesh, finer: DividedSurface) -> QuadMesh:
     return replace(mesh, triangles=finer.triangles[mesh.triangles], weights=weights, surface_vertices=vertices)
 
 
-def _refined(layout: Result) -> Finding:
-    return Finding(
-        "GRID_REFINED",
-        "With quads as large as requested, one would have a vertex twice, or two vertices more than one edge; they "
-        f"have the side {layout.seamless.tile_size:.4g} now. Ask for more quads, or use fewer cones.",
-    )
+def _without_lines(mesh: QuadMesh, lines: QuadLines) -> QuadMesh:
+    """The mesh without the lines that are left out."""
+    quads, kept = lines.mesh()
+    of_vertices = {field.name: getattr(mesh, field.name)[kept] for field in fields(mesh) if field.name != "quads"}
+    return QuadMesh(quads=quads, **of_vertices)
+
+
+def _told(layout: Result, mesh: QuadMesh, asked: float, places: Elements | None) -> Result:
+    """The layout with a warning if it is finer, or its quads are more, than was asked for.  places: where quads as
+    large as that are no mesh; None if they are one."""
+    others = [finding for finding in layout.warnings if finding.code != "GRID_REFINED"]
+    if places is None and len(others) == len(layout.warnings):
+        return layout
+    count = f"{len(mesh.quads)} quads" + (f" instead of {round(asked)}" if asked else "")
+    if places is None:
+        why = "cones are closer to each other than quads as large as requested, or a component is hardly larger"
+    else:
+        why = (
+            f"at {len(places.indices)} triangles a quad as large as requested would have a vertex twice, or two "
+            "vertices more than one edge, as around a handle or tube with less than three quads around it"
+        )
+    remedy = "Ask for more quads, use fewer cones, or close small tunnels."
+    refined = Finding("GRID_REFINED", f"There are {count}: {why}. {remedy}", places or Elements())
+    return replace(layout, warnings=[*others, refined])
 
 
 def _refuse_far_above(asked: float, layout: Result) -> None:

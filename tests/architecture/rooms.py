@@ -176,6 +176,7 @@ API = (
     "map_comparison",
     "mip_levels",
     "packing",
+    "quad_rows",
     "quads",
     "short_repr",
     "stacking",

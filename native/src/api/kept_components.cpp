@@ -10,19 +10,19 @@ namespace {
 // Fields are counted: a further one does not compile before it is compared.
 bool is_same_lattice(const Seamless& a, const Seamless& b) {
   const auto& [lattice, tiles, tile_size, parity, whole_features, coarse_grid, cell] = a;
-  return lattice == b.lattice && parity == b.parity && whole_features == b.whole_features &&
-         coarse_grid == b.coarse_grid && cell == b.cell;
+  return lattice == b.lattice && parity == b.parity && coarse_grid == b.coarse_grid && cell == b.cell;
 }
 
-// Whether seamless layouts differ only in the size of tiles; the number of threads does not matter.
+// Whether seamless layouts differ only in the size of tiles and in what runs along them; the number of threads does not
+// matter.
 bool has_same_maps(const Options& a, const Options& b) {
   const auto& [prescription, unfold, method, seams, border, loop_turning, seamless, mode, stretch, straighten, repair,
                overlaps, compact, mirrored_cuts, square_share, factorization, threads] = a;
   return prescription == b.prescription && unfold == b.unfold && method == b.method && seams == b.seams &&
          border == b.border && loop_turning == b.loop_turning && seamless && b.seamless &&
-         is_same_lattice(*seamless, *b.seamless) && mode == b.mode && stretch == b.stretch &&
-         straighten == b.straighten && repair == b.repair && overlaps == b.overlaps && compact == b.compact &&
-         mirrored_cuts == b.mirrored_cuts && square_share == b.square_share && factorization == b.factorization;
+         is_same_lattice(*seamless, *b.seamless) && mode == b.mode && stretch == b.stretch && repair == b.repair &&
+         overlaps == b.overlaps && compact == b.compact && mirrored_cuts == b.mirrored_cuts &&
+         square_share == b.square_share && factorization == b.factorization;
 }
 
 }  // namespace
@@ -66,6 +66,14 @@ ComponentSystem& KeptComponents::system_of(std::size_t i, Factorization factoriz
 void KeptComponents::keep_maps_of(const Cones& cones, const Options& options) {
   if (of_maps_ && of_maps_->cones.vertices == cones.vertices && of_maps_->cones.angles == cones.angles &&
       has_same_maps(of_maps_->options, options)) {
+    const Options before = std::exchange(of_maps_->options, options);
+    if (before.straighten == options.straighten &&
+        before.seamless->whole_features == options.seamless->whole_features) {
+      return;
+    }
+    for (auto& kept : kept_) {
+      if (kept) kept->alignment.reset();
+    }
     return;
   }
   of_maps_ = MapInput{cones, options};
