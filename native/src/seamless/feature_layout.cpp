@@ -12,6 +12,7 @@
 
 #include "base/checkpoint.hpp"
 #include "base/union_find.hpp"
+#include "creases/features.hpp"
 #include "lsgp/errors.hpp"
 #include "repair/low_stretch.hpp"
 #include "unfold/distortion.hpp"
@@ -36,6 +37,7 @@ constexpr Index most_defects = 24;             // vertices there, on small meshe
 constexpr double defective_share = 0.02;       // of the vertices, on others
 constexpr double least_kept = 0.25;            // of their length on a lattice
 constexpr double most_cost = 0.25;             // of rounding, relative to the area: beyond, layouts fold or stretch
+constexpr double most_cost_of_corners = 0.05;  // besides
 constexpr double compatible_share = 0.01;      // that lines may flip which contradict none
 constexpr Index few = 8;                       // that are always
 constexpr int unfolding_steps = 16;
@@ -46,7 +48,7 @@ constexpr double short_length = 1.5;              // cells: lines that are round
 constexpr double least_response = 1e-9;           // of a coordinate to a shift, or to unknowns
 constexpr double whole = 1e-5;                    // deviation of a dependent coordinate from its step
 constexpr int tried_scales = 3;                   // above and below the one asked for, by sixteenths of an octave
-constexpr std::ptrdiff_t many_coordinates = 128;  // for which only one scale is tried
+constexpr std::ptrdiff_t many_coordinates = 512;  // for which only one scale is tried
 
 CoordinateForm coordinate(Index of) { return {{of / 2, of % 2 == 0 ? Complex(0, 1) : Complex(1)}}; }
 
@@ -437,6 +439,7 @@ bool FeatureLayout::loosen() {
     start_ = std::move(longest->start);
     trimmings_ = longest->trimmings;
     loosened_.erase(longest);
+    keeps_corners_ = false;
     held_ = free_along(task_.surface, task_.lattice.reduction, edges_of(aligned_));
     // It fulfills the conditions that are left, and stays valid.
     relax(Eigen::VectorXd::Ones(task_.surface.mesh.triangle_count()), start_);
@@ -527,6 +530,31 @@ void FeatureLayout::hold_translation() {
   }
 }
 
+// Cones are on the lattice anyway, and closed lines have no ends.
+void FeatureLayout::find_corners(const Array<char>& is_on_line) {
+  const HalfedgeMesh& mesh = task_.surface.mesh;
+  Array<char> is_listed = is_on_line;
+  const auto list = [&](Index corner, Complex direction) {
+    const Index along = 2 * task_.surface.cut_mesh.copy_of_corner[corner] + (direction.imag() == 0 ? 0 : 1);
+    if (is_cone_[mesh.origin(corner)] || std::exchange(is_listed[along], 1)) return;
+    rounded_.push_back(coordinate(along));
+  };
+  const auto edge = [&](Index h) {
+    return Eigen::Vector3d(mesh.positions.row(mesh.target(h)) - mesh.positions.row(mesh.origin(h))).normalized();
+  };
+  for (const FeatureLine& line : aligned_) {
+    if (line.is_whole && mesh.origin(line.halfedges.front()) != mesh.target(line.halfedges.back())) {
+      list(line.halfedges.front(), line.directions.front());
+      list(next(line.halfedges.back()), line.directions.back());
+    }
+    for (Index i = 1; i < ssize(line.halfedges); ++i) {
+      const Index before = line.halfedges[i - 1], h = line.halfedges[i];
+      if (mesh.target(before) != mesh.origin(h)) continue;  // released edges are between them
+      if (edge(before).dot(edge(h)) < std::cos(crease_angle)) list(h, line.directions[i]);
+    }
+  }
+}
+
 void FeatureLayout::find_coordinates() {
   const CutMesh& cut_mesh = task_.surface.cut_mesh;
   const DirectedEdges edges = edges_of(aligned_);
@@ -559,6 +587,9 @@ void FeatureLayout::find_coordinates() {
     if (may_shift_ && first == line.front()) continue;
     rounded_.push_back(std::move(form));
   }
+  line_count_ = ssize(rounded_);
+  // Shifts round others, to which corners would have to be related.
+  if (!may_shift_) find_corners(is_on_line);
   const Reduction& reduction = task_.lattice.reduction;
   DirectedEdges fixed = edges;
   fixed.fixed = held_translation_;
@@ -581,11 +612,14 @@ void FeatureLayout::find_coordinates() {
     const Eigen::MatrixXd forces(coefficients_.middleCols(i, width));
     compliance_.middleCols(i, width) = coefficients_.transpose() * factor_->solve(forces);
   }
-  whole_values_ = WholeValues::among(compliance_);
-  Eigen::VectorXd units = Eigen::VectorXd::Ones(ssize(rounded_));
-  units.tail(ssize(rounded_) - lattice_count_).setConstant(1 / fine_step);
-  fine_values_ = WholeValues::among(units.asDiagonal() * compliance_ * units.asDiagonal());
+  const auto of_lines = compliance_.topLeftCorner(line_count_, line_count_);
+  whole_values_ = WholeValues::among(of_lines);
+  Eigen::VectorXd units = Eigen::VectorXd::Ones(line_count_);
+  units.tail(line_count_ - lattice_count_).setConstant(1 / fine_step);
+  fine_values_ = WholeValues::among(units.asDiagonal() * of_lines * units.asDiagonal());
   fixed.fixed = rounded_;
+  held_corners_ = free_along(task_.surface, reduction, fixed);
+  fixed.fixed.resize(line_count_);
   held_ = free_along(task_.surface, reduction, fixed);
 }
 
@@ -594,10 +628,10 @@ std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, bool is_
   const std::optional<WholeValues>& all = is_fine ? fine_values_ : whole_values_;
   if (!all) return std::nullopt;
   WholeValues values = *all;
-  const std::ptrdiff_t count = ssize(rounded_);
+  const std::ptrdiff_t count = line_count_;
   Choice out{scale, {}, {}, {}, 0};
-  Eigen::VectorXd value(count);
-  for (std::ptrdiff_t i = 0; i < count; ++i) value[i] = scale * value_of(rounded_[i], start_);
+  Eigen::VectorXd value(ssize(rounded_));
+  for (std::ptrdiff_t i = 0; i < value.size(); ++i) value[i] = scale * value_of(rounded_[i], start_);
   PivotedCholesky cholesky(compliance_);
   Array<char> is_done(count, 0);
   const auto unit = [&](std::ptrdiff_t i) { return is_fine && i >= lattice_count_ ? fine_step : 1.0; };
@@ -637,6 +671,7 @@ std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, bool is_
   for (std::ptrdiff_t i = 0; i < length_count_; ++i) {
     if (value[i] < 1 - whole) return std::nullopt;
   }
+  if (keeps_corners_ && !is_fine) round_corners(value, cholesky, out);
   const Eigen::Index chosen = ssize(out.independent);
   Eigen::MatrixXd block(chosen, chosen);
   Eigen::VectorXd moved(chosen);
@@ -650,8 +685,37 @@ std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, bool is_
   return out;
 }
 
-std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, bool must_be_whole) {
+// The cheapest ones, of those that do not follow from other coordinates.
+void FeatureLayout::round_corners(Eigen::VectorXd& value, PivotedCholesky& cholesky, Choice& choice) const {
+  double left = most_cost_of_corners * choice.scale * choice.scale * task_.surface.geometry.total_area;
+  for (;;) {
+    checkpoint(static_cast<double>(value.size() * (ssize(choice.independent) + 1)));
+    std::ptrdiff_t best = -1;
+    double cheapest = left;
+    for (std::ptrdiff_t i = line_count_; i < value.size(); ++i) {
+      if (!cholesky.is_independent(i)) continue;
+      const double off = std::round(value[i]) - value[i], cost = off * off / cholesky.left()[i];
+      if (!(cost < cheapest)) continue;
+      cheapest = cost;
+      best = i;
+    }
+    if (best < 0) return;
+    left -= cheapest;
+    const Eigen::VectorXd column = cholesky.column(best);
+    value += column * ((std::round(value[best]) - value[best]) / column[best]);
+    cholesky.eliminate(best, column);
+    choice.independent.push_back(static_cast<Index>(best));
+  }
+}
+
+std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, bool must_be_whole, bool keeps_corners) {
+  keeps_corners_ = keeps_corners;
   const std::optional<Choice> whole_lines = choose(density, false);
+  const auto is_of_corner = [&](Index i) { return i >= line_count_; };
+  if (keeps_corners && whole_lines &&
+      std::none_of(whole_lines->independent.begin(), whole_lines->independent.end(), is_of_corner)) {
+    return std::nullopt;
+  }
   if (whole_lines) {
     if (auto out = lay_out(*whole_lines, 1)) return out;
   }
@@ -670,7 +734,7 @@ std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, bool mus
 std::optional<FeatureLayout::Choice> FeatureLayout::choose(double density, bool is_fine) const {
   std::optional<Choice> best;
   double least = std::numeric_limits<double>::infinity();
-  const int scales = ssize(rounded_) > many_coordinates ? 0 : tried_scales;
+  const int scales = line_count_ > many_coordinates ? 0 : tried_scales;
   for (int k = -scales; k <= scales; ++k) {
     const double growth = k * M_LN2 / 16;
     std::optional<Choice> choice = round(density * std::exp(growth), is_fine);
@@ -695,6 +759,7 @@ std::optional<Eigen::VectorXcd> FeatureLayout::lay_out(const Choice& choice, dou
   const bool is_mended = minimize(position);
   if (is_mended) snap(step_of_lines, position);
   if (is_mended && is_valid(position) && is_on_lattice(position)) return position;
+  if (keeps_corners_) return std::nullopt;
   Array<Index> defects = defects_of(position);
   if (!are_few(defects)) hopeless_scale_ = choice.scale;
   const bool has_fewer = lattice_defects_.empty() || defects.size() <= lattice_defects_.size();
@@ -753,7 +818,8 @@ bool FeatureLayout::minimize(Eigen::VectorXcd& position) const {
 void FeatureLayout::relax(const Eigen::VectorXd& weights, Eigen::VectorXcd& position) const {
   const Eigen::VectorXd frames = Eigen::VectorXd::Zero(weights.size());
   const Eigen::VectorXd rest = scale_at_rest(task_.surface, task_.curvature, 1, position);
-  NewtonMinimizer newton(task_.surface, {rest, frames}, held_, task_.before_step, position);
+  NewtonMinimizer newton(task_.surface, {rest, frames}, keeps_corners_ ? held_corners_ : held_, task_.before_step,
+                         position);
   newton.weigh(weights);
   // Wrong angle sums stay wrong without flips.
   if (newton.unfold(Kind::foldover_free, unfolding_steps) && is_valid(position)) {

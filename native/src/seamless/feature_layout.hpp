@@ -59,8 +59,9 @@ class FeatureLayout {
 
   // The layout with about `density` cells per unit of length, with cones and translations on the lattice. Features are
   // on lines of the lattice or, where cells are too large for that and they need not be whole, at multiples of 1 / 256
-  // of a cell. None where no such layout without flips is found.
-  std::optional<Eigen::VectorXcd> quantize(double density, bool must_be_whole);
+  // of a cell. None where no such layout without flips is found.  keeps_corners: ends and corners of features are also
+  // at corners of cells, as far as that costs little; none where that is no other layout than without.
+  std::optional<Eigen::VectorXcd> quantize(double density, bool must_be_whole, bool keeps_corners);
 
   // Moves all points but those of features and cones to where they stretch least.  weights: (m) of triangles.
   void relax(const Eigen::VectorXd& weights, Eigen::VectorXcd& position) const;
@@ -104,7 +105,9 @@ class FeatureLayout {
   void hold_translation();
   void find_coordinates();
   void find_lattice_coordinates();
+  void find_corners(const Array<char>& is_on_line);
   std::optional<Choice> round(double scale, bool is_fine) const;
+  void round_corners(Eigen::VectorXd& value, PivotedCholesky& cholesky, Choice& choice) const;
   std::optional<Choice> choose(double density, bool is_fine) const;
   std::optional<Eigen::VectorXcd> lay_out(const Choice& choice, double step_of_lines);
   void snap(double step, Eigen::VectorXcd& position) const;
@@ -128,8 +131,10 @@ class FeatureLayout {
   Eigen::VectorXcd start_;
   Array<Array<Index>> lines_;  // coordinates, 2 copy for u and 2 copy + 1 for v, that are the same
   PerVertex<char> is_cone_;
-  Array<CoordinateForm> rounded_;  // lengths of lines between cones, the lattice's, and then one of each line
-  std::ptrdiff_t length_count_ = 0, lattice_count_ = 0;  // the ends of the first two
+  // Lengths of lines between cones, the lattice's, one of each line, and those along lines of their ends and corners.
+  Array<CoordinateForm> rounded_;
+  std::ptrdiff_t length_count_ = 0, lattice_count_ = 0, line_count_ = 0;  // the ends of the first three
+  bool keeps_corners_ = false;
   bool may_shift_ = false;
   Array<CoordinateForm> held_translation_;  // its two coordinates, or empty
   struct Loosened {
@@ -137,11 +142,11 @@ class FeatureLayout {
     Eigen::VectorXcd start;  // valid, along more lines
     int trimmings;           // of single edges for the lattice; -1 after releases of whole lines
   };
-  Array<Loosened> loosened_;      // not tried yet
-  int trimmings_ = 0;             // of the present lines
-  double hopeless_scale_ = 0;     // at which a layout failed at too many places to release edges there
-  Array<Index> lattice_defects_;  // the fewest vertices at which a layout on a lattice failed, or empty
-  DegreesOfFreedom held_;         // with the rounded coordinates fixed
+  Array<Loosened> loosened_;              // not tried yet
+  int trimmings_ = 0;                     // of the present lines
+  double hopeless_scale_ = 0;             // at which a layout failed at too many places to release edges there
+  Array<Index> lattice_defects_;          // the fewest vertices at which a layout on a lattice failed, or empty
+  DegreesOfFreedom held_, held_corners_;  // with the rounded coordinates fixed, but for those of corners, and with all
   std::optional<FreedomSystem> system_;
   std::optional<Cholesky<double>> factor_;
   Eigen::SparseMatrix<double> coefficients_;  // (rows, rounded)

@@ -143,6 +143,7 @@ void LayoutQuantizer::align_features() {
   if (std::count(feature.begin(), feature.end(), no_feature) == ssize(feature)) return;
   const double l2 = l2_stretch(geometry_, measure_jacobians({mesh_, geometry_}, cut_mesh_, start_));
   most_l2_ = most_growth * l2;
+  most_l2_with_corners_ = (l2 + most_l2_) / 2;
   features_ = std::make_unique<FeatureLayout>(FeatureTask{surface(), curvature_, rotation_, reduction_, before_step_},
                                               feature, start_, most_l2_, demands_.alignment);
   release_reasons_ = features_->reasons();
@@ -165,17 +166,21 @@ PerHalfedge<ReleaseReason> LayoutQuantizer::release_reasons(const QuantizedLayou
 std::optional<QuantizedLayout> LayoutQuantizer::quantize_with_features(double density,
                                                                        const LayoutEffort& effort) const {
   const bool must_be_whole = demands_.whole_features && effort.features == LayoutEffort::Features::required;
-  std::optional<Eigen::VectorXcd> position = features_->quantize(density, must_be_whole);
-  if (!position) return std::nullopt;
-  QuantizedLayout out{std::move(*position), 1, true};
-  out.energy = measure_energy(out.position);
-  if (!(out.energy <= effort.most_growth * energy_)) return std::nullopt;
-  const double l2 = l2_stretch(geometry_, measure_jacobians({mesh_, geometry_}, cut_mesh_, out.position));
-  if (!(l2 <= most_l2_)) return std::nullopt;
-  if (!demands_.directions.empty()) {
-    out.position *= lattice_.unit(find_upward_turn(out.position).turns_on_lattice());
+  for (const bool keeps_corners : {true, false}) {
+    if (keeps_corners && !must_be_whole) continue;
+    std::optional<Eigen::VectorXcd> position = features_->quantize(density, must_be_whole, keeps_corners);
+    if (!position) continue;
+    QuantizedLayout out{std::move(*position), 1, true};
+    out.energy = measure_energy(out.position);
+    if (!(out.energy <= effort.most_growth * energy_)) continue;
+    const double l2 = l2_stretch(geometry_, measure_jacobians({mesh_, geometry_}, cut_mesh_, out.position));
+    if (!(l2 <= (keeps_corners ? most_l2_with_corners_ : most_l2_))) continue;
+    if (!demands_.directions.empty()) {
+      out.position *= lattice_.unit(find_upward_turn(out.position).turns_on_lattice());
+    }
+    return out;
   }
-  return out;
+  return std::nullopt;
 }
 
 UpwardTurn LayoutQuantizer::find_upward_turn(const Eigen::VectorXcd& position) const {

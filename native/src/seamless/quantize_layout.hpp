@@ -151,8 +151,9 @@ class LayoutQuantizer {
   std::unique_ptr<LatticeEnergy> lattice_energy_;  // beside search_: of the Dirichlet form, stiffened around cones
   std::unique_ptr<FeatureLayout> features_;        // or null
   PerHalfedge<ReleaseReason> release_reasons_;     // without a lattice, or empty
-  double most_l2_ = 0;                             // stretch with features along the lattice
-  std::optional<ConeTriangles> cone_triangles_;    // where needed
+  // Stretch with features along the lattice, and with their corners on it as well.
+  double most_l2_ = 0, most_l2_with_corners_ = 0;
+  std::optional<ConeTriangles> cone_triangles_;             // where needed
   Eigen::PartialPivLU<Eigen::MatrixXcd> inverse_of_basis_;  // beside search_
   std::optional<LatticeSearch> search_;                     // where needed
 };

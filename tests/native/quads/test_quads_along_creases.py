@@ -16,6 +16,7 @@ from map_checks import codes, surface
 from meshes import Mesh
 from numpy.typing import NDArray
 from quad_checks import fans, require_on_surface, sides
+from scipy.spatial import ConvexHull, HalfspaceIntersection
 from shared_meshes import hard_mesh
 from zoo import closed
 
@@ -107,6 +108,32 @@ def test_they_are_a_closed_manifold_whose_irregular_vertices_are_the_cones(name:
     turns = np.round(found.layout.cone_angles / (np.pi / 2)).astype(int)
     assert sorted(turns[turns != 4].tolist()) == sorted(found.mesh.valences[found.mesh.irregular].tolist())
     assert len(found.mesh.quads) == pytest.approx(target, rel=0.15)
+
+
+def chamfered(size: tuple[float, float, float], width: float, every: int) -> Mesh:
+    """A box of few triangles, one in `every` of whose edges is a plane of this width."""
+    planes = [[*(side * axis), -size[k]] for k, axis in enumerate(np.eye(3)) for side in (1, -1)]
+    edges = [(i, j, a, b) for i in range(3) for j in range(i) for a in (1, -1) for b in (1, -1)]
+    for i, j, a, b in edges[::every]:
+        normal = (a * np.eye(3)[i] + b * np.eye(3)[j]) / np.sqrt(2)
+        planes.append([*normal, width - (size[i] + size[j]) / np.sqrt(2)])
+    corners = HalfspaceIntersection(np.array(planes), np.zeros(3)).intersections
+    corners = np.unique(np.round(corners, 9), axis=0)
+    triangles = ConvexHull(corners).simplices
+    a, b, c = corners[triangles].transpose(1, 0, 2)
+    is_inward = (np.cross(b - a, c - a) * (a + b + c)).sum(axis=1) < 0
+    triangles[is_inward] = triangles[is_inward, ::-1]
+    return meshes.make(corners, triangles)
+
+
+@pytest.mark.parametrize(
+    ("width", "every", "target"), [(0.05, 1, 1000), (0.05, 1, 4000), (0.15, 2, 300), (0.05, 2, 4000)]
+)
+def test_corners_of_bevels_are_vertices_of_quads(width: float, every: int, target: int) -> None:
+    """All vertices of these are corners."""
+    mesh = chamfered((1, 1.3, 0.8), width, every)
+    found = lsgp.remesh_to_quads(surface(mesh), target=target).mesh
+    assert set(range(len(mesh.positions))) <= set(found.surface_vertices.tolist())
 
 
 @pytest.mark.parametrize("name", ["cylinder", "disk"])
