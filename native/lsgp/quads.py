@@ -48,7 +48,7 @@ _WORTH_OF_FEATURES = 0.25
 # Cones of a quarter turn are below this angle, radians; how often others are placed to do without.
 _NARROW, _MOST_HOLDS = 0.75 * math.pi, 4
 # Where quads are too large for a mesh: by how much smaller ones are tried, how often, and into how many parts rows of
-# quads are divided.
+# quads are divided. Smaller ones may be as many more than those of divided rows as above.
 _FINER = 0.8
 _MOST_REFINEMENTS = 12
 _PARTS_OF_ROWS = (2, 3)
