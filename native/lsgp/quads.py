@@ -14,6 +14,7 @@ from . import _lsgp, arguments
 from .api import Options, Progress, Result, Seamless, Solver, Surface, surface_arrays
 from .arguments import FloatArray, IndexArray
 from .auto_unwrap import CompletedCones, GivenCones, complete_cones, feature_cones, follows_features, or_none, share_of
+from .counted import counted
 from .divided_triangles import DividedSurface, divide_long_edges
 from .equality import EqualByContent
 from .errors import Elements, Finding, InputError, SolverError
@@ -493,8 +494,8 @@ def _told(layout: Result, mesh: QuadMesh, asked: float, places: Elements | None)
         why = "cones are closer to each other than quads as large as requested, or a component is hardly larger"
     else:
         why = (
-            f"at {len(places.indices)} triangles a quad as large as requested would have a vertex twice, or two "
-            "vertices more than one edge, as around a handle or tube with less than three quads around it"
+            f"at {counted(len(places.indices), 'triangle')} a quad as large as requested would have a vertex twice, or "
+            "two vertices more than one edge, as around a handle or tube with less than three quads around it"
         )
     remedy = "Ask for more quads, use fewer cones, or close small tunnels."
     refined = Finding("GRID_REFINED", f"There are {count}: {why}. {remedy}", places or Elements())
