@@ -73,6 +73,7 @@ def visible_length(mesh: Mesh, preset: str, is_hidden: bool) -> float:
 @pytest.mark.parametrize(("family", "share"), [("heads", 0.68), ("beasts", 0.83), ("tubes", 0.81), ("blobs", 0.69)])
 def test_whole_layouts_keep_their_cuts_out_of_sight(family: str, share: float, preset: str) -> None:
     """Relative to the shortest cuts. Divisions that all weigh length as much show more of baked heads and tubes."""
+    pytest.importorskip("xatlas", reason="how far islands are divided depends on how they are packed")
     hidden = sum(visible_length(mesh, preset, is_hidden=True) for mesh in FAMILIES[family])
     shortest = sum(visible_length(mesh, preset, is_hidden=False) for mesh in FAMILIES[family])
     assert hidden <= share * shortest
