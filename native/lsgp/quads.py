@@ -42,9 +42,9 @@ _PROMISING = 0.8
 # What layouts are warned of does not matter to the grid on the surface.
 _OF_LAYOUTS_ALONE = frozenset({"OVERLAPPING_TRIANGLES"})
 _MOST_QUADS = 2**28
-# A number of quads further than this from what was asked for, as a share of it, gets a second try.
-_NEAR = 0.02
-# And this far from it is as bad as following no features instead of all.
+# How far, as a share of it, the number of quads may be from what was asked for without a second try, and a third, ...
+_NEAR_ENOUGH = (0.02, 0.1, 0.1, 0.1)
+# This far from it is as bad as following no features instead of all.
 _WORTH_OF_FEATURES = 0.25
 # Cones of a quarter turn are below this angle, radians; how often others are placed to do without.
 _NARROW, _MOST_HOLDS = 0.75 * math.pi, 4
@@ -294,17 +294,24 @@ class _Layouts:
         self._solver, self._completed, self._options = solver, completed, options
 
     def nearest(self, target: int | None, progress: Progress | None, first: Result | None = None) -> Result:
-        """On the first grid, or on one of another size where rounding has taken that away from its target, if that does
-        not follow fewer features.  first: the layout on the first grid, if known."""
-        side = self._options.seamless.tile_size
-        layout = self.first(share_of(progress, 0.0, 0.5)) if first is None else first
+        """On the first grid, or on one of a few other sizes where rounding has taken that away from its target, if that
+        does not follow fewer features.  first: the layout on the first grid, if known."""
+        side, done = self._options.seamless.tile_size, 0.5
+        layout = nearest = self.first(share_of(progress, 0.0, done)) if first is None else first
         if target is None or any(finding.code == "GRID_REFINED" for finding in layout.warnings):
             return layout
-        quads = _quad_count(layout)
-        if abs(quads - target) <= _NEAR * target:
-            return layout
-        second = self._lay_out(side * math.sqrt(quads / target), share_of(progress, 0.5, 1.0))
-        return min(layout, second, key=lambda found: _missed(found, target))
+        sides: dict[bool, float] = {}  # the last one with fewer quads than the target, and with more
+        for near in _NEAR_ENOUGH:
+            if abs(_quad_count(nearest) - target) <= near * target:
+                break
+            quads = _quad_count(layout)
+            sides[quads > target] = side
+            # The number jumps where rounding changes, so that scaling may miss the target on both sides in turn.
+            side = math.sqrt(math.prod(sides.values())) if len(sides) == 2 else side * math.sqrt(quads / target)
+            begin, done = done, (1 + done) / 2
+            layout = self._lay_out(side, share_of(progress, begin, done))
+            nearest = min(nearest, layout, key=lambda found: _missed(found, target))
+        return nearest
 
     def first(self, progress: Progress | None) -> Result:
         """On the first grid."""

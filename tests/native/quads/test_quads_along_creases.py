@@ -136,6 +136,16 @@ def test_corners_of_bevels_are_vertices_of_quads(width: float, every: int, targe
     assert set(range(len(mesh.positions))) <= set(found.surface_vertices.tolist())
 
 
+@pytest.mark.parametrize("name", ["disk", "hexagonal prism", "octagonal prism"])
+def test_rounding_takes_no_number_of_quads_far_from_the_target(name: str) -> None:
+    """Coarse grids along creases have few sizes to choose from, and the last digits of positions decide which."""
+    given = surface(SOLIDS[name])
+    for seed in range(1, 9):
+        off = 1e-15 * np.random.RandomState(seed).standard_normal(given.positions.shape)
+        found = lsgp.remesh_to_quads(replace(given, positions=given.positions + off), target=300)
+        assert len(found.mesh.quads) == pytest.approx(300, rel=0.15)
+
+
 @pytest.mark.parametrize("name", ["cylinder", "disk"])
 def test_few_vertices_on_round_faces_do_not_limit_quads(name: str) -> None:
     """The caps are fans around one vertex, where no cone can be; a divided surface has room for some."""
