@@ -19,7 +19,7 @@ TOOL = ROOT / "tools" / "packaging" / "test_in_blender.py"
 def run_tool(*arguments: str) -> str:
     """What the tool printed; fails where the tool does."""
     done = subprocess.run([sys.executable, str(TOOL), *arguments], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, f"{done.stdout[-8000:]}\n{done.stderr[-4000:]}"
+    assert done.returncode == 0, f"{done.stdout[-30000:]}\n{done.stderr[-4000:]}"
     return done.stdout
 
 

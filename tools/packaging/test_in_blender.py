@@ -7,11 +7,11 @@
         --chroot FOLDER                    an installation of ../shared/tools/real-blender
 
 Builds the wheel with that Python (or takes --wheel), stages and zips the extension, installs the zip into a throw-away
-profile, runs tests/blender there and prints the counts. With --window, what needs events is tried as well, in a window
-on a virtual screen, and then the first session of a new user, from an empty profile; that takes an executable and
-xvfb-run. Where ImageMagick is installed there, the folders pictures and newcomer/pictures of --out have the screen
-at the end of every such test and at every step of the session. Exit code 0 only when tests passed, none failed and none
-was skipped. Arguments after "--" go to pytest.
+profile, runs tests/blender there and prints the counts. With --window, what needs events is tried at the same time, in
+a window on a virtual screen, and then the first session of a new user; that takes an executable and xvfb-run. All three
+begin with empty profiles. Where ImageMagick is installed there, the folders window/pictures and newcomer/pictures of
+--out have the screen at the end of every such test and at every step of the session. Exit code 0 only when tests
+passed, none failed and none was skipped. Arguments after "--" go to pytest.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ import argparse
 import os
 import shutil
 import subprocess
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
@@ -35,6 +36,10 @@ class Command:
 
     arguments: list[str]
     environment: dict[str, str]
+
+    def followed_by(self, *arguments: str) -> Command:
+        """The same program with further arguments before those of a run."""
+        return Command([*self.arguments, *arguments], self.environment)
 
     def run(self, *arguments: str | Path, timeout: float | None = None, **environment: str) -> None:
         """Run in the repository's root; raises CalledProcessError or TimeoutExpired."""
@@ -82,6 +87,23 @@ def require_all(report: Path, what: str) -> None:
         raise SystemExit("test_in_blender: every test has to run and pass inside Blender")
 
 
+def run_suite(program: Command, script: str, package: Path, folder: Path, what: str, *options: str) -> None:
+    """Run a script of tests/blender in an empty profile; ends the program where not all tests of its report passed.
+
+    The folder is made, for profile and report.
+    """
+    profile, report = folder / "profile", folder / "report.xml"
+    profile.mkdir(parents=True)
+    # PYTHONPATH could put another build of the native module before the one in the extension.
+    isolation = {"BLENDER_USER_RESOURCES": str(profile), "PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": ""}
+    arguments = (ROOT / "tests" / "blender" / script, "--", package, report, *options)
+    try:
+        program.run(*arguments, timeout=TEST_SECONDS, **isolation)
+        require_all(report, what)
+    except (subprocess.CalledProcessError, subprocess.TimeoutExpired) as error:
+        raise SystemExit(f"test_in_blender: {error}") from None
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--python", help="the Blender's Python; it runs the tests itself unless --blender is given")
@@ -111,8 +133,7 @@ def main() -> None:
 
     out = arguments.out.resolve()
     shutil.rmtree(out, ignore_errors=True)
-    profile = out / "profile"
-    profile.mkdir(parents=True)
+    out.mkdir(parents=True)
 
     blender = None
     if arguments.chroot is not None:
@@ -136,32 +157,23 @@ def main() -> None:
         for checked in (package, *arguments.validate):
             blender.run("--command", "extension", "validate", checked, timeout=TEST_SECONDS)
 
-    tests = ROOT / "tests" / "blender"
-    # PYTHONPATH could put another build of the native module before the one in the extension.
-    isolation = {"BLENDER_USER_RESOURCES": str(profile), "PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": ""}
-    report = out / "report.xml"
-    options = [tests / "run_in_blender.py", "--", package, report, *arguments.pytest]
-    try:
-        if blender is not None:
-            start = ["--background", "--python-exit-code", "1", "--python"]
-            blender.run(*start, *options, timeout=TEST_SECONDS, **isolation)
-        else:
-            python.run(*options, timeout=TEST_SECONDS, **isolation)
-        require_all(report, "tests")
+    def in_background() -> None:
+        start = ["--background", "--python-exit-code", "1", "--python"]
+        runner = python if blender is None else blender.followed_by(*start)
+        run_suite(runner, "run_in_blender.py", package, out / "background", "tests", *arguments.pytest)
+
+    def with_events() -> None:
+        start = ["--factory-startup", "--enable-event-simulate", "--python-exit-code", "1", "--python"]
+        runner = in_window(blender).followed_by(*start)
+        run_suite(runner, "run_in_window.py", package, out / "window", "tests in a window")
+        run_suite(runner, "run_as_newcomer.py", package, out / "newcomer", "first session of a new user")
+
+    with ThreadPoolExecutor() as pool:
+        suites = [pool.submit(in_background)]
         if arguments.window:
-            start = ["--factory-startup", "--enable-event-simulate", "--python-exit-code", "1", "--python"]
-            report = out / "window_report.xml"
-            options = [tests / "run_in_window.py", "--", package, report]
-            in_window(blender).run(*start, *options, timeout=TEST_SECONDS, **isolation)
-            require_all(report, "tests in a window")
-            newcomer = out / "newcomer"
-            isolation["BLENDER_USER_RESOURCES"] = str(newcomer / "profile")
-            (newcomer / "profile").mkdir(parents=True)
-            options = [tests / "run_as_newcomer.py", "--", package, newcomer / "report.xml"]
-            in_window(blender).run(*start, *options, timeout=TEST_SECONDS, **isolation)
-            require_all(newcomer / "report.xml", "first session of a new user")
-    except (subprocess.CalledProcessError, subprocess.TimeoutExpired) as error:
-        raise SystemExit(f"test_in_blender: {error}") from None
+            suites.append(pool.submit(with_events))
+    for suite in suites:
+        suite.result()
 
 
 if __name__ == "__main__":
