@@ -67,6 +67,13 @@ set_up_clang() {
         install_packages "libclang-rt-$("$clang" -dumpversion | cut -d. -f1)-dev"
 }
 
+# The Python that runs the fuzzers, in $fuzz_venv.
+fuzz_venv=$root/build/fuzz/venv
+set_up_fuzz_python() {
+    mkdir -p "$root/build/fuzz"
+    set_up_python "$fuzz_venv" 'atheris' 'numpy' 'scipy'
+}
+
 # clang-tidy; CLANG_TIDY names another than Debian's newest.
 set_up_clang_tidy() {
     export CLANG_TIDY=${CLANG_TIDY:-clang-tidy-19}
@@ -125,6 +132,10 @@ set_up_bpy() {
         install_packages libx11-6 libxi6 libxrender1 libxfixes3 libxkbcommon0 libsm6 libice6 libgl1
     fi
 }
+
+# Blender 4.5 as a Python module, which runs the add-on's tests.
+blender_venv=$cache/bpy-4.5
+set_up_test_bpy() { set_up_bpy "$blender_venv" 4.5 'pytest'; }
 
 real_blender=$root/../shared/tools/real-blender
 
