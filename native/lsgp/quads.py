@@ -311,6 +311,8 @@ class _Layouts:
             begin, done = done, (1 + done) / 2
             layout = self._lay_out(side, share_of(progress, begin, done))
             nearest = min(nearest, layout, key=lambda found: _missed(found, target))
+            if 0 < feature_share(nearest) < _NEARLY_ALL:
+                break  # further sizes would follow other features
         return nearest
 
     def first(self, progress: Progress | None) -> Result:
