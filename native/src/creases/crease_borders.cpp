@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
@@ -28,8 +29,9 @@ constexpr double most_dead_ends = 0.1;       // of the vertices at creases: thos
 constexpr double is_curved = 0.06;           // radians at a vertex
 constexpr double is_bent = 0.25;             // radians along a border that two patches share
 constexpr double least_shared = 0.08;        // of the smaller patch's perimeter, to be unfolded with it
-constexpr double is_no_hole = 0.35;          // radians between a border's turning and that of a hole in the plane
-constexpr double operations_an_entry = 100;  // of a queue
+constexpr double widest_corner = 2 * M_PI / 3;  // radians, at the ends of a whole side
+constexpr double is_no_hole = 0.35;             // radians between a border's turning and that of a hole in the plane
+constexpr double operations_an_entry = 100;     // of a queue
 
 bool is_inside(const HalfedgeMesh& mesh, Index v) { return mesh.loop_of_vertex[v] == none; }
 
@@ -117,8 +119,21 @@ class Patches {
     return found.is_carried(least_beside_apexes) && found.vertex_count_elsewhere() <= most_apexes;
   }
 
-  // The borders that are left when patches are unfolded together, those with the largest share of a perimeter first.
+  // The borders that are left when patches are unfolded together, those with the largest share of a perimeter first, if
+  // that makes fewer islands also apart at notches.
   PerHalfedge<char> unfold_together() const {
+    const Unfolded together = unfold({}), apart = unfold(find_notches());
+    return apart.islands < together.islands ? apart.open : together.open;
+  }
+
+ private:
+  struct Unfolded {
+    PerHalfedge<char> open;
+    Index islands;  // about as many as are left when they no longer lie over each other around any vertex
+  };
+
+  // is_apart: borders that stay open; empty for none.
+  Unfolded unfold(const PerHalfedge<char>& is_apart) const {
     Array<SharedBorder> borders = trace();
     const auto share = [&](const SharedBorder& border) {
       return border.length / std::min(perimeter_[border.here], perimeter_[border.there]);
@@ -126,17 +141,73 @@ class Patches {
     std::stable_sort(borders.begin(), borders.end(),
                      [&](const SharedBorder& a, const SharedBorder& b) { return share(a) > share(b); });
     UnionFind islands(mesh_.triangle_count());
-    PerHalfedge<char> out = is_border_;
-    for (Index h = 0; h < mesh_.halfedge_count(); ++h) out[h] = out[h] && mesh_.twin[h] != none;
+    Unfolded out{is_border_, count_patches()};
+    for (Index h = 0; h < mesh_.halfedge_count(); ++h) out.open[h] = out.open[h] && mesh_.twin[h] != none;
     for (const SharedBorder& border : borders) {
-      if (border.closed || border.curvature > is_bent || share(border) < least_shared) continue;
+      if (border.closed || border.curvature > is_bent) continue;
+      if (share(border) < least_shared && !is_whole_side(border)) continue;
+      if (!is_apart.empty() && (is_apart[border.halfedges.front()] || is_apart[border.halfedges.back()])) continue;
       if (!islands.unite(border.here, border.there)) continue;
-      for (const Index h : border.halfedges) out[h] = out[mesh_.twin[h]] = 0;
+      --out.islands;
+      for (const Index h : border.halfedges) out.open[h] = out.open[mesh_.twin[h]] = 0;
+    }
+    Index overlaps = 0;
+    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+      Index open = 0;
+      if (has_notch(v)) mesh_.for_each_outgoing(v, [&](Index h) { open += out.open[h]; });
+      overlaps += open == 1;
+    }
+    out.islands += overlaps / 2;  // a border that is opened between two of them serves both
+    return out;
+  }
+
+  // Whether patches have more than a whole turn around a vertex, and lie over each other where all are unfolded
+  // together.
+  bool has_notch(Index v) const {
+    return degree_[v] >= 3 && is_inside(mesh_, v) && geometry_.angle_defect[v] < -is_curved;
+  }
+
+  Index count_patches() const {
+    PerPart<char> is_used(mesh_.triangle_count(), 0);
+    for (const Index patch : patch_) is_used[patch] = 1;
+    return static_cast<Index>(std::count(is_used.begin(), is_used.end(), 1));
+  }
+
+  // Borders, on both sides, beside the largest angle at each notch, such as those of the sides of a star with its caps.
+  PerHalfedge<char> find_notches() const {
+    PerHalfedge<char> out(mesh_.halfedge_count(), 0);
+    for (Index v = 0; v < mesh_.vertex_count(); ++v) {
+      if (!has_notch(v)) continue;
+      Array<Index> begin;  // of the angles, counter-clockwise
+      Array<double> angle;
+      mesh_.for_each_outgoing(v, [&](Index h) {
+        if (!is_border_[h]) return;
+        begin.push_back(h);
+        angle.push_back(angle_from(h));
+      });
+      const auto widest = std::max_element(angle.begin(), angle.end()) - angle.begin();
+      for (const Index g : {begin[widest], begin[(widest + 1) % ssize(begin)]}) out[g] = out[mesh_.twin[g]] = 1;
     }
     return out;
   }
 
- private:
+  // The angle of a patch at the origin of a border's halfedge, on its left.
+  double angle_from(Index h) const {
+    double out = 0;
+    do {
+      out += geometry_.angle[h];
+      h = mesh_.rotate(h);
+    } while (h != none && !is_border_[h]);
+    return out;
+  }
+
+  // Whether a border is a side of both patches from corner to corner, such as the ends of two strips.
+  bool is_whole_side(const SharedBorder& border) const {
+    const Index first = border.halfedges.front(), last = border.halfedges.back();
+    const Index corners[] = {first, after(last), mesh_.twin[last], after(mesh_.twin[first])};
+    return std::all_of(std::begin(corners), std::end(corners), [&](Index h) { return angle_from(h) < widest_corner; });
+  }
+
   bool is_node(Index v) const {
     return degree_[v] != 2 || !is_inside(mesh_, v) || std::abs(geometry_.angle_defect[v]) > is_curved;
   }

@@ -76,6 +76,7 @@ REVIEWED = {
             OWN,
         ),
         ("while (!is_border_[g])", AROUND_A_VERTEX, SHORT),
+        ("while (h != none && !is_border_[h])", AROUND_A_VERTEX, SHORT),
         ("while (true)", "edges of a border, each once, to a node or back to the start", SHORT),
         ("for (;; g = next(mesh.twin[g]))", AROUND_A_VERTEX, SHORT),
         ("while (h != first)", SIDES, SHORT),
@@ -250,6 +251,7 @@ REVIEWED = {
     "seamless/feature_layout.cpp": [
         ("for (int trimmings = 0; reason; ++trimmings)", "up to four trimmings of lines", WITHIN),
         ("for (;;)", "each round rounds a coordinate, or ends it", OWN),
+        ("for (;;)", "each round rounds a coordinate of a corner, or ends it", OWN),
         ("for (Index begin = 0, end = 0; begin < ssize(lines); begin = end)", "passes a line each time", SHORT),
         ("while (end < ssize(lines) && rank(end) == rank(begin))", "lines, each once", SHORT),
         (
