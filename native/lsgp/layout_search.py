@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,9 @@ from .chart_packer import Islands, Layout, Packer, Square
 from .errors import Cancelled
 from .island_gaps import border_edges
 from .triangles import uv_area
+
+# Whether islands may be turned, or by quarters alone.
+Turned = bool | Literal["quarters"]
 
 # Ways to turn islands that are tried, by quarter turns and then by any; of many islands fewer, since each takes longer.
 _TRIES = 24, 12
@@ -53,17 +57,19 @@ def islands_of(uv: FloatArray, island: IndexArray) -> Islands:
     )
 
 
-def best_layout(islands: Islands, square: Square, may_turn: bool, progress: Progress | None) -> Layout:
+def best_layout(islands: Islands, square: Square, may_turn: Turned, progress: Progress | None) -> Layout:
     """The smallest of the layouts tried.  Raises InputError, Cancelled.
 
-    may_turn: whether islands may be turned; those that lie along the axes, as straight sides do, by quarters, unless
-    that leaves most of the square empty.
+    may_turn: True: islands that lie along the axes, as straight sides do, are turned by quarters as well, unless that
+        leaves most of the square empty.
     """
     count = islands.count
     middle, free = (max(1, tries * _ISLANDS_OF_ALL_TRIES // max(count, _ISLANDS_OF_ALL_TRIES)) for tries in _TRIES)
     is_aligned, sides = lie_along_axes(islands), sides_when_turned(islands)
     squarest = _DIRECTIONS[(sides <= (1 + _AS_SMALL) * sides.min(axis=0)).argmax(axis=0)]
-    tries = middle + (2 if is_aligned.all() else free) if may_turn else 1
+    tries = 1 if not may_turn else middle
+    if may_turn is True:
+        tries += 2 if is_aligned.all() else free
     packer = Packer(islands, square)
     # The generator whose numbers never change with the version of numpy.
     random = np.random.RandomState(0)

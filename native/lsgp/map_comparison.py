@@ -11,7 +11,8 @@ import numpy as np
 from .api import Progress, Result
 from .errors import InputError
 from .lattice import island_boxes
-from .packing import pack_islands, packer_name
+from .layout_search import Turned
+from .packing import pack_islands, packer_name, turns_of
 from .triangles import uv_area
 
 # Of the L2 stretch that the other one has, of the edges that it cuts, and of what it fills of the square: a tenth less
@@ -59,9 +60,9 @@ def may_replace_map(
     fifth less, and two fewer, or one for ten, for three tenths. If it cuts at most three fifths of the edges, its
     stretch may be up to 1.05 and the square filled a quarter less, unless the other map is isometric.
 
-    Both as from `parameterize`, with islands on shelves, for this share of a square. They are packed tightly if the
-    packer is installed. How far many islands, several squares and seamless layouts are filled follows from the boxes of
-    the islands, and in one square from the longest island. progress: of packing.  Raises Cancelled.
+    Both as from `parameterize`, with islands on shelves, for this share of a square. They are packed tightly, turned by
+    quarters, if the packer is installed. How far many islands, several squares and seamless layouts are filled follows
+    from the boxes of the islands, and in one square from the longest island. progress: of packing.  Raises Cancelled.
     """
     islands = island_count(usual)
     more = island_count(symmetric) - islands
@@ -78,7 +79,7 @@ def may_replace_map(
         and more <= (_PAIR if has_few else islands // _ISLANDS_FOR_ONE)
     ):
         return False
-    filled = measure_of_filling(usual, square_share, progress)
+    filled = measure_of_filling(usual, square_share, progress, turned="quarters")
     return filled(symmetric) >= least_filled(more, usual, saves_cuts) * filled(usual)
 
 
@@ -194,20 +195,24 @@ def island_count(result: Result) -> int:
     return len(np.unique(result.island[result.solved]))
 
 
-def measure_of_filling(usual: Result, square_share: float, progress: Progress | None) -> Callable[[Result], float]:
-    """The measure of how well a map that is compared with the usual one fills its part of the square."""
+def measure_of_filling(
+    usual: Result, square_share: float, progress: Progress | None, turned: Turned = True
+) -> Callable[[Result], float]:
+    """The measure of how well a map that is compared with the usual one fills its part of the square.  turned: as of
+    `pack_islands`."""
     islands = island_count(usual)
     has_one_square = square_share <= 1 and usual.seamless is None
     if has_one_square and islands <= _MOST_PACKED and packer_name() is not None:
-        return partial(_filled_when_packed, progress=progress)
+        return partial(_filled_when_packed, progress=progress, turned=turned)
     return _filled_square if has_one_square and islands <= _FEW_ISLANDS else partial(_filled_boxes, has_one_square)
 
 
-def _filled_when_packed(result: Result, progress: Progress | None) -> float:
+def _filled_when_packed(result: Result, progress: Progress | None, turned: Turned = True) -> float:
     """The part of the unit square that the islands fill once they are packed tightly; 0 if they cannot be."""
-    turned = result.direction_error is None
+    allowed = turns_of(result)
+    may_turn = turned if allowed is True else allowed
     try:
-        packed = pack_islands(result.corner_uv, result.island, turned=turned, progress=progress)
+        packed = pack_islands(result.corner_uv, result.island, turned=may_turn, progress=progress)
     except InputError:
         return 0.0
     return uv_area(packed[result.solved])

@@ -20,7 +20,7 @@ from .api import Progress, Result, Surface
 from .arguments import FloatArray, IndexArray
 from .chart_packer import Square, find_xatlas
 from .errors import Cancelled, Elements, Finding, InputError
-from .layout_search import best_layout, islands_of
+from .layout_search import Turned, best_layout, islands_of
 from .stacking import find_stacks
 from .texels import MOST_TILES, TexelLayout, at_texel_density, outside_findings
 from .udim_packing import spread_over_tiles
@@ -116,7 +116,7 @@ def pack_islands(
     margin: float = DEFAULT_MARGIN,
     *,
     fill: bool = True,
-    turned: bool = True,
+    turned: Turned = True,
     udim: int | None = None,
     progress: Progress | None = None,
 ) -> FloatArray:
@@ -130,9 +130,9 @@ def pack_islands(
     margin: around each island, so that the gap between two is twice as wide; at least 0, less than 0.5.
     fill: the square is the unit square, and the margin is a fraction of its side. Otherwise islands keep their size,
         the square starts at the origin, and the margin is in the unit of the coordinates.
-    turned: whether islands may be rotated; those with most of their border along the axes by quarter turns, unless
-        seven tenths of the square stay empty and other turns make its side a tenth shorter: long strips lie along the
-        diagonal.
+    turned: whether islands may be rotated, or only by quarter turns. True: those with most of their border along the
+        axes by quarter turns as well, unless seven tenths of the square stay empty and other turns make its side a
+        tenth shorter: long strips lie along the diagonal.
     udim: the most UDIM tiles that islands are spread over, from 1001 on, so that they become as large as possible;
         fewer are used if the largest island alone fills one. Each island lies inside one tile, with its margin. Only
         with `fill`.
@@ -143,7 +143,7 @@ def pack_islands(
     island = arguments.islands("island", island)
     uv = arguments.corner_coordinates("corner_uv", corner_uv, len(island))
     square = _square(margin, arguments.flag("fill", fill))
-    may_turn = arguments.flag("turned", turned)
+    may_turn = turned if turned == "quarters" else arguments.flag("turned", turned)
     tiles = 1 if udim is None else _tile_count(udim)
     if tiles > 1 and not square.fill:
         arguments.refuse("udim", udim, "leave fill out, or use at_texel_density")
@@ -200,18 +200,26 @@ def _square(margin: float, fill: bool) -> Square:
     return Square(found, fill)
 
 
+def turns_of(result: Result) -> Turned:
+    """How the islands of a map may be turned, as of `pack_islands`."""
+    if result.features is not None and result.features.share > 0:
+        return result.direction_error is None and "quarters"
+    return result.direction_error is None
+
+
 def laid_out(
     surface: Surface, result: Result, packing: Packing, texels: TexelLayout | None, progress: Progress | None = None
 ) -> LaidOut:
     """The result with its islands packed and at a texel density, as they are wanted.
 
-    result: of a map that is neither pinned nor seamless. Islands are not turned where a direction was asked for.
+    result: of a map that is neither pinned nor seamless. Islands are not turned where a direction was asked for, and
+        only by quarters where features run straight.
     texels: without UDIM tiles.  Raises InputError, Cancelled.
     """
     none = np.zeros(len(result.island), bool)
     if not packing.is_tight:
         return LaidOut(result if texels is None else at_texel_density(surface, result, texels), SHELVES, none)
-    name, turned = packer_name(), result.direction_error is None
+    name, turned = packer_name(), turns_of(result)
     if texels is not None and packing.margin is not None:
         # What is asked for is to be left at this density.
         scaled = at_texel_density(surface, result, texels)

@@ -12,7 +12,7 @@ from .api import Progress
 from .arguments import FloatArray, IndexArray
 from .chart_packer import Indices, Islands, Layout, Square
 from .errors import InputError
-from .layout_search import best_layout, islands_of
+from .layout_search import Turned, best_layout, islands_of
 from .texels import TILES_IN_ROW
 from .triangles import uv_areas
 
@@ -48,7 +48,12 @@ class _Spread:
 
 
 def spread_over_tiles(
-    uv: FloatArray, island: IndexArray, margin: float, tiles: int, may_turn: bool, progress: Progress | None
+    uv: FloatArray,
+    island: IndexArray,
+    margin: float,
+    tiles: int,
+    may_turn: Turned,
+    progress: Progress | None,
 ) -> FloatArray:
     """The coordinates, (m, 3, 2), in this many tiles, or in fewer if more do not make islands larger.
 
@@ -149,7 +154,12 @@ class _Search:
     """Looks for layouts of some islands, and tells progress as a part of the searches that may be needed."""
 
     def __init__(
-        self, uv: FloatArray, number: Indices, margin: float, may_turn: bool, progress: Progress | None
+        self,
+        uv: FloatArray,
+        number: Indices,
+        margin: float,
+        may_turn: Turned,
+        progress: Progress | None,
     ) -> None:
         """uv: (m, 3, 2). number: (m,), the island of each triangle. margin: of a tile's side."""
         self.margin = margin

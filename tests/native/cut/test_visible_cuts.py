@@ -69,14 +69,26 @@ def visible_length(mesh: Mesh, preset: str, is_hidden: bool) -> float:
 
 
 @pytest.mark.many_solves
-@pytest.mark.parametrize("preset", ["paint", "bake"])
-@pytest.mark.parametrize(("family", "share"), [("heads", 0.68), ("beasts", 0.83), ("tubes", 0.81), ("blobs", 0.69)])
-def test_whole_layouts_keep_their_cuts_out_of_sight(family: str, share: float, preset: str) -> None:
-    """Relative to the shortest cuts. Divisions that all weigh length as much show more of baked heads and tubes."""
+@pytest.mark.parametrize(
+    ("family", "preset", "share", "most"),
+    [
+        ("heads", "paint", 0.68, 2.2),
+        ("heads", "bake", 0.68, 2.6),
+        ("beasts", "paint", 0.83, 3.8),
+        ("beasts", "bake", 0.83, 4.6),
+        ("tubes", "paint", 0.81, 4.2),
+        ("tubes", "bake", 0.86, 5.0),
+        ("blobs", "paint", 0.69, 1.2),
+        ("blobs", "bake", 0.69, 1.7),
+    ],
+)
+def test_whole_layouts_keep_their_cuts_out_of_sight(family: str, preset: str, share: float, most: float) -> None:
+    """Relative to the shortest cuts, and at all. Divisions that all weigh length as much show more of baked heads and
+    tubes; tubes that are left whole have short cuts anyway."""
     pytest.importorskip("xatlas", reason="how far islands are divided depends on how they are packed")
     hidden = sum(visible_length(mesh, preset, is_hidden=True) for mesh in FAMILIES[family])
     shortest = sum(visible_length(mesh, preset, is_hidden=False) for mesh in FAMILIES[family])
-    assert hidden <= share * shortest
+    assert hidden <= min(share * shortest, most)
 
 
 def test_hidden_cuts_leave_few_islands() -> None:
