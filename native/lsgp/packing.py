@@ -130,9 +130,9 @@ def pack_islands(
     margin: around each island, so that the gap between two is twice as wide; at least 0, less than 0.5.
     fill: the square is the unit square, and the margin is a fraction of its side. Otherwise islands keep their size,
         the square starts at the origin, and the margin is in the unit of the coordinates.
-    turned: whether islands may be rotated, or only by quarter turns. True: those with most of their border along the
-        axes by quarter turns as well, unless seven tenths of the square stay empty and other turns make its side a
-        tenth shorter: long strips lie along the diagonal.
+    turned: whether islands may be rotated; "quarters": only by quarter turns. True: those with most of their border
+        along the axes by quarter turns as well, unless seven tenths of the square stay empty and other turns make its
+        side a tenth shorter: long strips lie along the diagonal.
     udim: the most UDIM tiles that islands are spread over, from 1001 on, so that they become as large as possible;
         fewer are used if the largest island alone fills one. Each island lies inside one tile, with its margin. Only
         with `fill`.
@@ -143,7 +143,9 @@ def pack_islands(
     island = arguments.islands("island", island)
     uv = arguments.corner_coordinates("corner_uv", corner_uv, len(island))
     square = _square(margin, arguments.flag("fill", fill))
-    may_turn = turned if turned == "quarters" else arguments.flag("turned", turned)
+    if not isinstance(turned, bool | np.bool_) and not (isinstance(turned, str) and turned == "quarters"):
+        arguments.refuse("turned", turned, 'pass True, False or "quarters"')
+    may_turn: Turned = "quarters" if isinstance(turned, str) else bool(turned)
     tiles = 1 if udim is None else _tile_count(udim)
     if tiles > 1 and not square.fill:
         arguments.refuse("udim", udim, "leave fill out, or use at_texel_density")

@@ -175,8 +175,13 @@ def test_an_island_that_is_alone_is_turned_until_it_fits_best(packer) -> None:
         [math.cos(angle), math.sin(angle)],
         [-math.sin(angle), math.cos(angle)],
     ]
-    packed = lsgp.pack_islands(corners[[[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]], np.zeros(4, np.int32))
-    assert coverage(packed, np.zeros(4)) > 0.97
+    island = np.zeros(4, np.int32)
+    uv = corners[[[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]]
+    assert coverage(lsgp.pack_islands(uv, island), island) > 0.97
+    packed = lsgp.pack_islands(uv, island, turned="quarters")
+    assert quarter_turned(moves(uv, packed, island)[0, 0]) and coverage(packed, island) < 0.7
+    with pytest.raises(lsgp.InputError, match='True, False or "quarters"'):
+        lsgp.pack_islands(uv, island, turned="thirds")
 
 
 @pytest.mark.parametrize("order", [[0, 1, 2], [2, 0, 1]])
