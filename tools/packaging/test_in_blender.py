@@ -27,7 +27,7 @@ from xml.etree import ElementTree
 
 ROOT = Path(__file__).resolve().parents[2]
 REAL_BLENDER = ROOT.parent / "shared" / "tools" / "real-blender"
-TEST_SECONDS = 900
+TEST_SECONDS = 1800
 
 
 @dataclass(frozen=True)
