@@ -85,12 +85,11 @@ class PieceMerger {
 
 class Builder {
  public:
-  Builder(const MetricMesh& surface, const ComponentMap& map, double resolution, const MetricMesh& costs)
+  Builder(const MetricMesh& surface, const ComponentMap& map, double resolution)
       : mesh_(surface.mesh),
         map_(map),
         corners_(at_corners(map.cut_mesh, map.position)),
         resolution_(resolution),
-        costs_(costs),
         is_cone_(surface.mesh.vertex_count(), 0),
         node_of_(surface.mesh.vertex_count(), none) {
     for (const Index v : map.cones) is_cone_[v] = 1;
@@ -129,7 +128,6 @@ class Builder {
       const double angle = (map_.cut_graph.runs_forward[first] ? 1 : -1) * (*map_.rotation)[cut];
       path.across = {angle, corners_[next(twin)] - std::polar(1.0, angle) * corners_[first]};
     }
-    for (const Index h : traced.halfedges) path.cost += cut_cost(costs_, h);
     add_boundaries(traced.halfedges);
     path.halfedges = std::move(traced.halfedges);
     graph_.paths.push_back(std::move(path));
@@ -152,7 +150,6 @@ class Builder {
   const ComponentMap& map_;
   const Eigen::VectorXcd corners_;
   const double resolution_;
-  const MetricMesh costs_;
   PerVertex<char> is_cone_;
   PerVertex<Index> node_of_;
   PieceGraph graph_;
@@ -161,9 +158,16 @@ class Builder {
 }  // namespace
 
 PieceGraph build_piece_graph(const MetricMesh& surface, const ComponentMap& map, PerHalfedge<char> network,
-                             double resolution, const MetricMesh& costs) {
+                             double resolution) {
   PieceMerger(surface, map.cut_graph.is_cut, network).merge_small();
-  return Builder(surface, map, resolution, costs).build(std::move(network));
+  return Builder(surface, map, resolution).build(std::move(network));
+}
+
+void price_paths(const MetricMesh& costs, PieceGraph& graph) {
+  for (PieceGraph::Path& path : graph.paths) {
+    path.cost = 0;
+    for (const Index h : path.halfedges) path.cost += cut_cost(costs, h);
+  }
 }
 
 }  // namespace lsgp

@@ -18,7 +18,7 @@ struct PieceGraph {
     Array<Index> halfedges;  // in the left piece
     Index left, right;       // pieces
     Motion across;           // of the left piece, to coincide with the right one along the path
-    double cost;             // of a cut along it
+    double cost;             // of a cut along it, by price_paths
     Index nodes[2];
     bool is_cut;
   };
@@ -35,9 +35,11 @@ struct PieceGraph {
 };
 
 // network: on both halfedges, with the map's cuts; paths around small pieces are removed.
-// resolution: sides of boundaries inside the surface are merged up to about this length.  costs: the surface with the
-// costs of the paths.
+// resolution: sides of boundaries inside the surface are merged up to about this length.
 PieceGraph build_piece_graph(const MetricMesh& surface, const ComponentMap& map, PerHalfedge<char> network,
-                             double resolution, const MetricMesh& costs);
+                             double resolution);
+
+// costs: the surface, with those of cuts.
+void price_paths(const MetricMesh& costs, PieceGraph& graph);
 
 }  // namespace lsgp

@@ -320,20 +320,23 @@ PerHalfedge<char> Recutter::cuts_of(const HalfedgeMesh& mesh, const State& state
 
 }  // namespace
 
-Array<ComponentMap> recut(const MetricMesh& surface, const MetricMesh& costs, const ComponentMap& map) {
+Array<ComponentMap> recut(const MetricMesh& surface, const Array<MetricMesh>& costs, const ComponentMap& map) {
   const HalfedgeMesh& mesh = surface.mesh;
   const Eigen::VectorXcd corners = at_corners(map.cut_mesh, map.position);
   double area = 0;
   for (Index f = 0; f < mesh.triangle_count(); ++f) area += doubled_area(corners, f) / 2;
   if (!(area > 0)) return {};
   const double resolution = std::sqrt(area / cells_of_layout) / 2;
-  PerHalfedge<char> network = find_candidate_cuts(surface, map.cut_graph);
-  Recutter recutter(build_piece_graph(surface, map, std::move(network), resolution, costs), area);
+  PieceGraph graph = build_piece_graph(surface, map, find_candidate_cuts(surface, map.cut_graph), resolution);
   Array<ComponentMap> out;
-  for (const Recutter::State& state : recutter.search()) {
-    out.push_back(map);
-    cut_apart(mesh, recutter.cuts_of(mesh, state), recutter.piece_of(), state.motion, out.back());
-    out.back().required_cuts = halfedges_of(out.back().cut_graph);
+  for (const MetricMesh& own : costs) {
+    price_paths(own, graph);
+    Recutter recutter(graph, area);
+    for (const Recutter::State& state : recutter.search()) {
+      out.push_back(map);
+      cut_apart(mesh, recutter.cuts_of(mesh, state), recutter.piece_of(), state.motion, out.back());
+      out.back().required_cuts = halfedges_of(out.back().cut_graph);
+    }
   }
   return out;
 }

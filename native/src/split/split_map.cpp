@@ -262,11 +262,10 @@ Array<ComponentMap> find_ways(const SplitRules& rules, const ComponentMap& map) 
   Array<ComponentMap> ways;
   if (!rules.may_recut()) return ways;
   const Array<MetricMesh> weighings = rules.weighings();
-  for (std::size_t sought = 0; sought < weighings.size(); ++sought) {
+  for (auto sought = weighings.begin(); sought != weighings.end(); ++sought) {
     // Cuts sought by their length as well are not exchanged by cost alone.
-    for (std::size_t costs = sought; costs < weighings.size(); ++costs) {
-      for (ComponentMap& way : recut(weighings[sought], weighings[costs], map)) ways.push_back(std::move(way));
-    }
+    const Array<MetricMesh> costs(sought, weighings.end());
+    for (ComponentMap& way : recut(*sought, costs, map)) ways.push_back(std::move(way));
   }
   for (std::size_t i = 0, count = ways.size(); i < count; ++i) {
     for (const MapParts& parts : rules.mirror(ways[i], ways[i].cut_graph.is_cut)) {
