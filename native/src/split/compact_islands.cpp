@@ -362,7 +362,9 @@ WholeIsland Compactor::describe(const Array<Index>& faces, const Array<Complex>&
     area += graph_.area[face];
     squares += graph_.area[face] * std::norm(std::log(map_area_[face] / graph_.area[face]));
   }
-  return search_.describe(area, std::sqrt(squares / area), hull);
+  WholeIsland out = search_.describe(area, hull);
+  out.unevenness = std::sqrt(squares / area);
+  return out;
 }
 
 Array<Array<Index>> Compactor::divide(const Array<Index>& faces) {

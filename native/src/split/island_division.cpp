@@ -66,7 +66,7 @@ bool DivisionSearch::may_be_cut_off(const Piece& piece, const WholeIsland& islan
   return piece.area >= (is_scrap ? smallest_of_few : smallest_piece) * area_;
 }
 
-WholeIsland DivisionSearch::describe(double area, double unevenness, const Array<Complex>& hull) const {
+WholeIsland DivisionSearch::describe(double area, const Array<Complex>& hull) const {
   constexpr int turns = 45;  // of a quarter
   double box = std::numeric_limits<double>::infinity(), square = box;
   for (int i = 0; i < turns; ++i) {
@@ -75,7 +75,7 @@ WholeIsland DivisionSearch::describe(double area, double unevenness, const Array
     square = std::min(square, std::max(extent.width(), extent.height()));
   }
   const double too_large = std::max(0.0, square * square - large * area_ / fill);
-  return {area, unevenness, (area_of_hull(hull) + box) / 2 + cost_of_large * too_large, too_large > 0};
+  return {area, (area_of_hull(hull) + box) / 2 + cost_of_large * too_large, too_large > 0};
 }
 
 double DivisionSearch::worth(double gain, double length, std::size_t pieces) const {

@@ -57,9 +57,9 @@ struct IslandCells {
 // An island before it is divided.
 struct WholeIsland {
   double area = 0;
-  double unevenness = 0;  // root mean square of the logarithm of its faces' areas in the map relative to their own
   double demand = 0;      // of the square
   bool is_long = false;   // it reaches so far that it blocks room for others
+  double unevenness = 0;  // root mean square of the logarithm of its faces' areas in the map relative to their own
 };
 
 // A part of a divided island.
@@ -75,10 +75,10 @@ class DivisionSearch {
  public:
   explicit DivisionSearch(const SharedSquare& square);
 
-  // An island of this area and unevenness with this hull.
-  WholeIsland describe(double area, double unevenness, const Array<Complex>& hull) const;
+  // An island of this area with this hull, its unevenness left out.
+  WholeIsland describe(double area, const Array<Complex>& hull) const;
   // The area of the square that an island with this hull occupies.
-  double demand(const Array<Complex>& hull) const { return describe(0, 0, hull).demand; }
+  double demand(const Array<Complex>& hull) const { return describe(0, hull).demand; }
 
   // Whether a piece of an island is large enough, not a scrap of few faces, and has about the texel density of all.
   // Pieces of few faces may be as small as others only on hard surfaces, where all their cuts follow sharp edges, and
