@@ -122,33 +122,36 @@ class Patches {
   // The borders that are left when patches are unfolded together, those with the largest share of a perimeter first, if
   // that makes fewer islands also apart at notches.
   PerHalfedge<char> unfold_together() const {
-    const Unfolded together = unfold({}), apart = unfold(find_notches());
-    return apart.islands < together.islands ? apart.open : together.open;
+    Array<SharedBorder> borders = trace();
+    std::stable_sort(borders.begin(), borders.end(),
+                     [&](const SharedBorder& a, const SharedBorder& b) { return share(a) > share(b); });
+    const PerHalfedge<char> nowhere(mesh_.halfedge_count(), 0);
+    Unfolded together = unfold(borders, nowhere), apart = unfold(borders, find_notches());
+    return std::move(apart.joined > together.joined ? apart.open : together.open);
   }
 
  private:
   struct Unfolded {
     PerHalfedge<char> open;
-    Index islands;  // about as many as are left when they no longer lie over each other around any vertex
+    Index joined;  // by how many there are fewer islands, about, once none lies over itself around a vertex
   };
 
-  // is_apart: borders that stay open; empty for none.
-  Unfolded unfold(const PerHalfedge<char>& is_apart) const {
-    Array<SharedBorder> borders = trace();
-    const auto share = [&](const SharedBorder& border) {
-      return border.length / std::min(perimeter_[border.here], perimeter_[border.there]);
-    };
-    std::stable_sort(borders.begin(), borders.end(),
-                     [&](const SharedBorder& a, const SharedBorder& b) { return share(a) > share(b); });
+  // Of the smaller patch's perimeter.
+  double share(const SharedBorder& border) const {
+    return border.length / std::min(perimeter_[border.here], perimeter_[border.there]);
+  }
+
+  // borders: the first ones are joined before others.  is_apart: those that stay open.
+  Unfolded unfold(const Array<SharedBorder>& borders, const PerHalfedge<char>& is_apart) const {
     UnionFind islands(mesh_.triangle_count());
-    Unfolded out{is_border_, count_patches()};
+    Unfolded out{is_border_, 0};
     for (Index h = 0; h < mesh_.halfedge_count(); ++h) out.open[h] = out.open[h] && mesh_.twin[h] != none;
     for (const SharedBorder& border : borders) {
       if (border.closed || border.curvature > is_bent) continue;
       if (share(border) < least_shared && !is_whole_side(border)) continue;
-      if (!is_apart.empty() && (is_apart[border.halfedges.front()] || is_apart[border.halfedges.back()])) continue;
+      if (is_apart[border.halfedges.front()] || is_apart[border.halfedges.back()]) continue;
       if (!islands.unite(border.here, border.there)) continue;
-      --out.islands;
+      ++out.joined;
       for (const Index h : border.halfedges) out.open[h] = out.open[mesh_.twin[h]] = 0;
     }
     Index overlaps = 0;
@@ -157,7 +160,7 @@ class Patches {
       if (has_notch(v)) mesh_.for_each_outgoing(v, [&](Index h) { open += out.open[h]; });
       overlaps += open == 1;
     }
-    out.islands += overlaps / 2;  // a border that is opened between two of them serves both
+    out.joined -= overlaps / 2;  // a border that is opened between two of them serves both
     return out;
   }
 
@@ -165,12 +168,6 @@ class Patches {
   // together.
   bool has_notch(Index v) const {
     return degree_[v] >= 3 && is_inside(mesh_, v) && geometry_.angle_defect[v] < -is_curved;
-  }
-
-  Index count_patches() const {
-    PerPart<char> is_used(mesh_.triangle_count(), 0);
-    for (const Index patch : patch_) is_used[patch] = 1;
-    return static_cast<Index>(std::count(is_used.begin(), is_used.end(), 1));
   }
 
   // Borders, on both sides, beside the largest angle at each notch, such as those of the sides of a star with its caps.
