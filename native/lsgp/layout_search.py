@@ -30,8 +30,8 @@ _DIRECTIONS = np.exp(0.5j * np.pi * np.arange(90) / 90)
 _AS_SMALL = 1e-3
 # Where so little of the square is filled, sides along the axes are given up for a layout whose side is so much shorter,
 # as of strips along the diagonal. Unfolded boxes fill more.
-_HARDLY_FILLED = 0.3
-_SHORTER_UNALIGNED = 0.9
+HARDLY_FILLED = 0.3
+SHORTER_UNALIGNED = 0.9
 # Of an edge along an axis, radians; coordinates may come from files of few digits.
 _TILT = 1e-3
 
@@ -65,10 +65,10 @@ def best_layout(islands: Islands, square: Square, may_turn: Turned, progress: Pr
     """
     count = islands.count
     middle, free = (max(1, tries * _ISLANDS_OF_ALL_TRIES // max(count, _ISLANDS_OF_ALL_TRIES)) for tries in _TRIES)
-    is_aligned, sides = lie_along_axes(islands), sides_when_turned(islands)
-    squarest = _DIRECTIONS[(sides <= (1 + _AS_SMALL) * sides.min(axis=0)).argmax(axis=0)]
-    tries = 1 if not may_turn else middle
+    tries = middle if may_turn else 1
     if may_turn is True:
+        is_aligned, sides = lie_along_axes(islands), sides_when_turned(islands)
+        squarest = _DIRECTIONS[(sides <= (1 + _AS_SMALL) * sides.min(axis=0)).argmax(axis=0)]
         tries += 2 if is_aligned.all() else free
     packer = Packer(islands, square)
     # The generator whose numbers never change with the version of numpy.
@@ -81,8 +81,8 @@ def best_layout(islands: Islands, square: Square, may_turn: Turned, progress: Pr
         shorter = 1.0
         if number == middle:
             turns = np.where(is_aligned, best_turns, squarest)
-        elif number == middle + 1 and islands.area < _HARDLY_FILLED * best.side**2:
-            turns, shorter = squarest, _SHORTER_UNALIGNED
+        elif number == middle + 1 and islands.area < HARDLY_FILLED * best.side**2:
+            turns, shorter = squarest, SHORTER_UNALIGNED
         elif number == 1:
             turns = np.full(count, 1j)
         elif number > 1:

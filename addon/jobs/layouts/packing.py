@@ -29,11 +29,9 @@ QUARTER_TURN, ANY_TURN = "CARDINAL", "ANY"
 ENOUGH, ENOUGH_UNTURNED = 0.65, 0.6
 """Parts of the square from which on a layout by Blender's packer is large enough; the other if no island is turned,
 which takes a hundredth of the time."""
-# Of a full turn, tried for an island that is alone, and what another of them has to gain. If the island fills so little
-# of the square, sides along the axes are given up for one whose side is so much shorter, as by the packer of xatlas.
+# Of a full turn, tried for an island that is alone, and what another of them has to gain.
 DIRECTIONS = 720
 TURN_GAINS = 1e-3
-HARDLY_FILLED, SHORTER_UNALIGNED = 0.3, 0.9
 KEPT = 8
 """Layouts that are not searched for again."""
 
@@ -185,8 +183,8 @@ def _filling_turn(places: NDArray[np.float64], squeeze: NDArray[np.float64], ali
     quarter = DIRECTIONS // 4
     across, up = reach + np.roll(reach, -2 * quarter), np.roll(reach, -quarter) + np.roll(reach, -3 * quarter)
     side = np.maximum(across * squeeze[0], up * squeeze[1])
-    least = side[::quarter].min()
-    if aligned > HARDLY_FILLED * least**2 or (aligned and side.min() > SHORTER_UNALIGNED * least):
+    least, rules = side[::quarter].min(), native.part("layout_search")
+    if aligned > rules.HARDLY_FILLED * least**2 or (aligned and side.min() > rules.SHORTER_UNALIGNED * least):
         angles, side = angles[::quarter], side[::quarter]
     # As it lies, where turning gains nothing.
     return float(angles[np.flatnonzero(side <= side.min() * (1 + TURN_GAINS))[0]])
