@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..counted import counted
 from ..io.mesh_formats import readable_suffixes
 from ..io.safe_files import require_inputs_kept
 from ..io.side_files import UsageError
@@ -182,7 +183,7 @@ def _ended_before(
     names = {asset.name for asset in assets}
     before = read_records(args.out, args.shard)
     for journal, count in before.damaged.items():
-        lines = "1 line is" if count == 1 else f"{count} lines are"
+        lines = counted(count, "line is", "lines are")
         complain(f"lsgp: warning: {lines} damaged in '{args.out / journal}'; those assets count as not done")
     stay = {
         name: record
