@@ -59,7 +59,7 @@ struct SeamlessReport {
 
 // Why a marked feature does not run straight along u or v.
 enum class ReleaseReason {
-  curved,         // it turns away from both axes, and no corner or cone lets it
+  curved,         // it turns away from both axes or is between them, and no corner or cone lets it
   contradiction,  // together with features that have precedence it would fold the map or lose its length
   stretch,        // it would cost too much L2 stretch
   lattice,        // no layout with tiles of this size keeps it

@@ -19,7 +19,8 @@ bool is_stored_along_axis(const CornerPositions& corners, Index h) {
 
 const char* words_of(ReleaseReason reason) {
   switch (reason) {
-    case ReleaseReason::curved: return "turn away from both axes where no cone or corner lets them";
+    case ReleaseReason::curved:
+      return "turn away from both axes, or are between them, where no cone or corner lets them";
     case ReleaseReason::contradiction: return "contradict others";
     case ReleaseReason::stretch: return "would cost too much stretch";
     case ReleaseReason::lattice: return "find no place on tiles of this size";

@@ -40,6 +40,7 @@ class FeatureTracer {
  private:
   static constexpr double line_corner = M_PI / 4;         // the least turning at a corner of a line
   static constexpr double most_off_axis = M_PI * 5 / 18;  // of an edge from the axis of its line
+  static constexpr double least_diagonal = 0.6;           // of a line between both axes
 
   Complex edge(Index h) const {
     return position_[cut_mesh_.copy_of_corner[next(h)]] - position_[cut_mesh_.copy_of_corner[h]];
@@ -97,30 +98,38 @@ class FeatureTracer {
     return out;
   }
 
-  // Adds a line whose edges are near the same axis, or the parts of one that turns away from it.
+  // Adds a line whose edges are near the same axis, or the parts of one that turns away from it. A line between both
+  // axes would shear what is around it along either.
   void add_with_axes(const FeatureLine& line, FeatureLines& out) const {
     const Array<double> angle = angles_along(line);
     const Array<double> axis = axes_along(line, angle);
-    const bool is_curved = std::any_of(axis.begin(), axis.end(), [&](double each) { return each != axis.front(); });
-    if (is_curved) {
+    const bool is_bent = std::any_of(axis.begin(), axis.end(), [&](double each) { return each != axis.front(); });
+    const bool is_diagonal = !is_bent && bend_of(line, angle.data(), axis.data()) > least_diagonal;
+    if (is_bent || is_diagonal) {
       out.curved.insert(out.curved.end(), line.halfedges.begin(), line.halfedges.end());
     }
-    for (Index begin = 0, end = 0; begin < ssize(angle); begin = end) {
+    for (Index begin = 0, end = 0; begin < ssize(angle) && !is_diagonal; begin = end) {
       while (end < ssize(angle) && axis[end] == axis[begin]) ++end;
-      FeatureLine part{{}, {}, 0, 0, line.is_marked, true, is_curved};
-      double squares = 0;
+      FeatureLine part{{}, {}, 0, 0, line.is_marked, true, is_bent};
       for (Index i = begin; i < end; ++i) {
         const Index h = line.halfedges[i];
-        const double off = angle[i] - axis[i];
-        const Complex direction = std::polar(1.0, std::arg(edge(h)) - off);
+        const Complex direction = std::polar(1.0, std::arg(edge(h)) - (angle[i] - axis[i]));
         part.halfedges.push_back(h);
         part.directions.emplace_back(std::round(direction.real()), std::round(direction.imag()));
         part.length += geometry_.length[h];
-        squares += geometry_.length[h] * off * off;
       }
-      part.bend = std::sqrt(squares / part.length);
+      part.bend = bend_of(part, angle.data() + begin, axis.data() + begin);
       out.straight.push_back(std::move(part));
     }
+  }
+
+  // The root mean square of the edges' angles to the axes.
+  double bend_of(const FeatureLine& line, const double* angle, const double* axis) const {
+    double squares = 0;
+    for (Index i = 0; i < ssize(line.halfedges); ++i) {
+      squares += geometry_.length[line.halfedges[i]] * (angle[i] - axis[i]) * (angle[i] - axis[i]);
+    }
+    return std::sqrt(squares / line.length);
   }
 
   // The angles of edges, counted without the quarter turns of cuts.

@@ -24,7 +24,7 @@ struct FeatureLine {
 struct FeatureLines {
   Array<FeatureLine> straight;  // edges are nearer to one axis than to the other; marked ones first, among these parts
                                 // of curved lines last, then by cost, the square of the bend times the length
-  Array<Index> curved;          // halfedges of the lines that are divided into parts
+  Array<Index> curved;          // halfedges of the lines that are divided into parts, and of those between both axes
 };
 
 // The rotation of a layout that aligns its features, marked ones if there are any, with the axes in the least squares

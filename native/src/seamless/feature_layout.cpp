@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -44,13 +45,21 @@ constexpr int unfolding_steps = 16;
 constexpr int relaxing_steps = 30;
 constexpr double least_decrease = 1e-3;           // of the energy, for which a further step is taken
 constexpr double fine_step = 1.0 / 256;           // exact in single precision on any grid
-constexpr double short_length = 1.5;              // cells: lines that are rounded first
+constexpr double short_length = 1.5;              // cells: what is rounded first
+constexpr std::ptrdiff_t most_distances = 256;    // between lines, the least ones
+constexpr double least_slope = 0.6;               // sine of the angle to lines of an edge that keeps them apart
 constexpr double least_response = 1e-9;           // of a coordinate to a shift, or to unknowns
 constexpr double whole = 1e-5;                    // deviation of a dependent coordinate from its step
 constexpr int tried_scales = 3;                   // above and below the one asked for, by sixteenths of an octave
 constexpr std::ptrdiff_t many_coordinates = 512;  // for which only one scale is tried
 
 CoordinateForm coordinate(Index of) { return {{of / 2, of % 2 == 0 ? Complex(0, 1) : Complex(1)}}; }
+
+CoordinateForm difference(Index of, Index from) {
+  CoordinateForm out = coordinate(of);
+  out.emplace_back(from / 2, -coordinate(from).front().second);
+  return out;
+}
 
 double coordinate_at(Index of, const Eigen::VectorXcd& position) {
   return of % 2 == 0 ? position[of / 2].real() : position[of / 2].imag();
@@ -555,6 +564,41 @@ void FeatureLayout::find_corners(const Array<char>& is_on_line) {
   }
 }
 
+// The least distances between parallel lines, or from a line to a cone, that should not vanish: with the height of a
+// triangle it vanishes itself, and an edge that is far from parallel to them would turn much.
+void FeatureLayout::find_distances(const DirectedEdges& edges, const Array<char>& is_on_line, UnionFind& same) {
+  const HalfedgeMesh& mesh = task_.surface.mesh;
+  const Array<Index>& copy = task_.surface.cut_mesh.copy_of_corner;
+  const auto edge = [&](Index h) { return start_[copy[next(h)]] - start_[copy[h]]; };
+  std::map<std::pair<Index, Index>, std::pair<double, CoordinateForm>> found;  // of lines or cones
+  const auto list_if_known = [&](Index corner, Index other, int axis) {
+    Index a = 2 * copy[corner] + axis, b = 2 * copy[other] + axis;
+    if (!(is_on_line[a] || is_cone_[mesh.origin(corner)]) || !(is_on_line[b] || is_cone_[mesh.origin(other)])) return;
+    if (coordinate_at(b, start_) < coordinate_at(a, start_)) std::swap(a, b);
+    const double distance = coordinate_at(b, start_) - coordinate_at(a, start_);
+    found.try_emplace(std::minmax(same.find(a), same.find(b)), distance, difference(b, a));
+  };
+  for (const Index on_line : edges.halfedges) {
+    for (const Index h : {on_line, mesh.twin[on_line]}) {
+      if (h == none) continue;
+      const Complex along = edge(h);
+      list_if_known(h, prev(h), std::abs(along.real()) > std::abs(along.imag()) ? 1 : 0);
+    }
+  }
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    const Complex along = edge(h);
+    const double steep = least_slope * std::abs(along);
+    if (std::abs(along.real()) > steep) list_if_known(h, next(h), 0);
+    if (std::abs(along.imag()) > steep) list_if_known(h, next(h), 1);
+  }
+  Array<std::pair<double, CoordinateForm>> distances;
+  for (auto& [lines, distance] : found) distances.push_back(std::move(distance));
+  std::stable_sort(distances.begin(), distances.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  if (ssize(distances) > most_distances) distances.resize(most_distances);
+  for (auto& [distance, form] : distances) rounded_.push_back(std::move(form));
+  distance_count_ = ssize(rounded_);
+}
+
 void FeatureLayout::find_coordinates() {
   const CutMesh& cut_mesh = task_.surface.cut_mesh;
   const DirectedEdges edges = edges_of(aligned_);
@@ -578,14 +622,15 @@ void FeatureLayout::find_coordinates() {
     lines_[line].push_back(of);
   }
   find_lattice_coordinates();
+  find_distances(edges, is_on_line, same);
   Array<Index> reference(2, none);
   for (const Array<Index>& line : lines_) {
-    CoordinateForm form = coordinate(line.front());
     Index& first = reference[line.front() % 2];
-    if (may_shift_ && first == none) first = line.front();
-    if (may_shift_ && first != line.front()) form.emplace_back(first / 2, -form.front().second);
-    if (may_shift_ && first == line.front()) continue;
-    rounded_.push_back(std::move(form));
+    if (may_shift_ && first == none) {
+      first = line.front();
+    } else {
+      rounded_.push_back(may_shift_ ? difference(line.front(), first) : coordinate(line.front()));
+    }
   }
   line_count_ = ssize(rounded_);
   // Shifts round others, to which corners would have to be related.
@@ -635,21 +680,28 @@ std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, bool is_
   PivotedCholesky cholesky(compliance_);
   Array<char> is_done(count, 0);
   const auto unit = [&](std::ptrdiff_t i) { return is_fine && i >= lattice_count_ ? fine_step : 1.0; };
+  const auto may_vanish = [&](std::ptrdiff_t i) {
+    return i < length_count_ || (i >= lattice_count_ && i < distance_count_);
+  };
   const auto least = [&](std::ptrdiff_t i) {
-    return i < length_count_ ? 1.0 : -std::numeric_limits<double>::infinity();
+    return may_vanish(i) ? unit(i) : -std::numeric_limits<double>::infinity();
   };
   const auto off = [&](std::ptrdiff_t i) {
     return std::max(unit(i) * std::round(value[i] / unit(i)), least(i)) - value[i];
   };
-  // Lines between cones keep a length; where lines need not be on the lattice, they wait for it.
-  for (const std::ptrdiff_t end : {length_count_, is_fine ? lattice_count_ : count, count}) {
+  // Short lengths and distances come first, so that they do not vanish; where lines need not be on the lattice, they
+  // wait for it.
+  enum class Stage { vanishing, on_lattice, all };
+  for (const Stage stage : {Stage::vanishing, Stage::on_lattice, Stage::all}) {
+    const std::ptrdiff_t end = is_fine && stage != Stage::all ? lattice_count_ : count;
+
     for (;;) {
       checkpoint(static_cast<double>(count * (ssize(out.independent) + 1)));
       std::ptrdiff_t best = -1;
       double cheapest = std::numeric_limits<double>::infinity();
       for (std::ptrdiff_t i = 0; i < end; ++i) {
         if (is_done[i] || !cholesky.is_independent(i)) continue;
-        if (end == length_count_ && value[i] > short_length) continue;
+        if (stage == Stage::vanishing && !(may_vanish(i) && value[i] <= short_length)) continue;
         const double cost = off(i) * off(i) / cholesky.left()[i];
         if (!(cost < cheapest)) continue;
         cheapest = cost;
@@ -734,7 +786,7 @@ std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, bool mus
 std::optional<FeatureLayout::Choice> FeatureLayout::choose(double density, bool is_fine) const {
   std::optional<Choice> best;
   double least = std::numeric_limits<double>::infinity();
-  const int scales = line_count_ > many_coordinates ? 0 : tried_scales;
+  const int scales = line_count_ - (distance_count_ - lattice_count_) > many_coordinates ? 0 : tried_scales;
   for (int k = -scales; k <= scales; ++k) {
     const double growth = k * M_LN2 / 16;
     std::optional<Choice> choice = round(density * std::exp(growth), is_fine);

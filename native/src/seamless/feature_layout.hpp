@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/array.hpp"
+#include "base/union_find.hpp"
 #include "lsgp/result.hpp"
 #include "prescription/curvature.hpp"
 #include "repair/feature_lines.hpp"
@@ -105,6 +106,7 @@ class FeatureLayout {
   void hold_translation();
   void find_coordinates();
   void find_lattice_coordinates();
+  void find_distances(const DirectedEdges& edges, const Array<char>& is_on_line, UnionFind& same);
   void find_corners(const Array<char>& is_on_line);
   std::optional<Choice> round(double scale, bool is_fine) const;
   void round_corners(Eigen::VectorXd& value, PivotedCholesky& cholesky, Choice& choice) const;
@@ -131,9 +133,10 @@ class FeatureLayout {
   Eigen::VectorXcd start_;
   Array<Array<Index>> lines_;  // coordinates, 2 copy for u and 2 copy + 1 for v, that are the same
   PerVertex<char> is_cone_;
-  // Lengths of lines between cones, the lattice's, one of each line, and those along lines of their ends and corners.
+  // Lengths of lines between cones, the lattice's, distances between lines, one of each line, and those along lines of
+  // their ends and corners.
   Array<CoordinateForm> rounded_;
-  std::ptrdiff_t length_count_ = 0, lattice_count_ = 0, line_count_ = 0;  // the ends of the first three
+  std::ptrdiff_t length_count_ = 0, lattice_count_ = 0, distance_count_ = 0, line_count_ = 0;  // ends of the first ones
   bool keeps_corners_ = false;
   bool may_shift_ = false;
   Array<CoordinateForm> held_translation_;  // its two coordinates, or empty
