@@ -108,9 +108,9 @@ class FeatureTracer {
     if (is_bent || is_diagonal) {
       out.curved.insert(out.curved.end(), line.halfedges.begin(), line.halfedges.end());
     }
-    for (Index begin = 0, end = 0; begin < ssize(angle) && !is_diagonal; begin = end) {
+    for (Index begin = 0, end = 0; begin < ssize(angle); begin = end) {
       while (end < ssize(angle) && axis[end] == axis[begin]) ++end;
-      FeatureLine part{{}, {}, 0, 0, line.is_marked, true, is_bent};
+      FeatureLine part{{}, {}, 0, 0, line.is_marked, true, is_bent || is_diagonal};
       for (Index i = begin; i < end; ++i) {
         const Index h = line.halfedges[i];
         const Complex direction = std::polar(1.0, std::arg(edge(h)) - (angle[i] - axis[i]));
