@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import lsgp
 import meshes
 import numpy as np
@@ -36,6 +38,11 @@ CASES = {
 every_case = pytest.mark.parametrize("name", CASES)
 
 
+@cache
+def prescribed(name: str) -> lsgp.Prescription:
+    return prescribe(CASES[name])
+
+
 @every_case
 def test_harmonic_angles(name: str) -> None:
     mesh = CASES[name]
@@ -48,7 +55,7 @@ def test_no_angle_can_be_improved(name: str) -> None:
     """The objective is convex: at its minimum the slope is 0 at cones within their bounds, up to a constant where
     Gauss-Bonnet determines the sum, and points outside at the others."""
     mesh = CASES[name]
-    angles = prescribe(mesh).cone_angles
+    angles = prescribed(name).cone_angles
     model = oracle.scale_model(*mesh)
     slope = -model.objective(TURN - angles)[1]  # of the angles
     low, high = oracle.angle_box(*mesh)
@@ -67,7 +74,7 @@ def test_no_angle_can_be_improved(name: str) -> None:
 @every_case
 def test_the_log_scale_is_that_of_the_angles(name: str) -> None:
     mesh = CASES[name]
-    found = prescribe(mesh)
+    found = prescribed(name)
     model = oracle.scale_model(*mesh)
     y = model.log_scale(TURN - found.cone_angles)
     assert found.log_scale == pytest.approx(y - model.share @ y, abs=1e-9)
