@@ -151,12 +151,17 @@ def test_own_cones_give_a_valid_map(name: str) -> None:
     assert_valid(shared_mesh(name), own_cones(name))
 
 
+@cache
+def with_automatic_cones(name: str) -> Mesh:
+    mesh = shared_mesh(name)
+    return mesh._replace(cones=lsgp.place_cones(surface(mesh)).cones)
+
+
 @pytest.mark.many_solves
 @pytest.mark.parametrize("mode", ["conformal", "low-stretch"])
 @pytest.mark.parametrize("name", [*CLOSED, *OPEN, *WITHOUT_CONES])
 def test_automatic_cones_give_a_valid_map(name: str, mode: str) -> None:
-    mesh = shared_mesh(name)
-    mesh = mesh._replace(cones=lsgp.place_cones(surface(mesh)).cones)
+    mesh = with_automatic_cones(name)
     assert_valid(mesh, unwrap(mesh, mode=mode))
 
 
