@@ -244,6 +244,7 @@ def test_moved_cones_leave_marked_ones() -> None:
     assert placed.mapped_l2 == pytest.approx(unwrapped(mesh, placed).distortion.l2_stretch, rel=1e-6)
 
 
+@pytest.mark.many_solves
 def test_a_map_without_hope_of_low_stretch_is_repaired_before_it_is_told() -> None:
     mesh = closed.gear(24, 0.3, 4)
     placed = place(mesh, count=8)

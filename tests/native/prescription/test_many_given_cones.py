@@ -35,7 +35,10 @@ CASES = {
     "crowded": crowded(CLOSED, 160),
     "stretched": with_cones(STRETCHED, 160),
 }
-every_case = pytest.mark.parametrize("name", CASES)
+every_case = pytest.mark.parametrize(
+    "name",
+    ["closed", "crowded", *(pytest.param(name, marks=pytest.mark.many_solves) for name in ("open", "stretched"))],
+)
 
 
 @cache

@@ -39,7 +39,7 @@ STRAIGHT = {
 BEVELED = {"beveled block": closed.beveled_box(6, 0.15, (1, 1.3, 0.8))}
 ROUND = {"cylinder": closed.prism(24, 3, 2.0), "disk": closed.prism(32, 3, 0.4), "rod": closed.prism(16, 3, 6.0)}
 SOLIDS = STRAIGHT | BEVELED | ROUND
-TARGETS = (300, 1000, 4000)
+TARGETS = (300, 1000, pytest.param(4000, marks=pytest.mark.many_solves))
 ROUNDED = 0.02  # of the stretch, by grids of another size
 
 
@@ -179,7 +179,7 @@ def test_without_straight_sides_creases_are_not_followed() -> None:
     assert carried_share(turned, found.mesh) < 0.9
 
 
-@pytest.mark.parametrize("target", [400, 2000])
+@pytest.mark.parametrize("target", [400, pytest.param(2000, marks=pytest.mark.many_solves)])
 @pytest.mark.parametrize(
     "name",
     [
