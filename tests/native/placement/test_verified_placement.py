@@ -244,7 +244,6 @@ def test_moved_cones_leave_marked_ones() -> None:
     assert placed.mapped_l2 == pytest.approx(unwrapped(mesh, placed).distortion.l2_stretch, rel=1e-6)
 
 
-@pytest.mark.many_solves
 def test_a_map_without_hope_of_low_stretch_is_repaired_before_it_is_told() -> None:
     mesh = closed.gear(24, 0.3, 4)
     placed = place(mesh, count=8)
@@ -259,7 +258,6 @@ def rough_ground(cells: int, height: float) -> Mesh:
     return flat._replace(positions=flat.positions + np.outer(height * noise, [0, 0, 1]))
 
 
-@pytest.mark.many_solves
 def test_large_ground_that_is_rough_all_over_is_refused_without_repairs() -> None:
     mesh = rough_ground(105, 4)
     with pytest.raises(lsgp.LsgpError, match="too rough") as refused:

@@ -94,7 +94,10 @@ def test_back_substitutions_do_not_grow_with_the_cones() -> None:
     assert spent[0] <= COUNTS[0] + 100
 
 
-@pytest.mark.parametrize("seamless", [None, lsgp.Seamless()], ids=["plain", "seamless"])
+@pytest.mark.parametrize(
+    "seamless",
+    [pytest.param(None, id="plain", marks=pytest.mark.many_solves), pytest.param(lsgp.Seamless(), id="seamless")],
+)
 def test_angles_do_not_depend_on_what_was_asked_before(seamless: lsgp.Seamless | None) -> None:
     """Rounding angles needs the effect of every cone on the surface itself as well."""
     mesh = CASES["closed"]
