@@ -21,11 +21,13 @@ def leave_out(reason: str) -> NoReturn:
 
 @dataclass(frozen=True)
 class RealBlender:
-    """A Blender executable: arguments of `test_in_blender.py` that name it, and whether its window is tried."""
+    """A Blender executable: arguments of `test_in_blender.py` that name it, and what is tried beside its tests."""
 
     name: str
     arguments: tuple[str, ...]
     has_screen: bool
+    builds_library: bool
+    """Whether its compiler builds the whole wheel, not just the Python module beside a library that is there."""
 
 
 def real_blenders() -> list[RealBlender]:
@@ -36,10 +38,12 @@ def real_blenders() -> list[RealBlender]:
         name = Path(folder).name
         # The chroot sees the repository, but not every temporary folder.
         out = str(ROOT / "build" / f"in_{name}")
-        # Windows take minutes: that of the last one is enough.
-        has_screen = folder == folders[-1] and Path(folder, "usr", "bin", "xvfb-run").exists()
-        found.append(RealBlender(name, ("--chroot", folder, "--out", out), has_screen))
+        # Windows and builds take minutes: those of the last one, with the newest compiler and Eigen, are enough.
+        is_last = folder == folders[-1]
+        has_screen = is_last and Path(folder, "usr", "bin", "xvfb-run").exists()
+        found.append(RealBlender(name, ("--chroot", folder, "--out", out), has_screen, builds_library=is_last))
     if "BLENDER" in os.environ and "BLENDER_PYTHON" in os.environ:
         arguments = ("--blender", os.environ["BLENDER"], "--python", os.environ["BLENDER_PYTHON"])
-        found.append(RealBlender("blender", arguments, shutil.which("xvfb-run") is not None))
+        has_screen = shutil.which("xvfb-run") is not None
+        found.append(RealBlender("blender", arguments, has_screen, builds_library=True))
     return found

@@ -27,11 +27,12 @@ def test_addon_in_bpy(bpy_python, wheel, tmp_path):
     assert "tests, 0 failures" in run_tool("--python", bpy_python, "--wheel", str(wheel), "--out", str(tmp_path))
 
 
-def test_addon_in_a_real_blender(real_blender, staged):
+def test_addon_in_a_real_blender(real_blender, wheel, staged):
     """In its window, too, where there is a screen; and the Blender accepts the zip for blender.org's."""
     (package,) = staged.parent.glob("*.zip")
     window = ["--window"] if real_blender.has_screen else []
-    said = run_tool(*real_blender.arguments, "--validate", str(package), *window)
+    library = [] if real_blender.builds_library else ["--library-of", str(wheel)]
+    said = run_tool(*real_blender.arguments, "--validate", str(package), *window, *library)
     assert "tests, 0 failures" in said
     assert real_blender.has_screen == ("tests in a window, 0 failures" in said)
 

@@ -8,8 +8,6 @@ refused with that finding.  As a script this module prints how every case ends, 
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -21,6 +19,7 @@ from lsgp.io import polygons
 from lsgp.io.mesh_files import read_mesh
 from result_check import undeclared_faults
 from shared_meshes import shared_folder
+from this_process import run_command
 
 SECONDS = 5.0  # of processor time
 
@@ -159,16 +158,15 @@ def test_through_the_command_line(tmp_path: Path, name: str) -> None:
     (tmp_path / "in.obj").write_text("\n".join(lines) + "\n")
     (tmp_path / "cones.json").write_text(json.dumps({"cones": case["cones"], "cone_angles": case["cone_angles"]}))
     (tmp_path / "seams.json").write_text(json.dumps(case["seams"]))
-    command = [sys.executable, "-m", "lsgp", "unwrap", "in.obj", "-o", "out.obj", "--report", "report.json"]
+    command = ["unwrap", "in.obj", "-o", "out.obj", "--report", "report.json"]
     command += ["--cones", "cones.json", "--seam-edges", "seams.json", "--cuts", "shortest"]
     if "resolution" in case["params"]:
         command += ["--seamless", "--tiles", str(case["params"]["resolution"])]
     if "weight" in case["params"]:
         (tmp_path / "importance.json").write_text(json.dumps(importance_in(case)))
         command += ["--mode", "low-stretch", "--importance", "importance.json"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    done = run_command(tmp_path, *command)
     assert done.returncode in (0, 2, 3), done.stderr
-    assert "Traceback" not in done.stderr
 
     _, expected = outcome(case)
     if done.returncode == 2:

@@ -6,11 +6,12 @@
         --python PYTHON --blender BLENDER  an executable and the Python of its version
         --chroot FOLDER                    an installation of ../shared/tools/real-blender
 
-Builds the wheel with that Python (or takes --wheel), stages and zips the extension, installs the zip into a throw-away
-profile, runs tests/blender there and prints the counts. With --window, what needs events is tried at the same time, in
-a window on a virtual screen, and then the first session of a new user; that takes an executable and xvfb-run. All three
-begin with empty profiles. Where ImageMagick is installed there, the folders window/pictures and newcomer/pictures of
---out have the screen at the end of every such test and at every step of the session. Exit code 0 only when tests
+Builds the wheel with that Python, stages and zips the extension, installs the zip into a throw-away profile, runs
+tests/blender there and prints the counts. --wheel takes a wheel instead; --library-of takes only the library of one,
+where its C runtime permits, and builds the Python module. With --window, what needs events is tried at the same time,
+in a window on a virtual screen, and then the first session of a new user; that takes an executable and xvfb-run. All
+three begin with empty profiles. Where ImageMagick is installed there, the folders window/pictures and newcomer/pictures
+of --out have the screen at the end of every such test and at every step of the session. Exit code 0 only when tests
 passed, none failed and none was skipped. Arguments after "--" go to pytest.
 """
 
@@ -20,6 +21,7 @@ import argparse
 import os
 import shutil
 import subprocess
+import zipfile
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -52,9 +54,29 @@ class Command:
         )
 
 
-def build_wheel(python: Command, folder: Path) -> Path:
-    """Build the wheel of this repository for the Python of the Blender under test."""
-    python.run("-m", "pip", "wheel", ".", "--no-deps", "--quiet", "--wheel-dir", folder)
+def loads(python: Command, library: Path) -> bool:
+    """Whether the system of this Python can load a library; its C runtime may be too old for it."""
+    try:
+        python.run("-c", "import ctypes, sys; ctypes.CDLL(sys.argv[1])", library)
+    except subprocess.CalledProcessError:
+        return False
+    return True
+
+
+def build_wheel(python: Command, folder: Path, other: Path | None) -> Path:
+    """Build the wheel of this repository for the Python of the Blender under test.
+
+    Of another wheel it takes the library, which all Pythons share, and compiles the module alone.
+    """
+    options = ["--no-deps", "--quiet", "--wheel-dir", folder, "--config-settings", f"build-dir={folder / 'native'}"]
+    if other is not None:
+        with zipfile.ZipFile(other) as archive:
+            library = Path(archive.extract("lsgp/liblsgp.so", folder / "library"))
+        if loads(python, library):
+            options += ["--config-settings", f"cmake.define.LSGP_LIBRARY={library}"]
+        else:
+            print(f"test_in_blender: the library of {other.name} does not load here and is built again")
+    python.run("-m", "pip", "wheel", ".", *options)
     return next(folder.glob("lsgp-*.whl"))
 
 
@@ -120,6 +142,12 @@ def main() -> None:
     )
     parser.add_argument("--wheel", type=Path, help="take this wheel instead of building one")
     parser.add_argument(
+        "--library-of",
+        metavar="WHEEL",
+        type=Path,
+        help="build only the Python module, and take the library of this wheel of the same sources for another Python",
+    )
+    parser.add_argument(
         "--out", type=Path, default=ROOT / "build" / "in_blender", help="folder for wheel, zip, profile and report"
     )
     parser.add_argument("pytest", nargs="*", help="arguments for pytest, after --")
@@ -148,7 +176,7 @@ def main() -> None:
         if arguments.blender is not None:
             blender = Command([arguments.blender], {})
 
-    wheel = arguments.wheel or build_wheel(python, out)
+    wheel = arguments.wheel or build_wheel(python, out, arguments.library_of)
     # Executables here mostly come from a distribution, with a Python of its own.
     blenders = [] if blender is None else ["--any-blender"]
     python.run(ROOT / "tools" / "packaging" / "stage_extension.py", "--wheel", wheel, "--out", out, *blenders)

@@ -23,14 +23,14 @@ def screw():
 
 
 def kit():
-    """Thirty blocks, balls and cylinders of different sizes in one mesh."""
+    """Twelve blocks, balls and cylinders of different sizes in one mesh."""
     random = np.random.RandomState(3)
     adders = (
         bpy.ops.mesh.primitive_cube_add,
         lambda **given: bpy.ops.mesh.primitive_uv_sphere_add(segments=12, ring_count=8, **given),
         lambda **given: bpy.ops.mesh.primitive_cylinder_add(vertices=12, **given),
     )
-    for i in range(30):
+    for i in range(12):
         adders[i % 3](location=(4 * i, 0, 0), scale=random.uniform(0.3, 1.5, 3))
     bpy.ops.object.select_all(action="SELECT")
     bpy.ops.object.join()

@@ -340,7 +340,7 @@ def test_what_is_round_itself_has_no_bevels() -> None:
         assert len(lsgp.crease_borders(surface(mesh))) == 0
 
 
-@pytest.mark.parametrize("gap", [0.0, 1e-7])
+@pytest.mark.parametrize("gap", [0.0, pytest.param(1e-7, marks=pytest.mark.many_solves)])
 @pytest.mark.parametrize("name", ["star", "cube", "plate with tunnels", "slab of genus 2"])
 def test_triangles_without_area_hide_no_creases(name: str, gap: float) -> None:
     for seed in range(3):
@@ -350,7 +350,7 @@ def test_triangles_without_area_hide_no_creases(name: str, gap: float) -> None:
         assert result.distortion.l2_stretch <= 1.001
 
 
-@pytest.mark.parametrize("points", [8, 12, 24])
+@pytest.mark.parametrize("points", [8, *(pytest.param(points, marks=pytest.mark.many_solves) for points in (12, 24))])
 @pytest.mark.parametrize("inner", [0.5, 0.7])
 @pytest.mark.parametrize("height", [0.05, 0.2, 0.4])
 def test_sides_of_extruded_outlines_become_bands(points: int, inner: float, height: float) -> None:

@@ -279,7 +279,9 @@ def test_cuts_that_fill_the_square_are_not_closed_to_be_alike(mesh: meshes.Mesh,
     assert oracle.metric_gap(whole.corner_uv, cut.corner_uv) <= 1e-9
 
 
-@pytest.mark.parametrize("turn", [0.0, 0.4], ids=["exact", "turned"])
+@pytest.mark.parametrize(
+    "turn", [pytest.param(0.0, id="exact"), pytest.param(0.4, id="turned", marks=pytest.mark.many_solves)]
+)
 def test_islands_that_mirror_themselves_are_divided_alike_on_both_sides(turn: float) -> None:
     """With all but one of several numbers of cones; single sets may overlap, and are then divided further."""
     mesh = meshes.two_horned(3, turn)

@@ -91,6 +91,7 @@ def test_whole_layouts_keep_their_cuts_out_of_sight(family: str, preset: str, sh
     assert hidden <= min(share * shortest, most)
 
 
+@pytest.mark.many_solves
 def test_hidden_cuts_leave_few_islands() -> None:
     """With sight alone as the cost, ten layouts come apart in twenty islands."""
     islands = 0

@@ -127,7 +127,7 @@ def test_spectral_map_is_as_good(name: str) -> None:
     assert result.seams.translation_residual <= 1e-12
 
 
-@pytest.mark.parametrize("name", ["fandisk", "octa-flower"])
+@pytest.mark.parametrize("name", ["fandisk", pytest.param("octa-flower", marks=pytest.mark.many_solves)])
 @pytest.mark.parametrize("unfold", ["poisson", "spectral"])
 def test_map_is_the_oracles(name: str, unfold: str) -> None:
     mesh = shared_mesh(name)

@@ -18,7 +18,7 @@ from scipy.sparse.linalg import spsolve
 MESH = meshes.bumpy_sphere(4)
 COUNTS = (60, 61, 125, 250, 500, 1000)  # from 61 on in batches
 every_count = pytest.mark.parametrize(
-    "count", [pytest.param(count, marks=[pytest.mark.many_solves] if count > 250 else []) for count in COUNTS]
+    "count", [pytest.param(count, marks=[pytest.mark.many_solves] if count > 61 else []) for count in COUNTS]
 )
 
 

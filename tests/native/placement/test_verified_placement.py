@@ -128,7 +128,7 @@ COARSE = {
 }
 
 
-LONG = ("gear", "gear with deep teeth in layers")
+LONG = ("gear", "gear with deep teeth", "gear with deep teeth in layers")
 
 
 @pytest.mark.parametrize(
@@ -162,7 +162,13 @@ def test_a_coarse_round_shape_is_no_polyhedron(name: str) -> None:
     assert_keeps_its_word(mesh, placed)
 
 
-@pytest.mark.parametrize("name", [member.name for member in zoo.members("small", "noise-ball")])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(member.name, marks=[pytest.mark.many_solves] if "seed=1" in member.name else [])
+        for member in zoo.members("small", "noise-ball")
+    ],
+)
 def test_spiky_balls_say_what_they_miss(name: str) -> None:
     mesh = zoo.member(name).mesh()
     assert_keeps_its_word(mesh, place(mesh))

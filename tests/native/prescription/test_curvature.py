@@ -287,11 +287,16 @@ def test_angles_are_read_where_straight_cuts_cross(first: int, step: int) -> Non
     "name",
     [
         "star-points=8-inner=0.7-height=2",
-        "gear-teeth=12-depth=0.4-layers=3",
-        "noise-ball-levels=2-amount=1-seed=1",
-        "tunneled-plate-across=4-along=3-thickness=3",
         "sponge-cells=1",
-        "ball-with-handles-levels=2-handles=8-seed=1",
+        *(
+            pytest.param(name, marks=pytest.mark.many_solves)
+            for name in (
+                "gear-teeth=12-depth=0.4-layers=3",
+                "noise-ball-levels=2-amount=1-seed=1",
+                "tunneled-plate-across=4-along=3-thickness=3",
+                "ball-with-handles-levels=2-handles=8-seed=1",
+            )
+        ),
     ],
 )
 def test_placed_cones_admit_straight_cuts(name: str) -> None:

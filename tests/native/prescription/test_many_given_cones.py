@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import lsgp
 import meshes
 import numpy as np
@@ -33,7 +35,15 @@ CASES = {
     "crowded": crowded(CLOSED, 160),
     "stretched": with_cones(STRETCHED, 160),
 }
-every_case = pytest.mark.parametrize("name", CASES)
+every_case = pytest.mark.parametrize(
+    "name",
+    ["closed", "crowded", *(pytest.param(name, marks=pytest.mark.many_solves) for name in ("open", "stretched"))],
+)
+
+
+@cache
+def prescribed(name: str) -> lsgp.Prescription:
+    return prescribe(CASES[name])
 
 
 @every_case
@@ -48,7 +58,7 @@ def test_no_angle_can_be_improved(name: str) -> None:
     """The objective is convex: at its minimum the slope is 0 at cones within their bounds, up to a constant where
     Gauss-Bonnet determines the sum, and points outside at the others."""
     mesh = CASES[name]
-    angles = prescribe(mesh).cone_angles
+    angles = prescribed(name).cone_angles
     model = oracle.scale_model(*mesh)
     slope = -model.objective(TURN - angles)[1]  # of the angles
     low, high = oracle.angle_box(*mesh)
@@ -67,7 +77,7 @@ def test_no_angle_can_be_improved(name: str) -> None:
 @every_case
 def test_the_log_scale_is_that_of_the_angles(name: str) -> None:
     mesh = CASES[name]
-    found = prescribe(mesh)
+    found = prescribed(name)
     model = oracle.scale_model(*mesh)
     y = model.log_scale(TURN - found.cone_angles)
     assert found.log_scale == pytest.approx(y - model.share @ y, abs=1e-9)
@@ -84,7 +94,10 @@ def test_back_substitutions_do_not_grow_with_the_cones() -> None:
     assert spent[0] <= COUNTS[0] + 100
 
 
-@pytest.mark.parametrize("seamless", [None, lsgp.Seamless()], ids=["plain", "seamless"])
+@pytest.mark.parametrize(
+    "seamless",
+    [pytest.param(None, id="plain", marks=pytest.mark.many_solves), pytest.param(lsgp.Seamless(), id="seamless")],
+)
 def test_angles_do_not_depend_on_what_was_asked_before(seamless: lsgp.Seamless | None) -> None:
     """Rounding angles needs the effect of every cone on the surface itself as well."""
     mesh = CASES["closed"]

@@ -29,7 +29,9 @@ NARROW = {
 }
 
 
-@pytest.mark.parametrize("name", NARROW)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.many_solves] if "eight" in name else []) for name in NARROW]
+)
 def test_rows_are_divided_where_quads_are_too_large(name: str) -> None:
     mesh, target, most = NARROW[name]
     remesh = lsgp.remesh_to_quads(surface(mesh), target=target)

@@ -96,7 +96,13 @@ def test_what_the_other_options_do_with_marked_edges() -> None:
         assert off_axis(mesh, result, path) == 0 and result.features.share == 1
 
 
-@pytest.mark.parametrize("mesh", [closed.gear(12, 0.3, 2), closed.beveled_box(8, 0.1, (1, 1.5, 2))])
+@pytest.mark.parametrize(
+    "mesh",
+    [
+        closed.beveled_box(8, 0.1, (1, 1.5, 2)),
+        pytest.param(closed.gear(12, 0.3, 2), marks=pytest.mark.many_solves),
+    ],
+)
 def test_the_share_counts_edges_between_islands_once(mesh: Mesh) -> None:
     """The preset cuts these parts at creases, which are then boundaries of two components."""
     edges = lsgp.feature_edges(surface(mesh), angle=np.radians(40))

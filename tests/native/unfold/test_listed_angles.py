@@ -139,7 +139,9 @@ def test_lists_are_what_is_counted_on_random_meshes() -> None:
 
 
 @pytest.mark.parametrize("cones", [8, None])
-@pytest.mark.parametrize("name", ["femur", "joint", "mpi", "pipe"])
+@pytest.mark.parametrize(
+    "name", ["mpi", "pipe", *(pytest.param(n, marks=pytest.mark.many_solves) for n in ("femur", "joint"))]
+)
 def test_lists_are_what_is_counted_on_hard_meshes(name: str, cones: int | None) -> None:
     mesh = hard_mesh(name)
     options = lsgp.Options()
