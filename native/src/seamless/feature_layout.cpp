@@ -760,7 +760,8 @@ void FeatureLayout::round_corners(Eigen::VectorXd& value, PivotedCholesky& chole
   }
 }
 
-std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, bool must_be_whole, bool keeps_corners) {
+std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, bool must_be_whole, bool keeps_corners,
+                                                        const std::function<bool(const Eigen::VectorXcd&)>& accepts) {
   keeps_corners_ = keeps_corners;
   const std::optional<Choice> whole_lines = choose(density, false);
   const auto is_of_corner = [&](Index i) { return i >= line_count_; };
@@ -769,7 +770,8 @@ std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, bool mus
     return std::nullopt;
   }
   if (whole_lines) {
-    if (auto out = lay_out(*whole_lines, 1)) return out;
+    auto out = lay_out(*whole_lines, 1);
+    if (out && accepts(*out)) return out;
   }
   if (must_be_whole) return std::nullopt;
   const std::optional<Choice> fine_lines = choose(density, true);
@@ -779,7 +781,8 @@ std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, bool mus
       (whole_lines->values - fine_lines->values).isZero(whole)) {
     return std::nullopt;
   }
-  return lay_out(*fine_lines, fine_step);
+  auto out = lay_out(*fine_lines, fine_step);
+  return out && accepts(*out) ? out : std::nullopt;
 }
 
 // The cheapest one of some scales about this one.

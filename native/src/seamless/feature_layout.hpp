@@ -60,9 +60,11 @@ class FeatureLayout {
 
   // The layout with about `density` cells per unit of length, with cones and translations on the lattice. Features are
   // on lines of the lattice or, where cells are too large for that and they need not be whole, at multiples of 1 / 256
-  // of a cell. None where no such layout without flips is found.  keeps_corners: ends and corners of features are also
-  // at corners of cells, as far as that costs little; none where that is no other layout than without.
-  std::optional<Eigen::VectorXcd> quantize(double density, bool must_be_whole, bool keeps_corners);
+  // of a cell. None where no such layout without flips is found that is accepted.  keeps_corners: ends and corners of
+  // features are also at corners of cells, as far as that costs little; none where that is no other layout than
+  // without.
+  std::optional<Eigen::VectorXcd> quantize(double density, bool must_be_whole, bool keeps_corners,
+                                           const std::function<bool(const Eigen::VectorXcd&)>& accepts);
 
   // Moves all points but those of features and cones to where they stretch least.  weights: (m) of triangles.
   void relax(const Eigen::VectorXd& weights, Eigen::VectorXcd& position) const;

@@ -168,17 +168,19 @@ std::optional<QuantizedLayout> LayoutQuantizer::quantize_with_features(double de
   const bool must_be_whole = demands_.whole_features && effort.features == LayoutEffort::Features::required;
   for (const bool keeps_corners : {true, false}) {
     if (keeps_corners && !must_be_whole) continue;
-    std::optional<Eigen::VectorXcd> position = features_->quantize(density, must_be_whole, keeps_corners);
+    double energy = 0;
+    const auto accepts = [&](const Eigen::VectorXcd& position) {
+      const Jacobians jacobians = measure_jacobians({mesh_, geometry_}, cut_mesh_, position);
+      energy = symmetric_dirichlet_energy(geometry_, jacobians);
+      return energy <= effort.most_growth * energy_ &&
+             l2_stretch(geometry_, jacobians) <= (keeps_corners ? most_l2_with_corners_ : most_l2_);
+    };
+    std::optional<Eigen::VectorXcd> position = features_->quantize(density, must_be_whole, keeps_corners, accepts);
     if (!position) continue;
-    QuantizedLayout out{std::move(*position), 1, true};
-    out.energy = measure_energy(out.position);
-    if (!(out.energy <= effort.most_growth * energy_)) continue;
-    const double l2 = l2_stretch(geometry_, measure_jacobians({mesh_, geometry_}, cut_mesh_, out.position));
-    if (!(l2 <= (keeps_corners ? most_l2_with_corners_ : most_l2_))) continue;
     if (!demands_.directions.empty()) {
-      out.position *= lattice_.unit(find_upward_turn(out.position).turns_on_lattice());
+      *position *= lattice_.unit(find_upward_turn(*position).turns_on_lattice());
     }
-    return out;
+    return QuantizedLayout{std::move(*position), energy, true};
   }
   return std::nullopt;
 }
