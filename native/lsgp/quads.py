@@ -473,7 +473,8 @@ def _gained(
         return None
     if layout.distortion.l2_stretch > _most_stretch(more) * before.distortion.l2_stretch:
         return None
-    return None if _quad_count(layout) > _MORE_QUADS * _quad_count(before) else (finer, layouts, layout)
+    has_many = _quad_count(layout) > _MORE_QUADS * max(_quad_count(before), target or 0)
+    return None if has_many else (finer, layouts, layout)
 
 
 def _undivided(mesh: QuadMesh, finer: DividedSurface) -> QuadMesh:
