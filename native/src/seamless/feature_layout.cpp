@@ -576,7 +576,7 @@ void FeatureLayout::find_distances(const DirectedEdges& edges, const Array<char>
     if (!(is_on_line[a] || is_cone_[mesh.origin(corner)]) || !(is_on_line[b] || is_cone_[mesh.origin(other)])) return;
     if (coordinate_at(b, start_) < coordinate_at(a, start_)) std::swap(a, b);
     const double distance = coordinate_at(b, start_) - coordinate_at(a, start_);
-    found.try_emplace(std::minmax(same.find(a), same.find(b)), distance, difference(b, a));
+    found.try_emplace(std::minmax({same.find(a), same.find(b)}), distance, difference(b, a));
   };
   for (const Index on_line : edges.halfedges) {
     for (const Index h : {on_line, mesh.twin[on_line]}) {
