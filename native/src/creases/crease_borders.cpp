@@ -31,6 +31,8 @@ constexpr double is_bent = 0.25;             // radians along a border that two 
 constexpr double least_shared = 0.08;        // of the smaller patch's perimeter, to be unfolded with it
 constexpr double widest_corner = 2 * M_PI / 3;  // radians, at the ends of a whole side
 constexpr double is_no_hole = 0.35;             // radians between a border's turning and that of a hole in the plane
+constexpr Index borders_of_frame = 3;           // a tube has two
+constexpr double least_across_frame = 0.5;      // bend of what divides it, of that of a crease
 constexpr double operations_an_entry = 100;     // of a queue
 
 bool is_inside(const HalfedgeMesh& mesh, Index v) { return mesh.loop_of_vertex[v] == none; }
@@ -419,6 +421,25 @@ bool meet_others(const HalfedgeMesh& mesh, const PerHalfedge<char>& crease, cons
   return dead_ends <= most_dead_ends * all;
 }
 
+// Creases, and where patches with several borders that go around no hole in the plane, such as the chamfers of a box
+// all together, bend from one border to another: opened along a path each they would be branches.
+PerHalfedge<char> with_frames_divided(const MetricMesh& surface, PerHalfedge<char> crease, const Eigen::VectorXd& bend,
+                                      double angle) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Loops loops = find_loops(surface, crease);
+  Array<Index> around_nothing(mesh.triangle_count(), 0);  // of patches
+  for (std::size_t l = 0; l < loops.of.size(); ++l) {
+    if (std::abs(loops.turning[l] + 2 * M_PI) > is_no_hole) ++around_nothing[loops.of[l]];
+  }
+  PerHalfedge<char> out = crease;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (crease[h] || !may_cut(mesh, h) || bend[h] < least_across_frame * angle) continue;
+    const bool ends_at_borders = loops.at_corner[h] != none && loops.at_corner[mesh.twin[h]] != none;
+    if (ends_at_borders && around_nothing[loops.island[h / 3]] >= borders_of_frame) out[h] = out[mesh.twin[h]] = 1;
+  }
+  return out;
+}
+
 // The patches of a hard surface, which end in the middle of its bevels, or else at all its creases, including those
 // beside narrow strips; none if the surface is not hard.
 std::optional<Patches> find_hard_patches(const MetricMesh& surface, const PerHalfedge<char>& crease,
@@ -436,7 +457,8 @@ std::optional<Patches> find_hard_patches(const MetricMesh& surface, const PerHal
   if (!meet_others(mesh, crease, bend, options.angle)) return std::nullopt;
   const PerHalfedge<char> nowhere(mesh.halfedge_count(), 0);
   Bevels no_bevels{nowhere, nowhere, PerVertex<char>(mesh.vertex_count(), 0)};
-  out.emplace(surface, find_patches(surface, crease, bend), std::move(no_bevels));
+  const PerHalfedge<char> ends = with_frames_divided(surface, crease, bend, options.angle);
+  out.emplace(surface, find_patches(surface, ends, bend), std::move(no_bevels));
   if (!out->carry_curvature(options.least_share, options.most_corners)) out.reset();
   return out;
 }

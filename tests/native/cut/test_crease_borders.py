@@ -9,6 +9,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
+from lsgp.triangles import uv_area
 from map_checks import pairs, surface
 from meshes import Mesh
 from result_check import undeclared_faults
@@ -379,6 +380,22 @@ def test_the_two_triangles_of_a_chamfer_end_at_the_same_face(seed: int) -> None:
     given = lsgp.Surface(mesh.positions + noise, mesh.triangles, edges=of_polygons)
     result = lsgp.auto_unwrap(replace(given, borders=lsgp.crease_borders(given)), preset="bake", creases=False)
     assert len(result.cones) == 0 and result.distortion.l2_stretch < 1.005
+
+
+@pytest.mark.parametrize("size", [(1.0, 1.0, 1.0), (1.0, 1.4, 0.8)])
+@pytest.mark.parametrize("chamfer", [0.08, 0.1, 0.12])
+def test_wide_chamfers_unfold_beside_faces(size: tuple[float, float, float], chamfer: float) -> None:
+    """All of them are connected around the corners, where they bend by less than creases do; unfolded in one piece they
+    would be branches."""
+    mesh = chamfered_box(size, chamfer)
+    borders = lsgp.crease_borders(surface(mesh))
+    places = mesh.positions[borders]
+    sides = np.linalg.norm(places[:, 1] - places[:, 0], axis=1) > 0.4
+    # Of 24 sides of twelve chamfers, 17 connect these with six faces.
+    assert sides.sum() == 7
+    result = lsgp.auto_unwrap(surface(mesh), preset="bake")
+    assert result.island.max() < 6 and len(result.cones) == 0 and result.distortion.l2_stretch < 1.0001
+    assert uv_area(result.corner_uv) > 0.6
 
 
 def test_what_is_round_itself_has_no_bevels() -> None:
