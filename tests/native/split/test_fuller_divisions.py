@@ -83,6 +83,18 @@ def test_bake_is_divided_otherwise_where_less_than_seven_tenths_are_filled(monke
     assert len(gained) >= 1 and max(gained) > 0.6
 
 
+@pytest.mark.parametrize(("triangles", "most"), [(5000, 0.7), (5001, 0.6)])
+def test_large_meshes_are_divided_otherwise_only_where_less_is_filled(
+    triangles: int, most: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    few = np.zeros(triangles, np.int32)
+    usual = replace(unwrapped_cube(), island=few, solved=few == 0)
+    for filled in (most - 0.01, most):
+        monkeypatch.setattr(map_comparison, "_filled_when_packed", lambda *_, part=filled: part)
+        assert map_comparison.fills_badly(usual, False) == (filled < most)
+        assert not map_comparison.fills_badly(usual, True)
+
+
 @pytest.mark.parametrize("depth", [0.4, 0.45])
 def test_what_fills_the_square_better_whole_is_not_divided(depth: float) -> None:
     """A flat body of three lobes, of which one would be cut off by the estimate."""
