@@ -434,8 +434,9 @@ PerHalfedge<char> with_frames_divided(const MetricMesh& surface, PerHalfedge<cha
   PerHalfedge<char> out = crease;
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     if (crease[h] || !may_cut(mesh, h) || bend[h] < least_across_frame * angle) continue;
-    const bool ends_at_borders = loops.at_corner[h] != none && loops.at_corner[mesh.twin[h]] != none;
-    if (ends_at_borders && around_nothing[loops.island[h / 3]] >= borders_of_frame) out[h] = out[mesh.twin[h]] = 1;
+    const Index from = loops.at_corner[h], to = loops.at_corner[next(h)];
+    if (from == none || to == none || from == to) continue;
+    if (around_nothing[loops.island[h / 3]] >= borders_of_frame) out[h] = out[mesh.twin[h]] = 1;
   }
   return out;
 }
