@@ -8,6 +8,7 @@
 
 #include "base/checkpoint.hpp"
 #include "base/least_first.hpp"
+#include "cut/cut_cost.hpp"
 
 namespace lsgp {
 
@@ -19,6 +20,7 @@ constexpr double most_bevel_bend = 1.1;    // the same: a chamfer has two edges,
 constexpr double largest_radius = 0.05;    // of a bevel, in square roots of the component's area
 constexpr double most_area = 0.4;          // of the component
 constexpr double unit_of_turns = 1e-6;     // radians; turns are summed in whole units, so that equal ones tie
+constexpr std::int64_t alike = 30000;      // units: turns that differ by less tie as well, as chamfers are never exact
 constexpr double operations_a_side = 100;  // of a queue
 
 // The halfedges whose edges satisfy the predicate.
@@ -55,7 +57,7 @@ PerTriangle<char> find_rounded(const MetricMesh& surface, const Eigen::VectorXd&
   return out;
 }
 
-// The face beside a bevel to which a triangle is nearest, and by how much the surface turns on the way.
+// The face beside a bevel to which a polygon is nearest, and by how much the surface turns on the way.
 struct Side {
   Index face = none;
   std::int64_t turn = 0;
@@ -69,22 +71,30 @@ PerTriangle<Side> find_sides(const HalfedgeMesh& mesh, const PerTriangle<char>& 
       mesh,
       marked(mesh, [&](Index h) { return bend[h] >= angle || is_rounded[h / 3] || is_rounded[mesh.twin[h] / 3]; }),
       face);
+  // No cut divides a polygon; the middle of a chamfer would, where its two triangles had different sides.
+  PerTriangle<Index> polygon;
+  const Index count = label_parts(mesh, marked(mesh, [&](Index h) { return may_cut(mesh, h); }), polygon);
+  PerPart<Array<Index>> triangles(count);
+  for (Index f = 0; f < mesh.triangle_count(); ++f) triangles[polygon[f]].push_back(f);
   PerTriangle<Side> out(mesh.triangle_count());
-  using Entry = std::tuple<std::int64_t, Index, Index>;  // turn, face, triangle
+  using Entry = std::tuple<std::int64_t, Index, std::int64_t, Index>;  // turn, about, face, turn, triangle
   LeastFirst<Entry> queue;
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
-    if (!is_rounded[f]) queue.emplace(0, face[f], f);
+    if (!is_rounded[f]) queue.emplace(0, face[f], 0, f);
   }
   while (!queue.empty()) {
     checkpoint(operations_a_side);
-    const auto [turn, side, f] = queue.top();
+    const auto [about, side, turn, f] = queue.top();
     queue.pop();
     if (out[f].face != none) continue;
-    out[f] = {side, turn};
-    for (Index h = 3 * f; h < 3 * f + 3; ++h) {
-      const Index there = mesh.twin[h] == none ? none : mesh.twin[h] / 3;
-      if (there == none || !is_rounded[there] || out[there].face != none || bend[h] > most_bevel_bend) continue;
-      queue.emplace(turn + std::llround(bend[h] / unit_of_turns), side, there);
+    for (const Index g : triangles[polygon[f]]) {
+      out[g] = {side, turn};
+      for (Index h = 3 * g; h < 3 * g + 3; ++h) {
+        const Index there = mesh.twin[h] == none ? none : mesh.twin[h] / 3;
+        if (there == none || !is_rounded[there] || out[there].face != none || bend[h] > most_bevel_bend) continue;
+        const std::int64_t further = turn + std::llround(bend[h] / unit_of_turns);
+        queue.emplace(further / alike, side, further, there);
+      }
     }
   }
   return out;

@@ -31,6 +31,8 @@ constexpr double is_bent = 0.25;             // radians along a border that two 
 constexpr double least_shared = 0.08;        // of the smaller patch's perimeter, to be unfolded with it
 constexpr double widest_corner = 2 * M_PI / 3;  // radians, at the ends of a whole side
 constexpr double is_no_hole = 0.35;             // radians between a border's turning and that of a hole in the plane
+constexpr Index borders_of_frame = 3;           // a tube has two
+constexpr double least_across_frame = 0.5;      // bend of what divides it, of that of a crease
 constexpr double operations_an_entry = 100;     // of a queue
 
 bool is_inside(const HalfedgeMesh& mesh, Index v) { return mesh.loop_of_vertex[v] == none; }
@@ -90,10 +92,11 @@ struct SharedBorder {
 
 class Patches {
  public:
-  Patches(const MetricMesh& surface, PerTriangle<Index> patch)
+  Patches(const MetricMesh& surface, PerTriangle<Index> patch, Bevels bevels)
       : mesh_(surface.mesh),
         geometry_(surface.geometry),
         patch_(std::move(patch)),
+        bevels_(std::move(bevels)),
         is_border_(surface.mesh.halfedge_count(), 0) {
     const HalfedgeMesh& mesh = surface.mesh;
     const Geometry& geometry = surface.geometry;
@@ -107,9 +110,10 @@ class Patches {
     }
   }
 
-  // Whether so much of the curvature lies where patches meet or at these vertices, and at more than most_corners. Less
-  // is enough where the others are the apexes of cones.
-  bool carry_curvature(double least_share, PerVertex<char> there, Index most_corners) const {
+  // Whether so much of the curvature lies where patches meet or at bevels, and at more than most_corners. Less is
+  // enough where the others are the apexes of cones.
+  bool carry_curvature(double least_share, Index most_corners) const {
+    PerVertex<char> there = bevels_.is_rounded;
     for (Index v = 0; v < mesh_.vertex_count(); ++v) there[v] = there[v] || degree_[v] > 0;
     const CreaseCurvature found({mesh_, geometry_}, there);
     if (!found.is_curved() || std::max(found.vertex_count(), found.vertex_count_at_creases()) <= most_corners) {
@@ -118,6 +122,8 @@ class Patches {
     if (found.is_carried(least_share)) return true;
     return found.is_carried(least_beside_apexes) && found.vertex_count_elsewhere() <= most_apexes;
   }
+
+  const Bevels& bevels() const { return bevels_; }
 
   // The borders that are left when patches are unfolded together, those with the largest share of a perimeter first, if
   // that makes fewer islands also apart at notches.
@@ -250,6 +256,7 @@ class Patches {
   const HalfedgeMesh& mesh_;
   const Geometry& geometry_;
   PerTriangle<Index> patch_;
+  Bevels bevels_;
   PerHalfedge<char> is_border_;  // of patches, the mesh's own borders among them
   PerVertex<Index> degree_;      // borders between patches at each vertex
   Array<double> perimeter_;      // of patches
@@ -289,6 +296,32 @@ Loops find_loops(const MetricMesh& surface, const PerHalfedge<char>& open) {
     out.of.push_back(out.island[first / 3]);
   }
   return out;
+}
+
+// Loops along the middle of a bevel turn as those beside it, on their side: a bevel is narrow, and the faces that it
+// ends are flattened with their half of it, hardly stretched.
+void turn_beside_bevels(const MetricMesh& surface, const PerHalfedge<char>& on_bevel, const PerHalfedge<char>& open,
+                        Loops& loops) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  PerVertex<char> is_reached(mesh.vertex_count(), 0);
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (loops.at_corner[h] != none) is_reached[mesh.origin(h)] = 1;
+  }
+  Array<std::pair<Index, Index>> beside;  // vertices of the bevel's near side, and their loops
+  const auto reach_from = [&](Index h, Index loop) {
+    const Index v = mesh.target(h);
+    if (!on_bevel[h] || is_reached[v]) return;
+    is_reached[v] = 1;
+    beside.emplace_back(v, loop);
+  };
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (loops.at_corner[h] != none && !open[h]) reach_from(h, loops.at_corner[h]);
+  }
+  for (std::size_t i = 0; i < beside.size(); ++i) {
+    const auto [v, loop] = beside[i];
+    loops.turning[loop] += surface.geometry.angle_defect[v];
+    mesh.for_each_outgoing(v, [&, at = loop](Index h) { reach_from(h, at); });
+  }
 }
 
 // Loops that go around no hole in the plane, one for each island that has any: a tube has to be opened from end to end.
@@ -348,13 +381,14 @@ Array<Index> cheapest_path_across(const MetricMesh& surface, const Loops& loops,
   return {};
 }
 
-void open_tubes(const MetricMesh& surface, PerHalfedge<char>& open) {
+void open_tubes(const MetricMesh& surface, const PerHalfedge<char>& on_bevel, PerHalfedge<char>& open) {
   const HalfedgeMesh& mesh = surface.mesh;
   bool found = true;
   while (found) {
     checkpoint(static_cast<double>(mesh.halfedge_count()));
     found = false;
-    const Loops loops = find_loops(surface, open);
+    Loops loops = find_loops(surface, open);
+    turn_beside_bevels(surface, on_bevel, open, loops);
     const Array<Index> tubes = find_tubes(loops);
     Array<Array<Index>> corners(loops.of.size());
     for (Index h = 0; h < mesh.halfedge_count(); ++h) {
@@ -387,6 +421,26 @@ bool meet_others(const HalfedgeMesh& mesh, const PerHalfedge<char>& crease, cons
   return dead_ends <= most_dead_ends * all;
 }
 
+// Creases, and where patches with several borders that go around no hole in the plane, such as the chamfers of a box
+// all together, bend from one border to another: opened along a path each they would be branches.
+PerHalfedge<char> with_frames_divided(const MetricMesh& surface, PerHalfedge<char> crease, const Eigen::VectorXd& bend,
+                                      double angle) {
+  const HalfedgeMesh& mesh = surface.mesh;
+  const Loops loops = find_loops(surface, crease);
+  Array<Index> around_nothing(mesh.triangle_count(), 0);  // of patches
+  for (std::size_t l = 0; l < loops.of.size(); ++l) {
+    if (std::abs(loops.turning[l] + 2 * M_PI) > is_no_hole) ++around_nothing[loops.of[l]];
+  }
+  PerHalfedge<char> out = crease;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (crease[h] || !may_cut(mesh, h) || bend[h] < least_across_frame * angle) continue;
+    const Index from = loops.at_corner[h], to = loops.at_corner[next(h)];
+    if (from == none || to == none || from == to) continue;
+    if (around_nothing[loops.island[h / 3]] >= borders_of_frame) out[h] = out[mesh.twin[h]] = 1;
+  }
+  return out;
+}
+
 // The patches of a hard surface, which end in the middle of its bevels, or else at all its creases, including those
 // beside narrow strips; none if the surface is not hard.
 std::optional<Patches> find_hard_patches(const MetricMesh& surface, const PerHalfedge<char>& crease,
@@ -398,13 +452,15 @@ std::optional<Patches> find_hard_patches(const MetricMesh& surface, const PerHal
       const bool is_marked = crease[h] && bend[h] < options.angle;
       bevels->crease[h] = bevels->edge[h] && !is_marked ? bevels->crease[h] && may_cut(mesh, h) : crease[h];
     }
-    out.emplace(surface, find_patches(surface, bevels->crease, bend));
-    if (out->carry_curvature(least_on_bevels, bevels->is_rounded, options.most_corners)) return out;
+    out.emplace(surface, find_patches(surface, bevels->crease, bend), std::move(*bevels));
+    if (out->carry_curvature(least_on_bevels, options.most_corners)) return out;
   }
   if (!meet_others(mesh, crease, bend, options.angle)) return std::nullopt;
-  out.emplace(surface, find_patches(surface, crease, bend));
-  const PerVertex<char> nowhere(mesh.vertex_count(), 0);
-  if (!out->carry_curvature(options.least_share, nowhere, options.most_corners)) out.reset();
+  const PerHalfedge<char> nowhere(mesh.halfedge_count(), 0);
+  Bevels no_bevels{nowhere, nowhere, PerVertex<char>(mesh.vertex_count(), 0)};
+  const PerHalfedge<char> ends = with_frames_divided(surface, crease, bend, options.angle);
+  out.emplace(surface, find_patches(surface, ends, bend), std::move(no_bevels));
+  if (!out->carry_curvature(options.least_share, options.most_corners)) out.reset();
   return out;
 }
 
@@ -415,7 +471,7 @@ PerHalfedge<char> find_crease_borders(const MetricMesh& surface, const PerHalfed
   const std::optional<Patches> patches = find_hard_patches(surface, crease, bend, options);
   if (!patches) return PerHalfedge<char>(surface.mesh.halfedge_count(), 0);
   PerHalfedge<char> open = patches->unfold_together();
-  open_tubes(surface, open);
+  open_tubes(surface, patches->bevels().edge, open);
   return open;
 }
 

@@ -9,6 +9,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
+from lsgp.triangles import uv_area
 from map_checks import pairs, surface
 from meshes import Mesh
 from result_check import undeclared_faults
@@ -330,6 +331,71 @@ def test_rounded_edges_are_cut_along_their_middle(size: tuple[float, float, floa
         result = lsgp.auto_unwrap(surface(mesh), preset=preset)
         assert len(result.cones) == 0 and result.island.max() < 6
         assert len(result.overlapping) == 0 == len(result.flipped) and result.distortion.l2_stretch < 1.005
+
+
+def washer(segments: int, around: int = 24, bevel: float = 0.04) -> tuple[Mesh, np.ndarray]:
+    """A thick ring about z whose four rims are beveled by so many strips, and the edges of its quads."""
+    inner, outer, height = 0.5, 1.5, 0.5
+    turn = np.pi / 2 * np.arange(segments + 1) / segments
+    profile = []
+    for i, (radius, z) in enumerate([(outer, height), (inner, height), (inner, 0), (outer, 0)]):
+        center = np.array([radius, z]) + bevel * np.array([(-1, 1, 1, -1)[i], (-1, -1, 1, 1)[i]])
+        profile += [center + bevel * np.array([np.cos(t), np.sin(t)]) for t in turn + i * np.pi / 2]
+    radius, z = np.array(profile).T
+    along = len(radius)
+    angle = 2 * np.pi * np.arange(around)[:, None] / around
+    positions = np.stack([radius * np.cos(angle), radius * np.sin(angle), z + 0 * angle], axis=-1).reshape(-1, 3)
+    i, j = (k.ravel() for k in np.meshgrid(np.arange(around), np.arange(along), indexing="ij"))
+    a, b, c, d = (((i + m) % around) * along + (j + n) % along for m, n in ((0, 0), (1, 0), (1, 1), (0, 1)))
+    triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    edges = np.concatenate([np.stack([a, b], axis=1), np.stack([a, d], axis=1)])
+    return meshes.make(positions, triangles), edges
+
+
+@pytest.mark.parametrize("segments", [1, 2, 3])
+@pytest.mark.parametrize("polygons", [False, True], ids=["triangles", "quads"])
+def test_faces_with_beveled_holes_keep_them(segments: int, polygons: bool) -> None:
+    """What is beside the rim of a hole bends away from the face; it is narrow, so that nothing is gained by a cut."""
+    mesh, edges = washer(segments)
+    noise = 3e-6 * np.random.default_rng(segments).standard_normal(mesh.positions.shape)
+    given = lsgp.Surface(mesh.positions + noise, mesh.triangles, edges=edges if polygons else None)
+    borders = lsgp.crease_borders(given)
+    radius, z = np.linalg.norm(mesh.positions[:, :2], axis=1), mesh.positions[:, 2]
+    across = np.ptp(radius[borders], axis=1) > 0.5
+    assert not across.any() and np.ptp(z[borders], axis=1).max() > 0.3
+    for preset in ("bake", "paint"):
+        result = lsgp.auto_unwrap(given, preset=preset, pack="shelves")
+        assert len(result.cones) == 0 == len(result.overlapping) and result.distortion.l2_stretch < 1.002
+        if preset == "paint":
+            assert result.island.max() + 1 <= 6
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_two_triangles_of_a_chamfer_end_at_the_same_face(seed: int) -> None:
+    """No cut parts them, and positions in single precision make one of them nearer to each face."""
+    mesh = chamfered_box((1, 2, 0.6), 0.03)
+    edges = meshes.edges_of(mesh.triangles)
+    of_polygons = edges[angle_between_normals(mesh, edges) > 0.01]
+    noise = 1e-6 * np.random.default_rng(seed).standard_normal(mesh.positions.shape)
+    given = lsgp.Surface(mesh.positions + noise, mesh.triangles, edges=of_polygons)
+    result = lsgp.auto_unwrap(replace(given, borders=lsgp.crease_borders(given)), preset="bake", creases=False)
+    assert len(result.cones) == 0 and result.distortion.l2_stretch < 1.005
+
+
+@pytest.mark.parametrize("size", [(1.0, 1.0, 1.0), (1.0, 1.4, 0.8)])
+@pytest.mark.parametrize("chamfer", [0.08, 0.1, 0.12])
+def test_wide_chamfers_unfold_beside_faces(size: tuple[float, float, float], chamfer: float) -> None:
+    """All of them are connected around the corners, where they bend by less than creases do; unfolded in one piece they
+    would be branches."""
+    mesh = chamfered_box(size, chamfer)
+    borders = lsgp.crease_borders(surface(mesh))
+    places = mesh.positions[borders]
+    sides = np.linalg.norm(places[:, 1] - places[:, 0], axis=1) > 0.4
+    # Of 24 sides of twelve chamfers, 17 connect these with six faces.
+    assert sides.sum() == 7
+    result = lsgp.auto_unwrap(surface(mesh), preset="bake")
+    assert result.island.max() < 6 and len(result.cones) == 0 and result.distortion.l2_stretch < 1.0001
+    assert uv_area(result.corner_uv) > 0.6
 
 
 def test_what_is_round_itself_has_no_bevels() -> None:

@@ -65,6 +65,36 @@ def test_further_islands_fill_the_square(preset: lsgp.Preset, monkeypatch: pytes
     assert len(gained) >= 2 and "block" not in gained
 
 
+def test_bake_is_divided_otherwise_where_less_than_seven_tenths_are_filled(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Frusta of cones: with as few islands as it takes, or further ones for a fuller square."""
+    before, gained = without_packer(monkeypatch), []
+    for top, height in ((0.5, 0.7), (0.5, 1.0), (0.6, 1.0), (0.7, 1.3)):
+        before.clear()
+        frustum = closed.lathe(np.array([1, top]), np.array([0, height]), 20, caps=(True, True))
+        after = lsgp.auto_unwrap(surface(frustum), preset="bake")
+        usual = before[0]
+        filled = uv_area(lsgp.pack_islands(usual.corner_uv, usual.island))
+        fuller = uv_area(after.corner_uv) / filled
+        assert fuller >= 1
+        if fuller > 1:
+            more = int(after.island.max()) - int(usual.island.max())
+            assert filled < 0.7 and fuller > 1 + 0.3 * max(0, more) / (int(usual.island.max()) + 1)
+            gained.append(filled)
+    assert len(gained) >= 1 and max(gained) > 0.6
+
+
+@pytest.mark.parametrize(("triangles", "most"), [(5000, 0.7), (5001, 0.6)])
+def test_large_meshes_are_divided_otherwise_only_where_less_is_filled(
+    triangles: int, most: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    few = np.zeros(triangles, np.int32)
+    usual = replace(unwrapped_cube(), island=few, solved=few == 0)
+    for filled in (most - 0.01, most):
+        monkeypatch.setattr(map_comparison, "_filled_when_packed", lambda *_, part=filled: part)
+        assert map_comparison.fills_badly(usual, False) == (filled < most)
+        assert not map_comparison.fills_badly(usual, True)
+
+
 @pytest.mark.parametrize("depth", [0.4, 0.45])
 def test_what_fills_the_square_better_whole_is_not_divided(depth: float) -> None:
     """A flat body of three lobes, of which one would be cut off by the estimate."""
