@@ -77,14 +77,14 @@ PerTriangle<Side> find_sides(const HalfedgeMesh& mesh, const PerTriangle<char>& 
   PerPart<Array<Index>> triangles(count);
   for (Index f = 0; f < mesh.triangle_count(); ++f) triangles[polygon[f]].push_back(f);
   PerTriangle<Side> out(mesh.triangle_count());
-  using Entry = std::tuple<std::int64_t, Index, std::int64_t, Index>;  // turn, about, face, turn, triangle
+  using Entry = std::tuple<std::int64_t, Index, std::int64_t, Index>;  // rounded turn, face, turn, triangle
   LeastFirst<Entry> queue;
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
     if (!is_rounded[f]) queue.emplace(0, face[f], 0, f);
   }
   while (!queue.empty()) {
     checkpoint(operations_a_side);
-    const auto [about, side, turn, f] = queue.top();
+    const auto [rounded, side, turn, f] = queue.top();
     queue.pop();
     if (out[f].face != none) continue;
     for (const Index g : triangles[polygon[f]]) {
