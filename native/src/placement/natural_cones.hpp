@@ -16,4 +16,10 @@ namespace lsgp {
 enum class Corners { sharp, any, all };
 std::optional<ConeChoice> natural_cones(const ConeChooser& chooser, Corners corners);
 
+// One cone in the middle of each rounded corner, as those of a box with bevels: a connected set of vertices that are
+// not flat, on an otherwise flat or singly curved closed surface without cones. The map is nearly isometric if the
+// corners are small. None if there are too many, or if one has hardly any curvature or, with a lattice, none that the
+// lattice has.
+std::optional<ConeChoice> rounded_corner_cones(const ConeChooser& chooser);
+
 }  // namespace lsgp

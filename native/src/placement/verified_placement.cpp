@@ -33,6 +33,7 @@ constexpr double worth_moving = 0.99;
 // no more than this of the stretch above 1.
 constexpr double more_cones = 1.25, still_worthwhile = 0.9;
 constexpr int most_enlargements = 6;
+constexpr double low_l2 = 1.01;     // of a map that justifies a cone at every rounded corner
 constexpr double usual_l2 = 1.05;   // of a map that does not justify more cones than the stages have
 constexpr double much_fewer = 0.8;  // of those at cheap sites: so few at any sites are preferred
 
@@ -133,6 +134,15 @@ std::optional<VerifiedChoice> VerifiedPlacement::placed_naturally(Corners corner
   return out;
 }
 
+// Nearly isometric as well, with few cones more than the target takes.
+std::optional<VerifiedChoice> VerifiedPlacement::placed_at_rounded_corners() {
+  std::optional<ConeChoice> cones = rounded_corner_cones(chooser_);
+  if (!cones) return std::nullopt;
+  VerifiedChoice out = verified(std::move(*cones));
+  if (!(out.map.l2 <= std::min(low_l2, chooser_.options().target))) return std::nullopt;
+  return out;
+}
+
 VerifiedChoice VerifiedPlacement::place_to_target() {
   const double target = chooser_.options().target;
   std::optional<AutomaticCones> automatic;
@@ -142,6 +152,7 @@ VerifiedChoice VerifiedPlacement::place_to_target() {
   if (adds_none) best = verified(std::move(best.cones));
   if (best.map.l2 <= target) return best;
   if (std::optional<VerifiedChoice> natural = placed_naturally(Corners::sharp)) return std::move(*natural);
+  if (std::optional<VerifiedChoice> rounded = placed_at_rounded_corners()) return std::move(*rounded);
   if (!adds_none) best = verified(std::move(best.cones));
   if (!is_as_predicted(best)) add_where_stretched(best, worthwhile);
   lower_target(*automatic, best);
@@ -281,6 +292,7 @@ bool VerifiedPlacement::is_short(const VerifiedChoice& choice) const {
 
 VerifiedChoice VerifiedPlacement::place_count(int count) {
   if (std::optional<VerifiedChoice> natural = placed_naturally(Corners::sharp)) return std::move(*natural);
+  if (std::optional<VerifiedChoice> rounded = placed_at_rounded_corners()) return std::move(*rounded);
   std::optional<AutomaticCones> none_automatic;
   VerifiedChoice best = verified(choose_where_cheap(none_automatic));
   const auto is_settled = [&] {

@@ -11,6 +11,7 @@ import zoo
 from map_checks import codes, only, surface
 from meshes import Mesh
 from placement_checks import place
+from scipy.spatial import ConvexHull
 from shared_meshes import hard_mesh
 from zoo import closed, swept, tunnels
 
@@ -44,6 +45,36 @@ POLYHEDRA = {
     "stairs": (meshes.voxels(np.tril(np.ones((3, 3), bool))[:, :, None]), 16),
     "tetrahedron": (meshes.tetrahedron(), 4),
 }
+
+
+def rounded_box(size: tuple[float, float, float], radius: float, segments: int) -> Mesh:
+    """A box of few triangles with bevels of several segments: all vertices are on the eighths of spheres at corners."""
+    turns = np.linspace(0, np.pi / 2, segments + 1)
+    down, around = np.meshgrid(turns, turns)
+    eighth = np.stack([np.sin(down) * np.cos(around), np.sin(down) * np.sin(around), np.cos(down)], axis=-1)
+    signs = np.array(list(np.ndindex(2, 2, 2))) * 2 - 1
+    points = [sign * (np.array(size) / 2 - radius + radius * eighth.reshape(-1, 3)) for sign in signs]
+    points = np.unique(np.round(np.concatenate(points), 9), axis=0)
+    triangles = ConvexHull(points).simplices
+    a, b, c = points[triangles].transpose(1, 0, 2)
+    is_inward = (np.cross(b - a, c - a) * (a + b + c)).sum(axis=1) < 0
+    triangles[is_inward] = triangles[is_inward, ::-1]
+    return meshes.make(points, triangles)
+
+
+@pytest.mark.parametrize("lattice", [None, "square"])
+@pytest.mark.parametrize("segments", [2, 3, 5])
+@pytest.mark.parametrize("size", [(2, 3, 1), (1, 1, 1), (1, 4, 2), (3, 3, 0.4)])
+def test_every_rounded_corner_of_a_box_gets_one_cone(
+    size: tuple[float, float, float], segments: int, lattice: str | None
+) -> None:
+    """With fewer, the texture would run askew over flat faces."""
+    mesh = rounded_box(size, 0.15 * min(size), segments)
+    placed = place(mesh, lattice=lattice)
+    signs = np.sign(mesh.positions[placed.cones]).astype(int)
+    assert len(placed.cones) == len(np.unique(signs, axis=0)) == 8
+    assert placed.cone_angles == pytest.approx(np.full(8, 1.5 * np.pi), abs=0.01)
+    assert placed.mapped_l2 <= 1.01
 
 
 def unit(vectors: np.ndarray) -> np.ndarray:
