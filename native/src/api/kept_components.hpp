@@ -16,7 +16,7 @@
 #include "pipeline/component_map.hpp"
 #include "pipeline/components.hpp"
 #include "prescription/component_system.hpp"
-#include "seamless/feature_layout.hpp"
+#include "seamless/feature_alignment.hpp"
 
 namespace lsgp {
 

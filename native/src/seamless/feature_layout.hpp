@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Layouts on a square lattice whose features run along its lines (Bommes, Zimmer and Kobbelt 2009, sections 4 and 5:
-// alignment constraints and greedy rounding).
+// Layouts on a square lattice whose features run along its lines (Bommes, Zimmer and Kobbelt 2009, section 5: greedy
+// rounding).
 #pragma once
 
 #include <Eigen/Core>
@@ -11,43 +11,21 @@
 #include "base/array.hpp"
 #include "base/union_find.hpp"
 #include "lsgp/result.hpp"
-#include "prescription/curvature.hpp"
 #include "repair/feature_lines.hpp"
 #include "repair/line_constraints.hpp"
 #include "repair/newton.hpp"
-#include "seamless/lattice_transitions.hpp"
+#include "seamless/feature_alignment.hpp"
+#include "seamless/feature_task.hpp"
 #include "seamless/whole_values.hpp"
 #include "solvers/cholesky.hpp"
-#include "unfold/distortion.hpp"
 
 namespace lsgp {
 
-// A map whose features are to run along the axes.
-struct FeatureTask {
-  CutSurface surface;
-  const Curvature& curvature;
-  const Eigen::VectorXd& rotation;  // (cuts) radians, multiples of quarter turns
-  const LatticeReduction& lattice;
-  StepHook before_step;
-};
-
-// Features along the axes, before the lattice; the same for lattices of any size.
-struct FeatureAlignment {
-  Array<FeatureLine> lines;
-  Eigen::VectorXcd start;              // (copies) the map with these lines along the axes
-  PerHalfedge<ReleaseReason> reasons;  // of the others
-};
-
 class FeatureLayout {
  public:
-  // feature: the FeatureKind of halfedges.  start: (copies) a valid map of the surface's area, without a lattice.
-  // most_l2: the largest stretch that features may cost. As many as possible run along the axes, marked ones before
-  // others, those of least cost first.  known: of an earlier layout of the same map, or empty, which is filled then.
-  FeatureLayout(const FeatureTask& task, const PerHalfedge<char>& feature, const Eigen::VectorXcd& start,
-                double most_l2, std::optional<FeatureAlignment>& known);
+  // alignment: of the task, with some lines.
+  FeatureLayout(const FeatureTask& task, const FeatureAlignment& alignment);
 
-  // Whether any feature runs along an axis.
-  bool is_aligned() const { return factor_.has_value(); }
   // The start with features along the axes.
   const Eigen::VectorXcd& start() const { return start_; }
   // Why halfedges of features do not run along an axis; meaningless for others.
@@ -60,18 +38,25 @@ class FeatureLayout {
 
   // The layout with about `density` cells per unit of length, with cones and translations on the lattice. Features are
   // on lines of the lattice or, where cells are too large for that and they need not be whole, at multiples of 1 / 256
-  // of a cell. None where no such layout without flips is found that is accepted.  keeps_corners: ends and corners of
-  // features are also at corners of cells, as far as that costs little; none where that is no other layout than
-  // without.
+  // of a cell. None where no such layout without flips is found that is accepted.  keeps_corners, of whole ones:
+  // ends and corners of features are also at corners of cells, as far as that costs little; none where that is no other
+  // layout than without.
   std::optional<Eigen::VectorXcd> quantize(double density, bool must_be_whole, bool keeps_corners,
                                            const std::function<bool(const Eigen::VectorXcd&)>& accepts);
 
-  // Moves all points but those of features and cones to where they stretch least.  weights: (m) of triangles.
-  void relax(const Eigen::VectorXd& weights, Eigen::VectorXcd& position) const;
+  // Moves all points of a layout but those of features and cones to where they stretch least.  weights: (m) of
+  // triangles.
+  void relax(bool keeps_corners, const Eigen::VectorXd& weights, Eigen::VectorXcd& position) const {
+    task_.relax(held(keeps_corners), weights, position);
+  }
 
  private:
+  // Lines and corners are at whole cells, lines only, or lines at fine steps.
+  enum class Rounding { with_corners, whole, fine };
+
   // A choice of values for the rounded coordinates.
   struct Choice {
+    Rounding rounding;
     double scale;              // of the start
     Array<Index> independent;  // coordinates that determine the others
     Eigen::VectorXd pull;      // (independent) the forces that move them there
@@ -79,67 +64,31 @@ class FeatureLayout {
     double cost;
   };
 
-  // Where lines could not be aligned.
-  struct Failure {
-    Array<Index> vertices;
-    bool is_of_lines = false;  // releasing their edges there has not helped
-  };
-
-  void align_all(const PerHalfedge<char>& feature);
-  Array<FeatureLine> compatible(const Array<FeatureLine>& lines);
-  void add_compatible(const Array<FeatureLine>& lines, const Index* begin, const Index* end, Array<char>& chosen);
-  void add_faultless(const Array<FeatureLine>& lines, Index begin, Index end, Array<char>& chosen);
-  Array<Index> contradicting(const Array<FeatureLine>& lines, const Array<char>& chosen);
-  std::optional<Eigen::VectorXcd> fit(const DegreesOfFreedom& freedom) const;
-  bool keeps_lengths(const FeatureLine& line, const Eigen::VectorXcd& position) const;
-  void add(Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end);
-  void add_trimmed();
-  void release(Index h, ReleaseReason reason);
-  bool are_few(const Array<Index>& vertices) const;
   void find_loosened();
-  double length_along(const Array<FeatureLine>& lines, const Eigen::VectorXcd& position) const;
-  FeatureLine part_of(const FeatureLine& line, const std::function<bool(Index)>& is_in) const;
-  bool trim(const Failure& failure, Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end,
-            Array<FeatureLine>* released) const;
-  // None if all of them run along axes then, otherwise why they do not.  defects: vertices where the map fails.
-  std::optional<ReleaseReason> align(const Array<FeatureLine>& lines, std::ptrdiff_t begin, std::ptrdiff_t end,
-                                     Array<Index>& defects);
-  DirectedEdges edges_of(const Array<FeatureLine>& lines) const;
   void hold_translation();
   void find_coordinates();
   void find_lattice_coordinates();
   void find_distances(const DirectedEdges& edges, const Array<char>& is_on_line, UnionFind& same);
   void find_corners(const Array<char>& is_on_line);
-  std::optional<Choice> round(double scale, bool is_fine) const;
+  std::optional<Choice> round(double scale, Rounding rounding) const;
   void round_corners(Eigen::VectorXd& value, PivotedCholesky& cholesky, Choice& choice) const;
-  std::optional<Choice> choose(double density, bool is_fine) const;
-  std::optional<Eigen::VectorXcd> lay_out(const Choice& choice, double step_of_lines);
+  std::optional<Choice> choose(double density, Rounding rounding) const;
+  std::optional<Eigen::VectorXcd> lay_out(const Choice& choice);
   void snap(double step, Eigen::VectorXcd& position) const;
-  bool is_upright(Index triangle, const Eigen::VectorXcd& position) const;
-  bool flips_at_most(double share, const Eigen::VectorXcd& position) const;
-  bool minimize(Eigen::VectorXcd& position) const;
-  bool is_valid(const Eigen::VectorXcd& position) const;
   bool is_on_lattice(const Eigen::VectorXcd& position) const;
-  Validity validity_of(const Eigen::VectorXcd& position) const;
-  Array<Index> defects_of(const Eigen::VectorXcd& position) const;
+  const DegreesOfFreedom& held(bool keeps_corners) const { return keeps_corners ? held_corners_ : held_; }
 
   const FeatureTask task_;
-  Eigen::VectorXcd unaligned_;  // relaxed, with features near the axes
-  const double most_l2_;
-  Jacobians jacobians_;           // of it
-  int left_ = 0, fits_left_ = 0;  // attempts, and fits before them
+  const PerVertex<char> is_cone_;
   PerHalfedge<ReleaseReason> reasons_;
   Array<FeatureLine> aligned_;
-  Array<FeatureLine> trimmed_;  // released at defects
-  double aligned_length_ = 0;   // before any was released for the lattice
+  const double aligned_length_;  // before any was released for the lattice
   Eigen::VectorXcd start_;
   Array<Array<Index>> lines_;  // coordinates, 2 copy for u and 2 copy + 1 for v, that are the same
-  PerVertex<char> is_cone_;
   // Lengths of lines between cones, the lattice's, distances between lines, one of each line, and those along lines of
   // their ends and corners.
   Array<CoordinateForm> rounded_;
   std::ptrdiff_t length_count_ = 0, lattice_count_ = 0, distance_count_ = 0, line_count_ = 0;  // ends of the first ones
-  bool keeps_corners_ = false;
   bool may_shift_ = false;
   Array<CoordinateForm> held_translation_;  // its two coordinates, or empty
   struct Loosened {

@@ -121,7 +121,7 @@ bool LayoutQuantizer::follow(double scale, const Eigen::VectorXcd& change, Eigen
 
 void LayoutQuantizer::lower_stretch(double stretch, const Eigen::VectorXd& importance, QuantizedLayout& layout) const {
   if (layout.has_features) {
-    features_->relax(importance_of_triangles({mesh_, geometry_}, importance), layout.position);
+    features_->relax(layout.keeps_corners, importance_of_triangles({mesh_, geometry_}, importance), layout.position);
     layout.energy = measure_energy(layout.position);
     return;
   }

@@ -144,10 +144,12 @@ void LayoutQuantizer::align_features() {
   const double l2 = l2_stretch(geometry_, measure_jacobians({mesh_, geometry_}, cut_mesh_, start_));
   most_l2_ = most_growth * l2;
   most_l2_with_corners_ = (l2 + most_l2_) / 2;
-  features_ = std::make_unique<FeatureLayout>(FeatureTask{surface(), curvature_, rotation_, reduction_, before_step_},
-                                              feature, start_, most_l2_, demands_.alignment);
-  release_reasons_ = features_->reasons();
-  if (!features_->is_aligned()) return features_.reset();
+  const FeatureTask task{surface(), curvature_, rotation_, reduction_, before_step_};
+  std::optional<FeatureAlignment>& alignment = demands_.alignment;
+  if (!alignment) alignment = align_with_axes(task, feature, start_, most_l2_);
+  release_reasons_ = alignment->reasons;
+  if (alignment->lines.empty()) return;
+  features_ = std::make_unique<FeatureLayout>(task, *alignment);
   energy_ = std::max(energy_, measure_energy(features_->start()));
 }
 
@@ -180,7 +182,7 @@ std::optional<QuantizedLayout> LayoutQuantizer::quantize_with_features(double de
     if (!demands_.directions.empty()) {
       *position *= lattice_.unit(find_upward_turn(*position).turns_on_lattice());
     }
-    return QuantizedLayout{std::move(*position), energy, true};
+    return QuantizedLayout{std::move(*position), energy, true, keeps_corners};
   }
   return std::nullopt;
 }

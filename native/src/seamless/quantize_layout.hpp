@@ -13,6 +13,7 @@
 #include "pipeline/component_map.hpp"
 #include "plane/point_lattice.hpp"
 #include "repair/newton.hpp"
+#include "seamless/feature_alignment.hpp"
 #include "seamless/feature_layout.hpp"
 #include "seamless/lattice_energy.hpp"
 #include "seamless/lattice_search.hpp"
@@ -24,9 +25,10 @@ namespace lsgp {
 
 // A layout whose transitions are a lattice's, 1 being the side of a cell.
 struct QuantizedLayout {
-  Eigen::VectorXcd position;  // (copies)
-  double energy = 1;          // symmetric Dirichlet energy, 1 is isometric
-  bool has_features = false;  // along lines of the lattice
+  Eigen::VectorXcd position;   // (copies)
+  double energy = 1;           // symmetric Dirichlet energy, 1 is isometric
+  bool has_features = false;   // along lines of the lattice
+  bool keeps_corners = false;  // of features, at corners of cells
 };
 
 // Which layouts on a grid are acceptable.

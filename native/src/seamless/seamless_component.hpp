@@ -8,7 +8,7 @@
 #include "base/array.hpp"
 #include "pipeline/component_map.hpp"
 #include "pipeline/components.hpp"
-#include "seamless/feature_layout.hpp"
+#include "seamless/feature_alignment.hpp"
 
 namespace lsgp {
 

@@ -248,10 +248,8 @@ REVIEWED = {
             SHORT,
         ),
     ],
-    "seamless/feature_layout.cpp": [
+    "seamless/feature_alignment.cpp": [
         ("for (int trimmings = 0; reason; ++trimmings)", "up to four trimmings of lines", WITHIN),
-        ("for (;;)", "each round rounds a coordinate, or ends it", OWN),
-        ("for (;;)", "each round rounds a coordinate of a corner, or ends it", OWN),
         ("for (Index begin = 0, end = 0; begin < ssize(lines); begin = end)", "passes a line each time", SHORT),
         ("while (end < ssize(lines) && rank(end) == rank(begin))", "lines, each once", SHORT),
         (
@@ -260,7 +258,11 @@ REVIEWED = {
             "each round releases a line at least",
             WITHIN,
         ),
-        ("while (!is_valid(start_))", "takes a choice off a list each time", WITHIN),
+    ],
+    "seamless/feature_layout.cpp": [
+        ("for (;;)", "each round rounds a coordinate, or ends it", OWN),
+        ("for (;;)", "each round rounds a coordinate of a corner, or ends it", OWN),
+        ("while (!task_.is_valid(start_))", "takes a choice off a list each time", WITHIN),
     ],
     "repair/feature_lines.cpp": [
         ("for (Index at = next(h);; at = next(mesh_.twin[at]))", AROUND_A_VERTEX, SHORT),

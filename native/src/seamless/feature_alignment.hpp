@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Maps whose features run along the axes, before any lattice (Bommes, Zimmer and Kobbelt 2009, section 4: alignment
+// constraints).
+#pragma once
+
+#include <Eigen/Core>
+
+#include "base/array.hpp"
+#include "lsgp/result.hpp"
+#include "repair/feature_lines.hpp"
+#include "seamless/feature_task.hpp"
+
+namespace lsgp {
+
+// The same for lattices of any size.
+struct FeatureAlignment {
+  Array<FeatureLine> lines;
+  Eigen::VectorXcd start;              // (copies) the map with these lines along the axes; empty without any
+  PerHalfedge<ReleaseReason> reasons;  // of the others; meaningless without features
+};
+
+// feature: the FeatureKind of halfedges.  start: (copies) a valid map of the surface's area, without a lattice.
+// most_l2: the largest stretch that features may cost. As many as possible run along the axes, marked ones before
+// others, those of least cost first.
+FeatureAlignment align_with_axes(const FeatureTask& task, const PerHalfedge<char>& feature,
+                                 const Eigen::VectorXcd& start, double most_l2);
+
+}  // namespace lsgp
