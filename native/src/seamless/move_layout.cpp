@@ -20,7 +20,6 @@ constexpr int most_moves = 20;
 constexpr double shortest_step = 0.01;  // of the way
 // Smoothing by the symmetric Dirichlet energy.
 constexpr int smoothed_rings = 4;  // around stretched triangles
-constexpr int smoothing_steps = 30;
 // Automatic grids.
 constexpr double most_stretched = 0.1;  // of the triangles, stretched, that are smoothed
 constexpr double easy_share = 2e-4;     // of the triangles, flipped, that are repaired
