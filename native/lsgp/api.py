@@ -365,8 +365,9 @@ class ReleasedFeature(EqualByContent, ShortRepr):
 
     path: int32, its vertices. share: of the length of all marked features. reason: "curved", it turns away from both
     axes, or is between them, where no corner or cone lets it; "contradiction", together with features that have
-    precedence it would fold the map or lose its length; "stretch", it would cost more than a tenth of L2 stretch;
-    "lattice", no layout with tiles of this size keeps it; "unsupported", no feature is aligned with these options.
+    precedence it would fold the map or lose its length; "stretch", it would cost more than a tenth of L2
+    stretch; "lattice", no layout with tiles of this size keeps it; "unsupported", no feature is aligned with these
+    options.
     """
 
     path: IndexArray
