@@ -395,7 +395,13 @@ def test_wide_chamfers_unfold_beside_faces(size: tuple[float, float, float], cha
     assert sides.sum() == 7
     result = lsgp.auto_unwrap(surface(mesh), preset="bake")
     assert result.island.max() < 6 and len(result.cones) == 0 and result.distortion.l2_stretch < 1.0001
-    assert uv_area(result.corner_uv) > 0.6
+
+
+def test_faces_with_wide_chamfers_fill_the_square() -> None:
+    pytest.importorskip("xatlas")
+    for size in ((1.0, 1.0, 1.0), (1.0, 1.4, 0.8)):
+        result = lsgp.auto_unwrap(surface(chamfered_box(size, 0.1)), preset="bake")
+        assert uv_area(result.corner_uv) > 0.6
 
 
 def test_what_is_round_itself_has_no_bevels() -> None:

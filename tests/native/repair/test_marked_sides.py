@@ -97,11 +97,7 @@ def test_what_the_other_options_do_with_marked_edges() -> None:
 
 
 @pytest.mark.parametrize(
-    "mesh",
-    [
-        closed.beveled_box(8, 0.1, (1, 1.5, 2)),
-        pytest.param(closed.gear(12, 0.3, 2), marks=pytest.mark.many_solves),
-    ],
+    "mesh", [closed.gear(6, 0.3, 2), pytest.param(closed.gear(12, 0.3, 2), marks=pytest.mark.many_solves)]
 )
 def test_the_share_counts_edges_between_islands_once(mesh: Mesh) -> None:
     """The preset cuts these parts at creases, which are then boundaries of two components."""
