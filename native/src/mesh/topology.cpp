@@ -285,12 +285,12 @@ struct EdgeMarks {
 
 EdgeMarks marks_of(const Surface& surface, const EdgeTable& edges) {
   constexpr auto pass_edges = "Pass edges of this mesh.";
-  return {
-      surface.edges ? mark_edges(edges, *surface.edges, Code::edge_not_in_mesh, "cuttable edges", pass_edges)
-                    : PerEdge<char>(edges.count(), 1),
-      mark_edges(edges, surface.seams, Code::seam_not_an_edge, "seams", "Mark edges of this mesh."),
-      mark_edges(edges, surface.borders, Code::edge_not_in_mesh, "borders", pass_edges),
-      mark_edges(edges, surface.features, Code::edge_not_in_mesh, "features", pass_edges), cut_factors(edges, surface)};
+  return {surface.edges ? mark_edges(edges, *surface.edges, Code::edge_not_in_mesh, "cuttable edges", pass_edges)
+                        : PerEdge<char>(edges.count(), 1),
+          mark_edges(edges, surface.seams, Code::seam_not_an_edge, "seams", "Mark edges of this mesh."),
+          mark_edges(edges, surface.borders, Code::edge_not_in_mesh, "borders", pass_edges),
+          mark_edges(edges, surface.features, Code::edge_not_in_mesh, "features", pass_edges),
+          cut_factors(edges, surface)};
 }
 
 // A surface's edges, how its triangles are joined across them, and which of these are turned over.

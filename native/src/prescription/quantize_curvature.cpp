@@ -85,15 +85,15 @@ void require_some_angle(const ComponentCones& cones, int rotation_order, const T
   const bool needs_more = sum > widest.high.sum();
   // Where only whole turns are angles, cones take up no curvature, however many there are.
   const bool has_other_angles = rotation_order > 1;
-  throw Error(Code::seamless_impossible,
-              concat("With angles that are multiples of ", 360 / rotation_order, " degrees ",
-                     count(cones.vertices.size(), "cone takes", "cones take"), " up at ",
-                     needs_more ? "most " : "least ", needs_more ? widest.high.sum() : widest.low.sum(),
-                     " of these, but the surface requires ", sum, ". ",
-                     needs_more && !has_other_angles ? "Choose another lattice."
-                                                     : "Mark more cones, leave given angles automatic, or choose "
-                                                       "another lattice."),
-              {ElementKind::vertices, cones.vertices});
+  throw Error(
+      Code::seamless_impossible,
+      concat("With angles that are multiples of ", 360 / rotation_order, " degrees ",
+             count(cones.vertices.size(), "cone takes", "cones take"), " up at ", needs_more ? "most " : "least ",
+             needs_more ? widest.high.sum() : widest.low.sum(), " of these, but the surface requires ", sum, ". ",
+             needs_more && !has_other_angles ? "Choose another lattice."
+                                             : "Mark more cones, leave given angles automatic, or choose "
+                                               "another lattice."),
+      {ElementKind::vertices, cones.vertices});
 }
 
 // The sum of the cones' turns that Gauss-Bonnet requires; none if the turning of a boundary is free.
