@@ -168,7 +168,7 @@ def test_progress_that_cannot_be_called_is_a_type_error(progress: object) -> Non
 # Work of about a second each, and how often its caller is to be let in at least.
 FINE = meshes.bumpy_sphere(5)
 CUBE_OF_MANY = meshes.subdivide(meshes.subdivide(CUBE))
-BEVELED = closed.beveled_box(6, 0.1, (1, 1.5, 2))
+GEAR = closed.gear(5, 0.3, 2)
 OVERLAPPING = [n * PI / 2 for n in HARD]
 LONG = {
     "place": (10, lambda told: lsgp.place_cones(surface(FINE), count=30, progress=told)),
@@ -185,7 +185,7 @@ LONG = {
     "low stretch": (20, lambda told: Run(FINE, None, lsgp.Options(mode="low-stretch"))(told)),
     "spectral": (5, lambda told: Run(FINE, None, lsgp.Options(unfold="spectral"))(told)),
     "split": (10, lambda told: Run(CUBE_OF_MANY, OVERLAPPING, lsgp.Options(overlaps="split"))(told)),
-    "quads along creases": (70, lambda told: lsgp.remesh_to_quads(surface(BEVELED), target=500, progress=told)),
+    "quads along creases": (200, lambda told: lsgp.remesh_to_quads(surface(GEAR), target=500, progress=told)),
 }
 
 
