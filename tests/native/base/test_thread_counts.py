@@ -14,6 +14,7 @@ import meshes
 import pytest
 from map_checks import digest, surface
 from other_process import in_another_process
+from sanitized_run import many_solves
 
 # Large enough for threads: more than 20,000 rows in one of their linear systems.
 CUBE = meshes.cube(58)  # 20,186 vertices
@@ -42,7 +43,7 @@ def run(mesh: meshes.Mesh, progress: Callable[[float], object] | None = None, **
     "name",
     [
         *("sparse", "lscm", "low stretch"),
-        *(pytest.param(name, marks=pytest.mark.many_solves) for name in ("conformal", "seamless", "handle")),
+        *many_solves("conformal", "seamless", "handle"),
     ],
 )
 def test_any_number_of_threads_gives_the_same_bytes(name: str) -> None:
@@ -123,10 +124,7 @@ def test_other_numbers_are_refused(threads: object) -> None:
     ("variable", "option", "expected"),
     [
         *(("3", 0, 3), ("many", 0, os.cpu_count())),
-        *(
-            pytest.param(*case, marks=pytest.mark.many_solves)
-            for case in (("3", 2, 2), ("1", 0, 1), ("0", 0, os.cpu_count()))
-        ),
+        *many_solves(("3", 2, 2), ("1", 0, 1), ("0", 0, os.cpu_count())),
     ],
 )
 def test_the_environment_has_the_default(variable: str, option: int, expected: int) -> None:

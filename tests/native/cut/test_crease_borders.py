@@ -9,11 +9,12 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
+from hulls import hull
 from lsgp.triangles import uv_area
 from map_checks import pairs, surface
 from meshes import Mesh
 from result_check import undeclared_faults
-from scipy.spatial import ConvexHull
+from sanitized_run import many_solves
 from zoo import closed, swept, tunnels
 
 SOLIDS = {
@@ -70,12 +71,7 @@ def chamfered_box(size: tuple[float, float, float], chamfer: float) -> Mesh:
     """A box whose edges and corners are cut off by one face each."""
     signs = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3), axis=-1).reshape(-1, 3)
     points = np.concatenate([signs * (np.array(size) / 2 - chamfer * (np.arange(3) != axis)) for axis in range(3)])
-    hull = ConvexHull(points)
-    triangles = hull.simplices.copy()
-    a, b, c = points[triangles].transpose(1, 0, 2)
-    inwards = (np.cross(b - a, c - a) * hull.equations[:, :3]).sum(axis=1) < 0
-    triangles[inwards] = triangles[inwards, ::-1]
-    return meshes.make(points, triangles)
+    return hull(points)
 
 
 @pytest.mark.parametrize("name", SOLIDS)
@@ -422,7 +418,7 @@ def test_triangles_without_area_hide_no_creases(name: str, gap: float) -> None:
         assert result.distortion.l2_stretch <= 1.001
 
 
-@pytest.mark.parametrize("points", [8, *(pytest.param(points, marks=pytest.mark.many_solves) for points in (12, 24))])
+@pytest.mark.parametrize("points", [8, *many_solves(12, 24)])
 @pytest.mark.parametrize("inner", [0.5, 0.7])
 @pytest.mark.parametrize("height", [0.05, 0.2, 0.4])
 def test_sides_of_extruded_outlines_become_bands(points: int, inner: float, height: float) -> None:

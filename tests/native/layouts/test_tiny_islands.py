@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from lsgp import TexelLayout
 from map_checks import surface
+from sanitized_run import many_solves
 
 SHAPES = {"hill": meshes.hill(5), "cube": meshes.cube(2), "ball": meshes.icosphere(1), "bowl": meshes.saddle(4)}
 # Layouts of every kind: how they are asked for.
@@ -35,7 +36,7 @@ def spoiled(result: lsgp.Result) -> np.ndarray:
 
 @pytest.mark.parametrize("way", WAYS, ids=["square", "texel density", "tiles"])
 @pytest.mark.parametrize("shape", SHAPES)
-@pytest.mark.parametrize("exponent", [0, -9, *(pytest.param(n, marks=pytest.mark.many_solves) for n in (-3, -12))])
+@pytest.mark.parametrize("exponent", [0, -9, *many_solves(-3, -12)])
 def test_islands_that_single_precision_spoils_are_named(shape: str, exponent: int, way: dict) -> None:
     result = lsgp.auto_unwrap(with_speck(shape, exponent), **way)
     said = [finding for finding in result.warnings if finding.code == "ISLANDS_TINY"]

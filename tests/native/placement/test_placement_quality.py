@@ -10,6 +10,7 @@ import pytest
 from map_checks import surface
 from meshes import Mesh
 from placement_checks import place
+from sanitized_run import many_solves
 from shared_meshes import shared_mesh
 
 FEWEST = {
@@ -96,7 +97,7 @@ def body_with_limbs(count: int, length: float, sharpness: float, seed: int) -> t
 
 
 @pytest.mark.parametrize(("length", "sharpness"), [(1, 10), (1.5, 20)])
-@pytest.mark.parametrize("count", [3, *(pytest.param(count, marks=pytest.mark.many_solves) for count in (5, 7))])
+@pytest.mark.parametrize("count", [3, *many_solves(5, 7)])
 def test_limbs_get_cones_at_their_tips(count: int, length: float, sharpness: float) -> None:
     for seed in range(3):
         mesh, tips = body_with_limbs(count, length, sharpness, seed)

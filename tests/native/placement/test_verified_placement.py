@@ -8,10 +8,11 @@ import meshes
 import numpy as np
 import pytest
 import zoo
+from hulls import hull
 from map_checks import codes, only, surface
 from meshes import Mesh
 from placement_checks import place
-from scipy.spatial import ConvexHull
+from sanitized_run import many_solves
 from shared_meshes import hard_mesh
 from zoo import closed, swept, tunnels
 
@@ -54,12 +55,7 @@ def rounded_box(size: tuple[float, float, float], radius: float, segments: int) 
     eighth = np.stack([np.sin(down) * np.cos(around), np.sin(down) * np.sin(around), np.cos(down)], axis=-1)
     signs = np.array(list(np.ndindex(2, 2, 2))) * 2 - 1
     points = [sign * (np.array(size) / 2 - radius + radius * eighth.reshape(-1, 3)) for sign in signs]
-    points = np.unique(np.round(np.concatenate(points), 9), axis=0)
-    triangles = ConvexHull(points).simplices
-    a, b, c = points[triangles].transpose(1, 0, 2)
-    is_inward = (np.cross(b - a, c - a) * (a + b + c)).sum(axis=1) < 0
-    triangles[is_inward] = triangles[is_inward, ::-1]
-    return meshes.make(points, triangles)
+    return hull(np.unique(np.round(np.concatenate(points), 9), axis=0))
 
 
 @pytest.mark.parametrize("lattice", [None, "square"])
@@ -219,7 +215,7 @@ def test_a_number_of_cones_stays_and_its_map_is_measured(name: str, count: int) 
     "name",
     [
         *("beam", "pyramid", "pipe", "joint", "spool", "oblong"),
-        *(pytest.param(name, marks=pytest.mark.many_solves) for name in ("anchor", "couplingdown", "pinion", "femur")),
+        *many_solves("anchor", "couplingdown", "pinion", "femur"),
     ],
 )
 def test_meshes_whose_maps_were_stretched_more_than_predicted(name: str) -> None:

@@ -12,6 +12,7 @@ import scipy.optimize
 import zoo
 from map_checks import assert_curvature_adds_up, codes, inner_vertices, only, prescribe, surface, unwrap
 from placement_checks import middle_l2
+from sanitized_run import many_solves
 from shared_meshes import shared_mesh
 
 PI, TURN = np.pi, 2 * np.pi
@@ -288,14 +289,11 @@ def test_angles_are_read_where_straight_cuts_cross(first: int, step: int) -> Non
     [
         "star-points=8-inner=0.7-height=2",
         "sponge-cells=1",
-        *(
-            pytest.param(name, marks=pytest.mark.many_solves)
-            for name in (
-                "gear-teeth=12-depth=0.4-layers=3",
-                "noise-ball-levels=2-amount=1-seed=1",
-                "tunneled-plate-across=4-along=3-thickness=3",
-                "ball-with-handles-levels=2-handles=8-seed=1",
-            )
+        *many_solves(
+            "gear-teeth=12-depth=0.4-layers=3",
+            "noise-ball-levels=2-amount=1-seed=1",
+            "tunneled-plate-across=4-along=3-thickness=3",
+            "ball-with-handles-levels=2-handles=8-seed=1",
         ),
     ],
 )

@@ -12,12 +12,14 @@ import meshes
 import numpy as np
 import oracle
 import pytest
+from hulls import hull
 from lsgp.divided_triangles import divide_long_edges
 from map_checks import codes, surface
 from meshes import Mesh
 from numpy.typing import NDArray
 from quad_checks import fans, require_on_surface, sides
-from scipy.spatial import ConvexHull, HalfspaceIntersection
+from sanitized_run import many_solves
+from scipy.spatial import HalfspaceIntersection
 from shared_meshes import hard_mesh
 from zoo import closed
 
@@ -120,12 +122,7 @@ def chamfered(size: tuple[float, float, float], width: float, every: int) -> Mes
         normal = (a * np.eye(3)[i] + b * np.eye(3)[j]) / np.sqrt(2)
         planes.append([*normal, width - (size[i] + size[j]) / np.sqrt(2)])
     corners = HalfspaceIntersection(np.array(planes), np.zeros(3)).intersections
-    corners = np.unique(np.round(corners, 9), axis=0)
-    triangles = ConvexHull(corners).simplices
-    a, b, c = corners[triangles].transpose(1, 0, 2)
-    is_inward = (np.cross(b - a, c - a) * (a + b + c)).sum(axis=1) < 0
-    triangles[is_inward] = triangles[is_inward, ::-1]
-    return meshes.make(corners, triangles)
+    return hull(np.unique(np.round(corners, 9), axis=0))
 
 
 def remesh_of_bevels(width: float, every: int, target: int, seed: int) -> tuple[float, float]:
@@ -192,7 +189,7 @@ def test_without_straight_sides_creases_are_not_followed() -> None:
     "name",
     [
         "gear of 5 teeth",
-        *(pytest.param(name, marks=pytest.mark.many_solves) for name in ("gear of 7 teeth", "joint", "spool")),
+        *many_solves("gear of 7 teeth", "joint", "spool"),
     ],
 )
 def test_creases_cost_stretch_by_the_share_that_is_followed(name: str, target: int) -> None:

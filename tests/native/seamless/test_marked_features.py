@@ -15,6 +15,7 @@ from map_checks import codes, only, surface
 from meshes import Mesh
 from numpy.typing import NDArray
 from result_check import undeclared_faults
+from sanitized_run import many_solves
 from zoo import closed
 
 TILE = lsgp.preset_options("tile")
@@ -120,7 +121,7 @@ def test_rims_of_a_cone_run_along_the_lattice() -> None:
 
 @pytest.mark.parametrize(
     "teeth, depth",
-    [(5, 0.4), *(pytest.param(*wheel, marks=pytest.mark.many_solves) for wheel in ((7, 0.25), (10, 0.15), (12, 0.2)))],
+    [(5, 0.4), *many_solves((7, 0.25), (10, 0.15), (12, 0.2))],
 )
 def test_most_edges_of_toothed_wheels_run_along_the_lattice(teeth: int, depth: float) -> None:
     """Few of them fold the layout, and are released where they do."""

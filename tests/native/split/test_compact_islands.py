@@ -15,6 +15,7 @@ import zoo
 from map_checks import pairs
 from meshes import Mesh
 from result_check import undeclared_faults
+from sanitized_run import many_solves
 from scipy.spatial import ConvexHull
 from test_overlaps import quads_of
 from zoo import closed
@@ -113,7 +114,7 @@ def test_sparing_leaves_no_strip_much_longer_than_the_square() -> None:
         assert longest < 1.5 * np.sqrt(uv_area(sparing) / FILL)
 
 
-@pytest.mark.parametrize("spikes", [6, *(pytest.param(n, marks=pytest.mark.many_solves) for n in (8, 10, 16))])
+@pytest.mark.parametrize("spikes", [6, *many_solves(8, 10, 16)])
 def test_no_piece_has_a_texel_density_of_its_own(spikes: int) -> None:
     """Tips of spikes, which are stretched most, are not cut off, though that would fill the square better."""
     mesh = closed.spiked_sphere(2, spikes, 10)
@@ -200,7 +201,7 @@ COARSE = {
 }
 
 
-@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.many_solves) for seed in (1, 2, 3))])
+@pytest.mark.parametrize("seed", [0, *many_solves(1, 2, 3)])
 @pytest.mark.parametrize("name", COARSE)
 def test_no_scraps_are_cut_off_coarse_round_shapes(name: str, seed: int) -> None:
     mesh = meshes.transform(COARSE[name], seed)
@@ -245,17 +246,14 @@ def test_faces_of_polygons_are_not_cut() -> None:
         "gear-teeth=6-depth=0.15-layers=1",
         "ring-around=14-along=8-major=2",
         "holed-plate-across=2-along=1-bend=0.3",
-        *(
-            pytest.param(name, marks=pytest.mark.many_solves)
-            for name in (
-                "pipe-around=8-along=10-bend=1.5-caps=True",
-                "tunneled-plate-across=2-along=1-thickness=1",
-                "mixed-parts-count=5-spread=2-seed=0",
-                "scale-shape=ball-exponent=-6",
-                "bumpy-ball-levels=1-height=0.25",
-                "box-cells=3-size=1x10x1",
-                "polygon-box-cells=3-size=1x1x1",
-            )
+        *many_solves(
+            "pipe-around=8-along=10-bend=1.5-caps=True",
+            "tunneled-plate-across=2-along=1-thickness=1",
+            "mixed-parts-count=5-spread=2-seed=0",
+            "scale-shape=ball-exponent=-6",
+            "bumpy-ball-levels=1-height=0.25",
+            "box-cells=3-size=1x10x1",
+            "polygon-box-cells=3-size=1x1x1",
         ),
     ],
 )

@@ -18,6 +18,7 @@ from map_checks import surface
 from meshes import Mesh, make
 from numpy.typing import NDArray
 from opened_surface import edge_keys, named_by, next_corner, open_surface
+from sanitized_run import many_solves
 from shared_meshes import hard_mesh
 
 TURN = 2 * np.pi
@@ -139,9 +140,7 @@ def test_lists_are_what_is_counted_on_random_meshes() -> None:
 
 
 @pytest.mark.parametrize("cones", [8, None])
-@pytest.mark.parametrize(
-    "name", ["mpi", "pipe", *(pytest.param(n, marks=pytest.mark.many_solves) for n in ("femur", "joint"))]
-)
+@pytest.mark.parametrize("name", ["mpi", "pipe", *many_solves("femur", "joint")])
 def test_lists_are_what_is_counted_on_hard_meshes(name: str, cones: int | None) -> None:
     mesh = hard_mesh(name)
     options = lsgp.Options()
