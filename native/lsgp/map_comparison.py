@@ -100,9 +100,8 @@ def fills_badly(usual: Result, keeps_few: bool, progress: Progress | None = None
     """Whether two fifths of the square, three tenths with a small mesh, half of it where islands are to be few, stay
     empty even if it is packed tightly; False where that cannot be known."""
     can_be_known = packer_name() is not None and island_count(usual) <= _MOST_PACKED
-    most = _NEARLY_FILLED if len(usual.island) <= _SMALL_MESH else WELL_FILLED
-    if keeps_few:
-        most = _HALF_FILLED
+    usually = _NEARLY_FILLED if len(usual.island) <= _SMALL_MESH else WELL_FILLED
+    most = _HALF_FILLED if keeps_few else usually
     return can_be_known and _filled_when_packed(usual, progress) < most
 
 

@@ -126,21 +126,22 @@ void VerifiedPlacement::take_angles(const TriedMap& other, MapTrial::Repairs rep
   if (is_better(map, choice.map)) choice = {std::move(cones), std::move(map)};
 }
 
-std::optional<VerifiedChoice> VerifiedPlacement::placed_naturally(Corners corners) {
-  std::optional<ConeChoice> natural = natural_cones(chooser_, corners);
-  if (!natural) return std::nullopt;
-  VerifiedChoice out = verified(std::move(*natural));
-  if (!(out.map.l2 <= isometric_l2)) return std::nullopt;
+// These cones, if there are any and the stretch of their map is at most this.
+std::optional<VerifiedChoice> VerifiedPlacement::verified_within(double most_l2, std::optional<ConeChoice> cones) {
+  if (!cones) return std::nullopt;
+  VerifiedChoice out = verified(std::move(*cones));
+  if (!(out.map.l2 <= most_l2)) return std::nullopt;
   return out;
 }
 
-// Nearly isometric as well, with few cones more than the target takes.
-std::optional<VerifiedChoice> VerifiedPlacement::placed_at_rounded_corners() {
-  std::optional<ConeChoice> cones = rounded_corner_cones(chooser_);
-  if (!cones) return std::nullopt;
-  VerifiedChoice out = verified(std::move(*cones));
-  if (!(out.map.l2 <= std::min(low_l2, chooser_.options().target))) return std::nullopt;
-  return out;
+std::optional<VerifiedChoice> VerifiedPlacement::placed_naturally(Corners corners) {
+  return verified_within(isometric_l2, natural_cones(chooser_, corners));
+}
+
+// Rounded corners give nearly isometric maps, with few cones more than the target takes.
+std::optional<VerifiedChoice> VerifiedPlacement::placed_at_corners() {
+  if (std::optional<VerifiedChoice> natural = placed_naturally(Corners::sharp)) return natural;
+  return verified_within(std::min(low_l2, chooser_.options().target), rounded_corner_cones(chooser_));
 }
 
 VerifiedChoice VerifiedPlacement::place_to_target() {
@@ -151,8 +152,7 @@ VerifiedChoice VerifiedPlacement::place_to_target() {
   const bool adds_none = static_cast<int>(best.cones.vertices.size()) <= chooser_.existing_count();
   if (adds_none) best = verified(std::move(best.cones));
   if (best.map.l2 <= target) return best;
-  if (std::optional<VerifiedChoice> natural = placed_naturally(Corners::sharp)) return std::move(*natural);
-  if (std::optional<VerifiedChoice> rounded = placed_at_rounded_corners()) return std::move(*rounded);
+  if (std::optional<VerifiedChoice> natural = placed_at_corners()) return std::move(*natural);
   if (!adds_none) best = verified(std::move(best.cones));
   if (!is_as_predicted(best)) add_where_stretched(best, worthwhile);
   lower_target(*automatic, best);
@@ -291,8 +291,7 @@ bool VerifiedPlacement::is_short(const VerifiedChoice& choice) const {
 }
 
 VerifiedChoice VerifiedPlacement::place_count(int count) {
-  if (std::optional<VerifiedChoice> natural = placed_naturally(Corners::sharp)) return std::move(*natural);
-  if (std::optional<VerifiedChoice> rounded = placed_at_rounded_corners()) return std::move(*rounded);
+  if (std::optional<VerifiedChoice> natural = placed_at_corners()) return std::move(*natural);
   std::optional<AutomaticCones> none_automatic;
   VerifiedChoice best = verified(choose_where_cheap(none_automatic));
   const auto is_settled = [&] {

@@ -55,7 +55,8 @@ class VerifiedPlacement {
   ConeChoice choose_where_cheap(std::optional<AutomaticCones>& automatic);
   bool misses(const VerifiedChoice& choice) const;
   std::optional<VerifiedChoice> placed_naturally(Corners corners);
-  std::optional<VerifiedChoice> placed_at_rounded_corners();
+  std::optional<VerifiedChoice> placed_at_corners();
+  std::optional<VerifiedChoice> verified_within(double most_l2, std::optional<ConeChoice> cones);
   void add_where_stretched(VerifiedChoice& best, double share);
   void move_cones(MovedAngles angles, VerifiedChoice& best);
   bool move_cone(VerifiedChoice& best, std::size_t cone, MovedAngles angles, int& left);

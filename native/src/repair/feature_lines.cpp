@@ -103,33 +103,26 @@ class FeatureTracer {
   void add_with_axes(const FeatureLine& line, FeatureLines& out) const {
     const Array<double> angle = angles_along(line);
     const Array<double> axis = axes_along(line, angle);
-    const bool is_bent = std::any_of(axis.begin(), axis.end(), [&](double each) { return each != axis.front(); });
-    const bool is_diagonal = !is_bent && bend_of(line, angle.data(), axis.data()) > least_diagonal;
-    if (is_bent || is_diagonal) {
-      out.curved.insert(out.curved.end(), line.halfedges.begin(), line.halfedges.end());
-    }
+    const std::size_t first = out.straight.size();
     for (Index begin = 0, end = 0; begin < ssize(angle); begin = end) {
       while (end < ssize(angle) && axis[end] == axis[begin]) ++end;
-      FeatureLine part{{}, {}, 0, 0, line.is_marked, true, is_bent || is_diagonal};
+      FeatureLine part{{}, {}, 0, 0, line.is_marked};
+      double squares = 0;
       for (Index i = begin; i < end; ++i) {
         const Index h = line.halfedges[i];
-        const Complex direction = std::polar(1.0, std::arg(edge(h)) - (angle[i] - axis[i]));
+        const double off = angle[i] - axis[i];
+        const Complex direction = std::polar(1.0, std::arg(edge(h)) - off);
         part.halfedges.push_back(h);
         part.directions.emplace_back(std::round(direction.real()), std::round(direction.imag()));
         part.length += geometry_.length[h];
+        squares += geometry_.length[h] * off * off;
       }
-      part.bend = bend_of(part, angle.data() + begin, axis.data() + begin);
+      part.bend = std::sqrt(squares / part.length);
       out.straight.push_back(std::move(part));
     }
-  }
-
-  // The root mean square of the edges' angles to the axes.
-  double bend_of(const FeatureLine& line, const double* angle, const double* axis) const {
-    double squares = 0;
-    for (Index i = 0; i < ssize(line.halfedges); ++i) {
-      squares += geometry_.length[line.halfedges[i]] * (angle[i] - axis[i]) * (angle[i] - axis[i]);
-    }
-    return std::sqrt(squares / line.length);
+    if (out.straight.size() == first + 1 && out.straight.back().bend <= least_diagonal) return;
+    out.curved.insert(out.curved.end(), line.halfedges.begin(), line.halfedges.end());
+    for (std::size_t i = first; i < out.straight.size(); ++i) out.straight[i].comes_last = true;
   }
 
   // The angles of edges, counted without the quarter turns of cuts.
@@ -189,7 +182,7 @@ FeatureLines trace_features(const CutSurface& surface, const PerHalfedge<char>& 
                             const Eigen::VectorXcd& position) {
   FeatureLines out = FeatureTracer(surface, feature, ends, position).trace();
   const auto rank = [](const FeatureLine& line) {
-    return std::tuple(!line.is_marked, line.is_part, line.bend * line.bend * line.length);
+    return std::tuple(!line.is_marked, line.comes_last, line.bend * line.bend * line.length);
   };
   std::stable_sort(out.straight.begin(), out.straight.end(),
                    [&](const FeatureLine& a, const FeatureLine& b) { return rank(a) < rank(b); });

@@ -17,13 +17,13 @@ struct FeatureLine {
   double bend = 0;            // root mean square of the edges' angles to it, radians
   double length = 0;          // on the surface
   bool is_marked = false;
-  bool is_whole = true;  // none of its edges is released
-  bool is_part = false;  // of a line that turns from one axis to the other
+  bool is_whole = true;     // none of its edges is released
+  bool comes_last = false;  // among lines that are as marked: between both axes, or part of a line that turns
 };
 
 struct FeatureLines {
-  Array<FeatureLine> straight;  // edges are nearer to one axis than to the other; marked ones first, among these parts
-                                // of curved lines last, then by cost, the square of the bend times the length
+  Array<FeatureLine> straight;  // edges are nearer to one axis than to the other; marked ones first, then those that
+                                // come last, then by cost, the square of the bend times the length
   Array<Index> curved;          // halfedges of the lines that are divided into parts, and of those between both axes
 };
 

@@ -35,7 +35,7 @@ Array<FeatureLine> chosen_of(const Array<FeatureLine>& lines, const Array<char>&
 
 // The ranges of lines that have precedence over the lines behind them.
 Array<std::pair<Index, Index>> ranks_of(const Array<FeatureLine>& lines) {
-  const auto rank = [&](Index k) { return std::pair(lines[k].is_marked, lines[k].is_part); };
+  const auto rank = [&](Index k) { return std::pair(lines[k].is_marked, lines[k].comes_last); };
   Array<std::pair<Index, Index>> out;
   for (Index begin = 0, end = 0; begin < ssize(lines); begin = end) {
     while (end < ssize(lines) && rank(end) == rank(begin)) ++end;

@@ -74,7 +74,7 @@ void FeatureLayout::find_loosened() {
   Array<FeatureLine>& lines = shortened.lines;
   // Layouts that keep less are not worth their time.
   const auto is_enough = [&] { return total_length(lines) > least_kept * aligned_length_; };
-  lines.erase(std::remove_if(lines.begin(), lines.end(), [](const FeatureLine& line) { return line.is_part; }),
+  lines.erase(std::remove_if(lines.begin(), lines.end(), [](const FeatureLine& line) { return line.comes_last; }),
               lines.end());
   if (lines.size() == aligned_.size() || !is_enough()) {
     lines = aligned_;
@@ -332,7 +332,6 @@ std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, Rounding
   enum class Stage { vanishing, on_lattice, all };
   for (const Stage stage : {Stage::vanishing, Stage::on_lattice, Stage::all}) {
     const std::ptrdiff_t end = is_fine && stage != Stage::all ? lattice_count_ : count;
-
     for (;;) {
       checkpoint(static_cast<double>(count * (ssize(out.independent) + 1)));
       std::ptrdiff_t best = -1;
@@ -348,7 +347,7 @@ std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, Rounding
       if (best < 0) break;
       is_done[best] = 1;
       const double step = values.isolate(best);
-      const double to = values.nearest(best, step, value[best] / unit(best), least(best));
+      const double to = values.nearest(best, step, value[best] / unit(best), least(best) / unit(best));
       if (!values.fix(best, step, to)) return std::nullopt;
       const double by = unit(best) * to - value[best];
       const Eigen::VectorXd column = cholesky.column(best);
