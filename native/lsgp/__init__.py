@@ -81,6 +81,7 @@ from .mip_levels import pad_mip_levels
 from .packing import pack_islands, packer_name
 from .quads import QuadMesh, QuadQuality, QuadRemesh, extract_quads, quad_quality, remesh_to_quads
 from .stacking import Stacks, find_stacks
+from .stitching import stitch_borders
 from .texels import TexelDensity, TexelLayout, at_texel_density, texel_density, triangle_texel_density
 from .triangles import TriangleDistortion, singular_values, triangle_distortion
 
@@ -157,6 +158,7 @@ __all__ = [
     "remesh_to_quads",
     "singular_values",
     "split_into_paths",
+    "stitch_borders",
     "texel_density",
     "triangle_distortion",
     "triangle_texel_density",

@@ -273,7 +273,7 @@ def _quads(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
 
 
 def _measure(args: argparse.Namespace, run: Run) -> tuple[reports.Report, str]:
-    file = read_file(args.input, run, args.format, with_uv=True)
+    file = read_file(args.input, run, args.format, with_uv=True, stitch=False)
     triangulation, corner_uv = file.triangulation, uv_of(file, "measure")
     without = np.flatnonzero(np.isnan(corner_uv).any(axis=(1, 2))).astype(np.int32)
     warnings = list(file.findings)

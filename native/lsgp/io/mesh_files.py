@@ -4,16 +4,18 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..api import Surface
+from ..arguments import IndexArray
 from ..errors import Finding, InputError
 from ..short_repr import ShortRepr
+from ..stitching import at_stitched, stitched_cones, stitched_finding, stitched_vertices, without_stitched
 from .mesh_formats import FORMATS, GLB, GLTF, OBJ, OFF, PLY, STL, Format, input_format, output_format
 from .mesh_gltf import edit_gltf, new_gltf, read_gltf
 from .mesh_obj import format_obj, read_obj
@@ -45,7 +47,8 @@ class MeshFile(ShortRepr):
 
     path: None for standard input. format, data: its format and its bytes.
     mesh: its vertices and polygons. triangulation: their triangles, and which polygons and corners they are of.
-    findings: what was left out.
+    stitched: (n,) int32, for each vertex the one that stands for it in the triangles, as by `stitch_borders`; itself
+        for most. findings: what was left out or stitched.
     """
 
     path: Path | None
@@ -53,7 +56,17 @@ class MeshFile(ShortRepr):
     data: bytes
     mesh: PolygonMesh
     triangulation: Triangulation
+    stitched: IndexArray
     findings: tuple[Finding, ...]
+
+    @classmethod
+    def of(cls, path: Path | None, form: Format, data: bytes, mesh: PolygonMesh, stitch: bool = True) -> MeshFile:
+        """A file from its parsed content.  Raises InputError: BAD_FACE."""
+        stitched = np.arange(len(mesh.positions), dtype=np.int32)
+        if stitch:
+            stitched = stitched_vertices(mesh.positions, mesh.corners, mesh.sizes)
+        triangulation, findings = triangulated(replace(mesh, corners=stitched[mesh.corners]))
+        return cls(path, form, data, mesh, triangulation, stitched, (*findings, *stitched_finding(stitched)))
 
     @property
     def triangle_uv(self) -> NDArray[np.float64] | None:
@@ -62,9 +75,20 @@ class MeshFile(ShortRepr):
         return None if self.mesh.corner_uv is None else self.mesh.corner_uv[self.triangulation.corner]
 
     def surface(self, seam_edges: ArrayLike = (), importance: ArrayLike | None = None) -> Surface:
-        """What the verbs of the library take.  Arguments and errors as of `Surface`."""
-        seams = np.asarray(seam_edges, np.int32).reshape(-1, 2)
+        """What the verbs of the library take.  Arguments, with the vertices of the file, and errors as of `Surface`."""
+        seams = at_stitched(self.stitched, np.asarray(seam_edges, np.int32).reshape(-1, 2))
         return Surface(self.mesh.positions, self.triangulation.triangles, self.triangulation.edges, seams, importance)
+
+    def cones(
+        self, cones: IndexArray, angles: Sequence[float | None] | None
+    ) -> tuple[IndexArray, list[float | None] | None]:
+        """Cones at vertices of the file, and their angles, as they are on the surface."""
+        stitched, rows = stitched_cones(self.stitched, cones)
+        return stitched, None if angles is None else [angles[row] for row in rows]
+
+    def told(self, warnings: Sequence[Finding]) -> list[Finding]:
+        """All findings of a run on this file, with warnings on its surface."""
+        return [*self.findings, *without_stitched(self.stitched, warnings)]
 
 
 def read_mesh(path: str | os.PathLike[str], with_uv: bool = False) -> PolygonMesh:
@@ -72,18 +96,19 @@ def read_mesh(path: str | os.PathLike[str], with_uv: bool = False) -> PolygonMes
     return parse_mesh(Path(path), read_regular(Path(path)), with_uv=with_uv)[1]
 
 
-def read_mesh_file(path: str | os.PathLike[str], with_uv: bool = False) -> MeshFile:
+def read_mesh_file(path: str | os.PathLike[str], with_uv: bool = False, *, stitch: bool = True) -> MeshFile:
     """Read a mesh file: OBJ, OFF, PLY, glTF, GLB; with the extra `formats` STL too.
 
     Vertices are those of the file, in its order; of STL and glTF, which repeat them, each place once. Polygons are cut
     into triangles.
     with_uv: read texture coordinates as well, of OBJ and glTF.
+    stitch: boundaries that lie on each other are stitched, as by `stitch_borders`; `MeshFile.stitched` has the vertices
+        that the surface has instead of others, cones for instance.
     Raises OSError; InputError: UNKNOWN_FORMAT, FORMAT_NOT_INSTALLED, MALFORMED_FILE, INDEX_OUT_OF_RANGE, BAD_FACE.
     """
     data = read_regular(Path(path))
     form, mesh = parse_mesh(Path(path), data, with_uv=with_uv)
-    triangulation, findings = triangulated(mesh)
-    return MeshFile(Path(path), form, data, mesh, triangulation, findings)
+    return MeshFile.of(Path(path), form, data, mesh, stitch)
 
 
 def write_mesh_file(

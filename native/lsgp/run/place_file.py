@@ -15,7 +15,7 @@ from ..io.side_files import UsageError, cones_in, load_json, pairs_in
 from ..io.whole_files import write_output
 from .report import finite, placed_figures
 from .unwrap_file import Run, read_file, require_flawless
-from .unwrap_options import add_cut_options, add_strict_option, cut_costs_of, require_cut_options
+from .unwrap_options import add_cut_options, add_stitch_option, add_strict_option, cut_costs_of, require_cut_options
 
 DEFAULT_LATTICE = "square"
 
@@ -56,6 +56,7 @@ def add_placement_options(cones: argparse.ArgumentParser) -> None:
         "--seams", choices=get_args(SeamMode), default="follow", help="meaning of marked edges, as for lsgp unwrap"
     )
     add_cut_options(cones)
+    add_stitch_option(cones, "they stay open")
     add_strict_option(cones, "set of cones")
 
 
@@ -66,18 +67,18 @@ def place_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
     kept_json = None if args.keep is None else load_json(Path(args.keep))
     seams_path = None if args.seam_edges is None else Path(args.seam_edges)
     seams_json = [] if seams_path is None else load_json(seams_path)
-    file = read_file(args.input, run, args.format)
-    kept, angles = ((), None) if kept_json is None else cones_in(kept_json, Path(args.keep), None)
+    file = read_file(args.input, run, args.format, stitch=bool(args.stitch))
+    kept, angles = ((), None) if kept_json is None else file.cones(*cones_in(kept_json, Path(args.keep), None))
     surface = file.surface(pairs_in(seams_json, seams_path, "seam vertex"))
     with run.stage("cut_costs"):
-        surface = replace(surface, cut_costs=cut_costs_of(args, surface))
+        surface = replace(surface, cut_costs=cut_costs_of(args, surface, file.stitched))
     with run.stage("place_cones"):
         placement = place_cones(surface, kept, angles, seams=args.seams, threads=args.threads, **how, progress=progress)
     if args.strict:
         require_flawless(placement.warnings)
     with run.stage("write_file"):
         write_output(args.output, _cones_file(args.input, placement))
-    return replace(placement, warnings=[*file.findings, *placement.warnings])
+    return replace(placement, warnings=file.told(placement.warnings))
 
 
 def summary(args: argparse.Namespace, placement: Placement) -> str:

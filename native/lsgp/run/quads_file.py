@@ -21,7 +21,14 @@ from ..io.whole_files import write_output
 from ..quads import QuadQuality, QuadRemesh, remesh_to_quads
 from .feature_options import add_features_option, features_of
 from .unwrap_file import Run, read_file
-from .unwrap_options import add_cones_option, add_mode_option, add_stretch_option, cone_count, cones_file
+from .unwrap_options import (
+    add_cones_option,
+    add_mode_option,
+    add_stitch_option,
+    add_stretch_option,
+    cone_count,
+    cones_file,
+)
 
 
 def add_quads_options(quads: argparse.ArgumentParser) -> None:
@@ -58,6 +65,7 @@ def add_quads_options(quads: argparse.ArgumentParser) -> None:
         help="do not follow the creases of hard surfaces, which needs further irregular vertices and distorts quads; "
         "by default rows of quads run along them where that costs at most a fifth of L2 stretch",
     )
+    add_stitch_option(quads, "they are stitched")
     quads.add_argument(
         "--coarse-grid",
         choices=["refine", "merge"],
@@ -81,8 +89,8 @@ def quads_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
         raise UsageError("--up takes finite numbers; give the model's up, as 0 1 0")
     path = cones_file(args)
     cones_json = None if path is None else load_json(path)
-    file = read_file(args.input, run, args.format)
-    given = ((), None) if path is None else cones_in(cones_json, path, None)
+    file = read_file(args.input, run, args.format, stitch=args.stitch is not False)
+    given = ((), None) if path is None else file.cones(*cones_in(cones_json, path, None))
     surface = file.surface()
     surface = replace(surface, directions=args.up, features=features_of(args.features, surface))
     with run.stage("remesh_to_quads"):
@@ -98,7 +106,7 @@ def quads_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
     mesh = PolygonMesh(remesh.mesh.positions, remesh.mesh.quads.ravel(), np.full(len(remesh.mesh.quads), 4, np.int64))
     with run.stage("write_file"):
         write_output(args.output, format_obj(mesh, np.full((len(mesh.corners), 2), np.nan)))
-    return replace(remesh, warnings=[*file.findings, *remesh.warnings])
+    return replace(remesh, warnings=file.told(remesh.warnings))
 
 
 def summary(output: Path, remesh: QuadRemesh, quality: QuadQuality) -> str:

@@ -28,7 +28,7 @@ from ..auto_unwrap import (
     share_of,
 )
 from ..errors import Finding, InputError, LsgpError
-from ..io.mesh_files import MeshFile, format_mesh, parse_mesh, triangulated
+from ..io.mesh_files import MeshFile, format_mesh, parse_mesh
 from ..io.mesh_formats import output_format
 from ..io.polygons import Triangulation
 from ..io.safe_files import is_standard_stream, read_input, require_separate
@@ -142,7 +142,7 @@ def unwrap_file(
         if makes_folder and target is not None:
             target.parent.mkdir(parents=True, exist_ok=True)
         write_output(args.output, data, keep_backup=args.in_place)
-    return replace(result, warnings=[*file.findings, *findings, *result.warnings])
+    return replace(result, warnings=file.told([*findings, *result.warnings]))
 
 
 def _duplicates(result: Result) -> NDArray[np.bool_]:
@@ -173,8 +173,10 @@ def out_of_memory() -> LsgpError:
     )
 
 
-def read_file(path: Path, run: Run, given_format: str | None = None, *, with_uv: bool = False) -> MeshFile:
-    """A mesh file, or standard input.  Raises OSError, InputError."""
+def read_file(
+    path: Path, run: Run, given_format: str | None = None, *, with_uv: bool = False, stitch: bool = True
+) -> MeshFile:
+    """A mesh file, or standard input.  stitch: as of `read_mesh_file`.  Raises OSError, InputError."""
     source = None if is_standard_stream(path) else path
     with run.stage("read_file"):
         data = read_input(path)
@@ -182,8 +184,9 @@ def read_file(path: Path, run: Run, given_format: str | None = None, *, with_uv:
     if with_uv and mesh.corner_uv is None:
         raise InputError("NO_UV", f"{form.name} is not read with texture coordinates. Convert the file to OBJ.")
     with run.stage("triangulate"):
-        run.triangulation, findings = triangulated(mesh)
-    return MeshFile(source, form, data, mesh, run.triangulation, findings)
+        file = MeshFile.of(source, form, data, mesh, stitch)
+    run.triangulation = file.triangulation
+    return file
 
 
 def uv_of(file: MeshFile, purpose: str) -> NDArray[np.float64]:
@@ -205,7 +208,8 @@ def _map(
     directions_path = None if args.directions is None else Path(args.directions)
     directions_json = None if directions_path is None else load_json(directions_path)
     importance = None if args.importance is None else load_importance(Path(args.importance))
-    file = read_file(args.input, run, given_format)
+    stitch = args.preset is not None if args.stitch is None else args.stitch
+    file = read_file(args.input, run, given_format, stitch=stitch)
     if importance is not None and len(importance) != len(file.mesh.positions):
         raise InputError(
             "WRONG_PARAMETER",
@@ -220,8 +224,8 @@ def _map(
     surface = replace(file.surface(pairs_in(seams_json, seams_path, "seam vertex"), importance), directions=directions)
     surface = replace(surface, features=features_of(args.features, surface))
     with run.stage("cut_costs"):
-        surface = run.surface = replace(surface, cut_costs=cut_costs_of(args, surface))
-    given = ((), None) if cones_path is None else cones_in(cones_json, cones_path, args.prescription)
+        surface = run.surface = replace(surface, cut_costs=cut_costs_of(args, surface, file.stitched))
+    given = ((), None) if cones_path is None else file.cones(*cones_in(cones_json, cones_path, args.prescription))
     if cones_path is not None and args.preset is None:
         result = parameterize(surface, *given, options, progress=progress)
         run.add_seconds(result.stage_seconds)

@@ -24,18 +24,18 @@ from ..api import (
     Options,
     Overlaps,
     PrescriptionRule,
-    Progress,
     Seamless,
     SeamMode,
     Surface,
     UnfoldMethod,
     cut_costs,
 )
-from ..arguments import FloatArray
+from ..arguments import FloatArray, IndexArray
 from ..auto_unwrap import Preset, preset_options
 from ..errors import InputError
 from ..io.side_files import CutCostFile, UsageError, load_cut_costs
 from ..packing import SHELVES, Pack, Packing, Stack
+from ..stitching import at_stitched
 from ..texels import DEFAULT_MARGIN, MOST_TILES, TexelLayout
 from .feature_options import add_features_option
 
@@ -119,6 +119,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
         "L2 stretch",
     )
     _add_direction_options(unwrap)
+    add_stitch_option(unwrap, "with --preset they are stitched")
     _add_preset_switches(unwrap)
     unwrap.add_argument(
         "--border",
@@ -237,8 +238,11 @@ def require_cut_options(args: argparse.Namespace) -> None:
         raise UsageError("--front is for cuts that hide from it; add --cuts hidden")
 
 
-def cut_costs_of(args: argparse.Namespace, surface: Surface, progress: Progress | None = None) -> FloatArray | None:
-    """What cuts along the surface's edges cost, for `Surface.cut_costs`.  Raises OSError, UsageError, LsgpError."""
+def cut_costs_of(args: argparse.Namespace, surface: Surface, stitched: IndexArray) -> FloatArray | None:
+    """What cuts along the surface's edges cost, for `Surface.cut_costs`.  Raises OSError, UsageError, LsgpError.
+
+    stitched: as of the surface's `MeshFile`.
+    """
     given = None if args.cut_costs is None else load_cut_costs(Path(args.cut_costs))
     if args.cuts == "shortest" and given is None:
         return None
@@ -250,13 +254,16 @@ def cut_costs_of(args: argparse.Namespace, surface: Surface, progress: Progress 
             f"'{args.cut_costs}' has {len(paint)} numbers for {len(surface.positions)} vertices. Give one for each, or "
             "lines of two vertices and a cost.",
         )
-    costs = cut_costs(surface, front, creases=args.cuts != "shortest", paint=paint, progress=progress)
-    return costs if given is None else _with_given_costs(surface, costs, given, args.cut_costs)
+    costs = cut_costs(surface, front, creases=args.cuts != "shortest", paint=paint)
+    return costs if given is None else _with_given_costs(surface, costs, given, args.cut_costs, stitched)
 
 
-def _with_given_costs(surface: Surface, costs: FloatArray, given: CutCostFile, path: str) -> FloatArray:
+def _with_given_costs(
+    surface: Surface, costs: FloatArray, given: CutCostFile, path: str, stitched: IndexArray
+) -> FloatArray:
     """Costs with those of a file in their place.  Raises InputError."""
-    edges, pairs = np.sort(surface.edges, axis=1).astype(np.int64), np.sort(given.pairs, axis=1)
+    edges = np.sort(surface.edges, axis=1).astype(np.int64)
+    pairs = np.sort(at_stitched(stitched, given.pairs), axis=1)
     keys = edges[:, 0] << 32 | edges[:, 1]
     order = np.argsort(keys, kind="stable")
     outside = ((pairs < 0) | (pairs >= len(surface.positions))).any(axis=1)
@@ -279,6 +286,16 @@ def _with_given_costs(surface: Surface, costs: FloatArray, given: CutCostFile, p
     costs = costs.copy()
     costs[rows] = given.costs
     return costs
+
+
+def add_stitch_option(command: argparse.ArgumentParser, default: str) -> None:
+    """default: what is done without it, in words."""
+    command.add_argument(
+        "--stitch",
+        action=argparse.BooleanOptionalAction,
+        help="whether boundaries that lie exactly on each other are none, as in files that repeat vertices wherever "
+        f"normals or texture coordinates differ (default: {default})",
+    )
 
 
 def add_threads_option(command: argparse.ArgumentParser) -> None:

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Stitches boundaries that lie on each other: files for display repeat vertices wherever normals or UVs differ, and the
+surface is open there without looking so."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import arguments
+from .arguments import FloatArray, IndexArray
+from .counted import counted
+from .edge_keys import edge_keys
+from .errors import Elements, Finding
+
+# Of the cosine between the normals of faces on both sides: -1 where one is folded onto the other.
+_FOLDED = -1 + 1e-6
+# Odd factors that spread the bits of coordinates over a hash.
+_SPREAD = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)
+
+
+def stitch_borders(positions: ArrayLike, triangles: ArrayLike) -> IndexArray:
+    """The vertices with which boundaries that lie on each other are one: `Surface(positions, stitched[triangles])`.
+
+    positions: (n, 3). triangles: (m, 3) vertices.
+    Returns (n,) int32, for each vertex the one that takes its place, the first of those that become one; itself for
+    most. Vertices become one along edges with a triangle on one side only, where exactly two such edges have exactly
+    the same ends, in opposite order, unless their triangles are folded onto each other, as the two sides of a leaf are.
+    Raises InputError for arrays that are none of these.
+    """
+    positions = arguments.float_rows("positions", positions, 3)
+    triangles = arguments.index_rows("triangles", triangles, 3)
+    arguments.require_indices("triangles", triangles, len(positions))
+    return stitched_vertices(positions, triangles.ravel(), np.full(len(triangles), 3))
+
+
+def stitched_vertices(positions: FloatArray, corners: NDArray[np.integer], sizes: NDArray[np.integer]) -> IndexArray:
+    """As `stitch_borders`, of polygons.  corners: (c,) the vertices of all, one after the other. sizes: (f,)."""
+    stitched = np.arange(len(positions), dtype=np.int32)
+    place = _shared_places(positions)
+    if place is None:
+        return stitched
+    face = np.repeat(np.arange(len(sizes)), sizes)
+    following = np.arange(1, len(corners) + 1)
+    following[np.cumsum(sizes)[sizes > 0] - 1] = (np.cumsum(sizes) - sizes)[sizes > 0]
+    tail, head = corners, corners[following]
+    side = np.flatnonzero((place[tail] >= 0) & (place[head] >= 0) & (place[tail] != place[head]))
+    side = _once(side, edge_keys(tail[side], head[side], len(positions)))
+    one, other = _opposite_pairs(side, place[tail[side]], place[head[side]], len(positions))
+    normals = _normals(positions, tail, head, face, len(sizes))
+    facing = (normals[face[one]] * normals[face[other]]).sum(axis=1)
+    meets = (facing > _FOLDED) & (face[one] != face[other])
+    one, other = one[meets], other[meets]
+    _join(stitched, np.concatenate([tail[one], head[one]]), np.concatenate([head[other], tail[other]]))
+    _release_collapsed(stitched, corners, face, len(sizes))
+    return stitched
+
+
+def at_stitched(stitched: IndexArray, vertices: NDArray[np.integer]) -> NDArray[np.integer]:
+    """The vertices that took the place of these, in an array of any shape; what is no vertex stays as it is."""
+    out = vertices.copy()
+    valid = (vertices >= 0) & (vertices < len(stitched))
+    out[valid] = stitched[vertices[valid]]
+    return out
+
+
+def stitched_cones(stitched: IndexArray, cones: IndexArray) -> tuple[IndexArray, NDArray[np.intp]]:
+    """Cones at the vertices that took the place of theirs, and their rows: where several became one, the first stays.
+
+    What is no vertex, or listed twice to begin with, stays, to be refused by name.
+    """
+    new = at_stitched(stitched, cones)
+    rows = np.flatnonzero(_is_first(new) | ~_is_first(cones))
+    return new[rows], rows
+
+
+def stitched_finding(stitched: IndexArray) -> list[Finding]:
+    """What is told of vertices that took the place of others; nothing where none did."""
+    moved = np.flatnonzero(stitched != np.arange(len(stitched))).astype(np.int32)
+    if not len(moved):
+        return []
+    return [
+        Finding(
+            "BORDERS_STITCHED",
+            f"Boundaries lie exactly on each other; {counted(len(moved), 'vertex', 'vertices')} there repeat others. "
+            "They were stitched for the computation. Merge by distance to be rid of this note.",
+            Elements("vertices", moved),
+        )
+    ]
+
+
+def without_stitched(stitched: IndexArray, warnings: Sequence[Finding]) -> list[Finding]:
+    """Warnings on a surface, without the vertices that others took the place of among those that belong to no face."""
+    rest = []
+    for finding in warnings:
+        if finding.code == "ISOLATED_VERTICES":
+            vertices = finding.elements.indices
+            loose = vertices[stitched[vertices] == vertices]
+            if not len(loose):
+                continue
+            told = f"{counted(len(loose), 'vertex belongs', 'vertices belong')} to no face and got no coordinates."
+            finding = replace(finding, message=told, elements=replace(finding.elements, indices=loose))
+        rest.append(finding)
+    return rest
+
+
+def _shared_places(positions: FloatArray) -> IndexArray | None:
+    """(n,) the first vertex at the same place, -1 where there is no other; None where no place has two."""
+    exact = np.ascontiguousarray(positions + 0.0)  # -0 is 0
+    mixed = (exact.view(np.uint64) * _SPREAD).sum(axis=1, dtype=np.uint64)
+    _, inverse, count = np.unique(mixed, return_inverse=True, return_counts=True)
+    shared = np.flatnonzero((count[inverse] > 1) & np.isfinite(exact).all(axis=1))
+    if not len(shared):
+        return None
+    _, first, index, count = np.unique(
+        exact[shared], axis=0, return_index=True, return_inverse=True, return_counts=True
+    )
+    index = index.ravel()
+    place = np.full(len(positions), -1, np.int32)
+    place[shared] = np.where(count[index] > 1, shared[first[index]], -1)
+    return place
+
+
+def _is_first(values: IndexArray) -> NDArray[np.bool_]:
+    """Which values are not among those before."""
+    first = np.zeros(len(values), bool)
+    first[np.unique(values, return_index=True)[1]] = True
+    return first
+
+
+def _once(sides: NDArray[np.intp], keys: NDArray[np.int64]) -> NDArray[np.intp]:
+    """Those whose key no other has: edges of one face."""
+    _, index, count = np.unique(keys, return_inverse=True, return_counts=True)
+    return sides[count[index] == 1]
+
+
+def _opposite_pairs(
+    sides: NDArray[np.intp], tail: IndexArray, head: IndexArray, count: int
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Sides, and the only other one of each between the same places, which runs from head to tail."""
+    _, index, found = np.unique(edge_keys(tail, head, count), return_inverse=True, return_counts=True)
+    order = np.argsort(index, kind="stable")
+    order = order[found[index[order]] == 2]
+    one, other = order[::2], order[1::2]
+    opposite = tail[one] == head[other]
+    return sides[one[opposite]], sides[other[opposite]]
+
+
+def _normals(
+    positions: FloatArray, tail: NDArray[np.integer], head: NDArray[np.integer], face: NDArray[np.intp], count: int
+) -> FloatArray:
+    """(f, 3) of length 1; 0 of faces without area."""
+    first = np.full(count, -1)
+    first[face[::-1]] = tail[::-1]
+    origin = positions[first[face]]
+    sums = np.zeros((count, 3))
+    with np.errstate(invalid="ignore", over="ignore"):  # positions may be anything
+        np.add.at(sums, face, np.cross(positions[tail] - origin, positions[head] - origin))
+        length = np.linalg.norm(sums, axis=1, keepdims=True)
+        return np.divide(sums, length, out=np.zeros_like(sums), where=length > 0)
+
+
+def _join(stitched: IndexArray, first: NDArray[np.integer], second: NDArray[np.integer]) -> None:
+    """Give all vertices that are linked by pairs the lowest of them."""
+    while True:
+        lowest = np.minimum(stitched[first], stitched[second])
+        before = stitched.copy()
+        np.minimum.at(stitched, first, lowest)
+        np.minimum.at(stitched, second, lowest)
+        stitched[:] = stitched[stitched]
+        if np.array_equal(before, stitched):
+            return
+
+
+def _release_collapsed(stitched: IndexArray, corners: NDArray[np.integer], face: NDArray[np.intp], count: int) -> None:
+    """Vertices of faces that would touch themselves stay what they are."""
+    moved = stitched != np.arange(len(stitched))
+    changed = np.zeros(count, bool)
+    changed[face[moved[corners]]] = True
+    chosen = np.flatnonzero(changed[face])
+    vertex = face[chosen] * len(stitched) + stitched[corners[chosen]]
+    _, index, times = np.unique(vertex, return_inverse=True, return_counts=True)
+    collapsed = np.zeros(count, bool)
+    collapsed[face[chosen[times[index] > 1]]] = True
+    kept = corners[collapsed[face]]
+    stitched[kept] = kept

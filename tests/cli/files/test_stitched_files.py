@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files that repeat vertices: the surface is continuous where boundaries lie on each other."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import lsgp as library
+import meshes
+import numpy as np
+import pytest
+from command import uv_of
+
+BALL = meshes.bumpy_sphere(2)
+SOUP = meshes.triangle_soup(BALL)
+COPY = BALL.triangles.ravel()
+"""The vertex of the ball that each of the soup is."""
+
+
+def obj_of(mesh: meshes.Mesh) -> str:
+    rows = [f"v {x!r} {y!r} {z!r}" for x, y, z in mesh.positions.tolist()]
+    return "\n".join([*rows, *(f"f {a + 1} {b + 1} {c + 1}" for a, b, c in mesh.triangles.tolist()), ""])
+
+
+@pytest.fixture
+def soup_file(tmp_path: Path) -> Path:
+    (tmp_path / "soup.obj").write_text(obj_of(SOUP))
+    (tmp_path / "whole.obj").write_text(obj_of(BALL))
+    return tmp_path
+
+
+def test_a_preset_unwraps_a_soup_of_triangles_as_the_whole_surface(lsgp, soup_file: Path) -> None:
+    for name in ("soup", "whole"):
+        done = lsgp("unwrap", f"{name}.obj", "-o", f"{name}-uv.obj", "--preset", "paint", "--report", f"{name}.json")
+        assert done.code == 0, done.err
+    soup, whole = done.report("soup.json"), done.report("whole.json")
+    assert [warning["code"] for warning in soup["warnings"]] == ["BORDERS_STITCHED"]
+    (told,) = soup["warnings"]
+    assert told["elements"]["kind"] == "vertices"
+    assert len(told["elements"]["indices"]) == len(SOUP.positions) - len(BALL.positions)
+    assert soup["islands"] == whole["islands"]
+    assert soup["distortion"]["l2_stretch"] == pytest.approx(whole["distortion"]["l2_stretch"], rel=0.02)
+    assert np.isfinite(uv_of(soup_file / "soup-uv.obj")).all()
+    assert (soup_file / "soup-uv.obj").read_text().startswith((soup_file / "soup.obj").read_text()[:1000])
+
+
+def test_boundaries_stay_open_where_that_is_asked_for_and_without_a_preset(lsgp, soup_file: Path) -> None:
+    for options in (["--preset", "paint", "--no-stitch"], []):
+        done = lsgp("unwrap", "soup.obj", "-o", "uv.obj", "--report", "report.json", *options)
+        assert done.code == 0, done.err
+        assert done.report()["islands"] == len(SOUP.triangles)
+
+
+def cut_of(path: Path) -> set[tuple[int, int]]:
+    """The edges at which the whole surface is cut, of the ball's vertices."""
+    file = library.read_mesh_file(path, with_uv=True)
+    cut = library.measure_distortion(file.surface(), file.triangle_uv).cut_edges
+    return {tuple(sorted(edge)) for edge in COPY[cut].tolist()}
+
+
+def test_cones_seams_and_costs_at_repeated_vertices_are_those_of_the_surface(lsgp, soup_file: Path) -> None:
+    cones = np.flatnonzero(np.isin(COPY, [3, 8, 17, 20, 33, 40]))  # all copies
+    (soup_file / "cones.json").write_text(json.dumps({"cones": cones.tolist()}))
+
+    def cut_with(*options: str) -> set[tuple[int, int]]:
+        done = lsgp("unwrap", "soup.obj", "-o", "uv.obj", "--stitch", "--cones", "cones.json", *options)
+        assert done.code == 0, done.err
+        return cut_of(soup_file / "uv.obj")
+
+    usual = cut_with()
+    last = {vertex: copy for copy, vertex in enumerate(COPY.tolist())}
+    copies = [[last[a], last[b]] for a, b in sorted(usual)]
+    (soup_file / "costs.txt").write_text("".join(f"{a} {b} 1e5\n" for a, b in copies[::2]))
+    costs = ("--cut-costs", "costs.txt")
+    assert not cut_with(*costs) & set(sorted(usual)[::2])
+    (soup_file / "seams.json").write_text(json.dumps(copies))
+    assert cut_with(*costs, "--seam-edges", "seams.json") == usual
+
+
+def test_cones_are_placed_and_quads_made_on_the_whole_surface(lsgp, soup_file: Path) -> None:
+    done = lsgp("cones", "soup.obj", "-o", "cones.json", "--stitch", "--count", "8")
+    assert done.code == 0, done.err
+    assert len(json.loads((soup_file / "cones.json").read_text())["cones"]) == 8
+    done = lsgp("quads", "soup.obj", "-o", "quads.obj", "--target", "300")
+    assert done.code == 0, done.err
+
+
+def test_a_file_is_read_as_the_whole_surface_unless_told_otherwise(soup_file: Path) -> None:
+    file = library.read_mesh_file(soup_file / "soup.obj")
+    assert np.array_equal(COPY[file.triangulation.triangles], BALL.triangles)
+    assert np.array_equal(file.stitched, library.stitch_borders(SOUP.positions, SOUP.triangles))
+    parted = library.read_mesh_file(soup_file / "soup.obj", stitch=False)
+    assert np.array_equal(parted.triangulation.triangles, SOUP.triangles)
+    assert np.array_equal(parted.stitched, np.arange(len(SOUP.positions)))
+    assert parted.findings == ()
