@@ -16,7 +16,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from . import redraw
+from . import native, redraw
 from .errors import Refused
 from .text import counted
 from .wording import for_artists
@@ -37,6 +37,7 @@ class Severity(IntEnum):
 
 INFORMATION = frozenset(
     {
+        "BORDERS_STITCHED",
         "CONE_ON_BOUNDARY",
         "CONES_MERGED",
         "CUTS_ADDED",
@@ -86,8 +87,13 @@ def severity(problem: Problem) -> Severity:
 
 
 def relevant(region: Region, problems: Iterable[Problem]) -> list[Problem]:
-    """Those that are true of the mesh: vertices of faces that are not selected are not isolated."""
-    return [problem for problem in problems if region.is_whole or problem.code != "ISOLATED_VERTICES"]
+    """Those that are true of the mesh: vertices of faces that are not selected are not isolated, nor are those that are
+    stitched to others, which is told in their place."""
+    stitching = native.part("stitching")
+    own = np.where(region.vertex_used[region.stitched], region.stitched, np.arange(len(region.stitched)))
+    true = stitching.without_stitched(region.stitched, problems)
+    kept = [problem for problem in true if region.is_whole or problem.code != "ISOLATED_VERTICES"]
+    return [*stitching.stitched_finding(own), *kept]
 
 
 def in_groups(found: Mapping[str, Iterable[Problem]]) -> list[tuple[Severity, str]]:
@@ -193,5 +199,5 @@ def _elements(region: Region | None, finding: Any) -> MeshElements:
     if elements.kind == "triangles":
         return MeshElements(none.vertices, none.edges, np.unique(region.triangle_faces[indices]))
     if elements.kind == "edges":
-        return MeshElements(none.vertices, np.unique(np.sort(indices, axis=1), axis=0), none.faces)
-    return MeshElements(np.unique(indices), none.edges, none.faces)
+        return MeshElements(none.vertices, region.edges_in_mesh(indices), none.faces)
+    return MeshElements(np.flatnonzero(np.isin(region.stitched, region.stitched[indices])), none.edges, none.faces)

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 class Region:
     """Faces of one mesh, as triangles, with everything that is read from Blender about them.
 
-    Vertex indices are those of the mesh, so that the library's errors name Blender's vertices.
+    Vertex indices are those of the mesh, so that the library's errors name Blender's vertices. Where boundaries lie on
+    each other, the first vertex at a place is used for all.
 
     surface: all vertices (the library ignores those without a triangle), the triangles that Blender draws the faces
         with, the edges of the faces, and the marked seams and features among them. In the shape that the object's
@@ -40,6 +41,8 @@ class Region:
     image_aspect: width over height of the image in the mesh's material; 1 where there is none.
     object_scale: by how much the object's transform scales lengths, on the average; 0 where it leaves none.
     density_weight: how many times the texel density of other objects this one is to have.
+    stitched: (n,) int32, the vertex of the surface that each vertex of the mesh is; itself for most.
+    mesh_edges: (e, 2) int32, the edges of the faces with the vertices of the mesh.
     is_rounded: whether the Subdivision Surface modifier makes something round of it, and its edges are no creases.
     """
 
@@ -59,6 +62,8 @@ class Region:
     weights: NDArray[np.float64] | None
     image_aspect: float
     object_scale: float
+    stitched: NDArray[np.int32]
+    mesh_edges: NDArray[np.int32]
     density_weight: float = 1.0
     is_rounded: bool = False
 
@@ -71,6 +76,14 @@ class Region:
     def is_whole(self) -> bool:
         """Whether these are all faces of the mesh."""
         return len(np.unique(self.triangle_faces)) == len(self.face_loop_start)
+
+    def edges_in_mesh(self, pairs: NDArray[np.integer]) -> NDArray[np.int32]:
+        """(k, 2) the edges of the mesh that are these of the surface, ascending."""
+        edges = np.sort(self.mesh_edges, axis=1)
+        keys, wanted = (np.sort(self.stitched[ends], axis=1).astype(np.int64) for ends in (edges, pairs))
+        count = len(self.stitched)
+        named = np.isin(keys @ (count, 1), wanted @ (count, 1))
+        return np.unique(edges[named], axis=0)
 
     @property
     def own_cones(self) -> ConeAngles:

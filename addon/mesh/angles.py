@@ -42,10 +42,12 @@ def angles_in(obj: bpy.types.Object, group_name: str, mesh: MeshReader) -> ConeA
     if weights is None:
         return ConeAngles.none()
     cones = cones_among(weights)
+    on_surface, first = np.unique(mesh.stitched[cones], return_index=True)
+    cones = cones[first]
     values, kinds = (mesh.point_values(name, item, cones.tolist()) for name, item in _ATTRIBUTES)
     full = weights[cones] >= FULL_WEIGHT
     return ConeAngles(
-        cones,
+        on_surface,
         [_exact(value) if counts and value != 0.0 else None for value, counts in zip(values, full, strict=True)],
         [Kind(kind) if kind in list(Kind) else Kind.PRESCRIBED for kind in kinds],
     )

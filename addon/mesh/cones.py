@@ -19,9 +19,10 @@ LEAST_WEIGHT = 0.5
 
 
 def marked_cones(obj: bpy.types.Object, group_name: str) -> NDArray[np.int32]:
-    """Vertices with a weight above 0.5 in the group, ascending; none where there is no such group."""
-    weights = weights_in(obj, group_name, reader(obj.data))
-    return np.empty(0, np.int32) if weights is None else cones_among(weights)
+    """Vertices of the surface with a weight above 0.5 in the group, ascending; none where there is no such group."""
+    mesh = reader(obj.data)
+    weights = weights_in(obj, group_name, mesh)
+    return np.empty(0, np.int32) if weights is None else np.unique(mesh.stitched[cones_among(weights)])
 
 
 def cones_among(weights: NDArray[np.float64]) -> NDArray[np.int32]:
@@ -63,21 +64,23 @@ def write_weights(obj: bpy.types.Object, group_name: str, vertices: Iterable[int
 
 
 def clear_cones(obj: bpy.types.Object, group_name: str, vertices: Iterable[int]) -> None:
-    """Remove vertices from the group they are in; the group stays."""
+    """Remove vertices of the surface from the group they are in; the group stays."""
     group = obj.vertex_groups[group_name]
+    copies = np.flatnonzero(np.isin(reader(obj.data).stitched, list(vertices))).tolist()
     if obj.mode == "EDIT":
         bm = bmesh.from_edit_mesh(obj.data)
         deform = bm.verts.layers.deform.active
         bm.verts.ensure_lookup_table()
-        for vertex in vertices:
-            del bm.verts[vertex][deform][group.index]
+        for vertex in copies:
+            if group.index in bm.verts[vertex][deform]:
+                del bm.verts[vertex][deform][group.index]
         bmesh.update_edit_mesh(obj.data, loop_triangles=False, destructive=False)
     else:
-        group.remove([int(vertex) for vertex in vertices])
+        group.remove(copies)
 
 
 def selected_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
-    """Selected, visible vertices of a mesh in edit mode, ascending."""
+    """The vertices of the surface that selected, visible vertices of a mesh in edit mode are, ascending."""
+    stitched = reader(mesh).stitched
     bm = bmesh.from_edit_mesh(mesh)
-    bm.verts.index_update()
-    return np.array([vertex.index for vertex in bm.verts if vertex.select and not vertex.hide], np.int32)
+    return np.unique(stitched[[vertex.index for vertex in bm.verts if vertex.select and not vertex.hide]])

@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
+from functools import cached_property
+from itertools import product
 
 import bmesh
 import bpy
@@ -13,7 +16,7 @@ from numpy.typing import NDArray
 from ..core.identifiers import UP_ATTRIBUTE
 from .arrays import rows
 from .manifold_triangles import manifold_triangles
-from .mesh_reader import FloatArray, MeshReader, each_once, triangulated
+from .mesh_reader import FloatArray, MeshReader, each_once, stitched_vertices, triangulated
 
 
 class EditedMesh(MeshReader):
@@ -26,6 +29,18 @@ class EditedMesh(MeshReader):
             sequence.ensure_lookup_table()
         self._bm.verts.index_update()
 
+    @cached_property
+    def stitched(self) -> NDArray[np.int32]:
+        # Only faces at boundaries can be stitched, and few are. What else they have stays out of it without a place.
+        border = [vertex for vertex in self._bm.verts if vertex.is_boundary]
+        if not border:
+            return np.arange(len(self._bm.verts), dtype=np.int32)
+        faces = list(dict.fromkeys(face for vertex in border for face in vertex.link_faces))
+        places = np.full((len(self._bm.verts), 3), np.nan, np.float32)
+        places[[vertex.index for vertex in border]] = rows([vertex.co[:] for vertex in border], 3)
+        corners = np.array([vertex.index for face in faces for vertex in face.verts], np.int32)
+        return stitched_vertices(places, corners, np.array([len(face.verts) for face in faces], np.int32))
+
     def size(self) -> tuple[int, int, int]:
         return len(self._bm.verts), len(self._bm.edges), len(self._bm.faces)
 
@@ -36,10 +51,10 @@ class EditedMesh(MeshReader):
         return rows([v.co[:] for v in self._bm.verts], 3)
 
     def on_border(self, vertices: Sequence[int]) -> list[bool]:
-        return [self._bm.verts[v].is_boundary for v in vertices]
+        return [self._bm.verts[v].is_boundary and self._is_open_at(v) for v in vertices]
 
     def seams(self) -> NDArray[np.int32]:
-        return self._ends(edge for edge in self._bm.edges if edge.seam)
+        return self.stitched[self._ends(edge for edge in self._bm.edges if edge.seam)]
 
     def triangles(self, faces: Sequence[int]) -> list[tuple[int, int, int]]:
         found = []
@@ -55,7 +70,7 @@ class EditedMesh(MeshReader):
         drawn = [[place[loop] for loop in triangle] for triangle in self._bm.calc_loop_triangles()]
         sizes = np.array([len(face.loops) for face in self._bm.faces], np.int32)
         triangles = rows(drawn, 3, np.int32)
-        return vertices[
+        return self.stitched[vertices][
             manifold_triangles(self.all_positions(), vertices, sizes, self._ends(self._bm.edges), triangles)
         ]
 
@@ -75,7 +90,8 @@ class EditedMesh(MeshReader):
         found = [
             (row, *loop[layer].uv)
             for row, vertex in enumerate(vertices)
-            for loop in ([] if layer is None else self._bm.verts[vertex].link_loops)
+            for copy in ([] if layer is None else self._copies(vertex))
+            for loop in copy.link_loops
             if not loop.face.hide
         ]
         table = rows(found, 3, np.float64)
@@ -126,9 +142,21 @@ class EditedMesh(MeshReader):
         return rows([[loop.vert.index for loop in triangle] for triangle in triangles], 3, np.int32)
 
     def _loop(self, pair: tuple[int, int]) -> bmesh.types.BMLoop | None:
-        """The visible loop that runs along a directed edge."""
-        first, second = (self._bm.verts[v] for v in pair)
-        edge = self._bm.edges.get((first, second))
-        if edge is None:
-            return None
-        return next((loop for loop in edge.link_loops if loop.vert == first and not loop.face.hide), None)
+        """The visible loop that runs along a directed edge of the surface."""
+        for first, second in product(*map(self._copies, pair)):
+            edge = self._bm.edges.get((first, second))
+            for loop in () if edge is None else edge.link_loops:
+                if loop.vert == first and not loop.face.hide:
+                    return loop
+        return None
+
+    def _copies(self, vertex: int) -> list[bmesh.types.BMVert]:
+        """The vertices of the mesh that are this one of the surface."""
+        found = self._bm.verts[vertex]
+        return [self._bm.verts[i] for i in np.flatnonzero(self.stitched == vertex)] if found.is_boundary else [found]
+
+    def _is_open_at(self, vertex: int) -> bool:
+        """Whether this vertex of the surface has an edge with a single face."""
+        edges = {edge for copy in self._copies(vertex) for edge in copy.link_edges if edge.is_boundary}
+        ends = [tuple(sorted(self.stitched[end.index] for end in edge.verts)) for edge in edges]
+        return any(count == 1 for count in Counter(ends).values())

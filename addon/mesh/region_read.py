@@ -91,7 +91,7 @@ def build_region(
         return None
     inside = chosen[mesh.triangle_faces]
     triangle_loops = mesh.triangle_loops[inside]
-    triangles = mesh.loop_vertices[triangle_loops]
+    triangles = mesh.surface_loops[triangle_loops]
     is_rounded = subdivided is not None and (
         _areas(subdivided.places, triangles).sum() < ROUNDED * _areas(mesh.places, triangles).sum()
     )
@@ -99,6 +99,7 @@ def build_region(
     vertex_used[triangles] = True
     edge_used = np.zeros(len(mesh.edges), bool)
     edge_used[mesh.loop_edges[chosen[mesh.loop_faces]]] = True
+    edges = mesh.surface_edges
     shape, axes, size = _object_shape(obj)
     places = (mesh.places.astype(np.float64) if subdivided is None else _enlarged(mesh, subdivided)) @ shape
     uv = np.full((len(mesh.loop_vertices), 2), np.nan) if mesh.uv is None else mesh.uv.astype(np.float64)
@@ -106,9 +107,9 @@ def build_region(
         surface=native.lsgp.Surface(
             places,
             triangles,
-            edges=mesh.edges[edge_used],
-            seams=mesh.edges[edge_used & mesh.is_seam],
-            features=mesh.edges[edge_used & mesh.is_feature],
+            edges=edges[edge_used],
+            seams=edges[edge_used & mesh.is_seam],
+            features=edges[edge_used & mesh.is_feature],
         ),
         triangle_loops=triangle_loops,
         triangle_faces=mesh.triangle_faces[inside],
@@ -117,8 +118,8 @@ def build_region(
         corner_uv=uv[triangle_loops],
         pinned=mesh.pinned[triangle_loops],
         cones=ConeAngles.none() if groups.cones is None else angles_in(obj, groups.cones, mesh),
-        sharp=mesh.edges[edge_used & mesh.is_sharp],
-        active_edge=_active_edge(obj, mesh.edges[edge_used]),
+        sharp=edges[edge_used & mesh.is_sharp],
+        active_edge=_active_edge(obj, mesh, edges[edge_used]),
         drawn_up=_drawn_up(mesh, inside, shape),
         cut_paint=weights_in(obj, SEAM_COST_GROUP, mesh, outside=0.5),
         axes=axes,
@@ -127,16 +128,18 @@ def build_region(
         object_scale=size,
         density_weight=density_weight(obj),
         is_rounded=is_rounded,
+        stitched=mesh.stitched,
+        mesh_edges=mesh.edges[edge_used],
     )
 
 
 def _enlarged(mesh: StoredMesh, subdivided: Subdivided) -> NDArray[np.float64]:
     """(n, 3) places of the vertices, each connected part enlarged about its middle to the area of its subdivided faces:
     flat ones between the same vertices have less, and texels are those of the surface that is seen."""
-    part, count = _part_of_vertices(mesh.edges, len(subdivided.places)), len(subdivided.places)
-    triangles = mesh.loop_vertices[mesh.triangle_loops]
+    part, count = _part_of_vertices(mesh.surface_edges, len(subdivided.places)), len(subdivided.places)
+    triangles = mesh.surface_loops[mesh.triangle_loops]
     flat = np.bincount(part[triangles[:, 0]], _areas(subdivided.places, triangles), minlength=count)
-    curved = np.bincount(part[mesh.loop_vertices[mesh.loop_start]], subdivided.areas, minlength=count)
+    curved = np.bincount(part[mesh.surface_loops[mesh.loop_start]], subdivided.areas, minlength=count)
     factor = np.sqrt(np.divide(curved, flat, out=np.ones(count), where=(flat > 0) & (curved > 0)))
     sums = np.stack([np.bincount(part, column, minlength=count) for column in subdivided.places.T], axis=1)
     middle = (sums / np.maximum(np.bincount(part, minlength=count), 1)[:, None])[part]
@@ -161,12 +164,12 @@ def _areas(places: NDArray[np.float32], triangles: NDArray[np.int32]) -> NDArray
     return native.part("triangles").triangle_areas(native.lsgp.Surface(places.astype(np.float64), triangles))
 
 
-def _active_edge(obj: bpy.types.Object, edges: NDArray[np.int32]) -> tuple[int, int] | None:
-    """The vertices of the active edge; None outside edit mode, or where it is none of these."""
+def _active_edge(obj: bpy.types.Object, mesh: StoredMesh, edges: NDArray[np.int32]) -> tuple[int, int] | None:
+    """The vertices of the active edge; None outside edit mode, or where it is none of these edges of the surface."""
     active = bmesh.from_edit_mesh(obj.data).select_history.active if obj.mode == "EDIT" else None
     if not isinstance(active, bmesh.types.BMEdge):
         return None
-    ends = sorted(vertex.index for vertex in active.verts)
+    ends = sorted(mesh.stitched[vertex.index] for vertex in active.verts)
     return tuple(ends) if (np.sort(edges, axis=1) == ends).all(axis=1).any() else None
 
 

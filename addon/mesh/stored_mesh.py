@@ -14,7 +14,7 @@ from ..core import versions
 from ..core.identifiers import FEATURE_ATTRIBUTE, UP_ATTRIBUTE
 from .arrays import read_array
 from .manifold_triangles import manifold_triangles
-from .mesh_reader import FloatArray, MeshReader, each_once, triangulated
+from .mesh_reader import FloatArray, MeshReader, each_once, stitched_vertices, triangulated
 
 
 class StoredMesh(MeshReader):
@@ -87,6 +87,28 @@ class StoredMesh(MeshReader):
         return read_array(self._mesh.loops, "vertex_index", np.int32)
 
     @cached_property
+    def stitched(self) -> NDArray[np.int32]:
+        return stitched_vertices(self.places, self.loop_vertices, self.loop_total)
+
+    @cached_property
+    def surface_edges(self) -> NDArray[np.int32]:
+        """(e, 2) vertices of the surface at the ends of the edges."""
+        return self.stitched[self.edges]
+
+    @cached_property
+    def surface_edge_of(self) -> NDArray[np.int64]:
+        """(e,) a number below e for each edge, the same for edges that are one of the surface."""
+        if np.array_equal(self.stitched, np.arange(len(self.stitched))):
+            return np.arange(len(self.edges))
+        low, high = np.sort(self.surface_edges, axis=1).T
+        return np.unique(self._key(low, high), return_inverse=True)[1].ravel()
+
+    @cached_property
+    def surface_loops(self) -> NDArray[np.int32]:
+        """(l,) the vertex of the surface that each loop is at."""
+        return self.stitched[self.loop_vertices]
+
+    @cached_property
     def loop_edges(self) -> NDArray[np.int32]:
         """(l,) edge from each loop's vertex to that of the next loop of the face."""
         return read_array(self._mesh.loops, "edge_index", np.int32)
@@ -149,16 +171,16 @@ class StoredMesh(MeshReader):
 
     @cached_property
     def _border(self) -> NDArray[np.bool_]:
-        """(n,) vertices of edges with a single face."""
+        """(n,) vertices of the surface's edges with a single face."""
         border = np.zeros(len(self.places), bool)
-        faces_at = np.bincount(self.loop_edges, minlength=len(self.edges))
-        border[self.edges[faces_at == 1]] = True
+        faces_at = np.bincount(self.surface_edge_of[self.loop_edges], minlength=len(self.edges))
+        border[self.surface_edges[faces_at[self.surface_edge_of] == 1]] = True
         return border
 
     @cached_property
     def _directed_edges(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """(l,) the directed edge of each loop as one number, ascending, and (l,) the loops in this order."""
-        keys = self._key(self.loop_vertices, self.loop_vertices[self.next_loops])
+        keys = self._key(self.surface_loops, self.surface_loops[self.next_loops])
         order = np.argsort(keys, kind="stable")
         return keys[order], order
 
@@ -177,7 +199,7 @@ class StoredMesh(MeshReader):
         return self._border[np.asarray(vertices, int)].tolist()
 
     def seams(self) -> NDArray[np.int32]:
-        return self.edges[self.is_seam]
+        return self.surface_edges[self.is_seam]
 
     def triangles(self, faces: Sequence[int]) -> list[tuple[int, int, int]]:
         found = []
@@ -187,7 +209,7 @@ class StoredMesh(MeshReader):
         return found
 
     def all_triangles(self) -> NDArray[np.int32]:
-        return self.loop_vertices[self.triangle_loops]
+        return self.surface_loops[self.triangle_loops]
 
     def drawn_triangles(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
         return self.loop_vertices[self.drawn_loops], self.triangle_faces
@@ -210,8 +232,8 @@ class StoredMesh(MeshReader):
         """The loops of visible faces at some vertices, and which of the vertices each is at."""
         row_of = np.full(len(self.places), -1)
         row_of[np.asarray(vertices, int)] = np.arange(len(vertices))
-        loops = np.flatnonzero((row_of[self.loop_vertices] >= 0) & self._shown[self.loop_faces])
-        return row_of[self.loop_vertices[loops]], loops
+        loops = np.flatnonzero((row_of[self.surface_loops] >= 0) & self._shown[self.loop_faces])
+        return row_of[self.surface_loops[loops]], loops
 
     def side_normals(self, pairs: Sequence[tuple[int, int]]) -> FloatArray:
         loops = self._loops(pairs)

@@ -23,22 +23,31 @@ ROUNDING = 4 * np.finfo(np.float32).eps
 def cut_edges(obj: bpy.types.Object) -> NDArray[np.int32]:
     """(c, 2) vertex pairs of the visible edges whose faces lie apart along them in the active UV map.
 
-    The mesh's own borders are none: there is nothing on their other side.  Raises Refused where there is no UV map.
+    Borders are none: there is nothing on their other side, unless they lie on each other; then both are.  Raises
+    Refused where there is no UV map.
     """
     with readable_mesh(obj) as mesh:
         stored = StoredMesh(mesh)
         if stored.uv is None:
             raise Refused("the mesh has no UV map; unwrap it first")
-        # Of each loop the coordinates at both ends of its edge, in the order in which the edge has its vertices.
+        # Of each loop the coordinates at both ends of its edge, in the order of its vertices on the surface.
         ends = np.stack([stored.uv, stored.uv[stored.next_loops]], axis=1)
-        turned = stored.loop_vertices != stored.edges[stored.loop_edges, 0]
+        edge = stored.surface_edge_of
+        of_loop = edge[stored.loop_edges]
+        turned = stored.surface_loops != stored.surface_edges.min(axis=1)[stored.loop_edges]
         ends[turned] = ends[turned, ::-1]
-        low, high = np.full((len(stored.edges), 2, 2), np.inf), np.full((len(stored.edges), 2, 2), -np.inf)
-        np.minimum.at(low, stored.loop_edges, ends)
-        np.maximum.at(high, stored.loop_edges, ends)
-        gap = np.where(np.isfinite(low), high - low, 0.0).max(axis=(1, 2))
+        low, high = np.full((len(edge), 2, 2), np.inf), np.full((len(edge), 2, 2), -np.inf)
+        np.minimum.at(low, of_loop, ends)
+        np.maximum.at(high, of_loop, ends)
+        gap = np.where(np.isfinite(low), high - low, 0.0).max(axis=(1, 2))[edge]
         hidden = read_array(mesh.edges, "hide", bool)
         return stored.edges[~hidden & (gap > ROUNDING * np.abs(stored.uv).max(initial=1.0))]
+
+
+def surface_edges(obj: bpy.types.Object, edges: NDArray[np.int32]) -> NDArray[np.int32]:
+    """(c, 2) the edges of the surface that these of the mesh are."""
+    with readable_mesh(obj) as mesh:
+        return StoredMesh(mesh).stitched[edges]
 
 
 def mark_seams(mesh: bpy.types.Mesh, edges: Iterable[tuple[int, int]]) -> int:

@@ -63,7 +63,7 @@ class Picker:
         used[loops] = True
         points = np.c_[mesh.uv, np.zeros(len(mesh.uv), np.float32)]
         # Points of hidden faces belong to no vertex.
-        return cls(points, loops, np.where(used, mesh.loop_vertices, -1))
+        return cls(points, loops, np.where(used, mesh.surface_loops, -1))
 
     def vertex_at(self, screen: Screen, x: float, y: float) -> Hit | None:
         """The nearest vertex of the triangle under a pixel; None where there is no triangle."""

@@ -12,7 +12,7 @@ from ...core.text import counted
 from ...mesh import reports
 from ...mesh.selection import EDGE_MODE, select_elements, set_select_mode
 from ...mesh.targets import target_objects
-from ...mesh.uv_cuts import cut_edges
+from ...mesh.uv_cuts import cut_edges, surface_edges
 from ..shared.conclusion import NO_CUTS, conclude, for_each
 from ..shared.polling import EditMeshOperator
 
@@ -57,4 +57,4 @@ class MESH_OT_cone_select_cuts(EditMeshOperator, bpy.types.Operator):
         if report is None or not report.kinds:
             raise Refused("the UV map has changed since it was unwrapped from cones; unwrap it again")
         wanted = set(map(frozenset, report.edges_of(self.kind.lower())))
-        return edges[[frozenset(pair) in wanted for pair in edges.tolist()]]
+        return edges[[frozenset(pair) in wanted for pair in surface_edges(obj, edges).tolist()]]
