@@ -180,6 +180,7 @@ API = (
     "quads",
     "short_repr",
     "stacking",
+    "stitching",
     "texel_raster",
     "texels",
     "triangles",
