@@ -158,6 +158,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
     "fit_placement": (lsgp.fit_placement, MAP),
     "correct_aspect": (lsgp.correct_aspect, {"corner_uv": RESULT.corner_uv, "aspect": 2.0}),
     "index_uv": (lsgp.index_uv, {"triangles": BALL.triangles, "corner_uv": RESULT.corner_uv}),
+    "stitch_borders": (lsgp.stitch_borders, {"positions": BALL.positions, "triangles": BALL.triangles}),
     "split_into_paths": (lsgp.split_into_paths, {"edges": RESULT.cut_edges, "nodes": RESULT.cones}),
     "lattice.whole_cells": (lattice.whole_cells, {"shift": [[1.2, 3.4]], **CELLS}),
     "lattice.nearest_places": (lattice.nearest_places, MAP | CELLS),
