@@ -61,8 +61,9 @@ INFORMATION = frozenset(
 )
 """Codes of warnings after which nothing needs to be done."""
 
-IN_SUMMARY = frozenset({"FEATURES_OFF_LATTICE"})
-"""Codes of warnings that the one-line summary of an object already covers."""
+ONLY_LISTED = frozenset({"BORDERS_STITCHED", "FEATURES_OFF_LATTICE"})
+"""Codes of warnings that are in the list of the last run alone: the one-line summary of an object covers them, or shows
+that they did no harm."""
 
 MOST_NAMES = 3
 """Of objects in one sentence."""
@@ -104,7 +105,7 @@ def in_groups(found: Mapping[str, Iterable[Problem]]) -> list[tuple[Severity, st
     names: dict[tuple[Severity, str], list[str]] = {}
     for name, problems in found.items():
         for problem in problems:
-            if getattr(problem, "code", None) in IN_SUMMARY:
+            if getattr(problem, "code", None) in ONLY_LISTED:
                 continue
             names.setdefault((severity(problem), explain(problem)), []).append(name)
     lines = []
