@@ -26,24 +26,26 @@ class RealBlender:
     name: str
     arguments: tuple[str, ...]
     has_screen: bool
-    builds_library: bool
-    """Whether its compiler builds the whole wheel, not just the Python module beside a library that is there."""
+
+
+def chroots() -> list[str]:
+    """The folders of BLENDER_CHROOTS, the newest system last."""
+    return [folder for folder in os.environ.get("BLENDER_CHROOTS", "").split(os.pathsep) if folder]
 
 
 def real_blenders() -> list[RealBlender]:
     """Those that the environment names."""
     found = []
-    folders = [folder for folder in os.environ.get("BLENDER_CHROOTS", "").split(os.pathsep) if folder]
+    folders = chroots()
     for folder in folders:
         name = Path(folder).name
         # The chroot sees the repository, but not every temporary folder.
         out = str(ROOT / "build" / f"in_{name}")
-        # Windows and builds take minutes: those of the last one, with the newest compiler and Eigen, are enough.
-        is_last = folder == folders[-1]
-        has_screen = is_last and Path(folder, "usr", "bin", "xvfb-run").exists()
-        found.append(RealBlender(name, ("--chroot", folder, "--out", out), has_screen, builds_library=is_last))
+        # Windows take minutes: those of the last one, the newest, are enough.
+        has_screen = folder == folders[-1] and Path(folder, "usr", "bin", "xvfb-run").exists()
+        found.append(RealBlender(name, ("--chroot", folder, "--out", out), has_screen))
     if "BLENDER" in os.environ and "BLENDER_PYTHON" in os.environ:
         arguments = ("--blender", os.environ["BLENDER"], "--python", os.environ["BLENDER_PYTHON"])
         has_screen = shutil.which("xvfb-run") is not None
-        found.append(RealBlender("blender", arguments, has_screen, builds_library=True))
+        found.append(RealBlender("blender", arguments, has_screen))
     return found

@@ -29,6 +29,7 @@ from xml.etree import ElementTree
 
 ROOT = Path(__file__).resolve().parents[2]
 REAL_BLENDER = ROOT.parent / "shared" / "tools" / "real-blender"
+EIGEN = ("/usr/include/eigen3", "/usr/share/eigen3")
 TEST_SECONDS = 1800
 
 
@@ -171,6 +172,9 @@ def main() -> None:
             # The certificates that ours trusts are not in the chroot; the output folder is.
             environment["SSL_CERT_FILE"] = str(shutil.copy(os.environ["SSL_CERT_FILE"], out / "certificates.pem"))
         python, blender = Command(inside, environment), Command(inside, {})
+        if arguments.library_of is not None and all(map(os.path.isdir, EIGEN)):
+            # Its interface has types of Eigen: the module is compiled with the headers that the library was.
+            python = Command(inside, environment | {"BLENDER_BIND": " ".join(EIGEN)})
     else:
         python = Command([arguments.python], {})
         if arguments.blender is not None:

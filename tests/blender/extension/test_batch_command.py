@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from installed import addon
 from mathutils import Matrix
+from one_blender import one_blender
 from scenes import UvMap, add_ball, add_cone_cube, add_cube, add_grid, add_sphere, covered_twice, joined
 
 command = addon.jobs.batch.command
@@ -132,7 +133,7 @@ def test_files_of_all_kinds(library, tmp_path):
         assert all(sphere.corner_normals[loop].vector.dot(face.normal) > 0.999 for loop in face.loop_indices)
 
 
-@pytest.mark.parametrize("preset", ["paint", "bake", "tile"])
+@pytest.mark.parametrize("preset", ["paint", *one_blender("bake", "tile")])
 def test_with_a_preset_all_objects_of_a_file_are_packed_together(library, tmp_path, preset):
     out = tmp_path / "out"
     assert run(library / "two.blend", "--out", out, "--preset", preset, "--no-pictures") == 0
@@ -149,6 +150,7 @@ def test_with_a_preset_all_objects_of_a_file_are_packed_together(library, tmp_pa
         assert covered_twice(maps) == 0
 
 
+@pytest.mark.one_blender
 @pytest.mark.parametrize("add_large", [add_sphere, add_ball], ids=["automatic cones", "marked cones"])
 def test_islands_that_single_precision_spoils_are_a_warning_which_strict_refuses(tmp_path, add_large):
     speck = add_grid("Speck")  # without cuts, whose two sides would differ as well
@@ -164,6 +166,7 @@ def test_islands_that_single_precision_spoils_are_a_warning_which_strict_refuses
     assert lines_of(tmp_path / "strict")[0]["code"] == "ISLANDS_TINY"
 
 
+@pytest.mark.one_blender
 def test_options_that_name_files_of_one_mesh_are_refused(library, tmp_path):
     (library / "cones.json").write_text('{"cones": [0, 1, 2]}')
     (library / "list.txt").write_text("two.blend\n")
@@ -200,7 +203,7 @@ def scaled(tmp_path):
     return tmp_path / "list.txt"
 
 
-@pytest.mark.parametrize("preset", [[], ["--preset", "paint"]])
+@pytest.mark.parametrize("preset", [*one_blender([]), ["--preset", "paint"]])
 def test_all_objects_get_the_texel_density_that_is_asked_for(scaled, tmp_path, preset):
     out = tmp_path / "out"
     assert run(scaled, "--out", out, "--texel-density", 20, "--texture-size", 512, *preset, "--no-pictures") == 0
@@ -213,6 +216,7 @@ def test_all_objects_get_the_texel_density_that_is_asked_for(scaled, tmp_path, p
         assert covered_twice([UvMap(obj) for obj in objects]) == 0
 
 
+@pytest.mark.one_blender
 def test_a_texel_density_that_the_square_cannot_hold_is_a_warning_or_takes_tiles(scaled, tmp_path):
     # 6 faces of 2 x 2 and 12 of 4 x 4 at 100 texels per unit: 2.2 million texels, eight times those of the texture.
     how = ["--preset", "paint", "--texel-density", 100, "--texture-size", 512, "--no-pictures"]
@@ -225,7 +229,7 @@ def test_a_texel_density_that_the_square_cannot_hold_is_a_warning_or_takes_tiles
     assert "triangles" not in line["message"]  # those of both objects together, which nobody could find
 
 
-@pytest.mark.parametrize("preset", [[], ["--preset", "bake"]])
+@pytest.mark.parametrize("preset", [*one_blender([]), ["--preset", "bake"]])
 def test_tiles_without_a_density_are_filled(scaled, tmp_path, preset):
     out = tmp_path / "out"
     how = [*preset, "--udim", 2, "--margin", 8, "--texture-size", 512, "--overlaps", "split"]
@@ -246,7 +250,7 @@ def test_tiles_without_a_density_are_filled(scaled, tmp_path, preset):
 
 @pytest.mark.parametrize(
     "how",
-    [["--preset", "paint"], ["--preset", "bake", "--texel-density", 20], ["--texel-density", 20]],
+    [*one_blender(["--preset", "paint"], ["--preset", "bake", "--texel-density", 20]), ["--texel-density", 20]],
     ids=["filled", "preset at a density", "density"],
 )
 def test_objects_get_as_many_times_the_density_as_their_weights_say(tmp_path, how):
@@ -264,6 +268,7 @@ def test_objects_get_as_many_times_the_density_as_their_weights_say(tmp_path, ho
         assert found[0] == pytest.approx(20, rel=1e-3)
 
 
+@pytest.mark.one_blender
 @pytest.mark.parametrize("options", [["--pack", "shelves"], ["--pack", "tight", "--texel-density", 9, "--margin", 1]])
 def test_other_ways_to_pack_are_refused(scaled, tmp_path, options):
     if "tight" in options and addon.core.native.lsgp.packer_name() is None:

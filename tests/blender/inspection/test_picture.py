@@ -6,6 +6,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+import pytest
 
 sys.path.append(str(Path(__file__).resolve().parents[3] / "tools" / "pictures"))
 import demo_picture
@@ -50,6 +51,7 @@ def grown(mask: np.ndarray, by: int) -> np.ndarray:
     return padded[side:, side:] - padded[:-side, side:] - padded[side:, :-side] + padded[:-side, :-side] > 0
 
 
+@pytest.mark.one_blender
 def test_cuts_of_the_layout_are_where_the_readme_shows_them():
     import lsgp
 

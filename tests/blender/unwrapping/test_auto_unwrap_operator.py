@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 import pytest
 from installed import addon
+from one_blender import one_blender
 from scenes import (
     UV_ROUNDING,
     UvMap,
@@ -53,7 +54,7 @@ def test_only_the_active_uv_layer_changes(in_edit_mode, preset):
     assert changed(once, snapshot(sphere)) == set()
 
 
-@pytest.mark.parametrize("add", [add_sphere, add_cube, add_ramp, add_grid, add_ball])
+@pytest.mark.parametrize("add", [add_cube, add_grid, *one_blender(add_sphere, add_ramp, add_ball)])
 @pytest.mark.parametrize("preset", PRESETS)
 def test_nothing_overlaps_and_all_is_even_or_seamless(preset, add):
     obj = add()
@@ -132,7 +133,7 @@ def area_of(uv_map):
     return np.abs(((b - a).conj() * (c - a)).imag).sum() / 2
 
 
-@pytest.mark.parametrize("margin", [4, 32])
+@pytest.mark.parametrize("margin", [4, *one_blender(32)])
 @pytest.mark.parametrize("preset", ["PAINT", "BAKE"])
 def test_the_margin_is_that_many_texels(preset, margin):
     for number in range(4):
@@ -370,6 +371,7 @@ def test_an_island_that_is_alone_is_turned_on_its_image():
     assert np.ptp(UvMap(grid).uv, axis=0) == pytest.approx([1.0, 1.0], abs=1e-3)
 
 
+@pytest.mark.one_blender
 def test_cuts_keep_out_of_sight_from_the_front():
     bpy.ops.mesh.primitive_monkey_add()
     monkey = bpy.context.object

@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 import pytest
 from installed import addon
+from one_blender import one_blender
 from scenes import UvMap, add_cone_cube, add_cube, add_grid, add_texture, covered_twice, pin
 
 lsgp, packing, blender_packer = addon.core.native.lsgp, addon.jobs.layouts.packing, addon.jobs.layouts.blender_packer
@@ -13,7 +14,7 @@ TEXELS = 512
 HAS_XATLAS = lsgp.packer_name() is not None
 
 
-@pytest.fixture(params=["xatlas", "Blender"] if HAS_XATLAS else ["Blender"])
+@pytest.fixture(params=[*one_blender("xatlas"), "Blender"] if HAS_XATLAS else ["Blender"])
 def packer(request, monkeypatch):
     """Each packer in turn: with xatlas hidden, or as the extension was installed."""
     if request.param == "Blender":

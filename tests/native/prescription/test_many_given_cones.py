@@ -47,6 +47,11 @@ def prescribed(name: str) -> lsgp.Prescription:
     return prescribe(CASES[name])
 
 
+@cache
+def scale_model(name: str) -> oracle.ScaleModel:
+    return oracle.scale_model(*CASES[name])
+
+
 @every_case
 def test_harmonic_angles(name: str) -> None:
     mesh = CASES[name]
@@ -60,7 +65,7 @@ def test_no_angle_can_be_improved(name: str) -> None:
     Gauss-Bonnet determines the sum, and points outside at the others."""
     mesh = CASES[name]
     angles = prescribed(name).cone_angles
-    model = oracle.scale_model(*mesh)
+    model = scale_model(name)
     slope = -model.objective(TURN - angles)[1]  # of the angles
     low, high = oracle.angle_box(*mesh)
     assert (angles >= low - 1e-9).all() and (angles <= high + 1e-9).all()
@@ -77,9 +82,8 @@ def test_no_angle_can_be_improved(name: str) -> None:
 
 @every_case
 def test_the_log_scale_is_that_of_the_angles(name: str) -> None:
-    mesh = CASES[name]
     found = prescribed(name)
-    model = oracle.scale_model(*mesh)
+    model = scale_model(name)
     y = model.log_scale(TURN - found.cone_angles)
     assert found.log_scale == pytest.approx(y - model.share @ y, abs=1e-9)
 
