@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/thread_team.hpp"
 #include "random_matrices.hpp"
 
 namespace {
@@ -119,9 +120,20 @@ TEST_CASE("large surfaces are dissected, matrices with rows that many others sha
   Edges edges = grid(width, height);
   const Adjacency surface = adjacency_of(width * height, edges);
   CHECK(lsgp::order_rows(surface, width * height) == lsgp::order_by_dissection(surface, width * height));
-  CHECK(lsgp::order_rows(surface, width * 400) == lsgp::order_by_degree(surface, width * 400));
+  CHECK(lsgp::order_rows(surface, width * 130) == lsgp::order_by_degree(surface, width * 130));
   Random random(3);
   for (int i = 0; i < 40000; ++i) edges.emplace(below(random, 40), 40 + below(random, width * height - 40));
   const Adjacency shared = adjacency_of(width * height, edges);
   CHECK(lsgp::order_rows(shared, width * height) == lsgp::order_by_degree(shared, width * height));
+}
+
+TEST_CASE("dissection is the same on any number of threads") {
+  Random random(4);
+  const Adjacency adjacency = adjacency_of(300 * 200, grid(300, 200, &random));
+  const lsgp::ThreadCount one(1);
+  const auto expected = lsgp::order_by_dissection(adjacency, 300 * 200);
+  for (const int threads : {2, 3, 8}) {
+    const lsgp::ThreadCount several(threads);
+    CHECK(lsgp::order_by_dissection(adjacency, 300 * 200) == expected);
+  }
 }

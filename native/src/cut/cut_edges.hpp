@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 
 #include "base/array.hpp"
 #include "cut/cut_cost.hpp"
@@ -27,14 +28,14 @@ class CutEdges {
 
   Index vertex_count() const { return static_cast<Index>(first_.size()) - 1; }
   // Counter-clockwise from outgoing[v].
-  Range from(Index v) const { return {edges_.data() + first_[v], edges_.data() + first_[v + 1]}; }
+  Range from(Index v) const { return {edges_.get() + first_[v], edges_.get() + first_[v + 1]}; }
   // Starts to read the edges from v into the caches.
   void prefetch(Index v) const { Eigen::internal::prefetch(&from(v).first->cost); }
   double usual_cost() const { return usual_cost_; }  // the mean
 
  private:
-  Array<Index> first_;  // (n + 1)
-  Array<Edge> edges_;
+  Array<Index> first_;             // (n + 1)
+  std::unique_ptr<Edge[]> edges_;  // not an Array, which would be cleared first: by one thread alone
   double usual_cost_ = 0;
 };
 

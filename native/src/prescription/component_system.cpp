@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/thread_team.hpp"
 #include "cut/mirrored_cuts.hpp"
 #include "systems/stiffness.hpp"
 
@@ -68,9 +69,19 @@ bool ComponentSystem::covers(const CutGraph& cut_graph) {
   return std::equal(cut.begin(), cut.end(), cut_here.begin(), [](char a, char b) { return a <= b; });
 }
 
+// Beside the factor goes the frame tree, which one thread makes: maps need it next, and the factor's order leaves the
+// others idle.
 const CutFactor* ComponentSystem::factor() {
   if (!is_on_cut()) return nullptr;
-  if (!factor_) factor_.emplace(surface_, all_cuts(), std::move(memory_));
+  if (factor_) return &*factor_;
+  const CutGraph& cuts = all_cuts();
+  ThreadTeam& team = team_of_this_call();
+  team.run_each(team.size() > 1 && !frame_tree_ ? 2 : 1, [&](int i) {
+    if (i == 0)  // on this thread, which counts factorizations
+      factor_.emplace(surface_, cuts, std::move(memory_));
+    else
+      frame_tree_.emplace(surface_, cuts);
+  });
   return &*factor_;
 }
 

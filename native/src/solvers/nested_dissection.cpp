@@ -8,12 +8,15 @@
 #include <numeric>
 #include <utility>
 
+#include "base/thread_team.hpp"
+
 namespace lsgp {
 
 namespace {
 
-// From this many rows on, dissection was measured to pay: below, counting levels takes what the factorization saves.
-constexpr int least_rows = 250000;
+// From this many rows on, dissection was measured to pay, if only on several threads at first: below, counting levels
+// takes more than the factorization saves.
+constexpr int least_rows = 80000;
 // Parts of fewer rows are not divided.
 constexpr int smallest_part = 400;
 // Rows from which levels are counted, far from each other: more of them find shorter separators.
@@ -33,19 +36,21 @@ void for_each_neighbor(const Adjacency& adjacency, int rows, int row, Visit visi
 
 class Dissection {
  public:
-  Dissection(const Adjacency& adjacency, int rows)
-      : adjacency_(adjacency), rows_(rows), order_(rows), place_in_part_(rows, -1) {
+  Dissection(const Adjacency& adjacency, int rows) : adjacency_(adjacency), rows_(rows), order_(rows) {
     std::iota(order_.begin(), order_.end(), 0);
   }
 
   Array<int> by_degree() && {
-    reduce_fill(0, rows_);
+    find_places();
+    reduce_fill({0, rows_});
     return std::move(order_);
   }
 
   Array<int> by_dissection() && {
     find_levels();
-    divide(0, rows_);
+    const Array<Range> parts = divide_all();
+    find_places();
+    team_of_this_call().run_each(static_cast<int>(parts.size()), [&](int i) { reduce_fill(parts[i]); });
     return std::move(order_);
   }
 
@@ -100,28 +105,50 @@ class Dissection {
     int function = -1, level = 0;
   };
 
+  // A part, in `order_`.
+  struct Range {
+    int begin, end;
+    int size() const { return end - begin; }
+  };
+
+  // Divides all rows, the parts of one depth at the same time. Returns what is not divided any further.
+  Array<Range> divide_all() {
+    Array<Range> parts{{0, rows_}}, undivided;
+    while (!parts.empty()) {
+      Array<Array<Range>> halves(parts.size());
+      team_of_this_call().run_each(static_cast<int>(parts.size()), [&](int i) { halves[i] = divide(parts[i]); });
+      Array<Range> next;
+      for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (halves[i].empty()) undivided.push_back(parts[i]);
+        next.insert(next.end(), halves[i].begin(), halves[i].end());
+      }
+      parts = std::move(next);
+    }
+    return undivided;
+  }
+
   // The smallest level that divides a part.
-  Separator find_separator(int begin, int end) {
-    Levels low = levels_[order_[begin]], high = low;
-    for (int k = begin; k < end; ++k) {
+  Separator find_separator(const Range& part) const {
+    Levels low = levels_[order_[part.begin]], high = low;
+    for (int k = part.begin; k < part.end; ++k) {
       const Levels& levels = levels_[order_[k]];
       low = low.min(levels);
       high = high.max(levels);
     }
-    const double size = end - begin;
+    const double size = part.size();
     Separator best{narrow * std::sqrt(size)};
     Eigen::Array<int, level_functions + 1, 1> first;  // count of each function
     first[0] = 0;
     for (int i = 0; i < level_functions; ++i) first[i + 1] = first[i] + high[i] - low[i] + 1;
-    count_.assign(first[level_functions], 0);
-    for (int k = begin; k < end; ++k) {
+    Array<int> count(first[level_functions], 0);
+    for (int k = part.begin; k < part.end; ++k) {
       const Levels& levels = levels_[order_[k]];
-      for (int i = 0; i < level_functions; ++i) ++count_[first[i] + levels[i] - low[i]];
+      for (int i = 0; i < level_functions; ++i) ++count[first[i] + levels[i] - low[i]];
     }
     for (int i = 0; i < level_functions; ++i) {
       double below = 0;
       for (int level = low[i]; level <= high[i]; ++level) {
-        const double rows = count_[first[i] + level - low[i]], side = std::min(below, size - below - rows);
+        const double rows = count[first[i] + level - low[i]], side = std::min(below, size - below - rows);
         if (side >= least_side * size && rows < best.rows) best = {rows, i, level};
         below += rows;
       }
@@ -129,15 +156,16 @@ class Dissection {
     return best;
   }
 
-  // Rows of a level without a neighbor above it go below.
-  void divide(int begin, int end) {
-    if (end - begin < smallest_part) return reduce_fill(begin, end);
-    const Separator separator = find_separator(begin, end);
-    if (separator.function == -1) return reduce_fill(begin, end);
+  // Returns both sides of a separator, which comes behind them, or nothing if there is none. Rows of a level without a
+  // neighbor above it go below. Parts that are divided at the same time have no neighbors in each other.
+  Array<Range> divide(const Range& part) {
+    if (part.size() < smallest_part) return {};
+    const Separator separator = find_separator(part);
+    if (separator.function == -1) return {};
     const auto is_above = [&](int row) { return levels_[row][separator.function] > separator.level; };
     Array<int> above, between;
-    int at = begin;
-    for (int k = begin; k < end; ++k) {
+    int at = part.begin;
+    for (int k = part.begin; k < part.end; ++k) {
       const int row = order_[k];
       if (is_above(row)) {
         above.push_back(row);
@@ -154,28 +182,31 @@ class Dissection {
         order_[at++] = row;
     }
     std::copy(above.begin(), above.end(), order_.begin() + at);
-    std::copy(between.begin(), between.end(), order_.begin() + end - ssize(between));
-    divide(begin, at);
-    divide(at, end - static_cast<int>(between.size()));
+    std::copy(between.begin(), between.end(), order_.begin() + part.end - ssize(between));
+    return {{part.begin, at}, {at, part.end - static_cast<int>(between.size())}};
+  }
+
+  void find_places() {
+    place_.resize(rows_);
+    for (int k = 0; k < rows_; ++k) place_[order_[k]] = k;
   }
 
   // Minimum degree in a part.
-  void reduce_fill(int begin, int end) {
-    if (begin == end) return;
+  void reduce_fill(const Range& range) {
+    if (range.size() == 0) return;
     using Pattern = Eigen::SparseMatrix<signed char, Eigen::ColMajor, int>;
-    const Array<int> part(order_.begin() + begin, order_.begin() + end);
-    const int size = end - begin;
-    for (int i = 0; i < size; ++i) place_in_part_[part[i]] = i;
+    const Array<int> part(order_.begin() + range.begin, order_.begin() + range.end);
+    const int size = range.size();
     Pattern pattern(size, size);
     Array<int> inner;
     for (int i = 0; i < size; ++i) {
       pattern.outerIndexPtr()[i] = static_cast<int>(inner.size());
       inner.push_back(i);
       for_each_neighbor(adjacency_, rows_, part[i], [&](int other) {
-        if (place_in_part_[other] != -1) inner.push_back(place_in_part_[other]);
+        const int place = place_[other];
+        if (place >= range.begin && place < range.end) inner.push_back(place - range.begin);
       });
     }
-    for (const int row : part) place_in_part_[row] = -1;
     pattern.outerIndexPtr()[size] = static_cast<int>(inner.size());
     pattern.resizeNonZeros(static_cast<Eigen::Index>(inner.size()));
     std::copy(inner.begin(), inner.end(), pattern.innerIndexPtr());
@@ -183,13 +214,14 @@ class Dissection {
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
     // With both triangles in one matrix: otherwise Eigen sorts the pattern again, which takes 3 % of a map.
     Eigen::AMDOrdering<int>()(pattern.selfadjointView<Eigen::Lower | Eigen::Upper>(), order);
-    for (int i = 0; i < size; ++i) order_[begin + i] = part[order.indices()[i]];
+    for (int i = 0; i < size; ++i) order_[range.begin + i] = part[order.indices()[i]];
   }
 
   const Adjacency& adjacency_;
   const int rows_;
   Array<int> order_;  // parts and, behind them, their separators
-  Array<int> place_in_part_, level_, queue_, count_;
+  Array<int> place_;  // of every row in `order_`, as long as parts have no order of their own
+  Array<int> level_, queue_;
   Array<Levels> levels_;
   Array<char> separates_;
 };

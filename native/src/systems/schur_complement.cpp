@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "systems/schur_complement.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/memory.hpp"
+#include "base/thread_team.hpp"
 #include "solvers/linear_algebra_counter.hpp"
 
 namespace lsgp {
+
+namespace {
+
+// Columns of a form that one thread fills.
+constexpr Index columns_at_once = 32;
+
+}  // namespace
 
 SchurComplement::SchurComplement(Borrowed<const HalfedgeMesh> mesh, const CutMesh& cut_mesh,
                                  Borrowed<const CutFactor> factor, const Reduction& reduction)
@@ -39,19 +48,25 @@ Eigen::MatrixXcd SchurComplement::dirichlet_form() const {
   // This form and its factor.
   require_memory(2.0 * sizeof(Complex) * unknown_count_ * unknown_count_, GrowsWith::conditions);
   Eigen::MatrixXcd out = Eigen::MatrixXcd::Zero(unknown_count_, unknown_count_);
-  Eigen::VectorXd real(factor_.retained_count()), imaginary(factor_.retained_count());
-  for (Index unknown = 0; unknown < unknown_count_; ++unknown) {
-    real.setZero();
-    imaginary.setZero();
-    for (const Use& use : uses[unknown]) {
-      real += use.coefficient.real() * factor_.schur().col(use.copy);
-      if (use.coefficient.imag() != 0) imaginary += use.coefficient.imag() * factor_.schur().col(use.copy);
+  const auto fill_columns = [&](Index begin, Index end) {
+    Eigen::VectorXd real(factor_.retained_count()), imaginary(factor_.retained_count());
+    for (Index unknown = begin; unknown < end; ++unknown) {
+      real.setZero();
+      imaginary.setZero();
+      for (const Use& use : uses[unknown]) {
+        real += use.coefficient.real() * factor_.schur().col(use.copy);
+        if (use.coefficient.imag() != 0) imaginary += use.coefficient.imag() * factor_.schur().col(use.copy);
+      }
+      for_each_term([&](Index i, const Term& term) {
+        if (term.unknown >= unknown)
+          out(term.unknown, unknown) += std::conj(term.coefficient) * Complex(real[i], imaginary[i]);
+      });
     }
-    for_each_term([&](Index i, const Term& term) {
-      if (term.unknown >= unknown)
-        out(term.unknown, unknown) += std::conj(term.coefficient) * Complex(real[i], imaginary[i]);
-    });
-  }
+  };
+  const Index blocks = (unknown_count_ + columns_at_once - 1) / columns_at_once;
+  team_of_this_call().run_each(blocks, [&](Index block) {
+    fill_columns(block * columns_at_once, std::min((block + 1) * columns_at_once, unknown_count_));
+  });
   return out;
 }
 

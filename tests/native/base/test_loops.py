@@ -327,6 +327,7 @@ REVIEWED = {
         ("while (a >= 0 && (residual_[a] == 0 || distance_[to_[a]] != distance_[node] - 1))", LINKED, SHORT),
     ],
     "solvers/nested_dissection.cpp": [
+        ("while (!parts.empty())", "both halves of a part are smaller", SHORT),
         ("for (int head = 0; tail < rows_; start = next)", "rows, each once", SHORT),
         ("while (next < rows_ && level_[next] != -1)", "rows, each once", SHORT),
     ],
