@@ -32,6 +32,8 @@ from .errors import Cancelled, Finding, InputError, LsgpError
 from .ledger import LedgerPart, build_ledger, surface_of_triangles
 from .map_comparison import (
     fills_badly,
+    island_count,
+    may_replace_divided,
     may_replace_for_features,
     may_replace_map,
     may_replace_undivided,
@@ -292,14 +294,22 @@ def best_division(
     better then.
 
     Dividing them goes by an estimate of what they take; which of several layouts is the smallest only packing can tell.
+    Where islands are to be few, they are not divided at all if half of the square is filled without that, and at most a
+    twentieth of it less.
     mapped: as of `best_at_creases`. progress: without time of its own. solvers: those it was made with.
     Raises Cancelled.
     """
     surface, cones, usual = mapped
     keeps_few = options.compact == "sparing"
-    if options.compact == "off" or options.square_share != 1 or not fills_badly(usual, keeps_few, progress):
+    if options.compact == "off" or options.square_share != 1:
         return usual
     solver = (solvers or Solvers()).of(surface)
+    if keeps_few and island_count(usual) > 1:
+        whole = or_none(partial(_map_through, solver, cones, replace(options, compact="off"), None, progress))
+        if whole is not None and may_replace_divided(whole, usual, progress):
+            return cones.told(whole, options)
+    if not fills_badly(usual, keeps_few, progress):
+        return usual
     best, others = usual, [replace(options, square_share=_SQUARES)]
     if not keeps_few:
         others.append(replace(options, compact="sparing"))

@@ -9,7 +9,8 @@ namespace lsgp {
 
 namespace {
 
-constexpr Index most_divided_cells = 3000;  // among which parts are sought before their borders are
+constexpr Index many_faces = 6000;          // of a graph whose cells are divided first
+constexpr Index most_divided_cells = 3000;  // that it has
 
 using BeforeCut = std::function<void()>;
 
@@ -25,7 +26,7 @@ FaceParts find_parts(const FaceGraph& graph, const OverlapPairs& pairs, MinimumC
 PerFace<Index> divide_cells(const FaceGraph& graph, const Array<Overlap>& overlaps, CutCost rule,
                             const BeforeCut& before_cut) {
   PerFace<Index> number(graph.face_count(), 0);
-  if (graph.face_count() <= most_divided_cells) return number;
+  if (graph.face_count() <= many_faces) return number;
   const FaceGraph cells = build_cell_graph(graph, most_divided_cells);
   const OverlapPairs pairs = collect_pairs(cells, overlaps);
   MinimumCutter cutter(cells, rule);
@@ -45,7 +46,7 @@ Array<Index> split_overlaps(const OpenedSurface& surface, const Array<Overlap>& 
   const PerFace<Index> number = divide_cells(graph, overlaps, rule, before_cut);
   FaceParts parts = find_parts(graph, pairs, cutter, before_cut, number);
   PartMerger merger(graph, pairs, cutter, before_cut, parts);
-  if (graph.face_count() <= most_divided_cells) merger.improve();
+  if (graph.face_count() <= many_faces) merger.improve();
   merger.straighten(surface);
   Array<Index> opened;
   for (const FaceGraph::Link& link : graph.links) {
