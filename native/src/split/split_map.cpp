@@ -184,11 +184,11 @@ class MapDivider {
   double cost_before() const { return rules_.least_cost(surface_.open); }
 
   // costs: the surface, with the costs of further cuts.
-  Division divide(CutCost rule, const MetricMesh& costs, DivideFirst first) const {
+  Division divide(CutCost rule, const MetricMesh& costs) const {
     const HalfedgeMesh& mesh = surface_.mesh;
     MapParts parts{surface_.open, {}, {}};
     const auto before_cut = [&] { monitor_.advance(0); };
-    const Array<Index> opened = split_overlaps({costs, surface_.open}, overlaps_, rule, first, before_cut);
+    const Array<Index> opened = split_overlaps({costs, surface_.open}, overlaps_, rule, before_cut);
     for (const Index h : opened) parts.open[h] = parts.open[mesh.twin[h]] = 1;
     parts.motion.resize(label_parts(mesh, parts.open, parts.part));
     if (map_.rotation) merge_islands(surface_, map_, rules_.kept(), parts);
@@ -218,13 +218,13 @@ class WaySearch {
   // weighings: the surface with each of the costs that further cuts may have.  least: dividing an overlapping layout is
   // assumed to add at least this cost.
   void divide(const ComponentMap& way, std::initializer_list<CutCost> rules, const Array<MetricMesh>& weighings,
-              double least, DivideFirst first) {
+              double least) {
     const PerHalfedge<char> ends = ends_of(rules_.surface(), way);
     const MapDivider divider(rules_, ends, way, monitor_);
     for (const CutCost rule : rules) {
       for (const MetricMesh& costs : weighings) {
         if (chosen_ && divider.cost_before() + (divider.is_whole() ? 0 : least) >= best_.cost) return;
-        Division other = divider.divide(rule, costs, first);
+        Division other = divider.divide(rule, costs);
         if (chosen_ && other.cost > hopeless * best_.cost) return;
         if (chosen_ && !(other.cost < best_.cost)) continue;
         best_ = std::move(other);
@@ -298,12 +298,9 @@ bool split_map(const OpenedSurface& surface, const SplitTask& task, ProgressMoni
   const Array<ComponentMap> ways = find_ways(rules, map);
   const Array<MetricMesh> weighings = rules.weighings();
   WaySearch search(rules, monitor);
-  for (const ComponentMap& way : ways)
-    search.divide(way, {CutCost::shortest}, {surface}, cost_of_island, DivideFirst::cells);
-  const auto every_rule = {CutCost::shortest, CutCost::no_slivers, CutCost::no_small_parts};
-  if (search.chosen()) search.divide(*search.chosen(), every_rule, weighings, 0, DivideFirst::faces);
-  search.divide(map, every_rule, weighings, 0, DivideFirst::cells);
-  if (search.chosen() == &map) search.divide(map, every_rule, weighings, 0, DivideFirst::faces);
+  for (const ComponentMap& way : ways) search.divide(way, {CutCost::shortest}, {surface}, cost_of_island);
+  if (search.chosen()) search.divide(*search.chosen(), {CutCost::no_slivers, CutCost::no_small_parts}, weighings, 0);
+  search.divide(map, {CutCost::shortest, CutCost::no_slivers, CutCost::no_small_parts}, weighings, 0);
   ComponentMap chosen = *search.chosen();
   apply(surface, search.best().parts, chosen);
   map = std::move(chosen);

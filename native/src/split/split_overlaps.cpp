@@ -26,6 +26,7 @@ FaceParts find_parts(const FaceGraph& graph, const OverlapPairs& pairs, MinimumC
 PerFace<Index> divide_cells(const FaceGraph& graph, const Array<Overlap>& overlaps, CutCost rule,
                             const BeforeCut& before_cut) {
   PerFace<Index> number(graph.face_count(), 0);
+  if (graph.face_count() <= many_faces) return number;
   const FaceGraph cells = build_cell_graph(graph, most_divided_cells);
   const OverlapPairs pairs = collect_pairs(cells, overlaps);
   MinimumCutter cutter(cells, rule);
@@ -38,16 +39,14 @@ PerFace<Index> divide_cells(const FaceGraph& graph, const Array<Overlap>& overla
 }  // namespace
 
 Array<Index> split_overlaps(const OpenedSurface& surface, const Array<Overlap>& overlaps, CutCost rule,
-                            DivideFirst first, const std::function<void()>& before_cut) {
+                            const std::function<void()>& before_cut) {
   const FaceGraph graph = build_face_graph(surface);
   const OverlapPairs pairs = collect_pairs(graph, overlaps);
   MinimumCutter cutter(graph, rule);
-  const bool has_cells = first == DivideFirst::cells && graph.face_count() > many_faces;
-  const PerFace<Index> number =
-      has_cells ? divide_cells(graph, overlaps, rule, before_cut) : PerFace<Index>(graph.face_count(), 0);
+  const PerFace<Index> number = divide_cells(graph, overlaps, rule, before_cut);
   FaceParts parts = find_parts(graph, pairs, cutter, before_cut, number);
   PartMerger merger(graph, pairs, cutter, before_cut, parts);
-  if (!has_cells) merger.improve();
+  if (graph.face_count() <= many_faces) merger.improve();
   merger.straighten(surface);
   Array<Index> opened;
   for (const FaceGraph::Link& link : graph.links) {

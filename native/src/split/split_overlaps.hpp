@@ -11,14 +11,10 @@
 
 namespace lsgp {
 
-// What is divided first where there are very many faces.
-enum class DivideFirst { cells, faces };
-
 // Finds edges to open so that no two triangles of one part overlap: minimum cuts between overlapping sets, few and
 // short, preferably along marked seams and sharp edges. The parts do not move, so the transitions are unchanged.
-// first: cells of faces take a fraction of the time, and cuts may become longer.
 // Returns a halfedge of every edge.
 Array<Index> split_overlaps(const OpenedSurface& surface, const Array<Overlap>& overlaps, CutCost rule,
-                            DivideFirst first, const std::function<void()>& before_cut);
+                            const std::function<void()>& before_cut);
 
 }  // namespace lsgp
