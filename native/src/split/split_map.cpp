@@ -24,8 +24,6 @@ namespace {
 // additional cost of such cuts without a mirror image where cuts are symmetric.
 constexpr double cost_of_island = 0.8, cost_of_sliver = 2, cost_of_cut = 1, cost_of_one_side = 4;
 constexpr double sliver = 0.005;  // of the area
-// Times the cost of the best division: where one rule leaves so much, others have hardly ever been better than it.
-constexpr double hopeless = 1.3;
 // The share of a square that islands alike on both sides may take, relative to that of islands cut only to fill it.
 constexpr double most_demand = 1.05;
 
@@ -225,7 +223,6 @@ class WaySearch {
       for (const MetricMesh& costs : weighings) {
         if (chosen_ && divider.cost_before() + (divider.is_whole() ? 0 : least) >= best_.cost) return;
         Division other = divider.divide(rule, costs);
-        if (chosen_ && other.cost > hopeless * best_.cost) return;
         if (chosen_ && !(other.cost < best_.cost)) continue;
         best_ = std::move(other);
         chosen_ = &way;
