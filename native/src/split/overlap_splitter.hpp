@@ -13,9 +13,10 @@ namespace lsgp {
 
 class OverlapSplitter {
  public:
-  // before_cut: called before every cut; its exceptions propagate.
+  // number: faces of different numbers are divided already.  before_cut: called before every cut; its exceptions
+  // propagate.
   OverlapSplitter(Borrowed<const FaceGraph> graph, Borrowed<const OverlapPairs> pairs, MinimumCutter& cutter,
-                  Borrowed<const std::function<void()>> before_cut);
+                  Borrowed<const std::function<void()>> before_cut, const PerFace<Index>& number);
 
   FaceParts split();
 
