@@ -48,9 +48,11 @@ ThreadTeam& team_of_this_call() {
   return *innermost->team_;
 }
 
+bool is_worth_threads(std::ptrdiff_t count) { return count >= range_size * least_ranges && thread_count() > 1; }
+
 void run_in_ranges(std::ptrdiff_t count, const std::function<void(std::ptrdiff_t begin, std::ptrdiff_t end)>& work) {
   const std::ptrdiff_t ranges = count / range_size;  // the last one has the rest
-  ThreadTeam* team = ranges < least_ranges || thread_count() == 1 ? nullptr : &team_of_this_call();
+  ThreadTeam* team = is_worth_threads(count) ? &team_of_this_call() : nullptr;
   if (team == nullptr || team->size() == 1) {
     work(0, count);
     return;

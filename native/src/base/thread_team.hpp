@@ -42,6 +42,9 @@ int thread_count();
 // other threads of a team: this thread alone.
 ThreadTeam& team_of_this_call();
 
+// Whether work on so many elements, that takes about as long for each as for a triangle, is worth other threads.
+bool is_worth_threads(std::ptrdiff_t count);
+
 // Calls work(begin, end) for ranges that together cover 0 to count - 1, in any order and concurrently; a short range is
 // not divided.
 void run_in_ranges(std::ptrdiff_t count, const std::function<void(std::ptrdiff_t begin, std::ptrdiff_t end)>& work);

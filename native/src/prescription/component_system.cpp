@@ -69,14 +69,15 @@ bool ComponentSystem::covers(const CutGraph& cut_graph) {
   return std::equal(cut.begin(), cut.end(), cut_here.begin(), [](char a, char b) { return a <= b; });
 }
 
-// Beside the factor goes the frame tree, which one thread makes: maps need it next, and the factor's order leaves the
-// others idle.
+// Of large surfaces the frame tree, which one thread makes, goes beside the factor: maps need it next, and the factor's
+// order leaves the others idle.
 const CutFactor* ComponentSystem::factor() {
   if (!is_on_cut()) return nullptr;
   if (factor_) return &*factor_;
   const CutGraph& cuts = all_cuts();
-  ThreadTeam& team = team_of_this_call();
-  team.run_each(team.size() > 1 && !frame_tree_ ? 2 : 1, [&](int i) {
+  const bool makes_tree = !frame_tree_ && is_worth_threads(surface_.mesh.triangle_count());
+  if (!makes_tree) return &factor_.emplace(surface_, cuts, std::move(memory_));
+  team_of_this_call().run_each(2, [&](int i) {
     if (i == 0)  // on this thread, which counts factorizations
       factor_.emplace(surface_, cuts, std::move(memory_));
     else

@@ -14,6 +14,8 @@ namespace {
 
 // Columns of a form that one thread fills.
 constexpr Index columns_at_once = 32;
+// Of its entries, which take as long as a triangle elsewhere.
+constexpr std::ptrdiff_t entries_of_triangle = 16;
 
 }  // namespace
 
@@ -63,6 +65,11 @@ Eigen::MatrixXcd SchurComplement::dirichlet_form() const {
       });
     }
   };
+  const std::ptrdiff_t entries = std::ptrdiff_t{unknown_count_} * factor_.retained_count();
+  if (!is_worth_threads(entries / entries_of_triangle)) {
+    fill_columns(0, unknown_count_);
+    return out;
+  }
   const Index blocks = (unknown_count_ + columns_at_once - 1) / columns_at_once;
   team_of_this_call().run_each(blocks, [&](Index block) {
     fill_columns(block * columns_at_once, std::min((block + 1) * columns_at_once, unknown_count_));
