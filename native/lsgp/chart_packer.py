@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from .coarse_islands import coarse_triangles
 from .errors import InputError
 from .island_gaps import ComplexArray, Indices, least_gap
 
@@ -112,11 +113,14 @@ class Packer:
 
     def __init__(self, islands: Islands, square: Square) -> None:
         self._islands, self._square = islands, square
+        self._covers = coarse_triangles(islands.place, islands.triangles, islands.island, islands.borders)
         self._raster = _RASTER if islands.count <= _FEW_ISLANDS else 2 * _RASTER
         # Islands that are packed as their boxes: those without an area, those that xatlas takes for several, and those
         # with a vertex of so many triangles that it would take minutes, as it compares all of them.
         self._boxed = np.zeros(islands.count, bool)
-        self._boxed[islands.island[np.bincount(islands.triangles.ravel()) > _MOST_AROUND]] = True
+        self._boxed[islands.island[np.bincount(self._covers.ravel(), minlength=len(islands.island)) > _MOST_AROUND]] = (
+            True
+        )
 
     def improved(self, turns: ComplexArray, best: Layout | None, shorter: float = 1.0) -> Layout | None:
         """The smallest layout found of islands so turned, if it is smaller than `best`.
@@ -216,7 +220,7 @@ class Packer:
 
     def _charts(self, local: ComplexArray, size: ComplexArray) -> Islands:
         """What xatlas gets: triangles with an area, or the two of a box."""
-        triangles = self._islands.triangles
+        triangles = self._covers
         along, across = (local[triangles[:, k]] - local[triangles[:, 0]] for k in (1, 2))
         of_triangle = self._islands.island[triangles[:, 0]]
         kept = (np.abs((along.conj() * across).imag) > _NO_AREA) & ~self._boxed[of_triangle]
