@@ -19,6 +19,7 @@ using Edges = std::set<std::pair<int, int>>;
 
 Adjacency adjacency_of(int size, const Edges& edges) {
   std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(static_cast<std::size_t>(size) + edges.size());
   for (int i = 0; i < size; ++i) entries.emplace_back(i, i, 1);
   for (const auto& [a, b] : edges) entries.emplace_back(std::max(a, b), std::min(a, b), 1);
   Eigen::SparseMatrix<double> lower(size, size);

@@ -71,9 +71,10 @@ Assembly::Assembly(const Surface& surface, const PerComponent<Component>& compon
   }
 }
 
-void Assembly::add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, ComponentMap map,
-                   std::vector<Finding> findings, std::optional<KeptMap>& split) {
+void Assembly::add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, KeptMap mapped,
+                   std::optional<KeptMap>& split) {
   const Component& component = components_[component_index];
+  ComponentMap& map = mapped.map;
   const PerHalfedge<char> open = open_seams(component.mesh);
   const OpenedSurface opened{{component.mesh, geometry}, open};
   const SplitTask splitting{component.mesh.seam, task.cones.mirroring};
@@ -81,7 +82,7 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
   if (options_.overlaps == Overlaps::split && !result_.seamless && map.pins.size() < 2 && !split) {
     try {
       split_map(opened, splitting, monitor_, map);
-      split = KeptMap{map, findings};
+      split = mapped;
     } catch (const Error& error) {
       failures_.push_back(failure_of(component, error));
       return;
@@ -103,7 +104,7 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
         {options_.stretch, task.importance}, [this] { monitor_.advance(0); }, map);
   }
   defects_.pinned = defects_.pinned || map.pins.size() > 1;
-  move_findings(component, findings, result_.warnings);
+  move_findings(component, mapped.found, result_.warnings);
   added_cuts_.add(component, map);
   one_sided_cuts_.add(component, geometry, task.cones.mirroring, map);
   for (Index v = 0; v < component.mesh.vertex_count(); ++v) {

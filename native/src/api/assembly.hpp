@@ -25,8 +25,8 @@ class Assembly {
 
   // task: must outlive this object.  split: whether the map is split already; where it is not, it is kept there once it
   // is.  A component whose map cannot be split is left out, with the findings about its map.
-  void add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, ComponentMap map,
-           std::vector<Finding> findings, std::optional<KeptMap>& split);
+  void add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, KeptMap mapped,
+           std::optional<KeptMap>& split);
 
   // Reports components that were left out; if there are no others, rethrows the first error.
   void require_any();

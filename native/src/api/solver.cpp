@@ -122,7 +122,8 @@ Result map_components(const KnownSurface& known, const Cones& cones, const Optio
   Assembly assembly(surface, components, options, monitor, result);
   for (std::size_t i = 0; i < components.size(); ++i) {
     if (!mapped.maps[i]) continue;
-    assembly.add(i, mapped.tasks[i], kept.geometry(i), std::move(*mapped.maps[i]), std::move(found[i]), split[i]);
+    KeptMap of_component{std::move(*mapped.maps[i]), std::move(found[i])};
+    assembly.add(i, mapped.tasks[i], kept.geometry(i), std::move(of_component), split[i]);
   }
   assembly.require_any();
   assembly.finish(cones, work.topology.duplicates);
