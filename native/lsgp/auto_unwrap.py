@@ -32,8 +32,6 @@ from .errors import Cancelled, Finding, InputError, LsgpError
 from .ledger import LedgerPart, build_ledger, surface_of_triangles
 from .map_comparison import (
     fills_badly,
-    island_count,
-    may_replace_divided,
     may_replace_for_features,
     may_replace_map,
     may_replace_undivided,
@@ -167,10 +165,9 @@ def auto_unwrap(
         chosen = replace(chosen, square_share=float(udim))
     packs = _may_pack(packing, chosen, pins, texels)
     is_free = arguments.flag("symmetric", symmetric) and count is None
-    solvers = Solvers()
 
     def make(opened: Surface, share: Progress | None) -> tuple[CompletedCones, Result]:
-        solver = solvers.of(opened)
+        solver = Solver(opened)
         found = possible_cones(solver, given, chosen, is_free, share_of(share, 0.0, PLACING))
         return best_map(solver, found, chosen, pins, share_of(share, PLACING, 1.0))
 
@@ -179,7 +176,7 @@ def auto_unwrap(
         found = best_at_creases(choices, chosen, make, mapping)
         surface, result = found[0], found[2]
         if pins is None:
-            result = best_division(found, chosen, share_of(mapping, 1.0, 1.0), solvers)
+            result = best_division(found, chosen, share_of(mapping, 1.0, 1.0))
         if packs:
             result = laid_out(surface, result, packing, texels, share_of(progress, PACKING, 1.0)).result
         elif texels is not None:
@@ -245,20 +242,6 @@ def crease_choices(
     return CreaseChoices(_ending_at(surface, required), further if len(further) else None, preset)
 
 
-class Solvers:
-    """A solver for each surface: what one call computes serves the next ones."""
-
-    def __init__(self) -> None:
-        self._known: list[Solver] = []
-
-    def of(self, surface: Surface) -> Solver:
-        for solver in self._known:
-            if solver.surface is surface:
-                return solver
-        self._known.append(Solver(surface))
-        return self._known[-1]
-
-
 def best_at_creases(
     choices: CreaseChoices,
     options: Options,
@@ -287,34 +270,22 @@ def best_at_creases(
     return best
 
 
-def best_division(
-    mapped: Mapped, options: Options, progress: Progress | None = None, solvers: Solvers | None = None
-) -> Result:
+def best_division(mapped: Mapped, options: Options, progress: Progress | None = None) -> Result:
     """The map with its islands divided further, or less, where much of the square stays empty and the packer fills it
     better then.
 
     Dividing them goes by an estimate of what they take; which of several layouts is the smallest only packing can tell.
-    Where islands are to be few, they are not divided at all if half of the square is filled without that, and at most a
-    twentieth of it less.
-    mapped: as of `best_at_creases`. progress: without time of its own. solvers: those it was made with.
-    Raises Cancelled.
+    mapped: as of `best_at_creases`. progress: without time of its own.  Raises Cancelled.
     """
     surface, cones, usual = mapped
     keeps_few = options.compact == "sparing"
-    if options.compact == "off" or options.square_share != 1:
-        return usual
-    solver = (solvers or Solvers()).of(surface)
-    if keeps_few and island_count(usual) > 1:
-        whole = or_none(partial(_map_through, solver, cones, replace(options, compact="off"), None, progress))
-        if whole is not None and may_replace_divided(whole, usual, progress):
-            return cones.told(whole, options)
-    if not fills_badly(usual, keeps_few, progress):
+    if options.compact == "off" or options.square_share != 1 or not fills_badly(usual, keeps_few, progress):
         return usual
     best, others = usual, [replace(options, square_share=_SQUARES)]
     if not keeps_few:
         others.append(replace(options, compact="sparing"))
     for other in others:
-        divided = or_none(partial(_map_through, solver, cones, other, None, progress))
+        divided = or_none(partial(_map_through, Solver(surface), cones, other, None, progress))
         if divided is not None and may_replace_undivided(divided, best, keeps_few, progress):
             best = cones.told(divided, options)
     return best

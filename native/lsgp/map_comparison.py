@@ -41,8 +41,6 @@ _SMALL_MESH = 5000  # triangles
 _HALF_FILLED = 0.5
 _HARDLY_FILLED = 0.4
 _MOST_WHERE_FEW = 3
-# What divisions have to fill in addition where islands are to be few.
-_WORTH_DIVIDING = 0.05
 # What twice as many islands have to fill in addition where islands need not be few.
 _FILLED_FOR_TWICE = 0.3
 _PAIR = 2
@@ -105,17 +103,6 @@ def fills_badly(usual: Result, keeps_few: bool, progress: Progress | None = None
     usually = _NEARLY_FILLED if len(usual.island) <= _SMALL_MESH else WELL_FILLED
     most = _HALF_FILLED if keeps_few else usually
     return can_be_known and _filled_when_packed(usual, progress) < most
-
-
-def may_replace_divided(whole: Result, usual: Result, progress: Progress | None = None) -> bool:
-    """Whether a map whose islands were not divided to fill the square fills half of it, and at most a twentieth of it
-    less than the usual one, whose islands are more. progress: of packing.  Raises Cancelled.
-    """
-    can_be_known = packer_name() is not None and island_count(usual) <= _MOST_PACKED
-    if not (can_be_known and island_count(whole) < island_count(usual) and defects(whole) <= defects(usual)):
-        return False
-    filled = _filled_when_packed(whole, progress)
-    return filled >= max(_HALF_FILLED, _filled_when_packed(usual, progress) - _WORTH_DIVIDING)
 
 
 def may_replace_undivided(divided: Result, usual: Result, keeps_few: bool, progress: Progress | None = None) -> bool:

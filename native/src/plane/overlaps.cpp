@@ -142,6 +142,8 @@ Box frame_of(const Eigen::VectorXcd& position) {
   return frame;
 }
 
+bool has_overlap(const BoundaryPolygon& boundary) { return boundary.touches_itself() || boundary.encloses_itself(); }
+
 }  // namespace
 
 Array<Overlap> find_overlaps(const Eigen::VectorXcd& position) {
@@ -150,13 +152,13 @@ Array<Overlap> find_overlaps(const Eigen::VectorXcd& position) {
 
 Array<Overlap> find_overlaps(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin) {
   const BoundaryPolygon boundary(position, twin);
-  if (!boundary.has_overlap()) return {};
+  if (!has_overlap(boundary)) return {};
   const WindingRaster twice(boundary, frame_of(position), static_cast<Index>(twin.size() / 3));
   return Layout(position, [&](const Box& box) { return twice.meets(box); }).find_overlaps();
 }
 
 bool has_overlap(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin) {
-  return BoundaryPolygon(position, twin).has_overlap();
+  return has_overlap(BoundaryPolygon(position, twin));
 }
 
 }  // namespace lsgp

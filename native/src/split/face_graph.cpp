@@ -45,19 +45,6 @@ HalfedgeMesh weighing_length(const HalfedgeMesh& mesh) {
   return out;
 }
 
-void FaceGraph::index_links() {
-  link_begin.assign(face_count() + 1, 0);
-  for (const Link& link : links) {
-    for (const Index face : link.faces) ++link_begin[face + 1];
-  }
-  std::partial_sum(link_begin.begin(), link_begin.end(), link_begin.begin());
-  link_of_face.resize(2 * links.size());
-  Array<Index> cursor(link_begin.begin(), link_begin.end() - 1);
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    for (const Index face : links[i].faces) link_of_face[cursor[face]++] = static_cast<Index>(i);
-  }
-}
-
 FaceGraph build_face_graph(const OpenedSurface& surface) {
   const HalfedgeMesh& mesh = surface.mesh;
   const Geometry& geometry = surface.geometry;
@@ -70,6 +57,7 @@ FaceGraph build_face_graph(const OpenedSurface& surface) {
   graph.total_area = geometry.total_area;
   graph.unit = geometry.length.mean() / units_of_mean_edge;
   const PerHalfedge<double> factor = relative_cut_factors(mesh);
+  graph.link_begin.assign(graph.face_count() + 1, 0);
   for (Index h = 0; h < mesh.halfedge_count(); ++h) {
     const Index twin = mesh.twin[h];
     if (twin < h || open[h] || graph.face_of[h / 3] == graph.face_of[twin / 3]) continue;
@@ -77,8 +65,14 @@ FaceGraph build_face_graph(const OpenedSurface& surface) {
     const double units = geometry.length[h] * weight / graph.unit;
     graph.links.push_back(
         {{graph.face_of[h / 3], graph.face_of[twin / 3]}, h, std::max<FaceGraph::Units>(1, std::llround(units))});
+    for (const Index face : graph.links.back().faces) ++graph.link_begin[face + 1];
   }
-  graph.index_links();
+  std::partial_sum(graph.link_begin.begin(), graph.link_begin.end(), graph.link_begin.begin());
+  graph.link_of_face.resize(2 * graph.links.size());
+  Array<Index> cursor(graph.link_begin.begin(), graph.link_begin.end() - 1);
+  for (std::size_t i = 0; i < graph.links.size(); ++i) {
+    for (const Index face : graph.links[i].faces) graph.link_of_face[cursor[face]++] = static_cast<Index>(i);
+  }
   return graph;
 }
 

@@ -23,7 +23,7 @@ struct FaceGraph {
 
   struct Link {
     Index faces[2];
-    Index halfedge;  // in the first of them; none between cells of several
+    Index halfedge;  // in the first of them
     Units cost;      // its length times its factor as a cut; without factors less along sharp edges; least on seams
   };
 
@@ -35,9 +35,6 @@ struct FaceGraph {
   Array<Index> link_begin, link_of_face;  // (faces + 1), (2 links)
 
   Index face_count() const { return static_cast<Index>(area.size()); }
-
-  // To be called once the links of all faces are known.
-  void index_links();
 
   // Calls visit(other face, link).
   template <typename Visit>

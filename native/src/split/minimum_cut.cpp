@@ -21,45 +21,133 @@ constexpr double cell_detour = 1.5;   // by which a cut between cells may be lon
 
 constexpr Index first_cell = 0, second_cell = 1;  // the cells to be separated
 
-// The cells nearer to each of the first two, the nearest first.
-std::array<Array<Index>, 2> by_distance(const FaceCells& cells) {
-  struct Reached {
-    double distance;
-    Index cell, side;
-    bool operator>(const Reached& other) const {
-      return distance != other.distance ? distance > other.distance : cell > other.cell;
-    }
-  };
-  const auto [begin, list] = cells.by_cell();
-  Array<double> distance(cells.count(), std::numeric_limits<double>::infinity());
-  Array<char> is_done(cells.count(), 0);
-  LeastFirst<Reached> queue;
-  for (const Index side : {first_cell, second_cell}) {
-    distance[side] = 0;
-    queue.push({0, side, side});
-  }
-  std::array<Array<Index>, 2> out;
-  while (!queue.empty()) {
-    const Reached nearest = queue.top();
-    queue.pop();
-    const Index cell = nearest.cell;
-    if (is_done[cell]) continue;
-    is_done[cell] = 1;
-    if (cell > second_cell) element(out, nearest.side).push_back(cell);
-    const double own = cell > second_cell ? std::sqrt(cells.area[cell]) : 0;
-    for (Index i = begin[cell]; i < begin[cell + 1]; ++i) {
-      const FaceCells::Edge& edge = cells.edges[list[i]];
-      const Index other = edge.cells[edge.cells[0] == cell];
-      const double through = nearest.distance + own + std::sqrt(cells.area[other]);
-      if (other <= second_cell || through >= distance[other]) continue;
-      distance[other] = through;
-      queue.push({through, other, nearest.side});
-    }
-  }
-  return out;
-}
+struct Edge {
+  Index cells[2];
+  Units cost;
+};
 
 }  // namespace
+
+// Cells of faces. The first two are to be separated.
+struct MinimumCutter::Cells {
+  Array<double> area;
+  Array<Edge> edges;  // one between any two neighbors, sorted
+
+  Index count() const { return static_cast<Index>(area.size()); }
+
+  void collect(Array<Edge>& all) {
+    Array<Index> begin(count() + 1, 0);
+    for (Edge& edge : all) {
+      if (edge.cells[0] > edge.cells[1]) std::swap(edge.cells[0], edge.cells[1]);
+      ++begin[edge.cells[0] + 1];
+    }
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    Array<Index> cursor(begin.begin(), begin.end() - 1);
+    Array<Edge> sorted(all.size());
+    for (const Edge& edge : all) sorted[cursor[edge.cells[0]]++] = edge;
+    for (Index cell = 0; cell < count(); ++cell) {
+      std::sort(sorted.begin() + begin[cell], sorted.begin() + begin[cell + 1],
+                [](const Edge& a, const Edge& b) { return a.cells[1] < b.cells[1]; });
+    }
+    edges.clear();
+    for (const Edge& edge : sorted) {
+      if (edge.cells[0] == edge.cells[1]) continue;
+      if (!edges.empty() && edges.back().cells[0] == edge.cells[0] && edges.back().cells[1] == edge.cells[1])
+        edges.back().cost += edge.cost;
+      else
+        edges.push_back(edge);
+    }
+  }
+
+  // The edges of every cell: offsets into the list, and the list.
+  std::pair<Array<Index>, Array<Index>> by_cell() const {
+    Array<Index> begin(count() + 1, 0), list(2 * edges.size());
+    for (const Edge& edge : edges) {
+      for (const Index cell : edge.cells) ++begin[cell + 1];
+    }
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    Array<Index> cursor(begin.begin(), begin.end() - 1);
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      for (const Index cell : edges[i].cells) list[cursor[cell]++] = static_cast<Index>(i);
+    }
+    return {std::move(begin), std::move(list)};
+  }
+
+  // Merges pairs of neighbors, preferring those with the longest common boundary for their size. Returns the new cell
+  // of every cell.
+  Array<Index> coarsen() {
+    const auto [begin, list] = by_cell();
+    Array<Index> order(count()), merged(count(), none);
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return area[a] < area[b]; });
+    merged[first_cell] = first_cell;
+    merged[second_cell] = second_cell;
+    Index merged_count = 2;
+    for (const Index cell : order) {
+      if (merged[cell] != none) continue;
+      Index best = none;
+      double longest = 0;
+      for (Index i = begin[cell]; i < begin[cell + 1]; ++i) {
+        const Edge& edge = edges[list[i]];
+        const Index other = edge.cells[edge.cells[0] == cell];
+        if (merged[other] != none) continue;
+        const double length = static_cast<double>(edge.cost) / std::sqrt(area[other]);
+        if (best != none && length <= longest) continue;
+        best = other;
+        longest = length;
+      }
+      merged[cell] = merged_count++;
+      if (best != none) merged[best] = merged[cell];
+    }
+    Array<double> areas(merged_count, 0);
+    for (Index cell = 0; cell < count(); ++cell) areas[merged[cell]] += area[cell];
+    area = std::move(areas);
+    Array<Edge> all = std::move(edges);
+    for (Edge& edge : all) {
+      for (Index& cell : edge.cells) cell = merged[cell];
+    }
+    collect(all);
+    return merged;
+  }
+
+  // The cells nearer to each of the first two, the nearest first.
+  std::array<Array<Index>, 2> by_distance() const {
+    struct Reached {
+      double distance;
+      Index cell, side;
+      bool operator>(const Reached& other) const {
+        return distance != other.distance ? distance > other.distance : cell > other.cell;
+      }
+    };
+    const auto [begin, list] = by_cell();
+    Array<double> distance(count(), std::numeric_limits<double>::infinity());
+    Array<char> is_done(count(), 0);
+    LeastFirst<Reached> queue;
+    for (const Index side : {first_cell, second_cell}) {
+      distance[side] = 0;
+      queue.push({0, side, side});
+    }
+    std::array<Array<Index>, 2> out;
+    while (!queue.empty()) {
+      const Reached nearest = queue.top();
+      queue.pop();
+      const Index cell = nearest.cell;
+      if (is_done[cell]) continue;
+      is_done[cell] = 1;
+      if (cell > second_cell) element(out, nearest.side).push_back(cell);
+      const double own = cell > second_cell ? std::sqrt(area[cell]) : 0;
+      for (Index i = begin[cell]; i < begin[cell + 1]; ++i) {
+        const Edge& edge = edges[list[i]];
+        const Index other = edge.cells[edge.cells[0] == cell];
+        const double through = nearest.distance + own + std::sqrt(area[other]);
+        if (other <= second_cell || through >= distance[other]) continue;
+        distance[other] = through;
+        queue.push({through, other, nearest.side});
+      }
+    }
+    return out;
+  }
+};
 
 double MinimumCutter::enough() const { return enough_area * graph_.total_area; }
 
@@ -72,10 +160,11 @@ double MinimumCutter::cost(Units length, double smaller_area) const {
   }
 }
 
-FaceCells MinimumCutter::cells_of(const Array<Index>& scope, const Array<Index>& cell_of_place, Index count) const {
-  FaceCells cells;
+MinimumCutter::Cells MinimumCutter::cells_of(const Array<Index>& scope, const Array<Index>& cell_of_place,
+                                             Index count) const {
+  Cells cells;
   cells.area.assign(count, 0);
-  Array<FaceCells::Edge> edges;
+  Array<Edge> edges;
   for (std::size_t i = 0; i < scope.size(); ++i) {
     cells.area[cell_of_place[i]] += graph_.area[scope[i]];
     graph_.for_each_link(scope[i], [&](Index other, const FaceGraph::Link& link) {
@@ -87,10 +176,10 @@ FaceCells MinimumCutter::cells_of(const Array<Index>& scope, const Array<Index>&
   return cells;
 }
 
-Array<MinimumCutter::CellCut> MinimumCutter::cut_cells(const FaceCells& cells, double slack) const {
+Array<MinimumCutter::CellCut> MinimumCutter::cut_cells(const Cells& cells, double slack) const {
   Units all = 1;
   FlowNetwork network(cells.count());
-  for (const FaceCells::Edge& edge : cells.edges) {
+  for (const Edge& edge : cells.edges) {
     network.add_arc(edge.cells[0], edge.cells[1], edge.cost, edge.cost);
     all += edge.cost;
   }
@@ -114,7 +203,7 @@ Array<MinimumCutter::CellCut> MinimumCutter::cut_cells(const FaceCells& cells, d
   const std::array<double, 2> least_areas = judge(network, least, is_held);
   if (rule_ == CutCost::shortest) return out;
   // Cuts further away from the sets to be separated, on one side or on both, which leave larger parts.
-  const std::array<Array<Index>, 2> nearest = by_distance(cells);
+  const std::array<Array<Index>, 2> nearest = cells.by_distance();
   for (const std::array<bool, 2> grows : {std::array{true, false}, std::array{false, true}, std::array{true, true}}) {
     FlowNetwork grown = network;
     Units flow = least;
@@ -154,11 +243,11 @@ MinimumCut MinimumCutter::cut(const Array<Index>& scope, const Array<Index>& fir
   for (Index& c : cell) {
     if (c == none) c = count++;
   }
-  FaceCells cells = cells_of(scope, cell, count);
+  Cells cells = cells_of(scope, cell, count);
   int halvings = 0;
   while (cells.count() > most_cells) {
     const Index before = cells.count();
-    const Array<Index> merged = cells.coarsen(2);
+    const Array<Index> merged = cells.coarsen();
     for (Index& c : cell) c = merged[c];
     ++halvings;
     if (cells.count() > 0.9 * before) break;
@@ -204,9 +293,9 @@ MinimumCut MinimumCutter::refine(const Array<Index>& scope, const Array<char>& i
   }
   Index count = 2;
   for (const Index face : band) cell[place_[face]] = count++;
-  const FaceCells cells = cells_of(scope, cell, count);
+  const Cells cells = cells_of(scope, cell, count);
   FlowNetwork network(count);
-  for (const FaceCells::Edge& edge : cells.edges) network.add_arc(edge.cells[0], edge.cells[1], edge.cost, edge.cost);
+  for (const Edge& edge : cells.edges) network.add_arc(edge.cells[0], edge.cells[1], edge.cost, edge.cost);
   const Units length = network.maximize(first_cell, second_cell);
   const Array<char> reached = network.reachable(first_cell);
   MinimumCut fine;

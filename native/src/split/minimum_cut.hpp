@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "base/array.hpp"
-#include "split/face_cells.hpp"
 #include "split/face_graph.hpp"
 
 namespace lsgp {
@@ -34,12 +33,13 @@ class MinimumCutter {
   double cost(FaceGraph::Units length, double smaller_area) const;
 
  private:
+  struct Cells;
   struct CellCut {
     Array<char> is_first, is_held;  // (cells) held ones may not change sides
     double cost = std::numeric_limits<double>::infinity();
   };
-  FaceCells cells_of(const Array<Index>& scope, const Array<Index>& cell_of_place, Index count) const;
-  Array<CellCut> cut_cells(const FaceCells& cells, double slack) const;
+  Cells cells_of(const Array<Index>& scope, const Array<Index>& cell_of_place, Index count) const;
+  Array<CellCut> cut_cells(const Cells& cells, double slack) const;
   MinimumCut refine(const Array<Index>& scope, const Array<char>& is_held, const MinimumCut& coarse, int rings,
                     double cost_to_beat) const;
   bool leaves_two(const Array<Index>& scope, const Array<char>& is_first) const;

@@ -17,13 +17,12 @@ constexpr double operations_an_entry = 500;
 }  // namespace
 
 OverlapSplitter::OverlapSplitter(Borrowed<const FaceGraph> graph, Borrowed<const OverlapPairs> pairs,
-                                 MinimumCutter& cutter, Borrowed<const std::function<void()>> before_cut,
-                                 const PerFace<Index>& number)
+                                 MinimumCutter& cutter, Borrowed<const std::function<void()>> before_cut)
     : graph_(graph),
       pairs_(pairs),
       cutter_(cutter),
       before_cut_(before_cut),
-      parts_(number_parts(graph_, number)),
+      parts_(number_parts(graph_, PerFace<Index>(graph_.face_count(), 0))),
       is_seen_(pairs_.of.size(), 0),
       depth_(pairs_.of.size(), none),
       side_(graph_.face_count(), 0) {}

@@ -13,10 +13,9 @@ namespace lsgp {
 
 class OverlapSplitter {
  public:
-  // number: faces of different numbers are divided already.  before_cut: called before every cut; its exceptions
-  // propagate.
+  // before_cut: called before every cut; its exceptions propagate.
   OverlapSplitter(Borrowed<const FaceGraph> graph, Borrowed<const OverlapPairs> pairs, MinimumCutter& cutter,
-                  Borrowed<const std::function<void()>> before_cut, const PerFace<Index>& number);
+                  Borrowed<const std::function<void()>> before_cut);
 
   FaceParts split();
 

@@ -200,7 +200,7 @@ REVIEWED = {
         ),
     ],
     "plane/aabb_tree.hpp": [("while (!open.empty())", "pairs of nodes of a finite tree, each once", OWN)],
-    "plane/boundary_polygon.hpp": [
+    "plane/boundary_polygon.cpp": [
         ("for (Index h = first; !traced[h];)", ONCE_EACH, SHORT),
         ("while (!ends_at(h))", AROUND_A_VERTEX, SHORT),
     ],
@@ -343,9 +343,6 @@ REVIEWED = {
         ),
     ],
     "split/compact_islands.cpp": [("while (!pending.empty())", "each division pays a price out of a sum", WITHIN)],
-    "split/face_cells.cpp": [
-        ("while (cells.count() > most)", "a round that leaves 0.9 of the cells ends it", SHORT),
-    ],
     "split/merge_islands.cpp": [("while (merge_next())", "each round makes two groups one", WITHIN)],
     "split/mirrored_islands.cpp": [
         ("while (!queue.empty() && queue.top().second != to)", NEAREST, OWN),

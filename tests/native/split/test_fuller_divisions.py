@@ -163,31 +163,6 @@ def judged(
     return paint, bake
 
 
-@pytest.mark.parametrize(
-    ("islands", "filled", "divided", "may_replace"),
-    [
-        (1, 0.55, 0.59, True),
-        (1, 0.55, 0.61, False),
-        (1, 0.49, 0.51, False),
-        (3, 0.55, 0.57, False),
-        (2, 0.7, 0.6, True),
-    ],
-)
-def test_few_islands_are_worth_a_twentieth_of_the_square(
-    islands: int, filled: float, divided: float, may_replace: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Instead of three that were divided to fill it."""
-    plain = unwrapped_cube()
-    numbers = np.arange(len(plain.island))
-    whole, usual = (replace(plain, island=(numbers % count).astype(np.int32)) for count in (islands, 3))
-    monkeypatch.setattr(
-        map_comparison, "_filled_when_packed", lambda result, *_: divided if result is usual else filled
-    )
-    assert map_comparison.may_replace_divided(whole, usual) == may_replace
-    worse = replace(whole, overlapping=np.array([3], np.int32))
-    assert not map_comparison.may_replace_divided(worse, usual)
-
-
 def test_only_whole_squares_are_compared(monkeypatch: pytest.MonkeyPatch) -> None:
     """How islands fill a square together with those of other objects one of them does not tell."""
     before = without_packer(monkeypatch)

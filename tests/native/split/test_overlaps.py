@@ -377,20 +377,6 @@ def test_saddles_are_split_with_exact_transitions(count: int, seamless: bool) ->
     assert split.island.max() <= (regions(mesh, kept) if len(kept.overlapping) else 0)
 
 
-def test_many_faces_are_split_like_few() -> None:
-    """Cells of faces are divided first: as few islands, and cuts hardly longer."""
-    lengths, counts = [], []
-    for rings in (8, 96):
-        mesh = wound(70, np.linspace(1, 2, rings + 1))
-        surface = lsgp.Surface(mesh.positions, mesh.triangles)
-        result = lsgp.parameterize(surface, [], options=SPLIT)
-        assert len(result.overlapping) == 0 and faults(mesh, result, SPLIT) == []
-        counts.append(int(result.island.max()) + 1)
-        lengths.append(cut_length(mesh, result.cut_edges))
-    assert len(mesh.triangles) > 12000
-    assert counts[1] <= counts[0] and lengths[1] <= 1.1 * lengths[0]
-
-
 # --- real meshes ----------------------------------------------------------------------------------------------------
 
 # Islands at most, where splitting as little as every overlap asks for, place by place, would leave as many or more.
