@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from .coarse_islands import coarse_triangles
+from .coarse_islands import coarse_triangles, doubled_areas
 from .errors import InputError
 from .island_gaps import ComplexArray, Indices, least_gap
 
@@ -118,9 +118,8 @@ class Packer:
         # Islands that are packed as their boxes: those without an area, those that xatlas takes for several, and those
         # with a vertex of so many triangles that it would take minutes, as it compares all of them.
         self._boxed = np.zeros(islands.count, bool)
-        self._boxed[islands.island[np.bincount(self._covers.ravel(), minlength=len(islands.island)) > _MOST_AROUND]] = (
-            True
-        )
+        around = np.bincount(self._covers.ravel(), minlength=len(islands.island))
+        self._boxed[islands.island[around > _MOST_AROUND]] = True
 
     def improved(self, turns: ComplexArray, best: Layout | None, shorter: float = 1.0) -> Layout | None:
         """The smallest layout found of islands so turned, if it is smaller than `best`.
@@ -221,9 +220,8 @@ class Packer:
     def _charts(self, local: ComplexArray, size: ComplexArray) -> Islands:
         """What xatlas gets: triangles with an area, or the two of a box."""
         triangles = self._covers
-        along, across = (local[triangles[:, k]] - local[triangles[:, 0]] for k in (1, 2))
         of_triangle = self._islands.island[triangles[:, 0]]
-        kept = (np.abs((along.conj() * across).imag) > _NO_AREA) & ~self._boxed[of_triangle]
+        kept = (np.abs(doubled_areas(local, triangles)) > _NO_AREA) & ~self._boxed[of_triangle]
         boxes = np.flatnonzero(np.bincount(of_triangle[kept], minlength=len(size)) == 0)
         half = np.maximum(size.real[boxes], _LEAST_BOX) / 2 + 0.5j * np.maximum(size.imag[boxes], _LEAST_BOX)
         corners = np.stack([-half, half.conj(), half, -half.conj()], axis=1)

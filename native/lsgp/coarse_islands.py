@@ -10,6 +10,7 @@ from collections import deque
 
 import numpy as np
 
+from .arguments import FloatArray
 from .ear_clipping import clip_ears_of_one
 from .island_gaps import ComplexArray, Indices
 
@@ -47,7 +48,7 @@ def _cover(place: ComplexArray, triangles: Indices, borders: Indices) -> Indices
     following = dict(borders.tolist())
     if len(following) < len(borders):
         return None  # its border touches itself
-    areas = _doubled_areas(place, triangles)
+    areas = doubled_areas(place, triangles)
     if not (areas > 0).all():
         return None
     loops = _loops(following)
@@ -62,13 +63,14 @@ def _cover(place: ComplexArray, triangles: Indices, borders: Indices) -> Indices
     points = (place[polygon] - low) / size
     cover = polygon[clip_ears_of_one(np.stack([points.real, points.imag], axis=1))]
     around = np.abs(place[borders[:, 1]] - place[borders[:, 0]]).sum()
-    missing = np.abs(_doubled_areas(place, cover)).sum() - areas.sum()
+    missing = np.abs(doubled_areas(place, cover)).sum() - areas.sum()
     if abs(missing) > _ROUNDING * tolerance * around or np.bincount(cover.ravel()).max() > _MOST_AROUND:
         return None
     return cover
 
 
-def _doubled_areas(place: ComplexArray, triangles: Indices) -> np.ndarray:
+def doubled_areas(place: ComplexArray, triangles: Indices) -> FloatArray:
+    """(m,) twice the signed area of each triangle."""
     along, across = (place[triangles[:, k]] - place[triangles[:, 0]] for k in (1, 2))
     return (along.conj() * across).imag
 

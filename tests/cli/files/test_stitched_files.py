@@ -11,6 +11,7 @@ import meshes
 import numpy as np
 import pytest
 from command import uv_of
+from polygon_meshes import obj_text
 
 BALL = meshes.bumpy_sphere(2)
 SOUP = meshes.triangle_soup(BALL)
@@ -18,15 +19,10 @@ COPY = BALL.triangles.ravel()
 """The vertex of the ball that each of the soup is."""
 
 
-def obj_of(mesh: meshes.Mesh) -> str:
-    rows = [f"v {x!r} {y!r} {z!r}" for x, y, z in mesh.positions.tolist()]
-    return "\n".join([*rows, *(f"f {a + 1} {b + 1} {c + 1}" for a, b, c in mesh.triangles.tolist()), ""])
-
-
 @pytest.fixture
 def soup_file(tmp_path: Path) -> Path:
-    (tmp_path / "soup.obj").write_text(obj_of(SOUP))
-    (tmp_path / "whole.obj").write_text(obj_of(BALL))
+    (tmp_path / "soup.obj").write_text(obj_text(SOUP.positions, SOUP.triangles.tolist()))
+    (tmp_path / "whole.obj").write_text(obj_text(BALL.positions, BALL.triangles.tolist()))
     return tmp_path
 
 
