@@ -48,11 +48,13 @@ Shares of the samples of a profiler (perf) on the head with 200,000 triangles, p
 
 - **Cuts** of few cones: the search for the tree is a tenth of this, exchanges of key paths with the regions around the
   cuts are four tenths, exchanges of junctions three.
-- **Ordering** is minimum degree and the symbolic factorization. From 250,000 unknowns on, nested dissection takes the
-  place of minimum degree. It saves 28 to 53 % of the factor's operations with a million triangles, and 7 to 22 % of a
-  map of two heads; with 200,000, 31 % of the operations but only 2 % of the map, and nothing with 50,000. Unknowns that
-  many others share, as in the complex system, leave no short separators: with 100 cones, dissection has over thirty
-  times the operations, so that minimum degree remains.
+- **Ordering** is minimum degree and the symbolic factorization. From 80,000 unknowns on, nested dissection takes the
+  place of minimum degree, on several threads. It saves 28 to 53 % of the factor's operations with a million triangles,
+  and 7 to 22 % of a map of two heads; with 200,000, 31 % of the operations but only 2 % of the map on one thread, and
+  nothing with 50,000. More than half of its time counts levels from a few vertices, one after the other. Levels of the
+  closed surface, counted during the search for cuts, divide the opened one worse: a map of 200,000 triangles then takes
+  11 % longer. Unknowns that many others share, as in the complex system, leave no short separators: with 100 cones,
+  dissection has over thirty times the operations, so that minimum degree remains.
 - **Real factor** includes the pages of memory that the system clears for it.
 - **Complex factor.** With many cones, unfolding factors a complex system with the transitions in it, at four times the
   operations of the real one. Four fifths of them are in fronts with a cut below even for 8 cones, so that real numbers
@@ -66,10 +68,12 @@ Shares of the samples of a profiler (perf) on the head with 200,000 triangles, p
 THREADS = """\
 ## Two threads
 
-Wall-clock seconds of the whole map. Threads divide the factorization, the solves and the passes over triangles. The
-search for cuts, ordering and topology run on one thread: they are half of the time of one thread with 200,000
-triangles, and nothing of the factorization can begin before the cuts are known. [Batches](../how-to/batch.md) unwrap
-one mesh on each processor instead.
+Wall-clock seconds of the whole map. Threads divide the factorization, the solves, the passes over triangles and, in
+dissection, the parts of the surface; the tree along which directions are integrated is built beside the factor. The
+search for cuts, the levels of dissection, the symbolic factorization and topology run on one thread: they are almost
+half of the time of one thread with 200,000 triangles. The factorization cannot begin before the cuts are known: an
+order of the closed surface, found meanwhile, has 1.5 times the operations with 200,000 triangles and 1.9 times with a
+million. [Batches](../how-to/batch.md) unwrap one mesh on each processor instead.
 """
 
 BESIDE_BLENDER = """\
