@@ -403,7 +403,7 @@ class CompletedCones:
         of_map = [finding for finding in result.warnings if finding.code != "CUTS_NOT_MIRRORED"]
         if self.placement is None:
             return replace(result, warnings=of_map)
-        findings = self.placement.warnings
+        findings = [_true_of_map(finding, result) for finding in self.placement.warnings]
         if self.by_target and options.mode == "low-stretch" and result.distortion.l2_stretch <= TARGET:
             # It speaks of the conformal map, and this one reaches the target.
             findings = [finding for finding in findings if finding.code != "PLACEMENT_NOT_REACHED"]
@@ -584,6 +584,16 @@ def _map_through(
 ) -> Result:
     chosen = completed.options_of_map(options)
     return solver.parameterize(completed.cones, completed.angles, chosen, pins, progress)
+
+
+def _true_of_map(finding: Finding, result: Result) -> Finding:
+    """A finding of placement, which leaves components out that have a map without cones."""
+    if finding.code != "COMPONENT_SKIPPED" or (result.island[finding.elements.indices] < 0).any():
+        return finding
+    reason = finding.message.partition(": ")[2]
+    return replace(
+        finding, code="PLACEMENT_NOT_REACHED", message=f"A component was unwrapped without placed cones: {reason}"
+    )
 
 
 def joined_warnings(of_placement: Sequence[Finding], of_map: Sequence[Finding]) -> list[Finding]:

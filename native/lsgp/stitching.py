@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Stitches boundaries that lie on each other: files for display repeat vertices wherever normals or UVs differ, and the
-surface is open there without looking so."""
+"""Stitches boundaries that lie on each other, and closes edges without length: files for display repeat vertices
+wherever normals or UVs differ, and the surface is open there without looking so; modelers leave a vertex for each face
+at poles."""
 
 from __future__ import annotations
 
@@ -23,12 +24,14 @@ _SPREAD = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9],
 
 
 def stitch_borders(positions: ArrayLike, triangles: ArrayLike) -> IndexArray:
-    """The vertices with which boundaries that lie on each other are one: `Surface(positions, stitched[triangles])`.
+    """The vertices with which boundaries that lie on each other are one, and edges without length a point:
+    `Surface(positions, stitched[triangles])`.
 
     positions: (n, 3). triangles: (m, 3) vertices.
     Returns (n,) int32, for each vertex the one that takes its place, the first of those that become one; itself for
     most. Vertices become one along edges with a triangle on one side only, where exactly two such edges have exactly
     the same ends, in opposite order, unless their triangles are folded onto each other, as the two sides of a leaf are.
+    So do the ends of an edge that are at exactly the same place; its triangles name a vertex twice then.
     Raises InputError for arrays that are none of these.
     """
     positions = arguments.float_rows("positions", positions, 3)
@@ -39,15 +42,24 @@ def stitch_borders(positions: ArrayLike, triangles: ArrayLike) -> IndexArray:
 
 def stitched_vertices(positions: FloatArray, corners: NDArray[np.integer], sizes: NDArray[np.integer]) -> IndexArray:
     """As `stitch_borders`, of polygons.  corners: (c,) the vertices of all, one after the other. sizes: (f,)."""
-    stitched = np.arange(len(positions), dtype=np.int32)
+    closed = np.arange(len(positions), dtype=np.int32)
     place = _shared_places(positions)
     if place is None:
-        return stitched
+        return closed
     face = np.repeat(np.arange(len(sizes)), sizes)
     following = np.arange(1, len(corners) + 1)
     following[np.cumsum(sizes)[sizes > 0] - 1] = (np.cumsum(sizes) - sizes)[sizes > 0]
     tail, head = corners, corners[following]
-    side = np.flatnonzero((place[tail] >= 0) & (place[head] >= 0) & (place[tail] != place[head]))
+    shared = (place[tail] >= 0) & (place[head] >= 0)
+    point = shared & (place[tail] == place[head])
+    _join(closed, tail[point], head[point])
+
+    stitched = closed.copy()
+    tail, head = closed[tail], closed[head]
+    is_line = np.zeros(len(sizes), bool)
+    with_point = np.flatnonzero(np.isin(face, face[point]))
+    is_line[face[with_point]] = _different(closed, corners[with_point], face[with_point])[face[with_point]] < 3
+    side = np.flatnonzero(shared & ~point & ~is_line[face])
     side = _once(side, edge_keys(tail[side], head[side], len(positions)))
     one, other = _opposite_pairs(side, place[tail[side]], place[head[side]], len(positions))
     normals = _normals(positions, tail, head, face, len(sizes))
@@ -55,7 +67,11 @@ def stitched_vertices(positions: FloatArray, corners: NDArray[np.integer], sizes
     meets = (facing > _FOLDED) & (face[one] != face[other])
     one, other = one[meets], other[meets]
     _join(stitched, np.concatenate([tail[one], head[one]]), np.concatenate([head[other], tail[other]]))
-    _release_collapsed(stitched, corners, face, len(sizes))
+    moved = np.isin(face, face[stitched[corners] != closed[corners]])
+    corners, face = corners[moved], face[moved]
+    folded = _different(stitched, corners, face) < _different(closed, corners, face)
+    kept = np.isin(closed, closed[corners[folded[face]]])
+    stitched[kept] = closed[kept]
     return stitched
 
 
@@ -85,8 +101,9 @@ def stitched_finding(stitched: IndexArray) -> list[Finding]:
     return [
         Finding(
             "BORDERS_STITCHED",
-            f"Boundaries lie exactly on each other; {counted(len(moved), 'vertex', 'vertices')} there repeat others. "
-            "They were stitched for the computation. Merge by distance to be rid of this note.",
+            f"{counted(len(moved), 'vertex repeats another', 'vertices repeat others')} where boundaries lie exactly "
+            "on each other or edges have no length. They are one for the computation. Merge by distance to be rid of "
+            "this note.",
             Elements("vertices", moved),
         )
     ]
@@ -175,15 +192,6 @@ def _join(stitched: IndexArray, first: NDArray[np.integer], second: NDArray[np.i
             return
 
 
-def _release_collapsed(stitched: IndexArray, corners: NDArray[np.integer], face: NDArray[np.intp], count: int) -> None:
-    """Vertices of faces that would touch themselves stay what they are."""
-    moved = stitched != np.arange(len(stitched))
-    changed = np.zeros(count, bool)
-    changed[face[moved[corners]]] = True
-    chosen = np.flatnonzero(changed[face])
-    vertex = face[chosen] * len(stitched) + stitched[corners[chosen]]
-    _, index, times = np.unique(vertex, return_inverse=True, return_counts=True)
-    collapsed = np.zeros(count, bool)
-    collapsed[face[chosen[times[index] > 1]]] = True
-    kept = corners[collapsed[face]]
-    stitched[kept] = kept
+def _different(named: IndexArray, corners: NDArray[np.integer], face: NDArray[np.intp]) -> NDArray[np.integer]:
+    """How many different vertices each face has.  named: (n,) the one that stands for each. face: (c,) of the corners."""
+    return np.bincount(np.unique(face * len(named) + named[corners]) // len(named), minlength=face.max(initial=-1) + 1)

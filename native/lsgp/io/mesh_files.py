@@ -65,7 +65,8 @@ class MeshFile(ShortRepr):
         stitched = np.arange(len(mesh.positions), dtype=np.int32)
         if stitch:
             stitched = stitched_vertices(mesh.positions, mesh.corners, mesh.sizes)
-        triangulation, findings = triangulated(replace(mesh, corners=stitched[mesh.corners]))
+        triangulation, findings = triangulated(mesh)
+        triangulation = triangulation.at_vertices(stitched)
         return cls(path, form, data, mesh, triangulation, stitched, (*findings, *stitched_finding(stitched)))
 
     @property

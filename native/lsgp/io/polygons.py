@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,6 +87,15 @@ class Triangulation(EqualByContent, ShortRepr):
             values[self.corner[np.isin(self.polygon, self.polygon[missing])]] = np.nan
         values[self.repeats[:, 0]] = values[self.repeats[:, 1]]
         return values
+
+    def at_vertices(self, named: NDArray[np.int32]) -> Triangulation:
+        """The same with other vertices.  named: (n,) the one that stands for each; edges between equal ones are none."""
+        if np.array_equal(named, np.arange(len(named))):
+            return self
+        edges = np.sort(named[self.edges], axis=1)
+        edges = edges[edges[:, 0] != edges[:, 1]]
+        _, first = np.unique(edge_keys(*edges.T, len(named)), return_index=True)
+        return replace(self, triangles=named[self.triangles], edges=edges[first])
 
     def polygons_of(self, triangles: NDArray[np.int32]) -> NDArray[np.int32]:
         """The polygons that given triangles belong to, ascending, each once."""

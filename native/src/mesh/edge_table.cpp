@@ -11,7 +11,7 @@ EdgeTable::EdgeTable(const Surface& surface, const PerTriangle<char>& skip) {
   const Triangles& triangles = surface.triangles;
   const auto for_each_halfedge = [&](auto visit) {
     for (Index f = 0; f < triangles.rows(); ++f) {
-      if (skip[f]) continue;
+      if (skip[f] || is_collapsed(triangles, f)) continue;
       const Index a = triangles(f, 0), b = triangles(f, 1), c = triangles(f, 2);
       visit(3 * f, a, b);
       visit(3 * f + 1, b, c);

@@ -11,7 +11,7 @@ namespace lsgp {
 // The undirected edges of the triangles; every edge lists its halfedges.
 class EdgeTable {
  public:
-  // Leaves out the triangles marked to skip; their halfedges have no edge.
+  // Leaves out the triangles marked to skip and those that name a vertex twice; their halfedges have no edge.
   EdgeTable(const Surface& surface, const PerTriangle<char>& skip);
 
   Index count() const { return static_cast<Index>(first_.size()) - 1; }

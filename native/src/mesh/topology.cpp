@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "base/memory.hpp"
 #include "base/text.hpp"
@@ -13,16 +14,36 @@ namespace lsgp {
 
 namespace {
 
-// what: the pairs, for the message.
-PerEdge<char> mark_edges(const EdgeTable& edges, const VertexPairs& pairs, Code code, const char* what,
-                         const char* remedy) {
+using EdgeSet = std::set<std::pair<Index, Index>>;  // the lower vertex first
+
+// The edges of collapsed triangles.
+EdgeSet edges_of(const Surface& surface, const Array<Index>& collapsed) {
+  EdgeSet edges;
+  for (const Index f : collapsed) {
+    for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+      edges.insert(std::minmax(surface.triangles.data()[h], surface.triangles.data()[next(h)]));
+    }
+  }
+  return edges;
+}
+
+// What a message says of vertex pairs, and of those among them that are no edges.
+struct PairWording {
+  Code code;
+  const char *what, *remedy;
+};
+
+// lost: edges that pairs may name although no triangle of the table has them.
+PerEdge<char> mark_edges(const EdgeTable& edges, const EdgeSet& lost, const VertexPairs& pairs,
+                         const PairWording& wording) {
+  const auto& [code, what, remedy] = wording;
   PerEdge<char> marked(edges.count(), 0);
   Array<Index> missing;
   for (Index row = 0; row < pairs.rows(); ++row) {
     const Index a = pairs(row, 0), b = pairs(row, 1), edge = a == b ? none : edges.find(a, b);
     if (edge != none)
       marked[edge] = 1;
-    else
+    else if (lost.count(std::minmax(a, b)) == 0)
       missing.insert(missing.end(), {a, b});
   }
   if (!missing.empty()) {
@@ -40,7 +61,8 @@ PerEdge<double> cut_factors(const EdgeTable& edges, const Surface& surface) {
   if (surface.cut_costs.size() == 0) return {};
   PerEdge<double> out(edges.count(), 1);
   for (Index row = 0; row < surface.edges->rows(); ++row) {
-    out[edges.find((*surface.edges)(row, 0), (*surface.edges)(row, 1))] = surface.cut_costs[row];
+    const Index edge = edges.find((*surface.edges)(row, 0), (*surface.edges)(row, 1));
+    if (edge != none) out[edge] = surface.cut_costs[row];
   }
   return out;
 }
@@ -58,6 +80,7 @@ Array<std::pair<Index, Index>> find_duplicates(const Surface& surface, const Edg
   }
   if (is_plain) return duplicates;
   for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    if (is_collapsed(surface.triangles, f)) continue;
     // Search the edge with the fewest triangles; the others may be shared by many.
     Index own = 3 * f;
     for (Index h = 3 * f + 1; h < 3 * f + 3; ++h) {
@@ -283,14 +306,44 @@ struct EdgeMarks {
   PerEdge<double> factor;  // empty: 1
 };
 
-EdgeMarks marks_of(const Surface& surface, const EdgeTable& edges) {
-  constexpr auto pass_edges = "Pass edges of this mesh.";
-  return {surface.edges ? mark_edges(edges, *surface.edges, Code::edge_not_in_mesh, "cuttable edges", pass_edges)
-                        : PerEdge<char>(edges.count(), 1),
-          mark_edges(edges, surface.seams, Code::seam_not_an_edge, "seams", "Mark edges of this mesh."),
-          mark_edges(edges, surface.borders, Code::edge_not_in_mesh, "borders", pass_edges),
-          mark_edges(edges, surface.features, Code::edge_not_in_mesh, "features", pass_edges),
-          cut_factors(edges, surface)};
+EdgeMarks marks_of(const Surface& surface, const EdgeTable& edges, const Array<Index>& collapsed) {
+  const EdgeSet lost = edges_of(surface, collapsed);
+  const auto marked = [&](const VertexPairs& pairs, const char* what) {
+    return mark_edges(edges, lost, pairs, {Code::edge_not_in_mesh, what, "Pass edges of this mesh."});
+  };
+  return {surface.edges ? marked(*surface.edges, "cuttable edges") : PerEdge<char>(edges.count(), 1),
+          mark_edges(edges, lost, surface.seams, {Code::seam_not_an_edge, "seams", "Mark edges of this mesh."}),
+          marked(surface.borders, "borders"), marked(surface.features, "features"), cut_factors(edges, surface)};
+}
+
+// Marks collapsed triangles in `skip` and returns them.
+Array<Index> leave_out_collapsed(const Surface& surface, PerTriangle<char>& skip) {
+  Array<Index> collapsed;
+  for (Index f = 0; f < surface.triangles.rows(); ++f) {
+    if (!is_collapsed(surface.triangles, f)) continue;
+    skip[f] = 1;
+    collapsed.push_back(f);
+  }
+  return collapsed;
+}
+
+// Collapsed triangles, and for each one with the same edge or, where all of its corners are one vertex, with that.
+// Those without such a triangle are left out.
+Array<std::pair<Index, Index>> find_neighbors(const Surface& surface, const EdgeTable& edges,
+                                              const Array<Index>& collapsed) {
+  Array<std::pair<Index, Index>> neighbors;
+  if (collapsed.empty()) return neighbors;
+  PerVertex<Index> triangle_at(surface.positions.rows(), none);
+  for (Index h = 0; h < 3 * surface.triangles.rows(); ++h) {
+    if (edges.edge_of(h) != none) triangle_at[surface.triangles.data()[h]] = h / 3;
+  }
+  for (const Index f : collapsed) {
+    const auto [low, high] = std::minmax({surface.triangles(f, 0), surface.triangles(f, 1), surface.triangles(f, 2)});
+    const Index edge = low == high ? none : edges.find(low, high);
+    const Index neighbor = low == high ? triangle_at[low] : edge == none ? none : edges.halfedge(edge, 0) / 3;
+    if (neighbor != none) neighbors.emplace_back(f, neighbor);
+  }
+  return neighbors;
 }
 
 // A surface's edges, how its triangles are joined across them, and which of these are turned over.
@@ -368,9 +421,11 @@ Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std
   require_memory(bytes_a_triangle * static_cast<double>(surface.triangles.rows()));
   Topology topology;
   PerTriangle<char> skip(surface.triangles.rows(), 0);
+  topology.collapsed = leave_out_collapsed(surface, skip);
   EdgeTable edges(surface, skip);
   topology.duplicates = leave_out_duplicates(surface, skip, edges, findings);
-  const EdgeMarks marks = marks_of(surface, edges);
+  for (const auto& pair : find_neighbors(surface, edges, topology.collapsed)) topology.duplicates.push_back(pair);
+  const EdgeMarks marks = marks_of(surface, edges, topology.collapsed);
   const PerHalfedge<Index> twin =
       join_halfedges(edges, marks.border, marks.seam, open_seams, static_cast<Index>(3 * surface.triangles.rows()));
   const Orientation orientation = orient(surface, skip, twin);

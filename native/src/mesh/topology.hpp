@@ -78,10 +78,18 @@ struct Component {
   }
 };
 
+// Whether a triangle names a vertex twice, as it does once the ends of an edge without length are one vertex.
+inline bool is_collapsed(const Triangles& triangles, Index f) {
+  const Index a = triangles(f, 0), b = triangles(f, 1), c = triangles(f, 2);
+  return a == b || b == c || c == a;
+}
+
 struct Topology {
   PerComponent<Component> components;
-  // Triangles with the same three vertices as an earlier one, and that one; in no component, they share its map.
+  // Triangles in no component, and the one whose map each shares: the first with the same three vertices or, for one
+  // that is collapsed, with the same edge.
   Array<std::pair<Index, Index>> duplicates;
+  Array<Index> collapsed;  // triangles in no component, duplicates among them
 };
 
 // Which seams are boundaries: those of the marked triangles; empty: none.
@@ -89,7 +97,8 @@ using OpenSeams = PerTriangle<char>;
 
 // Splits a surface into components joined along edges of exactly two triangles. Edges of more triangles are opened,
 // vertices whose triangles form several fans are split, triangles oriented against their component's majority are
-// reversed, duplicate triangles are left out; each is reported. Throws EDGE_NOT_IN_MESH, SEAM_NOT_AN_EDGE.
+// reversed, duplicate triangles are left out; each is reported. Collapsed triangles are left out and listed.
+// Throws EDGE_NOT_IN_MESH, SEAM_NOT_AN_EDGE.
 Topology build_topology(const Surface& surface, const OpenSeams& open_seams, std::vector<Finding>& findings);
 
 }  // namespace lsgp

@@ -17,6 +17,8 @@ namespace lsgp {
 
 namespace {
 
+constexpr auto no_area = "No triangle has an area. Restore the surface's shape.";
+
 // open: the components that are opened along their seams.
 PerComponent<ComponentTask> hand_out(const Surface& surface, const PerComponent<Component>& components,
                                      const OpenSeams& open, const Cones& cones, const Options& options) {
@@ -134,6 +136,22 @@ double unit_scale(const Surface& surface) {
   return largest > 0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
 }
 
+// Collapsed triangles, and those among them that have no neighbor with a map.
+void report_collapsed(const Topology& topology, std::vector<Finding>& findings) {
+  const Array<Index>& collapsed = topology.collapsed;
+  if (collapsed.empty()) return;
+  findings.push_back(counted(Code::degenerate_faces, {ElementKind::triangles, collapsed}));
+  Array<Index> neighbors, alone;
+  for (const auto& pair : topology.duplicates) neighbors.push_back(pair.first);
+  sort_unique(neighbors);
+  std::set_difference(collapsed.begin(), collapsed.end(), neighbors.begin(), neighbors.end(),
+                      std::back_inserter(alone));
+  if (alone.empty()) return;
+  findings.push_back({Code::component_skipped,
+                      concat("A component of the surface was left out (", name(Code::degenerate_mesh), "): ", no_area),
+                      {ElementKind::triangles, alone}});
+}
+
 // Builds the components of the surface unless they are up to date.
 void split(const Surface& surface, SeamMode seams, OpenSeams open, Work& work) {
   if (!work.topology.components.empty() && work.seams == seams && work.open_seams == open) return;
@@ -146,6 +164,7 @@ void split(const Surface& surface, SeamMode seams, OpenSeams open, Work& work) {
   if (seams == SeamMode::follow && !open.empty() && was_unopened) work.unopened = std::move(work.topology.components);
   work.found.clear();
   work.topology = build_topology(used, open, work.found);
+  report_collapsed(work.topology, work.found);
   ++work.generation;
   work.seams = seams;
   work.open_seams = std::move(open);
@@ -308,8 +327,7 @@ Geometry require_geometry(const Component& component, std::vector<Finding>& find
   Geometry geometry = build_geometry(component.mesh);
   if (geometry.degenerate.empty()) return geometry;
   if (geometry.degenerate.size() == component.source_triangle.size()) {
-    throw Error(Code::degenerate_mesh, "No triangle has an area. Restore the surface's shape.",
-                {ElementKind::triangles, geometry.degenerate});
+    throw Error(Code::degenerate_mesh, no_area, {ElementKind::triangles, geometry.degenerate});
   }
   require_comparable(component.mesh.positions);  // distant outliers have only degenerate triangles
   findings.push_back(

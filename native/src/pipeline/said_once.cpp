@@ -17,7 +17,8 @@ bool is_counted(Code code) { return code == Code::degenerate_faces || code == Co
 std::string sentence(Code code, std::size_t n) {
   if (code == Code::degenerate_faces) {
     return concat(count(n, "triangle has", "triangles have"),
-                  " no area, and got a little for the computation. Merge by distance to be rid of this note.");
+                  " no area: those with an edge of no length were left out of the computation, others got a little. "
+                  "Merge by distance to be rid of this note.");
   }
   return concat(count(n, "cone lies", "cones lie"),
                 " on a boundary, where angles are free anyway; nothing was prescribed there. Give an angle to make a "

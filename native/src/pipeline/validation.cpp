@@ -7,7 +7,7 @@
 
 #include "base/text.hpp"
 #include "base/thread_team.hpp"
-#include "mesh/per_element.hpp"
+#include "mesh/topology.hpp"
 
 namespace lsgp {
 
@@ -167,13 +167,13 @@ void require_connectivity(const Surface& surface) {
   const Triangles& triangles = surface.triangles;
   if (triangles.rows() == 0) throw Error(Code::empty_mesh, "The mesh has no faces. Add faces to unwrap.");
 
-  Array<Index> outside, repeated;
+  Array<Index> outside, collapsed;
   for (Index f = 0; f < triangles.rows(); ++f) {
     const Index a = triangles(f, 0), b = triangles(f, 1), c = triangles(f, 2);
     if (a < 0 || b < 0 || c < 0 || a >= n || b >= n || c >= n) {
       outside.push_back(f);
-    } else if (a == b || b == c || c == a) {
-      repeated.push_back(f);
+    } else if (is_collapsed(triangles, f)) {
+      collapsed.push_back(f);
     }
   }
   if (!outside.empty()) {
@@ -182,11 +182,11 @@ void require_connectivity(const Surface& surface) {
                        ". Repair the face indices."),
                 {ElementKind::triangles, outside});
   }
-  if (!repeated.empty()) {
+  if (ssize(collapsed) == triangles.rows()) {
     throw Error(Code::bad_face,
-                concat(count(repeated.size(), "triangle repeats", "triangles repeat"),
-                       " a vertex. Merge by distance or delete them."),
-                {ElementKind::triangles, repeated});
+                concat(count(collapsed.size(), "triangle repeats", "triangles repeat"),
+                       " a vertex, and there is no other. Add faces to unwrap."),
+                {ElementKind::triangles, collapsed});
   }
   if (surface.edges) require_indices(*surface.edges, n, "edges");
   require_cut_costs(surface);

@@ -70,6 +70,7 @@ VerifiedChoice VerifiedPlacement::place() {
   // Unwrapping would repair it anyway.
   const bool is_left = !out.map.is_valid() && !out.map.is_repaired && out.cones.is_possible();
   if (is_left && chooser_.task().mesh.triangle_count() <= very_large) repair(out);
+  if (is_automatic) take_fewer_while_off(out);
   return out;
 }
 
@@ -267,6 +268,16 @@ void VerifiedPlacement::take_fewer(const AutomaticCones& automatic, double misse
     const bool is_enough = found.map.l2 <= chooser_.options().target;
     (is_enough ? reached : missed) = between;
     if (is_enough) best = std::move(found);
+    monitor_.tick();
+  }
+}
+
+// Fewer cones stretch more, but if angles or seams are off with many, they may be right with few.
+void VerifiedPlacement::take_fewer_while_off(VerifiedChoice& best) {
+  for (auto stage = std::rbegin(cone_stages); stage != std::rend(cone_stages) && best.map.is_off(); ++stage) {
+    if (*stage >= static_cast<int>(best.cones.vertices.size())) continue;
+    VerifiedChoice found = verified(chooser_.choose(*stage));
+    if (is_better(found.map, best.map)) best = std::move(found);
     monitor_.tick();
   }
 }

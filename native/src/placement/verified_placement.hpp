@@ -22,7 +22,8 @@ struct VerifiedChoice {
 //
 // Without a number of cones the target applies to the map: if it is missed, corners of a polyhedron become cones, cones
 // are added where the map is stretched, or chosen for a lower target, continuing the previous choice, with as few as
-// suffice; if that misses, too, more cones than the stages have. A given number of cones is kept, but other choices are
+// suffice; if that misses, too, more cones than the stages have. If angles or seams of the map are off with all of
+// these, fewer are taken. A given number of cones is kept, but other choices are
 // tried if the map is worse than predicted, and then one cone after another is moved, on small surfaces also with
 // angles of least distortion at the new places. If all of these miss, these angles are tried.
 //
@@ -64,6 +65,7 @@ class VerifiedPlacement {
   void lower_target(AutomaticCones& automatic, VerifiedChoice& best);
   void take_fewer(const AutomaticCones& automatic, double missed, double reached, VerifiedChoice& best);
   void take_many(VerifiedChoice& best);
+  void take_fewer_while_off(VerifiedChoice& best);
   bool is_small() const;
   bool is_tangled(const TriedMap& map) const;  // defects all over
   bool has_many() const;                       // cones there or asked for
