@@ -10,10 +10,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import arguments
-from .arguments import FloatArray, IndexArray
-from .counted import counted
-from .edge_keys import edge_keys
+from .base import arguments
+from .base.arguments import FloatArray, IndexArray
+from .base.counted import counted
+from .base.edge_keys import edge_keys
 from .errors import Elements, Finding
 
 # Of the cosine between the normals of faces on both sides: -1 where one is folded onto the other.

@@ -16,16 +16,17 @@ import numpy as np
 
 from .. import __version__
 from ..api import measure_distortion
+from ..base.counted import counted
 from ..batch.command import EXIT_CODES, add_batch_options, add_scheduler_options, expand_options, run_batch
 from ..certificate import certificate_table
-from ..counted import counted
 from ..errors import Elements, Finding, LsgpError
 from ..io.mesh_formats import BY_KEY, formats_table
 from ..io.polygons import Triangulation
 from ..io.safe_files import is_standard_stream
 from ..io.standard_streams import complain, hold_standard_descriptors, say
 from ..io.whole_files import write_whole
-from ..quads import quad_quality
+from ..layouts.texels import texel_density
+from ..quads.quad_mesh import quad_quality
 from ..run import report as reports
 from ..run.exit_codes import OF_A_RUN, OK, REFUSED, USAGE, ended, flushed, listed
 from ..run.pad_file import add_pad_options, pad_file
@@ -35,7 +36,6 @@ from ..run.quads_file import summary as summary_of_quads
 from ..run.terminal import ProgressLine
 from ..run.unwrap_file import Run, out_of_memory, read_file, unwrap_file, uv_of
 from ..run.unwrap_options import add_threads_option, add_unwrap_options, texture_size, texture_size_option
-from ..texels import texel_density
 from .examples import Formatter, with_examples
 from .output_paths import require_usable_paths
 

@@ -9,10 +9,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, get_args
 
-from ..api import Lattice, Placement, Progress, SeamMode, place_cones
-from ..counted import counted
+from ..api import place_cones
+from ..base.counted import counted
+from ..base.progress import Progress
 from ..io.side_files import UsageError, cones_in, load_json, pairs_in
 from ..io.whole_files import write_output
+from ..options import Lattice, SeamMode
+from ..results import Placement
 from .report import finite, placed_figures
 from .unwrap_file import Run, read_file, require_flawless
 from .unwrap_options import add_cut_options, add_stitch_option, add_strict_option, cut_costs_of, require_cut_options

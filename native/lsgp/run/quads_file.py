@@ -11,14 +11,16 @@ from pathlib import Path
 
 import numpy as np
 
-from ..api import Options, Progress, Seamless
+from ..base.progress import Progress
 from ..io.mesh_formats import OBJ, output_format
 from ..io.mesh_obj import format_obj
 from ..io.polygons import PolygonMesh
 from ..io.safe_files import is_standard_stream
 from ..io.side_files import UsageError, cones_in, load_json
 from ..io.whole_files import write_output
-from ..quads import QuadQuality, QuadRemesh, remesh_to_quads
+from ..options import Options, Seamless
+from ..quads.quad_mesh import QuadQuality
+from ..quads.remeshing import QuadRemesh, remesh_to_quads
 from .feature_options import add_features_option, features_of
 from .unwrap_file import Run, read_file
 from .unwrap_options import (

@@ -13,8 +13,19 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..api import Options, Placement, Progress, Result, Solver, Surface, parameterize
-from ..auto_unwrap import (
+from ..api import Solver, parameterize
+from ..base.progress import Progress, share_of
+from ..errors import Finding, InputError, LsgpError
+from ..io.mesh_files import MeshFile, format_mesh, parse_mesh
+from ..io.mesh_formats import output_format
+from ..io.polygons import Triangulation
+from ..io.safe_files import is_standard_stream, read_input, require_separate
+from ..io.side_files import cones_in, directions_in, load_importance, load_json, pairs_in
+from ..io.whole_files import write_output
+from ..layouts.packing import laid_out, packing_once
+from ..layouts.texels import TexelDensity, at_texel_density, texel_density, with_tiny_findings
+from ..options import Options
+from ..presets.auto_unwrap import (
     PACKING,
     PLACING,
     CompletedCones,
@@ -25,17 +36,9 @@ from ..auto_unwrap import (
     best_map,
     crease_choices,
     possible_cones,
-    share_of,
 )
-from ..errors import Finding, InputError, LsgpError
-from ..io.mesh_files import MeshFile, format_mesh, parse_mesh
-from ..io.mesh_formats import output_format
-from ..io.polygons import Triangulation
-from ..io.safe_files import is_standard_stream, read_input, require_separate
-from ..io.side_files import cones_in, directions_in, load_importance, load_json, pairs_in
-from ..io.whole_files import write_output
-from ..packing import laid_out, packing_once
-from ..texels import TexelDensity, at_texel_density, texel_density, with_tiny_findings
+from ..results import Placement, Result
+from ..surface import Surface
 from ..triangles import uv_area
 from .feature_options import features_of
 from .unwrap_options import (

@@ -14,7 +14,13 @@ from typing import get_args
 
 import numpy as np
 
-from ..api import (
+from ..api import cut_costs
+from ..base.arguments import FloatArray, IndexArray
+from ..errors import InputError
+from ..io.side_files import CutCostFile, UsageError, load_cut_costs
+from ..layouts.packing import SHELVES, Pack, Packing, Stack
+from ..layouts.texels import DEFAULT_MARGIN, MOST_TILES, TexelLayout
+from ..options import (
     BorderMode,
     CoarseGrid,
     Compactness,
@@ -26,17 +32,11 @@ from ..api import (
     PrescriptionRule,
     Seamless,
     SeamMode,
-    Surface,
     UnfoldMethod,
-    cut_costs,
 )
-from ..arguments import FloatArray, IndexArray
-from ..auto_unwrap import Preset, preset_options
-from ..errors import InputError
-from ..io.side_files import CutCostFile, UsageError, load_cut_costs
-from ..packing import SHELVES, Pack, Packing, Stack
+from ..presets.auto_unwrap import Preset, preset_options
 from ..stitching import at_stitched
-from ..texels import DEFAULT_MARGIN, MOST_TILES, TexelLayout
+from ..surface import Surface
 from .feature_options import add_features_option
 
 DEFAULT_TEXTURE_SIZE = 1024
