@@ -14,12 +14,11 @@ from .base import arguments
 from .base.arguments import FloatArray, IndexArray
 from .base.counted import counted
 from .base.edge_keys import edge_keys
+from .base.places import first_at_place, lowest_linked
 from .errors import Elements, Finding
 
 # Of the cosine between the normals of faces on both sides: -1 where one is folded onto the other.
 _FOLDED = -1 + 1e-6
-# Odd factors that spread the bits of coordinates over a hash.
-_SPREAD = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)
 
 
 def stitch_borders(positions: ArrayLike, triangles: ArrayLike) -> IndexArray:
@@ -39,22 +38,23 @@ def stitch_borders(positions: ArrayLike, triangles: ArrayLike) -> IndexArray:
 
 def stitched_vertices(positions: FloatArray, corners: NDArray[np.integer], sizes: NDArray[np.integer]) -> IndexArray:
     """As `stitch_borders`, of polygons.  corners: (c,) the vertices of all, one after the other. sizes: (f,)."""
-    stitched = np.arange(len(positions), dtype=np.int32)
-    place = _shared_places(positions)
-    if place is None:
-        return stitched
+    place = first_at_place(positions)
+    is_shared = np.bincount(place, minlength=len(place))[place] > 1
+    if not is_shared.any():
+        return place
     face = np.repeat(np.arange(len(sizes)), sizes)
     following = np.arange(1, len(corners) + 1)
     following[np.cumsum(sizes)[sizes > 0] - 1] = (np.cumsum(sizes) - sizes)[sizes > 0]
     tail, head = corners, corners[following]
-    side = np.flatnonzero((place[tail] >= 0) & (place[head] >= 0) & (place[tail] != place[head]))
+    side = np.flatnonzero(is_shared[tail] & is_shared[head] & (place[tail] != place[head]))
     side = _once(side, edge_keys(tail[side], head[side], len(positions)))
     one, other = _opposite_pairs(side, place[tail[side]], place[head[side]], len(positions))
     normals = _normals(positions, tail, head, face, len(sizes))
     facing = (normals[face[one]] * normals[face[other]]).sum(axis=1)
     meets = (facing > _FOLDED) & (face[one] != face[other])
     one, other = one[meets], other[meets]
-    _join(stitched, np.concatenate([tail[one], head[one]]), np.concatenate([head[other], tail[other]]))
+    pairs = np.stack([np.concatenate([tail[one], head[one]]), np.concatenate([head[other], tail[other]])], axis=1)
+    stitched = lowest_linked(pairs, len(positions))
     _release_collapsed(stitched, corners, face, len(sizes))
     return stitched
 
@@ -107,23 +107,6 @@ def without_stitched(stitched: IndexArray, warnings: Sequence[Finding]) -> list[
     return rest
 
 
-def _shared_places(positions: FloatArray) -> IndexArray | None:
-    """(n,) the first vertex at the same place, -1 where there is no other; None where no place has two."""
-    exact = np.ascontiguousarray(positions + 0.0)  # -0 is 0
-    mixed = (exact.view(np.uint64) * _SPREAD).sum(axis=1, dtype=np.uint64)
-    _, inverse, count = np.unique(mixed, return_inverse=True, return_counts=True)
-    shared = np.flatnonzero((count[inverse] > 1) & np.isfinite(exact).all(axis=1))
-    if not len(shared):
-        return None
-    _, first, index, count = np.unique(
-        exact[shared], axis=0, return_index=True, return_inverse=True, return_counts=True
-    )
-    index = index.ravel()
-    place = np.full(len(positions), -1, np.int32)
-    place[shared] = np.where(count[index] > 1, shared[first[index]], -1)
-    return place
-
-
 def _is_first(values: IndexArray) -> NDArray[np.bool_]:
     """Which values are not among those before."""
     first = np.zeros(len(values), bool)
@@ -161,18 +144,6 @@ def _normals(
         np.add.at(sums, face, np.cross(positions[tail] - origin, positions[head] - origin))
         length = np.linalg.norm(sums, axis=1, keepdims=True)
         return np.divide(sums, length, out=np.zeros_like(sums), where=length > 0)
-
-
-def _join(stitched: IndexArray, first: NDArray[np.integer], second: NDArray[np.integer]) -> None:
-    """Give all vertices that are linked by pairs the lowest of them."""
-    while True:
-        lowest = np.minimum(stitched[first], stitched[second])
-        before = stitched.copy()
-        np.minimum.at(stitched, first, lowest)
-        np.minimum.at(stitched, second, lowest)
-        stitched[:] = stitched[stitched]
-        if np.array_equal(before, stitched):
-            return
 
 
 def _release_collapsed(stitched: IndexArray, corners: NDArray[np.integer], face: NDArray[np.intp], count: int) -> None:

@@ -47,6 +47,7 @@ from .unwrap_options import (
     cut_costs_of,
     library_options,
     packing_of,
+    stitches,
     texel_layout,
     tries_symmetry,
     up_of,
@@ -211,8 +212,7 @@ def _map(
     directions_path = None if args.directions is None else Path(args.directions)
     directions_json = None if directions_path is None else load_json(directions_path)
     importance = None if args.importance is None else load_importance(Path(args.importance))
-    stitch = args.preset is not None if args.stitch is None else args.stitch
-    file = read_file(args.input, run, given_format, stitch=stitch)
+    file = read_file(args.input, run, given_format, stitch=stitches(args))
     if importance is not None and len(importance) != len(file.mesh.positions):
         raise InputError(
             "WRONG_PARAMETER",

@@ -119,7 +119,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
         "L2 stretch",
     )
     _add_direction_options(unwrap)
-    add_stitch_option(unwrap, "with --preset they are stitched")
+    add_stitch_option(unwrap, default=None)
     _add_preset_switches(unwrap)
     unwrap.add_argument(
         "--border",
@@ -288,14 +288,21 @@ def _with_given_costs(
     return costs
 
 
-def add_stitch_option(command: argparse.ArgumentParser, default: str) -> None:
-    """default: what is done without it, in words."""
+def add_stitch_option(command: argparse.ArgumentParser, *, default: bool | None) -> None:
+    """default: whether boundaries are stitched without it; None: with a preset."""
+    told = {True: "they are stitched", False: "they stay open", None: "with --preset they are stitched"}
     command.add_argument(
         "--stitch",
         action=argparse.BooleanOptionalAction,
         help="whether boundaries that lie exactly on each other are none, as in files that repeat vertices wherever "
-        f"normals or texture coordinates differ (default: {default})",
+        f"normals or texture coordinates differ (default: {told[default]})",
     )
+    command.set_defaults(stitch=default)  # as an argument above, it would be in the help once more
+
+
+def stitches(args: argparse.Namespace) -> bool:
+    """Whether boundaries of the mesh are stitched."""
+    return args.preset is not None if args.stitch is None else args.stitch
 
 
 def add_threads_option(command: argparse.ArgumentParser) -> None:
