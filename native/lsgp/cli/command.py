@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NoReturn, TextIO
 
@@ -75,8 +75,11 @@ class _Command(_Parser):
             f"{', '.join(BY_KEY)} (default: by the first bytes, otherwise obj)",
         )
 
-    def add_report(self) -> None:
+    def add_reported(self, make: Callable[..., object], **defaults: Any) -> None:
+        """What a run on one file, by `make`, is reported with."""
+        self.add_format()
         self.add_argument("--report", metavar="FILE.json", type=Path, help="write a report, also when refused")
+        self.set_defaults(run=_reported, make=make, **defaults)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -135,9 +138,7 @@ def _add_unwrap(commands: argparse._SubParsersAction[_Command]) -> None:
     )
     add_unwrap_options(unwrap)
     add_threads_option(unwrap)
-    unwrap.add_format()
-    unwrap.add_report()
-    unwrap.set_defaults(run=_reported, make=_unwrap)
+    unwrap.add_reported(_unwrap)
 
 
 def _add_cones(commands: argparse._SubParsersAction[_Command]) -> None:
@@ -150,9 +151,7 @@ def _add_cones(commands: argparse._SubParsersAction[_Command]) -> None:
     cones.add_paths("OUT.json")
     add_placement_options(cones)
     add_threads_option(cones)
-    cones.add_format()
-    cones.add_report()
-    cones.set_defaults(run=_reported, make=_cones, in_place=False)
+    cones.add_reported(_cones, in_place=False)
 
 
 def _add_quads(commands: argparse._SubParsersAction[_Command]) -> None:
@@ -165,9 +164,7 @@ def _add_quads(commands: argparse._SubParsersAction[_Command]) -> None:
     quads.add_paths("OUT.obj")
     add_quads_options(quads)
     add_threads_option(quads)
-    quads.add_format()
-    quads.add_report()
-    quads.set_defaults(run=_reported, make=_quads, in_place=False)
+    quads.add_reported(_quads, in_place=False)
 
 
 def _add_batch(commands: argparse._SubParsersAction[_Command]) -> None:
@@ -199,9 +196,7 @@ def _add_measure(commands: argparse._SubParsersAction[_Command]) -> None:
         type=texture_size_option,
         help="texels of the texture's side, a power of two, to measure the texel density as well",
     )
-    measure.add_format()
-    measure.add_report()
-    measure.set_defaults(run=_reported, make=_measure, output=None)
+    measure.add_reported(_measure, output=None)
 
 
 def _add_pad(commands: argparse._SubParsersAction[_Command]) -> None:
