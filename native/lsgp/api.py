@@ -1,5 +1,4 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# SPDX-License-Identifier: GPL-3.0-or-later
 """The functions of the library over numpy arrays: validation of the call, the native core, typed results."""
 
 from __future__ import annotations
