@@ -136,7 +136,8 @@ def build_region(
 def _enlarged(mesh: StoredMesh, subdivided: Subdivided) -> NDArray[np.float64]:
     """(n, 3) places of the vertices, each connected part enlarged about its middle to the area of its subdivided faces:
     flat ones between the same vertices have less, and texels are those of the surface that is seen."""
-    part, count = _part_of_vertices(mesh.surface_edges, len(subdivided.places)), len(subdivided.places)
+    count = len(subdivided.places)
+    part = native.part("base.places").lowest_linked(mesh.surface_edges, count)
     triangles = mesh.surface_loops[mesh.triangle_loops]
     flat = np.bincount(part[triangles[:, 0]], _areas(subdivided.places, triangles), minlength=count)
     curved = np.bincount(part[mesh.surface_loops[mesh.loop_start]], subdivided.areas, minlength=count)
@@ -144,19 +145,6 @@ def _enlarged(mesh: StoredMesh, subdivided: Subdivided) -> NDArray[np.float64]:
     sums = np.stack([np.bincount(part, column, minlength=count) for column in subdivided.places.T], axis=1)
     middle = (sums / np.maximum(np.bincount(part, minlength=count), 1)[:, None])[part]
     return middle + factor[part, None] * (subdivided.places - middle)
-
-
-def _part_of_vertices(edges: NDArray[np.int32], count: int) -> NDArray[np.int64]:
-    """(n,) the first vertex of the connected part of each."""
-    part = np.arange(count)
-    while True:
-        lower = part.copy()
-        ends = part[edges]
-        np.minimum.at(lower, ends, ends.min(axis=1, keepdims=True))
-        lower = lower[lower]
-        if np.array_equal(lower, part):
-            return part
-        part = lower
 
 
 def _areas(places: NDArray[np.float32], triangles: NDArray[np.int32]) -> NDArray[np.float64]:

@@ -32,23 +32,7 @@ from importlib.metadata import version
 
 from . import certificate, lattice
 from .api import (
-    ConeGains,
-    CutPaths,
-    Distortion,
-    FeatureReport,
-    Measurement,
-    Options,
-    Pins,
-    Placement,
-    Prescription,
-    ReleasedFeature,
-    RepairReport,
-    Result,
-    Seamless,
-    SeamlessReport,
-    SeamQuality,
     Solver,
-    Surface,
     cone_gains,
     crease_borders,
     cut_costs,
@@ -58,7 +42,6 @@ from .api import (
     place_cones,
     prescribe_curvature,
 )
-from .auto_unwrap import auto_unwrap, preset_options
 from .cut_moving import CutMover, GrabbedCut, MovedCut, Transition, overlapping_triangles
 from .cut_paths import split_into_paths
 from .errors import (
@@ -72,17 +55,35 @@ from .errors import (
     TopologyError,
 )
 from .features import feature_edges
-from .gutters import pad_image
+from .images.gutters import pad_image
+from .images.mip_levels import pad_mip_levels
 from .indexed_uv import index_uv
 from .io.mesh_files import MeshFile, read_mesh_file, write_mesh_file
-from .islands import correct_aspect, fit_placement
+from .layouts.islands import correct_aspect, fit_placement
+from .layouts.packing import pack_islands, packer_name
+from .layouts.stacking import Stacks, find_stacks
+from .layouts.texels import TexelDensity, TexelLayout, at_texel_density, texel_density, triangle_texel_density
 from .ledger import LedgerPart, build_ledger, hold_complete, part_surface
-from .mip_levels import pad_mip_levels
-from .packing import pack_islands, packer_name
-from .quads import QuadMesh, QuadQuality, QuadRemesh, extract_quads, quad_quality, remesh_to_quads
-from .stacking import Stacks, find_stacks
+from .options import Options, Seamless
+from .presets.auto_unwrap import auto_unwrap, preset_options
+from .quads.quad_mesh import QuadMesh, QuadQuality, extract_quads, quad_quality
+from .quads.remeshing import QuadRemesh, remesh_to_quads
+from .results import (
+    ConeGains,
+    CutPaths,
+    Distortion,
+    FeatureReport,
+    Measurement,
+    Placement,
+    Prescription,
+    ReleasedFeature,
+    RepairReport,
+    Result,
+    SeamlessReport,
+    SeamQuality,
+)
 from .stitching import stitch_borders
-from .texels import TexelDensity, TexelLayout, at_texel_density, texel_density, triangle_texel_density
+from .surface import Pins, Surface
 from .triangles import TriangleDistortion, singular_values, triangle_distortion
 
 __version__ = version("lsgp")

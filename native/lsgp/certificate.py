@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from . import arguments
-from .api import SeamlessReport
-from .counted import counted
+from .base import arguments
+from .base.counted import counted
+from .results import SeamlessReport
 
 # Rows of the table; one line summarizes the remaining cuts.
 SHOWN_CUTS = 12

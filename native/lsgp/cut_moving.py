@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _lsgp, arguments
-from .api import Surface, surface_arrays
-from .arguments import FloatArray, IndexArray
-from .equality import EqualByContent
+from . import _lsgp
+from .base import arguments
+from .base.arguments import FloatArray, IndexArray
+from .base.equality import EqualByContent
+from .base.short_repr import ShortRepr
 from .errors import Elements, TopologyError
-from .short_repr import ShortRepr
+from .surface import Surface, surface_arrays
 
 # Both sides of a cut may differ from one motion by this share of the cut's size and of the largest coordinate, since
 # layouts may have been rounded to single precision.

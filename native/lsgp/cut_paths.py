@@ -6,7 +6,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _lsgp, arguments
+from . import _lsgp
+from .base import arguments
 
 
 def split_into_paths(edges: ArrayLike, nodes: ArrayLike) -> list[NDArray[np.int32]]:

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .equality import EqualByContent
-from .short_repr import ShortRepr
+from .base.equality import EqualByContent
+from .base.short_repr import ShortRepr
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

@@ -6,10 +6,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from . import arguments
-from .api import Surface
-from .arguments import FloatArray, IndexArray
-from .edge_keys import edge_keys
+from .base import arguments
+from .base.arguments import FloatArray, IndexArray
+from .base.edge_keys import edge_keys
+from .surface import Surface
 
 
 def feature_edges(

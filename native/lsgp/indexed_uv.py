@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import arguments
+from .base import arguments
 
 
 def index_uv(triangles: ArrayLike, corner_uv: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int32]]:

@@ -15,8 +15,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import arguments
-from .arguments import FloatArray, IndexArray
+from .base import arguments
+from .base.arguments import FloatArray, IndexArray
 from .errors import InputError
 
 # Mantissa of float32: below 2^e it holds every multiple of 2^(e - 24).

@@ -13,11 +13,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _lsgp, arguments
-from .api import FloatArray, IndexArray, Options, Surface, cone_arrays, surface_arrays
-from .edge_keys import edge_keys
-from .equality import EqualByContent
-from .short_repr import ShortRepr
+from . import _lsgp
+from .api import cone_arrays
+from .base import arguments
+from .base.arguments import FloatArray, IndexArray
+from .base.edge_keys import edge_keys
+from .base.equality import EqualByContent
+from .base.short_repr import ShortRepr
+from .options import Options
+from .surface import Surface, surface_arrays
 
 # Tolerance of the sum, radians: that of the library.
 CLOSED_WITHIN = 1e-6

@@ -11,16 +11,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import arguments
-from .arguments import FloatArray, IndexArray
-from .counted import counted
-from .edge_keys import edge_keys
+from .base import arguments
+from .base.arguments import FloatArray, IndexArray
+from .base.counted import counted
+from .base.edge_keys import edge_keys
+from .base.places import first_at_place, lowest_linked
 from .errors import Elements, Finding
 
 # Of the cosine between the normals of faces on both sides: -1 where one is folded onto the other.
 _FOLDED = -1 + 1e-6
-# Odd factors that spread the bits of coordinates over a hash.
-_SPREAD = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)
 
 
 def stitch_borders(positions: ArrayLike, triangles: ArrayLike) -> IndexArray:
@@ -42,35 +41,35 @@ def stitch_borders(positions: ArrayLike, triangles: ArrayLike) -> IndexArray:
 
 def stitched_vertices(positions: FloatArray, corners: NDArray[np.integer], sizes: NDArray[np.integer]) -> IndexArray:
     """As `stitch_borders`, of polygons.  corners: (c,) the vertices of all, one after the other. sizes: (f,)."""
-    closed = np.arange(len(positions), dtype=np.int32)
-    place = _shared_places(positions)
-    if place is None:
-        return closed
+    place = first_at_place(positions)
+    is_shared = np.bincount(place, minlength=len(place))[place] > 1
+    if not is_shared.any():
+        return place
     face = np.repeat(np.arange(len(sizes)), sizes)
     following = np.arange(1, len(corners) + 1)
     following[np.cumsum(sizes)[sizes > 0] - 1] = (np.cumsum(sizes) - sizes)[sizes > 0]
     tail, head = corners, corners[following]
-    shared = (place[tail] >= 0) & (place[head] >= 0)
-    point = shared & (place[tail] == place[head])
-    _join(closed, tail[point], head[point])
-
-    stitched = closed.copy()
+    is_point = is_shared[tail] & (place[tail] == place[head])
+    points = np.stack([tail[is_point], head[is_point]], axis=1)
+    closed = lowest_linked(points, len(positions))
     tail, head = closed[tail], closed[head]
-    is_line = np.zeros(len(sizes), bool)
-    with_point = np.flatnonzero(np.isin(face, face[point]))
-    is_line[face[with_point]] = _different(closed, corners[with_point], face[with_point])[face[with_point]] < 3
-    side = np.flatnonzero(shared & ~point & ~is_line[face])
+    with_point = np.isin(face, face[is_point])
+    is_line = _different(closed, corners[with_point], face[with_point], len(sizes)) < 3
+    is_line &= np.bincount(face[with_point], minlength=len(sizes)) > 0
+    side = np.flatnonzero(is_shared[tail] & is_shared[head] & ~is_point & ~is_line[face])
     side = _once(side, edge_keys(tail[side], head[side], len(positions)))
     one, other = _opposite_pairs(side, place[tail[side]], place[head[side]], len(positions))
     normals = _normals(positions, tail, head, face, len(sizes))
     facing = (normals[face[one]] * normals[face[other]]).sum(axis=1)
     meets = (facing > _FOLDED) & (face[one] != face[other])
     one, other = one[meets], other[meets]
-    _join(stitched, np.concatenate([tail[one], head[one]]), np.concatenate([head[other], tail[other]]))
+    pairs = np.stack([np.concatenate([tail[one], head[one]]), np.concatenate([head[other], tail[other]])], axis=1)
+    stitched = lowest_linked(np.concatenate([points, pairs]), len(positions))
+    # Vertices of faces that would touch themselves stay what they are.
     moved = np.isin(face, face[stitched[corners] != closed[corners]])
     corners, face = corners[moved], face[moved]
-    folded = _different(stitched, corners, face) < _different(closed, corners, face)
-    kept = np.isin(closed, closed[corners[folded[face]]])
+    touches = _different(stitched, corners, face, len(sizes)) < _different(closed, corners, face, len(sizes))
+    kept = np.isin(closed, closed[corners[touches[face]]])
     stitched[kept] = closed[kept]
     return stitched
 
@@ -124,23 +123,6 @@ def without_stitched(stitched: IndexArray, warnings: Sequence[Finding]) -> list[
     return rest
 
 
-def _shared_places(positions: FloatArray) -> IndexArray | None:
-    """(n,) the first vertex at the same place, -1 where there is no other; None where no place has two."""
-    exact = np.ascontiguousarray(positions + 0.0)  # -0 is 0
-    mixed = (exact.view(np.uint64) * _SPREAD).sum(axis=1, dtype=np.uint64)
-    _, inverse, count = np.unique(mixed, return_inverse=True, return_counts=True)
-    shared = np.flatnonzero((count[inverse] > 1) & np.isfinite(exact).all(axis=1))
-    if not len(shared):
-        return None
-    _, first, index, count = np.unique(
-        exact[shared], axis=0, return_index=True, return_inverse=True, return_counts=True
-    )
-    index = index.ravel()
-    place = np.full(len(positions), -1, np.int32)
-    place[shared] = np.where(count[index] > 1, shared[first[index]], -1)
-    return place
-
-
 def _is_first(values: IndexArray) -> NDArray[np.bool_]:
     """Which values are not among those before."""
     first = np.zeros(len(values), bool)
@@ -180,18 +162,8 @@ def _normals(
         return np.divide(sums, length, out=np.zeros_like(sums), where=length > 0)
 
 
-def _join(stitched: IndexArray, first: NDArray[np.integer], second: NDArray[np.integer]) -> None:
-    """Give all vertices that are linked by pairs the lowest of them."""
-    while True:
-        lowest = np.minimum(stitched[first], stitched[second])
-        before = stitched.copy()
-        np.minimum.at(stitched, first, lowest)
-        np.minimum.at(stitched, second, lowest)
-        stitched[:] = stitched[stitched]
-        if np.array_equal(before, stitched):
-            return
-
-
-def _different(named: IndexArray, corners: NDArray[np.integer], face: NDArray[np.intp]) -> NDArray[np.integer]:
-    """How many different vertices each face has.  named: (n,) the one that stands for each. face: (c,) of the corners."""
-    return np.bincount(np.unique(face * len(named) + named[corners]) // len(named), minlength=face.max(initial=-1) + 1)
+def _different(
+    named: IndexArray, corners: NDArray[np.integer], face: NDArray[np.intp], count: int
+) -> NDArray[np.integer]:
+    """(f,) how many different vertices faces have.  named: (n,) the one that stands for each. face: (c,) of corners."""
+    return np.bincount(np.unique(face * len(named) + named[corners]) // len(named), minlength=count)

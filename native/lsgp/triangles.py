@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import arguments
-from .api import FloatArray, Surface
-from .equality import EqualByContent
-from .short_repr import ShortRepr
+from .base import arguments
+from .base.arguments import FloatArray
+from .base.equality import EqualByContent
+from .base.short_repr import ShortRepr
+from .surface import Surface
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

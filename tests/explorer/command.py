@@ -16,7 +16,7 @@ from typing import Any
 import lsgp
 import numpy as np
 from lsgp.cli import main
-from lsgp.texels import tiny_findings
+from lsgp.layouts.texels import tiny_findings
 from numpy.typing import NDArray
 
 from .steps import Step

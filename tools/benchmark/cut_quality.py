@@ -22,16 +22,15 @@ from __future__ import annotations
 
 import argparse
 import json
-import multiprocessing
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from multiprocessing.connection import Connection
 from pathlib import Path
 
 import lsgp
 import numpy as np
 import oracle
+from own_process import in_own_process
 from placement_quality import SHARED, of_zoo, read_surface
 from scipy.spatial import cKDTree
 
@@ -96,26 +95,15 @@ def tasks(arguments: argparse.Namespace) -> Iterator[tuple[str, Task]]:
 
 def within(limit: float, task: Task) -> list[str]:
     """The figures of a map, or why there are none."""
-    context = multiprocessing.get_context("fork")
-    ours, theirs = context.Pipe(duplex=False)
-    child = context.Process(target=lambda: tell(theirs, task))
-    child.start()
-    theirs.close()
-    try:
-        told = ours.recv() if ours.poll(limit) else [f"> {limit:g} s"]
-    except EOFError:
-        told = ["crash"]
-    finally:
-        child.kill()
-        child.join()
+    told = in_own_process(lambda: figures_or_code(task), limit, [f"> {limit:g} s"], ["crash"])
     return told + [""] * (len(FIGURES) - len(told))
 
 
-def tell(told: Connection, task: Task) -> None:
+def figures_or_code(task: Task) -> list[str]:
     try:
-        told.send(figures(task))
+        return figures(task)
     except lsgp.LsgpError as error:
-        told.send([error.code])
+        return [error.code]
 
 
 def figures(task: Task) -> list[str]:

@@ -14,16 +14,15 @@ from __future__ import annotations
 
 import argparse
 import math
-import multiprocessing
 import time
 from collections.abc import Callable, Iterator
-from multiprocessing.connection import Connection
 from pathlib import Path
 
 import lsgp
 import zoo
 from lsgp.io.mesh_files import parse_mesh
 from lsgp.io.polygons import triangulate
+from own_process import in_own_process
 from zoo.tunnels import smooth_tunneled_plate
 
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "meshes"
@@ -82,21 +81,11 @@ def of_member(member: zoo.Member) -> lsgp.Surface:
 
 def within(limit: float, read: Callable[[], lsgp.Surface]) -> list[str]:
     """The figures of a mesh, or that it took too long."""
-    context = multiprocessing.get_context("fork")
-    ours, theirs = context.Pipe(duplex=False)
-    child = context.Process(target=lambda: tell(theirs, read))
-    child.start()
-    theirs.close()
-    try:
-        return ours.recv() if ours.poll(limit) else ["", "", "", "", "", "", f"> {limit:g}", ""]
-    except EOFError:
-        return ["", "", "", "", "", "", "", "crash"]
-    finally:
-        child.kill()
-        child.join()
+    slow = ["", "", "", "", "", "", f"> {limit:g}", ""]
+    return in_own_process(lambda: figures(read), limit, slow, ["", "", "", "", "", "", "", "crash"])
 
 
-def tell(told: Connection, read: Callable[[], lsgp.Surface]) -> None:
+def figures(read: Callable[[], lsgp.Surface]) -> list[str]:
     surface = read()
     begin = time.process_time()
     try:
@@ -104,21 +93,18 @@ def tell(told: Connection, read: Callable[[], lsgp.Surface]) -> None:
         seconds = time.process_time() - begin
         result = lsgp.parameterize(surface, placed.cones, placed.cone_angles)
     except lsgp.LsgpError as error:
-        told.send([str(len(surface.triangles)), "", "", "", "", "", f"{time.process_time() - begin:.2f}", error.code])
-        return
+        return [str(len(surface.triangles)), "", "", "", "", "", f"{time.process_time() - begin:.2f}", error.code]
     defects = len(result.flipped) + len(result.wrong_angle_sums)
-    told.send(
-        [
-            str(len(surface.triangles)),
-            str(len(placed.cones)),
-            f"{placed.predicted_l2:.3f}",
-            f"{result.distortion.l2_stretch:.3f}",
-            str(defects),
-            str(placed.maps),
-            f"{seconds:.2f}",
-            ", ".join(sorted({finding.code for finding in [*placed.warnings, *result.warnings]})),
-        ]
-    )
+    return [
+        str(len(surface.triangles)),
+        str(len(placed.cones)),
+        f"{placed.predicted_l2:.3f}",
+        f"{result.distortion.l2_stretch:.3f}",
+        str(defects),
+        str(placed.maps),
+        f"{seconds:.2f}",
+        ", ".join(sorted({finding.code for finding in [*placed.warnings, *result.warnings]})),
+    ]
 
 
 if __name__ == "__main__":

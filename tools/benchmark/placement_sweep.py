@@ -22,19 +22,18 @@ silent, crash or slow. Needs scipy and the lsgp wheel.
 from __future__ import annotations
 
 import argparse
-import multiprocessing
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from multiprocessing.connection import Connection
 from pathlib import Path
 
 import lsgp
 import numpy as np
 import zoo
 from outcome_check import error_faults, placement_faults, result_faults
+from own_process import in_own_process
 from placement_quality import SHARED, of_member, read_surface
 
 TARGET = 1.05
@@ -107,27 +106,16 @@ def triangles_of(member: zoo.Member) -> int:
 
 
 def within(limit: float, run: str, read: Read) -> Ending:
-    context = multiprocessing.get_context("fork")
-    ours, theirs = context.Pipe(duplex=False)
-    child = context.Process(target=lambda: answer(theirs, run, read))
-    child.start()
-    theirs.close()
-    try:
-        return ours.recv() if ours.poll(limit) else Ending("slow")
-    except EOFError:
-        return Ending("crash")
-    finally:
-        child.kill()
-        child.join()
+    return in_own_process(lambda: ending_of(run, read), limit, Ending("slow"), Ending("crash"))
 
 
-def answer(told: Connection, run: str, read: Read) -> None:
+def ending_of(run: str, read: Read) -> Ending:
     surface = read()
     try:
-        told.send(RUNS[run](surface))
+        return RUNS[run](surface)
     except lsgp.LsgpError as error:
         faults = error_faults(surface, error)
-        told.send(Ending("silent", tuple(faults)) if faults else Ending("refused", (error.code,)))
+        return Ending("silent", tuple(faults)) if faults else Ending("refused", (error.code,))
 
 
 def with_cones(surface: lsgp.Surface, count: int | None) -> Ending:

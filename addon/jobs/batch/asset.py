@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ...core import native
 from ...core.errors import Refused, object_errors
-from ...core.findings import explain
+from ...core.findings import explain, relevant
 from ...core.identifiers import CONE_GROUP, IMPORTANCE_GROUP
 from ...mesh.region_read import Faces, Groups, read_region
 from ...mesh.uv_write import write_uv
@@ -196,7 +196,8 @@ def _record(solved: Sequence[Unwrapped], findings: Sequence[lsgp.Finding], failu
     others count as a warning.  findings: about their layouts."""
     results = [unwrapped.result for unwrapped in solved]
     warnings: Counter[str] = Counter()
-    for finding in (*(finding for result in results for finding in result.warnings), *findings):
+    told = [finding for unwrapped in solved for finding in relevant(unwrapped.region, unwrapped.result.warnings)]
+    for finding in (*told, *findings):
         warnings[finding.code] += len(finding.elements.indices)
     if failures:
         warnings["OBJECTS_REFUSED"] = len(failures)

@@ -8,8 +8,6 @@ from pathlib import Path
 
 import bpy
 
-from ...mesh import welding
-
 SUFFIXES = (".blend", ".glb", ".gltf", ".fbx")
 
 
@@ -42,8 +40,6 @@ def _read_blend(path: str) -> None:
 def _read_gltf(path: str) -> None:
     _clear()
     bpy.ops.import_scene.gltf(filepath=path)
-    for mesh in bpy.data.meshes:
-        welding.weld(mesh)
 
 
 def _read_fbx(path: str) -> None:

@@ -148,7 +148,7 @@ def tiny_findings(unwrapped: Unwrapped, corner_uv: NDArray[np.float64]) -> list[
     """The warning of tiny islands in a final layout, (m, 3, 2), unless the map has it already, as from Auto Unwrap."""
     if any(finding.code == "ISLANDS_TINY" for finding in unwrapped.result.warnings):
         return []
-    return native.part("texels").tiny_findings(corner_uv, unwrapped.result.island)
+    return native.part("layouts.texels").tiny_findings(corner_uv, unwrapped.result.island)
 
 
 def report_on(unwrapped: Unwrapped) -> reports.Report:

@@ -183,7 +183,7 @@ def _filling_turn(places: NDArray[np.float64], squeeze: NDArray[np.float64], ali
     quarter = DIRECTIONS // 4
     across, up = reach + np.roll(reach, -2 * quarter), np.roll(reach, -quarter) + np.roll(reach, -3 * quarter)
     side = np.maximum(across * squeeze[0], up * squeeze[1])
-    least, rules = side[::quarter].min(), native.part("layout_search")
+    least, rules = side[::quarter].min(), native.part("layouts.layout_search")
     if aligned > rules.HARDLY_FILLED * least**2 or (aligned and side.min() > rules.SHORTER_UNALIGNED * least):
         angles, side = angles[::quarter], side[::quarter]
     # As it lies, where turning gains nothing.

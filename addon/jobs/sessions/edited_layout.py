@@ -43,7 +43,7 @@ class Layout:
         size = (corners.max(axis=(0, 1), initial=-np.inf) - low).max(initial=0.0)
         if not (np.isfinite(size) and size > 0):
             return False
-        raster = native.lsgp.texel_raster
+        raster = native.part("images.texel_raster")
         shape = RASTER, RASTER
         places = raster.to_pixels((corners - low) / size, shape)
         # Of two triangles at a texel one comes first in this order, and the other one in the opposite order.

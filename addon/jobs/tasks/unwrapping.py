@@ -167,7 +167,7 @@ def unwrap_all(
     tasks, solve = _sharing_the_square(tasks), solve or unwrap
     if len(tasks) < 2 or not all(_has_automatic_tiles(task) for task in tasks):
         return solve_all(tasks, solve, progress)
-    share_of = native.part("auto_unwrap").share_of
+    share_of = native.part("base.progress").share_of
     outcomes = solve_all(tasks, solve, share_of(progress, 0.0, 0.5))
     smallest = min((_tile_size(found) for found in outcomes if isinstance(found, Unwrapped)), default=0.0)
     larger = [

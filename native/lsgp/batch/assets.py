@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path, PurePath, PurePosixPath
 
-from ..counted import counted
+from ..base.counted import counted
 from ..io.mesh_files import MESH_SUFFIXES
 from ..io.side_files import UsageError
 

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..counted import counted
+from ..base.counted import counted
 from ..io.mesh_formats import readable_suffixes
 from ..io.safe_files import require_inputs_kept
 from ..io.side_files import UsageError

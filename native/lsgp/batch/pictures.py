@@ -19,8 +19,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..api import Result, Surface
 from ..io.whole_files import write_whole
+from ..results import Result
+from ..surface import Surface
 
 Floats = NDArray[np.floating]
 

@@ -7,7 +7,7 @@ import statistics
 from collections import Counter
 from collections.abc import Sequence
 
-from ..counted import counted
+from ..base.counted import counted
 from .progress import duration
 from .records import FAILED, OK, REFUSED, Record
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NoReturn, TextIO
 
@@ -16,16 +16,17 @@ import numpy as np
 
 from .. import __version__
 from ..api import measure_distortion
+from ..base.counted import counted
 from ..batch.command import EXIT_CODES, add_batch_options, add_scheduler_options, expand_options, run_batch
 from ..certificate import certificate_table
-from ..counted import counted
 from ..errors import Elements, Finding, LsgpError
 from ..io.mesh_formats import BY_KEY, formats_table
 from ..io.polygons import Triangulation
 from ..io.safe_files import is_standard_stream
 from ..io.standard_streams import complain, hold_standard_descriptors, say
 from ..io.whole_files import write_whole
-from ..quads import quad_quality
+from ..layouts.texels import texel_density
+from ..quads.quad_mesh import quad_quality
 from ..run import report as reports
 from ..run.exit_codes import OF_A_RUN, OK, REFUSED, USAGE, ended, flushed, listed
 from ..run.pad_file import add_pad_options, pad_file
@@ -35,7 +36,6 @@ from ..run.quads_file import summary as summary_of_quads
 from ..run.terminal import ProgressLine
 from ..run.unwrap_file import Run, out_of_memory, read_file, unwrap_file, uv_of
 from ..run.unwrap_options import add_threads_option, add_unwrap_options, texture_size, texture_size_option
-from ..texels import texel_density
 from .examples import Formatter, with_examples
 from .output_paths import require_usable_paths
 
@@ -75,8 +75,11 @@ class _Command(_Parser):
             f"{', '.join(BY_KEY)} (default: by the first bytes, otherwise obj)",
         )
 
-    def add_report(self) -> None:
+    def add_reported(self, make: Callable[..., object], **defaults: Any) -> None:
+        """What a run on one file, by `make`, is reported with."""
+        self.add_format()
         self.add_argument("--report", metavar="FILE.json", type=Path, help="write a report, also when refused")
+        self.set_defaults(run=_reported, make=make, **defaults)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -135,9 +138,7 @@ def _add_unwrap(commands: argparse._SubParsersAction[_Command]) -> None:
     )
     add_unwrap_options(unwrap)
     add_threads_option(unwrap)
-    unwrap.add_format()
-    unwrap.add_report()
-    unwrap.set_defaults(run=_reported, make=_unwrap)
+    unwrap.add_reported(_unwrap)
 
 
 def _add_cones(commands: argparse._SubParsersAction[_Command]) -> None:
@@ -150,9 +151,7 @@ def _add_cones(commands: argparse._SubParsersAction[_Command]) -> None:
     cones.add_paths("OUT.json")
     add_placement_options(cones)
     add_threads_option(cones)
-    cones.add_format()
-    cones.add_report()
-    cones.set_defaults(run=_reported, make=_cones, in_place=False)
+    cones.add_reported(_cones, in_place=False)
 
 
 def _add_quads(commands: argparse._SubParsersAction[_Command]) -> None:
@@ -165,9 +164,7 @@ def _add_quads(commands: argparse._SubParsersAction[_Command]) -> None:
     quads.add_paths("OUT.obj")
     add_quads_options(quads)
     add_threads_option(quads)
-    quads.add_format()
-    quads.add_report()
-    quads.set_defaults(run=_reported, make=_quads, in_place=False)
+    quads.add_reported(_quads, in_place=False)
 
 
 def _add_batch(commands: argparse._SubParsersAction[_Command]) -> None:
@@ -199,9 +196,7 @@ def _add_measure(commands: argparse._SubParsersAction[_Command]) -> None:
         type=texture_size_option,
         help="texels of the texture's side, a power of two, to measure the texel density as well",
     )
-    measure.add_format()
-    measure.add_report()
-    measure.set_defaults(run=_reported, make=_measure, output=None)
+    measure.add_reported(_measure, output=None)
 
 
 def _add_pad(commands: argparse._SubParsersAction[_Command]) -> None:

@@ -5,17 +5,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..api import Surface
-from ..arguments import IndexArray
+from ..base.arguments import IndexArray
+from ..base.short_repr import ShortRepr
 from ..errors import Finding, InputError
-from ..short_repr import ShortRepr
 from ..stitching import at_stitched, stitched_cones, stitched_finding, stitched_vertices, without_stitched
+from ..surface import Surface
 from .mesh_formats import FORMATS, GLB, GLTF, OBJ, OFF, PLY, STL, Format, input_format, output_format
 from .mesh_gltf import edit_gltf, new_gltf, read_gltf
 from .mesh_obj import format_obj, read_obj

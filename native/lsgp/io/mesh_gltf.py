@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..counted import counted
+from ..base.counted import counted
 from ..errors import Finding, InputError
 from ..indexed_uv import index_corners
 from .gltf_document import COMPONENTS, INDICES, VERTICES, Document, ReadUri, load_document, uri_data

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _lsgp
-from ..counted import counted
+from ..base.counted import counted
 from ..errors import Elements, InputError
 from ..indexed_uv import index_corners
 from .mesh_text import Rows, malformed, quoted

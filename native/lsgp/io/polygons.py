@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _lsgp
-from ..ear_clipping import (
+from ..base.ear_clipping import (
     ALLOWS_ANY,
     FLAT_EAR_COST,
     NEARLY_STRAIGHT,
@@ -22,10 +22,10 @@ from ..ear_clipping import (
     TOUCHING_SHARE,
     clip_ears_of_one,
 )
-from ..edge_keys import edge_keys
-from ..equality import EqualByContent
+from ..base.edge_keys import edge_keys
+from ..base.equality import EqualByContent
+from ..base.short_repr import ShortRepr
 from ..errors import Elements, InputError
-from ..short_repr import ShortRepr
 from .mesh_text import ranges
 
 # In the frame where a polygon has the size of 1.

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..counted import counted
+from ..base.counted import counted
 from ..errors import Elements, Finding, InputError
 from .polygons import PolygonMesh, Triangulation
 

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ..api import Surface
-from ..arguments import IndexArray
+from ..base.arguments import IndexArray
 from ..features import feature_edges
 from ..io.side_files import UsageError, load_json, pairs_in
+from ..surface import Surface
 
 _CREASE, _SHARP, _SEAMS, _BORDERS = "crease", "sharp", "seams", "borders"
 

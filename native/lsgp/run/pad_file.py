@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
+from ..images.mip_levels import pad_mip_levels
 from ..io.image_files import format_image, read_image
 from ..io.side_files import UsageError
 from ..io.whole_files import write_whole
-from ..mip_levels import pad_mip_levels
 from .unwrap_file import Run, read_file, uv_of
 
 # Bilinear lookups and the box of the next level read less than this beyond an island, in pixels.

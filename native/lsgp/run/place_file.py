@@ -9,13 +9,23 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, get_args
 
-from ..api import Lattice, Placement, Progress, SeamMode, place_cones
-from ..counted import counted
+from ..api import place_cones
+from ..base.counted import counted
+from ..base.progress import Progress
 from ..io.side_files import UsageError, cones_in, load_json, pairs_in
 from ..io.whole_files import write_output
+from ..options import Lattice, SeamMode
+from ..results import Placement
 from .report import finite, placed_figures
 from .unwrap_file import Run, read_file, require_flawless
-from .unwrap_options import add_cut_options, add_stitch_option, add_strict_option, cut_costs_of, require_cut_options
+from .unwrap_options import (
+    add_cut_options,
+    add_stitch_option,
+    add_strict_option,
+    cut_costs_of,
+    require_cut_options,
+    stitches,
+)
 
 DEFAULT_LATTICE = "square"
 
@@ -56,7 +66,7 @@ def add_placement_options(cones: argparse.ArgumentParser) -> None:
         "--seams", choices=get_args(SeamMode), default="follow", help="meaning of marked edges, as for lsgp unwrap"
     )
     add_cut_options(cones)
-    add_stitch_option(cones, "they stay open")
+    add_stitch_option(cones, default=False)
     add_strict_option(cones, "set of cones")
 
 
@@ -67,7 +77,7 @@ def place_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
     kept_json = None if args.keep is None else load_json(Path(args.keep))
     seams_path = None if args.seam_edges is None else Path(args.seam_edges)
     seams_json = [] if seams_path is None else load_json(seams_path)
-    file = read_file(args.input, run, args.format, stitch=bool(args.stitch))
+    file = read_file(args.input, run, args.format, stitch=stitches(args))
     kept, angles = ((), None) if kept_json is None else file.cones(*cones_in(kept_json, Path(args.keep), None))
     surface = file.surface(pairs_in(seams_json, seams_path, "seam vertex"))
     with run.stage("cut_costs"):

@@ -11,14 +11,16 @@ from pathlib import Path
 
 import numpy as np
 
-from ..api import Options, Progress, Seamless
+from ..base.progress import Progress
 from ..io.mesh_formats import OBJ, output_format
 from ..io.mesh_obj import format_obj
 from ..io.polygons import PolygonMesh
 from ..io.safe_files import is_standard_stream
 from ..io.side_files import UsageError, cones_in, load_json
 from ..io.whole_files import write_output
-from ..quads import QuadQuality, QuadRemesh, remesh_to_quads
+from ..options import Options, Seamless
+from ..quads.quad_mesh import QuadQuality
+from ..quads.remeshing import QuadRemesh, remesh_to_quads
 from .feature_options import add_features_option, features_of
 from .unwrap_file import Run, read_file
 from .unwrap_options import (
@@ -28,6 +30,7 @@ from .unwrap_options import (
     add_stretch_option,
     cone_count,
     cones_file,
+    stitches,
 )
 
 
@@ -65,7 +68,7 @@ def add_quads_options(quads: argparse.ArgumentParser) -> None:
         help="do not follow the creases of hard surfaces, which needs further irregular vertices and distorts quads; "
         "by default rows of quads run along them where that costs at most a fifth of L2 stretch",
     )
-    add_stitch_option(quads, "they are stitched")
+    add_stitch_option(quads, default=True)
     quads.add_argument(
         "--coarse-grid",
         choices=["refine", "merge"],
@@ -89,7 +92,7 @@ def quads_file(args: argparse.Namespace, run: Run, progress: Progress | None = N
         raise UsageError("--up takes finite numbers; give the model's up, as 0 1 0")
     path = cones_file(args)
     cones_json = None if path is None else load_json(path)
-    file = read_file(args.input, run, args.format, stitch=args.stitch is not False)
+    file = read_file(args.input, run, args.format, stitch=stitches(args))
     given = ((), None) if path is None else file.cones(*cones_in(cones_json, path, None))
     surface = file.surface()
     surface = replace(surface, directions=args.up, features=features_of(args.features, surface))

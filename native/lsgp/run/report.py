@@ -12,12 +12,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..api import FeatureReport, Measurement, Placement, Result
 from ..certificate import certificate
 from ..errors import Elements, Finding, LsgpError
 from ..io.polygons import Triangulation
-from ..quads import QuadQuality, QuadRemesh
-from ..texels import TexelDensity
+from ..layouts.texels import TexelDensity
+from ..quads.quad_mesh import QuadQuality
+from ..quads.remeshing import QuadRemesh
+from ..results import FeatureReport, Measurement, Placement, Result
 from .unwrap_file import Packed, Run
 
 Report = dict[str, Any]

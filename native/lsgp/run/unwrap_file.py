@@ -13,8 +13,19 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..api import Options, Placement, Progress, Result, Solver, Surface, parameterize
-from ..auto_unwrap import (
+from ..api import Solver, parameterize
+from ..base.progress import Progress, share_of
+from ..errors import Finding, InputError, LsgpError
+from ..io.mesh_files import MeshFile, format_mesh, parse_mesh
+from ..io.mesh_formats import output_format
+from ..io.polygons import Triangulation
+from ..io.safe_files import is_standard_stream, read_input, require_separate
+from ..io.side_files import cones_in, directions_in, load_importance, load_json, pairs_in
+from ..io.whole_files import write_output
+from ..layouts.packing import laid_out, packing_once
+from ..layouts.texels import TexelDensity, at_texel_density, texel_density, with_tiny_findings
+from ..options import Options
+from ..presets.auto_unwrap import (
     PACKING,
     PLACING,
     CompletedCones,
@@ -25,17 +36,9 @@ from ..auto_unwrap import (
     best_map,
     crease_choices,
     possible_cones,
-    share_of,
 )
-from ..errors import Finding, InputError, LsgpError
-from ..io.mesh_files import MeshFile, format_mesh, parse_mesh
-from ..io.mesh_formats import output_format
-from ..io.polygons import Triangulation
-from ..io.safe_files import is_standard_stream, read_input, require_separate
-from ..io.side_files import cones_in, directions_in, load_importance, load_json, pairs_in
-from ..io.whole_files import write_output
-from ..packing import laid_out, packing_once
-from ..texels import TexelDensity, at_texel_density, texel_density, with_tiny_findings
+from ..results import Placement, Result
+from ..surface import Surface
 from ..triangles import uv_area
 from .feature_options import features_of
 from .unwrap_options import (
@@ -44,6 +47,7 @@ from .unwrap_options import (
     cut_costs_of,
     library_options,
     packing_of,
+    stitches,
     texel_layout,
     tries_symmetry,
     up_of,
@@ -208,8 +212,7 @@ def _map(
     directions_path = None if args.directions is None else Path(args.directions)
     directions_json = None if directions_path is None else load_json(directions_path)
     importance = None if args.importance is None else load_importance(Path(args.importance))
-    stitch = args.preset is not None if args.stitch is None else args.stitch
-    file = read_file(args.input, run, given_format, stitch=stitch)
+    file = read_file(args.input, run, given_format, stitch=stitches(args))
     if importance is not None and len(importance) != len(file.mesh.positions):
         raise InputError(
             "WRONG_PARAMETER",

@@ -14,7 +14,13 @@ from typing import get_args
 
 import numpy as np
 
-from ..api import (
+from ..api import cut_costs
+from ..base.arguments import FloatArray, IndexArray
+from ..errors import InputError
+from ..io.side_files import CutCostFile, UsageError, load_cut_costs
+from ..layouts.packing import SHELVES, Pack, Packing, Stack
+from ..layouts.texels import DEFAULT_MARGIN, MOST_TILES, TexelLayout
+from ..options import (
     BorderMode,
     CoarseGrid,
     Compactness,
@@ -26,17 +32,11 @@ from ..api import (
     PrescriptionRule,
     Seamless,
     SeamMode,
-    Surface,
     UnfoldMethod,
-    cut_costs,
 )
-from ..arguments import FloatArray, IndexArray
-from ..auto_unwrap import Preset, preset_options
-from ..errors import InputError
-from ..io.side_files import CutCostFile, UsageError, load_cut_costs
-from ..packing import SHELVES, Pack, Packing, Stack
+from ..presets.auto_unwrap import Preset, preset_options
 from ..stitching import at_stitched
-from ..texels import DEFAULT_MARGIN, MOST_TILES, TexelLayout
+from ..surface import Surface
 from .feature_options import add_features_option
 
 DEFAULT_TEXTURE_SIZE = 1024
@@ -119,7 +119,7 @@ def add_unwrap_options(unwrap: argparse.ArgumentParser) -> None:
         "L2 stretch",
     )
     _add_direction_options(unwrap)
-    add_stitch_option(unwrap, "with --preset they are stitched")
+    add_stitch_option(unwrap, default=None)
     _add_preset_switches(unwrap)
     unwrap.add_argument(
         "--border",
@@ -288,14 +288,21 @@ def _with_given_costs(
     return costs
 
 
-def add_stitch_option(command: argparse.ArgumentParser, default: str) -> None:
-    """default: what is done without it, in words."""
+def add_stitch_option(command: argparse.ArgumentParser, *, default: bool | None) -> None:
+    """default: whether boundaries are stitched without it; None: with a preset."""
+    told = {True: "they are stitched", False: "they stay open", None: "with --preset they are stitched"}
     command.add_argument(
         "--stitch",
         action=argparse.BooleanOptionalAction,
         help="whether boundaries that lie exactly on each other are none, as in files that repeat vertices wherever "
-        f"normals or texture coordinates differ (default: {default})",
+        f"normals or texture coordinates differ (default: {told[default]})",
     )
+    command.set_defaults(stitch=default)  # as an argument above, it would be in the help once more
+
+
+def stitches(args: argparse.Namespace) -> bool:
+    """Whether boundaries of the mesh are stitched."""
+    return args.preset is not None if args.stitch is None else args.stitch
 
 
 def add_threads_option(command: argparse.ArgumentParser) -> None:

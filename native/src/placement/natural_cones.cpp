@@ -80,9 +80,10 @@ void make_symmetric(const PerVertex<Index>& mirrored, const Array<Index>& corner
 
 using VertexSets = Array<Array<Index>>;
 
-// Bent vertices in sets that are connected by edges much shorter than those between the sets: by the shortest edges
-// first, as often as there is such a gap, and at last by all edges.
-Array<VertexSets> find_rounded_corners(const PlacementTask& task) {
+// The first choice for bent vertices in sets that are connected by edges much shorter than those between the sets: by
+// the shortest edges first, as often as there is such a gap, and at last by all edges.
+template <typename Choose>
+std::optional<ConeChoice> first_choice_at_gaps(const PlacementTask& task, const Choose& choice_for) {
   const HalfedgeMesh& mesh = task.mesh;
   const auto is_bent = [&](Index v) { return std::abs(task.geometry.angle_defect[v]) >= angle_of_bend; };
   Array<std::pair<double, Index>> edges;
@@ -91,7 +92,7 @@ Array<VertexSets> find_rounded_corners(const PlacementTask& task) {
       edges.emplace_back(task.geometry.length[h], h);
     }
   }
-  if (ssize(edges) > most_bent) return {};
+  if (ssize(edges) > most_bent) return std::nullopt;
   std::sort(edges.begin(), edges.end());
   UnionFind joined(mesh.vertex_count());
   const auto sets = [&] {
@@ -103,16 +104,16 @@ Array<VertexSets> find_rounded_corners(const PlacementTask& task) {
     for (auto& [first, vertices] : found) out.push_back(std::move(vertices));
     return out;
   };
-  Array<VertexSets> out;
   double longest = std::numeric_limits<double>::infinity();
   for (const auto& [length, h] : edges) {
     if (joined.find(mesh.origin(h)) == joined.find(mesh.target(h))) continue;
-    if (length > least_gap * longest) out.push_back(sets());
+    if (length > least_gap * longest) {
+      if (auto choice = choice_for(sets())) return choice;
+    }
     joined.unite(mesh.origin(h), mesh.target(h));
     longest = length;
   }
-  out.push_back(sets());
-  return out;
+  return choice_for(sets());
 }
 
 // The vertex nearest to the center of curvature of these, one in the mirror plane if there are any; none if no cone may
@@ -204,10 +205,7 @@ std::optional<ConeChoice> natural_cones(const ConeChooser& chooser, Corners kind
 std::optional<ConeChoice> rounded_corner_cones(const ConeChooser& chooser) {
   const PlacementTask& task = chooser.task();
   if (!task.mesh.closed() || !task.existing.vertices.empty()) return std::nullopt;
-  for (const VertexSets& corners : find_rounded_corners(task)) {
-    if (auto choice = cones_in_middles(chooser, corners)) return choice;
-  }
-  return std::nullopt;
+  return first_choice_at_gaps(task, [&](const VertexSets& corners) { return cones_in_middles(chooser, corners); });
 }
 
 }  // namespace lsgp

@@ -122,8 +122,9 @@ def test_files_of_all_kinds(library, tmp_path):
     assert all(UvMap(obj).sister_difference() < 1e-5 for obj in (marked, bare))
     assert not bare.vertex_groups
 
-    # Its facets, which glTF has apart, are one surface, and look as before.
+    # Its facets, which glTF has apart, are unwrapped as one surface, and look as before.
     assert lines["sphere.glb"]["islands"] == 1
+    assert set(lines["sphere.glb"]["warnings"]) == {"BORDERS_STITCHED"}
     clear()
     bpy.ops.import_scene.gltf(filepath=str(out / "sphere.glb"))
     (sphere,) = (obj.data for obj in bpy.data.objects if obj.type == "MESH")

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from lsgp import ear_clipping
-from lsgp.ear_clipping import clip_ears_of_one
+from lsgp.base import ear_clipping
+from lsgp.base.ear_clipping import clip_ears_of_one
 from lsgp.io import polygons
 from lsgp.io.polygons import PolygonMesh, triangulate
 from polygon_meshes import polygon_areas, polygon_mesh, require_triangulation, triangle_areas

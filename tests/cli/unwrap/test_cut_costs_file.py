@@ -7,9 +7,9 @@ import json
 from itertools import pairwise
 from pathlib import Path
 
-import lsgp as library
 import numpy as np
 import pytest
+from command import cut_edges
 from polygon_meshes import bumpy_ball
 
 POSITIONS, FACES = bumpy_ball()
@@ -18,24 +18,16 @@ UNWRAP = ("unwrap", "ball.obj", "-o", "out.obj", "--cones", "cones.json")
 EDGES = sorted({tuple(sorted(pair)) for face in FACES for pair in pairwise([*face, face[0]])})
 
 
-def cut_of(folder: Path) -> set[tuple[int, int]]:
-    """The edges at which the result is cut."""
-    file = library.read_mesh_file(folder / "out.obj", with_uv=True)
-    return {
-        tuple(sorted(edge)) for edge in library.measure_distortion(file.surface(), file.triangle_uv).cut_edges.tolist()
-    }
-
-
 def cut_with(lsgp, folder: Path, content: str, *options: str) -> set[tuple[int, int]]:
     (folder / "costs").write_text(content)
     done = lsgp(*UNWRAP, "--cut-costs", "costs", *options)
     assert done.code == 0, done.err
-    return cut_of(folder)
+    return cut_edges(folder / "out.obj")
 
 
 def test_cuts_avoid_edges_that_cost_much(lsgp, ball_files: Path) -> None:
     assert lsgp(*UNWRAP).code == 0
-    usual = cut_of(ball_files)
+    usual = cut_edges(ball_files / "out.obj")
     dear = "# avoid\n" + "".join(f"{a} {b} 1e5\n" for a, b in sorted(usual)[::2])
     assert not cut_with(lsgp, ball_files, dear) & set(sorted(usual)[::2])
 
@@ -51,7 +43,8 @@ def test_text_and_json_are_the_same_and_every_edge_may_have_a_cost(lsgp, ball_fi
 
 def test_paint_repels_cuts(lsgp, ball_files: Path) -> None:
     assert lsgp(*UNWRAP, "--cuts", "shortest").code == 0
-    inside = {vertex for edge in cut_of(ball_files) for vertex in edge} - set(json.loads(cones(ball_files)))
+    usual = cut_edges(ball_files / "out.obj")
+    inside = {vertex for edge in usual for vertex in edge} - set(json.loads(cones(ball_files)))
     paint = np.full(COUNT, 0.5)
     paint[sorted(inside)] = 1
     painted = cut_with(lsgp, ball_files, "\n".join(map(str, paint.tolist())), "--cuts", "shortest")

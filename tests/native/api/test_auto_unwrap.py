@@ -10,7 +10,7 @@ import meshes
 import numpy as np
 import pytest
 from lsgp import Surface, auto_unwrap
-from lsgp.auto_unwrap import TARGET, GivenCones, complete_cones
+from lsgp.presets.auto_unwrap import TARGET, GivenCones, complete_cones
 from map_checks import codes, only
 from meshes import Mesh
 from result_check import undeclared_faults

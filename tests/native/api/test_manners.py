@@ -8,8 +8,8 @@ import math
 import lsgp
 import meshes
 import numpy as np
-from lsgp.equality import EqualByContent
-from lsgp.short_repr import ShortRepr
+from lsgp.base.equality import EqualByContent
+from lsgp.base.short_repr import ShortRepr
 
 LONGEST = 400  # characters, about three lines of a terminal
 

@@ -3,15 +3,14 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 
 import lsgp
 import meshes
 import numpy as np
 import pytest
-from lsgp import map_comparison
-from lsgp.border_gains import FullerSquare
+from lsgp.presets import map_comparison
+from lsgp.presets.border_gains import FullerSquare
 from lsgp.triangles import uv_area
 from map_checks import pairs, surface
 from meshes import Mesh
@@ -36,7 +35,7 @@ def scaled(mesh: Mesh, size: float) -> Mesh:
 def maps_made(monkeypatch: pytest.MonkeyPatch) -> list[lsgp.Result]:
     """The results of the maps that are compared, as they are made."""
     made: list[lsgp.Result] = []
-    module = sys.modules["lsgp.auto_unwrap"]
+    module = lsgp.presets.auto_unwrap
     original = module.best_map
 
     def best_map(*given: object) -> object:
@@ -110,7 +109,7 @@ def test_progress_ends_at_one_whichever_maps_are_made(mesh: Mesh, preset: lsgp.P
 
 
 def test_progress_ends_at_one_where_the_map_with_borders_fails(monkeypatch: pytest.MonkeyPatch) -> None:
-    module = sys.modules["lsgp.auto_unwrap"]
+    module = lsgp.presets.auto_unwrap
     original, made, told = module.best_map, [], []
 
     def best_map(*given: object) -> object:

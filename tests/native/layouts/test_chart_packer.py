@@ -8,7 +8,7 @@ import sys
 import threading
 
 import pytest
-from lsgp import chart_packer
+from lsgp.layouts import chart_packer
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells what threads do")

@@ -6,8 +6,8 @@ from __future__ import annotations
 import meshes
 import numpy as np
 import pytest
-from lsgp.coarse_islands import coarse_triangles
-from lsgp.island_gaps import border_edges
+from lsgp.layouts.coarse_islands import coarse_triangles
+from lsgp.layouts.island_gaps import border_edges
 
 
 def cut_to(shape, n: int = 60) -> tuple[np.ndarray, np.ndarray]:

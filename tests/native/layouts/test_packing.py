@@ -14,9 +14,10 @@ import meshes
 import numpy as np
 import pytest
 from layout_check import coverage, moves, overlapping_islands, room, share_along_axes
-from lsgp import TexelLayout, packing
-from lsgp.island_gaps import least_gap
-from lsgp.layout_search import best_layout
+from lsgp import TexelLayout
+from lsgp.layouts import packing
+from lsgp.layouts.island_gaps import least_gap
+from lsgp.layouts.layout_search import best_layout
 from map_checks import codes, surface
 from other_process import in_another_process
 

@@ -3,15 +3,14 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass, field, replace
 
 import lsgp
 import meshes
 import numpy as np
 import pytest
-from lsgp import map_comparison
-from lsgp.map_comparison import may_replace_map
+from lsgp.presets import map_comparison
+from lsgp.presets.map_comparison import may_replace_map
 from map_checks import assert_curvature_adds_up, codes, only, surface
 from meshes import Mesh, make
 from placement_checks import place
@@ -266,7 +265,7 @@ def test_symmetric_cones_get_other_cuts_where_that_saves_two_islands(
     usual: int, mirrored: int, free: int, tried: bool, chosen: str
 ) -> None:
     pytest.importorskip("xatlas")
-    unwrapping = sys.modules["lsgp.auto_unwrap"]
+    unwrapping = lsgp.presets.auto_unwrap
     result = lsgp.auto_unwrap(surface(MESH), symmetric=False, pack="shelves")
     maps = MapsByCuts(*(with_rectangles(result, count) for count in (usual, mirrored, free)))
     choices = unwrapping.ConeChoices(

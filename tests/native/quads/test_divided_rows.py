@@ -7,7 +7,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
-from lsgp.quad_rows import QuadLines
+from lsgp.quads.quad_rows import QuadLines
 from map_checks import surface
 from meshes import Mesh
 from quad_checks import fans, flat_torus, layout_area, require_closed_quads, require_cones, sides

@@ -13,7 +13,7 @@ import numpy as np
 import oracle
 import pytest
 from hulls import hull
-from lsgp.divided_triangles import divide_long_edges
+from lsgp.quads.divided_triangles import divide_long_edges
 from map_checks import codes, surface
 from meshes import Mesh
 from numpy.typing import NDArray

@@ -134,7 +134,7 @@ def test_millions_of_quads_that_nobody_asked_for_are_refused(ratio: float, asked
 
 
 def test_as_many_quads_as_the_refusal_names_are_made_on_request(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("lsgp.quads._MANY_QUADS", 500)
+    monkeypatch.setattr("lsgp.quads.remeshing._MANY_QUADS", 500)
     with pytest.raises(lsgp.SolverError) as caught:
         lsgp.remesh_to_quads(of_two_sizes(0.1))
     named = int(re.search(r"has (\d+) quads", caught.value.message)[1])

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -162,7 +161,7 @@ def test_creases_become_edges_of_quads(name: str) -> None:
 
 
 def test_the_usual_layout_is_made_once_where_cones_for_creases_admit_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    unwrapping = sys.modules["lsgp.auto_unwrap"]
+    unwrapping = lsgp.presets.auto_unwrap
     box = surface(HARD["box"])
     solver = lsgp.Solver(box)
     usual = unwrapping.complete_cones(solver, unwrapping.GivenCones.of(), TILE)

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 from functools import cache
 
@@ -11,7 +10,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
-from lsgp import map_comparison
+from lsgp.presets import map_comparison
 from lsgp.triangles import uv_area
 from map_checks import surface
 from zoo import closed, swept
@@ -32,7 +31,7 @@ MODELS = {
 
 def without_packer(monkeypatch: pytest.MonkeyPatch) -> list[lsgp.Result]:
     """The maps as they are divided by the estimate alone."""
-    module, before = sys.modules["lsgp.auto_unwrap"], []
+    module, before = lsgp.presets.auto_unwrap, []
     original = module.best_division
 
     def best_division(mapped: tuple[lsgp.Surface, object, lsgp.Result], *given: object) -> lsgp.Result:

@@ -10,12 +10,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import arguments
-from .api import Result, Surface
-from .arguments import FloatArray, IndexArray
-from .errors import Elements, Finding, InputError
-from .lattice import island_boxes
-from .triangles import singular_values, triangle_areas
+from ..base import arguments
+from ..base.arguments import FloatArray, IndexArray
+from ..errors import Elements, Finding, InputError
+from ..lattice import island_boxes
+from ..results import Result
+from ..surface import Surface
+from ..triangles import singular_values, triangle_areas
 
 MOST_TILES = 100
 """A UDIM number counts tiles in rows of ten; more rows than ten are not in use."""

@@ -12,24 +12,20 @@ from typing import Literal, TypeVar, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _lsgp, arguments
-from .api import (
-    Options,
-    Pins,
-    Placement,
-    Progress,
-    Result,
-    Seamless,
-    Solver,
-    Surface,
-    crease_borders,
-    surface_arrays,
-)
-from .arguments import FloatArray, IndexArray
+from .. import _lsgp
+from ..api import Solver, crease_borders
+from ..base import arguments
+from ..base.arguments import FloatArray, IndexArray
+from ..base.edge_keys import edge_keys
+from ..base.progress import Progress, share_of
+from ..errors import Cancelled, Finding, InputError, LsgpError
+from ..layouts.packing import Pack, Packing, Stack, laid_out, packing_once
+from ..layouts.texels import TexelLayout, at_texel_density, with_tiny_findings
+from ..ledger import LedgerPart, build_ledger, surface_of_triangles
+from ..options import Options, Seamless
+from ..results import Placement, Result
+from ..surface import Pins, Surface, surface_arrays
 from .border_gains import BorderGain, FullerSquare, LessStretch
-from .edge_keys import edge_keys
-from .errors import Cancelled, Finding, InputError, LsgpError
-from .ledger import LedgerPart, build_ledger, surface_of_triangles
 from .map_comparison import (
     fills_badly,
     may_replace_for_features,
@@ -40,8 +36,6 @@ from .map_comparison import (
     runs_along_features,
     saves_islands,
 )
-from .packing import Pack, Packing, Stack, laid_out, packing_once
-from .texels import TexelLayout, at_texel_density, with_tiny_findings
 
 Preset = Literal["paint", "tile", "bake"]
 
@@ -610,11 +604,6 @@ def or_none(attempt: Callable[[], T]) -> T | None:
         raise
     except LsgpError:
         return None
-
-
-def share_of(progress: Progress | None, begin: float, end: float) -> Progress | None:
-    """The progress of one stage, as the share of the whole from begin to end."""
-    return None if progress is None else lambda done: progress(begin + (end - begin) * done)
 
 
 def _place(

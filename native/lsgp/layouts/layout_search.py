@@ -9,12 +9,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from .api import Progress
-from .arguments import FloatArray, IndexArray
+from ..base.arguments import FloatArray, IndexArray
+from ..base.progress import Progress
+from ..errors import Cancelled
+from ..triangles import uv_area
 from .chart_packer import Islands, Layout, Packer, Square
-from .errors import Cancelled
 from .island_gaps import border_edges
-from .triangles import uv_area
 
 # Whether islands may be turned, or by quarters alone.
 Turned = bool | Literal["quarters"]

@@ -19,8 +19,8 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import InputError
 from .coarse_islands import coarse_triangles, doubled_areas
-from .errors import InputError
 from .island_gaps import ComplexArray, Indices, least_gap
 
 # Texels of the raster's side, about: finer ones take time as its square, coarser ones waste space around islands. Of

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .api import Progress
-from .arguments import FloatArray, IndexArray
+from ..base.arguments import FloatArray, IndexArray
+from ..base.progress import Progress
+from ..errors import InputError
+from ..triangles import uv_areas
 from .chart_packer import Indices, Islands, Layout, Square
-from .errors import InputError
 from .layout_search import Turned, best_layout, islands_of
 from .texels import TILES_IN_ROW
-from .triangles import uv_areas
 
 # How often an island is moved from the fullest tile to the emptiest at most, and what each move has to gain.
 _MOST_MOVES = 8

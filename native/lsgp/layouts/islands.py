@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import arguments
-from .arguments import FloatArray, IndexArray
-from .errors import InputError
+from ..base import arguments
+from ..base.arguments import FloatArray, IndexArray
+from ..errors import InputError
 
 # Texture coordinates come in single precision; an island below this share of its distance to the origin is a point.
 _POINT = 1e-6

@@ -10,8 +10,8 @@ from collections import deque
 
 import numpy as np
 
-from .arguments import FloatArray
-from .ear_clipping import clip_ears_of_one
+from ..base.arguments import FloatArray
+from ..base.ear_clipping import clip_ears_of_one
 from .island_gaps import ComplexArray, Indices
 
 # Corners of a border that lie on a line so well, relative to the square root of the island's area, are left out.

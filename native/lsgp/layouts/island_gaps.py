@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from .arguments import FloatArray
+from ..base.arguments import FloatArray
 
 ComplexArray = NDArray[np.complex128]
 Indices = NDArray[np.int64]

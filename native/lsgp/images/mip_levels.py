@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import arguments
-from .api import Surface
-from .arguments import FloatArray
-from .errors import InputError
+from ..base import arguments
+from ..base.arguments import FloatArray
+from ..errors import InputError
+from ..surface import Surface
 from .gutters import convert_texels, pad_image
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .arguments import IndexArray
+from ..base.arguments import IndexArray
 
 
 class QuadLines:

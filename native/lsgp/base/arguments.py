@@ -14,7 +14,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import Elements, InputError
+from ..errors import Elements, InputError
 
 FloatArray = NDArray[np.float64]
 IndexArray = NDArray[np.int32]

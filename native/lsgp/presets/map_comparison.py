@@ -8,12 +8,13 @@ from functools import partial
 
 import numpy as np
 
-from .api import Progress, Result
-from .errors import InputError
-from .lattice import island_boxes
-from .layout_search import Turned
-from .packing import pack_islands, packer_name, turns_of
-from .triangles import uv_area
+from ..base.progress import Progress
+from ..errors import InputError
+from ..lattice import island_boxes
+from ..layouts.layout_search import Turned
+from ..layouts.packing import pack_islands, packer_name, turns_of
+from ..results import Result
+from ..triangles import uv_area
 
 # Of the L2 stretch that the other one has, of the edges that it cuts, and of what it fills of the square: a tenth less
 # is a twentieth of the texel density. One island more for so many; one for fewer, or a pair that fills the square as

@@ -15,11 +15,13 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import arguments
-from .api import Progress, Result, Surface
-from .arguments import FloatArray, IndexArray
+from ..base import arguments
+from ..base.arguments import FloatArray, IndexArray
+from ..base.progress import Progress
+from ..errors import Cancelled, Elements, Finding, InputError
+from ..results import Result
+from ..surface import Surface
 from .chart_packer import Square, find_xatlas
-from .errors import Cancelled, Elements, Finding, InputError
 from .layout_search import Turned, best_layout, islands_of
 from .stacking import find_stacks
 from .texels import MOST_TILES, TexelLayout, at_texel_density, outside_findings

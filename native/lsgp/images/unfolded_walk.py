@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .arguments import IndexArray
+from ..base.arguments import IndexArray
 from .texel_raster import ON_EDGE, ComplexArray, Indices, cross, edge_distances, has_area
 
 # Walks over more triangles are given up; they happen only where triangles are far smaller than texels.

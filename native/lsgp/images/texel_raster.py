@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .arguments import FloatArray
+from ..base.arguments import FloatArray
 
 ComplexArray = NDArray[np.complex128]
 Indices = NDArray[np.int64]

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import arguments
-from .arguments import FloatArray
-from .equality import EqualByContent
+from ..base import arguments
+from ..base.arguments import FloatArray
+from ..base.equality import EqualByContent
+from ..base.short_repr import ShortRepr
 from .layout_search import Islands, islands_of
-from .short_repr import ShortRepr
 
 Indices = NDArray[np.int64]
 

@@ -9,9 +9,12 @@ from typing import Protocol
 
 import numpy as np
 
-from .api import IndexArray, Progress, Result, Surface
+from ..base.arguments import IndexArray
+from ..base.progress import Progress
+from ..results import Result
+from ..surface import Surface
+from ..triangles import singular_values, triangle_areas
 from .map_comparison import WELL_FILLED, defects, island_count, least_filled, measure_of_filling, worthwhile
-from .triangles import singular_values, triangle_areas
 
 # Borders are worth their islands if they remove half of the stretch, and so much of it for each further island; a fifth
 # of it without further ones. So many cones that they spare pay for an island, as each has a cut that ends inside; on

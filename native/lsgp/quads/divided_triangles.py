@@ -8,9 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from .api import FloatArray, IndexArray, Surface
-from .edge_keys import edge_keys
-from .errors import Elements
+from ..base.arguments import FloatArray, IndexArray
+from ..base.edge_keys import edge_keys
+from ..errors import Elements
+from ..surface import Surface
 
 # Needles are divided along their length into as many triangles as that takes; no more than this in all, or as many
 # times the surface's own.
