@@ -31,13 +31,14 @@ class EditedMesh(MeshReader):
 
     @cached_property
     def stitched(self) -> NDArray[np.int32]:
-        # Only faces at boundaries can be stitched, and few are. What else they have stays out of it without a place.
-        border = [vertex for vertex in self._bm.verts if vertex.is_boundary]
-        if not border:
+        # Few faces are at boundaries or at edges without length. What else these have stays out of it without a place.
+        ends = (vertex for edge in self._bm.edges if edge.calc_length() == 0 for vertex in edge.verts)
+        chosen = list(dict.fromkeys([*ends, *(vertex for vertex in self._bm.verts if vertex.is_boundary)]))
+        if not chosen:
             return np.arange(len(self._bm.verts), dtype=np.int32)
-        faces = list(dict.fromkeys(face for vertex in border for face in vertex.link_faces))
+        faces = list(dict.fromkeys(face for vertex in chosen for face in vertex.link_faces))
         places = np.full((len(self._bm.verts), 3), np.nan, np.float32)
-        places[[vertex.index for vertex in border]] = rows([vertex.co[:] for vertex in border], 3)
+        places[[vertex.index for vertex in chosen]] = rows([vertex.co[:] for vertex in chosen], 3)
         corners = np.array([vertex.index for face in faces for vertex in face.verts], np.int32)
         return stitched_vertices(places, corners, np.array([len(face.verts) for face in faces], np.int32))
 
@@ -51,7 +52,7 @@ class EditedMesh(MeshReader):
         return rows([v.co[:] for v in self._bm.verts], 3)
 
     def on_border(self, vertices: Sequence[int]) -> list[bool]:
-        return [self._bm.verts[v].is_boundary and self._is_open_at(v) for v in vertices]
+        return [self._is_open_at(v) for v in vertices]
 
     def seams(self) -> NDArray[np.int32]:
         return self.stitched[self._ends(edge for edge in self._bm.edges if edge.seam)]
@@ -146,17 +147,26 @@ class EditedMesh(MeshReader):
         for first, second in product(*map(self._copies, pair)):
             edge = self._bm.edges.get((first, second))
             for loop in () if edge is None else edge.link_loops:
-                if loop.vert == first and not loop.face.hide:
+                if loop.vert == first and not loop.face.hide and self._is_on_surface(loop.face):
                     return loop
         return None
 
     def _copies(self, vertex: int) -> list[bmesh.types.BMVert]:
         """The vertices of the mesh that are this one of the surface."""
-        found = self._bm.verts[vertex]
-        return [self._bm.verts[i] for i in np.flatnonzero(self.stitched == vertex)] if found.is_boundary else [found]
+        indices = np.flatnonzero(self.stitched == vertex) if vertex in self._with_copies else [vertex]
+        return [self._bm.verts[i] for i in indices]
+
+    @cached_property
+    def _with_copies(self) -> set[int]:
+        """The vertices of the surface that several of the mesh are."""
+        return set(self.stitched[self.stitched != np.arange(len(self.stitched))].tolist())
+
+    def _is_on_surface(self, face: bmesh.types.BMFace) -> bool:
+        """Whether it is more than a line."""
+        return len({self.stitched[vertex.index] for vertex in face.verts}) > 2
 
     def _is_open_at(self, vertex: int) -> bool:
         """Whether this vertex of the surface has an edge with a single face."""
         edges = {edge for copy in self._copies(vertex) for edge in copy.link_edges if edge.is_boundary}
         ends = [tuple(sorted(self.stitched[end.index] for end in edge.verts)) for edge in edges]
-        return any(count == 1 for count in Counter(ends).values())
+        return any(count == 1 and len(set(pair)) > 1 for pair, count in Counter(ends).items())

@@ -56,7 +56,7 @@ def stitched_vertices(positions: FloatArray, corners: NDArray[np.integer], sizes
     with_point = np.isin(face, face[is_point])
     is_line = _different(closed, corners[with_point], face[with_point], len(sizes)) < 3
     is_line &= np.bincount(face[with_point], minlength=len(sizes)) > 0
-    side = np.flatnonzero(is_shared[tail] & is_shared[head] & ~is_point & ~is_line[face])
+    side = np.flatnonzero((is_shared[tail] | is_shared[head]) & ~is_point & ~is_line[face])
     side = _once(side, edge_keys(tail[side], head[side], len(positions)))
     one, other = _opposite_pairs(side, place[tail[side]], place[head[side]], len(positions))
     normals = _normals(positions, tail, head, face, len(sizes))

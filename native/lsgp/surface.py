@@ -21,7 +21,8 @@ class Surface(EqualByContent, ShortRepr):
     """A triangulated surface, possibly of several components, and the edges its cuts may follow.
 
     positions: (n, 3) float64, any unit.
-    triangles: (m, 3) int32, counter-clockwise seen from outside.
+    triangles: (m, 3) int32, counter-clockwise seen from outside. Those that name a vertex twice are no part of the
+        surface; they get the coordinates of a neighbor.
     edges: (e, 2) int32, the edges a cut may follow (mesh edges, not the diagonals of triangulated polygons);
         None for all edges of the triangles.
     seams: (s, 2) int32, marked edges, with the meaning given by `Options.seams`.

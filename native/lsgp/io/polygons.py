@@ -89,7 +89,7 @@ class Triangulation(EqualByContent, ShortRepr):
         return values
 
     def at_vertices(self, named: NDArray[np.int32]) -> Triangulation:
-        """The same with other vertices.  named: (n,) the one that stands for each; edges between equal ones are none."""
+        """The same with other vertices, without edges between equal ones.  named: (n,) the one that stands for each."""
         if np.array_equal(named, np.arange(len(named))):
             return self
         edges = np.sort(named[self.edges], axis=1)

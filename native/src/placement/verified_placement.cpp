@@ -33,9 +33,10 @@ constexpr double worth_moving = 0.99;
 // no more than this of the stretch above 1.
 constexpr double more_cones = 1.25, still_worthwhile = 0.9;
 constexpr int most_enlargements = 6;
-constexpr double low_l2 = 1.01;     // of a map that justifies a cone at every rounded corner
-constexpr double usual_l2 = 1.05;   // of a map that does not justify more cones than the stages have
-constexpr double much_fewer = 0.8;  // of those at cheap sites: so few at any sites are preferred
+constexpr double low_l2 = 1.01;        // of a map that justifies a cone at every rounded corner
+constexpr double usual_l2 = 1.05;      // of a map that does not justify more cones than the stages have
+constexpr double far_from_target = 2;  // of the stretch above 1: other stages are tried where angles are rounded
+constexpr double much_fewer = 0.8;     // of those at cheap sites: so few at any sites are preferred
 
 // Whether the first choice is nearer to a usable map.
 bool is_better(const TriedMap& a, const TriedMap& b) {
@@ -70,7 +71,7 @@ VerifiedChoice VerifiedPlacement::place() {
   // Unwrapping would repair it anyway.
   const bool is_left = !out.map.is_valid() && !out.map.is_repaired && out.cones.is_possible();
   if (is_left && chooser_.task().mesh.triangle_count() <= very_large) repair(out);
-  if (is_automatic) take_fewer_while_off(out);
+  if (is_automatic) take_other_stage(out);
   return out;
 }
 
@@ -272,10 +273,14 @@ void VerifiedPlacement::take_fewer(const AutomaticCones& automatic, double misse
   }
 }
 
-// Fewer cones stretch more, but if angles or seams are off with many, they may be right with few.
-void VerifiedPlacement::take_fewer_while_off(VerifiedChoice& best) {
-  for (auto stage = std::rbegin(cone_stages); stage != std::rend(cone_stages) && best.map.is_off(); ++stage) {
-    if (*stage >= static_cast<int>(best.cones.vertices.size())) continue;
+// Fewer cones are predicted to stretch more, but if angles or seams are off with many, they may be right with few. So
+// may others be where angles are rounded, since what is predicted is far from the map of a coarse surface then.
+void VerifiedPlacement::take_other_stage(VerifiedChoice& best) {
+  const bool is_far = best.map.l2 - 1 > far_from_target * (chooser_.options().target - 1);
+  const bool tries_all = is_small() && chooser_.options().lattice && is_far;
+  const auto present = static_cast<int>(best.cones.vertices.size());
+  for (auto stage = std::rbegin(cone_stages); stage != std::rend(cone_stages); ++stage) {
+    if (!tries_all && (!best.map.is_off() || *stage > present)) continue;
     VerifiedChoice found = verified(chooser_.choose(*stage));
     if (is_better(found.map, best.map)) best = std::move(found);
     monitor_.tick();

@@ -65,7 +65,7 @@ class VerifiedPlacement {
   void lower_target(AutomaticCones& automatic, VerifiedChoice& best);
   void take_fewer(const AutomaticCones& automatic, double missed, double reached, VerifiedChoice& best);
   void take_many(VerifiedChoice& best);
-  void take_fewer_while_off(VerifiedChoice& best);
+  void take_other_stage(VerifiedChoice& best);
   bool is_small() const;
   bool is_tangled(const TriedMap& map) const;  // defects all over
   bool has_many() const;                       // cones there or asked for

@@ -108,3 +108,21 @@ def test_only_vertices_that_belong_to_no_face_of_their_own_are_told() -> None:
     (rest,) = without_stitched(np.array([0, 0, 2, 3]), told)
     assert rest.message == "1 vertex belongs to no face and got no coordinates."
     assert rest.elements.indices.tolist() == [3]
+
+
+def test_a_slit_inside_the_surface_closes() -> None:
+    """Both sides of its first and last edge share a vertex."""
+    hill = meshes.hill()
+    edges, count = np.unique(
+        np.sort(hill.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0, return_counts=True
+    )
+    inside = np.setdiff1d(np.arange(len(hill.positions)), edges[count == 1])
+    middle = inside[len(inside) // 2]
+    ring = np.flatnonzero((hill.triangles == middle).any(axis=1))
+    half = ring[hill.positions[hill.triangles[ring]].mean(axis=1)[:, 0] > hill.positions[middle, 0]]
+    triangles = hill.triangles.copy()
+    triangles[half] = np.where(triangles[half] == middle, len(hill.positions), triangles[half])
+    positions = np.vstack([hill.positions, hill.positions[middle]])
+    assert meshes.euler_characteristic(triangles) < meshes.euler_characteristic(hill.triangles)
+    stitched = lsgp.stitch_borders(positions, triangles)
+    assert np.array_equal(stitched[triangles], hill.triangles)

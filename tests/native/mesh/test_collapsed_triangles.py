@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Edges without length: their ends are one vertex for the computation, and their triangles take the coordinates of
+neighbors."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import lsgp
+import meshes
+import numpy as np
+import pytest
+from lsgp.stitching import stitched_vertices
+from map_checks import codes, only
+from meshes import Mesh
+from opened_surface import named_by
+
+AROUND, ROWS = 12, 7
+
+
+def ball(pole_vertices: int = 1) -> Mesh:
+    """A sphere of rows; with more vertices at the poles, all in one place, the faces there are quads cut in two."""
+    turns = np.arange(AROUND) * 2 * np.pi / AROUND
+    heights = np.linspace(0, np.pi, ROWS + 1)[1:-1]
+    rows = [
+        np.stack([np.sin(h) * np.cos(turns), np.sin(h) * np.sin(turns), np.full(AROUND, np.cos(h))], axis=1)
+        for h in heights
+    ]
+    poles = [np.tile([0.0, 0.0, z], (pole_vertices, 1)) for z in (1, -1)]
+    positions = np.concatenate([*rows, *poles])
+    i, j = np.arange(AROUND), np.roll(np.arange(AROUND), -1)
+    triangles = []
+    for row in range(ROWS - 2):
+        a, b, c, d = row * AROUND + i, row * AROUND + j, (row + 1) * AROUND + i, (row + 1) * AROUND + j
+        triangles += [np.stack([a, c, d], axis=1), np.stack([a, d, b], axis=1)]
+    top, last = (ROWS - 1) * AROUND, (ROWS - 2) * AROUND
+    bottom = top + pole_vertices
+    at = np.zeros(AROUND, int) if pole_vertices == 1 else i
+    after = np.zeros(AROUND, int) if pole_vertices == 1 else j
+    triangles += [np.stack([i, j, top + at], axis=1), np.stack([last + j, last + i, bottom + at], axis=1)]
+    if pole_vertices > 1:
+        triangles += [np.stack([top + at, j, top + after], axis=1)]
+        triangles += [np.stack([last + j, bottom + at, bottom + after], axis=1)]
+    return meshes.make(positions, np.concatenate(triangles))
+
+
+def closed(mesh: Mesh) -> lsgp.Surface:
+    stitched = lsgp.stitch_borders(mesh.positions, mesh.triangles)
+    return lsgp.Surface(mesh.positions, stitched[mesh.triangles])
+
+
+def is_collapsed(surface: lsgp.Surface) -> np.ndarray:
+    a, b, c = surface.triangles.T
+    return (a == b) | (b == c) | (c == a)
+
+
+@pytest.mark.parametrize("preset", ("paint", "tile", "bake"))
+def test_poles_of_many_vertices_have_the_map_of_one(preset: str) -> None:
+    plain = ball()
+    surface = closed(ball(AROUND))
+    whole = ~is_collapsed(surface)
+    assert np.count_nonzero(~whole) == 2 * AROUND
+    one = lsgp.auto_unwrap(lsgp.Surface(plain.positions, plain.triangles), preset=preset, pack="shelves")
+    many = lsgp.auto_unwrap(surface, preset=preset, pack="shelves")
+    assert many.distortion == one.distortion
+    np.testing.assert_array_equal(many.corner_uv[whole], one.corner_uv)
+    assert named_by(many, "DEGENERATE_FACES").tolist() == np.flatnonzero(~whole).tolist()
+
+
+def test_collapsed_triangles_lie_on_an_edge_of_a_neighbor() -> None:
+    surface = closed(ball(AROUND))
+    result = lsgp.auto_unwrap(surface)
+    whole = np.flatnonzero(~is_collapsed(surface))
+    at = {(surface.triangles[f, c], *result.corner_uv[f, c]): result.island[f] for f in whole for c in range(3)}
+    for f in np.flatnonzero(is_collapsed(surface)):
+        for c in range(3):
+            assert at[(surface.triangles[f, c], *result.corner_uv[f, c])] == result.island[f]
+
+
+def test_every_verb_takes_collapsed_triangles() -> None:
+    surface = closed(ball(AROUND))
+    cones = lsgp.place_cones(surface, count=8).cones
+    plain = lsgp.place_cones(lsgp.Surface(ball().positions, ball().triangles), count=8)
+    assert len(cones) == len(plain.cones) == 8
+    edges = np.unique(np.sort(surface.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)), axis=0)
+    costs = lsgp.cut_costs(replace(surface, edges=edges), front=(0, -1, 0))
+    assert costs.shape == (len(edges),)
+    result = lsgp.parameterize(replace(surface, edges=edges, cut_costs=costs), cones)
+    assert not len(result.flipped)
+    measured = lsgp.measure_distortion(surface, result.corner_uv)
+    assert measured.distortion.l2_stretch == pytest.approx(result.distortion.l2_stretch, rel=1e-9)
+
+
+def test_seams_may_run_along_edges_that_only_collapsed_triangles_have() -> None:
+    surface = closed(ball(AROUND))
+    pole = surface.triangles[is_collapsed(surface)][0]
+    seams = [[pole[0], pole[0]], [pole.min(), pole.max()]]
+    result = lsgp.parameterize(replace(surface, seams=np.array(seams, np.int32)), lsgp.place_cones(surface).cones)
+    assert "SEAM_NOT_AN_EDGE" not in codes(result.warnings)
+
+
+def test_a_collapsed_triangle_without_neighbors_is_left_out_by_name() -> None:
+    grid = meshes.grid(3, 3)
+    count = len(grid.positions)
+    positions = np.vstack([grid.positions, [[9, 9, 9], [9, 9, 9], [9, 8, 9]]])
+    triangles = np.vstack([grid.triangles, [[count, count, count + 2]]])
+    result = lsgp.parameterize(lsgp.Surface(positions, triangles), ())
+    assert only(result.warnings, "COMPONENT_SKIPPED").elements.indices.tolist() == [len(grid.triangles)]
+    assert np.isnan(result.corner_uv[-1]).all()
+    assert np.isfinite(result.corner_uv[:-1]).all()
+
+
+def test_a_quad_with_an_edge_without_length_is_a_triangle() -> None:
+    positions = np.array([[0, 0, 0], [1, 0, 0], [1, 0, 0], [0, 1, 0], [2, 1, 0]], float)
+    corners, sizes = np.array([0, 1, 2, 3, 2, 4, 3], np.int32), np.array([4, 3])
+    assert stitched_vertices(positions, corners, sizes).tolist() == [0, 1, 1, 3, 4]
+
+
+def test_a_hole_of_one_point_closes() -> None:
+    """A row of vertices at the pole, without faces of their own between them."""
+    mesh = ball(AROUND)
+    whole = ~is_collapsed(closed(mesh))
+    open_ball = meshes.make(mesh.positions, mesh.triangles[whole])
+    stitched = lsgp.stitch_borders(open_ball.positions, open_ball.triangles)
+    assert meshes.euler_characteristic(stitched[open_ball.triangles]) == 2
