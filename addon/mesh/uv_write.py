@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core import native
 from ..core.identifiers import NEW_UV_LAYER
 from ..core.region import Region
 
@@ -22,6 +23,7 @@ def write_uv(obj: bpy.types.Object, region: Region, solved: NDArray[np.bool_], c
     mesh = obj.data
     if mesh.uv_layers.active is None:
         mesh.uv_layers.new(name=NEW_UV_LAYER)
+    corner_uv = native.part("stitching").in_own_faces(corner_uv, region.surface.triangles, region.triangle_faces)
     loops = region.triangle_loops[solved].ravel()
     uv = corner_uv[solved].reshape(-1, 2).astype(np.float32)
     if obj.mode == "EDIT":

@@ -108,6 +108,26 @@ def stitched_finding(stitched: IndexArray) -> list[Finding]:
     ]
 
 
+def in_own_faces(corner_uv: FloatArray, triangles: IndexArray, faces: IndexArray) -> FloatArray:
+    """Coordinates of triangles that are parts of faces: those that name a vertex twice, which have the coordinates of
+    some neighbor, get those of their own face where it is more than a line.
+
+    corner_uv: (m, 3, 2). triangles: (m, 3). faces: (m,) the face of each.
+    """
+    a, b, c = triangles.T
+    collapsed = (a == b) | (b == c) | (c == a)
+    if not collapsed.any() or collapsed.all():
+        return corner_uv
+    key = faces[:, None].astype(np.int64) * (int(triangles.max()) + 1) + triangles
+    known, first = np.unique(key[~collapsed], return_index=True)
+    wanted = key[collapsed]
+    at = np.minimum(np.searchsorted(known, wanted), len(known) - 1)
+    own = corner_uv[~collapsed].reshape(-1, 2)[first[at]]
+    out = corner_uv.copy()
+    out[collapsed] = np.where((known[at] == wanted)[..., None], own, corner_uv[collapsed])
+    return out
+
+
 def without_stitched(stitched: IndexArray, warnings: Sequence[Finding]) -> list[Finding]:
     """Warnings on a surface, without the vertices that others took the place of among those that belong to no face."""
     rest = []

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..base.arguments import IndexArray
 from ..base.short_repr import ShortRepr
 from ..errors import Finding, InputError
-from ..stitching import at_stitched, stitched_cones, stitched_finding, stitched_vertices, without_stitched
+from ..stitching import at_stitched, in_own_faces, stitched_cones, stitched_finding, stitched_vertices, without_stitched
 from ..surface import Surface
 from .mesh_formats import FORMATS, GLB, GLTF, OBJ, OFF, PLY, STL, Format, input_format, output_format
 from .mesh_gltf import edit_gltf, new_gltf, read_gltf
@@ -170,6 +170,7 @@ def format_mesh(
 
     folder: None for standard output.
     """
+    corner_uv = in_own_faces(corner_uv, file.triangulation.triangles, file.triangulation.polygon)
     polygon_uv = file.triangulation.to_polygon_corners(corner_uv, len(file.mesh.corners))
     if form in GLTF_FORMS and file.format in GLTF_FORMS:
         elsewhere = file.path is not None and folder is not None and not is_same_file(file.path.parent, folder)

@@ -38,6 +38,25 @@ def merged(obj):
     return copy
 
 
+def add_ball_of_quads(around=16, rows=8):
+    """With a vertex for each face at the poles, as lathes and exporters leave them."""
+    turns = np.arange(around) * 2 * np.pi / around
+    heights = np.linspace(0, np.pi, rows + 1)
+    positions = [(np.sin(h) * np.cos(a), np.sin(h) * np.sin(a), np.cos(h)) for h in heights for a in turns]
+    for first, z in ((0, 1.0), (rows * around, -1.0)):
+        positions[first : first + around] = [(0.0, 0.0, z)] * around
+    i, j = np.arange(around), np.roll(np.arange(around), -1)
+    quads = [np.stack([i, i + around, j + around, j], axis=1) + row * around for row in range(rows)]
+    mesh = bpy.data.meshes.new("Quads")
+    mesh.from_pydata(positions, [], np.concatenate(quads).tolist())
+    mesh.uv_layers.new(name="UVMap")
+    obj = bpy.data.objects.new("Quads", mesh)
+    bpy.context.collection.objects.link(obj)
+    bpy.context.view_layer.objects.active = obj
+    obj.select_set(True)
+    return obj
+
+
 def edit_mode_off():
     if bpy.context.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
@@ -89,8 +108,8 @@ def test_cones_at_copies_count_once_and_cuts_are_shown_on_both_sides(ball):
     assert np.array_equal(shown[0].cone_uv, shown[1].cone_uv)
 
 
-@pytest.mark.parametrize("add", [add_ball, add_tube, add_grid])
-@pytest.mark.parametrize("accepts", [lambda edge: True, across])
+@pytest.mark.parametrize("add", [add_ball, add_tube, add_grid, add_ball_of_quads])
+@pytest.mark.parametrize("accepts", [lambda edge: True, across, lambda edge: False])
 def test_both_readers_see_the_same_surface(add, accepts):
     obj = split(add(), accepts)
     mesh = reader(obj.data)
@@ -155,7 +174,39 @@ def test_seams_from_cuts_are_on_both_sides_and_followed(ball):
 
 def test_the_note_names_all_vertices_that_lie_on_others(ball):
     assert bpy.ops.uv.cone_unwrap() == {"FINISHED"}
-    (note,) = (found for found in addon.core.findings.last(ball) if "stitched" in found.text)
+    (note,) = (found for found in addon.core.findings.last(ball) if "repeat others" in found.text)
     _, counts = np.unique(reader(ball.data).stitched, return_counts=True)
     assert len(note.elements.vertices) == counts[counts > 1].sum()
     assert not any("belong to no face" in found.text for found in addon.core.findings.last(ball))
+
+
+@pytest.mark.parametrize("preset", ["PAINT", "TILE", "BAKE"])
+@pytest.mark.parametrize("in_edit_mode", [False, True])
+def test_edges_without_length_are_points_of_the_map(preset, in_edit_mode):
+    ball = add_ball_of_quads()
+    if in_edit_mode:
+        edit(ball)
+    assert bpy.ops.uv.cone_auto_unwrap(preset=preset) == {"FINISHED"}
+    edit_mode_off()
+    uv = UvMap(ball)
+    points = [
+        (loops[k], loops[k - 1])
+        for loops in uv.loops_of_face
+        for k in range(len(loops))
+        if (uv.positions[uv.vertex[loops[k]]] == uv.positions[uv.vertex[loops[k - 1]]]).all()
+    ]
+    assert len(points) == 32
+    assert all((uv.uv[a] == uv.uv[b]).all() for a, b in points)
+    whole = UvMap(merged(ball))
+    assert len(whole.split_edges()) < 0.25 * len(whole.sides)
+    assert whole.sister_difference() < 2e-6
+
+
+def test_any_vertex_of_a_pole_is_its_cone():
+    ball = add_ball_of_quads()
+    mark(ball, [5, 40, 70, 100, len(ball.data.vertices) - 3])
+    assert bpy.ops.uv.cone_unwrap(overlaps="KEEP") == {"FINISHED"}
+    report = reports_of.find(ball.data)
+    assert report.cones == sorted(np.unique(reader(ball.data).stitched[[5, 40, 70, 100, -3]]).tolist())
+    edit(ball)
+    assert len(build_content(ball, report).cone_uv) >= 5

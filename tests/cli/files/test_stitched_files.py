@@ -90,3 +90,26 @@ def test_a_file_is_read_as_the_whole_surface_unless_told_otherwise(soup_file: Pa
     assert np.array_equal(parted.triangulation.triangles, SOUP.triangles)
     assert np.array_equal(parted.stitched, np.arange(len(SOUP.positions)))
     assert parted.findings == ()
+
+
+@pytest.mark.parametrize("preset", ["paint", "tile", "bake"])
+def test_each_quad_beside_a_pole_of_many_vertices_is_in_one_piece(lsgp, tmp_path: Path, preset: str) -> None:
+    """A cut through the pole ends at one side of a quad of which a triangle remains."""
+    around, rows = 12, 6
+    turns, heights = np.arange(around) * 2 * np.pi / around, np.linspace(0, np.pi, rows + 1)
+    shape = np.stack(np.broadcast_arrays(*np.meshgrid(heights, turns, indexing="ij")), axis=-1).reshape(-1, 2)
+    height, turn = shape.T
+    positions = np.stack([np.sin(height) * np.cos(turn), np.sin(height) * np.sin(turn), np.cos(height)], axis=1)
+    positions[:around], positions[-around:] = (0, 0, 1), (0, 0, -1)
+    i, j = np.arange(around), np.roll(np.arange(around), -1)
+    quads = np.concatenate([np.stack([i, i + around, j + around, j], axis=1) + around * row for row in range(rows)])
+    (tmp_path / "ball.obj").write_text(obj_text(positions, quads.tolist()))
+    done = lsgp("unwrap", "ball.obj", "-o", "uv.obj", "--preset", preset, "--report", "report.json")
+    assert done.code == 0, done.err
+    assert done.report()["distortion"]["l2_stretch"] < 1.2
+    uv = library.read_mesh_file(tmp_path / "uv.obj", with_uv=True).mesh.corner_uv.reshape(-1, 4, 2)
+    np.testing.assert_array_equal(uv[:around, 0], uv[:around, 3])
+    np.testing.assert_array_equal(uv[-around:, 1], uv[-around:, 2])
+    x, y = (uv - np.roll(uv, 1, axis=1)).transpose(2, 0, 1)
+    doubled_area = x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y
+    assert (doubled_area > -1e-12).all(), "no corner turns back"
