@@ -110,6 +110,7 @@ def build_region(
             edges=edges[edge_used],
             seams=edges[edge_used & mesh.is_seam],
             features=edges[edge_used & mesh.is_feature],
+            may_collapse=True,
         ),
         triangle_loops=triangle_loops,
         triangle_faces=mesh.triangle_faces[inside],

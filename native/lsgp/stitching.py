@@ -24,7 +24,7 @@ _FOLDED = -1 + 1e-6
 
 def stitch_borders(positions: ArrayLike, triangles: ArrayLike) -> IndexArray:
     """The vertices with which boundaries that lie on each other are one, and edges without length a point:
-    `Surface(positions, stitched[triangles])`.
+    `Surface(positions, stitched[triangles], may_collapse=True)`.
 
     positions: (n, 3). triangles: (m, 3) vertices.
     Returns (n,) int32, for each vertex the one that takes its place, the first of those that become one; itself for
@@ -108,14 +108,19 @@ def stitched_finding(stitched: IndexArray) -> list[Finding]:
     ]
 
 
+def is_collapsed(triangles: IndexArray) -> NDArray[np.bool_]:
+    """(m,) whether each of the triangles (m, 3) names a vertex twice."""
+    a, b, c = triangles.T
+    return (a == b) | (b == c) | (c == a)
+
+
 def in_own_faces(corner_uv: FloatArray, triangles: IndexArray, faces: IndexArray) -> FloatArray:
     """Coordinates of triangles that are parts of faces: those that name a vertex twice, which have the coordinates of
     some neighbor, get those of their own face where it is more than a line.
 
     corner_uv: (m, 3, 2). triangles: (m, 3). faces: (m,) the face of each.
     """
-    a, b, c = triangles.T
-    collapsed = (a == b) | (b == c) | (c == a)
+    collapsed = is_collapsed(triangles)
     if not collapsed.any() or collapsed.all():
         return corner_uv
     key = faces[:, None].astype(np.int64) * (int(triangles.max()) + 1) + triangles

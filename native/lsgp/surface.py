@@ -21,8 +21,7 @@ class Surface(EqualByContent, ShortRepr):
     """A triangulated surface, possibly of several components, and the edges its cuts may follow.
 
     positions: (n, 3) float64, any unit.
-    triangles: (m, 3) int32, counter-clockwise seen from outside. Those that name a vertex twice are no part of the
-        surface; they get the coordinates of a neighbor.
+    triangles: (m, 3) int32, counter-clockwise seen from outside.
     edges: (e, 2) int32, the edges a cut may follow (mesh edges, not the diagonals of triangulated polygons);
         None for all edges of the triangles.
     seams: (s, 2) int32, marked edges, with the meaning given by `Options.seams`.
@@ -37,6 +36,8 @@ class Surface(EqualByContent, ShortRepr):
         `Result.direction_errors` has the deviations.
     features: (f, 2) int32, edges, also of boundaries, that are to run straight along u or v; `feature_edges` finds
         some. They have precedence over creases that are straightened anyway; `Result.features` has those that do not.
+    may_collapse: whether triangles may name a vertex twice, as those at edges without length do with the vertices of
+        `stitch_borders`. They are no part of the surface, and get the coordinates of a neighbor.
     """
 
     positions: FloatArray
@@ -48,6 +49,7 @@ class Surface(EqualByContent, ShortRepr):
     borders: IndexArray | None = None
     directions: FloatArray | None = None
     features: IndexArray | None = None
+    may_collapse: bool = False
 
     if TYPE_CHECKING:  # what may be passed, which becomes what the fields are
 
@@ -62,6 +64,7 @@ class Surface(EqualByContent, ShortRepr):
             borders: ArrayLike | None = None,
             directions: ArrayLike | None = None,
             features: ArrayLike | None = None,
+            may_collapse: bool = False,
         ) -> None: ...
 
     def __post_init__(self) -> None:
@@ -81,6 +84,7 @@ class Surface(EqualByContent, ShortRepr):
             set_field(self, "cut_costs", arguments.floats_of_shape("cut_costs", self.cut_costs, shape))
         if self.directions is not None:
             set_field(self, "directions", _directions(self.directions, len(self.triangles)))
+        set_field(self, "may_collapse", arguments.flag("may_collapse", self.may_collapse))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -109,7 +113,7 @@ def surface_arrays(surface: Surface) -> tuple[Any, ...]:
     seams, borders, features = surface.seams, surface.borders, surface.features
     return (
         *(surface.positions, surface.triangles, surface.edges, seams, importance, cut_costs),
-        *(borders, directions, features),
+        *(borders, directions, features, surface.may_collapse),
     )
 
 

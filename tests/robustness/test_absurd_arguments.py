@@ -43,6 +43,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {
             "cut_costs": WHOLE.cut_costs,
             "borders": EDGES[:3],
             "features": EDGES[:3],
+            "may_collapse": False,
             "directions": np.ones(BALL.triangles.shape),
         },
     ),

@@ -217,7 +217,7 @@ ODD = {
 def _parameterize(arguments: dict[str, object]) -> dict[str, object]:
     """The native verb; it takes the arrays of the surface together, and those of the cones."""
     of_surface = ("positions", "triangles", "edges", "seams", "importance", "cut_costs", "borders")
-    surface_arrays = tuple(arguments[name] for name in (*of_surface, "directions", "features"))
+    surface_arrays = (*(arguments[name] for name in (*of_surface, "directions", "features")), False)
     return _lsgp.parameterize(
         surface=surface_arrays,
         cones=tuple(arguments[name] for name in ("cones", "angles", "has_angle")),

@@ -114,7 +114,7 @@ def current_table(
     if faces > LARGEST_UNASKED and not on_request:
         return None
     # The ledger needs no positions.
-    surface = native.lsgp.Surface(np.zeros((vertices, 3)), mesh.all_triangles(), seams=mesh.seams())
+    surface = native.lsgp.Surface(np.zeros((vertices, 3)), mesh.all_triangles(), seams=mesh.seams(), may_collapse=True)
     table = build_table(surface, angles_in(obj, settings.group, mesh), settings.options())
     table = _named(table, obj)
     _tables[obj.data.session_uid] = (*now, table)

@@ -78,7 +78,8 @@ class MeshFile(ShortRepr):
     def surface(self, seam_edges: ArrayLike = (), importance: ArrayLike | None = None) -> Surface:
         """What the verbs of the library take.  Arguments, with the vertices of the file, and errors as of `Surface`."""
         seams = at_stitched(self.stitched, np.asarray(seam_edges, np.int32).reshape(-1, 2))
-        return Surface(self.mesh.positions, self.triangulation.triangles, self.triangulation.edges, seams, importance)
+        shape = self.mesh.positions, self.triangulation.triangles, self.triangulation.edges
+        return Surface(*shape, seams, importance, may_collapse=True)
 
     def cones(
         self, cones: IndexArray, angles: Sequence[float | None] | None

@@ -19,10 +19,12 @@ from ..base.equality import EqualByContent
 from ..base.progress import Progress, share_of
 from ..base.short_repr import ShortRepr
 from ..errors import Elements, Finding, InputError, SolverError
+from ..ledger import surface_of_triangles
 from ..options import Options, Seamless
 from ..presets.auto_unwrap import CompletedCones, GivenCones, complete_cones, feature_cones, follows_features, or_none
 from ..presets.map_comparison import feature_share, releases_many_features, runs_along_features
 from ..results import Result
+from ..stitching import is_collapsed
 from ..surface import Surface, surface_arrays
 from ..triangles import triangle_areas, uv_area
 from .divided_triangles import DividedSurface, divide_long_edges
@@ -117,6 +119,8 @@ def remesh_to_quads(
     arguments.require_callable(progress)
     arguments.require_type("surface", surface, Surface)
     surface = replace(surface, seams=None)
+    if surface.may_collapse:
+        surface = surface_of_triangles(surface, np.flatnonzero(~is_collapsed(surface.triangles)))
     chosen = _options(options)
     _lsgp.require_closed(surface_arrays(surface))
     side = _side(surface, target, size)

@@ -182,10 +182,14 @@ void require_connectivity(const Surface& surface) {
                        ". Repair the face indices."),
                 {ElementKind::triangles, outside});
   }
-  if (ssize(collapsed) == triangles.rows()) {
+  if (!surface.may_collapse && !collapsed.empty()) {
     throw Error(Code::bad_face,
                 concat(count(collapsed.size(), "triangle repeats", "triangles repeat"),
-                       " a vertex, and there is no other. Add faces to unwrap."),
+                       " a vertex. Merge by distance or delete them."),
+                {ElementKind::triangles, collapsed});
+  }
+  if (ssize(collapsed) == triangles.rows()) {
+    throw Error(Code::degenerate_mesh, "All triangles have an edge without length. Restore the surface's shape.",
                 {ElementKind::triangles, collapsed});
   }
   if (surface.edges) require_indices(*surface.edges, n, "edges");

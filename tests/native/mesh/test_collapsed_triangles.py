@@ -10,7 +10,7 @@ import lsgp
 import meshes
 import numpy as np
 import pytest
-from lsgp.stitching import stitched_vertices
+from lsgp.stitching import is_collapsed, stitched_vertices
 from map_checks import codes, only
 from meshes import Mesh
 from opened_surface import named_by
@@ -46,19 +46,14 @@ def ball(pole_vertices: int = 1) -> Mesh:
 
 def closed(mesh: Mesh) -> lsgp.Surface:
     stitched = lsgp.stitch_borders(mesh.positions, mesh.triangles)
-    return lsgp.Surface(mesh.positions, stitched[mesh.triangles])
-
-
-def is_collapsed(surface: lsgp.Surface) -> np.ndarray:
-    a, b, c = surface.triangles.T
-    return (a == b) | (b == c) | (c == a)
+    return lsgp.Surface(mesh.positions, stitched[mesh.triangles], may_collapse=True)
 
 
 @pytest.mark.parametrize("preset", ("paint", "tile", "bake"))
 def test_poles_of_many_vertices_have_the_map_of_one(preset: str) -> None:
     plain = ball()
     surface = closed(ball(AROUND))
-    whole = ~is_collapsed(surface)
+    whole = ~is_collapsed(surface.triangles)
     assert np.count_nonzero(~whole) == 2 * AROUND
     one = lsgp.auto_unwrap(lsgp.Surface(plain.positions, plain.triangles), preset=preset, pack="shelves")
     many = lsgp.auto_unwrap(surface, preset=preset, pack="shelves")
@@ -70,9 +65,9 @@ def test_poles_of_many_vertices_have_the_map_of_one(preset: str) -> None:
 def test_collapsed_triangles_lie_on_an_edge_of_a_neighbor() -> None:
     surface = closed(ball(AROUND))
     result = lsgp.auto_unwrap(surface)
-    whole = np.flatnonzero(~is_collapsed(surface))
+    whole = np.flatnonzero(~is_collapsed(surface.triangles))
     at = {(surface.triangles[f, c], *result.corner_uv[f, c]): result.island[f] for f in whole for c in range(3)}
-    for f in np.flatnonzero(is_collapsed(surface)):
+    for f in np.flatnonzero(is_collapsed(surface.triangles)):
         for c in range(3):
             assert at[(surface.triangles[f, c], *result.corner_uv[f, c])] == result.island[f]
 
@@ -91,9 +86,21 @@ def test_every_verb_takes_collapsed_triangles() -> None:
     assert measured.distortion.l2_stretch == pytest.approx(result.distortion.l2_stretch, rel=1e-9)
 
 
+def test_quads_cover_a_ball_with_poles_of_many_vertices() -> None:
+    surface = closed(ball(AROUND))
+    quads = lsgp.remesh_to_quads(surface, target=200).mesh.quads
+    assert meshes.euler_characteristic(np.concatenate([quads[:, :3], quads[:, [0, 2, 3]]])) == 2
+
+
+def test_a_vertex_named_twice_is_refused_unless_it_may_be() -> None:
+    with pytest.raises(lsgp.InputError) as caught:
+        lsgp.parameterize(replace(closed(ball(AROUND)), may_collapse=False), ())
+    assert caught.value.code == "BAD_FACE"
+
+
 def test_seams_may_run_along_edges_that_only_collapsed_triangles_have() -> None:
     surface = closed(ball(AROUND))
-    pole = surface.triangles[is_collapsed(surface)][0]
+    pole = surface.triangles[is_collapsed(surface.triangles)][0]
     seams = [[pole[0], pole[0]], [pole.min(), pole.max()]]
     result = lsgp.parameterize(replace(surface, seams=np.array(seams, np.int32)), lsgp.place_cones(surface).cones)
     assert "SEAM_NOT_AN_EDGE" not in codes(result.warnings)
@@ -104,7 +111,7 @@ def test_a_collapsed_triangle_without_neighbors_is_left_out_by_name() -> None:
     count = len(grid.positions)
     positions = np.vstack([grid.positions, [[9, 9, 9], [9, 9, 9], [9, 8, 9]]])
     triangles = np.vstack([grid.triangles, [[count, count, count + 2]]])
-    result = lsgp.parameterize(lsgp.Surface(positions, triangles), ())
+    result = lsgp.parameterize(lsgp.Surface(positions, triangles, may_collapse=True), ())
     assert only(result.warnings, "COMPONENT_SKIPPED").elements.indices.tolist() == [len(grid.triangles)]
     assert np.isnan(result.corner_uv[-1]).all()
     assert np.isfinite(result.corner_uv[:-1]).all()
@@ -119,7 +126,7 @@ def test_a_quad_with_an_edge_without_length_is_a_triangle() -> None:
 def test_a_hole_of_one_point_closes() -> None:
     """A row of vertices at the pole, without faces of their own between them."""
     mesh = ball(AROUND)
-    whole = ~is_collapsed(closed(mesh))
+    whole = ~is_collapsed(closed(mesh).triangles)
     open_ball = meshes.make(mesh.positions, mesh.triangles[whole])
     stitched = lsgp.stitch_borders(open_ball.positions, open_ball.triangles)
     assert meshes.euler_characteristic(stitched[open_ball.triangles]) == 2

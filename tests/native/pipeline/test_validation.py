@@ -62,7 +62,7 @@ REFUSALS = {
     ),
     "cuttable index": ("INDEX_OUT_OF_RANGE", INPUT, tetrahedron(edges=[[0, 4]]), range(4), None, None, None),
     "seam index": ("INDEX_OUT_OF_RANGE", INPUT, tetrahedron(seams=[[-1, 0]]), range(4), None, None, None),
-    "repeated vertices": ("BAD_FACE", INPUT, with_triangles([[0, 1, 1], [2, 1, 2]]), [], None, "triangles", [0, 1]),
+    "repeated vertex": ("BAD_FACE", INPUT, with_triangles([[0, 1, 2], [0, 1, 1]]), [], None, "triangles", [1]),
     "nan": ("NON_FINITE_POSITION", INPUT, with_y(NAN), [], None, "vertices", [2]),
     "infinity": ("NON_FINITE_POSITION", INPUT, with_y(-np.inf), [], None, "vertices", [2]),
     "too large": ("SCALE_RANGE", INPUT, moved(1e100), [], None, None, None),
