@@ -13,13 +13,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..api import Options, Placement, Progress, Result, Solver, Surface, parameterize
+from ..api import Options, Placement, Progress, Result, Surface, parameterize
 from ..auto_unwrap import (
     PACKING,
     PLACING,
     CompletedCones,
     CreaseChoices,
     GivenCones,
+    Solvers,
     best_at_creases,
     best_division,
     best_map,
@@ -236,9 +237,11 @@ def _map(
         with run.stage("creases"):
             choices = crease_choices(surface, cones, args.preset, options)
 
+    solvers = Solvers()
+
     def make(opened: Surface, share: Progress | None) -> tuple[CompletedCones, Result]:
         with run.stage("place_cones"):
-            solver = Solver(opened)
+            solver = solvers.of(opened)
             placing = share_of(share, 0.0, PLACING)
             found = possible_cones(solver, cones, options, tries_symmetry(args), placing)
         completed, result = best_map(solver, found, options, progress=share_of(share, PLACING, 1.0))
@@ -247,4 +250,4 @@ def _map(
 
     mapped = best_at_creases(choices, options, make, progress)
     run.surface, run.placement = mapped[0], mapped[1].placement
-    return file, best_division(mapped, options, share_of(progress, 1.0, 1.0))
+    return file, best_division(mapped, options, solvers, share_of(progress, 1.0, 1.0))
