@@ -200,7 +200,7 @@ REVIEWED = {
         ),
     ],
     "plane/aabb_tree.hpp": [("while (!open.empty())", "pairs of nodes of a finite tree, each once", OWN)],
-    "plane/boundary_polygon.cpp": [
+    "plane/boundary_polygon.hpp": [
         ("for (Index h = first; !traced[h];)", ONCE_EACH, SHORT),
         ("while (!ends_at(h))", AROUND_A_VERTEX, SHORT),
     ],
