@@ -108,9 +108,10 @@ bool PartMerger::improve(Index a, Index b, const Array<Index>& scope, FaceGraph:
     };
     if (pairs_.any_partner(face, lies_on_other)) (parts_.of_face[face] == a ? first : second).push_back(face);
   }
-  const MinimumCut cut = cutter_.cut(scope, first, second);
   constexpr double better = 0.999;
-  if (!(cut.cost < better * cutter_.cost(length, std::min(area[0], area[1])))) return false;
+  const double cost_to_beat = better * cutter_.cost(length, std::min(area[0], area[1]));
+  const MinimumCut cut = cutter_.cut(scope, first, second, cost_to_beat);
+  if (!(cut.cost < cost_to_beat)) return false;
   const FaceParts before = parts_;
   for (std::size_t i = 0; i < scope.size(); ++i) parts_.of_face[scope[i]] = cut.is_first[i] ? a : b;
   parts_ = number_parts(graph_, parts_.of_face);
