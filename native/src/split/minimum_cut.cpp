@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/least_first.hpp"
+#include "base/radix_order.hpp"
 
 namespace lsgp {
 
@@ -32,6 +33,7 @@ struct MinimumCutter::Cells {
 
   Index count() const { return static_cast<Index>(area.size()); }
 
+  // all: between different cells.
   void collect(Array<Edge>& all) {
     Array<Index> begin(count() + 1, 0);
     for (Edge& edge : all) {
@@ -48,7 +50,6 @@ struct MinimumCutter::Cells {
     }
     edges.clear();
     for (const Edge& edge : sorted) {
-      if (edge.nodes[0] == edge.nodes[1]) continue;
       if (!edges.empty() && edges.back().nodes[0] == edge.nodes[0] && edges.back().nodes[1] == edge.nodes[1])
         edges.back().capacity += edge.capacity;
       else
@@ -74,14 +75,11 @@ struct MinimumCutter::Cells {
   // of every cell.
   Array<Index> coarsen() {
     const auto [begin, list] = by_cell();
-    Array<std::pair<double, Index>> order(count());
-    for (Index cell = 0; cell < count(); ++cell) order[cell] = {area[cell], cell};
-    std::sort(order.begin(), order.end());
     Array<Index> merged(count(), none);
     merged[first_cell] = first_cell;
     merged[second_cell] = second_cell;
     Index merged_count = 2;
-    for (const auto& [own, cell] : order) {
+    for (const Index cell : radix_order(area)) {
       if (merged[cell] != none) continue;
       Index best = none;
       double longest = 0;
@@ -100,9 +98,9 @@ struct MinimumCutter::Cells {
     Array<double> areas(merged_count, 0);
     for (Index cell = 0; cell < count(); ++cell) areas[merged[cell]] += area[cell];
     area = std::move(areas);
-    Array<Edge> all = std::move(edges);
-    for (Edge& edge : all) {
-      for (Index& cell : edge.nodes) cell = merged[cell];
+    Array<Edge> all;
+    for (const auto& [cells, length] : edges) {
+      if (merged[cells[0]] != merged[cells[1]]) all.push_back({{merged[cells[0]], merged[cells[1]]}, length});
     }
     collect(all);
     return merged;
@@ -167,7 +165,8 @@ MinimumCutter::Cells MinimumCutter::cells_of(const Array<Index>& scope, const Ar
     cells.area[cell_of_place[i]] += graph_.area[scope[i]];
     graph_.for_each_link(scope[i], [&](Index other, const FaceGraph::Link& link) {
       if (place_[other] == none || link.faces[0] != scope[i]) return;
-      edges.push_back({{cell_of_place[i], cell_of_place[place_[other]]}, link.cost});
+      const Index own = cell_of_place[i], beside = cell_of_place[place_[other]];
+      if (own != beside) edges.push_back({{own, beside}, link.cost});
     });
   }
   cells.collect(edges);
