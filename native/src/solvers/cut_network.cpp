@@ -136,7 +136,7 @@ void CutNetwork::discharge(int node) {
   active_.remove(node, distance_[node]);
   while (excess_[node] > 0 && distance_[node] < count_) {
     int& a = current_[node];
-    for (; a < begin_[node + 1] && excess_[node] > 0; ++a) {
+    for (; a < begin_[node + 1]; ++a) {
       Arc& arc = arcs_[a];
       if (arc.residual == 0 || distance_[arc.to] != distance_[node] - 1) continue;
       push(node, arc);

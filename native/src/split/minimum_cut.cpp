@@ -175,12 +175,9 @@ MinimumCutter::Cells MinimumCutter::cells_of(const Array<Index>& scope, const Ar
 
 // A length at which a cut costs at least so much, however large the parts are.
 Units MinimumCutter::useless_length(double least_cost) const {
-  constexpr double longest = 1e18;
-  const double about = std::ceil(least_cost / cost(1, enough()));
-  if (!(about < longest)) return std::numeric_limits<Units>::max();
-  Units length = std::llround(about);
-  while (cost(length, enough()) < least_cost) ++length;  // by rounding
-  return length;
+  constexpr double longest = 1e18, rounding = 1e-12;
+  const double length = 1 + (1 + rounding) * least_cost / cost(1, enough());
+  return length < longest ? static_cast<Units>(length) : std::numeric_limits<Units>::max();
 }
 
 // Those that cost less than `best`, and at most `slack` times what the cheapest does.
