@@ -321,7 +321,6 @@ REVIEWED = {
     "solvers/cut_network.cpp": [
         ("while (highest_active_ > 0 && arrived_ < enough)", "distances only grow, up to the number of nodes", OWN),
         ("while (excess_[node] > 0 && distance_[node] < count_)", "each round but the last lifts the node", SHORT),
-        ("for (; a < begin_[node + 1]; ++a)", "arcs of a node, each once", SHORT),
         ("while (nodes->first(level) >= 0)", "nodes of a list, each once", SHORT),
     ],
     "solvers/max_flow.cpp": [
