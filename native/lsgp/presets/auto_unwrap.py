@@ -159,9 +159,10 @@ def auto_unwrap(
         chosen = replace(chosen, square_share=float(udim))
     packs = _may_pack(packing, chosen, pins, texels)
     is_free = arguments.flag("symmetric", symmetric) and count is None
+    solvers = Solvers()
 
     def make(opened: Surface, share: Progress | None) -> tuple[CompletedCones, Result]:
-        solver = Solver(opened)
+        solver = solvers.of(opened)
         found = possible_cones(solver, given, chosen, is_free, share_of(share, 0.0, PLACING))
         return best_map(solver, found, chosen, pins, share_of(share, PLACING, 1.0))
 
@@ -170,7 +171,7 @@ def auto_unwrap(
         found = best_at_creases(choices, chosen, make, mapping)
         surface, result = found[0], found[2]
         if pins is None:
-            result = best_division(found, chosen, share_of(mapping, 1.0, 1.0))
+            result = best_division(found, chosen, solvers, share_of(mapping, 1.0, 1.0))
         if packs:
             result = laid_out(surface, result, packing, texels, share_of(progress, PACKING, 1.0)).result
         elif texels is not None:
@@ -236,6 +237,20 @@ def crease_choices(
     return CreaseChoices(_ending_at(surface, required), further if len(further) else None, preset)
 
 
+class Solvers:
+    """A solver for each surface: what one call computes serves the next ones."""
+
+    def __init__(self) -> None:
+        self._known: list[Solver] = []
+
+    def of(self, surface: Surface) -> Solver:
+        for solver in self._known:
+            if solver.surface is surface:
+                return solver
+        self._known.append(Solver(surface))
+        return self._known[-1]
+
+
 def best_at_creases(
     choices: CreaseChoices,
     options: Options,
@@ -264,12 +279,13 @@ def best_at_creases(
     return best
 
 
-def best_division(mapped: Mapped, options: Options, progress: Progress | None = None) -> Result:
+def best_division(mapped: Mapped, options: Options, solvers: Solvers, progress: Progress | None = None) -> Result:
     """The map with its islands divided further, or less, where much of the square stays empty and the packer fills it
     better then.
 
     Dividing them goes by an estimate of what they take; which of several layouts is the smallest only packing can tell.
-    mapped: as of `best_at_creases`. progress: without time of its own.  Raises Cancelled.
+    mapped: as of `best_at_creases`. solvers: those it was made with. progress: without time of its own.
+    Raises Cancelled.
     """
     surface, cones, usual = mapped
     keeps_few = options.compact == "sparing"
@@ -279,7 +295,7 @@ def best_division(mapped: Mapped, options: Options, progress: Progress | None = 
     if not keeps_few:
         others.append(replace(options, compact="sparing"))
     for other in others:
-        divided = or_none(partial(_map_through, Solver(surface), cones, other, None, progress))
+        divided = or_none(partial(_map_through, solvers.of(surface), cones, other, None, progress))
         if divided is not None and may_replace_undivided(divided, best, keeps_few, progress):
             best = cones.told(divided, options)
     return best

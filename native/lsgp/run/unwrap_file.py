@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..api import Solver, parameterize
+from ..api import parameterize
 from ..base.progress import Progress, share_of
 from ..errors import Finding, InputError, LsgpError
 from ..io.mesh_files import MeshFile, format_mesh, parse_mesh
@@ -31,6 +31,7 @@ from ..presets.auto_unwrap import (
     CompletedCones,
     CreaseChoices,
     GivenCones,
+    Solvers,
     best_at_creases,
     best_division,
     best_map,
@@ -239,9 +240,11 @@ def _map(
         with run.stage("creases"):
             choices = crease_choices(surface, cones, args.preset, options)
 
+    solvers = Solvers()
+
     def make(opened: Surface, share: Progress | None) -> tuple[CompletedCones, Result]:
         with run.stage("place_cones"):
-            solver = Solver(opened)
+            solver = solvers.of(opened)
             placing = share_of(share, 0.0, PLACING)
             found = possible_cones(solver, cones, options, tries_symmetry(args), placing)
         completed, result = best_map(solver, found, options, progress=share_of(share, PLACING, 1.0))
@@ -250,4 +253,4 @@ def _map(
 
     mapped = best_at_creases(choices, options, make, progress)
     run.surface, run.placement = mapped[0], mapped[1].placement
-    return file, best_division(mapped, options, share_of(progress, 1.0, 1.0))
+    return file, best_division(mapped, options, solvers, share_of(progress, 1.0, 1.0))

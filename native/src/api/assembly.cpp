@@ -71,16 +71,18 @@ Assembly::Assembly(const Surface& surface, const PerComponent<Component>& compon
   }
 }
 
-void Assembly::add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, ComponentMap map,
-                   std::vector<Finding> findings) {
+void Assembly::add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, KeptMap mapped,
+                   std::optional<KeptMap>& split) {
   const Component& component = components_[component_index];
+  ComponentMap& map = mapped.map;
   const PerHalfedge<char> open = open_seams(component.mesh);
   const OpenedSurface opened{{component.mesh, geometry}, open};
-  const SplitTask split{component.mesh.seam, task.cones.mirroring};
+  const SplitTask splitting{component.mesh.seam, task.cones.mirroring};
   // A seamless layout was split before its islands were put onto the lattice; pinned ones keep their position.
-  if (options_.overlaps == Overlaps::split && !result_.seamless && map.pins.size() < 2) {
+  if (options_.overlaps == Overlaps::split && !result_.seamless && map.pins.size() < 2 && !split) {
     try {
-      split_map(opened, split, monitor_, map);
+      split_map(opened, splitting, monitor_, map);
+      split = mapped;
     } catch (const Error& error) {
       failures_.push_back(failure_of(component, error));
       return;
@@ -92,7 +94,7 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
   if (!keeps_islands) {
     const SharedSquare square{surface_area_ / options_.square_share, scale_to_surface({component.mesh, geometry}, map),
                               options_.compact};
-    if (compact_islands(opened, split.mirroring, square, map)) restore_symmetry(opened, split, square, map);
+    if (compact_islands(opened, splitting.mirroring, square, map)) restore_symmetry(opened, splitting, square, map);
   }
   if (map.natural_l2 > 0) {
     const ProgressMonitor::Stage stage(monitor_, "relax");
@@ -102,7 +104,7 @@ void Assembly::add(std::size_t component_index, const ComponentTask& task, const
         {options_.stretch, task.importance}, [this] { monitor_.advance(0); }, map);
   }
   defects_.pinned = defects_.pinned || map.pins.size() > 1;
-  move_findings(component, findings, result_.warnings);
+  move_findings(component, mapped.found, result_.warnings);
   added_cuts_.add(component, map);
   one_sided_cuts_.add(component, geometry, task.cones.mirroring, map);
   for (Index v = 0; v < component.mesh.vertex_count(); ++v) {

@@ -2,10 +2,12 @@
 // Assembles the components' maps into one result in the caller's numbering.
 #pragma once
 
+#include <optional>
 #include <utility>
 
 #include "api/added_cuts.hpp"
 #include "api/feature_report.hpp"
+#include "api/kept_components.hpp"
 #include "api/one_sided_cuts.hpp"
 #include "api/report_defects.hpp"
 #include "base/array.hpp"
@@ -21,10 +23,10 @@ class Assembly {
   Assembly(const Surface& surface, const PerComponent<Component>& components, const Options& options,
            ProgressMonitor& monitor, Result& result);
 
-  // task: must outlive this object.  A component whose map cannot be split is left out, with the findings about its
-  // map.
-  void add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, ComponentMap map,
-           std::vector<Finding> findings);
+  // task: must outlive this object.  split: whether the map is split already; where it is not, it is kept there once it
+  // is.  A component whose map cannot be split is left out, with the findings about its map.
+  void add(std::size_t component_index, const ComponentTask& task, const Geometry& geometry, KeptMap mapped,
+           std::optional<KeptMap>& split);
 
   // Reports components that were left out; if there are no others, rethrows the first error.
   void require_any();

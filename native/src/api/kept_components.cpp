@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "api/kept_components.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace lsgp {
 
 namespace {
+
+constexpr std::size_t most_splits = 3;  // that are kept: auto-unwrap compares so many maps and divides one of them
 
 // Fields are counted: a further one does not compile before it is compared.
 bool is_same_lattice(const Seamless& a, const Seamless& b) {
@@ -13,17 +16,19 @@ bool is_same_lattice(const Seamless& a, const Seamless& b) {
   return lattice == b.lattice && parity == b.parity && coarse_grid == b.coarse_grid && cell == b.cell;
 }
 
-// Whether seamless layouts differ only in the size of tiles and in what runs along them; the number of threads does not
-// matter.
+// Whether seamless layouts differ only in the size of tiles and in what runs along them, and other ones only in how
+// islands fill a square; the number of threads does not matter.
 bool has_same_maps(const Options& a, const Options& b) {
   const auto& [prescription, unfold, method, seams, border, loop_turning, seamless, mode, stretch, straighten, repair,
                overlaps, compact, mirrored_cuts, square_share, factorization, threads] = a;
   return prescription == b.prescription && unfold == b.unfold && method == b.method && seams == b.seams &&
-         border == b.border && loop_turning == b.loop_turning && seamless && b.seamless &&
-         is_same_lattice(*seamless, *b.seamless) && mode == b.mode && stretch == b.stretch && repair == b.repair &&
-         overlaps == b.overlaps && compact == b.compact && mirrored_cuts == b.mirrored_cuts &&
-         square_share == b.square_share && factorization == b.factorization;
+         border == b.border && loop_turning == b.loop_turning && seamless.has_value() == b.seamless.has_value() &&
+         (seamless ? is_same_lattice(*seamless, *b.seamless) : straighten == b.straighten) && mode == b.mode &&
+         stretch == b.stretch && repair == b.repair && overlaps == b.overlaps && mirrored_cuts == b.mirrored_cuts &&
+         factorization == b.factorization && (!seamless || (compact == b.compact && square_share == b.square_share));
 }
+
+bool is_same(const Cones& a, const Cones& b) { return a.vertices == b.vertices && a.angles == b.angles; }
 
 }  // namespace
 
@@ -32,10 +37,14 @@ void KeptComponents::update(const std::function<Work(Work)>& prepare) {
     work_ = prepare(std::move(work_));
   } catch (...) {
     kept_.clear();
+    splits_.clear();
     work_ = {};
     throw;
   }
-  if (work_.generation != kept_of_) kept_.clear();
+  if (work_.generation != kept_of_) {
+    kept_.clear();
+    splits_.clear();
+  }
   kept_of_ = work_.generation;
   kept_.resize(work_.topology.components.size());
 }
@@ -64,8 +73,7 @@ ComponentSystem& KeptComponents::system_of(std::size_t i, Factorization factoriz
 }
 
 void KeptComponents::keep_maps_of(const Cones& cones, const Options& options) {
-  if (of_maps_ && of_maps_->cones.vertices == cones.vertices && of_maps_->cones.angles == cones.angles &&
-      has_same_maps(of_maps_->options, options)) {
+  if (of_maps_ && options.seamless && is_same(of_maps_->cones, cones) && has_same_maps(of_maps_->options, options)) {
     const Options before = std::exchange(of_maps_->options, options);
     if (before.straighten == options.straighten &&
         before.seamless->whole_features == options.seamless->whole_features) {
@@ -86,6 +94,17 @@ void KeptComponents::keep_maps_of(const Cones& cones, const Options& options) {
 
 void KeptComponents::keep_map(std::size_t i, const ComponentMap& map, const std::vector<Finding>& found) {
   if (keeps_systems_) kept_[i]->map = KeptMap{map, found};
+}
+
+PerComponent<std::optional<KeptMap>>& KeptComponents::split_maps_of(const Cones& cones, const Options& options) {
+  const auto is_of = [&](const SplitMaps& split) {
+    return is_same(split.of.cones, cones) && has_same_maps(split.of.options, options);
+  };
+  const auto known = std::find_if(splits_.begin(), splits_.end(), is_of);
+  if (known != splits_.end()) return known->maps;
+  if (splits_.size() == (keeps_systems_ ? most_splits : 1)) splits_.erase(splits_.begin());
+  splits_.push_back({{cones, options}, PerComponent<std::optional<KeptMap>>(kept_.size())});
+  return splits_.back().maps;
 }
 
 void KeptComponents::keep_system(std::size_t i, KeptSystem system) {

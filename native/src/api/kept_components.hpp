@@ -20,7 +20,7 @@
 
 namespace lsgp {
 
-// A component's map before it is put onto a lattice.
+// A component's map before it is put onto a lattice, or after it was split where it overlapped itself.
 struct KeptMap {
   ComponentMap map;
   std::vector<Finding> found;  // about it
@@ -49,6 +49,9 @@ class KeptComponents {
   void keep_maps_of(const Cones& cones, const Options& options);
   const std::optional<KeptMap>& map(std::size_t i) const { return kept_[i]->map; }
   void keep_map(std::size_t i, const ComponentMap& map, const std::vector<Finding>& found);
+  // Where to keep the maps of these cones and options after they were split, which are found there already if others
+  // with the same maps kept them. How islands fill a square may differ.
+  PerComponent<std::optional<KeptMap>>& split_maps_of(const Cones& cones, const Options& options);
   // Of the map, or empty.
   std::optional<FeatureAlignment>& alignment(std::size_t i) { return kept_[i]->alignment; }
   // Takes over the system of a component, if there is one.
@@ -73,9 +76,15 @@ class KeptComponents {
     Options options;
   };
 
+  struct SplitMaps {
+    MapInput of;
+    PerComponent<std::optional<KeptMap>> maps;
+  };
+
   const bool keeps_systems_;
   Work work_;
   std::optional<MapInput> of_maps_;
+  Array<SplitMaps> splits_;                   // the latest last
   PerComponent<std::unique_ptr<Kept>> kept_;  // systems refer to the geometry beside them
   std::int64_t kept_of_ = 0;                  // generation of the topology it was made from
 };

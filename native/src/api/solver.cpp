@@ -74,6 +74,10 @@ Result map_components(const KnownSurface& known, const Cones& cones, const Optio
   const double share_of_maps = options.seamless ? 1 - share_of_rounding : 1;
   Index triangles_before = 0;
   MappedComponents mapped{{}, ComponentMaps(components.size())};
+  // A seamless layout is split later, before its islands are put onto the lattice; pins are not compared.
+  const bool keeps_split = options.overlaps == Overlaps::split && !options.seamless && pins.corners.empty();
+  PerComponent<std::optional<KeptMap>> unkept(components.size());
+  PerComponent<std::optional<KeptMap>>& split = keeps_split ? kept.split_maps_of(cones, options) : unkept;
   PerComponent<std::vector<Finding>> found(components.size());  // about the maps
   for_each_component(components, result.warnings, [&](std::size_t i) {
     const Component& component = components[i];
@@ -92,7 +96,8 @@ Result map_components(const KnownSurface& known, const Cones& cones, const Optio
     }
     ComponentSystem& system = kept.system_of(i, options.factorization);
     ComponentMap map;
-    if (const auto& known = kept.map(i)) {
+    const std::optional<KeptMap>& known = keeps_split ? split[i] : kept.map(i);
+    if (known) {
       map = known->map;
       found[i] = known->found;
     } else {
@@ -117,7 +122,8 @@ Result map_components(const KnownSurface& known, const Cones& cones, const Optio
   Assembly assembly(surface, components, options, monitor, result);
   for (std::size_t i = 0; i < components.size(); ++i) {
     if (!mapped.maps[i]) continue;
-    assembly.add(i, mapped.tasks[i], kept.geometry(i), std::move(*mapped.maps[i]), std::move(found[i]));
+    KeptMap of_component{std::move(*mapped.maps[i]), std::move(found[i])};
+    assembly.add(i, mapped.tasks[i], kept.geometry(i), std::move(of_component), split[i]);
   }
   assembly.require_any();
   assembly.finish(cones, work.topology.duplicates);

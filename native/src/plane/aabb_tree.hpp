@@ -35,6 +35,16 @@ class AabbTree {
   // Calls visit(i, j), i < j, for every two boxes that meet, in a fixed order.
   template <typename Visit>
   void for_each_meeting_pair(Visit visit) const {
+    const auto goes_on = [&](Index i, Index j) {
+      visit(i, j);
+      return false;
+    };
+    any_meeting_pair(goes_on);
+  }
+
+  // Whether is(i, j) holds for any of them; none is looked at after that.
+  template <typename Is>
+  bool any_meeting_pair(Is is) const {
     Array<std::pair<Index, Index>> open;  // nodes
     if (!nodes_.empty()) open.emplace_back(0, 0);
     while (!open.empty()) {
@@ -43,19 +53,21 @@ class AabbTree {
       checkpoint(operations_a_node);
       const Node &first = nodes_[a], &second = nodes_[b];
       if (a == b) {
-        if (first.is_leaf())
-          visit_pairs(first, visit);
-        else
+        if (!first.is_leaf())
           open.insert(open.end(), {{a + 1, a + 1}, {first.right, first.right}, {a + 1, first.right}});
+        else if (any_pair(first, is))
+          return true;
       } else if (meet(first.box, second.box)) {
-        if (first.is_leaf() && second.is_leaf())
-          visit_pairs(first, second, visit);
-        else if (second.is_leaf() || (!first.is_leaf() && first.count() >= second.count()))
+        if (first.is_leaf() && second.is_leaf()) {
+          if (any_pair(first, second, is)) return true;
+        } else if (second.is_leaf() || (!first.is_leaf() && first.count() >= second.count())) {
           open.insert(open.end(), {{a + 1, b}, {first.right, b}});
-        else
+        } else {
           open.insert(open.end(), {{a, b + 1}, {a, second.right}});
+        }
       }
     }
+    return false;
   }
 
  private:
@@ -71,22 +83,24 @@ class AabbTree {
 
   Index build(Index begin, Index end);
 
-  template <typename Visit>
-  void visit_pairs(const Node& node, Visit& visit) const {
+  template <typename Is>
+  bool any_pair(const Node& node, Is& is) const {
     for (Index i = node.begin; i < node.end; ++i) {
       for (Index j = i + 1; j < node.end; ++j) {
-        if (meet(box_[i], box_[j])) visit(std::min(item_[i], item_[j]), std::max(item_[i], item_[j]));
+        if (meet(box_[i], box_[j]) && is(std::min(item_[i], item_[j]), std::max(item_[i], item_[j]))) return true;
       }
     }
+    return false;
   }
-  template <typename Visit>
-  void visit_pairs(const Node& a, const Node& b, Visit& visit) const {
+  template <typename Is>
+  bool any_pair(const Node& a, const Node& b, Is& is) const {
     for (Index i = a.begin; i < a.end; ++i) {
       if (!meet(box_[i], b.box)) continue;
       for (Index j = b.begin; j < b.end; ++j) {
-        if (meet(box_[i], box_[j])) visit(std::min(item_[i], item_[j]), std::max(item_[i], item_[j]));
+        if (meet(box_[i], box_[j]) && is(std::min(item_[i], item_[j]), std::max(item_[i], item_[j]))) return true;
       }
     }
+    return false;
   }
 
   Array<Index> item_;  // the boxes in the order of the leaves

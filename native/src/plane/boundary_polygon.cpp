@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "mesh/topology.hpp"
 #include "plane/aabb_tree.hpp"
 #include "plane/predicates.hpp"
 
@@ -23,15 +22,7 @@ BoundaryPolygon::BoundaryPolygon(const Eigen::VectorXcd& position, const PerHalf
   PerHalfedge<char> traced(halfedge_count, 0);
   for (Index first = 0; first < halfedge_count; ++first) {
     if (traced[first] || is_left_out[first / 3] || !ends_at(first)) continue;
-    loops_.push_back(edge_count());
-    for (Index h = first; !traced[h];) {
-      traced[h] = 1;
-      tail_.push_back(position[h]);
-      head_.push_back(position[next(h)]);
-      loop_.push_back(static_cast<Index>(loops_.size()) - 1);
-      h = next(h);
-      while (!ends_at(h)) h = next(twin[h]);
-    }
+    trace_loop(twin, first, ends_at, [&](Index h) { return position[h]; }, traced);
   }
   loops_.push_back(edge_count());
 }
@@ -43,9 +34,7 @@ bool BoundaryPolygon::touches_itself() const {
     const auto [bottom, top] = std::minmax({tail_[e].imag(), head_[e].imag()});
     boxes.push_back({left, right, bottom, top});
   }
-  bool touches = false;
-  AabbTree(boxes).for_each_meeting_pair([&](Index i, Index j) { touches = touches || touch(i, j); });
-  return touches;
+  return AabbTree(boxes).any_meeting_pair([&](Index i, Index j) { return touch(i, j); });
 }
 
 // The number of times a point is covered is the winding number of the boundary. It changes by one across a loop, so it

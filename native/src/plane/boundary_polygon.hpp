@@ -6,7 +6,7 @@
 
 #include "base/array.hpp"
 #include "lsgp/surface.hpp"
-#include "mesh/per_element.hpp"
+#include "mesh/topology.hpp"
 
 namespace lsgp {
 
@@ -15,6 +15,11 @@ class BoundaryPolygon {
  public:
   // position, twin: as of has_overlap.
   BoundaryPolygon(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin);
+  // Of a part of a mesh.  halfedges: where it may end.  ends_at(h), position_of(h): whether it ends there, and where
+  // the halfedge begins.  traced: (halfedges of the mesh) 0, and again afterward.
+  template <typename EndsAt, typename PositionOf>
+  BoundaryPolygon(const HalfedgeMesh& mesh, const Array<Index>& halfedges, EndsAt ends_at, PositionOf position_of,
+                  PerHalfedge<char>& traced);
 
   Index edge_count() const { return static_cast<Index>(tail_.size()); }
   Complex tail(Index edge) const { return tail_[edge]; }
@@ -22,12 +27,18 @@ class BoundaryPolygon {
   // Whether an edge begins where the one numbered before it ends.
   bool runs_on(Index edge) const { return loops_[loop_[edge]] != edge; }
 
+  // Whether a layout without flipped triangles overlaps itself.
+  bool has_overlap() const { return touches_itself() || encloses_itself(); }
+
   bool touches_itself() const;
 
   // Whether the layout overlaps itself, provided that its boundary consists of simple curves that do not touch.
   bool encloses_itself() const;
 
  private:
+  template <typename EndsAt, typename PositionOf>
+  void trace_loop(const PerHalfedge<Index>& twin, Index first, EndsAt ends_at, PositionOf position_of,
+                  PerHalfedge<char>& traced);
   bool follows(Index i, Index j) const;
   // Whether two edges have, or may have, a common point other than the corner between consecutive edges.
   bool touch(Index i, Index j) const;
@@ -40,5 +51,29 @@ class BoundaryPolygon {
   Array<Index> loop_;           // (edges)
   Array<Index> loops_;          // the first edge of each, and the end
 };
+
+template <typename EndsAt, typename PositionOf>
+BoundaryPolygon::BoundaryPolygon(const HalfedgeMesh& mesh, const Array<Index>& halfedges, EndsAt ends_at,
+                                 PositionOf position_of, PerHalfedge<char>& traced) {
+  for (const Index first : halfedges) {
+    if (!traced[first] && ends_at(first)) trace_loop(mesh.twin, first, ends_at, position_of, traced);
+  }
+  loops_.push_back(edge_count());
+  for (const Index h : halfedges) traced[h] = 0;
+}
+
+template <typename EndsAt, typename PositionOf>
+void BoundaryPolygon::trace_loop(const PerHalfedge<Index>& twin, Index first, EndsAt ends_at, PositionOf position_of,
+                                 PerHalfedge<char>& traced) {
+  loops_.push_back(edge_count());
+  for (Index h = first; !traced[h];) {
+    traced[h] = 1;
+    tail_.push_back(position_of(h));
+    head_.push_back(position_of(next(h)));
+    loop_.push_back(static_cast<Index>(loops_.size()) - 1);
+    h = next(h);
+    while (!ends_at(h)) h = next(twin[h]);
+  }
+}
 
 }  // namespace lsgp

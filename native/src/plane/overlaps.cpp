@@ -142,8 +142,6 @@ Box frame_of(const Eigen::VectorXcd& position) {
   return frame;
 }
 
-bool has_overlap(const BoundaryPolygon& boundary) { return boundary.touches_itself() || boundary.encloses_itself(); }
-
 }  // namespace
 
 Array<Overlap> find_overlaps(const Eigen::VectorXcd& position) {
@@ -152,13 +150,13 @@ Array<Overlap> find_overlaps(const Eigen::VectorXcd& position) {
 
 Array<Overlap> find_overlaps(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin) {
   const BoundaryPolygon boundary(position, twin);
-  if (!has_overlap(boundary)) return {};
+  if (!boundary.has_overlap()) return {};
   const WindingRaster twice(boundary, frame_of(position), static_cast<Index>(twin.size() / 3));
   return Layout(position, [&](const Box& box) { return twice.meets(box); }).find_overlaps();
 }
 
 bool has_overlap(const Eigen::VectorXcd& position, const PerHalfedge<Index>& twin) {
-  return has_overlap(BoundaryPolygon(position, twin));
+  return BoundaryPolygon(position, twin).has_overlap();
 }
 
 }  // namespace lsgp

@@ -5,7 +5,7 @@
 #include "base/array.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/topology.hpp"
-#include "solvers/max_flow.hpp"
+#include "solvers/cut_network.hpp"
 
 namespace lsgp {
 
@@ -19,7 +19,7 @@ struct OpenedSurface : MetricMesh {
 };
 
 struct FaceGraph {
-  using Units = FlowNetwork::Units;
+  using Units = CutNetwork::Units;
 
   struct Link {
     Index faces[2];

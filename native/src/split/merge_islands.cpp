@@ -3,19 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
 #include "base/checkpoint.hpp"
-#include "plane/overlaps.hpp"
+#include "plane/boundary_polygon.hpp"
 #include "split/part_borders.hpp"
 
 namespace lsgp {
 
 namespace {
 
-constexpr double operations_a_triangle = 200;  // of the overlap test
-constexpr double narrowest_joint = 0.25;       // of the square root of the smaller part's area
+constexpr double operations_an_end = 400;  // of the overlap test
+constexpr double narrowest_joint = 0.25;   // of the square root of the smaller part's area
 
 class IslandMerger {
  public:
@@ -49,14 +50,14 @@ class IslandMerger {
   double size_;
   Array<Border> borders_;
   PerPart<Motion>& motion_;
-  PerPart<Index> group_;             // merged ones share one
-  PerPart<Array<Index>> triangles_;  // of groups
-  PerPart<double> area_;             // of groups
-  PerPart<Index> merges_;            // number of groups merged into each
+  PerPart<Index> group_;        // merged ones share one
+  PerPart<Array<Index>> ends_;  // halfedges at which the parts of groups end
+  PerPart<double> area_;        // of groups
+  PerPart<Index> merges_;       // number of groups merged into each
 
   // Scratch memory with these values between calls.
   PerHalfedge<char> is_closed_;  // 0
-  PerTriangle<Index> place_;     // none
+  PerHalfedge<char> is_traced_;  // 0
 };
 
 IslandMerger::IslandMerger(const MetricMesh& surface, const ComponentMap& map, const PerHalfedge<char>& kept,
@@ -67,7 +68,7 @@ IslandMerger::IslandMerger(const MetricMesh& surface, const ComponentMap& map, c
       corners_(at_corners(map.cut_mesh, map.position)),
       motion_(parts.motion),
       is_closed_(surface.mesh.halfedge_count(), 0),
-      place_(surface.mesh.triangle_count(), none) {
+      is_traced_(surface.mesh.halfedge_count(), 0) {
   const HalfedgeMesh& mesh = surface.mesh;
   const Geometry& geometry = surface.geometry;
   const PerTriangle<Index>& part = parts.part;
@@ -75,12 +76,14 @@ IslandMerger::IslandMerger(const MetricMesh& surface, const ComponentMap& map, c
   motion_.assign(part_count, {});
   group_.resize(part_count);
   std::iota(group_.begin(), group_.end(), 0);
-  triangles_.resize(part_count);
+  ends_.resize(part_count);
   area_.assign(part_count, 0);
   merges_.assign(part_count, 0);
   for (Index f = 0; f < mesh.triangle_count(); ++f) {
-    triangles_[part[f]].push_back(f);
     area_[part[f]] += geometry.area[f];
+  }
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    if (open_[h] || mesh.twin[h] == none) ends_[part[h / 3]].push_back(h);
   }
   size_ = size_of(corners_);
   for (PartBorder& border : find_part_borders(surface, map, kept, parts)) {
@@ -121,42 +124,36 @@ bool IslandMerger::try_to_merge(const Border& border) {
     group_[p] = right;
     motion_[p] = motion * motion_[p];
   }
-  triangles_[right].insert(triangles_[right].end(), triangles_[left].begin(), triangles_[left].end());
-  triangles_[left].clear();
+  const auto is_end = [&](Index h) { return mesh_.twin[h] == none || open_[h]; };
+  std::copy_if(ends_[left].begin(), ends_[left].end(), std::back_inserter(ends_[right]), is_end);
+  ends_[left].clear();
   area_[right] += area_[left];
   ++merges_[right];
   return true;
 }
 
-// closed: halfedges that are open now.
+// Of two groups, one of them moved.  closed: halfedges that are open now.
 bool IslandMerger::overlaps(Index left, Index right, const Motion& motion, const Array<Index>& closed) {
-  Array<Index> triangles = triangles_[right];
-  triangles.insert(triangles.end(), triangles_[left].begin(), triangles_[left].end());
-  for (std::size_t i = 0; i < triangles.size(); ++i) place_[triangles[i]] = static_cast<Index>(i);
+  Array<Index> ends = ends_[right];
+  ends.insert(ends.end(), ends_[left].begin(), ends_[left].end());
   for (const Index h : closed) is_closed_[h] = 1;
-  Eigen::VectorXcd position(3 * ssize(triangles));
-  PerHalfedge<Index> twin(3 * triangles.size(), none);
+  const auto ends_at = [&](Index h) { return mesh_.twin[h] == none || (open_[h] && !is_closed_[h]); };
+  // Those of one part follow each other.
   Index part = none;
   Motion moved;
   Complex turn = 1;
-  for (Index i = 0; i < ssize(triangles); ++i) {
-    const Index f = triangles[i];
-    if (part_[f] != part) {
-      part = part_[f];
+  const auto position_of = [&](Index h) {
+    if (part_[h / 3] != part) {
+      part = part_[h / 3];
       moved = group_[part] == left ? motion * motion_[part] : motion_[part];
       turn = std::polar(1.0, moved.angle);
     }
-    for (Index c = 0; c < 3; ++c) {
-      const Index h = 3 * f + c, other = mesh_.twin[h];
-      position[3 * i + c] = turn * corners_[h] + moved.shift;
-      if (other == none || place_[other / 3] == none || (open_[h] && !is_closed_[h])) continue;
-      twin[3 * i + c] = 3 * place_[other / 3] + other % 3;
-    }
-  }
-  for (const Index f : triangles) place_[f] = none;
+    return turn * corners_[h] + moved.shift;
+  };
+  const BoundaryPolygon boundary(mesh_, ends, ends_at, position_of, is_traced_);
   for (const Index h : closed) is_closed_[h] = 0;
-  checkpoint(operations_a_triangle * static_cast<double>(triangles.size()));
-  return has_overlap(position, twin);
+  checkpoint(operations_an_end * static_cast<double>(ends.size()));
+  return boundary.has_overlap();
 }
 
 }  // namespace

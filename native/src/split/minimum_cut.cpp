@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/least_first.hpp"
+#include "base/radix_order.hpp"
 
 namespace lsgp {
 
@@ -21,10 +22,7 @@ constexpr double cell_detour = 1.5;   // by which a cut between cells may be lon
 
 constexpr Index first_cell = 0, second_cell = 1;  // the cells to be separated
 
-struct Edge {
-  Index cells[2];
-  Units cost;
-};
+using Edge = CutNetwork::Edge;
 
 }  // namespace
 
@@ -35,25 +33,25 @@ struct MinimumCutter::Cells {
 
   Index count() const { return static_cast<Index>(area.size()); }
 
+  // all: between different cells.
   void collect(Array<Edge>& all) {
     Array<Index> begin(count() + 1, 0);
     for (Edge& edge : all) {
-      if (edge.cells[0] > edge.cells[1]) std::swap(edge.cells[0], edge.cells[1]);
-      ++begin[edge.cells[0] + 1];
+      if (edge.nodes[0] > edge.nodes[1]) std::swap(edge.nodes[0], edge.nodes[1]);
+      ++begin[edge.nodes[0] + 1];
     }
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
     Array<Index> cursor(begin.begin(), begin.end() - 1);
     Array<Edge> sorted(all.size());
-    for (const Edge& edge : all) sorted[cursor[edge.cells[0]]++] = edge;
+    for (const Edge& edge : all) sorted[cursor[edge.nodes[0]]++] = edge;
     for (Index cell = 0; cell < count(); ++cell) {
       std::sort(sorted.begin() + begin[cell], sorted.begin() + begin[cell + 1],
-                [](const Edge& a, const Edge& b) { return a.cells[1] < b.cells[1]; });
+                [](const Edge& a, const Edge& b) { return a.nodes[1] < b.nodes[1]; });
     }
     edges.clear();
     for (const Edge& edge : sorted) {
-      if (edge.cells[0] == edge.cells[1]) continue;
-      if (!edges.empty() && edges.back().cells[0] == edge.cells[0] && edges.back().cells[1] == edge.cells[1])
-        edges.back().cost += edge.cost;
+      if (!edges.empty() && edges.back().nodes[0] == edge.nodes[0] && edges.back().nodes[1] == edge.nodes[1])
+        edges.back().capacity += edge.capacity;
       else
         edges.push_back(edge);
     }
@@ -63,12 +61,12 @@ struct MinimumCutter::Cells {
   std::pair<Array<Index>, Array<Index>> by_cell() const {
     Array<Index> begin(count() + 1, 0), list(2 * edges.size());
     for (const Edge& edge : edges) {
-      for (const Index cell : edge.cells) ++begin[cell + 1];
+      for (const Index cell : edge.nodes) ++begin[cell + 1];
     }
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
     Array<Index> cursor(begin.begin(), begin.end() - 1);
     for (std::size_t i = 0; i < edges.size(); ++i) {
-      for (const Index cell : edges[i].cells) list[cursor[cell]++] = static_cast<Index>(i);
+      for (const Index cell : edges[i].nodes) list[cursor[cell]++] = static_cast<Index>(i);
     }
     return {std::move(begin), std::move(list)};
   }
@@ -77,21 +75,19 @@ struct MinimumCutter::Cells {
   // of every cell.
   Array<Index> coarsen() {
     const auto [begin, list] = by_cell();
-    Array<Index> order(count()), merged(count(), none);
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return area[a] < area[b]; });
+    Array<Index> merged(count(), none);
     merged[first_cell] = first_cell;
     merged[second_cell] = second_cell;
     Index merged_count = 2;
-    for (const Index cell : order) {
+    for (const Index cell : radix_order(area)) {
       if (merged[cell] != none) continue;
       Index best = none;
       double longest = 0;
       for (Index i = begin[cell]; i < begin[cell + 1]; ++i) {
         const Edge& edge = edges[list[i]];
-        const Index other = edge.cells[edge.cells[0] == cell];
+        const Index other = edge.nodes[edge.nodes[0] == cell];
         if (merged[other] != none) continue;
-        const double length = static_cast<double>(edge.cost) / std::sqrt(area[other]);
+        const double length = static_cast<double>(edge.capacity) / std::sqrt(area[other]);
         if (best != none && length <= longest) continue;
         best = other;
         longest = length;
@@ -102,9 +98,9 @@ struct MinimumCutter::Cells {
     Array<double> areas(merged_count, 0);
     for (Index cell = 0; cell < count(); ++cell) areas[merged[cell]] += area[cell];
     area = std::move(areas);
-    Array<Edge> all = std::move(edges);
-    for (Edge& edge : all) {
-      for (Index& cell : edge.cells) cell = merged[cell];
+    Array<Edge> all;
+    for (const auto& [cells, length] : edges) {
+      if (merged[cells[0]] != merged[cells[1]]) all.push_back({{merged[cells[0]], merged[cells[1]]}, length});
     }
     collect(all);
     return merged;
@@ -138,7 +134,7 @@ struct MinimumCutter::Cells {
       const double own = cell > second_cell ? std::sqrt(area[cell]) : 0;
       for (Index i = begin[cell]; i < begin[cell + 1]; ++i) {
         const Edge& edge = edges[list[i]];
-        const Index other = edge.cells[edge.cells[0] == cell];
+        const Index other = edge.nodes[edge.nodes[0] == cell];
         const double through = nearest.distance + own + std::sqrt(area[other]);
         if (other <= second_cell || through >= distance[other]) continue;
         distance[other] = through;
@@ -169,29 +165,35 @@ MinimumCutter::Cells MinimumCutter::cells_of(const Array<Index>& scope, const Ar
     cells.area[cell_of_place[i]] += graph_.area[scope[i]];
     graph_.for_each_link(scope[i], [&](Index other, const FaceGraph::Link& link) {
       if (place_[other] == none || link.faces[0] != scope[i]) return;
-      edges.push_back({{cell_of_place[i], cell_of_place[place_[other]]}, link.cost});
+      const Index own = cell_of_place[i], beside = cell_of_place[place_[other]];
+      if (own != beside) edges.push_back({{own, beside}, link.cost});
     });
   }
   cells.collect(edges);
   return cells;
 }
 
-Array<MinimumCutter::CellCut> MinimumCutter::cut_cells(const Cells& cells, double slack) const {
-  Units all = 1;
-  FlowNetwork network(cells.count());
-  for (const Edge& edge : cells.edges) {
-    network.add_arc(edge.cells[0], edge.cells[1], edge.cost, edge.cost);
-    all += edge.cost;
-  }
+// A length at which a cut costs at least so much, however large the parts are.
+Units MinimumCutter::useless_length(double least_cost) const {
+  constexpr double longest = 1e18, rounding = 1e-12;
+  const double length = 1 + (1 + rounding) * least_cost / cost(1, enough());
+  return length < longest ? static_cast<Units>(length) : std::numeric_limits<Units>::max();
+}
+
+// Those that cost less than `best`, and at most `slack` times what the cheapest does.
+Array<MinimumCutter::CellCut> MinimumCutter::cut_cells(const Cells& cells, double slack, double best) const {
+  CutNetwork network(cells.count(), cells.edges);
+  network.add_to_first(first_cell);
+  network.add_to_second(second_cell);
   const double total = std::accumulate(cells.area.begin(), cells.area.end(), 0.0);
   Array<CellCut> out;
-  double best = std::numeric_limits<double>::infinity();
-  const auto judge = [&](const FlowNetwork& maximal, Units flow, const Array<char>& is_held) {
-    CellCut cut{maximal.reachable(first_cell), is_held, 0};
+  const auto is_useless = [&](Units length) { return cost(length, enough()) >= slack * best; };
+  const auto judge = [&](const CutNetwork& solved, Units length, const Array<char>& is_held) {
+    CellCut cut{solved.first_side(), is_held, 0};
     double area = 0;
     for (Index cell = 0; cell < cells.count(); ++cell) area += cut.is_first[cell] ? cells.area[cell] : 0;
-    cut.cost = cost(flow, std::min(area, total - area));
-    if (flow < all && cut.cost < slack * best) {
+    cut.cost = cost(length, std::min(area, total - area));
+    if (cut.cost < slack * best) {
       best = std::min(best, cut.cost);
       out.push_back(std::move(cut));
     }
@@ -199,34 +201,35 @@ Array<MinimumCutter::CellCut> MinimumCutter::cut_cells(const Cells& cells, doubl
   };
   Array<char> is_held(cells.count(), 0);
   is_held[first_cell] = is_held[second_cell] = 1;
-  const Units least = network.maximize(first_cell, second_cell);
+  const Units least = network.find_smallest(useless_length(slack * best));
+  if (is_useless(least)) return out;
   const std::array<double, 2> least_areas = judge(network, least, is_held);
   if (rule_ == CutCost::shortest) return out;
   // Cuts further away from the sets to be separated, on one side or on both, which leave larger parts.
   const std::array<Array<Index>, 2> nearest = cells.by_distance();
   for (const std::array<bool, 2> grows : {std::array{true, false}, std::array{false, true}, std::array{true, true}}) {
-    FlowNetwork grown = network;
-    Units flow = least;
+    CutNetwork grown = network;
+    Units length = least;
     Array<char> held = is_held;
     std::array<double, 2> areas = least_areas, taken{cells.area[first_cell], cells.area[second_cell]};
     std::array<std::size_t, 2> next{0, 0};
     for (;;) {
       bool has_grown = false;
       for (const std::size_t side : {0u, 1u}) {
-        const Index root = side == 0 ? first_cell : second_cell;
         const double target = std::min(2 * areas[side], enough());
         if (!grows[side] || areas[side] >= enough()) continue;
         for (; next[side] < nearest[side].size() && taken[side] < target; ++next[side]) {
           const Index cell = nearest[side][next[side]];
           taken[side] += cells.area[cell];
           held[cell] = 1;
-          side == 0 ? grown.add_arc(root, cell, all) : grown.add_arc(cell, root, all);
+          side == 0 ? grown.add_to_first(cell) : grown.add_to_second(cell);
           has_grown = true;
         }
       }
-      if (!has_grown || cost(flow, enough()) >= slack * best) break;
-      flow += grown.maximize(first_cell, second_cell);
-      areas = judge(grown, flow, held);
+      if (!has_grown || is_useless(length)) break;
+      length = grown.find_smallest(useless_length(slack * best));
+      if (is_useless(length)) break;
+      areas = judge(grown, length, held);
     }
   }
   out.erase(std::remove_if(out.begin(), out.end(), [&](const CellCut& cut) { return cut.cost > slack * best; }),
@@ -234,7 +237,8 @@ Array<MinimumCutter::CellCut> MinimumCutter::cut_cells(const Cells& cells, doubl
   return out;
 }
 
-MinimumCut MinimumCutter::cut(const Array<Index>& scope, const Array<Index>& first, const Array<Index>& second) {
+MinimumCut MinimumCutter::cut(const Array<Index>& scope, const Array<Index>& first, const Array<Index>& second,
+                              double cost_to_beat) {
   for (std::size_t i = 0; i < scope.size(); ++i) place_[scope[i]] = static_cast<Index>(i);
   Array<Index> cell(scope.size(), none);
   for (const Index face : first) cell[place_[face]] = first_cell;
@@ -254,14 +258,16 @@ MinimumCut MinimumCutter::cut(const Array<Index>& scope, const Array<Index>& fir
   }
   const int rings = 2 + static_cast<int>(2 * std::exp2(halvings / 2.0));  // cells are about so wide, twice
   MinimumCut best{Array<char>(scope.size(), 0)};
-  for (const CellCut& coarse : cut_cells(cells, halvings > 0 ? cell_detour : 1.0)) {
+  constexpr double any = std::numeric_limits<double>::infinity();
+  const bool is_fine = halvings == 0;  // cuts between cells are those between faces
+  for (const CellCut& coarse : cut_cells(cells, is_fine ? 1.0 : cell_detour, is_fine ? cost_to_beat : any)) {
     MinimumCut cut{Array<char>(scope.size()), coarse.cost};
     Array<char> is_held(scope.size());
     for (std::size_t i = 0; i < scope.size(); ++i) {
       cut.is_first[i] = coarse.is_first[cell[i]];
       is_held[i] = coarse.is_held[cell[i]];
     }
-    if (halvings > 0) cut = refine(scope, is_held, cut, rings, best.cost);
+    if (!is_fine) cut = refine(scope, is_held, cut, rings, best.cost);
     if (cut.cost < best.cost) best = std::move(cut);
   }
   for (const Index face : scope) place_[face] = none;
@@ -294,11 +300,13 @@ MinimumCut MinimumCutter::refine(const Array<Index>& scope, const Array<char>& i
   Index count = 2;
   for (const Index face : band) cell[place_[face]] = count++;
   const Cells cells = cells_of(scope, cell, count);
-  FlowNetwork network(count);
-  for (const Edge& edge : cells.edges) network.add_arc(edge.cells[0], edge.cells[1], edge.cost, edge.cost);
-  const Units length = network.maximize(first_cell, second_cell);
-  const Array<char> reached = network.reachable(first_cell);
+  CutNetwork network(count, cells.edges);
+  network.add_to_first(first_cell);
+  network.add_to_second(second_cell);
+  const Units length = network.find_smallest(useless_length(cost_to_beat));
   MinimumCut fine;
+  if (cost(length, enough()) >= cost_to_beat) return fine;
+  const Array<char> reached = network.first_side();
   double area = 0, total = 0;
   for (std::size_t i = 0; i < scope.size(); ++i) {
     fine.is_first.push_back(reached[cell[i]]);
@@ -306,8 +314,8 @@ MinimumCut MinimumCutter::refine(const Array<Index>& scope, const Array<char>& i
     area += fine.is_first[i] ? graph_.area[scope[i]] : 0;
   }
   fine.cost = cost(length, std::min(area, total - area));
-  const bool is_no_use = fine.cost >= cost_to_beat;
-  return is_no_use || leaves_two(scope, fine.is_first) || !leaves_two(scope, coarse.is_first) ? fine : coarse;
+  const bool is_useless = fine.cost >= cost_to_beat;
+  return is_useless || leaves_two(scope, fine.is_first) || !leaves_two(scope, coarse.is_first) ? fine : coarse;
 }
 
 // Whether either side of a cut is connected.

@@ -26,8 +26,10 @@ class MinimumCutter {
  public:
   MinimumCutter(const FaceGraph& graph, CutCost rule) : graph_(graph), rule_(rule), place_(graph.face_count(), none) {}
 
-  // first, second: faces of the scope to be separated. The cost is infinite if no cut can do that.
-  MinimumCut cut(const Array<Index>& scope, const Array<Index>& first, const Array<Index>& second);
+  // first, second: faces of the scope to be separated.  The cost is infinite if no cut is known to cost less than
+  // `cost_to_beat`.
+  MinimumCut cut(const Array<Index>& scope, const Array<Index>& first, const Array<Index>& second,
+                 double cost_to_beat = std::numeric_limits<double>::infinity());
 
   // Of a cut of this length.
   double cost(FaceGraph::Units length, double smaller_area) const;
@@ -39,7 +41,8 @@ class MinimumCutter {
     double cost = std::numeric_limits<double>::infinity();
   };
   Cells cells_of(const Array<Index>& scope, const Array<Index>& cell_of_place, Index count) const;
-  Array<CellCut> cut_cells(const Cells& cells, double slack) const;
+  FaceGraph::Units useless_length(double least_cost) const;
+  Array<CellCut> cut_cells(const Cells& cells, double slack, double best) const;
   MinimumCut refine(const Array<Index>& scope, const Array<char>& is_held, const MinimumCut& coarse, int rings,
                     double cost_to_beat) const;
   bool leaves_two(const Array<Index>& scope, const Array<char>& is_first) const;

@@ -2,6 +2,7 @@
 #include "split/part_merger.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <numeric>
 #include <set>
@@ -75,15 +76,23 @@ PerPart<Array<Index>> PartMerger::faces_of_parts() const {
 void PartMerger::improve() {
   constexpr int most_rounds = 3;
   bool has_changed = true;
+  // Pairs of parts without a better cut between them. Numbers of parts change: one is known by its first face and the
+  // round that made it.
+  std::set<std::array<Index, 4>> tried;
+  PerFace<Index> made(graph_.face_count(), 0);
   for (int round = 0; has_changed && round < most_rounds; ++round) {
     has_changed = false;
     const PerPart<Array<Index>> faces = faces_of_parts();
     for (const auto& [pair, length] : measure_borders()) {
       const Array<Index>&first = faces[pair.first], &second = faces[pair.second];
+      const Index a = first.front(), b = second.front();
+      if (!tried.insert({a, made[a], b, made[b]}).second) continue;
       Array<Index> scope;
       std::merge(first.begin(), first.end(), second.begin(), second.end(), std::back_inserter(scope));
       has_changed = improve(pair.first, pair.second, scope, length);
-      if (has_changed) break;  // parts have other numbers now
+      if (!has_changed) continue;
+      for (const Index face : scope) made[face] = round + 1;
+      break;  // parts have other numbers now
     }
   }
 }
@@ -99,9 +108,10 @@ bool PartMerger::improve(Index a, Index b, const Array<Index>& scope, FaceGraph:
     };
     if (pairs_.any_partner(face, lies_on_other)) (parts_.of_face[face] == a ? first : second).push_back(face);
   }
-  const MinimumCut cut = cutter_.cut(scope, first, second);
   constexpr double better = 0.999;
-  if (!(cut.cost < better * cutter_.cost(length, std::min(area[0], area[1])))) return false;
+  const double cost_to_beat = better * cutter_.cost(length, std::min(area[0], area[1]));
+  const MinimumCut cut = cutter_.cut(scope, first, second, cost_to_beat);
+  if (!(cut.cost < cost_to_beat)) return false;
   const FaceParts before = parts_;
   for (std::size_t i = 0; i < scope.size(); ++i) parts_.of_face[scope[i]] = cut.is_first[i] ? a : b;
   parts_ = number_parts(graph_, parts_.of_face);

@@ -257,6 +257,12 @@ void apply(const OpenedSurface& surface, const MapParts& parts, ComponentMap& ma
   cut_apart(mesh, std::move(is_cut), part, motion, map);
 }
 
+// Maps with the same cuts are alike but for a motion.
+void add_if_new(Array<ComponentMap>& ways, ComponentMap way) {
+  const auto has_same_cuts = [&](const ComponentMap& other) { return other.cut_graph.is_cut == way.cut_graph.is_cut; };
+  if (std::none_of(ways.begin(), ways.end(), has_same_cuts)) ways.push_back(std::move(way));
+}
+
 // Maps with other cuts for the same cones, and those that are like one of them on one side of a mirror plane.
 Array<ComponentMap> find_ways(const SplitRules& rules, const ComponentMap& map) {
   Array<ComponentMap> ways;
@@ -265,14 +271,14 @@ Array<ComponentMap> find_ways(const SplitRules& rules, const ComponentMap& map) 
   for (auto sought = weighings.begin(); sought != weighings.end(); ++sought) {
     // Cuts sought by their length as well are not exchanged by cost alone.
     const Array<MetricMesh> costs(sought, weighings.end());
-    for (ComponentMap& way : recut(*sought, costs, map)) ways.push_back(std::move(way));
+    for (ComponentMap& way : recut(*sought, costs, map)) add_if_new(ways, std::move(way));
   }
   for (std::size_t i = 0, count = ways.size(); i < count; ++i) {
     for (const MapParts& parts : rules.mirror(ways[i], ways[i].cut_graph.is_cut)) {
       ComponentMap way = ways[i];
       apply(rules.surface(), parts, way);
       way.required_cuts = halfedges_of(way.cut_graph);
-      ways.push_back(std::move(way));
+      add_if_new(ways, std::move(way));
     }
   }
   return ways;

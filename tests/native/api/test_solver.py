@@ -209,6 +209,27 @@ def test_every_kind_of_call_is_that_of_a_fresh_start() -> None:
         assert_same(solver.parameterize(cones, options=options), lsgp.parameterize(surface, cones, options=options))
 
 
+def test_maps_that_were_split_are_made_compact_again_in_other_ways() -> None:
+    """What a solver keeps of a split map gives the islands that one makes that has kept nothing."""
+    mesh = meshes.bumpy_sphere()
+    surface = surface_of(mesh)
+    solver = lsgp.Solver(surface)
+    split = lsgp.Options(mode="low-stretch", overlaps="split")
+    ways = [
+        split,
+        dataclasses.replace(split, compact="full"),
+        dataclasses.replace(split, compact="sparing"),
+        dataclasses.replace(split, compact="full", square_share=2.0),
+        dataclasses.replace(split, compact="full", straighten=True),
+        dataclasses.replace(split, mode="conformal"),
+        dataclasses.replace(split, overlaps="keep"),
+        split,
+    ]
+    for options in ways:
+        for cones in (mesh.cones, mesh.cones[1:]):
+            assert_same(solver.parameterize(cones, options=options), lsgp.parameterize(surface, cones, options=options))
+
+
 def test_refused_call_leaves_the_solver_usable() -> None:
     mesh = meshes.bumpy_sphere()
     solver = lsgp.Solver(surface_of(mesh))

@@ -200,7 +200,7 @@ REVIEWED = {
         ),
     ],
     "plane/aabb_tree.hpp": [("while (!open.empty())", "pairs of nodes of a finite tree, each once", OWN)],
-    "plane/boundary_polygon.cpp": [
+    "plane/boundary_polygon.hpp": [
         ("for (Index h = first; !traced[h];)", ONCE_EACH, SHORT),
         ("while (!ends_at(h))", AROUND_A_VERTEX, SHORT),
     ],
@@ -317,6 +317,11 @@ REVIEWED = {
             LINKED,
             SHORT,
         ),
+    ],
+    "solvers/cut_network.cpp": [
+        ("while (highest_active_ > 0 && arrived_ < enough)", "distances only grow, up to the number of nodes", OWN),
+        ("while (excess_[node] > 0 && distance_[node] < count_)", "each round but the last lifts the node", SHORT),
+        ("while (nodes->first(level) >= 0)", "nodes of a list, each once", SHORT),
     ],
     "solvers/max_flow.cpp": [
         ("while (find_distances(source, sink))", "the distance grows each time, up to the number of nodes", OWN),
