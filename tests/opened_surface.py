@@ -75,6 +75,7 @@ def open_surface(surface: lsgp.Surface, result: lsgp.Result, options: lsgp.Optio
     """options: what the map was made with; seams may be open borders."""
     single = np.ones(len(surface.triangles), bool)
     single[named_by(result, "DUPLICATE_FACE")] = False
+    single &= (surface.triangles != np.roll(surface.triangles, 1, axis=1)).all(axis=1)  # the others are lines
     kept = result.solved & single
     turned = np.zeros(len(kept), bool)
     turned[named_by(result, "REORIENTED")] = True
