@@ -95,7 +95,7 @@ bool FeatureLayout::loosen() {
     start_ = std::move(longest->start);
     trimmings_ = longest->trimmings;
     loosened_.erase(longest);
-    held_ = free_along(task_.surface, task_.lattice.reduction, edges_of(aligned_));
+    held_ = free_along(task_.surface, task_.reduction, edges_of(aligned_));
     // It fulfills the conditions that are left, and stays valid.
     task_.relax(held_, Eigen::VectorXd::Ones(task_.surface.mesh.triangle_count()), start_);
   } while (!task_.is_valid(start_));
@@ -116,7 +116,7 @@ bool FeatureLayout::loosen() {
 
 // What the lattice rounds, as coordinates of the copies.
 void FeatureLayout::find_lattice_coordinates() {
-  const auto& [surface, curvature, rotation, lattice, before_step] = task_;
+  const auto& [surface, curvature, rotation, lattice, reduction, before_step] = task_;
   Array<Array<std::pair<Index, Complex>>> integer;
   for (const Index v : lattice.cones) integer.push_back({{v, 1.0}});
   for (const Index p : lattice.cuts) {
@@ -272,7 +272,7 @@ void FeatureLayout::find_coordinates() {
   line_count_ = ssize(rounded_);
   // Shifts round others, to which corners would have to be related.
   if (!may_shift_) find_corners(is_on_line);
-  const Reduction& reduction = task_.lattice.reduction;
+  const Reduction& reduction = task_.reduction;
   DirectedEdges fixed = edges;
   fixed.fixed = held_translation_;
   system_.emplace(task_.surface, free_along(task_.surface, reduction, fixed));

@@ -46,6 +46,10 @@ double rank_of_root(double curvature) {
   return gap < 1e-6 ? 0 : 1 / (1 + gap);
 }
 
+bool is_below_root(const NodeGraph& nodes, Index vertex) {
+  return vertex != none && nodes.vertex[nodes.order.front()] != vertex;
+}
+
 }  // namespace
 
 double symmetric_dirichlet_energy(const Geometry& geometry, const Jacobians& jacobians) {
@@ -75,13 +79,22 @@ LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, Borrowed<const Compone
   const NodeGraph nodes = build_node_graph(mesh_, cut_graph_, [&](Index v) {
     return !relaxed.empty() && v == relaxed.front() ? 1 : rank_of_root(curvature_.at_vertex[v]);
   });
-  reduction_ =
-      impose_on_lattice(surface(), nodes, curvature_of_nodes(mesh_, nodes, curvature_.at_vertex),
-                        turns_of_cuts(rotation_, lattice_.rotation_order()), {lattice_, demands.parity, relaxed});
+  const Eigen::VectorXd node_curvature = curvature_of_nodes(mesh_, nodes, curvature_.at_vertex);
+  const PerCut<int> turns = turns_of_cuts(rotation_, lattice_.rotation_order());
+  reduction_ = impose_on_lattice(surface(), nodes, node_curvature, turns, {lattice_, demands.parity, relaxed});
+  if (has_many_terms() && relaxed.empty() && is_below_root(nodes, reduction_.origin)) {
+    local_ = reduce_locally(surface(), nodes, node_curvature, turns, lattice_, reduction_.origin);
+if (getenv("GDBG")) fprintf(stderr, "terms %zd local %zd copies %d triangles %d unknowns %d %d cones %zd cuts %zd\n", (ssize_t)reduction_.reduction.terms.size(), (ssize_t)local_->terms.size(), (int)cut_mesh_.copy_count(), (int)mesh_.triangle_count(), (int)reduction_.reduction.unknown_count, (int)local_->unknown_count, (ssize_t)cones_.size(), (ssize_t)cut_graph_.cuts.size());
+  }
   motion_of_copies_ = motion_of_copies(mesh_, cut_graph_, cut_mesh_, rotation_);
   set_start(map);
   if (relaxed.empty() && lattice_.square()) align_features();
   integers_ = integers_of(start_);
+}
+
+// With hundreds of cones or handles most copies near cuts depend on many integers.
+bool LayoutQuantizer::has_many_terms() const {
+  return ssize(reduction_.reduction.terms) > 2 * static_cast<std::ptrdiff_t>(mesh_.triangle_count());
 }
 
 // Layouts along features need none of it.
@@ -110,7 +123,7 @@ void LayoutQuantizer::set_start(const ComponentMap& map) {
       std::sqrt(geometry_.total_area / map.uv_area) * map.position * turn.value_or(std::conj(upright(map.position)));
   energy_ = measure_energy(start_);
   if (energy_ > poor_energy) {
-    DegreesOfFreedom all{reduction_.reduction, Array<Index>(mesh_.triangle_count())};
+    DegreesOfFreedom all{moving_reduction(), Array<Index>(mesh_.triangle_count())};
     std::iota(all.triangles.begin(), all.triangles.end(), 0);
     NewtonMinimizer(surface(),
                     {Eigen::VectorXd::Zero(mesh_.vertex_count()), Eigen::VectorXd::Zero(mesh_.triangle_count())},
@@ -144,7 +157,7 @@ void LayoutQuantizer::align_features() {
   const double l2 = l2_stretch(geometry_, measure_jacobians({mesh_, geometry_}, cut_mesh_, start_));
   most_l2_ = most_growth * l2;
   most_l2_with_corners_ = (l2 + most_l2_) / 2;
-  const FeatureTask task{surface(), curvature_, rotation_, reduction_, before_step_};
+  const FeatureTask task{surface(), curvature_, rotation_, reduction_, moving_reduction(), before_step_};
   std::optional<FeatureAlignment>& alignment = demands_.alignment;
   if (!alignment) alignment = align_with_axes(task, feature, start_, most_l2_);
   release_reasons_ = alignment->reasons;

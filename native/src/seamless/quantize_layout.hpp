@@ -107,6 +107,8 @@ class LayoutQuantizer {
   };
 
   CutSurface surface() const { return {{mesh_, geometry_}, cut_graph_, cut_mesh_}; }
+  bool has_many_terms() const;
+  const Reduction& moving_reduction() const { return local_ ? *local_ : reduction_.reduction; }
   void set_start(const ComponentMap& map);
   void align_features();
   std::optional<QuantizedLayout> quantize_with_features(double density, const LayoutEffort& effort) const;
@@ -149,6 +151,7 @@ class LayoutQuantizer {
   Eigen::VectorXcd motion_of_copies_;
   double extent_ = 0, energy_ = 1;
   LatticeReduction reduction_;
+  std::optional<Reduction> local_;                 // where its terms are many
   Eigen::VectorXcd integers_;                      // (d) at the start
   std::unique_ptr<LatticeEnergy> lattice_energy_;  // beside search_: of the Dirichlet form, stiffened around cones
   std::unique_ptr<FeatureLayout> features_;        // or null

@@ -22,9 +22,10 @@ class TransitionElimination {
   // addresses.
   using Expression = std::map<Index, Complex>;
 
-  // node_curvature: as of find_rotations.  turn: e^{i rotation}.
+  // node_curvature: as of find_rotations.  turn: e^{i rotation}.  kept: a vertex whose position is not eliminated, not
+  // the root.
   TransitionElimination(const CutSurface& surface, const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
-                        PerCut<Complex> turn, Eliminate eliminate);
+                        PerCut<Complex> turn, Eliminate eliminate, Index kept = none);
 
   Index id_count() const { return static_cast<Index>(is_solved_.size()); }
   Index translation_id(Index cut) const { return n_ + cut; }
@@ -58,6 +59,7 @@ class TransitionElimination {
   Array<char> is_solved_;               // (ids)
   const PerCut<Complex> turn_;
   const Eliminate eliminate_;
+  const Index kept_;
 };
 
 }  // namespace lsgp
