@@ -27,6 +27,12 @@ double next_size(double tiles) {
   return tiles * (1 + 1e-9) < 1.5 * power ? 1.5 * power : 2 * power;
 }
 
+Array<double> sizes_up_to(double finest) {
+  Array<double> out;
+  for (double tiles = coarsest_tiles; tiles <= finest; tiles = next_size(tiles)) out.push_back(tiles);
+  return out;
+}
+
 void report_growth(double growth, std::vector<Finding>& findings) {
   if (growth <= acceptable_growth) return;
   findings.push_back({Code::grid_distorts,
@@ -109,30 +115,44 @@ std::optional<Grid> GridSearch::lay_out_given(double tiles) {
   return lay_out(tiles, {});
 }
 
-std::optional<Grid> GridSearch::find_coarsest() {
-  const LayoutEffort with_features{acceptable_growth, acceptable_turn, true, Features::required};
-  if (auto grid = loosen([&] { return refine(coarsest_tiles, with_features); })) return grid;
-  if (auto grid = refine(coarsest_tiles, {acceptable_growth, acceptable_turn, true, Features::ignored})) return grid;
-  // Layouts that need more repair take longer: bisects the sizes, since finer grids cost less.
-  Array<double> sizes;
-  for (double tiles = coarsest_tiles; tiles <= most_tiles; tiles = next_size(tiles)) sizes.push_back(tiles);
-  LayoutEffort without_features;
-  without_features.features = Features::ignored;
-  std::optional<Grid> best = lay_out(sizes.back(), without_features);
-  if (!best) return refine(coarsest_tiles, without_features);
-  const LayoutEffort thorough{std::max(acceptable_growth, near_finest * growth(*best)), acceptable_turn, false,
-                              Features::ignored};
+Grid GridSearch::bisect(const Array<double>& sizes, const LayoutEffort& effort, Grid finest) {
   std::size_t low = 0, high = sizes.size() - 1;
   while (low < high) {
     const std::size_t middle = (low + high) / 2;
-    if (auto grid = lay_out(sizes[middle], thorough)) {
-      best = std::move(grid);
+    if (auto grid = lay_out(sizes[middle], effort)) {
+      finest = std::move(*grid);
       high = middle;
     } else {
       low = middle + 1;
     }
   }
-  return best;
+  return finest;
+}
+
+// Where layouts take long, those that fail on the finest grid are not tried on others.
+std::optional<Grid> GridSearch::find_coarsest_with_features() {
+  const LayoutEffort effort{acceptable_growth, acceptable_turn, true, Features::required};
+  const bool takes_long = std::any_of(quantizers_.begin(), quantizers_.end(),
+                                      [](const auto& quantizer) { return quantizer->has_many_features(); });
+  if (!takes_long) return refine(coarsest_tiles, effort);
+  const Array<double> sizes = sizes_up_to(finest_with_features);
+  auto finest = lay_out(sizes.back(), effort);
+  if (!finest) return std::nullopt;
+  return bisect(sizes, effort, std::move(*finest));
+}
+
+std::optional<Grid> GridSearch::find_coarsest() {
+  if (auto grid = loosen([&] { return find_coarsest_with_features(); })) return grid;
+  if (auto grid = refine(coarsest_tiles, {acceptable_growth, acceptable_turn, true, Features::ignored})) return grid;
+  // Layouts that need more repair take longer: bisects the sizes, since finer grids cost less.
+  const Array<double> sizes = sizes_up_to(most_tiles);
+  LayoutEffort without_features;
+  without_features.features = Features::ignored;
+  auto finest = lay_out(sizes.back(), without_features);
+  if (!finest) return refine(coarsest_tiles, without_features);
+  const LayoutEffort thorough{std::max(acceptable_growth, near_finest * growth(*finest)), acceptable_turn, false,
+                              Features::ignored};
+  return bisect(sizes, thorough, std::move(*finest));
 }
 
 void GridSearch::give_up(const Error& error) {

@@ -72,6 +72,12 @@ class GridSearch {
 
   void prepare(std::size_t component);
 
+  // The coarsest of these sizes that can be laid out, if finer ones can where coarser ones can; finest: of the last one.
+  Grid bisect(const Array<double>& sizes, const LayoutEffort& effort, Grid finest);
+
+  // The coarsest grid with these features.
+  std::optional<Grid> find_coarsest_with_features();
+
   // Releases features until there is a grid; none if releasing a few times does not help, or there are no features.
   template <typename LayOut>
   std::optional<Grid> loosen(const LayOut& lay_out_features);

@@ -70,6 +70,8 @@ class LayoutQuantizer {
   double energy() const { return energy_; }
 
   bool has_features() const { return features_ != nullptr; }
+  // Whose layouts take long.
+  bool has_many_features() const { return features_ != nullptr && features_->is_large(); }
   // Releases some of the features; false if none is left.
   bool loosen_features();
   // Why features of halfedges that do not run along an axis of a layout do not; empty: none does on this lattice.
