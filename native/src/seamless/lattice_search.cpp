@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/checkpoint.hpp"
 #include "plane/predicates.hpp"
@@ -19,7 +20,8 @@ constexpr double lovasz = 0.85;  // an exchange has to shorten a vector to this 
 constexpr int most_exchanges = 200;
 // Limit of the steps in improving a choice, by its size; never reached in practice.
 constexpr int most_steps = 100;
-constexpr double ridge = 1e-12;  // of the diagonal: translations of the layout may cost nothing
+constexpr double ridge = 1e-12;    // of the diagonal: translations of the layout may cost nothing
+constexpr std::size_t few_of = 4;  // so many triangles are worth updating one
 // Weights of missing areas, of the form's median diagonal.
 constexpr std::array<double, 6> penalties{0.25, 1, 4, 16, 1e3, 1e6};
 
@@ -102,7 +104,7 @@ void LatticeSearch::add_move(const Eigen::VectorXcd& x, const Eigen::VectorXcd& 
     if (all[f][0] == all[f][1] && all[f][1] == all[f][2]) continue;  // only shifted
     move.corners.push_back(all[f]);
     move.triangles.push_back(f);
-    moves_of_triangle_[f].push_back(static_cast<int>(ssize(moves_)));
+    moves_of_triangle_[f].emplace_back(static_cast<int>(ssize(moves_)), static_cast<int>(ssize(move.triangles)) - 1);
   }
   moves_.push_back(std::move(move));
 }
@@ -176,10 +178,29 @@ struct LatticeSearch::Descent {
     force += unit * move.pull;
     for (std::size_t i = 0; i < move.triangles.size(); ++i) {
       const int f = move.triangles[i];
-      corners[f] = moved(corners[f], unit, move.corners[i]);
-      missing[f] = search.violation(corners[f]);
-      for (const int number : search.moves_of_triangle_[f]) is_stale[number] = 1;
+      const std::array<Complex, 3> before = std::exchange(corners[f], moved(corners[f], unit, move.corners[i]));
+      const double missing_before = std::exchange(missing[f], search.violation(corners[f]));
+      for (const auto& [number, at] : search.moves_of_triangle_[f]) {
+        if (is_stale[number]) continue;
+        const Move& other = search.moves_[number];
+        if (!may_update(move, other)) {
+          is_stale[number] = 1;
+          continue;
+        }
+        checkpoint(200.0 * static_cast<double>(search.units_.size()));
+        for (std::size_t turn = 0; turn < search.units_.size(); ++turn) {
+          const Complex by = search.units_[turn];
+          changes[number][turn] += search.violation(moved(corners[f], by, other.corners[at])) - missing[f] -
+                                   (search.violation(moved(before, by, other.corners[at])) - missing_before);
+        }
+      }
     }
+  }
+
+  // Whether to change what is kept of a move, instead of computing it again, where few of its triangles move. On square
+  // lattices areas are multiples of small powers of two, and their sums exact.
+  bool may_update(const Move& by, const Move& of) const {
+    return search.lattice_.square() && few_of * by.triangles.size() < of.triangles.size();
   }
 
   static std::array<Complex, 3> moved(std::array<Complex, 3> triangle, Complex unit, const std::array<Complex, 3>& by) {
