@@ -20,8 +20,7 @@ constexpr double lovasz = 0.85;  // an exchange has to shorten a vector to this 
 constexpr int most_exchanges = 200;
 // Limit of the steps in improving a choice, by its size; never reached in practice.
 constexpr int most_steps = 100;
-constexpr double ridge = 1e-12;    // of the diagonal: translations of the layout may cost nothing
-constexpr std::size_t few_of = 4;  // so many triangles are worth updating one
+constexpr double ridge = 1e-12;  // of the diagonal: translations of the layout may cost nothing
 // Weights of missing areas, of the form's median diagonal.
 constexpr std::array<double, 6> penalties{0.25, 1, 4, 16, 1e3, 1e6};
 
@@ -144,6 +143,7 @@ struct LatticeSearch::Descent {
   Eigen::VectorXcd away, force;           // from the wanted point, and form * away
   Array<Changes> changes;                 // of the missing area, by each move in each direction
   Array<char> is_stale;                   // whether those have to be computed again
+  Array<std::size_t> shared;              // triangles of each move that the step moves
 
   Descent(const LatticeSearch& owner, const Eigen::VectorXcd& x, const Eigen::VectorXcd& wanted)
       : search(owner),
@@ -151,7 +151,8 @@ struct LatticeSearch::Descent {
         away(x - wanted),
         force(owner.form_ * away),
         changes(owner.moves_.size()),
-        is_stale(owner.moves_.size(), 1) {
+        is_stale(owner.moves_.size(), 1),
+        shared(owner.moves_.size(), 0) {
     for (const auto& triangle : corners) missing.push_back(owner.violation(triangle));
   }
 
@@ -176,6 +177,10 @@ struct LatticeSearch::Descent {
   void step(const Move& move, Complex unit) {
     for (const auto& [k, x] : move.x) away[k] += unit * x;
     force += unit * move.pull;
+    std::fill(shared.begin(), shared.end(), 0);
+    for (const int f : move.triangles) {
+      for (const auto& [number, at] : search.moves_of_triangle_[f]) ++shared[number];
+    }
     for (std::size_t i = 0; i < move.triangles.size(); ++i) {
       const int f = move.triangles[i];
       const std::array<Complex, 3> before = std::exchange(corners[f], moved(corners[f], unit, move.corners[i]));
@@ -183,7 +188,7 @@ struct LatticeSearch::Descent {
       for (const auto& [number, at] : search.moves_of_triangle_[f]) {
         if (is_stale[number]) continue;
         const Move& other = search.moves_[number];
-        if (!may_update(move, other)) {
+        if (!may_update(shared[number], other)) {
           is_stale[number] = 1;
           continue;
         }
@@ -197,10 +202,10 @@ struct LatticeSearch::Descent {
     }
   }
 
-  // Whether to change what is kept of a move, instead of computing it again, where few of its triangles move. On square
-  // lattices areas are multiples of small powers of two, and their sums exact.
-  bool may_update(const Move& by, const Move& of) const {
-    return search.lattice_.square() && few_of * by.triangles.size() < of.triangles.size();
+  // Whether to change what is kept of a move, instead of computing it again, where so many of its triangles change:
+  // each takes twice as long. On square lattices areas are multiples of small powers of two, and their sums exact.
+  bool may_update(std::size_t changing, const Move& move) const {
+    return search.lattice_.square() && 2 * changing < move.triangles.size();
   }
 
   static std::array<Complex, 3> moved(std::array<Complex, 3> triangle, Complex unit, const std::array<Complex, 3>& by) {
