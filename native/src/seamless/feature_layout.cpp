@@ -271,7 +271,6 @@ void FeatureLayout::find_coordinates() {
     }
   }
   line_count_ = ssize(rounded_);
-if (getenv("GDBG")) fprintf(stderr, "lines %zd lattice %zd distances %zd triangles %d\n", line_count_, lattice_count_, distance_count_ - lattice_count_, (int)task_.surface.mesh.triangle_count());
   // Shifts round others, to which corners would have to be related.
   if (!may_shift_) find_corners(is_on_line);
   const Reduction& reduction = task_.reduction;
@@ -308,8 +307,7 @@ if (getenv("GDBG")) fprintf(stderr, "lines %zd lattice %zd distances %zd triangl
 }
 
 // Rounds one coordinate after the other, the cheapest first; the others follow.
-std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, Rounding rounding,
-                                                          double too_much) const {
+std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, Rounding rounding, double too_much) const {
   const bool is_fine = rounding == Rounding::fine;
   const std::optional<WholeValues>& all = is_fine ? fine_values_ : whole_values_;
   if (!all) return std::nullopt;

@@ -155,14 +155,37 @@ std::optional<Grid> GridSearch::find_coarsest() {
   return bisect(sizes, thorough, std::move(*finest));
 }
 
-void GridSearch::give_up(const Error& error) {
+void GridSearch::give_up() {
   const double density = most_tiles / extent();
-  if (components_.size() > 1) {
-    for_each_seamless(components_, [&](std::size_t i) {
-      if (!quantizers_[i]->quantize(density, {})) throw error;
-    });
+  for_each_seamless(components_, [&](std::size_t i) {
+    if (components_.size() == 1 || !quantizers_[i]->quantize(density, {})) throw refusal_of(i);
+  });
+  throw Error(Code::grid_too_coarse,
+              concat("No grid of up to ", most_tiles, " cells leaves a valid layout of all components. ",
+                     "Unwrap some of them separately."));
+}
+
+Error GridSearch::refusal_of(std::size_t component) {
+  LayoutQuantizer& quantizer = *quantizers_[component];
+  const std::string what = concat("No grid of up to ", most_tiles, " cells leaves a valid layout");
+  if (quantizer.extent() < extent() && quantizer.quantize(most_tiles / quantizer.extent(), {})) {
+    return Error(Code::grid_too_coarse,
+                 concat(what, ": a component is too small beside others. Unwrap it separately."));
   }
-  throw error;
+  Array<Index> close;
+  for (const ConePair& pair : quantizer.cone_pairs()) {
+    if (pair.distance * most_tiles > near * extent()) break;
+    close.push_back(pair.first);
+    close.push_back(pair.second);
+  }
+  if (close.empty()) {
+    return Error(Code::grid_too_coarse,
+                 concat(what, ". Use other cones, or cut the surface into simpler components along seams."));
+  }
+  sort_unique(close);
+  return Error(Code::grid_too_coarse,
+               concat(what, ". Move cones that are close to each other in the layout apart, or use fewer."),
+               {ElementKind::vertices, std::move(close)});
 }
 
 void GridSearch::lower_stretch(double stretch, Grid& grid) const {
@@ -289,10 +312,7 @@ Grid find_grid(const Options& options, double unit_scale, GridSearch& search, st
       return std::move(*finer);
     }
   }
-  search.give_up(
-      Error(Code::grid_too_coarse,
-            concat("No grid of up to ", most_tiles,
-                   " cells leaves a valid layout. Move cones that are close to each other apart, or use fewer.")));
+  search.give_up();
 }
 
 }  // namespace lsgp

@@ -84,7 +84,6 @@ LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, Borrowed<const Compone
   reduction_ = impose_on_lattice(surface(), nodes, node_curvature, turns, {lattice_, demands.parity, relaxed});
   if (has_many_terms() && relaxed.empty() && is_below_root(nodes, reduction_.origin)) {
     local_ = reduce_locally(surface(), nodes, node_curvature, turns, lattice_, reduction_.origin);
-if (getenv("GDBG")) fprintf(stderr, "terms %zd local %zd copies %d triangles %d unknowns %d %d cones %zd cuts %zd\n", (ssize_t)reduction_.reduction.terms.size(), (ssize_t)local_->terms.size(), (int)cut_mesh_.copy_count(), (int)mesh_.triangle_count(), (int)reduction_.reduction.unknown_count, (int)local_->unknown_count, (ssize_t)cones_.size(), (ssize_t)cut_graph_.cuts.size());
   }
   motion_of_copies_ = motion_of_copies(mesh_, cut_graph_, cut_mesh_, rotation_);
   set_start(map);
@@ -265,6 +264,13 @@ LayoutQuantizer::ConeTriangles LayoutQuantizer::find_cone_triangles() const {
   return out;
 }
 
+// Whether the triangles between the cones, each of which takes at least half a cell, would need more than twice the
+// area of the layout.
+bool LayoutQuantizer::lacks_area(double density) {
+  return 0.5 * static_cast<double>(cone_triangles().triangles.size()) * lattice_.cell_area() >
+         2 * density * density * geometry_.total_area;
+}
+
 // The values that the integers have in a layout.
 Eigen::VectorXcd LayoutQuantizer::integers_of(const Eigen::VectorXcd& position) const {
   Eigen::VectorXcd out(reduction_.integers.size());
@@ -323,6 +329,7 @@ std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, const L
     auto out = quantize_with_features(density, effort);
     if (out || effort.features == LayoutEffort::Features::required) return out;
   }
+  if (quick && demands_.relaxed.empty() && lacks_area(density)) return std::nullopt;
   const Array<Target> targets = find_targets(density, quick ? few_angles : tried_angles);
   // With relaxed cones it is unknown whether the points can be reached, and continuation would take too long.
   const int ways = !demands_.relaxed.empty() || quick ? 1 : 2;

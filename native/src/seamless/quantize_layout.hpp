@@ -116,6 +116,7 @@ class LayoutQuantizer {
   std::optional<QuantizedLayout> quantize_with_features(double density, const LayoutEffort& effort) const;
   void prepare_search();
   const ConeTriangles& cone_triangles();
+  bool lacks_area(double density);
   ConeTriangles find_cone_triangles() const;
   UpwardTurn find_upward_turn(const Eigen::VectorXcd& position) const;
   void turn_upwards(Eigen::VectorXcd& position) const;
