@@ -80,7 +80,7 @@ FeatureAlignment FeatureAligner::align_all(const PerHalfedge<char>& feature) {
   const HalfedgeMesh& mesh = task_.surface.mesh;
   out_.reasons.assign(mesh.halfedge_count(), ReleaseReason::contradiction);
   // With hundreds of cones and handles most copies depend on many unknowns.
-  const Index size = std::max(mesh.triangle_count(), static_cast<Index>(ssize(task_.reduction.terms) / 2));
+  const Index size = std::max(mesh.triangle_count(), static_cast<Index>(ssize(task_.lattice.reduction.terms) / 2));
   left_ = std::clamp(attempted_triangles / size, 1, most_attempts);
   fits_left_ = std::clamp(fitted_triangles / size, 1, most_fits);
   // Close to an isometry, lines have nearly their final directions.

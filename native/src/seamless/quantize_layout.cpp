@@ -93,7 +93,7 @@ LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, Borrowed<const Compone
 
 // With hundreds of cones or handles most copies near cuts depend on many integers.
 bool LayoutQuantizer::has_many_terms() const {
-  return ssize(reduction_.reduction.terms) > 2 * static_cast<std::ptrdiff_t>(mesh_.triangle_count());
+  return ssize(reduction_.reduction.terms) > 4 * static_cast<std::ptrdiff_t>(mesh_.triangle_count());
 }
 
 // Layouts along features need none of it.
