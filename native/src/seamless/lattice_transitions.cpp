@@ -51,20 +51,15 @@ void restrict_to_integral(const Eigen::RowVectorXcd& condition, const PointLatti
   basis *= step;
 }
 
-PerCut<Complex> units_of(const PerCut<int>& turns, const PointLattice& lattice) {
-  PerCut<Complex> out;
-  for (const int t : turns) out.push_back(lattice.unit(t));
-  return out;
-}
-
 }  // namespace
 
 LatticeReduction impose_on_lattice(const CutSurface& surface, const NodeGraph& nodes,
                                    const Eigen::VectorXd& node_curvature, const PerCut<int>& turns,
                                    const LatticeConstraint& constraint) {
   const auto& [lattice, parity, relaxed] = constraint;
-  const PerCut<Complex> turn = units_of(turns, lattice);
-  TransitionElimination elimination(surface, nodes, node_curvature, turn, Eliminate::translations);
+  PerCut<Complex> turn;
+  for (const int t : turns) turn.push_back(lattice.unit(t));
+  TransitionElimination elimination(surface, nodes, node_curvature, turn, {Eliminate::translations});
   Array<Index> ids;  // of the integers
   for (Eigen::Index node = 0; node < node_curvature.size(); ++node) {
     const Index v = nodes.vertex[node];
@@ -116,9 +111,8 @@ LatticeReduction impose_on_lattice(const CutSurface& surface, const NodeGraph& n
 }
 
 Reduction reduce_locally(const CutSurface& surface, const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
-                         const PerCut<int>& turns, const PointLattice& lattice, Index origin) {
-  TransitionElimination elimination(surface, nodes, node_curvature, units_of(turns, lattice), Eliminate::positions,
-                                    origin);
+                         const PerCut<Complex>& turn, Index origin) {
+  TransitionElimination elimination(surface, nodes, node_curvature, turn, {Eliminate::positions, origin});
   Reduction out;
   elimination.express_all_copies(elimination.number(origin, out), out);
   return out;

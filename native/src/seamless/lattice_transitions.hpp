@@ -37,8 +37,9 @@ LatticeReduction impose_on_lattice(const CutSurface& surface, const NodeGraph& n
                                    const LatticeConstraint& constraint);
 
 // The same maps as functions of unknowns nearby, where integers far away have an effect on most copies: positions of
-// cones follow from the translations of their cuts.  origin: of the lattice's reduction, not the root.
+// cones follow from the translations of their cuts.  turn: units of the lattice.  origin: of its reduction, not the
+// root.
 Reduction reduce_locally(const CutSurface& surface, const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
-                         const PerCut<int>& turns, const PointLattice& lattice, Index origin);
+                         const PerCut<Complex>& turn, Index origin);
 
 }  // namespace lsgp
