@@ -134,11 +134,8 @@ std::optional<Grid> GridSearch::find_coarsest_with_features() {
   const LayoutEffort effort{acceptable_growth, acceptable_turn, true, Features::required};
   const bool takes_long = std::any_of(quantizers_.begin(), quantizers_.end(),
                                       [](const auto& quantizer) { return quantizer->has_many_features(); });
-  if (!takes_long) return refine(coarsest_tiles, effort);
-  const Array<double> sizes = sizes_up_to(finest_with_features);
-  auto finest = lay_out(sizes.back(), effort);
-  if (!finest) return std::nullopt;
-  return bisect(sizes, effort, std::move(*finest));
+  if (takes_long && !lay_out(finest_with_features, effort)) return std::nullopt;
+  return refine(coarsest_tiles, effort);
 }
 
 std::optional<Grid> GridSearch::find_coarsest() {
