@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "repair/line_constraints.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "solvers/cholesky.hpp"
@@ -14,66 +16,104 @@ namespace lsgp {
 namespace {
 
 // A sum of real variables: 2 k and 2 k + 1 are the real and the imaginary part of unknown k. Ordered by variable.
-using Sum = std::map<Index, double>;
+using Sum = Array<std::pair<Index, double>>;
 
 constexpr double cancelled = 1e-11;  // of coefficients, which are around 1
+
+// Adds up coefficients, in the order in which they come.
+class Summation {
+ public:
+  explicit Summation(Index variable_count) : value_(variable_count, 0), is_listed_(variable_count, 0) {}
+
+  void add(Index variable, double coefficient) {
+    if (!is_listed_[variable]) {
+      is_listed_[variable] = 1;
+      listed_.push_back(variable);
+    }
+    value_[variable] += coefficient;
+  }
+
+  // The sum without coefficients below the least one; begins a new one.
+  Sum take(double least) {
+    std::sort(listed_.begin(), listed_.end());
+    Sum out;
+    for (const Index variable : listed_) {
+      const double coefficient = std::exchange(value_[variable], 0);
+      is_listed_[variable] = 0;
+      if (!(std::abs(coefficient) < least)) out.emplace_back(variable, coefficient);
+    }
+    listed_.clear();
+    return out;
+  }
+
+ private:
+  Array<double> value_;
+  Array<char> is_listed_;
+  Array<Index> listed_;
+};
 
 // Solves equations one after the other, each for one of its free variables.
 class Elimination {
  public:
-  explicit Elimination(Index variable_count) : is_used_(variable_count, 0) {}
+  explicit Elimination(Index variable_count)
+      : is_used_(variable_count, 0), is_solved_(variable_count, 0), solution_(variable_count), total_(variable_count) {}
 
   // sum = 0
   void add(const Sum& sum) {
     Sum left = resolve(sum);
-    Index pivot = none;
-    for (const auto& [variable, coefficient] : left) {
-      if (pivot == none || is_better(variable, coefficient, pivot, left[pivot])) pivot = variable;
+    if (left.empty()) return;
+    auto pivot = left.begin();
+    for (auto term = left.begin(); term != left.end(); ++term) {
+      if (is_better(*term, *pivot)) pivot = term;
     }
-    if (pivot == none) return;
-    const double divisor = -left[pivot];
+    const auto [solved, coefficient_of_solved] = *pivot;
     left.erase(pivot);
     for (auto& [variable, coefficient] : left) {
-      coefficient /= divisor;
+      coefficient /= -coefficient_of_solved;
       is_used_[variable] = 1;
     }
-    solved_[pivot] = std::move(left);
+    const auto is_cancelled = [](const auto& term) { return std::abs(term.second) < cancelled; };
+    left.erase(std::remove_if(left.begin(), left.end(), is_cancelled), left.end());
+    is_solved_[solved] = 1;
+    solution_[solved] = std::move(left);
   }
 
-  bool is_free(Index variable) const { return solved_.find(variable) == solved_.end(); }
+  bool is_free(Index variable) const { return !is_solved_[variable]; }
   // Whether others depend on it.
   bool is_used(Index variable) const { return is_used_[variable] != 0; }
 
   // In terms of free variables.
   Sum resolve(const Sum& sum) {
-    Sum out;
+    for (const auto& term : sum) update(term.first);
     for (const auto& [variable, coefficient] : sum) {
       if (is_free(variable)) {
-        out[variable] += coefficient;
+        total_.add(variable, coefficient);
         continue;
       }
-      Sum& solution = solved_[variable];
-      solution = resolve(solution);
-      for (const auto& [other, share] : solution) out[other] += coefficient * share;
+      for (const auto& [other, share] : solution_[variable]) total_.add(other, coefficient * share);
     }
-    Sum left;
-    for (const auto& [variable, coefficient] : out) {
-      if (!(std::abs(coefficient) < cancelled)) left.emplace_hint(left.end(), variable, coefficient);
-    }
-    return left;
+    return total_.take(cancelled);
   }
 
  private:
-  // Among variables with coefficients of similar size, those on which nothing depends are preferred: this keeps the
-  // expressions short.
-  bool is_better(Index variable, double coefficient, Index than, double its) const {
-    const double ratio = std::abs(coefficient / its);
-    if (ratio > 2 || ratio < 0.5) return ratio > 2;
-    return is_used_[variable] <= is_used_[than];
+  // Leaves free variables alone in the solution of a variable, if it is solved.
+  void update(Index variable) {
+    const auto is_solved = [&](const auto& term) { return !is_free(term.first); };
+    Sum& solution = solution_[variable];
+    if (std::any_of(solution.begin(), solution.end(), is_solved)) solution = resolve(solution);
   }
 
-  Array<char> is_used_;
-  std::map<Index, Sum> solved_;
+  // Among variables with coefficients of similar size, those on which nothing depends are preferred: this keeps the
+  // expressions short.
+  bool is_better(const std::pair<Index, double>& term, const std::pair<Index, double>& than) const {
+    const double ratio = std::abs(term.second / than.second);
+    if (ratio > 2 || ratio < 0.5) return ratio > 2;
+    return is_used_[term.first] <= is_used_[than.first];
+  }
+
+  Array<char> is_used_, is_solved_;
+  Array<Sum> solution_;
+  Summation total_;
 };
 
 using RealMatrix = Eigen::SparseMatrix<double>;
@@ -125,16 +165,15 @@ Complex factor_of(Index variable, Complex of_unknown) {
   return variable % 2 == 0 ? of_unknown : of_unknown * Complex(0, 1);
 }
 
-Sum in_variables(const CoordinateForm& form, const Reduction& reduction) {
-  Sum out;
+Sum in_variables(const CoordinateForm& form, const Reduction& reduction, Summation& total) {
   for (const auto& [copy, factor] : form) {
     reduction.for_each_term(copy, [&, factor = factor](const Term& term) {
       for (const Index variable : {2 * term.unknown, 2 * term.unknown + 1}) {
-        out[variable] += factor_of(variable, factor * term.coefficient).imag();
+        total.add(variable, factor_of(variable, factor * term.coefficient).imag());
       }
     });
   }
-  return out;
+  return total.take(0);
 }
 
 // Both coordinates of held copies, the fixed ones, and those of edges across their directions.
@@ -162,8 +201,9 @@ double value_of(const CoordinateForm& form, const Eigen::VectorXcd& position) {
 
 DegreesOfFreedom free_along(const CutSurface& surface, const Reduction& reduction, const DirectedEdges& edges) {
   Elimination elimination(2 * reduction.unknown_count);
+  Summation total(2 * reduction.unknown_count);
   for (const CoordinateForm& zero : coordinates_at_zero(surface.cut_mesh, edges)) {
-    elimination.add(in_variables(zero, reduction));
+    elimination.add(in_variables(zero, reduction, total));
   }
 
   DegreesOfFreedom out;

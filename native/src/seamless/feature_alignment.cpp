@@ -64,7 +64,7 @@ class FeatureAligner {
   std::optional<ReleaseReason> align(const Array<FeatureLine>& lines, Array<Index>& defects);
   double length_along(const Array<FeatureLine>& lines, const Eigen::VectorXcd& position) const;
   DegreesOfFreedom free_with(const Array<FeatureLine>& lines) const {
-    return free_along(task_.surface, task_.lattice.reduction, edges_of(lines));
+    return free_along(task_.surface, task_.reduction, edges_of(lines));
   }
 
   const FeatureTask& task_;
@@ -85,7 +85,7 @@ FeatureAlignment FeatureAligner::align_all(const PerHalfedge<char>& feature) {
   fits_left_ = std::clamp(fitted_triangles / size, 1, most_fits);
   // Close to an isometry, lines have nearly their final directions.
   const PerVertex<char> fixed(mesh.vertex_count(), 0);
-  task_.minimize(free_all(mesh, task_.surface.cut_mesh, task_.lattice.reduction, fixed), unaligned_);
+  task_.minimize(free_all(mesh, task_.surface.cut_mesh, task_.reduction, fixed), unaligned_);
   unaligned_ *= turn_to_features(task_.surface, feature, unaligned_);
   const FeatureLines traced = trace_features(task_.surface, feature, task_.mark_cones(), unaligned_);
   for (const Index h : traced.curved) out_.reasons[h] = ReleaseReason::curved;

@@ -59,6 +59,7 @@ FeatureLayout::FeatureLayout(const FeatureTask& task, const FeatureAlignment& al
       aligned_length_(total_length(aligned_)),
       start_(alignment.start) {
   find_coordinates();
+  is_large_ = has_many_coordinates();
 }
 
 // Single edges are released a few times, and independently of that whole lines.
@@ -95,7 +96,7 @@ bool FeatureLayout::loosen() {
     start_ = std::move(longest->start);
     trimmings_ = longest->trimmings;
     loosened_.erase(longest);
-    held_ = free_along(task_.surface, task_.lattice.reduction, edges_of(aligned_));
+    held_ = free_along(task_.surface, task_.reduction, edges_of(aligned_));
     // It fulfills the conditions that are left, and stays valid.
     task_.relax(held_, Eigen::VectorXd::Ones(task_.surface.mesh.triangle_count()), start_);
   } while (!task_.is_valid(start_));
@@ -116,7 +117,7 @@ bool FeatureLayout::loosen() {
 
 // What the lattice rounds, as coordinates of the copies.
 void FeatureLayout::find_lattice_coordinates() {
-  const auto& [surface, curvature, rotation, lattice, before_step] = task_;
+  const auto& [surface, curvature, rotation, lattice, reduction, before_step] = task_;
   Array<Array<std::pair<Index, Complex>>> integer;
   for (const Index v : lattice.cones) integer.push_back({{v, 1.0}});
   for (const Index p : lattice.cuts) {
@@ -272,7 +273,7 @@ void FeatureLayout::find_coordinates() {
   line_count_ = ssize(rounded_);
   // Shifts round others, to which corners would have to be related.
   if (!may_shift_) find_corners(is_on_line);
-  const Reduction& reduction = task_.lattice.reduction;
+  const Reduction& reduction = task_.reduction;
   DirectedEdges fixed = edges;
   fixed.fixed = held_translation_;
   system_.emplace(task_.surface, free_along(task_.surface, reduction, fixed));
@@ -306,7 +307,7 @@ void FeatureLayout::find_coordinates() {
 }
 
 // Rounds one coordinate after the other, the cheapest first; the others follow.
-std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, Rounding rounding) const {
+std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, Rounding rounding, double too_much) const {
   const bool is_fine = rounding == Rounding::fine;
   const std::optional<WholeValues>& all = is_fine ? fine_values_ : whole_values_;
   if (!all) return std::nullopt;
@@ -327,6 +328,10 @@ std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, Rounding
   const auto off = [&](std::ptrdiff_t i) {
     return std::max(unit(i) * std::round(value[i] / unit(i)), least(i)) - value[i];
   };
+  // Whichever is chosen in the end; distances may vanish where they follow from others.
+  const auto least_off = [&](std::ptrdiff_t i) {
+    return i < lattice_count_ ? off(i) : unit(i) * std::round(value[i] / unit(i)) - value[i];
+  };
   // Short lengths and distances come first, so that they do not vanish; where lines need not be on the lattice, they
   // wait for it.
   enum class Stage { vanishing, on_lattice, all };
@@ -336,8 +341,10 @@ std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, Rounding
       checkpoint(static_cast<double>(count * (ssize(out.independent) + 1)));
       std::ptrdiff_t best = -1;
       double cheapest = std::numeric_limits<double>::infinity();
-      for (std::ptrdiff_t i = 0; i < end; ++i) {
+      for (std::ptrdiff_t i = 0; i < count; ++i) {
         if (is_done[i] || !cholesky.is_independent(i)) continue;
+        if (out.cost + least_off(i) * least_off(i) / cholesky.left()[i] >= too_much) return std::nullopt;
+        if (i >= end) continue;
         if (stage == Stage::vanishing && !(may_vanish(i) && value[i] <= short_length)) continue;
         const double cost = off(i) * off(i) / cholesky.left()[i];
         if (!(cost < cheapest)) continue;
@@ -353,6 +360,7 @@ std::optional<FeatureLayout::Choice> FeatureLayout::round(double scale, Rounding
       const Eigen::VectorXd column = cholesky.column(best);
       value += column * (by / column[best]);
       out.cost += by * by / column[best];
+      if (out.cost >= too_much) return std::nullopt;
       cholesky.eliminate(best, column);
       out.independent.push_back(static_cast<Index>(best));
     }
@@ -421,17 +429,26 @@ std::optional<Eigen::VectorXcd> FeatureLayout::quantize(double density, bool mus
   return out && accepts(*out) ? out : std::nullopt;
 }
 
+bool FeatureLayout::has_many_coordinates() const {
+  return line_count_ - (distance_count_ - lattice_count_) > many_coordinates;
+}
+
 // The cheapest one of some scales about this one.
 std::optional<FeatureLayout::Choice> FeatureLayout::choose(double density, Rounding rounding) const {
+  const int scales = has_many_coordinates() ? 0 : tried_scales;
+  const auto growth_at = [](int k) { return k * M_LN2 / 16; };
+  const auto cost_of_growth = [&](int k) {
+    return 2 * task_.surface.geometry.total_area * growth_at(k) * growth_at(k);
+  };
+  if (density * std::exp(growth_at(scales)) <= hopeless_scale_) return std::nullopt;
   std::optional<Choice> best;
-  double least = std::numeric_limits<double>::infinity();
-  const int scales = line_count_ - (distance_count_ - lattice_count_) > many_coordinates ? 0 : tried_scales;
+  // The layout would be refused if the cheapest cost more.
+  double least = most_cost * task_.surface.geometry.total_area + 2 * cost_of_growth(scales);
   for (int k = -scales; k <= scales; ++k) {
-    const double growth = k * M_LN2 / 16;
-    std::optional<Choice> choice = round(density * std::exp(growth), rounding);
+    const double scale = density * std::exp(growth_at(k));
+    std::optional<Choice> choice = round(scale, rounding, scale * scale * (least - cost_of_growth(k)));
     if (!choice) continue;
-    const double cost =
-        choice->cost / (choice->scale * choice->scale) + 2 * task_.surface.geometry.total_area * growth * growth;
+    const double cost = choice->cost / (choice->scale * choice->scale) + cost_of_growth(k);
     if (!(cost < least)) continue;
     least = cost;
     best = std::move(choice);

@@ -44,6 +44,9 @@ class FeatureLayout {
   std::optional<Eigen::VectorXcd> quantize(double density, bool must_be_whole, bool keeps_corners,
                                            const std::function<bool(const Eigen::VectorXcd&)>& accepts);
 
+  // Whether choosing values took long before features were released.
+  bool is_large() const { return is_large_; }
+
   // Moves all points of a layout but those of features and cones to where they stretch least.  weights: (m) of
   // triangles.
   void relax(bool keeps_corners, const Eigen::VectorXd& weights, Eigen::VectorXcd& position) const {
@@ -70,8 +73,10 @@ class FeatureLayout {
   void find_lattice_coordinates();
   void find_distances(const DirectedEdges& edges, const Array<char>& is_on_line, UnionFind& same);
   void find_corners(const Array<char>& is_on_line);
-  std::optional<Choice> round(double scale, Rounding rounding) const;
+  // None where rounding lines costs `too_much` or more.
+  std::optional<Choice> round(double scale, Rounding rounding, double too_much) const;
   void round_corners(Eigen::VectorXd& value, PivotedCholesky& cholesky, Choice& choice) const;
+  bool has_many_coordinates() const;
   std::optional<Choice> choose(double density, Rounding rounding) const;
   std::optional<Eigen::VectorXcd> lay_out(const Choice& choice);
   void snap(double step, Eigen::VectorXcd& position) const;
@@ -89,7 +94,7 @@ class FeatureLayout {
   // their ends and corners.
   Array<CoordinateForm> rounded_;
   std::ptrdiff_t length_count_ = 0, lattice_count_ = 0, distance_count_ = 0, line_count_ = 0;  // ends of the first ones
-  bool may_shift_ = false;
+  bool may_shift_ = false, is_large_ = false;
   Array<CoordinateForm> held_translation_;  // its two coordinates, or empty
   struct Loosened {
     Array<FeatureLine> lines;

@@ -17,6 +17,7 @@ struct FeatureTask {
   const Curvature& curvature;
   const Eigen::VectorXd& rotation;  // (cuts) radians, multiples of quarter turns
   const LatticeReduction& lattice;
+  const Reduction& reduction;  // of the same maps, to the unknowns that are minimized over
   StepHook before_step;
 
   // The interior vertices with curvature.

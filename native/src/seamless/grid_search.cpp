@@ -27,6 +27,12 @@ double next_size(double tiles) {
   return tiles * (1 + 1e-9) < 1.5 * power ? 1.5 * power : 2 * power;
 }
 
+Array<double> sizes_up_to(double finest) {
+  Array<double> out;
+  for (double tiles = coarsest_tiles; tiles <= finest; tiles = next_size(tiles)) out.push_back(tiles);
+  return out;
+}
+
 void report_growth(double growth, std::vector<Finding>& findings) {
   if (growth <= acceptable_growth) return;
   findings.push_back({Code::grid_distorts,
@@ -109,40 +115,74 @@ std::optional<Grid> GridSearch::lay_out_given(double tiles) {
   return lay_out(tiles, {});
 }
 
-std::optional<Grid> GridSearch::find_coarsest() {
-  const LayoutEffort with_features{acceptable_growth, acceptable_turn, true, Features::required};
-  if (auto grid = loosen([&] { return refine(coarsest_tiles, with_features); })) return grid;
-  if (auto grid = refine(coarsest_tiles, {acceptable_growth, acceptable_turn, true, Features::ignored})) return grid;
-  // Layouts that need more repair take longer: bisects the sizes, since finer grids cost less.
-  Array<double> sizes;
-  for (double tiles = coarsest_tiles; tiles <= most_tiles; tiles = next_size(tiles)) sizes.push_back(tiles);
-  LayoutEffort without_features;
-  without_features.features = Features::ignored;
-  std::optional<Grid> best = lay_out(sizes.back(), without_features);
-  if (!best) return refine(coarsest_tiles, without_features);
-  const LayoutEffort thorough{std::max(acceptable_growth, near_finest * growth(*best)), acceptable_turn, false,
-                              Features::ignored};
+Grid GridSearch::bisect(const Array<double>& sizes, const LayoutEffort& effort, Grid finest) {
   std::size_t low = 0, high = sizes.size() - 1;
   while (low < high) {
     const std::size_t middle = (low + high) / 2;
-    if (auto grid = lay_out(sizes[middle], thorough)) {
-      best = std::move(grid);
+    if (auto grid = lay_out(sizes[middle], effort)) {
+      finest = std::move(*grid);
       high = middle;
     } else {
       low = middle + 1;
     }
   }
-  return best;
+  return finest;
 }
 
-void GridSearch::give_up(const Error& error) {
+// Where layouts take long, those that fail on the finest grid are not tried on others.
+std::optional<Grid> GridSearch::find_coarsest_with_features() {
+  const LayoutEffort effort{acceptable_growth, acceptable_turn, true, Features::required};
+  const bool takes_long = std::any_of(quantizers_.begin(), quantizers_.end(),
+                                      [](const auto& quantizer) { return quantizer->has_many_features(); });
+  if (takes_long && !lay_out(finest_with_features, effort)) return std::nullopt;
+  return refine(coarsest_tiles, effort);
+}
+
+std::optional<Grid> GridSearch::find_coarsest() {
+  if (auto grid = loosen([&] { return find_coarsest_with_features(); })) return grid;
+  if (auto grid = refine(coarsest_tiles, {acceptable_growth, acceptable_turn, true, Features::ignored})) return grid;
+  // Layouts that need more repair take longer: bisects the sizes, since finer grids cost less.
+  const Array<double> sizes = sizes_up_to(most_tiles);
+  LayoutEffort without_features;
+  without_features.features = Features::ignored;
+  auto finest = lay_out(sizes.back(), without_features);
+  if (!finest) return refine(coarsest_tiles, without_features);
+  const LayoutEffort thorough{std::max(acceptable_growth, near_finest * growth(*finest)), acceptable_turn, false,
+                              Features::ignored};
+  return bisect(sizes, thorough, std::move(*finest));
+}
+
+void GridSearch::give_up() {
   const double density = most_tiles / extent();
-  if (components_.size() > 1) {
-    for_each_seamless(components_, [&](std::size_t i) {
-      if (!quantizers_[i]->quantize(density, {})) throw error;
-    });
+  for_each_seamless(components_, [&](std::size_t i) {
+    if (components_.size() == 1 || !quantizers_[i]->quantize(density, {})) throw refusal_of(i);
+  });
+  throw Error(Code::grid_too_coarse,
+              concat("No grid of up to ", most_tiles, " cells leaves a valid layout of all components. ",
+                     "Unwrap some of them separately."));
+}
+
+Error GridSearch::refusal_of(std::size_t component) {
+  LayoutQuantizer& quantizer = *quantizers_[component];
+  const std::string what = concat("No grid of up to ", most_tiles, " cells leaves a valid layout");
+  if (quantizer.extent() < extent() && quantizer.quantize(most_tiles / quantizer.extent(), {})) {
+    return Error(Code::grid_too_coarse,
+                 concat(what, ": a component is too small beside others. Unwrap it separately."));
   }
-  throw error;
+  Array<Index> close;
+  for (const ConePair& pair : quantizer.cone_pairs()) {
+    if (pair.distance * most_tiles > near * extent()) break;
+    close.push_back(pair.first);
+    close.push_back(pair.second);
+  }
+  if (close.empty()) {
+    return Error(Code::grid_too_coarse,
+                 concat(what, ". Use other cones, or cut the surface into simpler components along seams."));
+  }
+  sort_unique(close);
+  return Error(Code::grid_too_coarse,
+               concat(what, ". Move cones that are close to each other in the layout apart, or use fewer."),
+               {ElementKind::vertices, std::move(close)});
 }
 
 void GridSearch::lower_stretch(double stretch, Grid& grid) const {
@@ -269,10 +309,7 @@ Grid find_grid(const Options& options, double unit_scale, GridSearch& search, st
       return std::move(*finer);
     }
   }
-  search.give_up(
-      Error(Code::grid_too_coarse,
-            concat("No grid of up to ", most_tiles,
-                   " cells leaves a valid layout. Move cones that are close to each other apart, or use fewer.")));
+  search.give_up();
 }
 
 }  // namespace lsgp

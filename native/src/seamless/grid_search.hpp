@@ -51,8 +51,8 @@ class GridSearch {
   // The coarsest grid of acceptable cost, or if there is none, of hardly more cost than the finest.
   std::optional<Grid> find_coarsest();
 
-  // Throws `error` for the components without layout on the finest grid; if all fail, for all together.
-  [[noreturn]] void give_up(const Error& error);
+  // Throws GRID_TOO_COARSE for the components without layout on the finest grid, or without one together.
+  [[noreturn]] void give_up();
 
   void lower_stretch(double stretch, Grid& grid) const;
 
@@ -71,6 +71,16 @@ class GridSearch {
   std::optional<QuantizedLayout> quantize(std::size_t component, double density, const LayoutEffort& effort) const;
 
   void prepare(std::size_t component);
+
+  // Why a component has no layout on the finest grid, in its numbering.
+  Error refusal_of(std::size_t component);
+
+  // The coarsest of these sizes that can be laid out, if finer ones can where coarser ones can; finest: of the last
+  // one.
+  Grid bisect(const Array<double>& sizes, const LayoutEffort& effort, Grid finest);
+
+  // The coarsest grid with these features.
+  std::optional<Grid> find_coarsest_with_features();
 
   // Releases features until there is a grid; none if releasing a few times does not help, or there are no features.
   template <typename LayOut>

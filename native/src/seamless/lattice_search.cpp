@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/checkpoint.hpp"
 #include "plane/predicates.hpp"
@@ -102,7 +103,7 @@ void LatticeSearch::add_move(const Eigen::VectorXcd& x, const Eigen::VectorXcd& 
     if (all[f][0] == all[f][1] && all[f][1] == all[f][2]) continue;  // only shifted
     move.corners.push_back(all[f]);
     move.triangles.push_back(f);
-    moves_of_triangle_[f].push_back(static_cast<int>(ssize(moves_)));
+    moves_of_triangle_[f].emplace_back(static_cast<int>(ssize(moves_)), static_cast<int>(ssize(move.triangles)) - 1);
   }
   moves_.push_back(std::move(move));
 }
@@ -142,6 +143,7 @@ struct LatticeSearch::Descent {
   Eigen::VectorXcd away, force;           // from the wanted point, and form * away
   Array<Changes> changes;                 // of the missing area, by each move in each direction
   Array<char> is_stale;                   // whether those have to be computed again
+  Array<std::size_t> shared;              // triangles of each move that the step moves
 
   Descent(const LatticeSearch& owner, const Eigen::VectorXcd& x, const Eigen::VectorXcd& wanted)
       : search(owner),
@@ -149,7 +151,8 @@ struct LatticeSearch::Descent {
         away(x - wanted),
         force(owner.form_ * away),
         changes(owner.moves_.size()),
-        is_stale(owner.moves_.size(), 1) {
+        is_stale(owner.moves_.size(), 1),
+        shared(owner.moves_.size(), 0) {
     for (const auto& triangle : corners) missing.push_back(owner.violation(triangle));
   }
 
@@ -174,12 +177,35 @@ struct LatticeSearch::Descent {
   void step(const Move& move, Complex unit) {
     for (const auto& [k, x] : move.x) away[k] += unit * x;
     force += unit * move.pull;
+    std::fill(shared.begin(), shared.end(), 0);
+    for (const int f : move.triangles) {
+      for (const auto& [number, at] : search.moves_of_triangle_[f]) ++shared[number];
+    }
     for (std::size_t i = 0; i < move.triangles.size(); ++i) {
       const int f = move.triangles[i];
-      corners[f] = moved(corners[f], unit, move.corners[i]);
-      missing[f] = search.violation(corners[f]);
-      for (const int number : search.moves_of_triangle_[f]) is_stale[number] = 1;
+      const std::array<Complex, 3> before = std::exchange(corners[f], moved(corners[f], unit, move.corners[i]));
+      const double missing_before = std::exchange(missing[f], search.violation(corners[f]));
+      for (const auto& [number, at] : search.moves_of_triangle_[f]) {
+        if (is_stale[number]) continue;
+        const Move& other = search.moves_[number];
+        if (!may_update(shared[number], other)) {
+          is_stale[number] = 1;
+          continue;
+        }
+        checkpoint(200.0 * static_cast<double>(search.units_.size()));
+        for (std::size_t turn = 0; turn < search.units_.size(); ++turn) {
+          const Complex by = search.units_[turn];
+          changes[number][turn] += search.violation(moved(corners[f], by, other.corners[at])) - missing[f] -
+                                   (search.violation(moved(before, by, other.corners[at])) - missing_before);
+        }
+      }
     }
+  }
+
+  // Whether to change what is kept of a move, instead of computing it again, where so many of its triangles change:
+  // each takes twice as long. On square lattices areas are multiples of small powers of two, and their sums exact.
+  bool may_update(std::size_t changing, const Move& move) const {
+    return search.lattice_.square() && 2 * changing < move.triangles.size();
   }
 
   static std::array<Complex, 3> moved(std::array<Complex, 3> triangle, Complex unit, const std::array<Complex, 3>& by) {

@@ -73,7 +73,7 @@ class LatticeSearch {
   Eigen::PartialPivLU<Eigen::MatrixXcd> inverse_of_reduced_;
   Eigen::MatrixXcd triangular_;  // R of form = ..., over the reduced basis
   Array<Move> moves_;
-  Array<Array<int>> moves_of_triangle_;
+  Array<Array<std::pair<int, int>>> moves_of_triangle_;  // and which of their triangles it is
 };
 
 }  // namespace lsgp

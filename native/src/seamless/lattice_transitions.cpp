@@ -59,7 +59,7 @@ LatticeReduction impose_on_lattice(const CutSurface& surface, const NodeGraph& n
   const auto& [lattice, parity, relaxed] = constraint;
   PerCut<Complex> turn;
   for (const int t : turns) turn.push_back(lattice.unit(t));
-  TransitionElimination elimination(surface, nodes, node_curvature, turn, Eliminate::translations);
+  TransitionElimination elimination(surface, nodes, node_curvature, turn, {Eliminate::translations});
   Array<Index> ids;  // of the integers
   for (Eigen::Index node = 0; node < node_curvature.size(); ++node) {
     const Index v = nodes.vertex[node];
@@ -107,6 +107,14 @@ LatticeReduction impose_on_lattice(const CutSurface& surface, const NodeGraph& n
     add_row(first, out.root_position.row(0));
     if (relaxed.empty()) restrict_to_integral(out.root_position * out.basis, lattice, out.basis);
   }
+  return out;
+}
+
+Reduction reduce_locally(const CutSurface& surface, const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
+                         const PerCut<Complex>& turn, Index origin) {
+  TransitionElimination elimination(surface, nodes, node_curvature, turn, {Eliminate::positions, origin});
+  Reduction out;
+  elimination.express_all_copies(elimination.number(origin, out), out);
   return out;
 }
 

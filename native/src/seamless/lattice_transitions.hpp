@@ -36,4 +36,10 @@ LatticeReduction impose_on_lattice(const CutSurface& surface, const NodeGraph& n
                                    const Eigen::VectorXd& node_curvature, const PerCut<int>& turns,
                                    const LatticeConstraint& constraint);
 
+// The same maps as functions of unknowns nearby, where integers far away have an effect on most copies: positions of
+// cones follow from the translations of their cuts.  turn: units of the lattice.  origin: of its reduction, not the
+// root.
+Reduction reduce_locally(const CutSurface& surface, const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
+                         const PerCut<Complex>& turn, Index origin);
+
 }  // namespace lsgp

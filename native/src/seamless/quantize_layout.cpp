@@ -46,6 +46,10 @@ double rank_of_root(double curvature) {
   return gap < 1e-6 ? 0 : 1 / (1 + gap);
 }
 
+bool is_below_root(const NodeGraph& nodes, Index vertex) {
+  return vertex != none && nodes.vertex[nodes.order.front()] != vertex;
+}
+
 }  // namespace
 
 double symmetric_dirichlet_energy(const Geometry& geometry, const Jacobians& jacobians) {
@@ -75,13 +79,27 @@ LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, Borrowed<const Compone
   const NodeGraph nodes = build_node_graph(mesh_, cut_graph_, [&](Index v) {
     return !relaxed.empty() && v == relaxed.front() ? 1 : rank_of_root(curvature_.at_vertex[v]);
   });
-  reduction_ =
-      impose_on_lattice(surface(), nodes, curvature_of_nodes(mesh_, nodes, curvature_.at_vertex),
-                        turns_of_cuts(rotation_, lattice_.rotation_order()), {lattice_, demands.parity, relaxed});
+  const Eigen::VectorXd node_curvature = curvature_of_nodes(mesh_, nodes, curvature_.at_vertex);
+  const PerCut<int> turns = turns_of_cuts(rotation_, lattice_.rotation_order());
+  reduction_ = impose_on_lattice(surface(), nodes, node_curvature, turns, {lattice_, demands.parity, relaxed});
+  if (has_many_terms() && relaxed.empty() && is_below_root(nodes, reduction_.origin)) {
+    local_ = reduce_locally(surface(), nodes, node_curvature, units_of_cuts(), reduction_.origin);
+  }
   motion_of_copies_ = motion_of_copies(mesh_, cut_graph_, cut_mesh_, rotation_);
   set_start(map);
   if (relaxed.empty() && lattice_.square()) align_features();
   integers_ = integers_of(start_);
+}
+
+PerCut<Complex> LayoutQuantizer::units_of_cuts() const {
+  PerCut<Complex> out;
+  for (const int t : turns_of_cuts(rotation_, lattice_.rotation_order())) out.push_back(lattice_.unit(t));
+  return out;
+}
+
+// With hundreds of cones or handles most copies near cuts depend on many integers.
+bool LayoutQuantizer::has_many_terms() const {
+  return ssize(reduction_.reduction.terms) > 4 * static_cast<std::ptrdiff_t>(mesh_.triangle_count());
 }
 
 // Layouts along features need none of it.
@@ -110,7 +128,7 @@ void LayoutQuantizer::set_start(const ComponentMap& map) {
       std::sqrt(geometry_.total_area / map.uv_area) * map.position * turn.value_or(std::conj(upright(map.position)));
   energy_ = measure_energy(start_);
   if (energy_ > poor_energy) {
-    DegreesOfFreedom all{reduction_.reduction, Array<Index>(mesh_.triangle_count())};
+    DegreesOfFreedom all{moving_reduction(), Array<Index>(mesh_.triangle_count())};
     std::iota(all.triangles.begin(), all.triangles.end(), 0);
     NewtonMinimizer(surface(),
                     {Eigen::VectorXd::Zero(mesh_.vertex_count()), Eigen::VectorXd::Zero(mesh_.triangle_count())},
@@ -144,7 +162,7 @@ void LayoutQuantizer::align_features() {
   const double l2 = l2_stretch(geometry_, measure_jacobians({mesh_, geometry_}, cut_mesh_, start_));
   most_l2_ = most_growth * l2;
   most_l2_with_corners_ = (l2 + most_l2_) / 2;
-  const FeatureTask task{surface(), curvature_, rotation_, reduction_, before_step_};
+  const FeatureTask task{surface(), curvature_, rotation_, reduction_, moving_reduction(), before_step_};
   std::optional<FeatureAlignment>& alignment = demands_.alignment;
   if (!alignment) alignment = align_with_axes(task, feature, start_, most_l2_);
   release_reasons_ = alignment->reasons;
@@ -211,8 +229,7 @@ const LayoutQuantizer::ConeTriangles& LayoutQuantizer::cone_triangles() {
 LayoutQuantizer::ConeTriangles LayoutQuantizer::find_cone_triangles() const {
   ConeTriangles out;
   if (!mesh_.closed() || cones_.empty()) return out;
-  PerCut<Complex> turn;
-  for (const int t : turns_of_cuts(rotation_, lattice_.rotation_order())) turn.push_back(lattice_.unit(t));
+  const PerCut<Complex> turn = units_of_cuts();
   const auto triangulation = triangulate_cones(surface(), turn, cones_, start_);
   if (!triangulation) return out;
   const auto translation_at_start = [&](Index cut) {
@@ -250,6 +267,13 @@ LayoutQuantizer::ConeTriangles LayoutQuantizer::find_cone_triangles() const {
   std::stable_sort(out.pairs.begin(), out.pairs.end(),
                    [](const ConePair& a, const ConePair& b) { return a.distance < b.distance; });
   return out;
+}
+
+// Whether the triangles between the cones, each of which takes at least half a cell, would need more than twice the
+// area of the layout.
+bool LayoutQuantizer::lacks_area(double density) {
+  return 0.5 * static_cast<double>(cone_triangles().triangles.size()) * lattice_.cell_area() >
+         2 * density * density * geometry_.total_area;
 }
 
 // The values that the integers have in a layout.
@@ -310,6 +334,7 @@ std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, const L
     auto out = quantize_with_features(density, effort);
     if (out || effort.features == LayoutEffort::Features::required) return out;
   }
+  if (quick && demands_.relaxed.empty() && lacks_area(density)) return std::nullopt;
   const Array<Target> targets = find_targets(density, quick ? few_angles : tried_angles);
   // With relaxed cones it is unknown whether the points can be reached, and continuation would take too long.
   const int ways = !demands_.relaxed.empty() || quick ? 1 : 2;

@@ -70,6 +70,8 @@ class LayoutQuantizer {
   double energy() const { return energy_; }
 
   bool has_features() const { return features_ != nullptr; }
+  // Whose layouts take long.
+  bool has_many_features() const { return features_ != nullptr && features_->is_large(); }
   // Releases some of the features; false if none is left.
   bool loosen_features();
   // Why features of halfedges that do not run along an axis of a layout do not; empty: none does on this lattice.
@@ -107,11 +109,15 @@ class LayoutQuantizer {
   };
 
   CutSurface surface() const { return {{mesh_, geometry_}, cut_graph_, cut_mesh_}; }
+  PerCut<Complex> units_of_cuts() const;
+  bool has_many_terms() const;
+  const Reduction& moving_reduction() const { return local_ ? *local_ : reduction_.reduction; }
   void set_start(const ComponentMap& map);
   void align_features();
   std::optional<QuantizedLayout> quantize_with_features(double density, const LayoutEffort& effort) const;
   void prepare_search();
   const ConeTriangles& cone_triangles();
+  bool lacks_area(double density);
   ConeTriangles find_cone_triangles() const;
   UpwardTurn find_upward_turn(const Eigen::VectorXcd& position) const;
   void turn_upwards(Eigen::VectorXcd& position) const;
@@ -149,6 +155,7 @@ class LayoutQuantizer {
   Eigen::VectorXcd motion_of_copies_;
   double extent_ = 0, energy_ = 1;
   LatticeReduction reduction_;
+  std::optional<Reduction> local_;                 // where its terms are many
   Eigen::VectorXcd integers_;                      // (d) at the start
   std::unique_ptr<LatticeEnergy> lattice_energy_;  // beside search_: of the Dirichlet form, stiffened around cones
   std::unique_ptr<FeatureLayout> features_;        // or null

@@ -23,7 +23,7 @@ constexpr double least_coefficient = 1e-9;  // others are rounding errors
 
 TransitionElimination::TransitionElimination(const CutSurface& surface, const NodeGraph& nodes,
                                              const Eigen::VectorXd& node_curvature, PerCut<Complex> turn,
-                                             Eliminate eliminate)
+                                             EliminationRule rule)
     : mesh_(surface.mesh),
       cut_graph_(surface.cut_graph),
       cut_mesh_(surface.cut_mesh),
@@ -31,7 +31,7 @@ TransitionElimination::TransitionElimination(const CutSurface& surface, const No
       n_(mesh_.vertex_count()),
       is_solved_(n_ + ssize(cut_graph_.cuts), 0),
       turn_(std::move(turn)),
-      eliminate_(eliminate) {
+      rule_(rule) {
   for (std::size_t i = nodes_.order.size(); i-- > 0;) {
     const Index node = nodes_.order[i];
     if (nodes_.vertex[node] != none) close_node(node, node_curvature[node]);
@@ -122,7 +122,8 @@ void TransitionElimination::close_node(Index node, double curvature) {
   Expression round = cross(express_copies(v).back().second, all.front().opened_by);
   const Complex gap = curvature == 0 ? 0.0 : 1.0 - round[v];
   round.erase(v);
-  const bool solves_position = eliminate_ == Eliminate::positions || nodes_.parent_cut[node] == none;
+  const bool is_local = rule_.eliminate == Eliminate::positions && v != rule_.kept;
+  const bool solves_position = is_local || nodes_.parent_cut[node] == none;
   if (std::abs(gap) >= clear_turn && solves_position) {
     for (auto& [id, coefficient] : round) coefficient /= gap;
     solve_for(v, std::move(round));
@@ -138,7 +139,7 @@ void TransitionElimination::close_node(Index node, double curvature) {
       if (std::abs(coefficient) < least_coefficient) continue;
       const bool larger = pivot == none || std::abs(coefficient) > std::abs(round[pivot]);
       // On a lattice the smallest coefficient is the one that may divide the others.
-      if (pivot == none || larger == (eliminate_ == Eliminate::positions)) pivot = id;
+      if (pivot == none || larger == (rule_.eliminate == Eliminate::positions)) pivot = id;
     }
     if (pivot == none) return;  // closes by itself, as on a flat torus
   }

@@ -15,6 +15,11 @@ enum class Eliminate {
   translations,  // toward the root, with unit coefficients: the remaining unknowns are independent lattice points
 };
 
+struct EliminationRule {
+  Eliminate eliminate;
+  Index kept = none;  // a vertex whose position is not eliminated, not the root
+};
+
 // Unknowns have ids: the vertices' positions, and after them the cuts' translations.
 class TransitionElimination {
  public:
@@ -24,7 +29,7 @@ class TransitionElimination {
 
   // node_curvature: as of find_rotations.  turn: e^{i rotation}.
   TransitionElimination(const CutSurface& surface, const NodeGraph& nodes, const Eigen::VectorXd& node_curvature,
-                        PerCut<Complex> turn, Eliminate eliminate);
+                        PerCut<Complex> turn, EliminationRule rule);
 
   Index id_count() const { return static_cast<Index>(is_solved_.size()); }
   Index translation_id(Index cut) const { return n_ + cut; }
@@ -57,7 +62,7 @@ class TransitionElimination {
   std::map<Index, Expression> solved_;  // by id
   Array<char> is_solved_;               // (ids)
   const PerCut<Complex> turn_;
-  const Eliminate eliminate_;
+  const EliminationRule rule_;
 };
 
 }  // namespace lsgp

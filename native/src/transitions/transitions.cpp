@@ -11,7 +11,7 @@ Reduction impose_transitions(const CutSurface& surface, const NodeGraph& nodes, 
                              const Eigen::VectorXd& rotation) {
   PerCut<Complex> turn(rotation.size());
   for (Eigen::Index p = 0; p < rotation.size(); ++p) turn[p] = std::polar(1.0, rotation[p]);
-  TransitionElimination elimination(surface, nodes, node_curvature, std::move(turn), Eliminate::positions);
+  TransitionElimination elimination(surface, nodes, node_curvature, std::move(turn), {Eliminate::positions});
   Reduction reduction;
   elimination.express_all_copies(elimination.number(elimination.find_ground(), reduction), reduction);
   return reduction;

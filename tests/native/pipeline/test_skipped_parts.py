@@ -53,6 +53,8 @@ def test_part_that_is_lost_in_a_cell_of_the_finest_grid_leaves_the_others(overla
     both = meshes.merge([GOOD, speck])
     result = lsgp.parameterize(surface(both), both.cones, options=options)
     assert_left_out(result, speck, len(GOOD.triangles), "GRID_TOO_COARSE")
+    message = only(result.warnings, "COMPONENT_SKIPPED").message
+    assert "too small beside others" in message and "cones" not in message
     assert np.array_equal(result.corner_uv[: len(GOOD.triangles)], alone.corner_uv)
     assert result.seamless.tiles == alone.seamless.tiles and result.seamless.error == alone.seamless.error
     assert result.cones.tolist() == GOOD.cones.tolist()

@@ -17,7 +17,7 @@ from meshes import Mesh
 from numpy.typing import NDArray
 from result_check import undeclared_faults
 from shared_meshes import hard_mesh
-from zoo import broken, closed
+from zoo import broken, closed, tunnels
 
 TILE = lsgp.preset_options("tile")
 PLAIN = replace(TILE, straighten=False)
@@ -187,3 +187,25 @@ def test_lines_without_a_free_coordinate_are_laid_out(corners: int, seed: int) -
     """A few triangles without cuts and cones: nothing has to be rounded but creases, of which few are left."""
     mesh = broken.scrap(corners, 2.0, seed)
     assert undeclared_faults(surface(mesh), lsgp.auto_unwrap(surface(mesh), preset="tile"), TILE) == []
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_all_creases_of_a_plate_with_many_tunnels_run_along_the_lattice(threads: int) -> None:
+    mesh = surface(tunnels.tunneled_plate(4, 3, 1))
+    result = lsgp.auto_unwrap(mesh, preset="tile", options=replace(TILE, threads=threads))
+    assert result.seamless.feature_share == 1 and result.seamless.error == 0
+    assert len(result.flipped) == len(result.wrong_angle_sums) == 0
+    alone = lsgp.auto_unwrap(mesh, preset="tile", options=replace(TILE, threads=1))
+    assert np.array_equal(result.corner_uv, alone.corner_uv)
+
+
+def test_tile_of_a_plate_with_many_tunnels_reports_progress_and_can_be_stopped_late() -> None:
+    reports: list[float] = []
+
+    def stop_late(done: float) -> bool:
+        reports.append(done)
+        return done < 0.9
+
+    with pytest.raises(lsgp.Cancelled):
+        lsgp.auto_unwrap(surface(tunnels.tunneled_plate(4, 3, 1)), preset="tile", progress=stop_late)
+    assert reports == sorted(reports) and len(reports) > 20
