@@ -146,7 +146,10 @@ std::optional<Grid> GridSearch::find_coarsest() {
   LayoutEffort without_features;
   without_features.features = Features::ignored;
   auto finest = lay_out(sizes.back(), without_features);
-  if (!finest) return refine(coarsest_tiles, without_features);
+  if (!finest) {
+    if (auto grid = refine(coarsest_tiles, without_features)) return grid;
+    return lay_out(most_tiles, {});  // features can help, where they fix what is rounded
+  }
   const LayoutEffort thorough{std::max(acceptable_growth, near_finest * growth(*finest)), acceptable_turn, false,
                               Features::ignored};
   return bisect(sizes, thorough, std::move(*finest));
