@@ -10,7 +10,7 @@ import meshes
 import numpy as np
 import pytest
 from lsgp import Surface, auto_unwrap
-from lsgp.presets.auto_unwrap import TARGET, GivenCones, complete_cones
+from lsgp.presets.auto_unwrap import TARGET, CompletedCones, GivenCones, complete_cones
 from map_checks import codes, only
 from meshes import Mesh
 from result_check import undeclared_faults
@@ -171,3 +171,20 @@ def test_edges_that_may_not_be_cut_are_not_cut() -> None:
     result = auto_unwrap(surface(both, edges=edges), cube.cones)
     allowed = {tuple(edge) for edge in np.sort(edges, axis=1).tolist()}
     assert {tuple(edge) for edge in np.sort(result.cut_edges, axis=1).tolist()} <= allowed
+
+
+def test_what_placement_leaves_out_but_has_a_map_is_not_told_to_be_left_out() -> None:
+    """A disk for which no cones are found is unwrapped without any."""
+    given, options = surface(SHAPES["hill"]), lsgp.preset_options("tile")
+    placement = lsgp.place_cones(given, count=2)
+    everything = lsgp.Elements("triangles", np.arange(len(given.triangles), dtype=np.int32))
+    left_out = lsgp.Finding(
+        "COMPONENT_SKIPPED", "A component of the surface was left out (SOLVER_FAILED): There are none.", everything
+    )
+    found = CompletedCones(np.empty(0, np.int32), [], replace(placement, warnings=[left_out]))
+    result = lsgp.parameterize(given, ())
+    (told,) = found.told(result, options).warnings
+    assert (told.code, told.elements) == ("PLACEMENT_NOT_REACHED", everything)
+    assert told.message == "A component was unwrapped without placed cones: There are none."
+    unsolved = replace(result, island=np.full(len(given.triangles), -1, np.int32))
+    assert found.told(unsolved, options).warnings == [left_out]
