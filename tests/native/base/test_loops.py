@@ -278,7 +278,7 @@ REVIEWED = {
     "seamless/grid_search.cpp": [
         ("for (; tiles <= finest; tiles = next_size(tiles))", "27 sizes up to 16384", WITHIN),
         (
-            "for (double tiles = coarsest_tiles; tiles <= most_tiles; tiles = next_size(tiles))",
+            "for (double tiles = coarsest_tiles; tiles <= finest; tiles = next_size(tiles))",
             "the same sizes, from 4 on",
             SHORT,
         ),

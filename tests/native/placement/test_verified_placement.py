@@ -431,6 +431,7 @@ def funnel(neck: float, base: float, lean: float, squash: float, around: int = 1
     return meshes.make([*positions, (0, 0, -0.03)], np.concatenate(triangles))
 
 
+@many_solves
 @pytest.mark.parametrize("seed", range(12))
 def test_what_is_wrong_with_many_rounded_cones_is_right_with_fewer(seed: int) -> None:
     """More cones lower what is predicted, while the angles of maps of such coarse surfaces may be off with them."""
