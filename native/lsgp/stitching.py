@@ -67,11 +67,10 @@ def stitched_vertices(positions: FloatArray, corners: NDArray[np.integer], sizes
     stitched = lowest_linked(np.concatenate([points, pairs]), len(positions))
     # Vertices of faces that would touch themselves stay what they are.
     moved = np.isin(face, face[stitched[corners] != closed[corners]])
-    corners, face = corners[moved], face[moved]
-    touches = _different(stitched, corners, face, len(sizes)) < _different(closed, corners, face, len(sizes))
-    kept = np.isin(closed, closed[corners[touches[face]]])
+    count = [_different(named, corners[moved], face[moved], len(sizes)) for named in (stitched, closed)]
+    kept = np.isin(closed, closed[corners[(count[0] < count[1])[face]]])
     stitched[kept] = closed[kept]
-    return stitched
+    return _with_lines_on_edges(stitched, place, tail, head, is_line[face])
 
 
 def at_stitched(stitched: IndexArray, vertices: NDArray[np.integer]) -> NDArray[np.integer]:
@@ -146,6 +145,30 @@ def without_stitched(stitched: IndexArray, warnings: Sequence[Finding]) -> list[
             finding = replace(finding, message=told, elements=replace(finding.elements, indices=loose))
         rest.append(finding)
     return rest
+
+
+def _with_lines_on_edges(
+    stitched: IndexArray, place: IndexArray, tail: IndexArray, head: IndexArray, on_line: NDArray[np.bool_]
+) -> IndexArray:
+    """Lays faces of which only a line remains, if they share no vertex with others, on an edge at the same place.
+
+    place: (n,) the first vertex at the place of each. tail, head: (c,) of the sides of faces. on_line: (c,) those of
+    lines.
+    """
+    is_used = np.zeros(len(place), bool)
+    is_used[tail[~on_line]] = True
+    line = np.flatnonzero(on_line & (place[tail] != place[head]) & ~is_used[tail] & ~is_used[head])
+    side = np.flatnonzero(~on_line)
+    if not (len(line) and len(side)):
+        return stitched
+    known, first = np.unique(edge_keys(place[tail[side]], place[head[side]], len(place)), return_index=True)
+    key = edge_keys(place[tail[line]], place[head[line]], len(place))
+    at = np.minimum(np.searchsorted(known, key), len(known) - 1)
+    line, side = line[known[at] == key], side[first[at[known[at] == key]]]
+    ends = np.stack([tail[side], head[side]])
+    turned = place[ends[0]] != place[tail[line]]
+    stitched[tail[line]], stitched[head[line]] = stitched[np.where(turned, ends[::-1], ends)]
+    return stitched[stitched]
 
 
 def _is_first(values: IndexArray) -> NDArray[np.bool_]:

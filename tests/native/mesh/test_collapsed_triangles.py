@@ -130,3 +130,18 @@ def test_a_hole_of_one_point_closes() -> None:
     open_ball = meshes.make(mesh.positions, mesh.triangles[whole])
     stitched = lsgp.stitch_borders(open_ball.positions, open_ball.triangles)
     assert meshes.euler_characteristic(stitched[open_ball.triangles]) == 2
+
+
+def test_a_line_in_a_soup_of_triangles_lies_on_an_edge_at_its_place() -> None:
+    grid = meshes.triangle_soup(meshes.grid(3, 3))
+    count = len(grid.positions)
+    a, b = grid.positions[grid.triangles[4, :2]]
+    positions = np.vstack([grid.positions, [b, a, a]])
+    triangles = np.vstack([grid.triangles, [[count, count + 1, count + 2]]])
+    stitched = lsgp.stitch_borders(positions, triangles)
+    assert np.array_equal(stitched[stitched], stitched)
+    assert np.array_equal(positions[stitched], positions)
+    result = lsgp.parameterize(lsgp.Surface(positions, stitched[triangles], may_collapse=True), ())
+    assert result.solved.all()
+    assert codes(result.warnings) == ["ISOLATED_VERTICES", "DEGENERATE_FACES"]
+    assert not np.isnan(result.corner_uv[-1]).any()
