@@ -169,8 +169,9 @@ class _Ring:
         x, y = self._x, self._y
         p, q = self._before[tip], self._after[tip]
         back_x, back_y, ahead_x, ahead_y = x[tip] - x[p], y[tip] - y[p], x[q] - x[tip], y[q] - y[tip]
+        across_x, across_y = x[q] - x[p], y[q] - y[p]
         area = back_x * ahead_y - back_y * ahead_x
-        cost = (back_x + ahead_x) ** 2 + (back_y + ahead_y) ** 2
+        cost = across_x * across_x + across_y * across_y  # the same to the last bit from both sides of the diagonal
         back, ahead = back_x * back_x + back_y * back_y, ahead_x * ahead_x + ahead_y * ahead_y
         if min(cost, back, ahead) <= ROUNDING**2:
             heapq.heappush(self._queue, (FLAT_EAR_COST, tip, self._version[tip]))

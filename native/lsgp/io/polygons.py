@@ -317,7 +317,7 @@ def _clip_ears(points: NDArray[np.float64]) -> NDArray[np.int64]:
         """Squared length of the diagonal and penalties, FLAT_EAR_COST without extent; infinite where it is no ear."""
         p, q = before[row, tip], after[row, tip]
         back, ahead = points[row, tip] - points[row, p], points[row, q] - points[row, tip]
-        lengths = [_dot(side, side) for side in (back, ahead, back + ahead)]
+        lengths = [_dot(side, side) for side in (back, ahead, points[row, q] - points[row, p])]
         area = _cross(back, ahead)
         needle = area <= NEARLY_STRAIGHT * np.sqrt(lengths[0] * lengths[1])
         cost = np.where(area > ROUNDING, lengths[2] + NEEDLE_PENALTY * needle, np.inf)
