@@ -19,6 +19,12 @@ namespace {
 
 constexpr auto no_area = "No triangle has an area. Restore the surface's shape.";
 
+Finding left_out(Code code, const char* why, Array<Index> triangles) {
+  return {Code::component_skipped,
+          concat("A component of the surface was left out (", name(code), "): ", why),
+          {ElementKind::triangles, std::move(triangles)}};
+}
+
 // open: the components that are opened along their seams.
 PerComponent<ComponentTask> hand_out(const Surface& surface, const PerComponent<Component>& components,
                                      const OpenSeams& open, const Cones& cones, const Options& options) {
@@ -146,10 +152,7 @@ void report_collapsed(const Topology& topology, std::vector<Finding>& findings) 
   sort_unique(neighbors);
   std::set_difference(collapsed.begin(), collapsed.end(), neighbors.begin(), neighbors.end(),
                       std::back_inserter(alone));
-  if (alone.empty()) return;
-  findings.push_back({Code::component_skipped,
-                      concat("A component of the surface was left out (", name(Code::degenerate_mesh), "): ", no_area),
-                      {ElementKind::triangles, alone}});
+  if (!alone.empty()) findings.push_back(left_out(Code::degenerate_mesh, no_area, std::move(alone)));
 }
 
 // Builds the components of the surface unless they are up to date.
@@ -355,9 +358,7 @@ Failure failure_of(const Component& component, const Error& error) {
 
 void report_skipped(const Array<Failure>& failures, std::vector<Finding>& findings) {
   for (const auto& [component, error] : failures) {
-    findings.push_back({Code::component_skipped,
-                        concat("A component of the surface was left out (", name(error.code()), "): ", error.what()),
-                        {ElementKind::triangles, component->source_triangle}});
+    findings.push_back(left_out(error.code(), error.what(), component->source_triangle));
   }
 }
 
