@@ -57,8 +57,7 @@ LatticeReduction impose_on_lattice(const CutSurface& surface, const NodeGraph& n
                                    const Eigen::VectorXd& node_curvature, const PerCut<int>& turns,
                                    const LatticeConstraint& constraint) {
   const auto& [lattice, parity, relaxed] = constraint;
-  PerCut<Complex> turn;
-  for (const int t : turns) turn.push_back(lattice.unit(t));
+  const PerCut<Complex> turn = units_of(lattice, turns);
   TransitionElimination elimination(surface, nodes, node_curvature, turn, {Eliminate::translations});
   Array<Index> ids;  // of the integers
   for (Eigen::Index node = 0; node < node_curvature.size(); ++node) {
@@ -107,6 +106,12 @@ LatticeReduction impose_on_lattice(const CutSurface& surface, const NodeGraph& n
     add_row(first, out.root_position.row(0));
     if (relaxed.empty()) restrict_to_integral(out.root_position * out.basis, lattice, out.basis);
   }
+  return out;
+}
+
+PerCut<Complex> units_of(const PointLattice& lattice, const PerCut<int>& turns) {
+  PerCut<Complex> out;
+  for (const int t : turns) out.push_back(lattice.unit(t));
   return out;
 }
 

@@ -36,6 +36,9 @@ LatticeReduction impose_on_lattice(const CutSurface& surface, const NodeGraph& n
                                    const Eigen::VectorXd& node_curvature, const PerCut<int>& turns,
                                    const LatticeConstraint& constraint);
 
+// (cuts) The units of the lattice by which cuts turn.
+PerCut<Complex> units_of(const PointLattice& lattice, const PerCut<int>& turns);
+
 // The same maps as functions of unknowns nearby, where integers far away have an effect on most copies: positions of
 // cones follow from the translations of their cuts.  turn: units of the lattice.  origin: of its reduction, not the
 // root.

@@ -83,18 +83,12 @@ LayoutQuantizer::LayoutQuantizer(ComponentSystem& system, Borrowed<const Compone
   const PerCut<int> turns = turns_of_cuts(rotation_, lattice_.rotation_order());
   reduction_ = impose_on_lattice(surface(), nodes, node_curvature, turns, {lattice_, demands.parity, relaxed});
   if (has_many_terms() && relaxed.empty() && is_below_root(nodes, reduction_.origin)) {
-    local_ = reduce_locally(surface(), nodes, node_curvature, units_of_cuts(), reduction_.origin);
+    local_ = reduce_locally(surface(), nodes, node_curvature, units_of(lattice_, turns), reduction_.origin);
   }
   motion_of_copies_ = motion_of_copies(mesh_, cut_graph_, cut_mesh_, rotation_);
   set_start(map);
   if (relaxed.empty() && lattice_.square()) align_features();
   integers_ = integers_of(start_);
-}
-
-PerCut<Complex> LayoutQuantizer::units_of_cuts() const {
-  PerCut<Complex> out;
-  for (const int t : turns_of_cuts(rotation_, lattice_.rotation_order())) out.push_back(lattice_.unit(t));
-  return out;
 }
 
 // With hundreds of cones or handles most copies near cuts depend on many integers.
@@ -229,7 +223,7 @@ const LayoutQuantizer::ConeTriangles& LayoutQuantizer::cone_triangles() {
 LayoutQuantizer::ConeTriangles LayoutQuantizer::find_cone_triangles() const {
   ConeTriangles out;
   if (!mesh_.closed() || cones_.empty()) return out;
-  const PerCut<Complex> turn = units_of_cuts();
+  const PerCut<Complex> turn = units_of(lattice_, turns_of_cuts(rotation_, lattice_.rotation_order()));
   const auto triangulation = triangulate_cones(surface(), turn, cones_, start_);
   if (!triangulation) return out;
   const auto translation_at_start = [&](Index cut) {

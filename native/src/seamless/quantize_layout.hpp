@@ -109,7 +109,6 @@ class LayoutQuantizer {
   };
 
   CutSurface surface() const { return {{mesh_, geometry_}, cut_graph_, cut_mesh_}; }
-  PerCut<Complex> units_of_cuts() const;
   bool has_many_terms() const;
   const Reduction& moving_reduction() const { return local_ ? *local_ : reduction_.reduction; }
   void set_start(const ComponentMap& map);
