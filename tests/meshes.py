@@ -116,6 +116,17 @@ def ellipsoid(levels: int = 2, axes: Sequence[float] = (1.0, 1.3, 0.7)) -> Mesh:
     return mesh._replace(positions=mesh.positions * np.asarray(axes))
 
 
+def ball_of_quads(around: int = 12, rows: int = 7) -> tuple[FloatArray, IndexArray]:
+    """Positions and quads (f, 4) of a sphere of rows, with `around` vertices at each pole, all in one place: the first
+    and the last ones."""
+    turn, height = np.meshgrid(np.arange(around) * 2 * np.pi / around, np.linspace(0, np.pi, rows + 1))
+    positions = np.stack([np.sin(height) * np.cos(turn), np.sin(height) * np.sin(turn), np.cos(height)], axis=-1)
+    positions[0], positions[-1] = (0, 0, 1), (0, 0, -1)
+    i, j = np.arange(around), np.roll(np.arange(around), -1)
+    quads = np.concatenate([np.stack([i, i + around, j + around, j], axis=1) + around * row for row in range(rows)])
+    return positions.reshape(-1, 3), quads
+
+
 def bumpy_sphere(levels: int = 2, height: float = 0.25) -> Mesh:
     """A sphere with smooth bumps and no symmetry: generic.  Six of the icosahedron's corners as cones."""
     mesh = icosphere(levels)

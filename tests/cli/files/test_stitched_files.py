@@ -95,14 +95,8 @@ def test_a_file_is_read_as_the_whole_surface_unless_told_otherwise(soup_file: Pa
 @pytest.mark.parametrize("preset", ["paint", "tile", "bake"])
 def test_each_quad_beside_a_pole_of_many_vertices_is_in_one_piece(lsgp, tmp_path: Path, preset: str) -> None:
     """A cut through the pole ends at one side of a quad of which a triangle remains."""
-    around, rows = 12, 6
-    turns, heights = np.arange(around) * 2 * np.pi / around, np.linspace(0, np.pi, rows + 1)
-    shape = np.stack(np.broadcast_arrays(*np.meshgrid(heights, turns, indexing="ij")), axis=-1).reshape(-1, 2)
-    height, turn = shape.T
-    positions = np.stack([np.sin(height) * np.cos(turn), np.sin(height) * np.sin(turn), np.cos(height)], axis=1)
-    positions[:around], positions[-around:] = (0, 0, 1), (0, 0, -1)
-    i, j = np.arange(around), np.roll(np.arange(around), -1)
-    quads = np.concatenate([np.stack([i, i + around, j + around, j], axis=1) + around * row for row in range(rows)])
+    around = 12
+    positions, quads = meshes.ball_of_quads(around, 6)
     (tmp_path / "ball.obj").write_text(obj_text(positions, quads.tolist()))
     done = lsgp("unwrap", "ball.obj", "-o", "uv.obj", "--preset", preset, "--report", "report.json")
     assert done.code == 0, done.err

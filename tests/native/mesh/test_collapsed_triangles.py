@@ -15,33 +15,21 @@ from map_checks import codes, only
 from meshes import Mesh
 from opened_surface import named_by
 
-AROUND, ROWS = 12, 7
+AROUND = 12
 
 
-def ball(pole_vertices: int = 1) -> Mesh:
-    """A sphere of rows; with more vertices at the poles, all in one place, the faces there are quads cut in two."""
-    turns = np.arange(AROUND) * 2 * np.pi / AROUND
-    heights = np.linspace(0, np.pi, ROWS + 1)[1:-1]
-    rows = [
-        np.stack([np.sin(h) * np.cos(turns), np.sin(h) * np.sin(turns), np.full(AROUND, np.cos(h))], axis=1)
-        for h in heights
-    ]
-    poles = [np.tile([0.0, 0.0, z], (pole_vertices, 1)) for z in (1, -1)]
-    positions = np.concatenate([*rows, *poles])
-    i, j = np.arange(AROUND), np.roll(np.arange(AROUND), -1)
-    triangles = []
-    for row in range(ROWS - 2):
-        a, b, c, d = row * AROUND + i, row * AROUND + j, (row + 1) * AROUND + i, (row + 1) * AROUND + j
-        triangles += [np.stack([a, c, d], axis=1), np.stack([a, d, b], axis=1)]
-    top, last = (ROWS - 1) * AROUND, (ROWS - 2) * AROUND
-    bottom = top + pole_vertices
-    at = np.zeros(AROUND, int) if pole_vertices == 1 else i
-    after = np.zeros(AROUND, int) if pole_vertices == 1 else j
-    triangles += [np.stack([i, j, top + at], axis=1), np.stack([last + j, last + i, bottom + at], axis=1)]
-    if pole_vertices > 1:
-        triangles += [np.stack([top + at, j, top + after], axis=1)]
-        triangles += [np.stack([last + j, bottom + at, bottom + after], axis=1)]
-    return meshes.make(positions, np.concatenate(triangles))
+def ball_with_many_at_poles() -> Mesh:
+    """Its quads are cut in two, and one of the halves at a pole is a line."""
+    positions, quads = meshes.ball_of_quads(AROUND)
+    return meshes.make(positions, quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3))
+
+
+def ball() -> Mesh:
+    """The same with single poles, whose other vertices belong to no face."""
+    positions, triangles, _ = ball_with_many_at_poles()
+    vertex = np.arange(len(positions))
+    vertex[:AROUND], vertex[-AROUND:] = 0, len(positions) - AROUND
+    return meshes.make(positions, vertex[triangles][~is_collapsed(vertex[triangles])])
 
 
 def closed(mesh: Mesh) -> lsgp.Surface:
@@ -52,7 +40,7 @@ def closed(mesh: Mesh) -> lsgp.Surface:
 @pytest.mark.parametrize("preset", ("paint", "tile", "bake"))
 def test_poles_of_many_vertices_have_the_map_of_one(preset: str) -> None:
     plain = ball()
-    surface = closed(ball(AROUND))
+    surface = closed(ball_with_many_at_poles())
     whole = ~is_collapsed(surface.triangles)
     assert np.count_nonzero(~whole) == 2 * AROUND
     one = lsgp.auto_unwrap(lsgp.Surface(plain.positions, plain.triangles), preset=preset, pack="shelves")
@@ -63,7 +51,7 @@ def test_poles_of_many_vertices_have_the_map_of_one(preset: str) -> None:
 
 
 def test_collapsed_triangles_lie_on_an_edge_of_a_neighbor() -> None:
-    surface = closed(ball(AROUND))
+    surface = closed(ball_with_many_at_poles())
     result = lsgp.auto_unwrap(surface)
     whole = np.flatnonzero(~is_collapsed(surface.triangles))
     at = {(surface.triangles[f, c], *result.corner_uv[f, c]): result.island[f] for f in whole for c in range(3)}
@@ -73,7 +61,7 @@ def test_collapsed_triangles_lie_on_an_edge_of_a_neighbor() -> None:
 
 
 def test_every_verb_takes_collapsed_triangles() -> None:
-    surface = closed(ball(AROUND))
+    surface = closed(ball_with_many_at_poles())
     cones = lsgp.place_cones(surface, count=8).cones
     plain = lsgp.place_cones(lsgp.Surface(ball().positions, ball().triangles), count=8)
     assert len(cones) == len(plain.cones) == 8
@@ -87,19 +75,19 @@ def test_every_verb_takes_collapsed_triangles() -> None:
 
 
 def test_quads_cover_a_ball_with_poles_of_many_vertices() -> None:
-    surface = closed(ball(AROUND))
+    surface = closed(ball_with_many_at_poles())
     quads = lsgp.remesh_to_quads(surface, target=200).mesh.quads
     assert meshes.euler_characteristic(np.concatenate([quads[:, :3], quads[:, [0, 2, 3]]])) == 2
 
 
 def test_a_vertex_named_twice_is_refused_unless_it_may_be() -> None:
     with pytest.raises(lsgp.InputError) as caught:
-        lsgp.parameterize(replace(closed(ball(AROUND)), may_collapse=False), ())
+        lsgp.parameterize(replace(closed(ball_with_many_at_poles()), may_collapse=False), ())
     assert caught.value.code == "BAD_FACE"
 
 
 def test_seams_may_run_along_edges_that_only_collapsed_triangles_have() -> None:
-    surface = closed(ball(AROUND))
+    surface = closed(ball_with_many_at_poles())
     pole = surface.triangles[is_collapsed(surface.triangles)][0]
     seams = [[pole[0], pole[0]], [pole.min(), pole.max()]]
     result = lsgp.parameterize(replace(surface, seams=np.array(seams, np.int32)), lsgp.place_cones(surface).cones)
@@ -125,7 +113,7 @@ def test_a_quad_with_an_edge_without_length_is_a_triangle() -> None:
 
 def test_a_hole_of_one_point_closes() -> None:
     """A row of vertices at the pole, without faces of their own between them."""
-    mesh = ball(AROUND)
+    mesh = ball_with_many_at_poles()
     whole = ~is_collapsed(closed(mesh).triangles)
     open_ball = meshes.make(mesh.positions, mesh.triangles[whole])
     stitched = lsgp.stitch_borders(open_ball.positions, open_ball.triangles)
