@@ -139,6 +139,23 @@ def bumpy_sphere(levels: int = 2, height: float = 0.25) -> Mesh:
     return make(mesh.positions * (1 + height * bump)[:, None], mesh.triangles, [0, 2, 4, 7, 9, 11])
 
 
+def with_close_cones(distance: float) -> Mesh:
+    """A bumpy sphere with two cones on one edge, which is divided at this share of its length."""
+    ball = bumpy_sphere()
+    (first, second), added = ball.triangles[0, :2], len(ball.positions)
+    position = ball.positions[first] + distance * (ball.positions[second] - ball.positions[first])
+    triangles = []
+    for corners in ball.triangles:
+        ends = np.flatnonzero(np.isin(corners, (first, second)))
+        if len(ends) < 2:
+            triangles.append(corners)
+            continue
+        for end in ends:
+            triangles.append(np.where(np.arange(3) == end, added, corners))
+    cones = [*ball.cones[ball.cones != first], first, added]
+    return make(np.vstack([ball.positions, position]), np.array(triangles), cones)
+
+
 def forked(levels: int = 3) -> Mesh:
     """A bumpy sphere with 28 cones, generic: the shortest ways between two pairs of them merge at one junction."""
     mesh = bumpy_sphere(levels, 0.15)

@@ -435,9 +435,9 @@ def _refuse_far_above(asked: float, layout: Result) -> None:
         return
     raise SolverError(
         "TOO_MANY_QUADS",
-        f"The grid has {quads} quads: all parts of the surface have quads of one size, and the smallest part, or cones "
-        f"close to each other, require small ones. Ask for a number (target, or --target), {quads} for as many, or "
-        "remesh small parts by themselves.",
+        f"The grid has {quads} quads: cones close to each other require small ones, and all large components have "
+        f"quads of one size. Use fewer cones, ask for a number (target, or --target), {quads} for as many, or remesh "
+        "components by themselves.",
     )
 
 

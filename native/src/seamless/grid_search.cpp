@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "base/text.hpp"
@@ -15,11 +16,15 @@ namespace {
 constexpr double coarsest_tiles = 4;  // tried for an automatic grid
 using Features = LayoutEffort::Features;
 
-constexpr double finest_with_features = 128;  // tried for an automatic grid
+constexpr double finest_with_features = 128;  // tried for an automatic grid, and the first one of small components
 constexpr int most_loosenings = 8;            // of features that find no place on it
 constexpr double acceptable_growth = 1.1;     // of the energy by an automatic grid
 constexpr double acceptable_turn = 0.02;      // radians, of directions by an automatic grid
 constexpr double near_finest = 1.02;          // of the growth that the finest grid has where that is more
+constexpr double small_share = 0.05;          // of the area, of components whose tiles may be smaller than elsewhere
+constexpr double even_tiles = 32;             // to which a grid may be refined so that none are smaller than elsewhere
+constexpr double most_uneven = 1.25;          // scale of a component, over that of others
+constexpr double most_refinement = 2;         // of a grid, for a common layout
 
 // The next finer size of 1, 1.5, 2, 3, 4, 6, ...
 double next_size(double tiles) {
@@ -27,10 +32,24 @@ double next_size(double tiles) {
   return tiles * (1 + 1e-9) < 1.5 * power ? 1.5 * power : 2 * power;
 }
 
-Array<double> sizes_up_to(double finest) {
+// The first of these sizes from `tiles` on of at least so many.
+double size_of_at_least(double least, double tiles) {
+  while (tiles < least) tiles = next_size(tiles);
+  return tiles;
+}
+
+Array<double> sizes_between(double tiles, double finest) {
   Array<double> out;
-  for (double tiles = coarsest_tiles; tiles <= finest; tiles = next_size(tiles)) out.push_back(tiles);
+  for (; tiles <= finest; tiles = next_size(tiles)) out.push_back(tiles);
   return out;
+}
+
+// Indices of values, in descending order of them.
+Array<std::size_t> from_largest(const Array<double>& values) {
+  Array<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] > values[b]; });
+  return order;
 }
 
 void report_growth(double growth, std::vector<Finding>& findings) {
@@ -57,6 +76,7 @@ GridSearch::GridSearch(const Options& options, PointLattice lattice, Array<Seaml
       monitor_(monitor),
       quantizers_(components.size()),
       relaxed_(components.size()) {
+  for (const SeamlessComponent& component : components) area_.push_back(component.system->geometry().total_area);
   for_each_seamless(components, [&](std::size_t i) { prepare(i); });
 }
 
@@ -70,57 +90,112 @@ double GridSearch::energy(std::size_t component, const Eigen::VectorXcd& positio
   return quantizers_[component]->measure_energy(position);
 }
 
+double GridSearch::scale(std::size_t component, const Eigen::VectorXcd& position) const {
+  return quantizers_[component]->measure_scale(position);
+}
+
 double GridSearch::growth(const Grid& grid) const {
   double most = 1;
   for (std::size_t i = 0; i < components_.size(); ++i) most = std::max(most, grid.layouts[i].energy / energy(i));
   return most;
 }
 
-std::optional<Grid> GridSearch::lay_out(double tiles, const LayoutEffort& effort) {
-  Grid grid{tiles, tiles / extent(), {}};
-  for (std::size_t i = 0; i < components_.size(); ++i) {
-    auto layout = quantize(i, grid.density, effort);
-    if (!layout) {
-      failed_ = i;
-      return std::nullopt;
+Grid GridSearch::find_coarsest() {
+  Array<SizedLayout> own(components_.size());
+  Array<double> sizes(components_.size(), coarsest_tiles), enlargements(components_.size());
+  // The large ones first: others need no tiles larger than these have.
+  for_each_seamless(components_, from_largest(area_), [&](std::size_t i) {
+    auto found = find_coarsest(i, std::min(exceeded_on(small_share, sizes), most_tiles));
+    if (!found) throw refusal_of(i);
+    sizes[i] = found->tiles;
+    enlargements[i] = scale(i, found->layout.position) * extent() / found->tiles;
+    own[i] = std::move(*found);
+  });
+  // On lattice points a layout may be larger than its tiles imply, so that it has the scale of others on finer grids.
+  const double usual = exceeded_on(0.5, enlargements);
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    if (enlargements[i] > most_uneven * usual) {
+      sizes[i] = size_of_at_least(sizes[i] * enlargements[i] / (most_uneven * usual), sizes[i]);
     }
-    grid.layouts.push_back(std::move(*layout));
   }
-  return grid;
+  double tiles = std::min(exceeded_on(small_share, sizes), most_tiles);
+  for (const double size : sizes) {
+    if (size <= even_tiles) tiles = std::max(tiles, size);
+  }
+  return share(tiles, std::move(own));
 }
 
-std::optional<Grid> GridSearch::refine(double tiles, const LayoutEffort& effort) {
-  const double finest = effort.features == Features::required ? finest_with_features : most_tiles;
+Grid GridSearch::find_given(double tiles, const Options& options) {
+  Array<SizedLayout> own;
+  Array<double> sizes;
+  for_each_seamless(components_, [&](std::size_t i) {
+    const double size = coarsest_size(i, tiles);
+    auto found = lay_out_given(i, size);
+    while (!found && give_up_cones(i, size, options)) found = lay_out_given(i, size);
+    if (!found) {
+      restore_relaxed(i);
+      found = refine(i, next_size(std::max(1.0, size)), finest_size(i), {});
+    }
+    if (!found) throw refusal_of(i);
+    sizes.push_back(found->tiles);
+    own.push_back(std::move(*found));
+  });
+  const double common = std::min(exceeded_on(small_share, sizes), most_tiles);
+  for (std::size_t i = 0; common > tiles && i < components_.size(); ++i) restore_relaxed(i);
+  return share(common, std::move(own));
+}
+
+std::optional<GridSearch::SizedLayout> GridSearch::lay_out(std::size_t component, double tiles,
+                                                           const LayoutEffort& effort) const {
+  auto layout = quantizers_[component]->quantize(tiles / extent(), effort);
+  if (!layout) return std::nullopt;
+  return SizedLayout{tiles, effort, std::move(*layout)};
+}
+
+std::optional<GridSearch::SizedLayout> GridSearch::lay_out_given(std::size_t component, double tiles) const {
+  LayoutEffort with_features;
+  with_features.features = Features::required;
+  auto found = loosen(component, [&] { return lay_out(component, tiles, with_features); });
+  if (!found) return lay_out(component, tiles, {});
+  found->effort = {};
+  return found;
+}
+
+std::optional<GridSearch::SizedLayout> GridSearch::refine(std::size_t component, double tiles, double finest,
+                                                          const LayoutEffort& effort) const {
   for (; tiles <= finest; tiles = next_size(tiles)) {
-    if (auto grid = lay_out(tiles, effort)) return grid;
+    if (auto found = lay_out(component, tiles, effort)) return found;
   }
   return std::nullopt;
+}
+
+double GridSearch::coarsest_size(std::size_t component, double tiles) const {
+  const LayoutQuantizer& quantizer = *quantizers_[component];
+  const double least = std::min(1.0, tiles) * (extent() / quantizer.extent());
+  return quantizer.has_lattice_points() ? size_of_at_least(least, tiles) : tiles;
+}
+
+double GridSearch::finest_size(std::size_t component) const {
+  return most_tiles * (extent() / quantizers_[component]->extent());
 }
 
 template <typename LayOut>
-std::optional<Grid> GridSearch::loosen(const LayOut& lay_out_features) {
-  const bool has_features = std::any_of(quantizers_.begin(), quantizers_.end(),
-                                        [](const auto& quantizer) { return quantizer->has_features(); });
-  for (int loosenings = 0; has_features && loosenings <= most_loosenings; ++loosenings) {
-    if (auto grid = lay_out_features()) return grid;
-    if (!quantizers_[failed_]->loosen_features()) break;
+std::optional<GridSearch::SizedLayout> GridSearch::loosen(std::size_t component, const LayOut& lay_out_features) const {
+  LayoutQuantizer& quantizer = *quantizers_[component];
+  for (int loosenings = 0; quantizer.has_features() && loosenings <= most_loosenings; ++loosenings) {
+    if (auto found = lay_out_features()) return found;
+    if (!quantizer.loosen_features()) break;
   }
   return std::nullopt;
 }
 
-std::optional<Grid> GridSearch::lay_out_given(double tiles) {
-  LayoutEffort with_features;
-  with_features.features = Features::required;
-  if (auto grid = loosen([&] { return lay_out(tiles, with_features); })) return grid;
-  return lay_out(tiles, {});
-}
-
-Grid GridSearch::bisect(const Array<double>& sizes, const LayoutEffort& effort, Grid finest) {
+GridSearch::SizedLayout GridSearch::bisect(std::size_t component, const Array<double>& sizes,
+                                           const LayoutEffort& effort, SizedLayout finest) const {
   std::size_t low = 0, high = sizes.size() - 1;
   while (low < high) {
     const std::size_t middle = (low + high) / 2;
-    if (auto grid = lay_out(sizes[middle], effort)) {
-      finest = std::move(*grid);
+    if (auto found = lay_out(component, sizes[middle], effort)) {
+      finest = std::move(*found);
       high = middle;
     } else {
       low = middle + 1;
@@ -130,51 +205,77 @@ Grid GridSearch::bisect(const Array<double>& sizes, const LayoutEffort& effort, 
 }
 
 // Where layouts take long, those that fail on the finest grid are not tried on others.
-std::optional<Grid> GridSearch::find_coarsest_with_features() {
+std::optional<GridSearch::SizedLayout> GridSearch::find_coarsest_with_features(std::size_t component,
+                                                                               double coarsest) const {
   const LayoutEffort effort{acceptable_growth, acceptable_turn, true, Features::required};
-  const bool takes_long = std::any_of(quantizers_.begin(), quantizers_.end(),
-                                      [](const auto& quantizer) { return quantizer->has_many_features(); });
-  if (takes_long && !lay_out(finest_with_features, effort)) return std::nullopt;
-  return refine(coarsest_tiles, effort);
+  const double finest = std::max(finest_with_features, coarsest);
+  if (quantizers_[component]->has_many_features() && !lay_out(component, finest, effort)) return std::nullopt;
+  return refine(component, coarsest, finest, effort);
 }
 
-std::optional<Grid> GridSearch::find_coarsest() {
-  if (auto grid = loosen([&] { return find_coarsest_with_features(); })) return grid;
-  if (auto grid = refine(coarsest_tiles, {acceptable_growth, acceptable_turn, true, Features::ignored})) return grid;
+std::optional<GridSearch::SizedLayout> GridSearch::find_coarsest(std::size_t component, double tiles) const {
+  const double coarsest = coarsest_size(component, tiles), finest = finest_size(component);
+  if (auto found = loosen(component, [&] { return find_coarsest_with_features(component, coarsest); })) return found;
+  LayoutEffort effort{acceptable_growth, acceptable_turn, true, Features::ignored};
+  if (auto found = refine(component, coarsest, finest, effort)) return found;
   // Layouts that need more repair take longer: bisects the sizes, since finer grids cost less.
-  const Array<double> sizes = sizes_up_to(most_tiles);
   LayoutEffort without_features;
   without_features.features = Features::ignored;
-  auto finest = lay_out(sizes.back(), without_features);
-  if (!finest) {
-    if (auto grid = refine(coarsest_tiles, without_features)) return grid;
-    return lay_out(most_tiles, {});  // features can help, where they fix what is rounded
+  const Array<double> sizes = sizes_between(coarsest, finest);
+  auto on_finest = lay_out(component, sizes.back(), without_features);
+  if (!on_finest) {
+    if (auto found = refine(component, coarsest, finest, without_features)) return found;
+    return lay_out(component, sizes.back(), {});  // features can help, where they fix what is rounded
   }
-  const LayoutEffort thorough{std::max(acceptable_growth, near_finest * growth(*finest)), acceptable_turn, false,
-                              Features::ignored};
-  return bisect(sizes, thorough, std::move(*finest));
+  const double growth = on_finest->layout.energy / energy(component);
+  effort = {std::max(acceptable_growth, near_finest * growth), acceptable_turn, false, Features::ignored};
+  return bisect(component, sizes, effort, std::move(*on_finest));
 }
 
-void GridSearch::give_up() {
-  const double density = most_tiles / extent();
-  for_each_seamless(components_, [&](std::size_t i) {
-    if (components_.size() == 1 || !quantizers_[i]->quantize(density, {})) throw refusal_of(i);
-  });
-  throw Error(Code::grid_too_coarse,
-              concat("No grid of up to ", most_tiles, " cells leaves a valid layout of all components. ",
-                     "Unwrap some of them separately."));
+double GridSearch::exceeded_on(double share, const Array<double>& values) const {
+  const Array<std::size_t> order = from_largest(values);
+  const double all = std::accumulate(area_.begin(), area_.end(), 0.0);
+  double above = 0;
+  for (const std::size_t i : order) {
+    above += area_[i];
+    if (above > share * all) return values[i];
+  }
+  return values[order.back()];
 }
 
-Error GridSearch::refusal_of(std::size_t component) {
+Grid GridSearch::share(double tiles, Array<SizedLayout> own) const {
+  const auto lay_out_all = [&](double size) {
+    Grid grid{size, size / extent(), {}};
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      if (own[i].tiles >= size) {
+        grid.layouts.push_back(own[i].layout);
+      } else if (auto finer = lay_out(i, size, own[i].effort)) {
+        grid.layouts.push_back(std::move(finer->layout));
+      } else {
+        return std::optional<Grid>{};
+      }
+    }
+    return std::optional<Grid>{std::move(grid)};
+  };
+  for (double size = tiles; size <= most_refinement * tiles; size = next_size(size)) {
+    if (auto grid = lay_out_all(size)) return std::move(*grid);
+  }
+  Grid grid{tiles, tiles / extent(), {}};
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (own[i].tiles < tiles) {
+      if (auto finer = refine(i, tiles, finest_size(i), {})) own[i] = std::move(*finer);
+    }
+    grid.layouts.push_back(std::move(own[i].layout));
+  }
+  return grid;
+}
+
+Error GridSearch::refusal_of(std::size_t component) const {
   LayoutQuantizer& quantizer = *quantizers_[component];
   const std::string what = concat("No grid of up to ", most_tiles, " cells leaves a valid layout");
-  if (quantizer.extent() < extent() && quantizer.quantize(most_tiles / quantizer.extent(), {})) {
-    return Error(Code::grid_too_coarse,
-                 concat(what, ": a component is too small beside others. Unwrap it separately."));
-  }
   Array<Index> close;
   for (const ConePair& pair : quantizer.cone_pairs()) {
-    if (pair.distance * most_tiles > near * extent()) break;
+    if (pair.distance * most_tiles > near * quantizer.extent()) break;
     close.push_back(pair.first);
     close.push_back(pair.second);
   }
@@ -194,44 +295,42 @@ void GridSearch::lower_stretch(double stretch, Grid& grid) const {
   });
 }
 
-bool GridSearch::merge_nearest(double tiles, const Options& options) {
-  for (const ConePair& pair : quantizers_[failed_]->cone_pairs()) {
+bool GridSearch::give_up_cones(std::size_t component, double tiles, const Options& options) {
+  switch (options.seamless->coarse_grid) {
+    case CoarseGrid::merge: return merge_nearest(component, tiles, options);
+    case CoarseGrid::relax: return relax_near(component, tiles);
+    default: return false;
+  }
+}
+
+bool GridSearch::merge_nearest(std::size_t component, double tiles, const Options& options) {
+  for (const ConePair& pair : quantizers_[component]->cone_pairs()) {
     if (pair.distance * tiles > near * extent()) return false;
-    if (!merge(pair, options)) continue;
-    prepare(failed_);
+    if (!merge(component, pair, options)) continue;
+    prepare(component);
     return true;
   }
   return false;
 }
 
-void GridSearch::restore_relaxed() {
-  for (std::size_t i = 0; i < components_.size(); ++i) {
-    if (relaxed_[i].empty()) continue;
-    relaxed_[i].clear();
-    prepare(i);
-  }
+void GridSearch::restore_relaxed(std::size_t component) {
+  if (relaxed_[component].empty()) return;
+  relaxed_[component].clear();
+  prepare(component);
 }
 
-bool GridSearch::relax_near(double tiles) {
+bool GridSearch::relax_near(std::size_t component, double tiles) {
+  if (!relaxed_[component].empty()) return false;
   Array<Index> relaxed;
-  for (const ConePair& pair : quantizers_[failed_]->cone_pairs()) {
+  for (const ConePair& pair : quantizers_[component]->cone_pairs()) {
     if (pair.distance * tiles > near * extent()) break;
     const auto listed = [&](Index v) { return std::find(relaxed.begin(), relaxed.end(), v) != relaxed.end(); };
     if (!listed(pair.first) && !listed(pair.second)) relaxed.push_back(pair.second);
   }
-  if (relaxed.empty() || !relaxed_[failed_].empty()) return false;
-  relaxed_[failed_] = std::move(relaxed);
-  prepare(failed_);
+  if (relaxed.empty()) return false;
+  relaxed_[component] = std::move(relaxed);
+  prepare(component);
   return true;
-}
-
-std::optional<QuantizedLayout> GridSearch::quantize(std::size_t component, double density,
-                                                    const LayoutEffort& effort) const {
-  try {
-    return quantizers_[component]->quantize(density, effort);
-  } catch (const Error& error) {
-    throw ComponentsFailed{{failure_of(*components_[component].source, error)}};
-  }
 }
 
 void GridSearch::prepare(std::size_t component) {
@@ -241,8 +340,8 @@ void GridSearch::prepare(std::size_t component) {
   quantizers_[component] = std::make_unique<LayoutQuantizer>(*of.system, *of.map, demands, step_);
 }
 
-bool GridSearch::merge(const ConePair& pair, const Options& options) {
-  SeamlessComponent& component = components_[failed_];
+bool GridSearch::merge(std::size_t index, const ConePair& pair, const Options& options) {
+  SeamlessComponent& component = components_[index];
   const HalfedgeMesh& mesh = component.source->mesh;
   const Eigen::VectorXd& curvature = component.map->curvature.at_vertex;
   const double sum = curvature[pair.first] + curvature[pair.second];
@@ -282,37 +381,24 @@ bool GridSearch::merge(const ConePair& pair, const Options& options) {
 Grid find_grid(const Options& options, double unit_scale, GridSearch& search, std::vector<Finding>& findings) {
   const Seamless& seamless = *options.seamless;
   if (!seamless.tiles && !seamless.tile_size) {
-    if (auto grid = search.find_coarsest()) {
-      report_growth(search.growth(*grid), findings);
-      return std::move(*grid);
-    }
-  } else {
-    const double asked = seamless.tiles ? *seamless.tiles : search.extent() / (*seamless.tile_size * unit_scale);
-    if (!(asked >= 1e-6 && asked <= most_tiles)) {
-      throw Error(Code::wrong_parameter,
-                  concat("The grid would have ", asked, " cells along the layout; up to ", most_tiles,
-                         " can be stored exactly. Choose another number or size of tiles."));
-    }
-    auto grid = search.lay_out_given(asked);
-    const auto give_up_cones = [&] {
-      switch (seamless.coarse_grid) {
-        case CoarseGrid::merge: return search.merge_nearest(asked, options);
-        case CoarseGrid::relax: return search.relax_near(asked);
-        default: return false;
-      }
-    };
-    while (!grid && give_up_cones()) grid = search.lay_out_given(asked);
-    if (grid) return std::move(*grid);
-    search.restore_relaxed();
-    if (auto finer = search.refine(next_size(std::max(1.0, asked)), {})) {
-      findings.push_back({Code::grid_refined,
-                          concat("No layout is valid on a grid of ", asked, " cells along its longer side; it has ",
-                                 finer->tiles, " now. Use fewer cones for larger tiles."),
-                          {}});
-      return std::move(*finer);
-    }
+    Grid grid = search.find_coarsest();
+    report_growth(search.growth(grid), findings);
+    return grid;
   }
-  search.give_up();
+  const double asked = seamless.tiles ? *seamless.tiles : search.extent() / (*seamless.tile_size * unit_scale);
+  if (!(asked >= 1e-6 && asked <= most_tiles)) {
+    throw Error(Code::wrong_parameter,
+                concat("The grid would have ", asked, " cells along the layout; up to ", most_tiles,
+                       " can be stored exactly. Choose another number or size of tiles."));
+  }
+  Grid grid = search.find_given(asked, options);
+  if (grid.tiles > asked) {
+    findings.push_back({Code::grid_refined,
+                        concat("No layout is valid on a grid of ", asked, " cells along its longer side; it has ",
+                               grid.tiles, " now. Use fewer cones for larger tiles."),
+                        {}});
+  }
+  return grid;
 }
 
 }  // namespace lsgp

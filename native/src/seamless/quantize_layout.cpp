@@ -11,6 +11,7 @@
 #include "base/memory.hpp"
 #include "creases/features.hpp"
 #include "plane/layout.hpp"
+#include "plane/predicates.hpp"
 #include "prescription/parallel_transport.hpp"
 #include "prescription/quantize_curvature.hpp"
 #include "repair/newton.hpp"
@@ -320,6 +321,15 @@ Array<LayoutQuantizer::Target> LayoutQuantizer::find_targets(double density, int
 
 double LayoutQuantizer::measure_energy(const Eigen::VectorXcd& position) const {
   return symmetric_dirichlet_energy(geometry_, measure_jacobians({mesh_, geometry_}, cut_mesh_, position));
+}
+
+double LayoutQuantizer::measure_scale(const Eigen::VectorXcd& position) const {
+  const PerHalfedge<Index>& copy = cut_mesh_.copy_of_corner;
+  double area = 0;
+  for (Index f = 0; f < mesh_.triangle_count(); ++f) {
+    area += 0.5 * doubled_area(position[copy[3 * f]], position[copy[3 * f + 1]], position[copy[3 * f + 2]]);
+  }
+  return std::sqrt(std::abs(area) / geometry_.total_area);
 }
 
 std::optional<QuantizedLayout> LayoutQuantizer::quantize(double density, const LayoutEffort& effort) {

@@ -69,6 +69,9 @@ class LayoutQuantizer {
   double extent() const { return extent_; }
   double energy() const { return energy_; }
 
+  // Otherwise layouts of all sizes are similar.
+  bool has_lattice_points() const { return integers_.size() > 0; }
+
   bool has_features() const { return features_ != nullptr; }
   // Whose layouts take long.
   bool has_many_features() const { return features_ != nullptr && features_->is_large(); }
@@ -86,6 +89,9 @@ class LayoutQuantizer {
 
   // Symmetric Dirichlet energy of positions of the copies.
   double measure_energy(const Eigen::VectorXcd& position) const;
+
+  // The square root of the area of positions of the copies, over the surface's.
+  double measure_scale(const Eigen::VectorXcd& position) const;
 
   // Moves all points but the lattice points to where they stretch least; see low_stretch.hpp.
   void lower_stretch(double stretch, const Eigen::VectorXd& importance, QuantizedLayout& layout) const;

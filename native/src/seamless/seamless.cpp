@@ -7,7 +7,6 @@
 #include "base/text.hpp"
 #include "creases/features.hpp"
 #include "plane/layout.hpp"
-#include "plane/predicates.hpp"
 #include "seamless/exact_layout.hpp"
 #include "seamless/grid_search.hpp"
 #include "split/split_map.hpp"
@@ -130,18 +129,11 @@ class OversizeReport {
  public:
   explicit OversizeReport(double density) : density_(density) {}
 
-  void add(const SeamlessComponent& component) {
-    const HalfedgeMesh& mesh = component.source->mesh;
-    const Eigen::VectorXcd& position = component.map->position;
-    const PerHalfedge<Index>& copy = component.map->cut_mesh.copy_of_corner;
-    double area = 0;  // cells
-    for (Index f = 0; f < mesh.triangle_count(); ++f) {
-      area += 0.5 * doubled_area(position[copy[3 * f]], position[copy[3 * f + 1]], position[copy[3 * f + 2]]);
-    }
-    const double scale = std::sqrt(std::abs(area) / component.system->geometry().total_area) / density_;
-    if (!(scale > most_scale)) return;
+  // scale: of its layout, cells per unit of length.
+  void add(const SeamlessComponent& component, double scale) {
+    if (!(scale > most_unsaid_scale * density_)) return;
     ++components_;
-    worst_ = std::max(worst_, scale);
+    worst_ = std::max(worst_, scale / density_);
     const PerTriangle<Index>& triangles = component.source->source_triangle;
     triangles_.insert(triangles_.end(), triangles.begin(), triangles.end());
   }
@@ -153,14 +145,12 @@ class OversizeReport {
         {Code::high_distortion,
          concat("Tiles are up to ", rounded(worst_, 3), " times smaller than elsewhere on ",
                 count(components_, "component", "components"),
-                ", which would be smaller than a tile otherwise. Use smaller tiles, or unwrap small components "
+                ", too small for tiles as large as elsewhere. Use smaller tiles, or unwrap small components "
                 "separately."),
          {ElementKind::triangles, std::move(triangles_)}});
   }
 
  private:
-  static constexpr double most_scale = 2;
-
   const double density_;  // cells per unit of length
   int components_ = 0;
   double worst_ = 1;
@@ -220,7 +210,7 @@ SeamlessReport lay_out(const Options& options, double unit_scale, Array<Seamless
     const double stored_energy = search.energy(i, component.map->position);
     after += component.system->geometry().total_area *
              (std::isfinite(stored_energy) ? stored_energy : grid.layouts[i].energy);
-    oversize.add(component);
+    oversize.add(component, search.scale(i, component.map->position));
     component.map->position *= seamless.cell;
     component.map->release_reasons = search.release_reasons(i, grid);
   }

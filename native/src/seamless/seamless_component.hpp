@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <numeric>
 #include <optional>
 
 #include "base/array.hpp"
@@ -30,11 +31,11 @@ struct ComponentsFailed {
   Array<Failure> failures;
 };
 
-// Runs step(index) for all components. Throws ComponentsFailed.
+// Runs step(index) for these components. Throws ComponentsFailed.
 template <typename Step>
-void for_each_seamless(const Array<SeamlessComponent>& components, Step step) {
+void for_each_seamless(const Array<SeamlessComponent>& components, const Array<std::size_t>& order, Step step) {
   ComponentsFailed failed;
-  for (std::size_t i = 0; i < components.size(); ++i) {
+  for (const std::size_t i : order) {
     try {
       step(i);
     } catch (const Error& error) {
@@ -42,6 +43,14 @@ void for_each_seamless(const Array<SeamlessComponent>& components, Step step) {
     }
   }
   if (!failed.failures.empty()) throw failed;
+}
+
+// For all of them.
+template <typename Step>
+void for_each_seamless(const Array<SeamlessComponent>& components, Step step) {
+  Array<std::size_t> order(components.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for_each_seamless(components, order, step);
 }
 
 }  // namespace lsgp

@@ -276,14 +276,12 @@ REVIEWED = {
         ("while (factor * out <= most_divisor && !is_whole(factor * out * coefficient))", "up to 840 factors", SHORT),
     ],
     "seamless/grid_search.cpp": [
-        ("for (; tiles <= finest; tiles = next_size(tiles))", "27 sizes up to 16384", WITHIN),
-        (
-            "for (double tiles = coarsest_tiles; tiles <= finest; tiles = next_size(tiles))",
-            "the same sizes, from 4 on",
-            SHORT,
-        ),
+        ("while (tiles < least)", "each round enlarges it by a third at least", SHORT),
+        ("for (; tiles <= finest; tiles = next_size(tiles))", "27 sizes up to 16384 on a component", WITHIN),
+        ("for (; tiles <= finest; tiles = next_size(tiles))", "the same sizes", SHORT),
+        ("for (double size = tiles; size <= most_refinement * tiles; size = next_size(size))", "four sizes", WITHIN),
         ("while (low < high)", "halvings of as many sizes", WITHIN),
-        ("while (!grid && give_up_cones())", "each round gives up a cone", WITHIN),
+        ("while (!found && give_up_cones(i, size, options))", "each round gives up a cone", WITHIN),
     ],
     "seamless/lattice_search.cpp": [
         ("for (Eigen::Index k = 1; k < size;)", "a budget of exchanges", OWN),

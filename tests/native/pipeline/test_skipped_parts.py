@@ -8,8 +8,10 @@ import meshes
 import numpy as np
 import pytest
 from lsgp import Options, Seamless
-from map_checks import only, surface
+from map_checks import codes, only, surface
 from meshes import Mesh
+from opened_surface import named_by
+from result_check import undeclared_faults
 
 GOOD = meshes.cube(3)
 
@@ -44,20 +46,38 @@ def test_map_that_cannot_be_rounded_is_not_laid_out() -> None:
     assert np.array_equal(result.seamless.cut_translations, good.seamless.cut_translations)
 
 
-@pytest.mark.parametrize("tiles", [None, 16, 2**14])
 @pytest.mark.parametrize("overlaps", ["keep", "split"])
-def test_part_that_is_lost_in_a_cell_of_the_finest_grid_leaves_the_others(overlaps: str, tiles: float | None) -> None:
-    speck = GOOD._replace(positions=GOOD.positions * 1e-6)
-    options = Options(seamless=Seamless(tiles=tiles), overlaps=overlaps)
-    alone = lsgp.parameterize(surface(GOOD), GOOD.cones, options=options)
-    both = meshes.merge([GOOD, speck])
+def test_part_whose_cuts_single_precision_cannot_hold_leaves_the_others(overlaps: str) -> None:
+    bad = meshes.with_close_cones(1e-7)
+    options = Options(seamless=Seamless(tiles=16), overlaps=overlaps)
+    with pytest.raises(lsgp.CurvatureError) as refused:
+        lsgp.parameterize(surface(bad), bad.cones, options=options)
+    assert refused.value.code == "SEAMLESS_IMPOSSIBLE" and "so short in the layout" in refused.value.message
+    both = meshes.merge([GOOD, bad])
     result = lsgp.parameterize(surface(both), both.cones, options=options)
-    assert_left_out(result, speck, len(GOOD.triangles), "GRID_TOO_COARSE")
-    message = only(result.warnings, "COMPONENT_SKIPPED").message
-    assert "too small beside others" in message and "cones" not in message
-    assert np.array_equal(result.corner_uv[: len(GOOD.triangles)], alone.corner_uv)
-    assert result.seamless.tiles == alone.seamless.tiles and result.seamless.error == alone.seamless.error
+    assert_left_out(result, bad, len(GOOD.triangles), "SEAMLESS_IMPOSSIBLE")
+    assert result.seamless.tiles == 16 and result.seamless.error == 0
     assert result.cones.tolist() == GOOD.cones.tolist()
+
+
+@pytest.mark.parametrize("size", [1e-2, 1e-4, 1e-6])
+@pytest.mark.parametrize("tiles", [None, 16])
+def test_small_part_is_laid_out_on_a_finer_grid_beside_the_others(tiles: float | None, size: float) -> None:
+    """On tiles of about its own size, and the others as if it were not there, up to a translation by whole tiles."""
+    small = GOOD._replace(positions=GOOD.positions * size)
+    options = Options(seamless=Seamless(tiles=tiles))
+    alone = lsgp.parameterize(surface(GOOD), GOOD.cones, options=options)
+    both = meshes.merge([GOOD, small])
+    result = lsgp.parameterize(surface(both), both.cones, options=options)
+    assert undeclared_faults(surface(both), result, options) == []
+    assert result.solved.all() and result.seamless.error == 0
+    moved = result.corner_uv[: len(GOOD.triangles)] - alone.corner_uv
+    assert np.array_equal(np.round(moved[0, 0]), moved[0, 0]) and np.ptp(moved, axis=(0, 1)).max() < 1e-5
+    assert result.seamless.tiles == alone.seamless.tiles and "GRID_REFINED" not in codes(result.warnings)
+    assert np.ptp(result.corner_uv[len(GOOD.triangles) :], axis=(0, 1)).max() < 8
+    assert only(result.warnings, "HIGH_DISTORTION").elements.indices.tolist() == list(
+        range(len(GOOD.triangles), len(both.triangles))
+    )
 
 
 def test_where_no_part_has_a_layout_the_first_error_is_raised() -> None:
@@ -68,13 +88,14 @@ def test_where_no_part_has_a_layout_the_first_error_is_raised() -> None:
     assert refused.value.elements.indices.max() < len(tangled().positions)
 
 
-def test_flat_cones_of_a_part_that_is_left_out_are_not_named() -> None:
-    options = Options(seamless=Seamless(lattice="triangle"))
-    ball, box = meshes.bumpy_sphere(2), meshes.cube(1)
+@pytest.mark.parametrize("lattice", ["square", "triangle"])
+def test_flat_cones_of_a_part_that_is_left_out_are_not_named(lattice: str) -> None:
+    options = Options(seamless=Seamless(lattice=lattice))
+    ball, bad = meshes.bumpy_sphere(2), meshes.with_close_cones(1e-7)
     flat = {}
-    for name, mesh in (("ball", ball), ("box", box), ("both", meshes.merge([ball, meshes.transform(box, 1, 1e-4)]))):
+    for name, mesh in (("ball", ball), ("both", meshes.merge([ball, bad]))):
         result = lsgp.parameterize(surface(mesh), mesh.cones, options=options)
-        flat[name] = only(result.warnings, "FLAT_CONES").elements.indices.tolist()
+        flat[name] = named_by(result, "FLAT_CONES").tolist()
         assert result.seamless.flat_cones.tolist() == flat[name]
     assert not result.solved[len(ball.triangles) :].any()
-    assert flat["both"] == flat["ball"] and len(flat["box"]) == 2
+    assert flat["both"] == flat["ball"]

@@ -121,24 +121,36 @@ def test_cells_too_large_for_a_mesh_are_refused(cells: tuple[int, int]) -> None:
     assert len(caught.value.elements.indices)
 
 
-def of_two_sizes(ratio: float) -> lsgp.Surface:
-    small = BALL._replace(positions=BALL.positions * ratio)
-    return surface(meshes.merge([BALL, small]))
+def with_close_cones(distance: float) -> tuple[lsgp.Surface, NDArray[np.int32], NDArray[np.float64]]:
+    """Cones of opposite curvature, of whose distance even the coarsest grid makes a cell."""
+    mesh = meshes.with_close_cones(distance)
+    return surface(mesh), mesh.cones, np.pi / 2 * np.array([2, 2, 2, 3, 3, 3, 5])
 
 
-@pytest.mark.parametrize(("ratio", "asked"), [(1e-3, {}), (2e-4, {"target": 2000}), (2e-4, {"size": 0.05})])
-def test_millions_of_quads_that_nobody_asked_for_are_refused(ratio: float, asked: dict) -> None:
+def test_millions_of_quads_that_nobody_asked_for_are_refused() -> None:
     with pytest.raises(lsgp.SolverError) as caught:
-        lsgp.remesh_to_quads(of_two_sizes(ratio), **asked)
+        lsgp.remesh_to_quads(*with_close_cones(1e-6))
     assert caught.value.code == "TOO_MANY_QUADS"
 
 
 def test_as_many_quads_as_the_refusal_names_are_made_on_request(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("lsgp.quads.remeshing._MANY_QUADS", 500)
     with pytest.raises(lsgp.SolverError) as caught:
-        lsgp.remesh_to_quads(of_two_sizes(0.1))
+        lsgp.remesh_to_quads(*with_close_cones(1e-3))
     named = int(re.search(r"has (\d+) quads", caught.value.message)[1])
-    assert len(lsgp.remesh_to_quads(of_two_sizes(0.1), target=named).mesh.quads) == pytest.approx(named, rel=0.1)
+    made = lsgp.remesh_to_quads(*with_close_cones(1e-3), target=named).mesh
+    assert len(made.quads) == pytest.approx(named, rel=0.1)
+
+
+@pytest.mark.parametrize("asked", [{}, {"target": 2000}, {"size": 0.05}])
+@pytest.mark.parametrize("ratio", [0.1, 1e-3, 1e-6])
+def test_a_small_part_has_smaller_quads_than_others(ratio: float, asked: dict) -> None:
+    small = BALL._replace(positions=BALL.positions * ratio)
+    alone = lsgp.remesh_to_quads(surface(BALL), BALL.cones, **asked)
+    both = meshes.merge([BALL, small])
+    found = lsgp.remesh_to_quads(surface(both), both.cones, **asked)
+    require_quads_of(both, found.layout.corner_uv, found.mesh)
+    assert len(alone.mesh.quads) < len(found.mesh.quads) < 2 * len(alone.mesh.quads) + 400
 
 
 def test_it_can_be_cancelled() -> None:
