@@ -102,13 +102,14 @@ double GridSearch::growth(const Grid& grid) const {
 
 Grid GridSearch::find_coarsest() {
   Array<SizedLayout> own(components_.size());
-  Array<double> sizes(components_.size(), coarsest_tiles), enlargements(components_.size());
+  Array<double> sizes(components_.size(), coarsest_tiles), scales(components_.size()), enlargements(components_.size());
   // The large ones first: others need no tiles larger than these have.
   for_each_seamless(components_, from_largest(area_), [&](std::size_t i) {
     auto found = find_coarsest(i, std::min(exceeded_on(small_share, sizes), most_tiles));
     if (!found) throw refusal_of(i);
     sizes[i] = found->tiles;
-    enlargements[i] = scale(i, found->layout.position) * extent() / found->tiles;
+    scales[i] = scale(i, found->layout.position);
+    enlargements[i] = scales[i] * extent() / found->tiles;
     own[i] = std::move(*found);
   });
   // On lattice points a layout may be larger than its tiles imply, so that it has the scale of others on finer grids.
@@ -121,6 +122,9 @@ Grid GridSearch::find_coarsest() {
   double tiles = std::min(exceeded_on(small_share, sizes), most_tiles);
   for (const double size : sizes) {
     if (size <= even_tiles) tiles = std::max(tiles, size);
+  }
+  while (tiles < most_tiles && energy_of_scales(scales, usual * tiles / extent()) > acceptable_growth) {
+    tiles = next_size(tiles);
   }
   return share(tiles, std::move(own));
 }
@@ -241,6 +245,17 @@ double GridSearch::exceeded_on(double share, const Array<double>& values) const 
     if (above > share * all) return values[i];
   }
   return values[order.back()];
+}
+
+double GridSearch::energy_of_scales(const Array<double>& scales, double least) const {
+  double all = 0, grown = 0, shrunk = 0;
+  for (std::size_t i = 0; i < scales.size(); ++i) {
+    const double square = std::pow(std::max(scales[i], least), 2);
+    all += area_[i];
+    grown += area_[i] * square;
+    shrunk += area_[i] / square;
+  }
+  return std::sqrt(grown * shrunk) / all;
 }
 
 Grid GridSearch::share(double tiles, Array<SizedLayout> own) const {

@@ -100,6 +100,9 @@ class GridSearch {
   // The least of the components' values that is exceeded on at most this share of their area.
   double exceeded_on(double share, const Array<double>& values) const;
 
+  // Energy of isometric layouts of these scales, or the least one, at their best common scale.
+  double energy_of_scales(const Array<double>& scales, double least) const;
+
   // All components with so many tiles; those that need more keep their own.
   Grid share(double tiles, Array<SizedLayout> own) const;
 

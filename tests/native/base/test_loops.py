@@ -280,6 +280,11 @@ REVIEWED = {
         ("for (; tiles <= finest; tiles = next_size(tiles))", "27 sizes up to 16384 on a component", WITHIN),
         ("for (; tiles <= finest; tiles = next_size(tiles))", "the same sizes", SHORT),
         ("for (double size = tiles; size <= most_refinement * tiles; size = next_size(size))", "four sizes", WITHIN),
+        (
+            "while (tiles < most_tiles && energy_of_scales(scales, usual * tiles / extent()) > acceptable_growth)",
+            "the same sizes",
+            SHORT,
+        ),
         ("while (low < high)", "halvings of as many sizes", WITHIN),
         ("while (!found && give_up_cones(i, size, options))", "each round gives up a cone", WITHIN),
     ],

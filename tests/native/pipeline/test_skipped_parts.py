@@ -61,7 +61,7 @@ def test_part_whose_cuts_single_precision_cannot_hold_leaves_the_others(overlaps
 
 
 @pytest.mark.parametrize("size", [1e-2, 1e-4, 1e-6])
-@pytest.mark.parametrize("tiles", [None, 16])
+@pytest.mark.parametrize("tiles", [16, 64])
 def test_small_part_is_laid_out_on_a_finer_grid_beside_the_others(tiles: float | None, size: float) -> None:
     """On tiles of about its own size, and the others as if it were not there, up to a translation by whole tiles."""
     small = GOOD._replace(positions=GOOD.positions * size)
