@@ -38,6 +38,11 @@ GRID_REFINED = "GRID_REFINED"
 TARGET_MISSED = "PLACEMENT_NOT_REACHED"
 # Of an island: below, nobody sees it.
 _SEEN_STRETCH = 1.1
+# Of the area of all objects, of those whose automatic tiles may be smaller than elsewhere, and by how much untold.
+_SMALL_SHARE = 0.05
+# Along the longest layout, up to which no object's are smaller.
+_EVEN_TILES = 256
+_MOST_UNSAID_SCALE = 2.0
 # Of the chosen size, by which tiles have to differ from it to be told.
 _NOTICEABLE = 0.1
 
@@ -160,8 +165,8 @@ def unwrap_all(
 ) -> list[Unwrapped | Exception]:
     """The maps of all tasks; an error in place of each that could not be computed.  Raises Cancelled.
 
-    Automatic tiles of seamless layouts have one size in the world but for density weights, the smallest that a task
-    requires.
+    Automatic tiles of seamless layouts have one size in the world but for density weights: the smallest that a task
+    requires, except on small objects that require even smaller ones.
     solve: in place of `unwrap`.
     """
     tasks, solve = _sharing_the_square(tasks), solve or unwrap
@@ -169,14 +174,45 @@ def unwrap_all(
         return solve_all(tasks, solve, progress)
     share_of = native.part("base.progress").share_of
     outcomes = solve_all(tasks, solve, share_of(progress, 0.0, 0.5))
-    smallest = min((_tile_size(found) for found in outcomes if isinstance(found, Unwrapped)), default=0.0)
-    larger = [
-        i for i, found in enumerate(outcomes) if isinstance(found, Unwrapped) and _tile_size(found) > smallest > 0
-    ]
-    redone = solve_all([_with_tile_size(tasks[i], smallest) for i in larger], solve, share_of(progress, 0.5, 1.0))
+    sizes = {i: _tile_size(found) for i, found in enumerate(outcomes) if isinstance(found, Unwrapped)}
+    common = _common_tile_size({i: outcomes[i] for i in sizes}, sizes)
+    larger = [i for i, size in sizes.items() if size > common]
+    redone = solve_all([_with_tile_size(tasks[i], common) for i in larger], solve, share_of(progress, 0.5, 1.0))
     for i, found in zip(larger, redone, strict=True):
         outcomes[i] = found
+    for i, size in sizes.items():
+        if common > _MOST_UNSAID_SCALE * size:
+            outcomes[i] = _with_smaller_tiles(outcomes[i], common / size)
     return outcomes
+
+
+def _common_tile_size(unwrapped: dict[int, Unwrapped], sizes: dict[int, float]) -> float:
+    """The smallest that an object requires, except where that is small and all others would get very many tiles.
+
+    sizes: of the tiles of each.
+    """
+    if not sizes:
+        return 0.0
+    areas = {i: size_in_texels(found.region) ** 2 for i, found in unwrapped.items()}
+    smaller, common = 0.0, min(sizes.values())
+    for i in sorted(sizes, key=sizes.__getitem__):
+        smaller += areas[i]
+        if not smaller <= _SMALL_SHARE * sum(areas.values()):
+            common = sizes[i]
+            break
+    longest = max(found.result.seamless.tiles * sizes[i] for i, found in unwrapped.items())
+    return min([common, *(size for size in sizes.values() if longest <= _EVEN_TILES * size)])
+
+
+def _with_smaller_tiles(unwrapped: Unwrapped, factor: float) -> Unwrapped:
+    result = unwrapped.result
+    message = (
+        f"Tiles are {factor:.3g} times smaller than on the other objects, as this one is too small for tiles as large "
+        "as there. Choose smaller tiles, or unwrap small objects separately."
+    )
+    elements = native.lsgp.Elements("triangles", np.flatnonzero(result.solved).astype(np.int32))
+    finding = native.lsgp.Finding(HIGH_DISTORTION, message, elements)
+    return replace(unwrapped, result=replace(result, warnings=[*result.warnings, finding]))
 
 
 def _has_automatic_tiles(task: UnwrapTask) -> bool:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Auto Unwrap: the result of one press, and what it preserves."""
 
+import re
 from itertools import pairwise
 
 import bmesh
@@ -268,6 +269,23 @@ def test_automatic_tiles_have_one_size_in_the_world():
     # Rounding to whole tiles changes the sizes by little.
     together = [of_object[1] for of_object in density.values()]
     assert together == pytest.approx([max(alone)] * 2, rel=0.1)
+
+
+def test_small_objects_do_not_make_the_tiles_of_others_small(reports):
+    small, large = add_ball("Small"), add_ball("Large")
+    small.scale = 0.01, 0.01, 0.01
+    bpy.context.view_layer.update()
+    bpy.ops.object.select_all(action="DESELECT")
+    large.select_set(True)
+    unwrap(preset="TILE")
+    alone = tiles_along_a_unit(large)
+    small.select_set(True)
+    reports()
+    unwrap(preset="TILE")
+    assert tiles_along_a_unit(large) == pytest.approx(alone, rel=0.1)
+    times = float(re.search(r"Tiles are ([\d.e+]+) times smaller than on the other objects", reports())[1])
+    assert tiles_along_a_unit(small) == pytest.approx(times * alone, rel=0.2)
+    assert UvMap(small).tile_error() == UvMap(large).tile_error() == 0
 
 
 def tiles_along_a_unit(obj):
