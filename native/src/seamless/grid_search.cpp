@@ -16,7 +16,8 @@ namespace {
 constexpr double coarsest_tiles = 4;  // tried for an automatic grid
 using Features = LayoutEffort::Features;
 
-constexpr double finest_with_features = 128;  // tried for an automatic grid, and the first one of small components
+constexpr double finest_with_features = 128;  // tried for an automatic grid, along the component's layout
+constexpr double cost_of_features = 4;        // how much finer they may make the common grid, where it is fine
 constexpr int most_loosenings = 8;            // of features that find no place on it
 constexpr double acceptable_growth = 1.1;     // of the energy by an automatic grid
 constexpr double acceptable_turn = 0.02;      // radians, of directions by an automatic grid
@@ -212,15 +213,20 @@ GridSearch::SizedLayout GridSearch::bisect(std::size_t component, const Array<do
 std::optional<GridSearch::SizedLayout> GridSearch::find_coarsest_with_features(std::size_t component,
                                                                                double coarsest) const {
   const LayoutEffort effort{acceptable_growth, acceptable_turn, true, Features::required};
-  const double finest = std::max(finest_with_features, coarsest);
+  const double finest = std::max(finest_with_features * (extent() / quantizers_[component]->extent()), coarsest);
   if (quantizers_[component]->has_many_features() && !lay_out(component, finest, effort)) return std::nullopt;
   return refine(component, coarsest, finest, effort);
 }
 
 std::optional<GridSearch::SizedLayout> GridSearch::find_coarsest(std::size_t component, double tiles) const {
   const double coarsest = coarsest_size(component, tiles), finest = finest_size(component);
-  if (auto found = loosen(component, [&] { return find_coarsest_with_features(component, coarsest); })) return found;
   LayoutEffort effort{acceptable_growth, acceptable_turn, true, Features::ignored};
+  if (auto found = loosen(component, [&] { return find_coarsest_with_features(component, coarsest); })) {
+    if (found->tiles > finest_with_features) {
+      if (auto coarser = refine(component, coarsest, found->tiles / cost_of_features, effort)) return coarser;
+    }
+    return found;
+  }
   if (auto found = refine(component, coarsest, finest, effort)) return found;
   // Layouts that need more repair take longer: bisects the sizes, since finer grids cost less.
   LayoutEffort without_features;
