@@ -127,7 +127,7 @@ def test_other_numbers_are_refused(threads: object) -> None:
         *many_solves(("3", 2, 2), ("1", 0, 1), ("0", 0, os.cpu_count())),
     ],
 )
-def test_the_environment_has_the_default(variable: str, option: int, expected: int) -> None:
+def test_in_another_process_the_environment_has_the_default(variable: str, option: int, expected: int) -> None:
     script = (
         "import os, test_thread_counts as t\n"
         "counts = []\n"
