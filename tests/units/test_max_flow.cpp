@@ -88,3 +88,20 @@ TEST_CASE("more is sent on top of what flows already") {
   CHECK(network.maximize(0, 2) == 2);
   CHECK(network.maximize(0, 2) == 0);
 }
+
+TEST_CASE("nothing is sent on top of a maximum that was given as the first flow") {
+  Random random(2);
+  for (int round = 0; round < 50; ++round) {
+    const int nodes = 2 + below(random, 8);
+    RandomNetwork made = random_network(random, nodes, 3 * nodes);
+    made.network.maximize(0, nodes - 1);
+    lsgp::FlowNetwork again(nodes);
+    for (std::size_t i = 0; i < made.arcs.size(); ++i) {
+      const Arc& arc = made.arcs[i];
+      again.send(again.add_arc(arc.from, arc.to, arc.capacity, arc.capacity_back),
+                 made.network.flow(static_cast<int>(i)));
+    }
+    CHECK(again.maximize(0, nodes - 1) == 0);
+    CHECK(again.reachable(0) == made.network.reachable(0));
+  }
+}

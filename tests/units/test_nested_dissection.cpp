@@ -116,16 +116,39 @@ TEST_CASE("dissection takes fewer operations than minimum degree on large grids,
   }
 }
 
-TEST_CASE("large surfaces are dissected, matrices with rows that many others share are not") {
-  constexpr int width = 600, height = 520;
-  Edges edges = grid(width, height);
-  const Adjacency surface = adjacency_of(width * height, edges);
-  CHECK(lsgp::order_rows(surface, width * height) == lsgp::order_by_dissection(surface, width * height));
+TEST_CASE("large surfaces are dissected, also with a few rows that many others share") {
+  constexpr int width = 600, height = 520, rows = width * height;
+  const Edges edges = grid(width, height);
+  const Adjacency surface = adjacency_of(rows, edges);
+  CHECK(lsgp::order_rows(surface, rows) == lsgp::order_by_dissection(surface, rows));
   CHECK(lsgp::order_rows(surface, width * 130) == lsgp::order_by_degree(surface, width * 130));
-  Random random(3);
-  for (int i = 0; i < 40000; ++i) edges.emplace(below(random, 40), 40 + below(random, width * height - 40));
-  const Adjacency shared = adjacency_of(width * height, edges);
-  CHECK(lsgp::order_rows(shared, width * height) == lsgp::order_by_degree(shared, width * height));
+  for (const int shared : {40, 400, 4000}) {  // with 1000, 100 and 10 others each
+    Random random(3);
+    Edges more = edges;
+    for (int i = 0; i < 40000; ++i) more.emplace(below(random, shared), shared + below(random, rows - shared));
+    const Adjacency adjacency = adjacency_of(rows, more);
+    CAPTURE(shared);
+    CHECK(lsgp::order_rows(adjacency, rows) ==
+          (shared == 40 ? lsgp::order_by_dissection(adjacency, rows) : lsgp::order_by_degree(adjacency, rows)));
+  }
+}
+
+TEST_CASE("dissection takes fewer operations than minimum degree where lines of a grid share a row each") {
+  constexpr int width = 250, height = 250, lines = 10;
+  Random random(5);
+  Edges edges = grid(width, height, &random);
+  std::vector<int> number(width * height);  // as in the grid
+  std::iota(number.begin(), number.end(), 0);
+  Random same(5);
+  for (int i = width * height; i-- > 1;) std::swap(number[i], number[below(same, i + 1)]);
+  for (int line = 0; line < lines; ++line) {
+    for (int x = 0; x < width; ++x) edges.emplace(number[25 * line * width + x], width * height + line);
+  }
+  constexpr int rows = width * height + lines;
+  const Adjacency adjacency = adjacency_of(rows, edges);
+  const Array<int> order = lsgp::order_by_dissection(adjacency, rows);
+  check_permutation(order, rows);
+  CHECK(operations(adjacency, order) < 0.9 * operations(adjacency, lsgp::order_by_degree(adjacency, rows)));
 }
 
 TEST_CASE("dissection is the same on any number of threads") {

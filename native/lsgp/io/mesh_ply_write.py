@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """PLY with texture coordinates, through plyfile: s and t of each vertex, as most programs read them.
 
-plyfile reads and writes lists row by row. Where all polygons of a binary file have as many corners, they are a table
-without lists but in name, and a million of them take a tenth of the time.
+plyfile reads and writes lists row by row, and text as well. Where all polygons have as many corners, they are a table
+without lists but in name: a million of them take a tenth of the time in a binary file, a third in text.
 """
 
 from __future__ import annotations
 
 import io
+import math
 import tempfile
 from typing import TYPE_CHECKING
 
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 UV = ("s", "t")
 # Coordinates of the corners of faces, of which those of the vertices take the place.
 WEDGE_UV = "texcoord"
+ROWS_AT_ONCE = 10_000  # of text
 
 
 def format_ply(
@@ -70,8 +72,9 @@ def _read(source: bytes, mesh: PolygonMesh) -> PlyData:
 
 
 def _content(ply: PlyData) -> bytes:
-    if not ply.text and all(_is_table(element) for element in ply.elements):
-        return b"".join([ply.header.encode("ascii"), b"\n", *map(_table, ply.elements)])
+    if all(_is_table(element) for element in ply.elements):
+        rows = _text if ply.text else _table
+        return b"".join([ply.header.encode("ascii"), b"\n", *map(rows, ply.elements)])
     out = io.BytesIO()
     ply.write(out)
     return out.getvalue()
@@ -82,8 +85,23 @@ def _is_table(element: PlyElement) -> bool:
     return not element.data.dtype.hasobject
 
 
+def _text(element: PlyElement) -> bytes:
+    """The rows of an element in a text file, with the digits of plyfile."""
+    rows = _rows(element)
+    columns = [rows[name].reshape(len(rows), math.prod(rows.dtype[name].shape)) for name in rows.dtype.names]
+    numbers = np.concatenate([np.empty((len(rows), 0)), *columns], axis=1)  # exact, as integers have 32 bits at most
+    line = " ".join(["%.18g"] * numbers.shape[1]) + "\n"
+    parts = (numbers[begin : begin + ROWS_AT_ONCE] for begin in range(0, len(numbers), ROWS_AT_ONCE))
+    return "".join((line * len(part)) % tuple(part.ravel().tolist()) for part in parts).encode("ascii")
+
+
 def _table(element: PlyElement) -> bytes:
     """The rows of an element in a binary file."""
+    return _rows(element).tobytes()
+
+
+def _rows(element: PlyElement) -> NDArray:
+    """A structured array, of the lists also their lengths."""
     fields: list[tuple] = []
     for p in element.properties:
         shape = element.data.dtype[p.name].shape
@@ -98,7 +116,7 @@ def _table(element: PlyElement) -> bytes:
         shape = rows.dtype[name].shape
         if shape:
             rows[_length_of(name)] = shape[0]
-    return rows.tobytes()
+    return rows
 
 
 def _length_of(name: str) -> str:

@@ -31,7 +31,9 @@ Prescription prescribe_curvature(const Surface& surface, const Cones& cones, con
     std::vector<Finding> findings;
     ComponentSystem system({component.mesh, geometry}, task.cones, options.factorization);
     const Curvature curvature = prescribe(system, task.cones, options.prescription, findings);
-    if (options.prescription == PrescriptionRule::manual) require_possible({component.mesh, geometry}, task.cones);
+    if (options.prescription == PrescriptionRule::manual) {
+      require_possible({component.mesh, geometry}, task.cones, curvature.log_scale);
+    }
     report_border_cones(component, task.border_cones, out.warnings);
     move_findings(component, findings, out.warnings);
     for (Index v = 0; v < component.mesh.vertex_count(); ++v) {

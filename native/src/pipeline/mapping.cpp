@@ -200,6 +200,7 @@ FoundMap Mapping::find_valid_map(const ComponentTask& task) {
   std::optional<FoundMap> best;
   std::optional<Geometry> fat;
   std::optional<ComponentSystem> fat_system;
+  bool is_known_possible = false;
   for (const Effort effort : {Effort::local, Effort::global}) {
     // Local repairs are first tried on the surface itself; hard cases are easier on fat triangles.
     for (const bool is_fat : {effort == Effort::global, effort == Effort::local}) {
@@ -226,7 +227,10 @@ FoundMap Mapping::find_valid_map(const ComponentTask& task) {
         if (best->defects() == 0) return std::move(*best);
         // A valid map would have been proof that its angles are possible.
         const bool has_angles = options_.method == Method::lsgp;
-        if (has_angles && effort == Effort::local && !is_fat) require_possible(system_.surface(), task.cones);
+        if (has_angles && !is_known_possible) {
+          require_possible(system_.surface(), task.cones, best->map.curvature.log_scale);
+          is_known_possible = true;
+        }
         if (!repairs_) return std::move(*best);
       }
     }

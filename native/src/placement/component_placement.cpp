@@ -152,17 +152,17 @@ PlacedCones place_component(const PlacementTask& task, const PlacementOptions& o
     require_feasible(task.mesh, out.cones, chooser.border());
     require_room(choice.cones);
   });
-  if (!choice.map.is_valid()) require_possible(task, out.cones);
-  if (!options.count) require_hope(placement, choice, task);
-  out.missing = missing_cones(chooser, choice.cones);
-  out.cones = chooser.with_angles(choice.cones);
   out.system = placement.take_system(choice.cones);
   ComponentSystem* const of_map = out.system.get();
   const LogScale& scale = chooser.scale().is_factored() || !of_map ? chooser.scale() : of_map->log_scale();
+  const Eigen::VectorXd log_scale = scale.evaluate_held(choice.cones.vertices, choice.cones.curvature);
+  if (!choice.map.is_valid()) require_possible(task, out.cones, log_scale);
+  if (!options.count) require_hope(placement, choice, task);
+  out.missing = missing_cones(chooser, choice.cones);
+  out.cones = chooser.with_angles(choice.cones);
   ComponentCones imposed = out.cones;
   if (!choice.map.failed) imposed.holes = choice.map.holes;  // left open where closing them would stretch the map
-  out.curvature = impose(scale, imposed, choice.cones.curvature,
-                         scale.evaluate_held(choice.cones.vertices, choice.cones.curvature), findings);
+  out.curvature = impose(scale, imposed, choice.cones.curvature, log_scale, findings);
   // A map that was made has cuts to all cones.
   if (choice.map.failed) {
     connect_cones(task, inside_only(task.mesh, choice.cones.vertices), out.curvature.needs_no_cut);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 
 #include "base/text.hpp"
@@ -24,6 +25,9 @@ struct Precision {
 };
 constexpr Precision of_given{1e-5, 2e-6}, of_chosen{1e-9, 0};
 
+// Radians. A guess is off by less where it is only rounded.
+constexpr double largest_rounding = 1e-5;
+
 Units to_units(double angle) { return static_cast<Units>(std::llround(angle / unit)); }
 
 // Angle left over when every corner has its smallest one.
@@ -44,6 +48,81 @@ Transport left_over(const HalfedgeMesh& mesh, const Eigen::VectorXd& angle, cons
   return out;
 }
 
+// A feasible flow close to a guess: what the corners get of their vertices and triangles, which are nodes 0 to n - 1
+// and n to n + m - 1. Where the guess is exact but for rounding and has no negative angles, the flow is a maximum.
+class FirstFlow {
+ public:
+  FirstFlow(const HalfedgeMesh& mesh, const Transport& transport, const Eigen::VectorXd& guess, Units smallest_corner)
+      : mesh_(mesh),
+        vertices_(mesh.vertex_count()),
+        left_(vertices_ + mesh.triangle_count(), transport.of_triangle),
+        at_corner_(mesh.halfedge_count()) {
+    std::copy(transport.of_vertex.begin(), transport.of_vertex.end(), left_.begin());
+    for (Index c = 0; c < mesh.halfedge_count(); ++c) add(c, std::max<Units>(0, to_units(guess[c]) - smallest_corner));
+    round_along_trees(transport);
+    limit(transport);
+  }
+
+  const PerHalfedge<Units>& at_corner() const { return at_corner_; }
+
+ private:
+  Index triangle_of(Index corner) const { return vertices_ + corner / 3; }
+
+  void add(Index corner, Units units) {
+    at_corner_[corner] += units;
+    left_[mesh_.origin(corner)] -= units;
+    left_[triangle_of(corner)] -= units;
+  }
+
+  // Passes on rounding errors, which would otherwise have to find their way to a free vertex one by one.
+  void round_along_trees(const Transport& transport) {
+    Array<Index> order, corner_above(left_.size(), none);
+    Array<char> is_reached(left_.size(), 0);
+    const auto reach = [&](Index node, Index corner) {
+      if (is_reached[node]) return;
+      is_reached[node] = 1;
+      corner_above[node] = corner;
+      order.push_back(node);
+    };
+    order.reserve(left_.size());
+    for (Index v = 0; v < vertices_; ++v) {
+      if (transport.of_vertex[v] < 0) reach(v, none);
+    }
+    if (order.empty()) reach(0, none);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const Index node = order[i];
+      if (node < vertices_) {
+        mesh_.for_each_outgoing(node, [&](Index h) { reach(triangle_of(h), h); });
+      } else {
+        for (Index c = 3 * (node - vertices_), end = c + 3; c < end; ++c) reach(mesh_.origin(c), c);
+      }
+    }
+    const Units most = to_units(largest_rounding);
+    for (std::size_t i = order.size(); i-- > 0;) {
+      const Index corner = corner_above[order[i]];
+      if (corner == none) continue;
+      const Units units = left_[order[i]];
+      if (std::abs(units) <= most && at_corner_[corner] + units >= 0) add(corner, units);
+    }
+  }
+
+  // Nothing gets more than it has room for.
+  void limit(const Transport& transport) {
+    const auto take = [&](Index node, Index corner) {
+      if (left_[node] < 0) add(corner, -std::min(-left_[node], at_corner_[corner]));
+    };
+    for (Index c = 0; c < mesh_.halfedge_count(); ++c) {
+      if (transport.of_vertex[mesh_.origin(c)] >= 0) take(mesh_.origin(c), c);
+      take(triangle_of(c), c);
+    }
+  }
+
+  const HalfedgeMesh& mesh_;
+  const Index vertices_;
+  Array<Units> left_;  // (nodes) room
+  PerHalfedge<Units> at_corner_;
+};
+
 enum class From { vertices, triangles };
 
 // The side of a minimum cut on which what `from` has to give finds too little room: which vertices and how many
@@ -52,39 +131,41 @@ struct Bottleneck {
   Array<Index> vertices;
   Index triangles = 0;
 };
-std::optional<Bottleneck> find_bottleneck(const HalfedgeMesh& mesh, const Transport& transport, From from,
-                                          double tolerance) {
+// first: what the flow along the corners is at first.
+std::optional<Bottleneck> find_bottleneck(const HalfedgeMesh& mesh, const Transport& transport,
+                                          const PerHalfedge<Units>& first, From from, double tolerance) {
   const int n = mesh.vertex_count(), m = mesh.triangle_count(), source = n + m, sink = source + 1;
   FlowNetwork network(sink + 1);
   constexpr Units unlimited = Units(1) << 60;
   const bool from_vertices = from == From::vertices;
-  Units wanted = 0;
+  // Free vertices have nothing to give.
+  const auto gives = [&](Index v) { return !from_vertices || transport.of_vertex[v] >= 0; };
+  PerVertex<Units> of_vertex(n, 0);
+  PerTriangle<Units> of_triangle(m, 0);
+  Units flows = 0, wanted = 0;
+  for (Index c = 0; c < 3 * m; ++c) {
+    const Index v = mesh.origin(c), f = c / 3;
+    if (!gives(v)) continue;
+    of_vertex[v] += first[c];
+    of_triangle[f] += first[c];
+    flows += first[c];
+    network.send(from_vertices ? network.add_arc(v, n + f, unlimited) : network.add_arc(n + f, v, unlimited), first[c]);
+  }
   for (int v = 0; v < n; ++v) {
+    if (!gives(v)) continue;
     const Units left = transport.of_vertex[v];
-    if (from_vertices) {
-      if (left < 0) continue;
-      network.add_arc(source, v, left);
-      wanted += left;
-    } else {
-      network.add_arc(v, sink, left < 0 ? unlimited : left);
-    }
+    network.send(
+        from_vertices ? network.add_arc(source, v, left) : network.add_arc(v, sink, left < 0 ? unlimited : left),
+        of_vertex[v]);
+    if (from_vertices) wanted += left;
   }
   for (int f = 0; f < m; ++f) {
-    for (int c = 0; c < 3; ++c) {
-      const int v = mesh.triangles(f, c);
-      if (from_vertices)
-        network.add_arc(v, n + f, unlimited);
-      else
-        network.add_arc(n + f, v, unlimited);
-    }
-    if (from_vertices) {
-      network.add_arc(n + f, sink, transport.of_triangle);
-    } else {
-      network.add_arc(source, n + f, transport.of_triangle);
-      wanted += transport.of_triangle;
-    }
+    network.send(from_vertices ? network.add_arc(n + f, sink, transport.of_triangle)
+                               : network.add_arc(source, n + f, transport.of_triangle),
+                 of_triangle[f]);
+    if (!from_vertices) wanted += transport.of_triangle;
   }
-  if (network.maximize(source, sink) + to_units(tolerance) >= wanted) return std::nullopt;
+  if (flows + network.maximize(source, sink) + to_units(tolerance) >= wanted) return std::nullopt;
   const Array<char> side = network.reachable(source);
   Bottleneck out;
   for (int v = 0; v < n; ++v) {
@@ -132,14 +213,15 @@ Array<Index> cones_at(const Bottleneck& at, const Array<Index>& named) {
 }  // namespace
 
 void require_possible_angles(const HalfedgeMesh& mesh, const Eigen::VectorXd& angle, const PerVertex<char>& is_free,
-                             const Array<Index>& named) {
+                             const Eigen::VectorXd& guess, const Array<Index>& named) {
   const Precision precision = named.empty() ? of_chosen : of_given;
   const Transport transport = left_over(mesh, angle, is_free, precision.smallest_corner);
+  const PerHalfedge<Units> first = FirstFlow(mesh, transport, guess, to_units(precision.smallest_corner)).at_corner();
   // Without free vertices both sums are the same, so what finds its place from one side fills the other.
   const bool any_free = std::find(is_free.begin(), is_free.end(), 1) != is_free.end();
-  const auto at_vertices = find_bottleneck(mesh, transport, From::vertices, precision.tolerance);
+  const auto at_vertices = find_bottleneck(mesh, transport, first, From::vertices, precision.tolerance);
   if (!at_vertices && !any_free) return;
-  const auto at_triangles = find_bottleneck(mesh, transport, From::triangles, precision.tolerance);
+  const auto at_triangles = find_bottleneck(mesh, transport, first, From::triangles, precision.tolerance);
   if (!at_vertices && !at_triangles) return;
   // Too much at some cones is too little at the others: the fewer are the cause.
   const Array<Index> high = at_vertices ? cones_at(*at_vertices, named) : Array<Index>{};

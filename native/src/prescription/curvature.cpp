@@ -215,13 +215,31 @@ AngleSums required_angles(const MetricMesh& surface, const ComponentCones& cones
   return out;
 }
 
-void require_possible(const MetricMesh& surface, const ComponentCones& cones) {
+namespace {
+
+// The angles of a metric to first order in its log scale, (3m): those of every triangle add up to half a turn, and
+// those around every vertex to what the prescribed curvature leaves, as the log scale solves a linear equation. Where
+// it changes much within a triangle, they may be negative.
+Eigen::VectorXd linear_angles(const MetricMesh& surface, const Eigen::VectorXd& log_scale) {
+  const auto& [mesh, geometry] = surface;
+  Eigen::VectorXd out = geometry.angle;
+  for (Index h = 0; h < mesh.halfedge_count(); ++h) {
+    const double change = geometry.half_cotangent[h] * (log_scale[mesh.target(h)] - log_scale[mesh.origin(h)]);
+    out[h] += change;
+    out[next(h)] -= change;
+  }
+  return out;
+}
+
+}  // namespace
+
+void require_possible(const MetricMesh& surface, const ComponentCones& cones, const Eigen::VectorXd& log_scale) {
   const AngleSums required = required_angles(surface, cones);
   Array<Index> given;
   for (const Index v : cones.vertices) {
     if (!required.is_free[v]) given.push_back(v);
   }
-  require_possible_angles(surface.mesh, required.angle, required.is_free, given);
+  require_possible_angles(surface.mesh, required.angle, required.is_free, linear_angles(surface, log_scale), given);
 }
 
 Curvature prescribe(ComponentSystem& system, const ComponentCones& cones, PrescriptionRule rule,

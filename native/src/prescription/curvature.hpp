@@ -90,8 +90,8 @@ struct AngleSums {
 AngleSums required_angles(const MetricMesh& surface, const ComponentCones& cones);
 
 // Throws ANGLES_IMPOSSIBLE if no map has the given angles, whatever the automatic ones are, or no map has cones at
-// these vertices alone, whatever their angles.
-void require_possible(const MetricMesh& surface, const ComponentCones& cones);
+// these vertices alone, whatever their angles.  log_scale: (n) of a metric with such angles; another one takes longer.
+void require_possible(const MetricMesh& surface, const ComponentCones& cones, const Eigen::VectorXd& log_scale);
 
 // Whether a map can have this curvature at a vertex.
 bool is_possible(const HalfedgeMesh& mesh, Index vertex, double curvature);

@@ -28,6 +28,11 @@ int FlowNetwork::add_arc(int from, int to, Units capacity, Units capacity_back) 
   return arc / 2;
 }
 
+void FlowNetwork::send(int arc, Units units) {
+  residual_[2 * arc] -= units;
+  residual_[2 * arc + 1] += units;
+}
+
 FlowNetwork::Units FlowNetwork::maximize(int source, int sink) {
   Units total = 0;
   // The distance grows with each blocking flow, so there are fewer of them than nodes.

@@ -18,6 +18,10 @@ class FlowNetwork {
   // Adds an arc and its reverse; returns the number of the arc.
   int add_arc(int from, int to, Units capacity, Units capacity_back = 0);
 
+  // Adds to the flow of an arc without regard to its capacity and to the other arcs of its nodes: for a first flow that
+  // is close to the maximum.
+  void send(int arc, Units units);
+
   // Augments the flow to a maximum; returns the increase.
   Units maximize(int source, int sink);
 

@@ -23,9 +23,13 @@ constexpr int smallest_part = 400;
 constexpr int level_functions = 8;
 // Both sides of a separator have at least this share of a part.
 constexpr double least_side = 0.3;
-// Rows of a level to the square root of all: those of surfaces have up to 3. Others have 10 and more, as with unknowns
-// that many rows share.
+// Rows of a level to the square root of all: those of surfaces have up to 3, others 10 and more.
 constexpr double narrow = 5;
+// Rows with more neighbors than this are shared by rows far apart, such as the translation of a long cut. They come
+// last if they are this few to the square root of all; more of them, in every separator, were measured to cost more
+// than dissection saves.
+constexpr int shared_neighbors = 64;
+constexpr double most_shared = 0.1;
 
 template <typename Visit>
 void for_each_neighbor(const Adjacency& adjacency, int rows, int row, Visit visit) {
@@ -47,6 +51,7 @@ class Dissection {
   }
 
   Array<int> by_dissection() && {
+    if (level_.empty()) find_shared();
     find_levels();
     const Array<Range> parts = divide_all();
     find_places();
@@ -55,19 +60,33 @@ class Dissection {
   }
 
   bool has_narrow_levels() {
-    count_levels_from(0);
+    find_shared();
+    if (ssize(order_) - divided_ > most_shared * std::sqrt(rows_)) return false;
+    count_levels_from(first_row());
     Array<int> count(rows_, 0);
-    for (const int level : level_) ++count[level];
+    for (int k = 0; k < divided_; ++k) ++count[level_[order_[k]]];
     return *std::max_element(count.begin(), count.end()) <= narrow * std::sqrt(rows_);
   }
 
  private:
+  // Shared rows have no levels.
+  void find_shared() {
+    const auto is_divided = [&](int row) {
+      return adjacency_.begin[row + 1] - adjacency_.begin[row] <= shared_neighbors;
+    };
+    const auto shared = std::stable_partition(order_.begin(), order_.end(), is_divided);
+    divided_ = static_cast<int>(shared - order_.begin());
+  }
+
+  int first_row() const { return divided_ > 0 ? order_[0] : 0; }
+
   // Edges from a row, and in other components from one of theirs: neighbors differ by one at most.
   void count_levels_from(int start) {
     level_.assign(rows_, -1);
+    for (int k = divided_; k < rows_; ++k) level_[order_[k]] = 0;
     queue_.resize(rows_);
     int tail = 0, next = 0;
-    for (int head = 0; tail < rows_; start = next) {
+    for (int head = 0; tail < divided_; start = next) {
       level_[start] = 0;
       queue_[tail++] = start;
       for (; head < tail; ++head) {
@@ -86,12 +105,15 @@ class Dissection {
 
   // From rows that are as far as possible from those before.
   void find_levels() {
-    if (level_.empty()) count_levels_from(0);
+    if (level_.empty()) count_levels_from(first_row());
     Array<int> nearest = level_;
     levels_.resize(rows_);
     for (int function = 0; function < level_functions; ++function) {
-      const auto farthest = std::max_element(nearest.begin(), nearest.end());
-      count_levels_from(static_cast<int>(farthest - nearest.begin()));
+      int farthest = first_row();
+      for (int k = 0; k < divided_; ++k) {
+        if (nearest[order_[k]] > nearest[farthest]) farthest = order_[k];
+      }
+      count_levels_from(farthest);
       for (int row = 0; row < rows_; ++row) {
         levels_[row][function] = level_[row];
         nearest[row] = function == 0 ? level_[row] : std::min(nearest[row], level_[row]);
@@ -113,7 +135,7 @@ class Dissection {
 
   // Divides all rows, the parts of one depth at the same time. Returns what is not divided any further.
   Array<Range> divide_all() {
-    Array<Range> parts{{0, rows_}}, undivided;
+    Array<Range> parts{{0, divided_}}, undivided;
     while (!parts.empty()) {
       Array<Array<Range>> halves(parts.size());
       team_of_this_call().run_each(static_cast<int>(parts.size()), [&](int i) { halves[i] = divide(parts[i]); });
@@ -219,7 +241,8 @@ class Dissection {
 
   const Adjacency& adjacency_;
   const int rows_;
-  Array<int> order_;  // parts and, behind them, their separators
+  int divided_ = 0;   // rows that are not shared
+  Array<int> order_;  // parts and, behind them, their separators; shared rows last
   Array<int> place_;  // of every row in `order_`, as long as parts have no order of their own
   Array<int> level_, queue_;
   Array<Levels> levels_;

@@ -56,6 +56,39 @@ def test_a_ply_keeps_polygons_properties_and_what_refers_to_vertices(tmp_path: P
     assert (stored == file.triangulation.to_polygon_corners(uv, len(again.corners))).all()
 
 
+def test_a_text_ply_of_equal_polygons_has_the_digits_of_plyfile(tmp_path: Path) -> None:
+    plyfile = pytest.importorskip("plyfile")
+    positions, faces = cube(2)
+    header = f"""ply
+format ascii 1.0
+comment kept
+element vertex {len(positions)}
+property double x
+property double y
+property double z
+property float q
+element face {len(faces)}
+property uint tag
+property list uchar int vertex_indices
+element edge 0
+property int vertex1
+end_header
+"""
+    rows = [f"{x / 3:.17g} {y / 7:.17g} {z:.17g} {i / 10}" for i, (x, y, z) in enumerate(positions)]
+    rows += [f"{2**32 - 1 - i} 4 {' '.join(map(str, face))}" for i, face in enumerate(faces)]
+    (tmp_path / "in.ply").write_text(header + "\n".join(rows) + "\n")
+    file = read_mesh_file(tmp_path / "in.ply")
+    uv = split_uv(file)
+    assert write_mesh_file(tmp_path / "out.ply", file, uv) == []
+    found = plyfile.PlyData.read(tmp_path / "out.ply")
+    found.write(tmp_path / "again.ply")
+    assert (tmp_path / "out.ply").read_bytes() == (tmp_path / "again.ply").read_bytes()
+    assert found["face"]["tag"].tolist() == [2**32 - 1 - i for i in range(len(faces))]
+    corners = np.concatenate(list(found["face"]["vertex_indices"]))
+    stored = np.stack([found["vertex"]["s"], found["vertex"]["t"]], axis=1)[corners]
+    assert (stored == file.triangulation.to_polygon_corners(uv, len(corners))).all()
+
+
 @pytest.mark.parametrize("order", ["<", ">"])
 def test_a_binary_ply_of_equal_polygons_keeps_numbers_around_its_lists(tmp_path: Path, order: str) -> None:
     plyfile = pytest.importorskip("plyfile")

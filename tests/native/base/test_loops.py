@@ -336,7 +336,7 @@ REVIEWED = {
     ],
     "solvers/nested_dissection.cpp": [
         ("while (!parts.empty())", "both halves of a part are smaller", SHORT),
-        ("for (int head = 0; tail < rows_; start = next)", "rows, each once", SHORT),
+        ("for (int head = 0; tail < divided_; start = next)", "rows, each once", SHORT),
         ("while (next < rows_ && level_[next] != -1)", "rows, each once", SHORT),
     ],
     "solvers/sparse_assembly.hpp": [
