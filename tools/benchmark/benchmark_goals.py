@@ -11,7 +11,7 @@ REACHED = """\
 
 Reached: with a million triangles 0.12 times the CPU time of libigl's LSCM, with 200,000 and more less than the cheaper
 bare Laplacian; with two threads 2.5 s for a million triangles, 14 s of CPU time of the calling thread for 4 million and
-40 s for 10 million, which take 9.6 GB (61 s passed on a machine shared with others); the same bytes for any number of
+40 s for 10 million, which take 10 GB (61 s passed on a machine shared with others); the same bytes for any number of
 threads (tests compare 1, 2, 3 and 8); an angle edited in 9 ms with 20,000 triangles; eight cones placed in 2.1 times
 the time of the map with 200,000 triangles and 1.7 times with a million; low stretch in 4.3 and 5.2 times with 50,000
 and 200,000, a seamless layout in at most 1.9 times, a split where nothing overlaps in 1.1 times; a file of a million

@@ -133,6 +133,18 @@ def test_tiles_of_a_given_size_keep_what_they_can() -> None:
     assert undeclared_faults(surface(mesh), result, options) == []
 
 
+@pytest.mark.parametrize("small", [closed.gear(4, 0.3, 2), closed.star(7, 0.5, 0.3)], ids=["gear", "star"])
+def test_creases_of_a_small_part_do_not_take_others_off_the_lattice(small: Mesh) -> None:
+    """Not all of its creases find a place, and none on tiles as large as those of the box."""
+    box = HARD["box"]
+    mesh = meshes.merge([box, meshes.transform(small, 1, 0.05)])
+    result = lsgp.auto_unwrap(surface(mesh), preset="tile", options=TILE)
+    both = ends(result, creases(mesh)[: len(creases(box))])
+    assert (both[:, 0] == both[:, 1]).any(axis=1).all(), "the box keeps what it has alone"
+    assert result.seamless.tiles <= 128
+    assert undeclared_faults(surface(mesh), result, TILE) == []
+
+
 def test_a_rim_along_the_lattice_does_not_turn() -> None:
     """A disk whose rim is straight has its whole turn in cones of the disk and in corners of the rim."""
     mesh, result = HARD["cylinder"], of("cylinder")
