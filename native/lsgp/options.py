@@ -47,7 +47,8 @@ class Seamless:
     lattice: "square": quarter turns of unit squares; "stripe": half turns of unit squares; "translation": unit squares
         without rotation; "triangle": third turns of triangles of side 1; "hexagon": sixth turns of them.
     tiles: cells along the layout's longer side, before rounding. tile_size: or the side of a cell on the surface, in
-        its unit. Neither: the coarsest grid that is valid and costs at most a tenth in distortion.
+        its unit. Neither: the coarsest grid that is valid and costs at most a tenth in distortion. Components that
+        need a finer one, and have less than a twentieth of the area together, get it for themselves.
     parity: square lattice only: black and white cells match across cuts as well.
     whole_features: features are at whole cells or released, and may cost a fifth of L2 stretch, as quads along them
         require; otherwise at multiples of 1 / 256 of a cell where cells are too large, at a tenth.

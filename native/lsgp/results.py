@@ -65,7 +65,8 @@ class SeamlessReport(EqualByContent, ShortRepr):
 
     rotation_order: rotations are multiples of 2 pi / rotation_order.
     tiles: cells along the layout's longer side, before rounding.
-    tile_size: side of a cell on the surface. cell: the same in texture coordinates.
+    tile_size: side of a cell on the surface, but for small components with smaller ones. cell: the same in texture
+        coordinates.
     energy_before, energy_after: symmetric Dirichlet energy before and after rounding the translations, 1 is isometric.
     cut_nodes: (c, 2) int32 vertices at the cuts' tails and heads. cut_turns: (c,) int32, 0 .. rotation_order - 1.
     cut_translations: (c, 2) int64, (a, b). cut_errors: (c,) float64, the largest distance of a vertex, as stored in

@@ -83,7 +83,8 @@ struct Seamless {
   Lattice lattice = Lattice::square;
   std::optional<double> tiles;      // cells along the layout's longer side, before rounding
   std::optional<double> tile_size;  // or the side of a cell on the surface; neither: the coarsest grid that is valid
-                                    // and costs at most a tenth in distortion
+                                    // and costs at most a tenth in distortion; small components that need a finer
+                                    // one get it for themselves
   bool parity = false;              // square lattice: black and white cells match as well
   bool whole_features = false;      // features are on whole cells or released, at up to a fifth of L2 stretch
   CoarseGrid coarse_grid = CoarseGrid::refine;

@@ -44,7 +44,7 @@ struct SeamlessCut {
 struct SeamlessReport {
   int rotation_order = 4;                      // q
   double tiles = 0;                            // cells along the layout's longer side, before rounding
-  double tile_size = 0;                        // side of a cell on the surface
+  double tile_size = 0;                        // side of a cell on the surface, smaller on small components
   double cell = 1;                             // the same in texture coordinates
   double energy_before = 1, energy_after = 1;  // symmetric Dirichlet energy before and after rounding, 1 is isometric
   std::vector<SeamlessCut> cuts;

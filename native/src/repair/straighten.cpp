@@ -10,6 +10,7 @@
 
 #include "base/union_find.hpp"
 #include "repair/line_constraints.hpp"
+#include "unfold/distortion.hpp"
 #include "unfold/jacobians.hpp"
 
 namespace lsgp {
@@ -20,6 +21,7 @@ using Kind = DistortionEnergy::Kind;
 
 constexpr int unfolding_steps = 15;
 constexpr double no_coefficient = 1e-9;  // others are around 1
+constexpr double rounding = 1e-13;       // of coordinates, to the size of a layout
 
 // Whether the translation of a cut is the unknown that is left out of the reduction, and so 0.
 bool is_without_translation(const CutSurface& surface, const ParallelTransport& connection, std::size_t cut) {
@@ -67,7 +69,11 @@ DirectedEdges edges_of(const StraightSides& straight) {
 }
 
 // Gives the copies on sides along the axes their mean coordinate across the side, from which they differ by rounding.
+// Where they differ by more, as lines that meet at a small angle let them, those on cuts would no longer match.
 void equalize(const CutMesh& cut_mesh, const DirectedEdges& edges, Eigen::VectorXcd& position) {
+  PositionBox box;
+  for (const Complex z : position) box.add(z);
+  const double most_off = rounding * box.size();
   for (const bool is_level : {true, false}) {
     UnionFind lines(cut_mesh.copy_count());
     for (Index i = 0; i < ssize(edges.halfedges); ++i) {
@@ -76,17 +82,25 @@ void equalize(const CutMesh& cut_mesh, const DirectedEdges& edges, Eigen::Vector
       const Index h = edges.halfedges[i];
       lines.unite(cut_mesh.copy_of_corner[h], cut_mesh.copy_of_corner[next(h)]);
     }
-    PerCopy<std::pair<double, int>> sum(cut_mesh.copy_count(), {0.0, 0});
+    struct Line {
+      double sum = 0, off = 0;  // of coordinates across it, and their largest distance from the mean
+      int count = 0;
+    };
+    PerCopy<Line> found(cut_mesh.copy_count());
     const auto across = [&](Index copy) { return is_level ? position[copy].imag() : position[copy].real(); };
     for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
-      auto& [coordinates, count] = sum[lines.find(copy)];
-      coordinates += across(copy);
-      ++count;
+      Line& line = found[lines.find(copy)];
+      line.sum += across(copy);
+      ++line.count;
     }
     for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
-      const auto& [coordinates, count] = sum[lines.find(copy)];
-      if (count == 1) continue;
-      const double mean = coordinates / count;
+      Line& line = found[lines.find(copy)];
+      line.off = std::max(line.off, std::abs(across(copy) - line.sum / line.count));
+    }
+    for (Index copy = 0; copy < cut_mesh.copy_count(); ++copy) {
+      const Line& line = found[lines.find(copy)];
+      if (line.count == 1 || line.off > most_off) continue;
+      const double mean = line.sum / line.count;
       position[copy] = is_level ? Complex(position[copy].real(), mean) : Complex(mean, position[copy].imag());
     }
   }

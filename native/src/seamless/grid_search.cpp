@@ -127,7 +127,7 @@ Grid GridSearch::find_coarsest() {
   while (tiles < most_tiles && energy_of_scales(scales, usual * tiles / extent()) > acceptable_growth) {
     tiles = next_size(tiles);
   }
-  return share(tiles, std::move(own));
+  return on_common_grid(tiles, std::move(own));
 }
 
 Grid GridSearch::find_given(double tiles, const Options& options) {
@@ -147,7 +147,7 @@ Grid GridSearch::find_given(double tiles, const Options& options) {
   });
   const double common = std::min(exceeded_on(small_share, sizes), most_tiles);
   for (std::size_t i = 0; common > tiles && i < components_.size(); ++i) restore_relaxed(i);
-  return share(common, std::move(own));
+  return on_common_grid(common, std::move(own));
 }
 
 std::optional<GridSearch::SizedLayout> GridSearch::lay_out(std::size_t component, double tiles,
@@ -264,7 +264,7 @@ double GridSearch::energy_of_scales(const Array<double>& scales, double least) c
   return std::sqrt(grown * shrunk) / all;
 }
 
-Grid GridSearch::share(double tiles, Array<SizedLayout> own) const {
+Grid GridSearch::on_common_grid(double tiles, Array<SizedLayout> own) const {
   const auto lay_out_all = [&](double size) {
     Grid grid{size, size / extent(), {}};
     for (std::size_t i = 0; i < own.size(); ++i) {
@@ -278,7 +278,7 @@ Grid GridSearch::share(double tiles, Array<SizedLayout> own) const {
     }
     return std::optional<Grid>{std::move(grid)};
   };
-  for (double size = tiles; size <= most_refinement * tiles; size = next_size(size)) {
+  for (double size = tiles; size <= std::min(most_refinement * tiles, most_tiles); size = next_size(size)) {
     if (auto grid = lay_out_all(size)) return std::move(*grid);
   }
   Grid grid{tiles, tiles / extent(), {}};

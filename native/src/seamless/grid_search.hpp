@@ -104,7 +104,7 @@ class GridSearch {
   double energy_of_scales(const Array<double>& scales, double least) const;
 
   // All components with so many tiles; those that need more keep their own.
-  Grid share(double tiles, Array<SizedLayout> own) const;
+  Grid on_common_grid(double tiles, Array<SizedLayout> own) const;
 
   // Why a component has no layout on the finest grid, in its numbering.
   Error refusal_of(std::size_t component) const;

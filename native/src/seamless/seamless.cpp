@@ -124,7 +124,7 @@ class LatticeFeatures {
   Array<Index> edges_;                   // off the axes, as the caller's vertices
 };
 
-// Components that are larger in the layout than the size of the tiles implies, as small ones are on a common grid.
+// Components that are larger in the layout than the size of the tiles implies, as small ones are.
 class OversizeReport {
  public:
   explicit OversizeReport(double density) : density_(density) {}

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Seamless layouts (the paper's section 8): every component on one grid, exact in the precision that is stored.
+// Seamless layouts (the paper's section 8): all but small components on one grid, exact in the precision that is
+// stored.
 #pragma once
 
 #include <vector>
@@ -19,12 +20,12 @@ void require_valid(const Seamless& seamless, const Options& options, const Pins&
 // Throws SEAMLESS_IMPOSSIBLE for a map that has flipped triangles or wrong angles.
 void require_quantizable(const HalfedgeMesh& mesh, const ComponentMap& map);
 
-// Rounds the cuts of all maps to one grid and places the maps side by side in texture coordinates, with cut vertices at
-// binary fractions, so that transitions hold exactly in float32 (on triangular lattices, whose points are irrational,
-// to its last digit). Maps are recomputed if cones are merged.  unit_scale: from the components' positions to the
-// caller's. Components that have no layout on any grid, or one too small beside the others for single precision to
-// hold its cuts, are removed from `components` and reported as COMPONENT_SKIPPED. If all components fail, the first
-// error is rethrown, in the caller's numbering: GRID_TOO_COARSE, SEAMLESS_IMPOSSIBLE.
+// Rounds the cuts of all maps to one grid, those of small components to finer ones, and places the maps side by side in
+// texture coordinates, with cut vertices at binary fractions, so that transitions hold exactly in float32 (on
+// triangular lattices, whose points are irrational, to its last digit). Maps are recomputed if cones are merged.
+// unit_scale: from the components' positions to the caller's. Components that have no layout on any grid, or one whose
+// cuts are too short for single precision, are removed from `components` and reported as COMPONENT_SKIPPED. If all
+// components fail, the first error is rethrown, in the caller's numbering: GRID_TOO_COARSE, SEAMLESS_IMPOSSIBLE.
 SeamlessReport make_seamless(const Options& options, double unit_scale, Array<SeamlessComponent>& components,
                              std::vector<Finding>& findings, ProgressMonitor& monitor);
 

@@ -61,7 +61,7 @@ class Dissection {
 
   bool has_narrow_levels() {
     find_shared();
-    if (ssize(order_) - divided_ > most_shared * std::sqrt(rows_)) return false;
+    if (rows_ - divided_ > most_shared * std::sqrt(rows_)) return false;
     count_levels_from(first_row());
     Array<int> count(rows_, 0);
     for (int k = 0; k < divided_; ++k) ++count[level_[order_[k]]];

@@ -279,7 +279,11 @@ REVIEWED = {
         ("while (tiles < least)", "each round enlarges it by a third at least", SHORT),
         ("for (; tiles <= finest; tiles = next_size(tiles))", "27 sizes up to 16384 on a component", WITHIN),
         ("for (; tiles <= finest; tiles = next_size(tiles))", "the same sizes", SHORT),
-        ("for (double size = tiles; size <= most_refinement * tiles; size = next_size(size))", "four sizes", WITHIN),
+        (
+            "for (double size = tiles; size <= std::min(most_refinement * tiles, most_tiles); size = next_size(size))",
+            "three sizes",
+            WITHIN,
+        ),
         (
             "while (tiles < most_tiles && energy_of_scales(scales, usual * tiles / extent()) > acceptable_growth)",
             "the same sizes",
