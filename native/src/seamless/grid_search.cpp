@@ -146,7 +146,9 @@ Grid GridSearch::find_given(double tiles, const Options& options) {
     own.push_back(std::move(*found));
   });
   const double common = std::min(exceeded_on(small_share, sizes), most_tiles);
-  for (std::size_t i = 0; common > tiles && i < components_.size(); ++i) restore_relaxed(i);
+  for (std::size_t i = 0; i < components_.size(); ++i) {
+    if (own[i].tiles < common) restore_relaxed(i);
+  }
   return on_common_grid(common, std::move(own));
 }
 
