@@ -174,34 +174,29 @@ def unwrap_all(
         return solve_all(tasks, solve, progress)
     share_of = native.part("base.progress").share_of
     outcomes = solve_all(tasks, solve, share_of(progress, 0.0, 0.5))
-    sizes = {i: _tile_size(found) for i, found in enumerate(outcomes) if isinstance(found, Unwrapped)}
-    common = _common_tile_size({i: outcomes[i] for i in sizes}, sizes)
-    larger = [i for i, size in sizes.items() if size > common]
+    # What is scaled to nothing has no size.
+    found = {i: each for i, each in enumerate(outcomes) if isinstance(each, Unwrapped) and _tile_size(each) > 0}
+    common = _common_tile_size(list(found.values()))
+    larger = [i for i, each in found.items() if _tile_size(each) > common]
     redone = solve_all([_with_tile_size(tasks[i], common) for i in larger], solve, share_of(progress, 0.5, 1.0))
-    for i, found in zip(larger, redone, strict=True):
-        outcomes[i] = found
-    for i, size in sizes.items():
-        if common > _MOST_UNSAID_SCALE * size:
-            outcomes[i] = _with_smaller_tiles(outcomes[i], common / size)
+    for i, each in zip(larger, redone, strict=True):
+        outcomes[i] = each
+    for i, each in found.items():
+        factor = common / _tile_size(each)
+        if factor > _MOST_UNSAID_SCALE:
+            outcomes[i] = _with_smaller_tiles(each, factor)
     return outcomes
 
 
-def _common_tile_size(unwrapped: dict[int, Unwrapped], sizes: dict[int, float]) -> float:
-    """The smallest that an object requires, except where that is small and all others would get very many tiles.
-
-    sizes: of the tiles of each.
-    """
-    if not sizes:
+def _common_tile_size(unwrapped: Sequence[Unwrapped]) -> float:
+    """The smallest that an object requires, except where that is small and all others would get very many tiles."""
+    if not unwrapped:
         return 0.0
-    areas = {i: size_in_texels(found.region) ** 2 for i, found in unwrapped.items()}
-    smaller, common = 0.0, min(sizes.values())
-    for i in sorted(sizes, key=sizes.__getitem__):
-        smaller += areas[i]
-        if not smaller <= _SMALL_SHARE * sum(areas.values()):
-            common = sizes[i]
-            break
-    longest = max(found.result.seamless.tiles * sizes[i] for i, found in unwrapped.items())
-    return min([common, *(size for size in sizes.values() if longest <= _EVEN_TILES * size)])
+    by_size = sorted(unwrapped, key=_tile_size)
+    areas = np.cumsum([size_in_texels(each.region) ** 2 for each in by_size])
+    common = _tile_size(by_size[np.argmax(~(areas <= _SMALL_SHARE * areas[-1]))])
+    longest = max(each.result.seamless.tiles * _tile_size(each) for each in by_size)
+    return min([common, *(size for size in map(_tile_size, by_size) if longest <= _EVEN_TILES * size)])
 
 
 def _with_smaller_tiles(unwrapped: Unwrapped, factor: float) -> Unwrapped:

@@ -79,12 +79,12 @@ GridSearch::GridSearch(const Options& options, PointLattice lattice, Array<Seaml
       relaxed_(components.size()) {
   for (const SeamlessComponent& component : components) area_.push_back(component.system->geometry().total_area);
   for_each_seamless(components, [&](std::size_t i) { prepare(i); });
+  measure_extent();
 }
 
-double GridSearch::extent() const {
-  double longest = 0;
-  for (const auto& quantizer : quantizers_) longest = std::max(longest, quantizer->extent());
-  return longest;
+void GridSearch::measure_extent() {
+  extent_ = 0;
+  for (const auto& quantizer : quantizers_) extent_ = std::max(extent_, quantizer->extent());
 }
 
 double GridSearch::energy(std::size_t component, const Eigen::VectorXcd& position) const {
@@ -105,10 +105,12 @@ Grid GridSearch::find_coarsest() {
   Array<SizedLayout> own(components_.size());
   Array<double> sizes(components_.size(), coarsest_tiles), scales(components_.size()), enlargements(components_.size());
   // The large ones first: others need no tiles larger than these have.
+  double largest = coarsest_tiles;
   for_each_seamless(components_, from_largest(area_), [&](std::size_t i) {
-    auto found = find_coarsest(i, std::min(exceeded_on(small_share, sizes), most_tiles));
+    auto found = find_coarsest(i, largest);
     if (!found) throw refusal_of(i);
     sizes[i] = found->tiles;
+    if (found->tiles > largest) largest = std::min(exceeded_on(small_share, sizes), most_tiles);
     scales[i] = scale(i, found->layout.position);
     enlargements[i] = scales[i] * extent() / found->tiles;
     own[i] = std::move(*found);
@@ -331,6 +333,7 @@ bool GridSearch::merge_nearest(std::size_t component, double tiles, const Option
     if (pair.distance * tiles > near * extent()) return false;
     if (!merge(component, pair, options)) continue;
     prepare(component);
+    measure_extent();
     return true;
   }
   return false;

@@ -29,7 +29,8 @@ class GridSearch {
   GridSearch(const Options& options, PointLattice lattice, Array<SeamlessComponent>& components,
              ProgressMonitor& monitor);
 
-  double extent() const;
+  // The longest side of a component's layout.
+  double extent() const { return extent_; }
   double energy(std::size_t component) const { return quantizers_[component]->energy(); }
   const Array<Index>& relaxed(std::size_t component) const { return relaxed_[component]; }
 
@@ -64,6 +65,7 @@ class GridSearch {
   };
 
   void prepare(std::size_t component);
+  void measure_extent();
 
   // None if the component has no valid layout, or only one with too much distortion.
   std::optional<SizedLayout> lay_out(std::size_t component, double tiles, const LayoutEffort& effort) const;
@@ -127,6 +129,7 @@ class GridSearch {
   const PointLattice lattice_;
   Array<SeamlessComponent>& components_;
   Array<double> area_;  // of the components' surfaces
+  double extent_ = 0;
   ProgressMonitor& monitor_;
   Array<std::unique_ptr<LayoutQuantizer>> quantizers_;
   Array<Array<Index>> relaxed_;  // by component

@@ -288,6 +288,16 @@ def test_small_objects_do_not_make_the_tiles_of_others_small(reports):
     assert UvMap(small).tile_error() == UvMap(large).tile_error() == 0
 
 
+def test_what_is_scaled_to_nothing_does_not_decide_the_size_of_tiles():
+    nothing, small, large = add_ball("Nothing"), add_ball("Small"), add_ball("Large")
+    nothing.scale, large.scale = (0, 0, 0), (2, 2, 2)
+    bpy.context.view_layer.update()
+    bpy.ops.object.select_all(action="SELECT")
+    unwrap(preset="TILE")
+    assert tiles_along_a_unit(large) == pytest.approx(tiles_along_a_unit(small), rel=0.1)
+    assert UvMap(small).tile_error() == UvMap(large).tile_error() == 0
+
+
 def tiles_along_a_unit(obj):
     uv_map, world = UvMap(obj), np.array(obj.matrix_world)[:3, :3]
     loops = uv_map.triangles
