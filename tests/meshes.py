@@ -139,6 +139,10 @@ def bumpy_sphere(levels: int = 2, height: float = 0.25) -> Mesh:
     return make(mesh.positions * (1 + height * bump)[:, None], mesh.triangles, [0, 2, 4, 7, 9, 11])
 
 
+# Of the cones of with_close_cones, radians: on both sides of the short edge they have opposite curvature.
+CLOSE_CONE_ANGLES = np.pi / 2 * np.array([2, 2, 2, 3, 3, 3, 5])
+
+
 def with_close_cones(distance: float) -> Mesh:
     """A bumpy sphere with two cones on one edge, which is divided at this share of its length."""
     ball = bumpy_sphere()

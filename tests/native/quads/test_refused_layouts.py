@@ -124,7 +124,7 @@ def test_cells_too_large_for_a_mesh_are_refused(cells: tuple[int, int]) -> None:
 def with_close_cones(distance: float) -> tuple[lsgp.Surface, NDArray[np.int32], NDArray[np.float64]]:
     """Cones of opposite curvature, of whose distance even the coarsest grid makes a cell."""
     mesh = meshes.with_close_cones(distance)
-    return surface(mesh), mesh.cones, np.pi / 2 * np.array([2, 2, 2, 3, 3, 3, 5])
+    return surface(mesh), mesh.cones, meshes.CLOSE_CONE_ANGLES
 
 
 def test_millions_of_quads_that_nobody_asked_for_are_refused() -> None:

@@ -133,8 +133,7 @@ def test_small_parts_have_grids_of_their_own(scale: float) -> None:
 def test_a_grid_beyond_the_bound_says_so(distance: float) -> None:
     """Cones of opposite curvature, of whose distance even the finest grid makes a cell."""
     mesh = meshes.with_close_cones(distance)
-    angles = np.pi / 2 * np.array([2, 2, 2, 3, 3, 3, 5])
-    result = lsgp.parameterize(surface(mesh), mesh.cones, angles, SQUARE)
+    result = lsgp.parameterize(surface(mesh), mesh.cones, meshes.CLOSE_CONE_ANGLES, SQUARE)
     assert undeclared_faults(surface(mesh), result, SQUARE) == []
     growth = result.seamless.energy_after / result.seamless.energy_before
     assert (growth > ACCEPTABLE) == (distance < 1e-7) == ("GRID_DISTORTS" in codes(result.warnings))
